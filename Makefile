@@ -11,14 +11,17 @@ WHEEL_RAIL := data/wheel_rail/y4_82kN.txt
 find_python = $$(for p in "$$PYTHON" python3 /usr/bin/python3; do \
 	test -n "$$p" && "$$p" -c 'import numpy, matplotlib' 2>/dev/null && echo "$$p" && break; done; true)
 
-# $(call apt_get,packages): installs Debian packages, without what they only recommend, with sudo unless we are root; says so.
+# $(call apt_get,packages): installs Debian packages, without what they only recommend, with sudo unless we are root; says so. Without
+# sudo it prints what to ask for.
 apt_get = command -v apt-get >/dev/null || { echo "missing, and no apt-get to install them: $(1)" >&2; exit 1; }; \
 	sudo=''; test "$$(id -u)" = 0 || sudo=sudo; \
+	test -z "$$sudo" || command -v sudo >/dev/null || { \
+		echo "Missing here, and no sudo. Ask your administrator for:  apt-get install --no-install-recommends $(1)" >&2; exit 1; }; \
 	echo "Missing here: $(1). Installing by $$sudo apt-get install --no-install-recommends; to do without, install them before."; \
 	$$sudo apt-get update -qq && \
 	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $(1)
 
-.PHONY: all demo test campaign soak bench bench-table bench-peers analysis accuracy tools demo-tools wheel package-test docs notices clean
+.PHONY: pictures all demo test campaign soak bench bench-table bench-peers analysis accuracy plain-cost tools demo-tools wheel package-test docs notices clean
 .DEFAULT_GOAL := all
 
 all:
@@ -126,12 +129,17 @@ analysis: tools
 	$(CARGO) run --release --locked -p local_fourier_analysis target/local_fourier_analysis
 	"$(find_python)" local_fourier_analysis/picture.py target/local_fourier_analysis docs/local_fourier_analysis.png
 
-# What accuracy costs, and what the library says of it: all tables of docs/accuracy.md and docs/notes/2026-11-accuracy.md on the screen, and the
-# picture. ACCURACY="--quick", or some of estimates, searches, prices, study.
+# What accuracy costs, and what the library says of it: all tables of docs/accuracy.md and docs/notes/2026-11-accuracy.md on the screen;
+# `make pictures` draws the first of them. ACCURACY="--quick", or some of estimates, searches, prices, study.
 ACCURACY ?=
 accuracy: tools
 	$(CARGO) run --release --locked --example accuracy -- $(ACCURACY)
-	@test ! -e build/accuracy.csv || "$(find_python)" benches/accuracy.py build/accuracy.csv docs
+	@test ! -e build/accuracy.csv || "$(find_python)" benches/accuracy.py build/accuracy.csv
+
+# An effect that is not named is free: instructions and bytes of a plain solve beside the recorded ones. RECORD="what came in" records them.
+RECORD ?=
+plain-cost: tools all
+	"$(find_python)" benches/plain_solve/check.py $(LIBDIR_BUILT)/libcontact_normal.so include $(if $(RECORD),--record "$(RECORD)")
 
 # The wheel, in build/wheel: py3-none-<platform>, with the stripped library inside.
 wheel: all build/tools/bin/python
@@ -152,12 +160,23 @@ package-test: tools wheel build/tools/bin/python
 docs: tools all build/tools/bin/python
 	rm -rf build/docs
 	$(MAKE) --no-print-directory -s install PREFIX=build/prefix DESTDIR=
+	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so PYTHONPATH=$(abspath python) \
+		build/tools/bin/python docs/pictures.py --dark docs/pictures/dark
+	for notebook in notebooks/*.ipynb; do \
+		CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so PYTHONPATH=$(abspath python) \
+			build/tools/bin/python docs/run_notebook.py $$notebook docs/notebooks || exit 1; \
+	done
 	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so \
 		build/tools/bin/python -m sphinx -W --keep-going -q docs build/docs/html
 	build/tools/bin/python docs/check_links.py
 	CONTACT_NORMAL_LIBRARY=$(abspath build/prefix/lib/libcontact_normal.so) PYTHONPATH=$(abspath python) \
 		build/tools/bin/python docs/check_code.py build/prefix build/docs/code
 	@echo "The site: build/docs/html/index.html"
+
+# The pictures of the pages, anew: after a change of an example or of the style.
+pictures: all build/tools/bin/python
+	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so PYTHONPATH=$(abspath python) \
+		build/tools/bin/python docs/pictures.py docs/pictures
 
 # What builds wheels and the site: an environment of Python, apart from the user's.
 build/tools/bin/python: packaging/requirements.txt

@@ -1,6 +1,6 @@
 """Runs or compiles every code block of the pages in a folder: `check_code.py PREFIX FOLDER`, with the library installed in PREFIX.
 
-Blocks of Python run one after the other, one page in one process. A block of C, C++ or Fortran that is a program is compiled, linked and
+Blocks of Python run one after the other, one page in one process; notebooks have run when their pages were written. A block of C, C++ or Fortran that is a program is compiled, linked and
 run; any other is compiled inside a function, with the variables of PREAMBLE declared. sh, cmake, toml and text are left alone: `make
 package-test` runs what they say.
 """
@@ -18,6 +18,8 @@ dx = dy = 0.2
 x, y = (np.arange(95) - 47) * 0.2, (np.arange(88) - 43.5) * 0.2
 h = 0.001 * x[None, :] ** 2 + 0.002 * y[:, None] ** 2
 """
+# Pages whose Python is a whole program as it is printed.
+WHOLE = ("README.md", "tutorial.md", "creep_force_tables.md")
 C = """#include <contact_normal.h>
 #include <stdio.h>
 contact_normal_status block(int mx, int my, const double *h, double *p, contact_normal_solver *solver);
@@ -35,7 +37,7 @@ C_DECLARED = {
     "scene": "contact_normal_scene scene; contact_normal_scene_init(&scene);",
     "fields": "contact_normal_fields fields; contact_normal_fields_init(&fields);",
     "report": "contact_normal_report report; contact_normal_report_init(&report);",
-    "status": "contact_normal_status status;",
+    "status": "contact_normal_status status = CONTACT_NORMAL_OK;",
 }
 CPP = """#include <contact_normal.hpp>
 #include <iostream>
@@ -67,26 +69,28 @@ def run(command: list, folder: Path, **more) -> None:
 
 
 def declared(block: str) -> str:
-    """Declarations of what a C fragment uses and does not declare."""
+    """Declarations of what a C fragment, and the function around it, uses and does not declare."""
+    block += " status"
     return "\n".join(code for name, code in C_DECLARED.items() if name in block and f"contact_normal_{name.rstrip('.')} {name.rstrip('.')};" not in block)
 
 
 def main(prefix: Path, folder: Path) -> None:
     """Checks all pages."""
     folder.mkdir(parents=True, exist_ok=True)
-    for data in (root / "data" / "wheel_rail").glob("*.txt"):
+    for data in (*(root / "data" / "wheel_rail").glob("*.txt"), *(root / "data" / "heights").glob("*.npy"), *(root / "data" / "profiles").glob("*.pr?")):
         (folder / data.name).write_bytes(data.read_bytes())
     environment = {**os.environ, "LD_LIBRARY_PATH": str(prefix / "lib"), "MPLBACKEND": "Agg", "MPLCONFIGDIR": str(folder)}
     flags = [f"-I{prefix / 'include'}"]
     link = [f"-L{prefix / 'lib'}", "-lcontact_normal"]
     count = 0
-    pages = [root / "README.md", *(page for page in sorted((root / "docs").rglob("*.md")) if "generated" not in page.parts)]
+    pages = [page for page in sorted((root / "docs").rglob("*.md")) if not {"generated", "notebooks"} & set(page.parts)]
+    pages = [root / "README.md", *pages]
     for page in pages:
         blocks = re.findall(r"^```(\w+)\n(.*?)^```", page.read_text(), re.DOTALL | re.MULTILINE)
         python = [block for language, block in blocks if language == "python"]
         if python:
             script = folder / f"{page.stem}.py"
-            script.write_text(PYTHON + "\n".join(python))
+            script.write_text(("" if page.name in WHOLE else PYTHON) + "\n".join(python))
             run([sys.executable, script], folder, env=environment)
         for number, (language, block) in enumerate(blocks):
             source = folder / f"{page.stem}_{number}"

@@ -19,6 +19,7 @@
 
 #include <contact_normal_accuracy.hpp>
 #include <contact_normal_arrays.hpp>
+#include <contact_normal_adhesion.hpp>
 #include <contact_normal_friction.hpp>
 #include <contact_normal_library.hpp>
 #include <contact_normal_options.hpp>

@@ -121,6 +121,65 @@ inline price_list cost_of_accuracy(const scene &of, view<double> targets, std::i
     return list;
 }
 
+/// The quantities of a scene, grid by grid.
+struct quantity_rows {
+    contact_normal_status status = CONTACT_NORMAL_OK;
+    std::string message;                            // why, if it was not solved
+    std::vector<contact_normal_quantity_row> rows;  // for each grid, coarsest first, one for each quantity
+
+    /// True if the scene's own grid was solved.
+    explicit operator bool() const noexcept { return status == CONTACT_NORMAL_OK; }
+};
+
+/// Values and errors of these quantities (CONTACT_NORMAL_QUANTITY_...) on the scene's grid and on `coarser` grids with half the elements
+/// each: `contact_normal_quantities`. Throws `error` if it is refused.
+inline quantity_rows quantities(const scene &of, view<std::int32_t> wanted, std::int32_t coarser = 2, const options &how = {})
+{
+    const contact_normal_scene scene = of.get();
+    quantity_rows all;
+    const std::size_t grids = coarser < 0 ? 1 : static_cast<std::size_t>(coarser) + 1;
+    all.rows.resize(wanted.size() * grids + 1);
+    contact_normal_quantity_row_init(all.rows.data());
+    std::int32_t written = 0;
+    all.status = contact_normal_quantities(&scene, &how, detail::narrow("quantities", wanted.size()), wanted.data(), coarser,
+                                           all.rows.data(), &written);
+    all.message = all.status == CONTACT_NORMAL_OK ? "" : contact_normal_last_error();
+    if (all.status < 0) throw error(all.status, all.message);
+    all.rows.resize(static_cast<std::size_t>(written));
+    return all;
+}
+
+/// What effects a scene calls for.
+struct bill {
+    contact_normal_status status = CONTACT_NORMAL_OK;
+    std::string message;                          // why, if it was ended early
+    std::vector<contact_normal_effects_row> rows; // for each effect, then for each pair, one for each quantity
+
+    /// True unless it was ended early.
+    explicit operator bool() const noexcept { return status == CONTACT_NORMAL_OK; }
+};
+
+/// How much each of these quantities (CONTACT_NORMAL_QUANTITY_...) changes where an effect, or a pair of them, is left out, what that saves,
+/// and whether the relative accuracy `target` calls for it: `contact_normal_effects_bill`. Throws `error` if it is refused.
+inline bill effects_bill(const scene &of, double target, view<std::int32_t> wanted, bool pairs = true, const options &how = {})
+{
+    const contact_normal_scene scene = of.get();
+    bill all;
+    std::int32_t count = 0;
+    const std::int32_t n = detail::narrow("quantities", wanted.size());
+    const auto ask = [&](std::int32_t capacity, contact_normal_effects_row *rows) {
+        all.status = contact_normal_effects_bill(&scene, &how, target, pairs ? 1 : 0, n, wanted.data(), capacity, rows, &count);
+        all.message = all.status == CONTACT_NORMAL_OK ? "" : contact_normal_last_error();
+        if (all.status < 0) throw error(all.status, all.message);
+    };
+    ask(0, nullptr);
+    all.rows.resize(static_cast<std::size_t>(count) + 1);
+    contact_normal_effects_row_init(all.rows.data());
+    ask(count, all.rows.data());
+    all.rows.resize(static_cast<std::size_t>(count));
+    return all;
+}
+
 } // namespace contact_normal
 
 #endif // CONTACT_NORMAL_ACCURACY_HPP

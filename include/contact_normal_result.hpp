@@ -23,7 +23,9 @@ enum class fields : std::uint32_t {
     slip = 32,
     stick_slip = 64,
     ledger = 128, // the estimated errors, too
-    all = 255
+    contact_pressure = 256,
+    attraction = 512,
+    all = 1023
 };
 constexpr fields operator|(fields a, fields b) noexcept
 {
@@ -41,6 +43,7 @@ constexpr fields operator-(fields a, fields b) noexcept
 namespace detail {
 struct outputs;
 constexpr fields of_friction = fields::traction | fields::slip | fields::stick_slip;
+constexpr fields of_adhesion = fields::contact_pressure | fields::attraction;
 } // namespace detail
 
 /// What a solve found. The arrays have my * mx values, x fastest; those that it does not hold are empty.
@@ -51,6 +54,7 @@ struct result {
     std::vector<std::int32_t> contact; // 0: exterior, 1: contact, 2: at the pressure limit
     std::array<std::vector<double>, 2> traction, slip; // in x and y; with friction only
     std::vector<std::int32_t> stick_slip;                // 0: exterior, 1: stick, 2: slip; with friction only
+    std::vector<double> contact_pressure, attraction; // q and sigma, whose difference is p; with adhesion only
     contact_normal_report report;
     std::vector<contact_normal_ledger_row> ledger; // coarsest grid first
 
@@ -58,7 +62,7 @@ struct result {
     /// not among the defaults.
     explicit result(fields of = fields::all - fields::ledger) : asked(of) { contact_normal_report_init(&report); }
 
-    /// What the next solve into it writes, but for what friction alone has if there is none.
+    /// What the next solve into it writes, but for what friction or adhesion alone has if there is none.
     fields asked;
     /// Whether the last solve wrote all of these.
     bool holds(fields which) const noexcept { return (held_ & which) == which; }
@@ -94,6 +98,7 @@ struct outputs {
         fields reads = is_given ? fields::pressure : fields::none;
         if (is_fixed || (is_given && has_contact)) reads = reads | fields::contact;
         writes = of.has_friction() ? found.asked : found.asked - of_friction;
+        writes = of.has_adhesion() ? writes : writes - of_adhesion;
         if (is_given && !has_contact && has(writes, fields::contact)) {
             found.contact.clear();
             for (double p : found.pressure) found.contact.push_back(p > 0.0);
@@ -115,6 +120,8 @@ struct outputs {
             written.slip[k] = room(found.slip[k], has(which, fields::slip), size);
         }
         written.stick_slip = room(found.stick_slip, has(which, fields::stick_slip), size);
+        written.contact_pressure = room(found.contact_pressure, has(which, fields::contact_pressure), size);
+        written.attraction = room(found.attraction, has(which, fields::attraction), size);
         contact_normal_report_init(&found.report);
         if (has(which, fields::ledger)) {
             contact_normal_ledger_row_init(rows.data());

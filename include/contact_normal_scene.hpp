@@ -2,6 +2,7 @@
 #ifndef CONTACT_NORMAL_SCENE_HPP
 #define CONTACT_NORMAL_SCENE_HPP
 
+#include <contact_normal_adhesion.hpp>
 #include <contact_normal_arrays.hpp>
 #include <contact_normal_friction.hpp>
 
@@ -101,6 +102,12 @@ public:
         tables_ = of.tables_;
         return *this;
     }
+    /// Attraction between the bodies.
+    scene &adhesion(const contact_normal::adhesion &of) &
+    {
+        adhesion_ = of.named(size());
+        return *this;
+    }
     /// The grid is one period in x, in y, or in both.
     scene &period(bool x, bool y) &
     {
@@ -138,6 +145,7 @@ public:
     scene pressure_limit(double limit) && { return std::move(pressure_limit(limit)); }
     scene pressure_limit(borrowed<double> limits) && { return std::move(pressure_limit(limits)); }
     scene friction(const contact_normal::friction &of) && { return std::move(friction(of)); }
+    scene adhesion(const contact_normal::adhesion &of) && { return std::move(adhesion(of)); }
     scene period(bool x, bool y) && { return std::move(period(x, y)); }
     scene patches(std::int32_t patches, borrowed<std::int32_t> patch, borrowed<double> factors) &&
     {
@@ -155,6 +163,7 @@ public:
         named.patches = patches_ ? &*patches_ : nullptr;
         named.row_tables = row_tables_ ? &*row_tables_ : nullptr;
         named.friction = friction_ ? &*friction_ : nullptr;
+        named.adhesion = adhesion_ ? &*adhesion_ : nullptr;
         for (std::size_t body : {0u, 1u}) named.coating[body] = coating_[body] ? &*coating_[body] : nullptr;
         return named;
     }
@@ -163,6 +172,7 @@ public:
     /// Elements of the grid.
     std::size_t size() const noexcept { return detail::count(scene_.mx) * detail::count(scene_.my); }
     bool has_friction() const noexcept { return friction_.has_value(); }
+    bool has_adhesion() const noexcept { return adhesion_.has_value(); }
 
 private:
     template <class T> const T *per_element(const char *name, borrowed<T> values) const
@@ -179,6 +189,7 @@ private:
     std::optional<contact_normal_row_tables> row_tables_;
     std::array<std::optional<contact_normal_coating>, 2> coating_;
     std::optional<contact_normal_friction> friction_;
+    std::optional<contact_normal_adhesion> adhesion_;
     std::shared_ptr<const contact_normal::friction::tables> tables_; // what `friction_` points to
 };
 

@@ -86,6 +86,14 @@ inline result solve(const scene &of, const options &how = {}, const progress &to
     return detail::or_throw(std::move(found));
 }
 
+/// The state of the least force of a scene with adhesion: `contact_normal_pull_off`. Throws `error` if the scene is refused.
+inline result pull_off(const scene &of, const options &how = {}, const progress &told = {}, fields asked = fields::all - fields::ledger)
+{
+    result found(asked);
+    detail::run(of, found, how, told, contact_normal_pull_off);
+    return detail::or_throw(std::move(found));
+}
+
 /// What a batch found: a result of each problem.
 struct batch {
     contact_normal_status status = CONTACT_NORMAL_OK; // of all; see `contact_normal_solver_solve_batch`

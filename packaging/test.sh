@@ -78,8 +78,9 @@ python/bin/pip install --quiet --disable-pip-version-check "$wheel[plot]"
 cp "$data/y4_82kN.txt" . && MPLBACKEND=Agg python/bin/python "$consumers/python/five_lines.py"
 test "$(stat -c %s wheel_rail.png)" -gt 10000
 echo "Python, five lines     drew wheel_rail.png"
-# Tables in files and on a cluster of two processes: the tests that need more than numpy.
-python/bin/pip install --quiet --disable-pip-version-check "$wheel[tables,dask,progress]"
+python/bin/contact-normal prices --help >/dev/null
+# Tables in files and on a cluster of two processes, files of instruments and of VTK: the tests that need more than numpy.
+python/bin/pip install --quiet --disable-pip-version-check "$wheel[tables,dask,progress,vtk,surface]"
 tests=$(realpath "$consumers/../../python/tests_tables")
 python/bin/python -m unittest discover -s "$tests" 2>tables.log || { cat tables.log >&2; exit 1; }
 grep -q "^Ran $(cat "$tests"/test_*.py | grep -c '^    def test_') tests" tables.log || { cat tables.log >&2; exit 1; }

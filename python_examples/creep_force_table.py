@@ -25,17 +25,17 @@ def draw(found, picture):
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    figure, axes = pyplot.subplots(figsize=(7, 4.5), layout="constrained")
+    figure, axes = pyplot.subplots(layout="constrained")
     xi = np.linspace(-1.6, 1.6, 201)
     for phi in (0.0, 0.5, 1.0):
         force, _, _, error = found.forces(xi, 0.0, phi, poisson_ratio=0.25)
         (line,) = axes.plot(xi, force, label=f"spin {phi}")
         axes.fill_between(xi, force - error, force + error, color=line.get_color(), alpha=0.3, linewidth=0)
     linear = np.array([-1.0, 1.0]) / C11
-    axes.plot(linear, -C11 * linear, "k--", linewidth=1.0, label="Kalker's linear theory")
+    axes.plot(linear, -C11 * linear, "--", color="0.5", linewidth=1.0, label="Kalker's linear theory")
     axes.set(xlabel=r"creepage $G c^2 \xi/(\mu N)$", ylabel=r"$F_x/(\mu N)$", title="Longitudinal creep force of a circle, with estimated errors")
     axes.legend()
-    figure.savefig(picture, dpi=90)
+    figure.savefig(picture)
 
 
 def main(picture=None):

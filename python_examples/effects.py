@@ -23,7 +23,7 @@ def layers():
     for c in (0.0, 1e-6, 1e-5, 1e-4):  # mm per N/mm2: thickness over elastic modulus
         found = cn.solve(h, 0.1, 0.1, force=1000.0, layer=c, **STEEL)
         print(f"{c:10.0e} {found.approach:10.6f} {found.report['max_pressure']:13.2f} {found.report['contact_area']:13.2f}")
-        yield f"c = {c:g} mm$^3$/N", x, found.pressure[M // 2]
+        yield f"c = {c:g} mm³/N", x, found.pressure[M // 2]
 
 
 def pressure_limits():
@@ -85,59 +85,59 @@ def coatings():
         yield f"{modulus / 80000:g} G, {thickness:g} mm" if thickness else "no coating", x, found.pressure[M // 2]
 
 
+def curves(path, text, lines, across="x [mm]", **of_legend):
+    """Pressures along a line of elements, one curve for each (name, places, pressures)."""
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(layout="constrained")
+    for name, places, p in lines:
+        axes.plot(places, p, label=name)
+    axes.set(xlabel=across, ylabel="pressure [N/mm²]", title=text)
+    axes.legend(**of_legend)
+    figure.savefig(path)
+
+
+def draw_limits(path, limited):
+    from matplotlib import pyplot
+
+    figure, (top, bottom) = pyplot.subplots(2, 1, figsize=(6.8, 6.0), sharex=True, layout="constrained")
+    for name, x, p, e in limited:
+        top.plot(x, p, label=name)
+        bottom.plot(x, 1000 * e, label=name)
+    top.set(ylabel="pressure [N/mm²]", title="A ball on a surface of hardness 1200 N/mm²")
+    bottom.set(xlabel="x [mm]", ylabel="deformed distance [µm]", ylim=(-4, 6))
+    top.legend()
+    figure.savefig(path)
+
+
+def draw_periods(path, periodic):
+    """Three by three periods at each load; where nothing touches there is no colour."""
+    from matplotlib import pyplot
+
+    figure, panels = pyplot.subplots(2, 3, figsize=(8.6, 6.2), layout="constrained")
+    for axes, (name, p) in zip(panels.flat, periodic):
+        tiles = np.tile(np.where(p > 0, p / p.max(), np.nan), (3, 3))
+        picture = axes.imshow(tiles, origin="lower", extent=(0, 3, 0, 3), vmin=0, vmax=1)
+        axes.set(title=f"{name}: at most {p.max():.0f} N/mm²", xlabel="x [mm]", ylabel="y [mm]", xticks=range(4), yticks=range(4))
+    panels.flat[-1].set_axis_off()
+    figure.colorbar(picture, ax=panels.flat[-1], location="left", fraction=0.5, label="pressure / largest pressure")
+    figure.savefig(path)
+
+
 def draw(folder, layered, limited, periodic, patched, tabled, coated):
     import matplotlib
 
     matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(7, 4))
-    for name, x, p in layered:
-        axes.plot(x, p, label=name)
-    axes.set(xlabel="x [mm]", ylabel="pressure [N/mm$^2$]", title="A ball on a coated plate, 1000 N")
-    axes.legend()
-    figure.savefig(f"{folder}/effects_layer.png", dpi=100, bbox_inches="tight")
-
-    figure, axes = plt.subplots(figsize=(7, 4))
-    for name, x, p in coated:
-        axes.plot(x, p, label=name, color="black" if name == "no coating" else None)
-    axes.set(xlabel="x [mm]", ylabel="pressure [N/mm$^2$]", title="A ball on a plate with an elastic coating, 100 N")
-    axes.legend(title="shear modulus, thickness", fontsize="small")
-    figure.savefig(f"{folder}/effects_coating.png", dpi=100, bbox_inches="tight")
-
-    figure, axes = plt.subplots(figsize=(7, 4))
-    for name, x, p in patched:
-        axes.plot(x, p, label=name)
-    axes.set(xlabel="x [mm]", ylabel="pressure [N/mm$^2$]", title="Two balls side by side, 1000 N together")
-    axes.legend(loc="upper center")
-    figure.savefig(f"{folder}/effects_patches.png", dpi=100, bbox_inches="tight")
-
-    figure, axes = plt.subplots(figsize=(7, 4))
-    for name, y, p in tabled:
-        axes.plot(y, p, label=name)
-    axes.set(xlabel="y along the section [mm]", ylabel="pressure [N/mm$^2$]", title="A roller in a groove, 20 kN")
-    axes.legend(loc="lower center")
-    figure.savefig(f"{folder}/effects_row_tables.png", dpi=100, bbox_inches="tight")
-
-    figure, (top, bottom) = plt.subplots(2, 1, figsize=(7, 6), sharex=True)
-    for name, x, p, e in limited:
-        top.plot(x, p, label=name)
-        bottom.plot(x, 1000 * e, label=name)
-    top.set(ylabel="pressure [N/mm$^2$]", title="A ball on a surface of hardness 1200 N/mm$^2$")
-    bottom.set(xlabel="x [mm]", ylabel="deformed distance [$\\mu$m]", ylim=(-4, 6))
-    top.legend()
-    figure.savefig(f"{folder}/effects_pressure_limit.png", dpi=100, bbox_inches="tight")
-
-    figure, each = plt.subplots(1, len(periodic), figsize=(13, 3.4))
-    for axes, (name, p) in zip(each, periodic):
-        # Three by three periods; white where nothing touches.
-        tiles = np.tile(np.where(p > 0, p, np.nan), (3, 3))
-        picture = axes.imshow(tiles, origin="lower", extent=(0, 3, 0, 3), cmap="viridis")
-        axes.set(title=name, xlabel="x/L", xticks=range(4), yticks=range(4))
-        figure.colorbar(picture, ax=axes, shrink=0.7)
-    figure.suptitle("A wavy surface in x and y: pressures [N/mm$^2$]")
-    figure.tight_layout()
-    figure.savefig(f"{folder}/effects_period.png", dpi=100, bbox_inches="tight")
+    ending = matplotlib.rcParams["savefig.format"]
+    curves(f"{folder}/effects_layer.{ending}", "A ball on a plate with a thin compliant layer, 1000 N", layered, title="compliance")
+    curves(f"{folder}/effects_coating.{ending}", "A ball on a plate with an elastic coating, 100 N", coated, title="shear modulus, thickness")
+    curves(f"{folder}/effects_patches.{ending}", "Two balls side by side, 1000 N together", patched, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=3)
+    # The differences from the plane, which is the first, are small.
+    _, y, plane = tabled[0]
+    curves(f"{folder}/effects_row_tables.{ending}", f"A roller in a groove, 20 kN: change from a plane, of {plane.max():.0f} N/mm² at most",
+           [(name, y, p - plane) for name, y, p in tabled[1:]], across="y along the section [mm]")
+    draw_limits(f"{folder}/effects_pressure_limit.{ending}", limited)
+    draw_periods(f"{folder}/effects_period.{ending}", periodic)
 
 
 if __name__ == "__main__":

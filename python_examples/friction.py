@@ -38,7 +38,7 @@ def push():
     # The sign: body 1 moves to -x over body 2, and the force on it is to +x.
     shift = -SLIDING * (1.0 - (stick_radius / CONTACT_RADIUS) ** 2)
     friction = dict(coefficient=COEFFICIENT, creepage=(shift, 0.0))
-    result = solved(cn.solve(h, d, d, force=NORMAL_FORCE, friction=friction, **MATERIAL))
+    result = solved(cn.solve(h, d, d, force=NORMAL_FORCE, friction=friction, units=("mm", "N"), **MATERIAL))
     found = np.sqrt(result.report["stick_count"] * d * d / np.pi)
     print(f"ball, {ELEMENTS} x {ELEMENTS} elements, pushed sideways by {-1000.0 * shift:.3f} um")
     print(f"{'':20}{'found':>10}{'exact':>10}")
@@ -87,7 +87,7 @@ def wheel():
     dx, dy, _, force, shear_modulus, poisson_ratio = map(float, numbers[2:])
     friction = dict(coefficient=COEFFICIENT, force=(0.6 * COEFFICIENT * force, 0.2 * COEFFICIENT * force))
     result = solved(cn.solve(h.reshape(my, mx), dx, dy, force=force, shear_modulus=shear_modulus, poisson_ratio=poisson_ratio, tolerance=1e-9,
-                             friction=friction))
+                             friction=friction, units=("mm", "N")))
     report = result.report
     x, y = report["creepage"]
     print(f"wheel on rail, {force / 1000.0:.1f} kN, pushed by 0.6 mu N along the rail and 0.2 mu N across")
@@ -102,15 +102,16 @@ def draw(picture, pushed, rocked, rolled):
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    figure, (left, middle, right) = pyplot.subplots(1, 3, figsize=(13, 4.2), layout="constrained")
-    pushed.plot_traction(left).set(title="a ball pushed sideways: stick blue, slip orange", xlabel="x [mm]", ylabel="y [mm]")
+    figure, ((left, right), (middle, unused)) = pyplot.subplots(2, 2, figsize=(8.6, 7.8), layout="constrained")
+    unused.set_axis_off()
+    pushed.plot_traction(left).set(title="a ball: stick blue, slip orange", xlabel="x [mm]", ylabel="y [mm]")
     parts, found, exact = rocked
-    middle.plot(1000.0 * exact, parts, "-", color="0.6", label="Mindlin and Deresiewicz")
+    middle.plot(1000.0 * exact, parts, "-", color="0.5", label="Mindlin and Deresiewicz")
     middle.plot(1000.0 * found, parts, "o", markersize=4, label="found")
-    middle.set(title="the ball rocked to and fro", xlabel="shift [um]", ylabel="force / (mu N)")
+    middle.set(title="the ball rocked to and fro", xlabel="shift [µm]", ylabel="force / ($\\mu N$)")
     middle.legend()
     rolled.plot_traction(right).set(title="a wheel on a rail", xlabel="x, along the rail [mm]", ylabel="y, across [mm]")
-    figure.savefig(picture, dpi=75)
+    figure.savefig(picture)
 
 
 def main(picture=None):

@@ -42,12 +42,12 @@ def draw(ledger, report, exact, path):
     axes = ledger.plot()
     seconds = [row["seconds"] for row in ledger]
     true = [abs(row["force"] / exact.force - 1) for row in ledger]
-    axes.loglog(seconds, true, "k--", label="force: true error")
+    axes.loglog(seconds, true, "--", color="0.5", label="force: true error")
     if report["halved_seconds"] > 0:
         finer = report["halved_error_force"] / report["force"]
-        axes.loglog(report["halved_seconds"], finer, "kx", label="advice: half the element")
-    axes.legend(loc="lower left")
-    axes.figure.savefig(path, dpi=120)
+        axes.loglog(report["halved_seconds"], finer, "x", color="0.5", label="advice: half the element")
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small")
+    axes.figure.savefig(path)
 
 
 if __name__ == "__main__":

@@ -41,7 +41,7 @@ def draw(prices, paid, path):
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    figure, axes = pyplot.subplots(figsize=(6.4, 4.2), layout="constrained")
+    figure, axes = pyplot.subplots(layout="constrained")
     axes.loglog([price.seconds for price in prices], [price.error for price in prices], "o-", label="predicted")
     axes.loglog(*zip(*paid), "s--", label="true")
     for price in prices:
@@ -49,9 +49,9 @@ def draw(prices, paid, path):
         axes.annotate(label, (price.seconds, price.error), fontsize=8, xytext=(5, 5), textcoords="offset points")
         if price.target == BOUGHT:
             axes.plot(price.seconds, price.error, "o", ms=16, mfc="none", color="tab:red", label="bought")
-    axes.set(xlabel="seconds", ylabel="relative error of the force", title="What accuracy costs: sphere on flat")
+    axes.set(xlabel="time [s]", ylabel="relative error of the force", title="What accuracy costs: sphere on flat")
     axes.legend()
-    figure.savefig(path, dpi=120)
+    figure.savefig(path)
 
 
 def main(picture=None):

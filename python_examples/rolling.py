@@ -78,7 +78,7 @@ def spinning():
     """A creepage and a spin; CONTACT printed the results beside."""
     surface, scene = wheel()
     friction = dict(ROLLING, creepage=(0.0005, 0.0), spin=0.0003, spin_centre=(0.0, 2.1))
-    result = solved(cn.solve(*surface, friction=friction, tolerance=1e-9, **scene))
+    result = solved(cn.solve(*surface, friction=friction, tolerance=1e-9, units=("mm", "N"), **scene))
     x, y = np.array(result.report["tangential_force"]) / (ROLLING["coefficient"] * result.force)
     print(f"{'creepage and spin':24}{'found':>12}{'CONTACT':>12}")
     print(f"{'Fx / (mu N)':24}{x:>12.7f}{-0.5729502:>12.7f}\n{'Fy / (mu N)':24}{y:>12.7f}{-0.3269461:>12.7f}")
@@ -92,10 +92,11 @@ def draw(picture, rolled, forces, spun):
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    figure, (left, middle, right) = pyplot.subplots(1, 3, figsize=(13, 4.2), layout="constrained")
+    figure, ((left, middle), (right, unused)) = pyplot.subplots(2, 2, figsize=(8.6, 7.8), layout="constrained")
+    unused.set_axis_off()
     x, result, fine, exact = rolled
-    left.plot(x, ROLLING["coefficient"] * result.pressure[0], ":", color="0.5", label="mu p")
-    left.plot(fine, exact, "-", color="0.6", label="Carter")
+    left.plot(x, ROLLING["coefficient"] * result.pressure[0], ":", color="0.5", label="$\\mu p$")
+    left.plot(fine, exact, "-", color="0.5", label="Carter")
     for side, colour, label in ((1, "tab:blue", "found, stick"), (2, "tab:orange", "found, slip")):
         chosen = result.stick_slip[0] == side
         left.plot(x[chosen], result.traction[0, 0, chosen], "o", color=colour, markersize=4, label=label)
@@ -104,10 +105,10 @@ def draw(picture, rolled, forces, spun):
     creepages, found, linear = forces
     middle.plot(creepages, linear, "--", color="0.5", label="Kalker's linear theory")
     middle.plot(creepages, found, "o-", markersize=4, label="found")
-    middle.set(title="creep force of a wheel on a rail", xlabel="creepage −ξ [0.001]", ylabel="force Fx / (mu N)", ylim=(0.0, 1.1))
+    middle.set(title="creep force of a wheel on a rail", xlabel="creepage −ξ [0.001]", ylabel="force $F_x/(\\mu N)$", ylim=(0.0, 1.1))
     middle.legend(loc="lower right")
     spun.plot_traction(right).set(title="the wheel with creepage and spin", xlabel="x, along the rail [mm]", ylabel="y, across [mm]")
-    figure.savefig(picture, dpi=75)
+    figure.savefig(picture)
 
 
 def main(picture=None):

@@ -15,7 +15,7 @@ M, D, RADIUS = 129, 0.02, 50.0
 
 def ball():
     x = (np.arange(M) - M // 2) * D
-    return cn.solve((x[None, :] ** 2 + x[:, None] ** 2) / (2 * RADIUS), D, D, force=1000.0, **STEEL)
+    return cn.solve((x[None, :] ** 2 + x[:, None] ** 2) / (2 * RADIUS), D, D, force=1000.0, units=("mm", "N"), **STEEL)
 
 
 def wheel_on_rail(path):
@@ -24,7 +24,7 @@ def wheel_on_rail(path):
     mx, my, dx, dy, _, force, modulus, ratio = (float(word) for word in rows[0].split())
     h = np.array([float(word) for row in rows[1:] for word in row.split()[:1]]).reshape(int(my), int(mx))
     rolling = dict(coefficient=0.3, motion="STEADY_ROLLING", creepage=(-1e-3, 5e-4), spin=-2e-4)
-    return cn.solve(h, dx, dy, force=force, shear_modulus=modulus, poisson_ratio=ratio, friction=rolling)
+    return cn.solve(h, dx, dy, force=force, shear_modulus=modulus, poisson_ratio=ratio, friction=rolling, units=("mm", "N"))
 
 
 def finer(result, coarse):
@@ -61,12 +61,13 @@ def main(case, folder=None):
 
         matplotlib.use("Agg")
         at = below.largest_von_mises
+        ending = matplotlib.rcParams["savefig.format"]
         for axes, name in (
             (still.plot_depth(), "depth"),
             (sliding.plot_section(y=0.0), "sliding"),
             (below.plot_section(x=at["x"]), "wheel_rail"),
         ):
-            axes.figure.savefig(f"{folder}/stress_{name}.png", dpi=90)
+            axes.figure.savefig(f"{folder}/stress_{name}.{ending}")
 
 
 if __name__ == "__main__":

@@ -56,7 +56,7 @@ def draw(path, title, result):
 
     matplotlib.use("Agg")
     axes = result.plot()
-    axes.set(xlabel="x, along the rail  [mm]", ylabel="y, across the rail  [mm]")
+    axes.set(xlabel="x, along the rail [mm]", ylabel="y, across the rail [mm]")
     axes.set_title(
         f"{title.split(';')[0]}\n{result.force / 1000:.1f} kN: largest pressure {result.pressure.max():.0f} N/mm²,"
         f" contact area {result.report['contact_area']:.1f} mm²",
@@ -86,6 +86,7 @@ def main(data=DATA, picture="wheel_rail.png", arrays=None):
         shear_modulus=scene["shear_modulus"],
         poisson_ratio=scene["poisson_ratio"],
         tolerance=1e-9,
+        units=("mm", "N"),
     )
     if result.status != contact_normal.OK:
         sys.exit(f"stopped early: {result.message}")

@@ -51,6 +51,7 @@
 //! | [`progress`] | what a loop has to reach, why it ended, what was counted, the ledger |
 //! | [`methods`] | NORM (section 3), V-cycles (section 4.2), projected conjugate gradients, descent, the direct solve: each a step |
 //! | [`solver`] | THE loop (section 4.1), nested iteration (section 4.3), which methods in which order, the report |
+//! | [`friction`], [`adhesion`] | the tangential problem; attraction across the gap |
 //! | [`stress`] | stresses below the surface, from pressures and tractions |
 //! | [`analytic`] | the Hertz solution |
 //! | `blocks`, `bounding_box` | passes over a grid, by all threads and in vectors |
@@ -60,6 +61,7 @@
 #![warn(missing_docs)]
 #![deny(unsafe_code)]
 
+pub mod adhesion;
 pub mod analytic;
 mod blocks;
 mod bounding_box;

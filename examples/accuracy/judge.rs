@@ -68,7 +68,11 @@ impl Estimates {
 /// What is estimated.
 pub const QUANTITIES: [&str; 4] = ["force, approach", "largest pressure", "area", "corrected area"];
 
-/// Estimates by quantity and family.
+/// The quantities whose elements across the contact say from where on these are believed.
+const BELIEVED_AS: [Quantity; 4] =
+    [Quantity::Force, Quantity::MaxPressure, Quantity::ContactArea, Quantity::ContactArea];
+
+/// Estimates by quantity and family, of those grids that have enough elements across the contact for the quantity.
 pub fn estimates(
     surfaces: Surfaces,
     seeds: std::ops::Range<u64>,
@@ -78,7 +82,7 @@ pub fn estimates(
     let options = Options { tolerance: 1e-8, estimates: true, ..Options::default() };
     for (surface, by_force) in all(surfaces, seeds) {
         for &m in sizes {
-            let report = solved(&surface, m, by_force, &options);
+            let (report, across) = solved_across(&surface, m, by_force, &options);
             let (value, error) = (report.measures, report.error);
             let exact = Some(surface.exact(by_force));
             let of_quantity = [
@@ -89,6 +93,9 @@ pub fn estimates(
             ];
             // The wave's area is a part of its period, which is 1.
             for (quantity, (value, exact, error)) in of_quantity.into_iter().enumerate() {
+                if across < BELIEVED_AS[quantity].enough_across() {
+                    continue;
+                }
                 found.entry((quantity, surface.family)).or_default().count(value, exact, error);
             }
         }
@@ -98,11 +105,17 @@ pub fn estimates(
 }
 
 fn solved(surface: &Surface, m: usize, by_force: bool, options: &Options) -> Report {
+    solved_across(surface, m, by_force, options).0
+}
+
+/// The same, and the elements across the contact in the direction with fewer.
+fn solved_across(surface: &Surface, m: usize, by_force: bool, options: &Options) -> (Report, usize) {
     let grid = surface.grid(m);
     let h = surface.distance(&grid);
-    let (_, stop, report) = solve(&surface.scene(grid, &h, by_force), options).expect("a solvable scene");
+    let (solver, stop, report) = solve(&surface.scene(grid, &h, by_force), options).expect("a solvable scene");
     assert_eq!(stop, Outcome::Converged, "{} {m}", surface.family);
-    report
+    let (x, y) = spans(&solver.state().contact, &grid);
+    (report, if surface.period.is_some() { x } else { x.min(y) })
 }
 
 /// True relative errors of the force or the approach on START and its doublings.
@@ -131,7 +144,7 @@ pub struct Search {
     /// Columns and rows of contact.
     pub across: (usize, usize),
     pub elements: usize,
-    /// Those of the cheapest safe grid, on which 32 elements lie across the contact, if that was studied.
+    /// Those of the cheapest safe grid, from which on no error is above the target, if that was studied.
     pub cheapest: Option<usize>,
     pub reason: String,
 }
@@ -141,7 +154,7 @@ pub fn searches(surfaces: Surfaces, seeds: std::ops::Range<u64>) -> Vec<Search> 
     let mut found = Vec::new();
     for (surface, by_force) in all(surfaces, seeds) {
         let errors = true_errors(&surface, by_force);
-        let (start, resolved) = (surface.grid(START), resolved(&surface, by_force));
+        let start = surface.grid(START);
         for target in TARGETS {
             let accuracy = Accuracy { max_elements: (surface.grid(1024).len() + 1) as u64, ..Accuracy::new(target) };
             let mut write = |grid: &Grid, h: &mut [f64]| {
@@ -155,7 +168,7 @@ pub fn searches(surfaces: Surfaces, seeds: std::ops::Range<u64>) -> Vec<Search> 
             let solver = outcome.solver.as_ref().expect("a result");
             let value = outcome.report.measures.found(surface.load(by_force));
             let across = spans(&solver.state().contact, solver.grid());
-            let cheapest = cheapest_safe(&errors, target).map(|k| k.max(resolved));
+            let cheapest = cheapest_safe(&errors, target);
             found.push(Search {
                 family: surface.family,
                 by_force,
@@ -170,16 +183,6 @@ pub fn searches(surfaces: Surfaces, seeds: std::ops::Range<u64>) -> Vec<Search> 
         }
     }
     found
-}
-
-/// Doublings from the start to the coarsest grid on which 32 elements lie across the contact.
-fn resolved(surface: &Surface, by_force: bool) -> usize {
-    let grid = surface.grid(START << DOUBLINGS);
-    let h = surface.distance(&grid);
-    let (solver, ..) = solve(&surface.scene(grid, &h, by_force), &Options::default()).expect("a solvable scene");
-    let (x, y) = spans(&solver.state().contact, &grid);
-    let least = if surface.period.is_some() { x } else { x.min(y) };
-    (0..=DOUBLINGS).find(|k| least >> (DOUBLINGS - k) >= 32).unwrap_or(DOUBLINGS)
 }
 
 /// Columns and rows that the contact area spans.
@@ -213,7 +216,6 @@ pub fn prices(surfaces: Surfaces, seeds: std::ops::Range<u64>, most: usize) -> V
             surface.write(grid, h);
             false
         };
-        let resolved = resolved(&surface, by_force);
         let began = std::time::Instant::now();
         let wanted = (Quantity::Force, &TARGETS[..]);
         let scene = surface.scene(start, &[], by_force);
@@ -238,7 +240,7 @@ pub fn prices(surfaces: Surfaces, seeds: std::ops::Range<u64>, most: usize) -> V
                 times.sort_by(f64::total_cmp);
                 seconds = times[0];
             }
-            let cheapest = cheapest_safe(&errors, price.target).map(|k| k.max(resolved));
+            let cheapest = cheapest_safe(&errors, price.target);
             found.push(Paid {
                 family: surface.family,
                 by_force,

@@ -17,7 +17,7 @@ mod random;
 mod study;
 mod surfaces;
 
-const SIZES: [usize; 6] = [64, 100, 128, 200, 256, 300];
+const SIZES: [usize; 9] = [16, 24, 32, 48, 64, 100, 128, 200, 256];
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

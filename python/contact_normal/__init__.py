@@ -9,6 +9,7 @@ Arrays are (my, mx), C order: x runs along a row. Constants have the names of in
 """
 
 from ._arguments import SolveOptions
+from ._bill import Bill, BillRow, what_matters
 from ._callbacks import Progress, set_log
 from ._constants import *  # noqa: F403
 from ._creep_force_table import creep_force_table
@@ -16,7 +17,10 @@ from ._creep_forces import CreepForceTable
 from ._friction_batch import FrictionBatch, friction_batch
 from ._ledger import Ledger
 from ._library import VERSION, ContactNormalError
-from ._prices import Price, cost_of_accuracy
+from ._plot_lines import plot_contact_area
+from ._prices import Price, Prices, cost_of_accuracy
+from ._quantities import Quantities, Quantity, quantities
+from ._pull_off import pull_off
 from ._result import Result, TangentialResult
 from ._solve import AccurateResult, solve, solve_to_accuracy, to_accuracy
 from ._solver import Solver
@@ -29,13 +33,18 @@ __version__ = VERSION
 
 __all__ = [
     "AccurateResult",
+    "Bill",
+    "BillRow",
     "ContactNormalError",
     "CreepForceTable",
     "FrictionBatch",
     "HertzSolution",
     "Ledger",
     "Price",
+    "Prices",
     "Progress",
+    "Quantities",
+    "Quantity",
     "Result",
     "SolveOptions",
     "Solver",
@@ -48,6 +57,9 @@ __all__ = [
     "friction_batch",
     "hertz",
     "influence_half_space",
+    "plot_contact_area",
+    "pull_off",
+    "quantities",
     "set_log",
     "solve",
     "solve_tangential",
@@ -55,4 +67,5 @@ __all__ = [
     "stress_at_points",
     "subsurface_stress",
     "to_accuracy",
+    "what_matters",
 ]

@@ -73,6 +73,9 @@ class SolveOptions(AccuracyOptions, total=False):
         Cycles, or iterations, on the finest grid at most; default 1000.
     max_seconds : float
         If > 0, the call ends after so many seconds, with the best so far; default 0: no limit.
+    neglect_below : float
+        Of `solve` alone: effects whose omission changes no quantity by more than this part are left out; `Result.neglected` says which.
+        Default 0: none.
     threads : int
         Default 1; 0: all cores.
     precision : str or int
@@ -83,6 +86,7 @@ class SolveOptions(AccuracyOptions, total=False):
     """
 
     max_seconds: float
+    neglect_below: float
 
 
 def integer(name: str, value: Any, bits: int = 32) -> int:

@@ -14,6 +14,7 @@ from ._creep_force_plane import AXES
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+    from matplotlib.axes import Axes
 
     from ._arguments import Doubles
 
@@ -125,6 +126,28 @@ class CreepForceTable:
         force_x, force_y, moment, error = (np.where(unknown, np.nan, _interpolated(getattr(self, name), corners))
                                            for name in ("force_x", "force_y", "moment", "error"))
         return sign * force_x, sign * mirror * force_y, sign * mirror * moment, error
+
+    def plot(self, of: str = "force_x", *, eta: float = 0.0, axis_ratio: float = 1.0, poisson_ratio: float | None = None,
+             axes: Axes | None = None) -> Axes:
+        """Draws creep curves: a force over the longitudinal creepage, one curve for each spin, with the estimated errors as bands.
+
+        Parameters
+        ----------
+        of : str
+            "force_x", "force_y" or "moment".
+        eta, axis_ratio, poisson_ratio : float
+            As for `forces`.
+        axes : matplotlib.axes.Axes, optional
+            Where to draw; by default the axes of a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes, to add to or to save.
+        """
+        from ._plot_lines import plot_creep_forces
+
+        return plot_creep_forces(self, of, eta, axis_ratio, poisson_ratio, axes)
 
     def _between(self, name: str, values: Doubles, hold: bool) -> tuple[npt.NDArray[np.int64], Doubles]:
         """The entry of an axis before each value, and the part of the way to the next one."""

@@ -35,6 +35,6 @@ class Ledger(list[dict[str, float]]):
         matplotlib.axes.Axes
             The axes, to add to or to save: `axes.figure.savefig("ledger.png")`.
         """
-        from ._plot import plot_ledger
+        from ._plot_lines import plot_ledger
 
         return plot_ledger(self, self.estimated, axes)

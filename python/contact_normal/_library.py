@@ -17,6 +17,7 @@ from ._structs import (
     Accuracy,
     Coating,
     Cycle,
+    EffectsRow,
     Fields,
     Friction,
     FrictionResults,
@@ -25,6 +26,7 @@ from ._structs import (
     LogCallback,
     Options,
     Price,
+    QuantityRow,
     Report,
     Scene,
     SolverInfo,
@@ -49,6 +51,7 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     "kept": (c_int32, [POINTER(c_int64), POINTER(c_int32)]),
     "init": (None, [c_int32, c_void_p, c_int64]),
     "solve": (c_int32, [POINTER(Scene), POINTER(Options), POINTER(Fields), POINTER(Report)]),
+    "pull_off": (c_int32, [POINTER(Scene), POINTER(Options), POINTER(Fields), POINTER(Report)]),
     "solve_tangential": (
         c_int32,
         [c_void_p, POINTER(Scene), POINTER(c_double), POINTER(Options), c_int32, POINTER(c_double), POINTER(FrictionResults), POINTER(Report)],
@@ -72,6 +75,17 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
     "cost_of_accuracy": (
         c_int32,
         [POINTER(Scene), POINTER(Options), POINTER(Accuracy), c_int32, c_int32, POINTER(c_double), POINTER(Price)],
+    ),
+    "quantities": (
+        c_int32,
+        [POINTER(Scene), POINTER(Options), c_int32, POINTER(c_int32), c_int32, POINTER(QuantityRow), POINTER(c_int32)],
+    ),
+    "effects_bill": (
+        c_int32,
+        [
+            POINTER(Scene), POINTER(Options), c_double, c_int32, c_int32, POINTER(c_int32), c_int32, POINTER(EffectsRow),
+            POINTER(c_int32),
+        ],
     ),
     "hertz": (
         c_int32,

@@ -31,10 +31,12 @@ class Outputs:
     traction: Doubles | None = None
     slip: Doubles | None = None
     stick_slip: npt.NDArray[np.int32] | None = None
+    contact_pressure: Doubles | None = None
+    attraction: Doubles | None = None
 
     def __init__(
         self, shape: tuple[int, int], pressure: Any = None, contact: Any = None, options: Any = None, has_friction: bool = False,
-        scene: Scene | None = None,
+        scene: Scene | None = None, has_adhesion: bool = False,
     ) -> None:
         self._shape = shape
         self.doubles: list[Doubles] = [np.zeros(shape) for _ in range(3)]
@@ -44,6 +46,9 @@ class Outputs:
         self.fields.contact = pointer(self.contact, c_int32)
         if has_friction:
             self._hold_friction()
+        if has_adhesion:
+            self.contact_pressure, self.attraction = np.zeros(shape), np.zeros(shape)
+            self.fields.contact_pressure, self.fields.attraction = pointer(self.contact_pressure), pointer(self.attraction)
         self.rows = _ROWS(initialised("ledger_row"))
         self.report.ledger, self.report.ledger_capacity = self.rows, LEDGER_ROOM
         if pressure is not None or contact is not None:

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ._arguments import AccuracyOptions, Both, doubles, options
 from ._calls import called
-from ._constants import QUANTITY_CONTACT_AREA, QUANTITY_FORCE, QUANTITY_MAX_PRESSURE
 from ._library import check, initialised, library
+from ._quantities import QUANTITIES
 from ._refined import limits, on_any_grid
 from ._structs import Price as PriceStruct
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+    from matplotlib.axes import Axes
     from typing_extensions import Unpack
 
-QUANTITIES = {"force": QUANTITY_FORCE, "max_pressure": QUANTITY_MAX_PRESSURE, "contact_area": QUANTITY_CONTACT_AREA}
 OBSTACLES = ("", "singular", "below round-off", "too many elements", "too much memory", "too long")
 
 
@@ -60,6 +60,39 @@ class Price(NamedTuple):
         )
 
 
+class Prices(list[Price]):
+    """The rows of `cost_of_accuracy`.
+
+    Attributes
+    ----------
+    quantity : str
+        Of what the errors are.
+    """
+
+    def __init__(self, rows: Iterable[Price], quantity: str) -> None:
+        super().__init__(rows)
+        self.quantity = quantity
+
+    def plot(self, axes: Axes | None = None, measured: Sequence[tuple[float, float]] = ()) -> Axes:
+        """Draws error against seconds, with the elements of each grid.
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes, optional
+            Where to draw; by default the axes of a new figure.
+        measured : sequence of (seconds, error)
+            Points of solves that were made, to be drawn beside.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+        """
+        from ._plot_accuracy import plot_prices
+
+        return plot_prices(self, axes, measured)
+
+
 def cost_of_accuracy(
     h: npt.ArrayLike | Callable[[Any, Any], Any],
     dx: float,
@@ -79,18 +112,24 @@ def cost_of_accuracy(
     poisson_ratio: Both | None = None,
     young_modulus: Both | None = None,
     e_star: float | None = None,
+    layer: npt.ArrayLike | None = None,
+    pressure_limit: npt.ArrayLike | None = None,
+    period: str | None = None,
+    patches: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    coating: Any = None,
+    friction: Mapping[str, Any] | None = None,
     **given: Unpack[AccuracyOptions],
-) -> list[Price]:
+) -> Prices:
     """Predicts what relative errors cost: grid, tolerance, seconds and bytes, from solves on small grids only.
 
     Parameters
     ----------
     h, dx, dy, shape, corner, approach, force, mean_pressure, shear_modulus, poisson_ratio, young_modulus, e_star, **given
-        As for `solve_to_accuracy`.
+        As for `solve_to_accuracy`, with its effects.
     targets : sequence of float
         Relative errors; one row each.
     quantity : str
-        Of what: "force" (of the approach, if the force is prescribed), "max_pressure" or "contact_area".
+        Of what: "force" (of the approach, if the force is prescribed), or another one of `contact_normal.quantities`.
     max_seconds, max_bytes : number
         Limits: a row beyond one says so in its `obstacle`, and what it would take; 0: no limit.
     max_elements : int
@@ -98,7 +137,8 @@ def cost_of_accuracy(
 
     Returns
     -------
-    list of Price
+    Prices
+        A list of `Price`, which can be drawn.
 
     Raises
     ------
@@ -115,8 +155,9 @@ def cost_of_accuracy(
     """
     if quantity not in QUANTITIES:
         raise ValueError(f"quantity is {quantity!r}; it must be one of {', '.join(QUANTITIES)}")
+    effects = {"layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches, "coating": coating, "friction": friction}
     scene, surface, _ = on_any_grid(
-        h, dx, dy, shape, corner, approach=approach, force=force, mean_pressure=mean_pressure, shear_modulus=shear_modulus,
+        h, dx, dy, shape, corner, effects, approach=approach, force=force, mean_pressure=mean_pressure, shear_modulus=shear_modulus,
         poisson_ratio=poisson_ratio, young_modulus=young_modulus, e_star=e_star,
     )
     struct, accuracy = options(given), limits(max_seconds, max_bytes, max_elements, surface)
@@ -130,5 +171,5 @@ def cost_of_accuracy(
     if surface:
         surface.finish()
     check(status, message)
-    return [Price.of(row) for row in rows]
+    return Prices((Price.of(row) for row in rows), quantity)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -9,25 +10,26 @@ import numpy as np
 from ._arguments import both, integer, number, two
 from ._callbacks import Surface
 from ._library import initialised
+from ._quantities import QUANTITIES
 from ._scene import Scene
 
 
 def on_any_grid(
-    h: Any, dx: Any, dy: Any, shape: Any, corner: Any, **loaded: Any
+    h: Any, dx: Any, dy: Any, shape: Any, corner: Any, effects: Mapping[str, Any], **loaded: Any
 ) -> tuple[Scene, Surface | None, tuple[float, float]]:
-    """The scene on the first grid by its loads and elastic constants, the callback of a callable surface, and the middle of its rectangle."""
+    """The scene on the first grid by its loads, elastic constants and effects, the callback of a callable surface, and the middle of its rectangle."""
     if not callable(h):
         for name, value in (("shape", shape), ("corner", corner)):
             if value is not None:
                 raise TypeError(f"{name} is for a surface that is a callable")
-        return Scene(h, dx, dy, effects={}, **loaded), None, (0.0, 0.0)
+        return Scene(h, dx, dy, effects=effects, **loaded), None, (0.0, 0.0)
     if shape is None:
         raise TypeError("shape (my, mx) of the first grid is needed where h is a callable")
     my, mx = (integer("shape", m) for m in both("shape", shape))
     half = 0.5 * mx * number("dx", dx), 0.5 * my * number("dy", dy)
     x, y = (-half[0], -half[1]) if corner is None else two("corner", corner)
     # The distances of this grid are not read.
-    scene = Scene(np.zeros((max(my, 0), max(mx, 0))), dx, dy, effects={}, **loaded)
+    scene = Scene(np.zeros((max(my, 0), max(mx, 0))), dx, dy, effects=effects, **loaded)
     return scene, Surface(h, (x, y)), (0.0, 0.0) if corner is None else (x + half[0], y + half[1])
 
 
@@ -39,3 +41,12 @@ def limits(max_seconds: Any, max_bytes: Any, max_elements: Any, surface: Surface
     if surface:
         accuracy.surface = surface.callback
     return accuracy
+
+
+def set_targets(accuracy: Any, targets: Mapping[str, float] | None) -> None:
+    """Writes relative errors of quantities into a `contact_normal_accuracy`."""
+    for name, target in (targets or {}).items():
+        member = "target" if name == "force" else f"{name}_target"
+        if name not in QUANTITIES:
+            raise ValueError(f"targets has {name!r}; it may have {', '.join(QUANTITIES)}")
+        setattr(accuracy, member, number(f"targets[{name!r}]", target))

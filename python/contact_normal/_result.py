@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from ._bill import omissions
 from ._constants import PRESCRIBED_APPROACH
 from ._ledger import Ledger
 from ._outputs import LEDGER_ROOM, Outputs
@@ -32,28 +33,49 @@ class Result(Solved):
         only): refused, the arrays mean nothing.
     message : str
         Why, if the status is not OK, and what else you should know.
-    pressure, deformed_distance, displacement : ndarray of float, (my, mx)
-        p, e and u.
+    pressure : ndarray of float, (my, mx)
+        The pressures p.
+    deformed_distance : ndarray of float, (my, mx)
+        e, the gap after the deformation.
+    displacement : ndarray of float, (my, mx)
+        u = A p, with the compression of layers.
     contact : ndarray of bool, (my, mx)
         The contact area, with the elements at the pressure limit.
     at_limit : ndarray of bool, (my, mx)
         The elements at the pressure limit.
-    traction, slip : ndarray of float, (2, my, mx)
-        With friction: q on body 1 and the slip of body 1 over body 2 in the step, in x and y; else zeros.
+    traction : ndarray of float, (2, my, mx)
+        With friction: q on body 1, in x and y; else zeros.
+    slip : ndarray of float, (2, my, mx)
+        With friction: the slip of body 1 over body 2 in the step, in x and y; else zeros.
     stick_slip : ndarray of int, (my, mx)
         With friction: 0 exterior, 1 stick, 2 slip.
-    x, y : ndarray of float, (mx,) and (my,)
+    contact_pressure, attraction : ndarray of float, (my, mx)
+        With adhesion: q >= 0 and sigma >= 0, whose difference is p; without adhesion p and zeros.
+    x : ndarray of float, (mx,)
         Centres of the elements, from the middle of the grid.
+    y : ndarray of float, (my,)
+        Likewise.
     dx, dy : float
         Element sizes.
-    approach, force, mean_pressure, max_pressure, contact_area : float
-        Numbers of the report; the mean pressure is that over the whole grid.
+    approach : float
+        Approach of the bodies.
+    force : float
+        Normal force, the sum of p dx dy.
+    mean_pressure : float
+        The normal force over the area of the grid.
+    max_pressure : float
+        The largest pressure.
+    contact_area : float
+        The area of the elements in contact.
+    warnings : tuple of str
+        What to look at, even where the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN".
     tangential_force : (float, float)
         With friction: on body 1, in x and y; else zeros.
     units : (str, str) or None
         Names of the units of lengths and forces, which pictures and files then have. May be set.
     report : dict
-        The numbers of `contact_normal_report`, of all its groups: "cycles", "residual", "error_force", ...
+        The numbers of `contact_normal_report`, of all its groups: "cycles", "residual", "error_force", ... The page of the Python reference has
+        all keys.
     ledger : Ledger
         One dict per grid.
     """
@@ -80,6 +102,11 @@ class Result(Solved):
         return Ledger(({name: getattr(row, name) for name in _ROW} for row in rows), self._estimated)
 
     @property
+    def neglected(self) -> tuple[str, ...]:
+        """The effects that `neglect_below` left out; `report["neglected_error"]` says how wrong that may be."""
+        return omissions(int(self.report["neglected"]))
+
+    @property
     def approach(self) -> float:
         """Approach of the bodies."""
         return float(self.report["approach"])
@@ -101,13 +128,32 @@ class Result(Solved):
         matplotlib.axes.Axes
             The axes, to add to or to save: `axes.figure.savefig("pressure.png")`.
         """
-        from ._plot import plot_pressure
+        from ._plot_above import plot_pressure
 
         return plot_pressure(self, axes)
 
+    def plot_section(self, x: float | None = None, y: float | None = None, axes: Axes | None = None) -> Axes:
+        """Draws the pressures along a line across the contact, with dotted lines at the edge of the contact area.
+
+        Parameters
+        ----------
+        x, y : float, optional
+            The line: one of them. Neither: the y of the middle of the grid.
+        axes : matplotlib.axes.Axes, optional
+            Where to draw; by default the axes of a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes, to add to or to save.
+        """
+        from ._plot_lines import plot_section
+
+        return plot_section(self, x, y, axes)
+
 
 class TangentialResult(Solved):
-    """What `solve_tangential` found: the tractions of pressures that were given. It has the methods of `Result` but for `plot`.
+    """What `solve_tangential` found: the tractions of pressures that were given. It has the methods of `Result` except `plot` and `plot_section`.
 
     Attributes
     ----------

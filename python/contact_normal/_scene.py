@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._adhesion import adhesion
 from ._arguments import both, distances, doubles, integer, integers, number, pointer, shaped
 from ._bodies import bodies, load
 from ._constants import PRESCRIBED_APPROACH, PRESCRIBED_FORCE
@@ -103,6 +104,8 @@ class Scene:
         arrays: Any
         if name == "friction":
             effect, arrays, self.remark = friction(value, self.shape)
+        elif name == "adhesion":
+            effect, arrays = adhesion(value, self.shape)
         elif name in ("layer", "pressure_limit"):
             effect, arrays = _per_element(name, value, self.shape)
         else:

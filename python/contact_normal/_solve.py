@@ -13,7 +13,7 @@ from ._calls import called
 from ._handle import Handle
 from ._library import check, library
 from ._outputs import Outputs
-from ._refined import limits, on_any_grid
+from ._refined import limits, on_any_grid, set_targets
 from ._result import Result
 from ._scene import Scene
 from ._units import checked
@@ -43,6 +43,7 @@ def solve(
     row_tables: Any = None,
     coating: Any = None,
     friction: Mapping[str, Any] | None = None,
+    adhesion: Mapping[str, Any] | None = None,
     pressure: npt.ArrayLike | None = None,
     contact: npt.ArrayLike | None = None,
     units: tuple[str, str] | None = None,
@@ -91,6 +92,11 @@ def solve(
         coefficients (xx, yy, xy) or (xx, yy, xy, scale), each (2 cy, 2 cx); "influence_cross": with these, of unlike bodies, (xz, yz);
         "row_tables": own tangential coefficients that differ per loaded row, (xx, yy, xy) or (xx, yy, xy, scale), each (my, my, 2 cx).
         docs/friction.md has the signs.
+    adhesion : mapping, optional
+        Attraction across the gap: "work" of adhesion, an energy per area (one, or (my, mx)); "law", "EXPONENTIAL" (default), "DUGDALE",
+        "CUBIC" or "VAN_DER_WAALS"; "range", a length, by default the shortest that the elements carry; "smear", of DUGDALE; "start",
+        "AUTO" (default), "FROM_CONTACT" or "FROM_APART": which of several states; "stiffness": True for dF/dapproach. `force` may then be
+        negative. docs/adhesion.md says which law and which range.
     pressure, contact : array_like, (my, mx), optional
         Initial guess: the pressures, or the contact area (booleans or integers) that there may be; with `active_set="FIXED"` `contact` is
         the contact area.
@@ -125,11 +131,11 @@ def solve(
     (0, 1000, (64, 64))
     """
     effects = {"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches,
-               "row_tables": row_tables, "coating": coating, "friction": friction}
+               "row_tables": row_tables, "coating": coating, "friction": friction, "adhesion": adhesion}
     scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects, mean_pressure=mean_pressure, young_modulus=young_modulus,
                   e_star=e_star)
     struct = options(given)
-    outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None, scene)
+    outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None, scene, adhesion is not None)
     watched = Watched(progress, struct, scene)
     status, message = watched.call(
         library.contact_normal_solve, ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(outputs.fields),
@@ -171,6 +177,7 @@ def solve_to_accuracy(
     target: float = 1e-3,
     max_pressure_target: float = 0.0,
     contact_area_target: float = 0.0,
+    targets: Mapping[str, float] | None = None,
     max_seconds: float = 0.0,
     max_bytes: int = 0,
     max_elements: int = 0,
@@ -183,6 +190,12 @@ def solve_to_accuracy(
     poisson_ratio: Both | None = None,
     young_modulus: Both | None = None,
     e_star: float | None = None,
+    layer: npt.ArrayLike | None = None,
+    pressure_limit: npt.ArrayLike | None = None,
+    period: str | None = None,
+    patches: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    coating: Any = None,
+    friction: Mapping[str, Any] | None = None,
     units: tuple[str, str] | None = None,
     progress: Callable[[Progress], Any] | bool | None = None,
     **given: Unpack[AccuracyOptions],
@@ -202,6 +215,9 @@ def solve_to_accuracy(
         Relative error of the force (of the approach, if the force is prescribed).
     max_pressure_target, contact_area_target : float
         Relative errors of the largest pressure and of the corrected contact area; 0: not asked for.
+    targets : mapping, optional
+        Relative errors of further quantities by name, as {"max_von_mises": 1e-2}; see `contact_normal.quantities` for the names. Up to two
+        coarser grids are then solved first.
     max_seconds, max_bytes : number
         What it may cost; 0: no limit.
     max_elements : int
@@ -212,6 +228,8 @@ def solve_to_accuracy(
         Of the rectangle, for a callable `h`; by default the rectangle is centred on (0, 0).
     approach, force, mean_pressure, shear_modulus, poisson_ratio, young_modulus, e_star, units, progress, **given
         As for `solve`.
+    layer, pressure_limit, period, patches, coating, friction
+        As for `solve`. Arrays are those of the first grid; other grids have their means.
 
     Returns
     -------
@@ -232,8 +250,9 @@ def solve_to_accuracy(
     >>> result.status, result.reached <= 1e-3
     (0, True)
     """
+    effects = {"layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches, "coating": coating, "friction": friction}
     scene, surface, middle = on_any_grid(
-        h, dx, dy, shape, corner, approach=approach, force=force, mean_pressure=mean_pressure, shear_modulus=shear_modulus,
+        h, dx, dy, shape, corner, effects, approach=approach, force=force, mean_pressure=mean_pressure, shear_modulus=shear_modulus,
         poisson_ratio=poisson_ratio, young_modulus=young_modulus, e_star=e_star,
     )
     struct, units = options(given), checked(units)
@@ -242,6 +261,7 @@ def solve_to_accuracy(
     accuracy.target = number("target", target)
     accuracy.max_pressure_target = number("max_pressure_target", max_pressure_target)
     accuracy.contact_area_target = number("contact_area_target", contact_area_target)
+    set_targets(accuracy, targets)
     ledger = Outputs((0, 0))
 
     def find(address: Any) -> int:
@@ -254,7 +274,7 @@ def solve_to_accuracy(
         if surface:
             surface.finish()
         check(status, message)
-        outputs = Outputs((accuracy.my, accuracy.mx))
+        outputs = Outputs((accuracy.my, accuracy.mx), has_friction=friction is not None)
         outputs.rows = ledger.rows
         if handle:
             check(*called(library.contact_normal_solver_fields, ctypes.byref(outputs.fields), handle=handle))

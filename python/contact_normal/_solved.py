@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._constants import WARNING_BORDER, WARNING_ERROR_UNKNOWN, WARNING_ONE_ELEMENT, WARNING_SPIKE
+from ._constants import WARNING_ATTRACTION, WARNING_BORDER, WARNING_ERROR_UNKNOWN, WARNING_ONE_ELEMENT, WARNING_RANGE, WARNING_SPIKE
 from ._grid import centres
 from ._library import library
 from ._structs import names
@@ -25,15 +25,22 @@ if TYPE_CHECKING:
     from ._stress import SubsurfaceStress
 
 # The groups of a report.
-_GROUPS = ("normal", "tangential", "accuracy", "statistics")
+_GROUPS = ("normal", "tangential", "accuracy", "statistics", "adhesion")
 _WARNINGS = {
     "BORDER": WARNING_BORDER,
     "ONE_ELEMENT": WARNING_ONE_ELEMENT,
     "SPIKE": WARNING_SPIKE,
     "ERROR_UNKNOWN": WARNING_ERROR_UNKNOWN,
+    "RANGE": WARNING_RANGE,
+    "ATTRACTION": WARNING_ATTRACTION,
 }
 # Members of the tangential group that have the name of one of the normal problem.
 _ALSO_NORMAL = ("force", "moment", "residual", "gap")
+
+
+def report_key(group: str, name: str) -> str:
+    """The key of a member of a group of a report."""
+    return f"tangential_{name}" if group == "tangential" and name in _ALSO_NORMAL else name
 
 
 def reported(report: Any) -> dict[str, Any]:
@@ -42,10 +49,9 @@ def reported(report: Any) -> dict[str, Any]:
     for group in _GROUPS:
         members = getattr(report, group)
         for name in names(type(members)):
-            if name != "reserved":
-                key = f"tangential_{name}" if group == "tangential" and name in _ALSO_NORMAL else name
+            if not name.startswith("reserved"):
                 value = getattr(members, name)
-                found[key] = value if isinstance(value, (int, float)) else tuple(value)
+                found[report_key(group, name)] = value if isinstance(value, (int, float)) else tuple(value)
     return found
 
 
@@ -57,6 +63,7 @@ class Solved(WithUnits):
         self.pressure = outputs.doubles[0]
         self._contact, self._report, self._scene = outputs.contact, report, scene
         self._traction, self._slip, self._stick_slip = outputs.traction, outputs.slip, outputs.stick_slip
+        self._contact_pressure, self._attraction = outputs.contact_pressure, outputs.attraction
         self.dx: float = scene.struct.dx
         self.dy: float = scene.struct.dy
         self._centre = 0.0, 0.0
@@ -87,6 +94,16 @@ class Solved(WithUnits):
     def stick_slip(self) -> npt.NDArray[np.int32]:
         """0 exterior, 1 stick, 2 slip; zeros without friction."""
         return self._stick_slip if self._stick_slip is not None else np.zeros(self.pressure.shape, dtype=np.int32)
+
+    @cached_property
+    def contact_pressure(self) -> Doubles:
+        """q: with adhesion p + sigma in contact, 0 outside; without adhesion p."""
+        return self._contact_pressure if self._contact_pressure is not None else self.pressure
+
+    @cached_property
+    def attraction(self) -> Doubles:
+        """sigma(e) of adhesion; zeros without."""
+        return self._attraction if self._attraction is not None else np.zeros(self.pressure.shape)
 
     @cached_property
     def report(self) -> dict[str, Any]:
@@ -174,9 +191,28 @@ class Solved(WithUnits):
         matplotlib.axes.Axes
             The axes, to add to or to save.
         """
-        from ._plot import plot_traction
+        from ._plot_above import plot_traction
 
         return plot_traction(self, axes)
+
+    def plot_histogram(self, bins: int = 40, axes: Axes | None = None) -> Axes:
+        """Draws which share of the contact area has which pressure.
+
+        Parameters
+        ----------
+        bins : int
+            Ranges of pressure.
+        axes : matplotlib.axes.Axes, optional
+            Where to draw; by default the axes of a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes, to add to or to save.
+        """
+        from ._plot_lines import plot_histogram
+
+        return plot_histogram(self, bins, axes)
 
     def _tractions_on(self, body: int, traction: Any) -> Any:
         """Those that are given, or those of friction as they act on this body; None where there are none."""

@@ -109,8 +109,8 @@ class Solver:
         my, mx = self._shape
         return f"<Solver: {mx} x {my} elements{', closed' if self._handle.is_closed else ''}>"
 
-    def _scene(self, h: Any, loads: Mapping[str, Any], pressure_limit: Any, friction: Any) -> Scene:
-        effects = {"pressure_limit": pressure_limit, "friction": friction, **self._effects}
+    def _scene(self, h: Any, loads: Mapping[str, Any], pressure_limit: Any, friction: Any, adhesion: Any = None) -> Scene:
+        effects = {"pressure_limit": pressure_limit, "friction": friction, "adhesion": adhesion, **self._effects}
         dx, dy = self._size
         return Scene(shaped("h", distances("h", h), self._shape), dx, dy, **loads, **self._bodies, effects=effects)
 
@@ -123,6 +123,7 @@ class Solver:
         mean_pressure: float | None = None,
         pressure_limit: npt.ArrayLike | None = None,
         friction: Mapping[str, Any] | None = None,
+        adhesion: Mapping[str, Any] | None = None,
         pressure: npt.ArrayLike | None = None,
         contact: npt.ArrayLike | None = None,
         progress: Callable[[Progress], Any] | bool | None = None,
@@ -134,16 +135,16 @@ class Solver:
         ----------
         h : array_like, (my, mx)
             Undeformed distance.
-        approach, force, mean_pressure, pressure_limit, friction, pressure, contact, progress, **given
+        approach, force, mean_pressure, pressure_limit, friction, adhesion, pressure, contact, progress, **given
             As for the function `solve`; options add to those of the set-up. `initial_guess="PREVIOUS"` starts from the last result.
 
         Returns
         -------
         Result
         """
-        scene = self._scene(h, {"approach": approach, "force": force, "mean_pressure": mean_pressure}, pressure_limit, friction)
+        scene = self._scene(h, {"approach": approach, "force": force, "mean_pressure": mean_pressure}, pressure_limit, friction, adhesion)
         struct = options({**self._given, **given})
-        outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None, scene)
+        outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None, scene, adhesion is not None)
         watched = Watched(progress, struct, scene)
         status, message = watched.call(
             library.contact_normal_solver_solve, ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(outputs.fields),
@@ -160,6 +161,7 @@ class Solver:
         mean_pressure: npt.ArrayLike | None = None,
         pressure_limit: npt.ArrayLike | None = None,
         friction: Mapping[str, Any] | None = None,
+        adhesion: Mapping[str, Any] | None = None,
         pressure: Sequence[npt.ArrayLike] | npt.NDArray[Any] | None = None,
         contact: Sequence[npt.ArrayLike] | npt.NDArray[Any] | None = None,
         **given: Unpack[SolveOptions],
@@ -176,6 +178,8 @@ class Solver:
             For all problems.
         friction : mapping, optional
             For all problems, as for `solve`, but "continues" is refused: the order of the solves is not known.
+        adhesion : mapping, optional
+            For all problems, as for `solve`.
         pressure, contact : sequence of array_like, (count, my, mx), optional
             Initial guesses.
         **given : SolveOptions
@@ -198,9 +202,9 @@ class Solver:
                 raise ValueError(f"{name} has {len(values)} parts; it must have {count}: one for each problem")
         problems = []
         for i, loads in enumerate(loads_of_each(count, approach, force, mean_pressure)):
-            scene = self._scene(h[i], loads, pressure_limit, friction)
+            scene = self._scene(h[i], loads, pressure_limit, friction, adhesion)
             guess, area = (None if values is None else values[i] for values in (pressure, contact))
-            problems.append((scene, Outputs(self._shape, guess, area, struct, friction is not None, scene)))
+            problems.append((scene, Outputs(self._shape, guess, area, struct, friction is not None, scene, adhesion is not None)))
         threads = self._given.get("threads", 1) or os.cpu_count() or 1
         return [found for part in parts(count, threads) for found in self._solved(problems[part], struct)]
 

@@ -49,6 +49,8 @@ class SubsurfaceStress(WithUnits):
 
     def __init__(self, depths: Doubles, scene: Scene, components: Iterable[str], principal: bool) -> None:
         self.depths = depths
+        # The elements with a pressure, (my, mx).
+        self._loaded: Any = None
         shape = (depths.size, *scene.shape)
         fields: list[Doubles | None] = [np.zeros(shape) if name in components else None for name in COMPONENTS]
         self.xx, self.yy, self.zz, self.xy, self.xz, self.yz, self.von_mises, self.maximum_shear = fields
@@ -90,7 +92,7 @@ class SubsurfaceStress(WithUnits):
         write(path, self.to_xarray())
 
     def plot_section(self, x: float | None = None, y: float | None = None, of: str = "von_mises", axes: Axes | None = None) -> Axes:
-        """Draws a stress in a plane across the body, with a cross at the largest.
+        """Draws a stress in a plane across the body, with a cross at the largest and triangles at the edge of the contact area.
 
         Parameters
         ----------
@@ -106,9 +108,9 @@ class SubsurfaceStress(WithUnits):
         matplotlib.axes.Axes
             The axes, to add to or to save.
         """
-        from ._plot import plot_section
+        from ._plot_stress import plot_stress_section
 
-        return plot_section(self, x, y, of, axes)
+        return plot_stress_section(self, x, y, of, axes)
 
     def plot_depth(self, x: float | None = None, y: float | None = None, axes: Axes | None = None) -> Axes:
         """Draws stresses over the depth, below one element.
@@ -125,6 +127,6 @@ class SubsurfaceStress(WithUnits):
         matplotlib.axes.Axes
             The axes, to add to or to save.
         """
-        from ._plot import plot_depth
+        from ._plot_stress import plot_depth
 
         return plot_depth(self, x, y, axes)

@@ -112,6 +112,22 @@ class Friction(ctypes.Structure):
     ]
 
 
+class Adhesion(ctypes.Structure):
+    """contact_normal_adhesion."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("law", c_int32),
+        ("start", c_int32),
+        ("work_of_adhesion", c_double),
+        ("works_of_adhesion", POINTER(c_double)),
+        ("range", c_double),
+        ("smear", c_double),
+        ("stiffness", c_int32),
+        ("reserved", c_int32),
+    ]
+
+
 class Scene(ctypes.Structure):
     """contact_normal_scene."""
 
@@ -136,6 +152,7 @@ class Scene(ctypes.Structure):
         ("row_tables", POINTER(RowTables)),
         ("coating", POINTER(Coating) * 2),
         ("friction", POINTER(Friction)),
+        ("adhesion", POINTER(Adhesion)),
     ]
 
 
@@ -192,6 +209,7 @@ class Options(ctypes.Structure):
         ("max_seconds", c_double),
         ("stop", POINTER(c_int32)),
         ("dump", c_void_p),
+        ("neglect_below", c_double),
     ]
 
 
@@ -207,6 +225,8 @@ class Fields(ctypes.Structure):
         ("traction", POINTER(c_double) * 2),
         ("slip", POINTER(c_double) * 2),
         ("stick_slip", POINTER(c_int32)),
+        ("contact_pressure", POINTER(c_double)),
+        ("attraction", POINTER(c_double)),
     ]
 
 
@@ -289,7 +309,9 @@ class ReportAccuracy(ctypes.Structure):
         ("limited_by", c_int32),
         ("halved_seconds", c_double),
         ("halved_error_force", c_double),
-        ("reserved", c_double * 8),
+        ("neglected", c_int64),
+        ("neglected_error", c_double),
+        ("reserved", c_double * 6),
     ]
 
 
@@ -311,6 +333,25 @@ class ReportStatistics(ctypes.Structure):
     ]
 
 
+class ReportAdhesion(ctypes.Structure):
+    """contact_normal_report_adhesion."""
+
+    _fields_ = [
+        ("repulsive_force", c_double),
+        ("adhesive_force", c_double),
+        ("elastic_energy", c_double),
+        ("adhesive_energy", c_double),
+        ("law_residual", c_double),
+        ("range", c_double),
+        ("resolution", c_double),
+        ("border_share", c_double),
+        ("stiffness", c_double),
+        ("jumped", c_int32),
+        ("reserved_integer", c_int32),
+        ("reserved", c_double * 6),
+    ]
+
+
 class Report(ctypes.Structure):
     """contact_normal_report."""
 
@@ -325,6 +366,7 @@ class Report(ctypes.Structure):
         ("tangential", ReportTangential),
         ("accuracy", ReportAccuracy),
         ("statistics", ReportStatistics),
+        ("adhesion", ReportAdhesion),
     ]
 
 
@@ -385,6 +427,15 @@ class Accuracy(ctypes.Structure):
         ("seconds", c_double),
         ("max_pressure_target", c_double),
         ("contact_area_target", c_double),
+        ("mean_gap_target", c_double),
+        ("stiffness_target", c_double),
+        ("tangential_force_target", c_double),
+        ("creepage_target", c_double),
+        ("spin_moment_target", c_double),
+        ("stick_area_target", c_double),
+        ("max_von_mises_target", c_double),
+        ("von_mises_depth_target", c_double),
+        ("max_shear_target", c_double),
     ]
 
 
@@ -405,6 +456,43 @@ class Price(ctypes.Structure):
         ("dy", c_double),
         ("obstacle", c_int32),
         ("reserved", c_int32),
+    ]
+
+
+class QuantityRow(ctypes.Structure):
+    """contact_normal_quantity_row."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("quantity", c_int32),
+        ("lack", c_int32),
+        ("mx", c_int32),
+        ("my", c_int32),
+        ("value", c_double),
+        ("error", c_double),
+        ("seconds", c_double),
+        ("work_units", c_double),
+    ]
+
+
+class EffectsRow(ctypes.Structure):
+    """contact_normal_effects_row."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("omitted", c_int32),
+        ("also_omitted", c_int32),
+        ("quantity", c_int32),
+        ("verdict", c_int32),
+        ("lack", c_int32),
+        ("reserved", c_int32),
+        ("value", c_double),
+        ("change", c_double),
+        ("change_error", c_double),
+        ("seconds", c_double),
+        ("seconds_without", c_double),
+        ("bytes", c_double),
+        ("bytes_without", c_double),
     ]
 
 
@@ -484,4 +572,7 @@ KINDS: dict[str, tuple[int, type[ctypes.Structure]]] = {
     "hertz_solution": (19, HertzSolution),
     "cycle": (20, Cycle),
     "solver_info": (21, SolverInfo),
+    "quantity_row": (22, QuantityRow),
+    "effects_row": (23, EffectsRow),
+    "adhesion": (24, Adhesion),
 }

@@ -51,6 +51,7 @@ def subsurface(
         if name in wanted:
             setattr(outputs, member, ctypes.pointer(largest[name]))
     given = _loads(pressure, traction, scene.shape)
+    found._loaded = None if pressure is None else np.asarray(pressure) != 0.0
     struct = options({"threads": threads})
     watched = Watched(None, struct, None)
     status, message = watched.call(

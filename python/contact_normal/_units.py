@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any, Optional
 
 from ._arguments import both
@@ -9,6 +10,7 @@ from ._arguments import both
 # Names of lengths and of forces.
 Units = Optional[tuple[str, str]]
 
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 # Powers of length and of force.
 _POWERS = {"length": (1, 0), "force": (0, 1), "pressure": (-2, 1), "area": (2, 0), "moment": (1, 1)}
 _PRESSURES = {("m", "N"): "Pa", ("mm", "N"): "MPa", ("um", "N"): "TPa", ("m", "kN"): "kPa", ("mm", "kN"): "GPa"}
@@ -56,5 +58,7 @@ def with_unit(value: str, kind: str, units: Units) -> str:
 
 
 def label(name: str, kind: str, units: Units) -> str:
-    """What stands at an axis."""
-    return f"{name} [{unit(kind, units)}]" if units else name
+    """What stands at an axis, with raised exponents."""
+    if not units:
+        return name
+    return f"{name} [{re.sub('(?<=[a-z])-?[0-9]', lambda power: power[0].translate(_RAISED), unit(kind, units))}]"

@@ -118,6 +118,87 @@ class Plots(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "units is not there to be drawn"):
             some.plot_section(of="units")
 
+        borders = next(line for line in stress.plot_section(y=CENTRE[1]).get_lines() if line.get_label() == "edge of the contact")
+        inside = X[self.found.contact[np.argmin(abs(Y - CENTRE[1]))]]
+        np.testing.assert_allclose(borders.get_xdata(), [inside[0] - 0.5 * D, inside[-1] + 0.5 * D], atol=1e-12)
+        own = cn.subsurface_stress(None, D, D, [0.2, 0.4], traction=(H, H), poisson_ratio=0.3).plot_section()
+        self.assertEqual([len(line.get_xdata()) for line in own.get_lines()], [1, 1, 0])
+
+    def test_sections_of_the_surface(self):
+        for given, across in (({"y": Y[20]}, self.found.contact[20]), ({"x": X[30]}, self.found.contact[:, 30])):
+            axes = self.found.plot_section(**given)
+            curve, *lines = axes.get_lines()
+            row = self.found.pressure[20] if "y" in given else self.found.pressure[:, 30]
+            np.testing.assert_array_equal(curve.get_ydata(), row)
+            places = X if "y" in given else Y
+            inside = places[across]
+            np.testing.assert_allclose([line.get_xdata()[0] for line in lines], [inside[0] - 0.5 * D, inside[-1] + 0.5 * D], atol=1e-12)
+            self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("x [mm]" if "y" in given else "y [mm]", "pressure [MPa]"))
+        with self.assertRaisesRegex(TypeError, "either x or y"):
+            self.found.plot_section(x=0.0, y=0.0)
+        with self.assertRaisesRegex(ValueError, "y is 9.0; it must lie within the grid"):
+            self.found.plot_section(y=9.0)
+
+    def test_pressures_by_their_size(self):
+        axes = self.found.plot_histogram(bins=7)
+        inside = self.found.pressure[self.found.contact]
+        edges = np.linspace(inside.min(), inside.max(), 8)
+        shares = [100.0 * np.mean((inside >= low) & ((inside < high) | (high == edges[-1]))) for low, high in zip(edges, edges[1:])]
+        np.testing.assert_allclose([bar.get_height() for bar in axes.patches], shares, atol=1e-9)
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("pressure [MPa]", "share of the contact area [%]"))
+        with cn.Solver(MY, MX, D, D, **STEEL) as solver:
+            self.assertEqual(len(solver.solve(H + 1.0, approach=0.5).plot_histogram().patches), 40)  # no contact
+
+    def test_areas_over_forces(self):
+        found = [cn.solve(H, D, D, force=force, units=("mm", "N"), **STEEL) for force in (400.0, 100.0, 900.0)]
+        axes = cn.plot_contact_area(found)
+        x, y = axes.get_lines()[0].get_data()
+        np.testing.assert_allclose(x, [100.0, 400.0, 900.0])
+        np.testing.assert_allclose(y, [found[k].contact.sum() * D * D for k in (1, 0, 2)])
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("normal force [N]", "contact area [mm²]"))
+        with self.assertRaisesRegex(ValueError, "results is empty"):
+            cn.plot_contact_area([])
+
+    def test_creep_curves(self):
+        table = cn.creep_force_table(xi=[0.0, 0.5, 1.0], eta=[0.0], phi=[0.0, 0.5], elements=9)
+        axes = table.plot()
+        for k, line in enumerate(axes.get_lines()):
+            xi, force = line.get_data()
+            self.assertEqual((xi[0], xi[-1], line.get_label()), (-1.0, 1.0, f"$\\phi$ = {(0.0, 0.5)[k]:g}"))
+            self.assertEqual(force[-1], table.force_x[0, 0, k, 0, -1])
+            self.assertAlmostEqual(force[0], -force[-1])
+        self.assertIn("F_x", axes.get_ylabel())
+        self.assertIn("M_z", table.plot("moment").get_ylabel())
+        with self.assertRaisesRegex(ValueError, "of is 'error'"):
+            table.plot("error")
+
+    def test_the_scale_of_tractions(self):
+        axes = self.found.plot_traction()
+        key = next(artist for artist in axes.get_children() if type(artist).__name__ == "QuiverKey")
+        largest = np.hypot(*self.found.traction).max()
+        self.assertEqual(key.label, f"{key.U:g} MPa")
+        self.assertTrue(0.3 * largest < key.U <= largest, (key.U, largest))
+
+    def test_the_outline_does_not_cover_a_rough_contact(self):
+        generator = np.random.default_rng(1)
+        rough = cn.solve(generator.random((128, 128)), 1.0, 1.0, force=1e4, **STEEL)
+        axes = rough.plot()
+        axes.figure.canvas.draw()
+        outline = next(lines for lines in axes.collections if hasattr(lines, "get_segments"))
+        points = 72.0 / axes.figure.dpi * axes.get_window_extent().width / 128
+        # On both sides of an element: half of it remains.
+        self.assertLessEqual(outline.get_linewidths()[0], 0.5 * points)
+        self.assertTrue(outline.get_rasterized() or len(outline.get_segments()) <= 4000)
+
+    def test_dark_pages(self):
+        from contact_normal._style import matplotlib_style
+        with matplotlib_style(dark=True):
+            axes = self.found.plot_traction()
+            self.assertLess(sum(matplotlib.colors.to_rgb(axes.figure.get_facecolor())), 0.5)
+            # The exterior is dark as well, and letters are not.
+            self.assertLess(axes.images[0].get_array()[0, 0].sum(), 1.5)
+            self.assertGreater(sum(matplotlib.colors.to_rgb(axes.xaxis.label.get_color())), 2.0)
+
     def test_a_grid_that_lies_elsewhere(self):
         found = cn.solve_to_accuracy(lambda x, y: 0.1 * ((x - 11.0) ** 2 + (y - 21.0) ** 2), 0.2, 0.2, shape=(16, 16), corner=(10.0, 20.0),
                                      force=100.0, target=0.1, **STEEL)
@@ -130,7 +211,7 @@ class Plots(unittest.TestCase):
         self.assertEqual(len(stress.plot_depth().get_lines()), 6)
 
     def test_units(self):
-        for units, pressure in ((("m", "N"), "Pa"), (("mm", "N"), "MPa"), (("in", "lbf"), "lbf in-2"), (["um", "mN"], "mN um-2")):
+        for units, pressure in ((("m", "N"), "Pa"), (("mm", "N"), "MPa"), (("in", "lbf"), "lbf in⁻²"), (["um", "mN"], "mN um⁻²")):
             self.found.units = units
             self.assertEqual(self.found.plot().figure.axes[1].get_ylabel(), f"pressure [{pressure}]")
         for bad, words in (("mm", "units is 'mm'"), (("mm",), "units has 1 parts"), (("mm", 3), "units are"), (("mm", ""), "units are")):

@@ -52,7 +52,9 @@ pub trait AdmissibleSet: Copy + Send + Sync {
         !Self::FIXED && (p < 0.0 || Self::LIMITED && p > self.limit(i))
     }
 
-    /// Step (4.2): whether an element that is not free, at its limit or exterior, enters C with the deformed distance `e`.
+    /// Step (4.2): whether an element that is not free, at its limit or exterior, enters C with the deformed distance `e`. The paper has
+    /// `e <= 0`. An element with `e = 0` and `p = 0` satisfies the conditions of C and of the exterior area alike: here it stays, so that C
+    /// does not change for it (step 5), and all elements of bodies that fit exactly do not enter with it.
     fn enters(&self, at_limit: bool, e: f64) -> bool {
         !Self::FIXED && if at_limit { e > 0.0 } else { e < 0.0 }
     }

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use super::properties::{Properties, Stresses, HALF_SPACE_ALONE};
 use super::{Effect, Value};
 use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
@@ -51,11 +52,6 @@ impl Coating {
                 || (layer.shear_modulus == modulus && layer.poisson_ratio == ratio)
         };
         self.layers[b].filter(|layer| !is_none(layer))
-    }
-
-    /// Whether a scene has to know of it: there is a coating on one of the bodies, or something is wrong with what is named.
-    pub fn is_one(&self, scene: &Plain<'_>) -> bool {
-        (0..2).any(|b| self.in_effect(b, scene).is_some()) || self.check(&scene.grid).is_err()
     }
 
     /// One body with its coating.
@@ -111,6 +107,20 @@ impl Effect for Coating {
         "coating"
     }
 
+    fn properties(&self) -> Properties<'_> {
+        Properties {
+            excludes: &["influence", "row_tables"],
+            without_multigrid: None,
+            with_given_area: true,
+            one_grid: None,
+            own_coefficients: None,
+            repeats: (false, false),
+            limits: None,
+            is_beside: false,
+            continues: None,
+        }
+    }
+
     fn check(&self, _grid: &Grid) -> Result<()> {
         for (layer, [t, g, nu]) in self.layers.iter().zip(NAMES) {
             let Some(layer) = layer else { continue };
@@ -123,10 +133,6 @@ impl Effect for Coating {
         Ok(())
     }
 
-    fn excludes(&self) -> &'static [&'static str] {
-        &["influence", "row_tables"]
-    }
-
     // A ratio that is no number is refused by name.
     fn gives_way(&self, scene: &Plain<'_>) -> bool {
         (0..2).filter_map(|b| self.in_effect(b, scene)).any(|layer| !(layer.poisson_ratio >= 0.5))
@@ -134,7 +140,7 @@ impl Effect for Coating {
 
     fn kernel(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<Option<Arc<dyn Kernel>>> {
         let Some(bodies) = self.bodies(scene)? else { return Ok(None) };
-        let repeats = others.iter().flatten().map(|other| other.repeats()).find(|(x, y)| *x || *y);
+        let repeats = others.iter().flatten().map(|other| other.properties().repeats).find(|(x, y)| *x || *y);
         Ok(Some(match repeats {
             None => Arc::new(Coated::new(bodies, &scene.grid)?),
             Some((true, true)) => Arc::new(CoatedPeriodic::new(bodies, &scene.grid)?),
@@ -159,6 +165,22 @@ impl Effect for Coating {
                 tell(g, Value::Number(layer.shear_modulus));
                 tell(nu, Value::Number(layer.poisson_ratio));
             }
+        }
+    }
+
+    // A layer of no thickness, or of the body's own material, is none.
+    fn is_one(&self, scene: &Plain<'_>) -> bool {
+        (0..2).any(|b| self.in_effect(b, scene).is_some()) || self.check(&scene.grid).is_err()
+    }
+
+    fn check_bodies(&self, scene: &Plain<'_>) -> Result<()> {
+        self.check_below(scene)
+    }
+
+    fn stresses(&self, b: usize, scene: &Plain<'_>) -> Stresses<'_> {
+        match self.in_effect(b, scene) {
+            Some(_) => Stresses::Unknown(HALF_SPACE_ALONE),
+            None => Stresses::Same,
         }
     }
 }

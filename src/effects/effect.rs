@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use super::coupled::{Coupled, History};
+use super::properties::{Properties, Stresses};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::influence::{Coefficients, Kernel};
@@ -21,13 +23,31 @@ pub enum Value<'a> {
     Shared(&'a Arc<Held>),
 }
 
-/// An effect. What is not said is that of one that changes nothing and goes with everything.
+/// An effect. What other places ask has no default ([`Properties`]); what an effect does has one: nothing.
 pub trait Effect {
     /// As it is called in a scene.
     fn name(&self) -> &'static str;
 
+    /// What it goes with, and what it changes.
+    fn properties(&self) -> Properties<'_>;
+
     /// Refuses what is none.
     fn check(&self, grid: &Grid) -> Result<()>;
+
+    /// Tells each value that a set-up depends on, with its name. What is not told may be another one for each solve.
+    fn values(&self, tell: &mut dyn FnMut(&'static str, Value<'_>));
+
+    /// Whether surfaces approach each other beyond their mean distance, though a uniform pressure does not move the bodies: in a scene that
+    /// repeats itself in both directions. By a uniform pressure something is compressed, or pressures are held.
+    fn gives_way(&self, scene: &Plain<'_>) -> bool;
+
+    /// What stresses below the surface of body 1 (`b` is 0) or 2 are with it.
+    fn stresses(&self, b: usize, scene: &Plain<'_>) -> Stresses<'_>;
+
+    /// Whether a scene has to know of it.
+    fn is_one(&self, _scene: &Plain<'_>) -> bool {
+        true
+    }
 
     /// Refuses a load that it cannot carry beside the other effects; asked for each solve.
     fn check_load(&self, _scene: &Plain<'_>, _others: &[Option<&dyn Effect>]) -> Result<()> {
@@ -39,30 +59,9 @@ pub trait Effect {
         Ok(())
     }
 
-    /// The names of the effects that it is not solved with; one of a pair says so.
-    fn excludes(&self) -> &'static [&'static str] {
-        &[]
-    }
-
-    /// Whether the bodies of the scene do not matter: it has coefficients of its own.
-    fn replaces_bodies(&self) -> bool {
-        false
-    }
-
-    /// Whether surfaces approach each other beyond their mean distance, though a uniform pressure does not move the bodies: in a scene that
-    /// repeats itself in both directions. By a uniform pressure something is compressed, or pressures are held.
-    fn gives_way(&self, _scene: &Plain<'_>) -> bool {
-        false
-    }
-
-    /// What MULTIGRID and FULL_MULTIGRID do not solve: there is no smoother, or there are no coarser grids.
-    fn without_multigrid(&self) -> Option<&'static str> {
-        None
-    }
-
-    /// In which directions it makes the scene repeat itself.
-    fn repeats(&self) -> (bool, bool) {
-        (false, false)
+    /// Refuses bodies that it is not solved with.
+    fn check_bodies(&self, _scene: &Plain<'_>) -> Result<()> {
+        Ok(())
     }
 
     /// Its own kernel, in place of the half-space's; others may have a say in it.
@@ -75,8 +74,15 @@ pub trait Effect {
         Ok(coefficients)
     }
 
-    /// Tells each value that a set-up depends on, with its name.
-    fn values(&self, _tell: &mut dyn FnMut(&'static str, Value<'_>)) {}
+    /// The undeformed distance that it makes of `h`; none: the same.
+    fn surface(&self, _h: &[f64]) -> Result<Option<Vec<f64>>> {
+        Ok(None)
+    }
+
+    /// What is solved in turns with the normal problem; `history` is what the last step left.
+    fn coupled<'s>(&'s self, _scene: &Plain<'_>, _history: &'s mut History) -> Result<Option<Box<dyn Coupled + 's>>> {
+        Ok(None)
+    }
 }
 
 /// Checks one value per element; the message names the first one that `require` refuses.

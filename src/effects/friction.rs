@@ -3,7 +3,8 @@
 //! See [`friction`](crate::friction) for the problem that is solved. The normal problem is the same with and without it where the bodies
 //! are alike; it is solved first.
 
-use super::effect::{check_values, Effect};
+use super::effect::{check_values, Effect, Value};
+use super::properties::{Continues, Properties, Stresses};
 use super::tangential_influence::TangentialInfluence;
 use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
@@ -33,6 +34,14 @@ pub(super) const LARGEST: f64 = 1e140;
 
 /// Of angles and lengths.
 const ROUND_OFF: f64 = 1e-14;
+
+/// Why no accuracy is reached with it.
+const OWN_COEFFICIENTS: &str =
+    "friction->influence and friction->row_tables are those of one grid, and this asks for several";
+const KEPT: &str = "friction->continues begins with what a handle found on its own grid, and this asks for several: give previous_traction";
+
+const CONTINUES: Continues =
+    Continues { member: "friction->continues", from: "tractions", instead: "give previous_traction" };
 
 /// How the bodies move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -105,6 +114,9 @@ pub struct Friction<'a> {
 }
 
 impl Friction<'_> {
+    /// As it is called in a scene.
+    pub const NAME: &'static str = "friction";
+
     /// Of a coefficient; nothing moves.
     pub fn new(coefficient: f64) -> Friction<'static> {
         Friction {
@@ -188,7 +200,31 @@ impl Friction<'_> {
 
 impl Effect for Friction<'_> {
     fn name(&self) -> &'static str {
-        "friction"
+        Friction::NAME
+    }
+
+    fn properties(&self) -> Properties<'_> {
+        // Tangential coefficients of these are not known, unless they are given.
+        let excludes: &[&str] = match self.influence {
+            Some(influence) if influence.cross.is_none() => &["period", "patches"],
+            // What couples both problems is a table of offsets alone.
+            Some(_) => &["row_tables", "period", "patches", "coating"],
+            None => &["influence", "row_tables", "period", "patches", "coating"],
+        };
+        let continues = (self.previous == Previous::Kept).then_some(CONTINUES);
+        let one_grid = self.influence.map(|_| OWN_COEFFICIENTS).or(continues.map(|_| KEPT));
+        Properties {
+            excludes,
+            without_multigrid: None,
+            with_given_area: true,
+            one_grid,
+            own_coefficients: None,
+            repeats: (false, false),
+            limits: None,
+            // The solver itself has the tangential problem, in the place of `coupled`.
+            is_beside: true,
+            continues,
+        }
     }
 
     fn check(&self, grid: &Grid) -> Result<()> {
@@ -217,7 +253,7 @@ impl Effect for Friction<'_> {
 
     fn check_load(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<()> {
         let Bodies { shear_modulus: [g1, g2], poisson_ratio: [nu1, nu2] } = scene.bodies;
-        let has_bodies = !others.iter().flatten().any(|other| other.replaces_bodies());
+        let has_bodies = others.iter().flatten().all(|other| other.properties().own_coefficients.is_none());
         let lacks_cross = self.influence.is_some_and(|influence| influence.cross.is_none());
         if lacks_cross && has_bodies && (1.0 - 2.0 * nu1) / g1 != (1.0 - 2.0 * nu2) / g2 {
             let by_row = self.influence.is_some_and(|influence| influence.by_row);
@@ -232,13 +268,14 @@ impl Effect for Friction<'_> {
         Ok(())
     }
 
-    // Tangential coefficients of these are not known, unless they are given.
-    fn excludes(&self) -> &'static [&'static str] {
-        match self.influence {
-            Some(influence) if influence.cross.is_none() => &["period", "patches"],
-            // What couples both problems is a table of offsets alone.
-            Some(_) => &["row_tables", "period", "patches", "coating"],
-            None => &["influence", "row_tables", "period", "patches", "coating"],
-        }
+    // It may be another one for each solve; a solver keeps tangential tables by itself.
+    fn values(&self, _tell: &mut dyn FnMut(&'static str, Value<'_>)) {}
+
+    fn gives_way(&self, _scene: &Plain<'_>) -> bool {
+        false
+    }
+
+    fn stresses(&self, _b: usize, _scene: &Plain<'_>) -> Stresses<'_> {
+        Stresses::Same
     }
 }

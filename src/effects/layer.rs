@@ -1,6 +1,7 @@
 //! Effect: a thin compliant layer between the bodies, `e = h - approach + A p + c p`: a coating, a paint, roughness that gives way.
 
 use super::effect::{check_values, Effect, Value};
+use super::properties::{Properties, Stresses};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::influence::{self, Coefficients};
@@ -30,6 +31,20 @@ impl Effect for Layer<'_> {
         "layer"
     }
 
+    fn properties(&self) -> Properties<'_> {
+        Properties {
+            excludes: &[],
+            without_multigrid: matches!(self, Layer::PerElement(_)).then_some("a layer of one compliance per element"),
+            with_given_area: true,
+            one_grid: None,
+            own_coefficients: None,
+            repeats: (false, false),
+            limits: None,
+            is_beside: false,
+            continues: None,
+        }
+    }
+
     fn check(&self, grid: &Grid) -> Result<()> {
         let require = |name: &str, c: f64| match c {
             c if !c.is_finite() => Err(Error::NotFinite(format!("{name} is {c}; it must be finite"))),
@@ -44,10 +59,6 @@ impl Effect for Layer<'_> {
 
     fn gives_way(&self, _scene: &Plain<'_>) -> bool {
         !self.is_rigid()
-    }
-
-    fn without_multigrid(&self) -> Option<&'static str> {
-        matches!(self, Layer::PerElement(_)).then_some("a layer of one compliance per element")
     }
 
     fn apply(&self, coefficients: Coefficients) -> Result<Coefficients> {
@@ -65,5 +76,9 @@ impl Effect for Layer<'_> {
             Layer::Uniform(c) => tell("layer->compliance", Value::Number(*c)),
             Layer::PerElement(c) => tell("layer->compliances", Value::Array(c)),
         }
+    }
+
+    fn stresses(&self, _b: usize, _scene: &Plain<'_>) -> Stresses<'_> {
+        Stresses::Same
     }
 }

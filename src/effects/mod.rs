@@ -10,30 +10,59 @@
 //! | layer | | a uniform one | that of the set-up |
 //! | pressure_limit | | yes | another one for each solve |
 //! | friction | period, patches; without tangential tables influence, row_tables, coating | yes | another one for each solve |
+//! | adhesion | row_tables, patches, pressure_limit, friction | no | another one for each solve |
 //!
-//! A new effect is a file with an `impl Effect`, a field of [`Scene`](crate::scene::Scene), and a line in the list (`list.rs`).
+//! | effect | on a given contact area | to an accuracy | stresses below the surface | beside the normal problem |
+//! |---|---|---|---|---|
+//! | influence, row_tables | yes | no | no | |
+//! | coating | yes | yes | of the other body | |
+//! | period | yes | yes | in both directions | |
+//! | patches | yes | yes | yes | |
+//! | layer | yes | yes | yes | |
+//! | pressure_limit | no | yes | yes | |
+//! | friction | yes | no | yes | the tangential problem, which may continue; of unlike bodies in turns |
+//! | adhesion | no | no | yes | |
+//!
+//! A new effect is a file with an `impl Effect`, its `mod`, and a line in the list (`list.rs`), which makes it a field of
+//! [`Scene`](crate::scene::Scene). The list has the order in which effects act; `together.rs` has what all of a scene say. What is solved
+//! in turns with the normal problem, or remembers the steps before, is [`Coupled`]. `tests/unit/foundation.rs` is an example.
 
+mod adhesion;
 mod coating;
+mod coupled;
 mod effect;
 mod friction;
 mod friction_checks;
 mod layer;
-mod list;
+pub(crate) mod list;
 mod named;
 mod patches;
 mod period;
 mod pressure_limit;
+mod properties;
 mod tables;
 mod tangential_influence;
 mod tangential_rows;
+mod together;
 
+pub use adhesion::{Adhesion, Work};
 pub use coating::{Coating, CoatingLayer};
+pub use coupled::{Coupled, History};
 pub use effect::{Effect, Value};
 pub use friction::{Coefficient, Friction, Motion, Prescribed, Previous};
 pub use layer::Layer;
-pub use list::{check_bodies, check_effects, excluded_method, replace_bodies};
 pub use named::{Named, SET_THEM};
 pub use patches::Patches;
 pub use period::Period;
-pub use pressure_limit::PressureLimit;
+pub use properties::{Continues, Layout, PressureLimit, Properties, Stresses};
 pub use tangential_influence::{KeptInfluence, TangentialInfluence};
+pub use together::{
+    beside, check_bodies, check_effects, check_other_grids, continuing, coupled, effects, excluded_method, keep,
+    limits, own_coefficients, repeats, replace_bodies, surface, without_given_area, COUNT,
+};
+
+#[cfg(test)]
+#[path = "../../tests/unit/foundation.rs"]
+mod foundation;
+#[cfg(test)]
+pub use foundation::Foundation;

@@ -8,7 +8,7 @@
 use std::sync::Arc;
 
 use super::effect::{Effect, Value};
-use super::list::{effects, list, refuse_together, replace_bodies, COUNT};
+use super::together::{effects, list, refuse_together, replace_bodies, COUNT};
 use crate::error::{invalid, Error, Result};
 use crate::memory::Held;
 use crate::scene::{Bodies, Scene};

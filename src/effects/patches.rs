@@ -1,10 +1,12 @@
 //! Effect: several contact patches on one grid, whose interaction is scaled. See [`influence::Patches`](crate::influence::Patches).
 
 use super::effect::{Effect, Value};
+use super::properties::{Properties, Stresses};
 use crate::error::{invalid, require, Result};
 use crate::grid::Grid;
 use crate::influence::{self, Coefficients};
 use crate::memory::collected;
+use crate::scene::Plain;
 
 /// Patches at most: each costs a product.
 const MOST: usize = 64;
@@ -33,20 +35,25 @@ impl Patches<'_> {
     pub fn factor(&self, patch: usize, i: usize) -> f64 {
         self.factors[patch * self.count + self.of(i)]
     }
-
-    /// The undeformed distance `h` with no surface where there is no patch; none if all elements have one.
-    pub fn surface(&self, h: &[f64]) -> Result<Option<Vec<f64>>> {
-        if !self.patch.contains(&NONE) {
-            return Ok(None);
-        }
-        let of = |(h, patch): (&f64, &i32)| if *patch == NONE { f64::INFINITY } else { *h };
-        Ok(Some(collected(h.iter().zip(self.patch).map(of), "the undeformed distance of patches")?))
-    }
 }
 
 impl Effect for Patches<'_> {
     fn name(&self) -> &'static str {
         "patches"
+    }
+
+    fn properties(&self) -> Properties<'_> {
+        Properties {
+            excludes: &["period"],
+            without_multigrid: Some(self.name()),
+            with_given_area: true,
+            one_grid: None,
+            own_coefficients: None,
+            repeats: (false, false),
+            limits: None,
+            is_beside: false,
+            continues: None,
+        }
     }
 
     fn check(&self, grid: &Grid) -> Result<()> {
@@ -84,14 +91,6 @@ impl Effect for Patches<'_> {
         Ok(())
     }
 
-    fn excludes(&self) -> &'static [&'static str] {
-        &["period"]
-    }
-
-    fn without_multigrid(&self) -> Option<&'static str> {
-        Some(self.name())
-    }
-
     fn apply(&self, coefficients: Coefficients) -> Result<Coefficients> {
         let patch = self.patch.iter().map(|&patch| patch.max(0) as u16);
         Ok(coefficients.with_patches(influence::Patches::new(self.count, patch, self.factors)?))
@@ -101,5 +100,23 @@ impl Effect for Patches<'_> {
         tell("patches->count", Value::Number(self.count as f64));
         tell("patches->patch", Value::Integers(self.patch));
         tell("patches->factors", Value::Array(self.factors));
+    }
+
+    fn gives_way(&self, _scene: &Plain<'_>) -> bool {
+        false
+    }
+
+    fn stresses(&self, _b: usize, _scene: &Plain<'_>) -> Stresses<'_> {
+        let Patches { count, patch, factors } = *self;
+        Stresses::Patches { count, patch, factors }
+    }
+
+    // No surface where there is no patch.
+    fn surface(&self, h: &[f64]) -> Result<Option<Vec<f64>>> {
+        if !self.patch.contains(&NONE) {
+            return Ok(None);
+        }
+        let of = |(h, patch): (&f64, &i32)| if *patch == NONE { f64::INFINITY } else { *h };
+        Ok(Some(collected(h.iter().zip(self.patch).map(of), "the undeformed distance of patches")?))
     }
 }

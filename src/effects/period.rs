@@ -5,6 +5,7 @@
 use std::sync::Arc;
 
 use super::effect::{Effect, Value};
+use super::properties::{Properties, Stresses};
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::influence::{HalfSpace, Kernel, Periodic};
@@ -27,6 +28,20 @@ pub struct Period {
 impl Effect for Period {
     fn name(&self) -> &'static str {
         "period"
+    }
+
+    fn properties(&self) -> Properties<'_> {
+        Properties {
+            excludes: &[],
+            without_multigrid: Some(self.name()),
+            with_given_area: true,
+            one_grid: None,
+            own_coefficients: None,
+            repeats: (self.x, self.y),
+            limits: None,
+            is_beside: false,
+            continues: None,
+        }
     }
 
     fn check(&self, _grid: &Grid) -> Result<()> {
@@ -58,14 +73,6 @@ impl Effect for Period {
         Ok(())
     }
 
-    fn without_multigrid(&self) -> Option<&'static str> {
-        Some(self.name())
-    }
-
-    fn repeats(&self) -> (bool, bool) {
-        (self.x, self.y)
-    }
-
     fn kernel(&self, scene: &Plain<'_>, _others: &[Option<&dyn Effect>]) -> Result<Option<Arc<dyn Kernel>>> {
         let half_space = HalfSpace::new(scene.grid.dx, scene.grid.dy, scene.bodies.compliance());
         Ok(Some(Arc::new(Periodic::new(half_space, (self.x, self.y), &scene.grid)?)))
@@ -74,5 +81,16 @@ impl Effect for Period {
     fn values(&self, tell: &mut dyn FnMut(&'static str, Value<'_>)) {
         tell("period->x", Value::Number(f64::from(self.x)));
         tell("period->y", Value::Number(f64::from(self.y)));
+    }
+
+    fn gives_way(&self, _scene: &Plain<'_>) -> bool {
+        false
+    }
+
+    fn stresses(&self, _b: usize, _scene: &Plain<'_>) -> Stresses<'_> {
+        match self {
+            Period { x: true, y: true } => Stresses::Repeat,
+            _ => Stresses::Unknown("repeats in one direction; subsurface stresses know both or none"),
+        }
     }
 }

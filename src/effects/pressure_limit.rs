@@ -11,36 +11,31 @@
 
 use std::ops::Range;
 
-use super::effect::{check_values, Effect};
+use super::effect::{check_values, Effect, Value};
+use super::properties::{PressureLimit, Properties, Stresses};
 use crate::blocks;
 use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::scene::{Load, Plain};
 use crate::threads::Threads;
 
-/// p_max, a pressure; +infinity: no limit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PressureLimit<'a> {
-    /// The same everywhere.
-    Uniform(f64),
-    /// One per element, `[my][mx]`.
-    PerElement(&'a [f64]),
-}
-
-impl PressureLimit<'_> {
-    /// Of element i.
-    #[inline]
-    pub fn at(&self, i: usize) -> f64 {
-        match self {
-            PressureLimit::Uniform(limit) => *limit,
-            PressureLimit::PerElement(limits) => limits[i],
-        }
-    }
-}
-
 impl Effect for PressureLimit<'_> {
     fn name(&self) -> &'static str {
         "pressure_limit"
+    }
+
+    fn properties(&self) -> Properties<'_> {
+        Properties {
+            excludes: &[],
+            without_multigrid: None,
+            with_given_area: false,
+            one_grid: None,
+            own_coefficients: None,
+            repeats: (false, false),
+            limits: Some(*self),
+            is_beside: false,
+            continues: None,
+        }
     }
 
     fn check(&self, grid: &Grid) -> Result<()> {
@@ -89,5 +84,12 @@ impl Effect for PressureLimit<'_> {
             )));
         }
         Ok(())
+    }
+
+    // It may be another one for each solve.
+    fn values(&self, _tell: &mut dyn FnMut(&'static str, Value<'_>)) {}
+
+    fn stresses(&self, _b: usize, _scene: &Plain<'_>) -> Stresses<'_> {
+        Stresses::Same
     }
 }

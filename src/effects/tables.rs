@@ -5,14 +5,32 @@
 use std::sync::Arc;
 
 use super::effect::{Effect, Value};
+use super::properties::{Layout, Properties, Stresses, HALF_SPACE_ALONE};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::influence::{Kernel, RowTables, Table};
 use crate::scene::Plain;
 
+/// Why no accuracy is reached with them.
+const ONE_GRID: &str = "own coefficients are those of one grid, and an accuracy needs several";
+
 impl Effect for Table {
     fn name(&self) -> &'static str {
         "influence"
+    }
+
+    fn properties(&self) -> Properties<'_> {
+        Properties {
+            excludes: &["period", "row_tables"],
+            without_multigrid: None,
+            with_given_area: true,
+            one_grid: Some(ONE_GRID),
+            own_coefficients: Some(Layout::Offsets),
+            repeats: (false, false),
+            limits: None,
+            is_beside: false,
+            continues: None,
+        }
     }
 
     fn check(&self, grid: &Grid) -> Result<()> {
@@ -24,14 +42,6 @@ impl Effect for Table {
         Ok(())
     }
 
-    fn excludes(&self) -> &'static [&'static str] {
-        &["period", "row_tables"]
-    }
-
-    fn replaces_bodies(&self) -> bool {
-        true
-    }
-
     fn kernel(&self, _: &Plain<'_>, _: &[Option<&dyn Effect>]) -> Result<Option<Arc<dyn Kernel>>> {
         Ok(Some(Arc::new(self.clone())))
     }
@@ -39,11 +49,33 @@ impl Effect for Table {
     fn values(&self, tell: &mut dyn FnMut(&'static str, Value<'_>)) {
         tell("influence->coefficients", Value::Shared(&self.values));
     }
+
+    fn gives_way(&self, _scene: &Plain<'_>) -> bool {
+        false
+    }
+
+    fn stresses(&self, _b: usize, _scene: &Plain<'_>) -> Stresses<'_> {
+        Stresses::Unknown(HALF_SPACE_ALONE)
+    }
 }
 
 impl Effect for RowTables {
     fn name(&self) -> &'static str {
         "row_tables"
+    }
+
+    fn properties(&self) -> Properties<'_> {
+        Properties {
+            excludes: &["period"],
+            without_multigrid: Some(self.name()),
+            with_given_area: true,
+            one_grid: Some(ONE_GRID),
+            own_coefficients: Some(Layout::Rows),
+            repeats: (false, false),
+            limits: None,
+            is_beside: false,
+            continues: None,
+        }
     }
 
     fn check(&self, grid: &Grid) -> Result<()> {
@@ -55,23 +87,19 @@ impl Effect for RowTables {
         Ok(())
     }
 
-    fn excludes(&self) -> &'static [&'static str] {
-        &["period"]
-    }
-
-    fn replaces_bodies(&self) -> bool {
-        true
-    }
-
-    fn without_multigrid(&self) -> Option<&'static str> {
-        Some(self.name())
-    }
-
     fn kernel(&self, _: &Plain<'_>, _: &[Option<&dyn Effect>]) -> Result<Option<Arc<dyn Kernel>>> {
         Ok(Some(Arc::new(self.clone())))
     }
 
     fn values(&self, tell: &mut dyn FnMut(&'static str, Value<'_>)) {
         tell("row_tables->coefficients", Value::Shared(&self.values));
+    }
+
+    fn gives_way(&self, _scene: &Plain<'_>) -> bool {
+        false
+    }
+
+    fn stresses(&self, _b: usize, _scene: &Plain<'_>) -> Stresses<'_> {
+        Stresses::Unknown(HALF_SPACE_ALONE)
     }
 }

@@ -60,15 +60,35 @@ pub struct contact_normal_accuracy {
     pub max_pressure_target: f64,
     /// Estimated relative error of the corrected contact area at most, below 1; 0 (default): not asked for.
     pub contact_area_target: f64,
+    /// The same of the mean gap. This and what follows is estimated from grids with fewer elements, which are solved, too. Since 0.2.
+    pub mean_gap_target: f64,
+    /// Of the stiffness dF/d approach.
+    pub stiffness_target: f64,
+    /// Of the length of the tangential force.
+    pub tangential_force_target: f64,
+    /// Of the length of the creepage that is found.
+    pub creepage_target: f64,
+    /// Of the moment about the spin centre.
+    pub spin_moment_target: f64,
+    /// Of the area of stick.
+    pub stick_area_target: f64,
+    /// Of the largest von Mises stress.
+    pub max_von_mises_target: f64,
+    /// Of its depth.
+    pub von_mises_depth_target: f64,
+    /// Of the largest shear stress.
+    pub max_shear_target: f64,
 }
 
 versioned! { contact_normal_accuracy, contact_normal_accuracy_init, 112, target: 1e-3, reached: -1.0 }
 
 /// Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->accuracy.error_force` is at most
-/// `accuracy->target` times the force (or the approach, when the force is prescribed), and those of the largest pressure and the
-/// corrected area at most their targets, with 32 or more elements across the contact in both directions. With `accuracy->surface` the
-/// scene's undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, target / 10 and
-/// max_pressure_target / 100. OK: the targets are met. ITERATION_LIMIT: a limit of time, memory or elements is in the way of the next
+/// `accuracy->target` times the force (or the approach, when the force is prescribed), and those of the other quantities
+/// at most their targets, with enough elements across the contact in both directions: 8 for forces, 12 for the largest pressure, 32 for areas, 16 for the others. With `accuracy->surface` the
+/// scene's undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, a tenth of the
+/// targets, and a hundredth of those of single pressures and stresses. With a target of another quantity than force, largest pressure and area up to two grids with fewer elements
+/// are solved first. Arrays of one value per element (compliances, limits, coefficients of friction, weights, tractions before) have their
+/// means on other grids. UNSUPPORTED: own coefficients, FIXED contact, and stresses of coated bodies. OK: the targets are met. ITERATION_LIMIT: a limit of time, memory or elements is in the way of the next
 /// grid. CANCELLED: by the surface or the progress callback. STAGNATED: a target is below round-off, or no estimate can be trusted (a
 /// largest pressure that is singular has none). In these cases `contact_normal_last_error` says the best reached, and report and handle
 /// hold it. `*solver` (`solver` NULL: not wanted) is a handle with the result for `contact_normal_solver_fields`, to be freed by
@@ -167,9 +187,21 @@ pub(super) fn translate(given: &contact_normal_accuracy) -> Result<Accuracy, Ref
         u64::try_from(value).map_err(refuse)
     };
     Ok(Accuracy {
-        target: given.target,
-        max_pressure_target: given.max_pressure_target,
-        contact_area_target: given.contact_area_target,
+        // In the order of Quantity::ALL.
+        targets: [
+            given.target,
+            given.max_pressure_target,
+            given.contact_area_target,
+            given.mean_gap_target,
+            given.stiffness_target,
+            given.tangential_force_target,
+            given.creepage_target,
+            given.spin_moment_target,
+            given.stick_area_target,
+            given.max_von_mises_target,
+            given.von_mises_depth_target,
+            given.max_shear_target,
+        ],
         max_seconds: given.max_seconds,
         max_bytes: limit("max_bytes", given.max_bytes)?,
         max_elements: limit("max_elements", given.max_elements)?,

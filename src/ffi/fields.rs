@@ -9,7 +9,7 @@ use super::structs::versioned;
 pub struct contact_normal_fields {
     /// Set by `contact_normal_fields_init`.
     pub struct_size: i64,
-    /// p. Read as the initial guess when that is GIVEN. Exactly 0 outside the contact area.
+    /// p. Read as the initial guess when that is GIVEN. Exactly 0 outside the contact area, but with adhesion: that acts there.
     pub pressure: *mut f64,
     /// e = h - approach + A p; +infinity where there is no surface.
     pub deformed_distance: *mut f64,
@@ -24,6 +24,10 @@ pub struct contact_normal_fields {
     pub slip: [*mut f64; 2],
     /// With friction: CONTACT_NORMAL_STICK_SLIP_... of each element; EXTERIOR without friction.
     pub stick_slip: *mut i32,
+    /// With adhesion: q = p + sigma in contact, 0 outside; without adhesion p.
+    pub contact_pressure: *mut f64,
+    /// With adhesion: sigma(e) >= 0; 0 without adhesion.
+    pub attraction: *mut f64,
 }
 
 versioned! { contact_normal_fields, contact_normal_fields_init, 80 }

@@ -5,8 +5,9 @@ use std::ffi::CStr;
 use libc::c_char;
 
 /// Effects of a scene, members of the options and the fields, and what functions do.
-const NAMES: [&str; 30] = [
+const NAMES: [&str; 32] = [
     "accuracy",
+    "adhesion",
     "batch",
     "coating",
     "compliance",
@@ -25,6 +26,7 @@ const NAMES: [&str; 30] = [
     "pressure_limit",
     "price_list",
     "product",
+    "pull_off",
     "release",
     "row_tables",
     "sensitivities",
@@ -38,8 +40,8 @@ const NAMES: [&str; 30] = [
     "warnings",
 ];
 
-/// 1 if this library has what is called so, else 0: an effect of a scene ("friction", "coating"), an option ("max_seconds", "stop"), a member of
-/// the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables"), or what calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "sensitivities", "warnings", "keep", "release", "dump",
+/// 1 if this library has what is called so, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop"), a member of
+/// the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables"), or what calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump",
 /// "set_option", "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_has(name: *const c_char) -> i32 {

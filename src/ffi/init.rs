@@ -3,10 +3,12 @@
 use libc::c_void;
 
 use super::accuracy::contact_normal_accuracy;
+use super::adhesion::contact_normal_adhesion;
 use super::coating::contact_normal_coating;
 use super::effects::{
     contact_normal_layer, contact_normal_patches, contact_normal_period, contact_normal_pressure_limit,
 };
+use super::effects_bill::contact_normal_effects_row;
 use super::fields::contact_normal_fields;
 use super::friction::contact_normal_friction;
 use super::friction_results::contact_normal_friction_results;
@@ -15,6 +17,7 @@ use super::influence::{contact_normal_influence, contact_normal_row_tables};
 use super::ledger::contact_normal_ledger_row;
 use super::options::{contact_normal_cycle, contact_normal_options};
 use super::price_list::contact_normal_price;
+use super::quantities::contact_normal_quantity_row;
 use super::report::contact_normal_report;
 use super::scene::contact_normal_scene;
 use super::solver::contact_normal_solver_info;
@@ -65,6 +68,12 @@ pub const CONTACT_NORMAL_KIND_HERTZ_SOLUTION: i32 = 19;
 pub const CONTACT_NORMAL_KIND_CYCLE: i32 = 20;
 /// `kind`: `contact_normal_solver_info`. Since 0.2.
 pub const CONTACT_NORMAL_KIND_SOLVER_INFO: i32 = 21;
+/// `kind`: `contact_normal_quantity_row`, of the first row of an array. Since 0.2.
+pub const CONTACT_NORMAL_KIND_QUANTITY_ROW: i32 = 22;
+/// `kind`: `contact_normal_effects_row`, of the first row of an array. Since 0.2.
+pub const CONTACT_NORMAL_KIND_EFFECTS_ROW: i32 = 23;
+/// `kind`: `contact_normal_adhesion`. Since 0.2.
+pub const CONTACT_NORMAL_KIND_ADHESION: i32 = 24;
 
 /// Fills a struct of this `kind` (CONTACT_NORMAL_KIND_...), which has `size` bytes in the caller's header, with its defaults. Programs in C
 /// and C++ call the function that the header has for each struct, as `contact_normal_scene_init(&scene)`; others call this one with the
@@ -122,6 +131,9 @@ kinds! {
     CONTACT_NORMAL_KIND_HERTZ_SOLUTION => contact_normal_hertz_solution,
     CONTACT_NORMAL_KIND_CYCLE => contact_normal_cycle,
     CONTACT_NORMAL_KIND_SOLVER_INFO => contact_normal_solver_info,
+    CONTACT_NORMAL_KIND_QUANTITY_ROW => contact_normal_quantity_row,
+    CONTACT_NORMAL_KIND_EFFECTS_ROW => contact_normal_effects_row,
+    CONTACT_NORMAL_KIND_ADHESION => contact_normal_adhesion,
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 #![allow(clippy::missing_safety_doc)] // the rules for all exports stand in docs/conventions.md
 
 mod accuracy;
+mod adhesion;
 mod arguments;
 mod batch;
 mod by_name;
@@ -12,6 +13,7 @@ mod coating;
 mod conclusion;
 pub mod dump;
 mod effects;
+mod effects_bill;
 mod fields;
 mod floating_point;
 mod friction;
@@ -32,6 +34,8 @@ mod options;
 mod outputs;
 mod price_list;
 mod progress;
+mod pull_off;
+mod quantities;
 mod report;
 mod scene;
 mod set_by_name;
@@ -48,9 +52,11 @@ mod watcher;
 
 pub use self::log::*;
 pub use accuracy::*;
+pub use adhesion::*;
 pub use batch::*;
 pub use coating::*;
 pub use effects::*;
+pub use effects_bill::*;
 pub use fields::*;
 pub use friction::*;
 pub use friction_results::*;
@@ -63,6 +69,8 @@ pub use linear::*;
 pub use options::*;
 pub use price_list::*;
 pub use progress::*;
+pub use pull_off::*;
+pub use quantities::*;
 pub use report::*;
 pub use scene::*;
 pub use set_by_name::*;

@@ -105,6 +105,10 @@ pub struct contact_normal_options {
     /// The path of a file, or NULL (default): where a call that ends neither as OK nor as CANCELLED writes what it was given, for
     /// `contact-normal-replay` (docs/dump.md). %p in it is the number of the process, %n that of the dump in the process, %% a %.
     pub dump: *const c_char,
+    /// > 0, of `contact_normal_solve` alone: effects whose omission changes force or approach, largest pressure, area and tangential forces
+    /// by less than this part, as `contact_normal_effects_bill` says, are left out; `report->accuracy.neglected` has which. Friction stays.
+    /// Below 1. Default 0: nothing is left out. Since 0.2.
+    pub neglect_below: f64,
 }
 
 /// The cycle of the paper's methods.
@@ -190,8 +194,20 @@ impl Translated {
     }
 }
 
-/// Translates options; NULL: the defaults.
+/// Translates options; NULL: the defaults. Refuses `neglect_below`.
 pub(super) unsafe fn translate(options: *const contact_normal_options) -> Result<Translated, Refusal> {
+    // SAFETY: by the caller.
+    let translated = unsafe { translate_neglecting(options)? };
+    match translated.given.neglect_below {
+        0.0 => Ok(translated),
+        below => {
+            Err(Refusal::invalid(format!("neglect_below is {below}; only contact_normal_solve leaves effects out")))
+        }
+    }
+}
+
+/// Translates options of a call that leaves out what is negligible.
+pub(super) unsafe fn translate_neglecting(options: *const contact_normal_options) -> Result<Translated, Refusal> {
     let began = Instant::now();
     // SAFETY: NULL or a struct that declares its size.
     let given = unsafe { structs::read_optional(options, "options")? }.unwrap_or_else(contact_normal_options::defaults);
@@ -200,6 +216,8 @@ pub(super) unsafe fn translate(options: *const contact_normal_options) -> Result
     reserved("options->reserved", given.reserved)?;
     let is_limit = given.max_seconds >= 0.0 && given.max_seconds.is_finite();
     require(is_limit, "max_seconds", given.max_seconds, "it must be positive, or 0 for no limit")?;
+    let below = given.neglect_below;
+    require((0.0..1.0).contains(&below), "neglect_below", below, "it must lie between 0 and 1, or be 0 for none")?;
     let options = Options {
         method: method(given.method)?,
         cycle: cycle.map_or(Ok(CycleShape::default()), shape)?,

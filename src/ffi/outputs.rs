@@ -11,7 +11,7 @@ use crate::contact::State;
 use crate::friction::{Solution, Vector, EXTERIOR};
 use crate::memory::reserve;
 use crate::scene::Scene;
-use crate::solver::{ActiveSet, Guess, InitialGuess, LedgerRow, Options, Report, Solver};
+use crate::solver::{ActiveSet, Guess, InitialGuess, LedgerRow, Neglected, Options, Report, Solver};
 
 /// The caller's output structs, after a check.
 pub(super) struct Outputs {
@@ -22,6 +22,8 @@ pub(super) struct Outputs {
     given_report: Option<contact_normal_report>,
     /// Its ledger, if there is room for one.
     ledger: Option<Rows<contact_normal_ledger_row>>,
+    /// What was left out of the scene.
+    pub neglected: Option<Neglected>,
 }
 
 impl Outputs {
@@ -53,7 +55,7 @@ impl Outputs {
             }
         }
         let given_fields = given_fields.unwrap_or_else(contact_normal_fields::defaults);
-        Ok(Outputs { fields: given_fields, fields_at: fields, report, given_report, ledger: rows })
+        Ok(Outputs { fields: given_fields, fields_at: fields, report, given_report, ledger: rows, neglected: None })
     }
 
     /// The caller's structs.
@@ -142,6 +144,8 @@ impl Outputs {
             regions.output("slip", fields.slip[k], n)?;
         }
         regions.output("stick_slip", fields.stick_slip, n)?;
+        regions.output("contact_pressure", fields.contact_pressure, n)?;
+        regions.output("attraction", fields.attraction, n)?;
         if let Some(report) = &self.given_report {
             regions.output_struct(self.report, report)?;
             if let Some(rows) = &self.ledger {
@@ -174,6 +178,24 @@ impl Outputs {
             }
         }
         self.write_friction(solver.friction(), n);
+        self.write_adhesion(solver);
+    }
+
+    /// Writes the two parts of the pressures: without adhesion all of them are contact pressures.
+    fn write_adhesion(&self, solver: &Solver) {
+        let (fields, split) = (&self.fields, solver.adhesion());
+        let parts = |i: usize| split.as_ref().map_or((solver.state().p[i], 0.0), |split| split(i));
+        // SAFETY (both): not null: room for one value per element, as above.
+        unsafe {
+            for i in 0..solver.state().p.len() {
+                if !fields.contact_pressure.is_null() {
+                    fields.contact_pressure.add(i).write(parts(i).0);
+                }
+                if !fields.attraction.is_null() {
+                    fields.attraction.add(i).write(parts(i).1);
+                }
+            }
+        }
     }
 
     /// Writes what friction has found; zeros where there is none.
@@ -214,7 +236,10 @@ impl Outputs {
             // SAFETY: i < ledger_capacity, the room in the caller's ledger.
             rows[skipped..].iter().enumerate().for_each(|(i, row)| unsafe { ledger.write(i, &row.into()) });
         }
-        let report = contact_normal_report { warnings, ..contact_normal_report::of(report, rows.len(), given) };
+        let mut report = contact_normal_report { warnings, ..contact_normal_report::of(report, rows.len(), given) };
+        if let Some(neglected) = &self.neglected {
+            (report.accuracy.neglected, report.accuracy.neglected_error) = (neglected.bits(), neglected.error);
+        }
         // SAFETY: not null: a struct that declares its size.
         unsafe { structs::write(self.report, &report) }
     }

@@ -22,6 +22,24 @@ pub const CONTACT_NORMAL_QUANTITY_FORCE: i32 = 0;
 pub const CONTACT_NORMAL_QUANTITY_MAX_PRESSURE: i32 = 1;
 /// `quantity`: the corrected contact area.
 pub const CONTACT_NORMAL_QUANTITY_CONTACT_AREA: i32 = 2;
+/// `quantity`: the mean of the deformed distance over the elements with a surface.
+pub const CONTACT_NORMAL_QUANTITY_MEAN_GAP: i32 = 3;
+/// `quantity`: dF/d approach, as `contact_normal_solver_stiffness` has it.
+pub const CONTACT_NORMAL_QUANTITY_STIFFNESS: i32 = 4;
+/// `quantity`: the length of the tangential force.
+pub const CONTACT_NORMAL_QUANTITY_TANGENTIAL_FORCE: i32 = 5;
+/// `quantity`: the length of the creepage, in those directions in which the force is prescribed.
+pub const CONTACT_NORMAL_QUANTITY_CREEPAGE: i32 = 6;
+/// `quantity`: the moment of the tractions about the spin centre.
+pub const CONTACT_NORMAL_QUANTITY_SPIN_MOMENT: i32 = 7;
+/// `quantity`: the area of stick.
+pub const CONTACT_NORMAL_QUANTITY_STICK_AREA: i32 = 8;
+/// `quantity`: the largest von Mises stress in both bodies, over all depths.
+pub const CONTACT_NORMAL_QUANTITY_MAX_VON_MISES: i32 = 9;
+/// `quantity`: the depth of the largest von Mises stress.
+pub const CONTACT_NORMAL_QUANTITY_VON_MISES_DEPTH: i32 = 10;
+/// `quantity`: the largest shear stress in both bodies, over all depths.
+pub const CONTACT_NORMAL_QUANTITY_MAX_SHEAR: i32 = 11;
 
 /// `obstacle`: none; the accuracy is to be had.
 pub const CONTACT_NORMAL_OBSTACLE_NONE: i32 = 0;
@@ -150,7 +168,7 @@ pub unsafe extern "C" fn contact_normal_cost_of_accuracy(
         let h = if given.surface.is_some() { Vec::new() } else { unsafe { named.copy_of_distance()? } };
         // SAFETY: as above.
         let scene = unsafe { named.with_distance(&h)? };
-        let quantity = quantity_of(quantity)?;
+        let quantity = quantity_of("quantity", quantity)?;
         let asked = accuracy::translate(&given)?;
         let surface = accuracy::surface(&given, recording);
         // A copy: callbacks may write into the caller's.
@@ -190,15 +208,12 @@ fn predict_watched(
     concluded?.conclude()
 }
 
-fn quantity_of(quantity: i32) -> Result<Quantity, Refusal> {
-    Ok(match quantity {
-        CONTACT_NORMAL_QUANTITY_FORCE => Quantity::Force,
-        CONTACT_NORMAL_QUANTITY_MAX_PRESSURE => Quantity::MaxPressure,
-        CONTACT_NORMAL_QUANTITY_CONTACT_AREA => Quantity::ContactArea,
-        other => {
-            return Err(Refusal::invalid(format!(
-                "quantity is {other}; it must be FORCE 0, MAX_PRESSURE 1 or CONTACT_AREA 2"
-            )))
-        }
+/// The quantity of a number; `name`: of the argument.
+pub(super) fn quantity_of(name: &str, quantity: i32) -> Result<Quantity, Refusal> {
+    let known = usize::try_from(quantity).ok().and_then(|number| Quantity::ALL.get(number));
+    known.copied().ok_or_else(|| {
+        let names: Vec<String> =
+            Quantity::ALL.iter().map(|of| format!("{} {}", of.name().to_uppercase(), of.number())).collect();
+        Refusal::invalid(format!("{name} is {quantity}; it must be one of {}", names.join(", ")))
     })
 }

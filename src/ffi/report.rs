@@ -1,5 +1,6 @@
 //! `contact_normal_report`: what a solve found, how wrong it is, and what it cost.
 
+use super::adhesion::contact_normal_report_adhesion;
 use super::ledger::{contact_normal_ledger_row, copy, set_errors, set_measures};
 use super::structs::{versioned, Versioned};
 use crate::friction;
@@ -103,8 +104,12 @@ pub struct contact_normal_report_accuracy {
     pub halved_seconds: f64,
     /// And the error of the force (or the approach) that it would leave.
     pub halved_error_force: f64,
+    /// What `options->neglect_below` left out: the sum of `1 << (o - 1)` over CONTACT_NORMAL_OMIT_... o. Since 0.2.
+    pub neglected: i64,
+    /// By how much that may be wrong: the largest relative change of a quantity, its error included. Since 0.2.
+    pub neglected_error: f64,
     /// Room for later versions: 0.
-    pub reserved: [f64; 8],
+    pub reserved: [f64; 6],
 }
 
 /// What it cost: a group of `contact_normal_report`.
@@ -160,6 +165,8 @@ pub struct contact_normal_report {
     pub accuracy: contact_normal_report_accuracy,
     /// What it cost.
     pub statistics: contact_normal_report_statistics,
+    /// What was found of adhesion.
+    pub adhesion: contact_normal_report_adhesion,
 }
 
 versioned! {
@@ -188,6 +195,9 @@ impl contact_normal_report {
         let statistics = &mut to.statistics;
         copy!(report.count => statistics: cycles, active_set_steps, active_set_changes, matrix_products, work_units);
         copy!(report => statistics: setup_seconds, solve_seconds, bytes);
+        if let Some(found) = &report.adhesion {
+            to.adhesion.set(found);
+        }
         if let Some(found) = &report.friction {
             (statistics.tangential_products, statistics.tangential_seconds) = (found.products, found.seconds);
             to.accuracy.error_tangential = found.error;

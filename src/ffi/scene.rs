@@ -1,5 +1,6 @@
 //! `contact_normal_scene`.
 
+use super::adhesion::contact_normal_adhesion;
 use super::arguments::{self, add, Regions};
 use super::coating::contact_normal_coating;
 use super::effects::{
@@ -47,7 +48,7 @@ pub struct contact_normal_scene {
     pub reserved: i32,
     /// Prescribed approach (indentation, penetration): a length. Default NaN: not set.
     pub approach: f64,
-    /// Prescribed force, the sum of p dx dy: >= 0, with active_set FIXED also negative. Default NaN: not set.
+    /// Prescribed force, the sum of p dx dy: >= 0, with active_set FIXED or with adhesion also negative. Default NaN: not set.
     pub force: f64,
     /// Effect, or NULL (default): own coefficients instead of the half-space. The elastic constants are then not used.
     pub influence: *const contact_normal_influence,
@@ -65,6 +66,8 @@ pub struct contact_normal_scene {
     pub coating: [*const contact_normal_coating; 2],
     /// Effect, or NULL (default): friction between the bodies.
     pub friction: *const contact_normal_friction,
+    /// Effect, or NULL (default): attraction between the bodies.
+    pub adhesion: *const contact_normal_adhesion,
 }
 
 versioned! { contact_normal_scene, contact_normal_scene_init, 168, approach: f64::NAN, force: f64::NAN }
@@ -112,6 +115,7 @@ pub(super) struct Named {
     row_tables: Option<contact_normal_row_tables>,
     coating: [Option<contact_normal_coating>; 2],
     friction: Option<contact_normal_friction>,
+    adhesion: Option<contact_normal_adhesion>,
 }
 
 impl Named {
@@ -133,6 +137,7 @@ impl Named {
                     structs::read_optional(scene.coating[1], "scene->coating[1]")?,
                 ],
                 friction: structs::read_optional(scene.friction, "scene->friction")?,
+                adhesion: structs::read_optional(scene.adhesion, "scene->adhesion")?,
                 scene,
             })
         }
@@ -170,7 +175,8 @@ impl Named {
         add(regions, grid, scene.row_tables, &self.row_tables)?;
         add(regions, grid, scene.coating[0], &self.coating[0])?;
         add(regions, grid, scene.coating[1], &self.coating[1])?;
-        add(regions, grid, scene.friction, &self.friction)
+        add(regions, grid, scene.friction, &self.friction)?;
+        add(regions, grid, scene.adhesion, &self.adhesion)
     }
 
     /// A copy of the undeformed distance.
@@ -226,6 +232,7 @@ impl Named {
                     layers: self.coating.map(|coating| coating.map(|coating| coating.translate())),
                 }),
                 friction: self.friction.map(|friction| friction.translate(grid)).transpose()?,
+                adhesion: self.adhesion.map(|adhesion| adhesion.translate(grid)).transpose()?,
                 ..Scene::new(*grid, undeformed_distance, bodies, load)
             })
         }

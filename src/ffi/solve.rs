@@ -12,8 +12,9 @@ use super::scene::{contact_normal_scene, Named};
 use super::status::{contact_normal_status, Refusal};
 use super::watcher::{watched, why, Watcher};
 use crate::contact::State;
-use crate::scene::{Previous, Scene};
-use crate::solver::{ActiveSet, InitialGuess, Method, Options, Outcome, ProgressCallback, Report, Solver};
+use crate::effects;
+use crate::scene::Scene;
+use crate::solver::{ActiveSet, InitialGuess, Method, Neglected, Options, Outcome, ProgressCallback, Report, Solver};
 
 /// Solves one scene. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.1.
 #[no_mangle]
@@ -26,12 +27,18 @@ pub unsafe extern "C" fn contact_normal_solve(
     let arguments = given![scene, options, fields, report];
     let solve = |recording: &mut Recording<'_>| {
         let mut buffers = Buffers::default();
+        let (arguments, outputs) = ((scene, options), (fields, report));
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
-        let request = unsafe { Request::read(scene, options, fields, report, &mut buffers, |_, _| Ok(())) };
+        let request = unsafe { Request::read_for(Needs::AllOrLess, arguments, outputs, &mut buffers, |_, _| Ok(())) };
         recording.keep(&buffers.regions);
-        let Request { scene, options, outputs } = request?;
+        let Request { mut scene, options, mut outputs } = request?;
         // Before the set-up: a refusal should not cost one.
         outputs.check_inputs(&options.options, scene.grid.len())?;
+        if options.given.neglect_below > 0.0 {
+            let neglected = Neglected::of(&scene, &options.options, options.given.neglect_below)?;
+            scene = neglected.leave_out(&scene);
+            outputs.neglected = Some(neglected);
+        }
         let (mut solver, lowest) = Solver::for_scene(&scene, &options.options)?;
         run_watched(&mut solver, (&scene, Some(lowest)), &options, &outputs, &mut buffers)
     };
@@ -51,6 +58,8 @@ pub(super) struct Request<'a> {
 pub(super) enum Needs {
     /// One with an undeformed distance and a load.
     All,
+    /// The same, of which effects may be left out.
+    AllOrLess,
     /// One that may be without an undeformed distance: then its load is not looked at either.
     Bodies,
     /// One whose pressures are given: undeformed distance and load are not looked at.
@@ -89,7 +98,10 @@ impl Request<'_> {
                 Needs::NoLoad => named.add_without_distance(regions, scene)?,
                 _ => named.add_to(regions, scene)?,
             }
-            let translated = options::translate(options)?;
+            let translated = match needs {
+                Needs::AllOrLess => options::translate_neglecting(options)?,
+                _ => options::translate(options)?,
+            };
             translated.add_to(regions, options)?;
             let outputs = Outputs::of(fields, report)?;
             outputs.add_to(regions, named.len())?;
@@ -110,7 +122,7 @@ impl Request<'_> {
 impl Request<'_> {
     /// Whether it begins where the handle ended last.
     pub fn goes_on(&self) -> bool {
-        let continues = self.scene.friction.is_some_and(|friction| friction.previous == Previous::Kept);
+        let continues = effects::continuing(&self.scene).next().is_some();
         continues || self.options.options.initial_guess == InitialGuess::Previous
     }
 }

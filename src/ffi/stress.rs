@@ -6,14 +6,13 @@ use super::dump::{given, recorded, Recording};
 use super::guard::guard;
 use super::options::{self, contact_normal_options, Translated};
 use super::scene::{contact_normal_scene, Named};
-use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_UNSUPPORTED};
+use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::stress_outputs::{contact_normal_stress_maximum, contact_normal_stress_outputs};
 use super::structs;
 use super::watcher::{watched, why, Watcher};
-use crate::effects;
 use crate::memory::zeros;
 use crate::progress::{Outcome, ProgressCallback};
-use crate::scene::Period;
+use crate::scene::Scene;
 use crate::stress::{self, Body, Loads, Maximum};
 use crate::threads::Threads;
 
@@ -48,7 +47,8 @@ pub unsafe extern "C" fn contact_normal_subsurface_stress(
             written.add_to(&mut regions, outputs, (n, elements))?;
             recording.keep(&regions);
             regions.check()?;
-            let (body, loads, options) = load.read()?;
+            let (scene, options) = load.read()?;
+            let (body, loads) = load.on(&scene)?;
             let depths = if n == 0 { &[] } else { required("depths", depths, n)? };
             watched(Watcher::of(&options), |progress| run(&body, &loads, depths, (&options, &written), progress))?
                 .conclude()
@@ -87,7 +87,8 @@ pub unsafe extern "C" fn contact_normal_stress_at_points(
             regions.output("stress", stress.cast::<[f64; 6]>(), n)?;
             recording.keep(&regions);
             regions.check()?;
-            let (body, loads, options) = load.read()?;
+            let (scene, options) = load.read()?;
+            let (body, loads) = load.on(&scene)?;
             if n == 0 {
                 return Ok(CONTACT_NORMAL_OK);
             }
@@ -114,45 +115,19 @@ struct Load {
 }
 
 impl Load {
-    unsafe fn read<'a>(&self) -> Result<(Body, Loads<'a>, Translated), Refusal> {
-        // SAFETY (all): by the caller.
-        unsafe {
-            let named = Named::read(self.scene)?.load_or_none();
-            let scene = named.with_distance(&[])?;
-            let options = options::translate(self.options)?;
-            effects::check_effects(&scene)?;
-            let poisson_ratio = match self.body {
-                1 | 2 => scene.bodies.poisson_ratio[self.body as usize - 1],
-                other => return Err(Refusal::invalid(format!("body is {other}; it must be 1 or 2"))),
-            };
-            let plain = scene.plain();
-            let coated =
-                scene.coating.is_some_and(|coating| coating.in_effect(self.body as usize - 1, &plain).is_some());
-            let refused = [
-                ("coating", coated),
-                ("influence", scene.influence.is_some()),
-                ("row_tables", scene.row_tables.is_some()),
-            ];
-            if let Some((name, _)) = refused.into_iter().find(|(_, given)| *given) {
-                let why = "subsurface stresses are those of a half-space";
-                return Err(Refusal::new(CONTACT_NORMAL_UNSUPPORTED, format!("{name} is given; {why}")));
-            }
-            let n = scene.grid.len();
-            let [pressure, traction_x, traction_y] = self.arrays.map(|array| optional(array, n));
-            let periodic = match scene.period {
-                None => false,
-                Some(Period { x: true, y: true }) => true,
-                Some(_) => {
-                    let why = "subsurface stresses know both or none";
-                    return Err(Refusal::new(
-                        CONTACT_NORMAL_UNSUPPORTED,
-                        format!("period repeats in one direction; {why}"),
-                    ));
-                }
-            };
-            let body = Body { grid: scene.grid, poisson_ratio, periodic };
-            Ok((body, Loads { pressure, traction_x, traction_y, patches: scene.patches }, options))
-        }
+    /// The scene, which needs no load, and the options.
+    unsafe fn read<'a>(&self) -> Result<(Scene<'a>, Translated), Refusal> {
+        // SAFETY: by the caller.
+        let scene = unsafe { Named::read(self.scene)?.load_or_none().with_distance(&[])? };
+        // SAFETY: by the caller.
+        Ok((scene, unsafe { options::translate(self.options)? }))
+    }
+
+    /// The half-space of that scene, and what acts on it.
+    unsafe fn on<'a>(&self, scene: &'a Scene<'a>) -> Result<(Body, Loads<'a>), Refusal> {
+        // SAFETY: NULL or one value per element, by the conventions of the ABI.
+        let arrays = self.arrays.map(|array| unsafe { optional(array, scene.grid.len()) });
+        Ok(stress::of_scene(scene, self.body, arrays)?)
     }
 
     /// Adds what is read. Returns the number of elements.

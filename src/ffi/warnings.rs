@@ -3,8 +3,10 @@
 use std::ffi::{CStr, CString};
 use std::sync::OnceLock;
 
+use crate::adhesion::{CONTAINED, UNSTABLE};
 use crate::contact::State;
-use crate::scene::{Period, Scene};
+use crate::effects;
+use crate::scene::Scene;
 use crate::solver::{ActiveSet, Options, Report};
 
 /// `warnings`: contact reaches the border of the grid, in a direction without a period: the potential contact area may be too small.
@@ -15,9 +17,13 @@ pub const CONTACT_NORMAL_WARNING_ONE_ELEMENT: i32 = 2;
 pub const CONTACT_NORMAL_WARNING_SPIKE: i32 = 4;
 /// `warnings`: an error of the force (or the approach) was to be estimated, and cannot be: see `accuracy.untrusted`.
 pub const CONTACT_NORMAL_WARNING_ERROR_UNKNOWN: i32 = 8;
+/// `warnings`: an element alone is unstable under the attraction: the elements are too coarse for its range (`adhesion.resolution` above 1).
+pub const CONTACT_NORMAL_WARNING_RANGE: i32 = 16;
+/// `warnings`: the attraction reaches the border of the grid (`adhesion.border_share` above 0.001): the grid does not contain it.
+pub const CONTACT_NORMAL_WARNING_ATTRACTION: i32 = 32;
 
 /// Each with what a message says of it.
-const TEXTS: [(i32, &str); 4] = [
+const TEXTS: [(i32, &str); 6] = [
     (CONTACT_NORMAL_WARNING_BORDER, "contact reaches the border of the grid: a larger grid may carry more"),
     (
         CONTACT_NORMAL_WARNING_ONE_ELEMENT,
@@ -28,6 +34,11 @@ const TEXTS: [(i32, &str); 4] = [
         "one element carries more than half of the force: smaller elements, or a wrong value of h",
     ),
     (CONTACT_NORMAL_WARNING_ERROR_UNKNOWN, "the error is not known"),
+    (
+        CONTACT_NORMAL_WARNING_RANGE,
+        "elements snap alone, for they are too large for the range of the attraction: smaller elements, or a longer range",
+    ),
+    (CONTACT_NORMAL_WARNING_ATTRACTION, "the attraction reaches the border of the grid: a larger grid"),
 ];
 
 /// The warnings in words; none: nothing. Made once, because later solves with a handle allocate nothing.
@@ -44,25 +55,34 @@ pub(super) fn text(warnings: i32) -> &'static CStr {
 /// The warnings of a result.
 pub(super) fn of(scene: &Scene<'_>, options: &Options, report: &Report, state: &State) -> i32 {
     let (measures, grid) = (&report.measures, &scene.grid);
+    let attraction = of_adhesion(report);
     if measures.contact_count == 0 || grid.len() == 1 {
-        return 0;
+        return attraction;
     }
     // A contact area that is given has neither a border that it may grow beyond nor an estimate.
     let is_free = options.active_set == ActiveSet::Free;
-    let is_spike = measures.max_pressure * grid.element_area() > 0.5 * measures.force;
+    let pressing = report.adhesion.map_or(measures.force, |found| found.repulsive_force);
+    let is_spike = measures.max_pressure * grid.element_area() > 0.5 * pressing;
     let found = [
         (CONTACT_NORMAL_WARNING_BORDER, is_free && measures.edge_count > 0 && is_at_border(scene, state)),
         (CONTACT_NORMAL_WARNING_ONE_ELEMENT, measures.contact_count == 1),
         (CONTACT_NORMAL_WARNING_SPIKE, measures.contact_count > 1 && is_spike),
         (CONTACT_NORMAL_WARNING_ERROR_UNKNOWN, is_free && options.estimates && report.error.force < 0.0),
     ];
-    found.into_iter().filter(|(_, holds)| *holds).map(|(bit, _)| bit).sum()
+    attraction | found.into_iter().filter(|(_, holds)| *holds).map(|(bit, _)| bit).sum::<i32>()
+}
+
+/// Those of adhesion.
+fn of_adhesion(report: &Report) -> i32 {
+    let Some(found) = &report.adhesion else { return 0 };
+    let range = if found.resolution > UNSTABLE { CONTACT_NORMAL_WARNING_RANGE } else { 0 };
+    range | if found.border_share > CONTAINED { CONTACT_NORMAL_WARNING_ATTRACTION } else { 0 }
 }
 
 /// Whether an element in contact lies on a row or column that has no neighbour beyond. Of a grid of one row or column, a line contact,
 /// that direction does not count.
 fn is_at_border(scene: &Scene<'_>, state: &State) -> bool {
-    let Period { x, y } = scene.period.unwrap_or(Period { x: false, y: false });
+    let (x, y) = effects::repeats(scene);
     let [columns, rows, _] = state.edge_counts();
     (!y && scene.grid.my > 1 && rows > 0) || (!x && scene.grid.mx > 1 && columns > 0)
 }

@@ -10,7 +10,7 @@
 //! | `excess` | a layer between the bodies that differs between elements |
 //! | `vectors`, `lanes`, `beside` | passes over fields, in vectors of the machine, residuals continued beside C |
 //! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for motions that are given; the fields of these, on C alone |
-//! | `newton`, `step`, `system`, `fgmres`, `sweep`, `forces`, `best` | semismooth Newton, for steady rolling, for forces that are given and where the gradients stall |
+//! | `newton`, `step`, `system`, `sweep`, `forces`, `best` | semismooth Newton, for steady rolling, for forces that are given and where the gradients stall |
 //! | `balance`, `corral`, `bracket` | creepages of forces that are given, where Newton's method stalls |
 //! | `sensitivity`, `derivatives` | derivatives of the forces by creepages and spin |
 //! | [`cross`] | unlike bodies: what couples the normal and the tangential problem |
@@ -30,7 +30,6 @@ mod derivatives;
 mod disc;
 mod discs;
 mod excess;
-mod fgmres;
 mod forces;
 mod interpolation;
 mod lanes;
@@ -62,9 +61,9 @@ mod take_over;
 mod tangent;
 mod toeplitz;
 mod unit;
-mod vectors;
 mod window;
 
+use crate::methods::{fgmres, fields as vectors};
 pub use certificate::Certificate;
 pub use coefficients::{Compliance, Tangential};
 pub use cross::{Coupling, CrossTables, Source};

@@ -3,6 +3,8 @@
 pub mod descent;
 pub mod direct;
 pub mod extension;
+pub(crate) mod fgmres;
+pub(crate) mod fields;
 pub mod multigrid;
 pub mod norm;
 pub mod projected_cg;

@@ -30,21 +30,6 @@ pub fn refine(h: &[f64], grid: &Grid, parts: usize) -> Result<Vec<f64>> {
     Ok(fine)
 }
 
-/// The values at the centres of a grid of elements that join `joined` by `joined` (an even number) of `grid`: the mean of the four
-/// around each centre that have a surface, or none if fewer than two have one.
-pub fn sample(h: &[f64], grid: &Grid, joined: usize) -> Result<Vec<f64>> {
-    let (mx, my) = (grid.mx / joined, grid.my / joined);
-    let mut coarse = zeros(mx * my, "undeformed distances of a coarser grid")?;
-    for (i, value) in coarse.iter_mut().enumerate() {
-        let (x, y) = (i % mx * joined + joined / 2, i / mx * joined + joined / 2);
-        let around = [(x - 1, y - 1), (x, y - 1), (x - 1, y), (x, y)].map(|(x, y)| h[grid.index(x, y)]);
-        let finite = around.iter().filter(|h| h.is_finite());
-        let count = finite.clone().count();
-        *value = if count < 2 { f64::INFINITY } else { finite.sum::<f64>() / count as f64 };
-    }
-    Ok(coarse)
-}
-
 /// One of the parts of every element: its distance from the centre of the element, in elements, and the weights of the cubic
 /// through the four centres around it.
 struct Part {

@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::{Guess, InitialGuess, Options, Outcome, Report, Solver};
 use crate::contact::State;
-use crate::effects::Previous;
+use crate::effects::{self, Continues};
 use crate::error::{invalid, Result};
 use crate::scene::Scene;
 use crate::threads::Threads;
@@ -61,11 +61,12 @@ impl Solver {
 
     /// Refuses a problem that would go on from whatever its worker solved last.
     pub(crate) fn check_problem(scene: &Scene<'_>) -> Result<()> {
-        if scene.friction.is_some_and(|friction| friction.previous == Previous::Kept) {
-            let message = "friction->continues is 1; in a batch it must be 0, for the order of the solves is not known";
-            return invalid(format!("{message}: give previous_traction"));
+        match effects::continuing(scene).next() {
+            Some((.., Continues { member, instead, .. })) => invalid(format!(
+                "{member} is 1; in a batch it must be 0, for the order of the solves is not known: {instead}"
+            )),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     /// Calls `work(i, worker)` for each `i < count` on whichever worker is free.

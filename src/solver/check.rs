@@ -24,9 +24,10 @@ impl SetUp {
             let message = "method is PROJECTED_CG, but the influence coefficients are not symmetric; AUTO chooses a method that works";
             return Err(Error::Unsupported(message.into()));
         }
-        if scene.pressure_limit.is_some() && options.is_fixed() {
-            let message = "active_set is FIXED, and pressure_limit is given; this version does not solve them together";
-            return Err(Error::Unsupported(message.into()));
+        if let Some(name) = effects::without_given_area(scene).filter(|_| options.is_fixed()) {
+            return Err(Error::Unsupported(format!(
+                "active_set is FIXED, and {name} is given; this version does not solve them together"
+            )));
         }
         let (method, effect) = match (options.method, self.without_multigrid) {
             (Method::Multigrid, Some(effect)) => ("MULTIGRID", effect),
@@ -136,7 +137,7 @@ pub fn range(
                 None => 0.0,
             };
             // A single element of two periods has an influence of 0: it carries its limit. Without a depth there is no pressure.
-            let limit = scene.pressure_limit.filter(|_| influence == 0.0).map(|limit| limit.at(0));
+            let limit = effects::limits(scene).filter(|_| influence == 0.0).map(|limit| limit.at(0));
             let pressure = if depth == 0.0 { 0.0 } else { limit.unwrap_or(depth / influence) };
             (pressure, depth, 0.0)
         }

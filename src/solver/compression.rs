@@ -23,6 +23,7 @@ impl Solver {
         let all = compressible.coefficients.clone();
         let coefficients = if wanted { all.without_constant().unwrap_or(all) } else { all };
         self.methods.forget_operator();
+        self.adhesion = None;
         self.state.u_is = Freshness::Stale;
         self.problem.renew(coefficients)?;
         self.methods.renew(&self.problem)?;
@@ -62,7 +63,7 @@ impl Solver {
     }
 
     /// Whether the criterion holds with the compression, and the distances with it, in those without.
-    fn holds_compressed(&mut self, by: f64, options: &Options) -> (bool, f64) {
+    pub(super) fn holds_compressed(&mut self, by: f64, options: &Options) -> (bool, f64) {
         let without = Survey::of(&self.state);
         self.state.approach += by;
         let with = Survey::of(&self.state);
@@ -77,7 +78,7 @@ impl Solver {
     }
 
     /// The compression of the result.
-    fn compression(&self, load: Load) -> f64 {
+    pub(super) fn compression(&self, load: Load) -> f64 {
         match (&self.set_up.compressible, load) {
             (Some(of), Load::Force(force)) => of.by(force / self.problem.grid.element_area()),
             _ => 0.0,

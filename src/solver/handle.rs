@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::tangential::Tangent;
 use super::{LedgerRow, Options, Solver};
 use crate::contact::{Freshness, State};
-use crate::effects::Effect;
+use crate::effects::{Effect, Layout};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::influence::{Coefficients, Table};
@@ -39,7 +39,7 @@ impl Solver {
     /// All later solves use this table in the place of the one of the set-up; memory and plans of the operator are kept. The last result
     /// stays. After an error the solver has no table until another one is set.
     pub fn set_influence(&mut self, table: Table) -> Result<()> {
-        if !self.set_up.has_own_influence {
+        if self.set_up.own_coefficients.is_none_or(|(_, layout)| layout != Layout::Offsets) {
             return invalid("influence is given, but this solver was set up without".into());
         }
         Effect::check(&table, &self.problem.grid)?;
@@ -48,6 +48,7 @@ impl Solver {
         // What was made of the table before is dropped first: then the operator is this solver's alone.
         self.set_up.lacks_table = true;
         self.methods.forget_operator();
+        self.adhesion = None;
         self.workers.clear();
         self.state.u_is = Freshness::Stale;
         self.problem.renew(coefficients)?;
@@ -75,12 +76,12 @@ impl Solver {
             // Column -mx is never read.
             (-mx..mx).map(move |kx| if kx == -mx { 0.0 } else { kernel.between((0, jy), (kx, iy)) })
         };
-        if self.set_up.has_own_influence {
-            return Some(("influence", (-my..my).flat_map(|ky| of_row(0, ky)).collect()));
-        }
-        let has_row_tables = self.set_up.given;
-        has_row_tables
-            .then(|| ("row_tables", (0..my).flat_map(|jy| (0..my).flat_map(move |iy| of_row(jy, iy))).collect()))
+        let (name, layout) = self.set_up.own_coefficients?;
+        let values = match layout {
+            Layout::Offsets => (-my..my).flat_map(|ky| of_row(0, ky)).collect(),
+            Layout::Rows => (0..my).flat_map(|jy| (0..my).flat_map(move |iy| of_row(jy, iy))).collect(),
+        };
+        Some((name, values))
     }
 
     /// Bytes of operators, workspace and results.
@@ -91,6 +92,8 @@ impl Solver {
         let limits = self.limits.len() * size_of::<f64>();
         let friction = self.friction.as_deref().into_iter().chain(&self.crew).map(Tangent::bytes).sum::<usize>();
         let tables = self.own_tables.as_ref().map_or(0, |tables| tables.bytes());
-        self.problem.bytes() + self.methods.bytes() + self.state.bytes() + limits + workers + friction + tables
+        let adhesion = self.adhesion.as_ref().map_or(0, |adhesion| adhesion.bytes());
+        let beside = self.beside.bytes() + friction + adhesion + tables;
+        self.problem.bytes() + self.methods.bytes() + self.state.bytes() + limits + workers + beside
     }
 }

@@ -1,9 +1,10 @@
-//! The last complete result, copied, to go back to: friction may refuse a scene when its normal problem is solved already.
+//! The last complete result, copied, to go back to: what is beside the normal problem may be refused
+//! when that is solved already.
 
 use super::Solver;
 use crate::contact::State;
-use crate::effects::Previous;
-use crate::error::{invalid, Result};
+use crate::effects;
+use crate::error::Result;
 use crate::methods::projected_cg::{Predictor, Window};
 use crate::progress::LedgerRow;
 use crate::scene::Scene;
@@ -16,18 +17,9 @@ pub struct Kept {
 }
 
 impl Solver {
-    /// Refuses friction that continues from tractions that are not there.
-    pub(super) fn check_continues(&self, scene: &Scene<'_>) -> Result<()> {
-        let continues = scene.friction.as_ref().is_some_and(|friction| friction.previous == Previous::Kept);
-        if continues && self.friction().is_none() {
-            return invalid("friction continues, but this solver holds no tractions yet".into());
-        }
-        Ok(())
-    }
-
-    /// A copy of the last result, for scenes with friction.
+    /// A copy of the last result, for scenes with something beside the normal problem.
     pub(super) fn kept(&self, scene: &Scene<'_>) -> Result<Option<Kept>> {
-        if scene.friction.is_none() || !self.has_result {
+        if effects::beside(scene).next().is_none() || !self.has_result {
             return Ok(None);
         }
         let state = self.state.copy(&self.problem.threads)?;

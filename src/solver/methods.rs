@@ -48,6 +48,17 @@ pub enum Stage {
     Norm,
 }
 
+/// What is done with what a solve starts from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Beginning {
+    /// It satisfies the goal.
+    Solved,
+    /// The first method iterates from it.
+    GoOn,
+    /// It is discarded.
+    FromNothing,
+}
+
 impl Methods {
     /// Nothing is set up but what every solve needs.
     pub fn new(problem: &Problem, options: &Options) -> Result<Methods> {
@@ -81,9 +92,9 @@ impl Methods {
                 self.hand_over(stage, task)?;
             } else {
                 match self.take_over(stage, task, (from, survey))? {
-                    Some(true) => self.start(stage, task, from, error_ratio)?,
-                    Some(false) => {}
-                    None => return Ok(Outcome::Converged),
+                    Beginning::Solved => return Ok(Outcome::Converged),
+                    Beginning::GoOn => {}
+                    Beginning::FromNothing => self.start(stage, task, from, error_ratio)?,
                 }
             }
             let is_last = Some(&stage) == stages.last();
@@ -108,24 +119,24 @@ impl Methods {
         Ok(stop)
     }
 
-    /// What the solve starts from: none if that is the answer already, or else whether it is worth nothing.
+    /// What is done with what the solve starts from.
     fn take_over<S: AdmissibleSet>(
         &mut self,
         stage: Stage,
         task: &mut Task<'_, '_, S>,
         (from, survey): (Start, Option<Survey>),
-    ) -> Result<Option<bool>> {
-        let Some(survey) = survey else { return Ok(Some(true)) };
+    ) -> Result<Beginning> {
+        let Some(survey) = survey else { return Ok(Beginning::FromNothing) };
         let (state, set) = (&mut *task.state, task.set);
         if !task.goal.by_update() && task.goal.holds(&survey, 0.0, set) && state.carries(&task.problem.threads) {
             task.monitor.survey = Some(survey);
-            return Ok(None);
+            return Ok(Beginning::Solved);
         }
         let violation = survey.violation(set);
         let on_coarser_grids = matches!(stage, Stage::Direct | Stage::ProjectedCg) && !S::FIXED;
         if on_coarser_grids && !(violation <= WORTHLESS) {
             admit(state, set);
-            return Ok(Some(true));
+            return Ok(Beginning::FromNothing);
         }
         // With limits it is not known what grows with the load.
         if on_coarser_grids && from == Start::Previous && !S::LIMITED {
@@ -134,7 +145,7 @@ impl Methods {
         } else if survey.violation > 0.0 {
             admit(state, set);
         }
-        Ok(Some(false))
+        Ok(Beginning::GoOn)
     }
 
     /// The next method goes on from the best iterate, or from nothing where that is worth nothing; from what the direct solve leaves, having done

@@ -3,13 +3,15 @@
 //! A [`Solver`] is set up once for a grid and a pair of bodies (operators, transforms, grids) and then solves any number of
 //! undeformed distances and loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call.
 
+mod adhesion;
 mod batch;
+mod beside;
 mod best;
+mod bill;
 mod by_approach;
 mod check;
 mod compressible;
 mod compression;
-mod coupled;
 mod estimates;
 mod friction_batch;
 mod friction_table;
@@ -22,13 +24,17 @@ mod nested;
 mod normal;
 mod options;
 mod own_tables;
+mod quantities;
 mod refinement;
 mod report;
+mod step;
 mod take_over;
 mod tangential;
 mod tangential_calls;
 mod tangential_estimates;
+mod tangential_turn;
 mod turns;
+mod unlike_bodies;
 mod unlike_sensitivities;
 
 use std::sync::Arc;
@@ -39,17 +45,17 @@ pub use crate::progress::{
     Counters, Criterion, DiscretisationError, LedgerRow, Measures, Outcome, Progress, ProgressCallback,
 };
 pub use batch::Problem;
+pub use bill::{effects_bill, BillOptions, BillRow, Neglected, Omission, Verdict};
 pub use friction_batch::{solve_friction_batch, Ended, Entry, RUN};
 pub use linear::Stiffness;
 pub use options::{ActiveSet, InitialGuess, Method, Options};
-pub use refinement::{
-    cost_of_accuracy, solve_to_accuracy, Accuracy, Obstacle, Price, Quantity, Refinement, SurfaceCallback,
-};
+pub use quantities::{quantities, Lack, Quantity, QuantityRow};
+pub use refinement::{cost_of_accuracy, solve_to_accuracy, Accuracy, Obstacle, Price, Refinement, SurfaceCallback};
 pub use report::{Halving, Limit, Report};
 pub use tangential_calls::solve_tangential;
 
 use crate::contact::{self, Curvature, State};
-use crate::effects::{self, KeptInfluence, Named};
+use crate::effects::{self, KeptInfluence, Layout, Named};
 use crate::error::Result;
 use crate::friction;
 use crate::grid::Grid;
@@ -57,6 +63,7 @@ use crate::influence::Coefficients;
 use crate::progress::Monitor;
 use crate::scene::{Load, Scene};
 use crate::threads::Threads;
+use beside::Beside;
 use compressible::Compressible;
 use estimates::Parts;
 use methods::Methods;
@@ -93,8 +100,14 @@ pub struct Solver {
     /// One limit per element of the scene being solved; empty if there is none.
     limits: Vec<f64>,
     ledger: Vec<LedgerRow>,
+    /// What else is solved beside the normal problem, and kept from step to step.
+    beside: Beside,
     /// Of scenes with friction.
     friction: Option<Box<Tangent>>,
+    /// Of scenes with adhesion.
+    adhesion: Option<Box<crate::adhesion::Solver>>,
+    /// Whether the last result is one of a scene with adhesion.
+    is_adhesive: bool,
     /// Tangential coefficients of the caller's own.
     own_tables: Option<Arc<KeptInfluence>>,
     /// For tables of tangential problems: of one thread each, made when first needed.
@@ -109,11 +122,10 @@ pub struct Solver {
 struct SetUp {
     /// What later scenes may not change.
     named: Named,
-    has_own_influence: bool,
+    /// The effect with coefficients of the caller's own, and their layout.
+    own_coefficients: Option<(&'static str, Layout)>,
     /// Whether the last table could not be set: then there is none.
     lacks_table: bool,
-    /// Whether the coefficients are the caller's.
-    given: bool,
     /// The effect, if any, for which the multigrid methods have no smoother or no coarser grids.
     without_multigrid: Option<&'static str>,
     /// The largest coefficient, whatever its sign.
@@ -159,9 +171,8 @@ impl Solver {
         let (influence, compressible) = Compressible::of(scene.coefficients()?, scene.load);
         let set_up = SetUp {
             named: Named::new(scene),
-            has_own_influence: scene.influence.is_some(),
+            own_coefficients: effects::own_coefficients(scene),
             lacks_table: false,
-            given: effects::replace_bodies(scene),
             without_multigrid: effects::excluded_method(scene),
             largest_influence: influence.largest(&scene.grid),
             compressible,
@@ -177,7 +188,7 @@ impl Solver {
 
     fn of(grid: Grid, influence: Coefficients, set_up: SetUp, threads: &Threads) -> Result<Solver> {
         let mut problem = contact::Problem::new(grid, influence, threads)?;
-        problem.given = set_up.given;
+        problem.given = set_up.own_coefficients.is_some();
         Ok(Solver {
             methods: Methods::new(&problem, &set_up.options)?,
             state: State::new(grid, (Load::Approach(0.0), 0.0), threads)?,
@@ -186,7 +197,10 @@ impl Solver {
             has_result: false,
             limits: Vec::new(),
             ledger: Vec::new(),
+            beside: Beside::default(),
             friction: None,
+            adhesion: None,
+            is_adhesive: false,
             own_tables: None,
             crew: Vec::new(),
             workers: Vec::new(),
@@ -217,15 +231,15 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
         self.set_up.check(scene, options, &self.problem)?;
-        if let Some(h) = scene.patches.map_or(Ok(None), |patches| patches.surface(scene.undeformed_distance))? {
-            let scene = &Scene { undeformed_distance: &h, patches: None, ..scene.clone() };
+        if let Some(h) = effects::surface(scene)? {
+            let scene = &Scene { undeformed_distance: &h, ..scene.clone() };
             let lowest = scene.check_distance_and_load(&self.problem.threads)?;
             return self.solve_surface((scene, lowest), options, guess, progress);
         }
         self.solve_surface((scene, lowest), options, guess, progress)
     }
 
-    /// The same for a scene that is checked, and whose patches are among the coefficients.
+    /// The same for a scene that is checked, with the undeformed distance that its effects make.
     fn solve_surface(
         &mut self,
         (scene, lowest): (&Scene<'_>, f64),
@@ -234,6 +248,10 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
         check::guess(scene, options, guess)?;
+        if let Some(adhesion) = scene.attraction() {
+            return self.solve_adhesive((scene, lowest), (adhesion, false), options, guess, progress);
+        }
+        self.is_adhesive = false;
         self.suit(scene.load)?;
         let given_contact = guess.filter(|_| options.is_fixed());
         check::range((scene, lowest), &self.problem, self.set_up.largest_influence, given_contact)?;
@@ -242,7 +260,7 @@ impl Solver {
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), options.estimates);
         let outcome = self.solve_normal((scene, lowest), options, guess, &mut monitor).and_then(|(stop, tolerance)| {
             let stop = self.meet_compressed((scene, lowest), options, guess, &mut monitor, stop)?;
-            let (stop, found) = self.solve_friction(scene, options, stop, &mut monitor)?;
+            let (stop, found) = self.solve_beside(scene, options, stop, &mut monitor)?;
             let mut report = Report { friction: found, ..Report::of(&monitor, tolerance) };
             if options.estimates {
                 self.estimate(scene, options, &mut monitor, &mut report);

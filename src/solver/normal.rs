@@ -4,6 +4,7 @@ use super::methods;
 use super::take_over;
 use super::{Guess, InitialGuess, Options, Solver};
 use crate::contact::{AdmissibleSet, Fixed, NonNegative, Survey};
+use crate::effects;
 use crate::error::Result;
 use crate::memory::{reserve, zeros};
 use crate::methods::Task;
@@ -20,7 +21,7 @@ impl Solver {
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, f64)> {
         take_over::take_distance(&mut self.state, scene.undeformed_distance, &self.problem.threads);
-        match scene.pressure_limit {
+        match effects::limits(scene) {
             _ if options.is_fixed() => self.run((scene, lowest), Fixed, options, guess, monitor),
             None => self.run((scene, lowest), NonNegative, options, guess, monitor),
             Some(limit) => self.run_limited((scene, lowest), limit, options, guess, monitor),

@@ -1,6 +1,6 @@
 //! How a scene is solved. The defaults suit everybody.
 
-use crate::error::{invalid, require, Result};
+use crate::error::{invalid, require, Error, Result};
 use crate::methods::multigrid::CycleShape;
 use crate::operator::Precision;
 use crate::progress::{Criterion, Goal};
@@ -127,6 +127,18 @@ impl Options {
         require(ratio >= 0.0 && ratio.is_finite(), "error_ratio", ratio, "it must be positive and finite, or 0")?;
         if self.threads > MOST_THREADS {
             return invalid(format!("threads is {}; at most {MOST_THREADS} are allowed", self.threads));
+        }
+        Ok(())
+    }
+
+    /// The same where several grids are solved, each from nothing.
+    pub(super) fn check_several_grids(&self) -> Result<()> {
+        self.check()?;
+        if self.is_fixed() {
+            return Err(Error::Unsupported("active_set is FIXED; the contact area of finer grids is not known".into()));
+        }
+        if self.initial_guess != InitialGuess::None {
+            return invalid("initial_guess must be NONE: each grid is solved from nothing".into());
         }
         Ok(())
     }

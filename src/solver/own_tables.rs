@@ -17,7 +17,7 @@ impl Solver {
         own: Option<&'s KeptInfluence>,
     ) -> Result<Cow<'s, Scene<'s>>> {
         let Some(friction) = &scene.friction else { return Ok(Cow::Borrowed(scene)) };
-        let bodies = if self.set_up.given { Bodies::same(1.0, 0.0) } else { scene.bodies };
+        let bodies = if self.problem.given { Bodies::same(1.0, 0.0) } else { scene.bodies };
         let name = friction.influence.or(own.map(KeptInfluence::view)).map_or("", |tables| tables.name());
         let refused = |what: &str| Err(Error::InfluenceChanged(format!("{name} {what}")));
         match (&friction.influence, own) {

@@ -10,18 +10,18 @@ mod solved;
 use std::time::Instant;
 
 pub use next_grid::Accuracy;
-pub use outlook::Quantity;
 pub use price_list::{cost_of_accuracy, Obstacle, Price};
 
-use super::{InitialGuess, Options, Outcome, Progress, ProgressCallback, Report, Solver};
+use super::quantities::{values, Quantity};
+use super::{Options, Outcome, Progress, ProgressCallback, Report, Solver};
 use crate::effects;
-use crate::error::{invalid, Error, Result};
+use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::operator::zeros;
-use crate::scene::{refine, sample, Scene};
+use crate::scene::{scaled, Regridded, Scene};
 use crate::threads::Threads;
 use next_grid::{Next, Past};
-use outlook::Outlook;
+use outlook::{History, Outlook};
 use solved::Solved;
 
 /// Writes the undeformed distance of a grid over the rectangle of the scene; says whether to cancel.
@@ -44,11 +44,14 @@ pub struct Refinement {
     pub seconds: f64,
 }
 
+/// Elements in the longer direction of a grid that a history begins with, at least.
+const LEAST_OF_HISTORY: usize = 16;
+
 /// How a solve on one grid went: it is solved, or `stop` and words say what kept it from that.
 type OnGrid = std::result::Result<Solved, (Outcome, String, Option<Solved>)>;
 
 /// Solves on the grid of `scene`, then on finer ones with twice (4, 8 times) the elements in both directions, each from
-/// nothing, until the estimated relative errors are at most the targets on 32 elements across the contact in both directions. `surface`
+/// nothing, until the estimated relative errors are at most the targets, with [enough](Quantity::enough_across) elements across the contact in both directions. `surface`
 /// writes the undeformed distance of each grid (that of `scene` is then not read); without one the scene's is [refined](refine).
 ///
 /// The first grid is solved whatever the limits are. A finer grid that runs out of time or cycles counts only if it is estimated to be
@@ -65,12 +68,25 @@ pub fn solve_to_accuracy(
     check(scene, options, surface.is_some())?;
     let options = Options { tolerance: accuracy.tolerance(options.tolerance), estimates: true, ..*options };
     let (mut best, mut before): (Option<Solved>, Option<Past>) = (None, None);
-    let (mut doublings, mut without_estimate, mut without_contact) = (0, 0, 0);
+    let mut history = History::of(accuracy.wanted().map(|(quantity, _)| quantity));
+    let wanted = history.wanted();
+    wanted.iter().try_for_each(|quantity| quantity.check(scene))?;
+    let mut doublings = if wanted.is_empty() { 0 } else { first_of_history(&scene.grid) };
+    let (mut without_estimate, mut without_contact) = (0, 0);
     let (stop, why) = loop {
         let (entered, is_first) = (began.elapsed().as_secs_f64(), best.is_none());
         let late = |_: &Progress| !is_first && accuracy.is_late(began.elapsed().as_secs_f64());
-        let solved = match on_grid(scene, &options, doublings, &mut surface, &mut progress, &late) {
-            Ok(Ok(solved)) => solved,
+        let solved = match on_grid(scene, (&options, &wanted), doublings, &mut surface, &mut progress, &late) {
+            Ok(Ok(mut solved)) => {
+                let residual = solved.residual();
+                history.add(doublings, &solved.values, residual, &mut solved.outlook);
+                solved
+            }
+            // Coarser grids than the scene's only tell of errors.
+            Ok(Err((stop, ..))) if doublings < 0 && stop != Outcome::Cancelled => {
+                doublings += 1;
+                continue;
+            }
             Ok(Err((stop, why, unfinished))) => {
                 let counts = stop == Outcome::IterationLimit || best.is_none();
                 best = better(best, unfinished.filter(|_| counts), accuracy);
@@ -82,6 +98,10 @@ pub fn solve_to_accuracy(
         let now = began.elapsed().as_secs_f64();
         let past = Past::of(&solved, accuracy, (now - entered, now), before.as_ref());
         let no_contact = solved.report.measures.contact_count == 0;
+        if doublings < 0 {
+            doublings += 1;
+            continue;
+        }
         best = Some(solved);
         without_contact = if no_contact { without_contact + 1 } else { 0 };
         without_estimate += usize::from(past.lacks_estimate());
@@ -96,6 +116,12 @@ pub fn solve_to_accuracy(
         before = Some(past);
     };
     Ok(Refinement::of(best, stop, why, began.elapsed().as_secs_f64()))
+}
+
+/// Doublings of the coarsest grid that the history begins with: two halvings, where enough elements are left.
+fn first_of_history(grid: &Grid) -> i32 {
+    let elements = grid.mx.max(grid.my);
+    -[4, 2].into_iter().filter(|parts| elements / parts >= LEAST_OF_HISTORY).count().try_into().unwrap_or(0)
 }
 
 /// Of the last solution and one that was not finished: that of the smaller estimated errors, what its residual may hide included.
@@ -114,7 +140,7 @@ fn better(last: Option<Solved>, unfinished: Option<Solved>, accuracy: &Accuracy)
 
 impl Refinement {
     fn of(best: Option<Solved>, stop: Outcome, why: String, seconds: f64) -> Refinement {
-        let Some(Solved { solver, report, outlook }) = best else {
+        let Some(Solved { solver, report, outlook, .. }) = best else {
             let reason = format!("{why}; nothing was solved");
             return Refinement { stop, reason, solver: None, report: Report::default(), reached: None, seconds };
         };
@@ -130,27 +156,10 @@ impl Refinement {
 }
 
 fn check(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<()> {
-    options.check()?;
+    options.check_several_grids()?;
     scene.grid.check()?;
-    if scene.friction.is_some() {
-        effects::check_effects(scene)?;
-        let message =
-            "friction is given; no coarser grid bounds the error of a transient step: solve on grids of your own, \
-                       and read error_tangential, the estimated error of a shift from rest and of steady rolling";
-        return Err(Error::Unsupported(message.into()));
-    }
-    let own = [("influence", scene.influence.is_some()), ("row_tables", scene.row_tables.is_some())];
-    if let Some((name, _)) = own.into_iter().find(|(_, is_given)| *is_given) {
-        return Err(Error::Unsupported(format!(
-            "{name} is given; own coefficients are those of one grid, and an accuracy needs several"
-        )));
-    }
-    if options.is_fixed() {
-        return Err(Error::Unsupported("active_set is FIXED; the contact area of finer grids is not known".into()));
-    }
-    if options.initial_guess != InitialGuess::None {
-        return invalid("initial_guess must be NONE: each grid is solved from nothing".into());
-    }
+    effects::check_effects(scene)?;
+    effects::check_other_grids(scene)?;
     scene.load.check_sign(false)?;
     if has_surface {
         effects::check_bodies(scene)?;
@@ -160,25 +169,10 @@ fn check(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<()> 
     scene.check_area(None)
 }
 
-/// The grid over the same rectangle with twice the elements in both directions, so many times; with half of them if the number is
-/// negative. Refused if that is no grid.
-fn scaled(grid: &Grid, doublings: i32) -> Result<Grid> {
-    let Grid { mx, my, dx, dy } = *grid;
-    if doublings >= 0 {
-        let parts = 1_usize << doublings;
-        return Grid::new(mx * parts, my * parts, dx / parts as f64, dy / parts as f64);
-    }
-    let joined = 1_usize << -doublings;
-    if mx % joined > 0 || my % joined > 0 {
-        return invalid(format!("{mx} x {my} elements cannot be joined {joined} by {joined}"));
-    }
-    Grid::new(mx / joined, my / joined, dx * joined as f64, dy * joined as f64)
-}
-
-/// Solves on the [scaled] grid. `late`: asked after each cycle; true ends the solve.
+/// Solves on the [scaled] grid, and takes the values of `wanted`. `late`: asked after each cycle; true ends the solve.
 fn on_grid(
     scene: &Scene<'_>,
-    options: &Options,
+    (options, wanted): (&Options, &[Quantity]),
     doublings: i32,
     surface: &mut Option<SurfaceCallback<'_>>,
     progress: &mut Option<ProgressCallback<'_>>,
@@ -186,27 +180,24 @@ fn on_grid(
 ) -> Result<OnGrid> {
     let grid = scaled(&scene.grid, doublings)?;
     let on = |what: &str| format!("{what} on {} x {} elements", grid.mx, grid.my);
-    let refined = match surface {
-        Some(surface) => {
-            let mut h = zeros(grid.len(), "undeformed distances")?;
-            // What the callback leaves out is refused.
-            h.fill(f64::NAN);
-            if surface(&grid, &mut h) {
-                return Ok(Err((Outcome::Cancelled, on("the surface callback cancelled"), None)));
-            }
-            h
+    let mut written = None;
+    if let Some(surface) = surface {
+        let mut h = zeros(grid.len(), "undeformed distances")?;
+        // What the callback leaves out is refused.
+        h.fill(f64::NAN);
+        if surface(&grid, &mut h) {
+            return Ok(Err((Outcome::Cancelled, on("the surface callback cancelled"), None)));
         }
-        None if doublings == 0 => Vec::new(),
-        None if doublings > 0 => refine(scene.undeformed_distance, &scene.grid, 1 << doublings)?,
-        None => sample(scene.undeformed_distance, &scene.grid, 1 << -doublings)?,
-    };
-    let h = if refined.is_empty() { scene.undeformed_distance } else { &refined };
-    let scene = Scene { grid, undeformed_distance: h, ..scene.clone() };
+        written = Some(h);
+    }
+    let is_given = doublings == 0 && written.is_none();
+    let regridded = (!is_given).then(|| Regridded::new(scene, grid, written)).transpose()?;
+    let scene = &regridded.as_ref().map_or_else(|| scene.clone(), |regridded| regridded.scene(scene));
     let said = |error| match error {
         Error::NotFinite(message) if surface.is_some() => Error::NotFinite(format!("surface: {message}")),
         other => other,
     };
-    let (mut solver, lowest) = Solver::for_scene(&scene, options).map_err(said)?;
+    let (mut solver, lowest) = Solver::for_scene(scene, options).map_err(said)?;
     // Without a callback the elements that were given are the surface.
     solver.problem.exact_edges = surface.is_none() && doublings >= 0;
     let mut is_late = false;
@@ -214,9 +205,10 @@ fn on_grid(
         is_late = late(told);
         is_late || progress.as_mut().is_some_and(|progress| progress(told))
     };
-    let (stop, report) = solver.solve_checked((&scene, lowest), options, None, Some(&mut watch))?;
+    let (stop, report) = solver.solve_checked((scene, lowest), options, None, Some(&mut watch))?;
     let outlook = Outlook::of(&solver, &report, scene.load);
-    let solved = Solved { solver, report, outlook };
+    let values = if stop == Outcome::Cancelled { vec![] } else { values(&mut solver, scene, &report, wanted)? };
+    let solved = Solved { solver, report, outlook, values };
     Ok(match stop {
         Outcome::Converged => Ok(solved),
         Outcome::Cancelled if is_late => Err((Outcome::IterationLimit, on("max_seconds was reached"), Some(solved))),

@@ -1,6 +1,7 @@
 //! What a solve found, what it cost, and what it knew when.
 
 use super::Method;
+use crate::adhesion;
 use crate::friction;
 use crate::grid::Grid;
 use crate::progress::{Counters, DiscretisationError, Measures, Monitor, Outcome};
@@ -55,6 +56,8 @@ pub struct Report {
     pub bytes: u64,
     /// Of the tangential problem, if the scene has friction.
     pub friction: Option<friction::Report>,
+    /// Of adhesion, if the scene has any.
+    pub adhesion: Option<adhesion::Report>,
 }
 
 impl Report {

@@ -1,8 +1,7 @@
 //! Friction, after the normal problem: the tangential problem with the pressures that were found, and for unlike bodies both in turns.
 
-use super::coupled::Coupled;
+use super::unlike_bodies::UnlikeBodies;
 use super::{Options, Outcome};
-use crate::contact::State;
 use crate::error::{Error, Result};
 use crate::friction::{Compliance, CrossTables, Last, Report, Request, Solution, Solver, Source, Start, Tangential};
 use crate::grid::Grid;
@@ -15,7 +14,7 @@ use crate::threads::Threads;
 pub struct Tangent {
     solver: Solver,
     /// Of unlike bodies.
-    coupled: Option<Coupled>,
+    unlike: Option<UnlikeBodies>,
 }
 
 /// What stands still while normal and tangential problem are solved in turns.
@@ -52,8 +51,8 @@ impl Tangent {
             Some(own) => CrossTables::new(own)?.map(Source::Tables),
             None => Some(compliance.unlike).filter(|unlike| *unlike != 0.0).map(Source::HalfSpace),
         };
-        let coupled = source.map(|source| Coupled::new(&scene.grid, source, threads));
-        Ok(Tangent { solver, coupled: coupled.transpose()? })
+        let unlike = source.map(|source| UnlikeBodies::new(&scene.grid, source, threads));
+        Ok(Tangent { solver, unlike: unlike.transpose()? })
     }
 
     /// The last result.
@@ -69,15 +68,15 @@ impl Tangent {
     /// The same with the last result of another one, which had other coefficients.
     pub fn with_last_of(mut self, mut other: Tangent) -> Tangent {
         self.solver.take_last_of(&mut other.solver);
-        if let (Some(coupled), Some(before)) = (&mut self.coupled, &mut other.coupled) {
-            coupled.take_last_of(before);
+        if let (Some(unlike), Some(before)) = (&mut self.unlike, &mut other.unlike) {
+            unlike.take_last_of(before);
         }
         self
     }
 
     /// Whether tractions do not change the pressures.
     pub fn is_of_like_bodies(&self) -> bool {
-        self.coupled.is_none()
+        self.unlike.is_none()
     }
 
     /// There is no last result any more.
@@ -87,7 +86,7 @@ impl Tangent {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.solver.bytes() + self.coupled.as_ref().map_or(0, Coupled::bytes)
+        self.solver.bytes() + self.unlike.as_ref().map_or(0, UnlikeBodies::bytes)
     }
 
     /// Solves the tangential problem with pressures; `again`: the same step with other pressures.
@@ -108,16 +107,16 @@ impl Tangent {
         pressure: &[f64],
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, Report)> {
-        let Tangent { solver, coupled } = self;
-        if let Some(coupled) = coupled {
-            coupled.displace(&turn.scene.grid, turn.friction, pressure, turn.threads)?;
+        let Tangent { solver, unlike } = self;
+        if let Some(unlike) = unlike {
+            unlike.displace_sideways(&turn.scene.grid, turn.friction, pressure, turn.threads)?;
         }
         let request = Request {
             pressure,
             friction: turn.friction,
             tolerance: turn.options.tolerance,
             limit: turn.options.max_cycles as u64,
-            sideways: coupled.as_ref().map(Coupled::sideways),
+            sideways: unlike.as_ref().map(UnlikeBodies::sideways),
             start,
             is_cancelled: monitor.is_cancelled(),
             estimates: turn.options.estimates,
@@ -149,34 +148,28 @@ impl Tangent {
         }
     }
 
-    /// The distance of a scene whose normal problem is solved.
-    pub fn take_distance(&mut self, h: &[f64]) {
-        if let Some(coupled) = &mut self.coupled {
-            coupled.take_distance(h);
+    /// Adds what the last tractions displace along the normal to an undeformed distance: nothing where bodies are alike.
+    pub fn displace(&mut self, distance: &mut [f64]) {
+        if let (Some(unlike), Some(solution)) = (&mut self.unlike, self.solver.solution()) {
+            unlike.displace(&solution.traction, distance);
         }
     }
 
-    /// See [`Coupled::distance`]. None where bodies are alike.
-    pub fn distance(&mut self, state: &State) -> Option<(&[f64], Option<f64>)> {
-        let traction = &self.solver.solution()?.traction;
-        Some(self.coupled.as_mut()?.distance(traction, state))
-    }
-
-    /// Both problems of unlike bodies, linear: see [`Coupled`] and [`Solver::change`]. None where bodies are alike.
-    pub fn both(&mut self) -> Option<(&mut Solver, &mut Coupled)> {
-        Some((&mut self.solver, self.coupled.as_mut()?))
+    /// Both problems of unlike bodies, linear: see [`UnlikeBodies`] and [`Solver::change`]. None where bodies are alike.
+    pub fn both(&mut self) -> Option<(&mut Solver, &mut UnlikeBodies)> {
+        Some((&mut self.solver, self.unlike.as_mut()?))
     }
 
     /// The step is done: the next one may continue from its pressures.
     pub fn keep_pressures(&mut self, p: &[f64]) {
-        if let Some(coupled) = &mut self.coupled {
-            coupled.keep_pressures(p);
+        if let Some(unlike) = &mut self.unlike {
+            unlike.keep_pressures(p);
         }
     }
 
     /// The last result, to [go back](Tangent::go_back) to; of like bodies nothing: it is replaced only when a solve has come to its end.
     pub fn last(&self) -> Result<Option<Last>> {
-        match self.coupled {
+        match self.unlike {
             Some(_) => self.solver.last(),
             None => Ok(None),
         }
@@ -184,7 +177,7 @@ impl Tangent {
 
     /// Several turns ended without a result: there is the last one.
     pub fn go_back(&mut self, last: Option<Last>) {
-        if self.coupled.is_some() {
+        if self.unlike.is_some() {
             self.solver.go_back(last);
         }
     }

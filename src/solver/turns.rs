@@ -1,132 +1,156 @@
-//! Normal and tangential problem in turns. Of unlike bodies each changes the other.
+//! The problems that are coupled with the normal one: those that displace the undeformed distance are solved in turns with it, the others once,
+//! with its pressures.
 
+use super::beside::Distances;
 use super::take_over::take_distance;
-use super::tangential::{Tangent, Turn};
+use super::tangential_turn::TangentialTurn;
 use super::{InitialGuess, Options, Solver};
-use crate::contact::{lowest, Fixed, NonNegative, Survey};
+use crate::contact::{lowest, Fixed, NonNegative, State, Survey};
+use crate::effects::{self, Coupled};
 use crate::error::Result;
-use crate::friction::{self, Start};
 use crate::progress::{Monitor, Outcome};
-use crate::scene::{Friction, Scene};
+use crate::scene::Scene;
 
-/// Turns of the normal and the tangential problem of unlike bodies at most: each brings them together by 4 to 30 times.
+/// Turns at most: for unlike bodies each brings both problems together by 4 to 30 times.
 const MOST_TURNS: u32 = 50;
 
-impl Solver {
-    /// The tangential problem, if the scene has friction. Of unlike bodies normal and tangential problem are solved in turns until the
-    /// certificate of the normal one holds with the tractions found last (Panagiotopoulos 1975).
-    pub(super) fn solve_friction(
-        &mut self,
-        scene: &Scene<'_>,
-        options: &Options,
-        stop: Outcome,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<(Outcome, Option<friction::Report>)> {
-        let Some(friction) = scene.friction.as_ref() else {
-            self.friction.iter_mut().for_each(|before| before.forget());
-            return Ok((stop, None));
-        };
-        let threads = self.problem.threads.clone();
-        let mut tangent = self.take_tangent(scene, options)?;
-        let turn = Turn { scene, friction, options, threads: &threads };
-        let outcome = tangent.last().and_then(|last| {
-            let outcome = self.solve_step(&mut tangent, &turn, stop, monitor);
-            match outcome.is_ok() {
-                true => tangent.keep_pressures(&self.state.p),
-                false => tangent.go_back(last),
+/// What is coupled with a normal problem.
+pub struct Turns<'a> {
+    /// The tangential problem.
+    pub friction: Option<TangentialTurn<'a>>,
+    /// Those of other effects.
+    pub others: Vec<Box<dyn Coupled + 'a>>,
+    /// What they displace.
+    pub distances: &'a mut Distances,
+}
+
+impl<'a> Turns<'a> {
+    /// All of them.
+    pub fn all(&mut self) -> impl Iterator<Item = &mut (dyn Coupled + 'a)> {
+        let friction = self.friction.iter_mut().map(|friction| friction as &mut (dyn Coupled + 'a));
+        self.others.iter_mut().map(|coupled| &mut **coupled).chain(friction)
+    }
+
+    /// Those that displace, or those that do not.
+    fn that(&mut self, displace: bool) -> impl Iterator<Item = &mut (dyn Coupled + 'a)> {
+        self.all().filter(move |coupled| coupled.displaces() == displace)
+    }
+
+    /// Whether there is more than one turn.
+    pub fn displace(&mut self) -> bool {
+        self.that(true).next().is_some()
+    }
+
+    /// Solves those that displace, or those that do not, with the pressures of a normal problem that ended with `stop`. Returns the worst outcome.
+    fn solve(&mut self, displace: bool, stop: Outcome, state: &State, monitor: &mut Monitor<'_>) -> Result<Outcome> {
+        self.that(displace).try_fold(stop, |so_far, coupled| Ok(worse(so_far, coupled.solve(stop, state, monitor)?)))
+    }
+
+    /// The undeformed distance with what is displaced, and by how much that has changed where pressures act (in C and at a limit): rms
+    /// relative to `h - approach`. No change at all: none on the whole grid.
+    fn distance(&mut self, state: &State) -> (&[f64], Option<f64>) {
+        let (own, mut displaced) = (&self.distances.own, std::mem::take(&mut self.distances.displaced));
+        displaced.copy_from_slice(own);
+        self.that(true).for_each(|coupled| coupled.displace(&mut displaced));
+        let (mut changes, mut distances, mut differs) = (0.0, 0.0, false);
+        for (i, displaced) in displaced.iter().enumerate() {
+            // One element alone displaces others, not itself.
+            differs |= *displaced != state.h[i];
+            if state.touches(i) {
+                changes += (displaced - state.h[i]).powi(2);
+                distances += (state.h[i] - state.approach).powi(2);
             }
-            outcome
-        });
-        self.friction = Some(tangent);
-        outcome.map(|(stop, found)| (stop, Some(found)))
+        }
+        let change = if changes == 0.0 { 0.0 } else { (changes / distances).sqrt() };
+        self.distances.displaced = displaced;
+        (&self.distances.displaced, differs.then_some(change))
     }
+}
 
-    /// Both problems, and what was asked for beside. What was cancelled stays so.
-    fn solve_step(
+impl Solver {
+    /// Both problems of unlike bodies, and whatever else displaces the undeformed distance, are solved in turns until the certificate of the
+    /// normal one holds with what was found last (Panagiotopoulos 1975); then what displaces nothing. The normal problem ended with `stop`.
+    pub(super) fn take_turns(
         &mut self,
-        tangent: &mut Tangent,
-        turn: &Turn<'_>,
+        turns: &mut Turns<'_>,
+        (scene, options): (&Scene<'_>, &Options),
         stop: Outcome,
         monitor: &mut Monitor<'_>,
-    ) -> Result<(Outcome, friction::Report)> {
-        tangent.take_distance(&self.state.h);
-        // Of unlike bodies derivatives follow when the turns are over.
-        let follow = turn.friction.sensitivities && !tangent.is_of_like_bodies();
-        let friction = &Friction { sensitivities: turn.friction.sensitivities && !follow, ..*turn.friction };
-        let (stop, mut found) = self.take_turns(tangent, &Turn { friction, ..*turn }, stop, monitor)?;
-        if follow && !monitor.is_cancelled() {
-            self.add_sensitivities(tangent, turn, &mut found, monitor)?;
-        }
-        Ok((if monitor.is_cancelled() { Outcome::Cancelled } else { stop }, found))
-    }
-
-    fn take_turns(
-        &mut self,
-        tangent: &mut Tangent,
-        turn: &Turn<'_>,
-        mut stop: Outcome,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<(Outcome, friction::Report)> {
-        let (mut tangential_stop, mut found) = tangent.solve_after(stop, turn, &self.state.p, turn.start(), monitor)?;
-        if turn.options.initial_guess != InitialGuess::Previous {
+    ) -> Result<Outcome> {
+        if options.initial_guess != InitialGuess::Previous {
             // Turns go on from each other, not from what was solved before.
             self.methods.projected_cg.forget_solutions();
         }
-        let again = Options { initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*turn.options };
+        let stop = match turns.displace() {
+            true => self.meet(turns, (scene, options), stop, monitor)?,
+            false => stop,
+        };
+        turns.solve(false, stop, &self.state, monitor)
+    }
+
+    /// The turns with what displaces.
+    fn meet(
+        &mut self,
+        turns: &mut Turns<'_>,
+        (scene, options): (&Scene<'_>, &Options),
+        mut stop: Outcome,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Outcome> {
+        turns.distances.take(&self.state.h)?;
+        let again = Options { initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*options };
         let mut cycles = 0;
         for solved in 0..=MOST_TURNS {
-            let so_far = worse(stop, tangential_stop);
-            let Some((distance, change)) = tangent.distance(&self.state) else {
-                return Ok((so_far, found));
-            };
-            // Tractions that displace nothing leave the normal problem as it was found.
-            let Some(change) = change else {
-                return Ok((so_far, found));
-            };
-            if self.holds_with(distance, change, turn, monitor) || so_far != Outcome::Converged {
-                return Ok((so_far, found));
+            let so_far = turns.solve(true, stop, &self.state, monitor)?;
+            let (distance, change) = turns.distance(&self.state);
+            // What displaces nothing leaves the normal problem as it was found.
+            let Some(change) = change else { return Ok(so_far) };
+            if self.holds_with((distance, change), (scene, options), monitor) || so_far != Outcome::Converged {
+                return Ok(so_far);
             }
             if solved == MOST_TURNS {
                 break;
             }
             // The work of all turns together is bounded by what the caller said.
-            let most = turn.options.max_cycles;
-            let (left, left_normal) = (most.saturating_sub(found.products as usize), most.saturating_sub(cycles));
-            if left == 0 || left_normal == 0 {
-                return Ok((Outcome::IterationLimit, found));
+            let left = options.max_cycles.saturating_sub(cycles);
+            if left == 0 || !turns.that(true).all(|coupled| coupled.has_work_left()) {
+                return Ok(Outcome::IterationLimit);
             }
             monitor.ledger.rows.pop();
             monitor.enter_grid();
-            let scene = Scene { undeformed_distance: distance, ..turn.scene.clone() };
-            let options = Options { max_cycles: left_normal, ..again };
-            (stop, _) = self.solve_normal((&scene, lowest(distance)), &options, None, monitor)?;
+            let distance = &turns.distances.displaced[..];
+            let displaced = (&Scene { undeformed_distance: distance, ..scene.clone() }, lowest(distance));
+            let again = Options { max_cycles: left, ..again };
+            (stop, _) = self.solve_normal(displaced, &again, None, monitor)?;
+            stop = self.meet_compressed(displaced, &again, None, monitor, stop)?;
             cycles += monitor.count.cycles as usize;
-            let (products, seconds) = (found.products, found.seconds);
-            let rest = Options { max_cycles: left, ..*turn.options };
-            let turn = Turn { options: &rest, ..*turn };
-            (tangential_stop, found) = tangent.solve_after(stop, &turn, &self.state.p, Start::Again, monitor)?;
-            (found.products, found.seconds) = (found.products + products, found.seconds + seconds);
         }
-        log::info!("normal and tangential problem of unlike bodies do not agree after {MOST_TURNS} turns");
-        Ok((Outcome::Stagnated, found))
+        log::info!("the normal problem and what displaces its distance do not agree after {MOST_TURNS} turns");
+        Ok(Outcome::Stagnated)
     }
 
-    /// Takes the normal certificate of the pressures with the distance that the last tractions make, which changed it by `change`: that is
-    /// reported. Says whether it holds.
-    fn holds_with(&mut self, distance: &[f64], change: f64, turn: &Turn<'_>, monitor: &mut Monitor<'_>) -> bool {
+    /// Takes the normal certificate of the pressures with the distance that was made last, which changed it by `change`: that is reported.
+    /// Says whether it holds.
+    fn holds_with(
+        &mut self,
+        (distance, change): (&[f64], f64),
+        (scene, options): (&Scene<'_>, &Options),
+        monitor: &mut Monitor<'_>,
+    ) -> bool {
         let Solver { problem, state, .. } = self;
         take_distance(state, distance, &problem.threads);
         state.fit_approach(&problem.threads);
         let survey = Survey::by(state, &problem.threads);
-        let goal = turn.options.goal();
-        let holds = match turn.scene.pressure_limit {
-            _ if turn.options.is_fixed() => goal.holds(&survey, 0.0, Fixed),
+        let goal = options.goal();
+        let by = self.compression(scene.load);
+        let holds = match effects::limits(scene) {
+            _ if by != 0.0 => self.holds_compressed(by, options).0,
+            _ if options.is_fixed() => goal.holds(&survey, 0.0, Fixed),
             None => goal.holds(&survey, 0.0, NonNegative),
             Some(limit) => goal.holds(&survey, 0.0, limit),
         };
         monitor.ledger.rows.pop();
         monitor.survey = Some(survey);
-        monitor.close_grid(state);
+        monitor.close_grid(&self.state);
         holds && (!goal.by_update() || change <= goal.tolerance)
     }
 }

@@ -12,10 +12,10 @@
 //! on a contact area that is given, with the undeformed distance L dq. One after the other they make a map `dp -> M dp + b`, whose fixed point
 //! the least residual over the directions so far finds (Eisenstat, Elman and Schultz 1983): each turn brings it nearer by 4 to 30 times.
 
-use super::coupled::Coupled;
 use super::methods;
 use super::options::Method;
 use super::tangential::{Tangent, Turn};
+use super::unlike_bodies::UnlikeBodies;
 use super::Solver;
 use crate::contact::{Fixed, Freshness, State, Survey};
 use crate::error::Result;
@@ -38,7 +38,7 @@ const FIELDS: &str = "the sensitivities of unlike bodies";
 struct Linear<'a> {
     solver: &'a mut Solver,
     tangential: &'a mut friction::Solver,
-    coupled: &'a mut Coupled,
+    unlike: &'a mut UnlikeBodies,
     turn: &'a Turn<'a>,
     /// Of the normal problem: h is L dq, p is dp.
     state: State,
@@ -64,7 +64,7 @@ impl Solver {
         monitor: &mut Monitor<'_>,
     ) -> Result<()> {
         let began = std::time::Instant::now();
-        let Some((tangential, coupled)) = tangent.both() else { return Ok(()) };
+        let Some((tangential, unlike)) = tangent.both() else { return Ok(()) };
         let window = self.methods.projected_cg.current_window();
         let (grid, n) = (self.problem.grid, self.problem.grid.len());
         let load = match self.state.load {
@@ -78,7 +78,7 @@ impl Solver {
         let largest = self.state.p.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
         let unit = largest * self.problem.self_influence();
         let tractions = zeros(n, FIELDS)?;
-        let mut linear = Linear { solver: self, tangential, coupled, turn, state, tractions, products: 0.0 };
+        let mut linear = Linear { solver: self, tangential, unlike, turn, state, tractions, products: 0.0 };
         let mut derivatives = [[0.0; 3]; 3];
         for by in 0..3 {
             let Some(column) = linear.column(by, unit, monitor)? else { break };
@@ -144,7 +144,7 @@ impl Linear<'_> {
     /// One problem after the other: the pressures' change by that of the tractions, by a change `rigid` of the slip and by dp.
     fn turn(&mut self, rigid: Option<(usize, f64)>, dp: &[f64], to: &mut [f64]) -> Result<()> {
         self.tractions(rigid, dp)?;
-        self.coupled.along_normal(&self.tractions, &mut self.state.h);
+        self.unlike.along_normal(&self.tractions, &mut self.state.h);
         self.pressures()?;
         to.copy_from_slice(&self.state.p);
         Ok(())
@@ -158,7 +158,7 @@ impl Linear<'_> {
             let slip = |i: usize| friction.rigid_slip_by(&scene.grid, i, by).map(|w| scale * w);
             self.tractions.iter_mut().enumerate().for_each(|(i, w)| *w = slip(i));
         }
-        self.coupled.add_change(friction, dp, &mut self.tractions);
+        self.unlike.add_change(friction, dp, &mut self.tractions);
         self.tangential.change(friction, dp, &mut self.tractions)
     }
 

@@ -24,6 +24,7 @@ mod depth;
 mod element;
 mod kernels;
 mod loads;
+mod of_scene;
 mod periodic;
 mod point_force;
 mod points;
@@ -34,6 +35,8 @@ mod waves;
 pub use body::{Body, COMPONENTS};
 pub use depth::{Depth, Maximum, Wanted};
 pub use loads::{Loads, Part};
+pub use of_scene::of_scene;
+pub use periodic::MOST_SLENDER;
 pub use points::stress_at_points;
 pub use tensor::{principal, von_mises, Principal, Tensor};
 

@@ -36,7 +36,7 @@ use crate::memory::zeros;
 /// Beyond this distance, in longer sides, images differ from the polynomial by `10!/10/r^10 = 1e-14`.
 const REACH: f64 = 90.0;
 /// Elements more slender than this have too many images within reach.
-const MOST_SLENDER: f64 = 64.0;
+pub const MOST_SLENDER: f64 = 64.0;
 
 /// Kernels of one depth on a grid that is one period.
 pub struct Waves {

@@ -43,6 +43,7 @@ struct Structs {
     tangential_rows: [contact_normal_row_tables; 3],
     coating: [contact_normal_coating; 2],
     cycle: contact_normal_cycle,
+    adhesion: contact_normal_adhesion,
 }
 
 /// Coefficients of the half-space, `[2 CY][2 CX]`.
@@ -79,6 +80,7 @@ impl Everything {
         let mut each = |from: f64| array((0..N).map(|i| from * (1.0 + 0.1 * i as f64)).collect());
         let mut s = Box::<Structs>::default();
         (s.layer.compliances, s.limit.limits) = (each(1e-7), each(1000.0));
+        (s.adhesion.works_of_adhesion, s.adhesion.range) = (each(1e-3), 0.01);
         let mut friction = Box::<contact_normal_friction>::default();
         (friction.coefficients, friction.creepage) = (each(0.01), [0.001, 0.0005]);
         friction.previous_traction = [each(0.1), each(0.05)];
@@ -132,6 +134,7 @@ impl Everything {
         scene.row_tables = of(names("row_tables"), &s.row_tables);
         scene.coating = [of(names("coating"), &s.coating[0]), of(names("coating"), &s.coating[1])];
         scene.friction = of(names("friction"), &friction);
+        scene.adhesion = of(names("adhesion"), &s.adhesion);
         let options = contact_normal_options { cycle: &s.cycle, ..Default::default() };
         Everything { scene, options, friction, h, with_outputs: false, _structs: s, _arrays: arrays, _patch: patch }
     }

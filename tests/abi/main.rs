@@ -19,3 +19,4 @@ mod subsurface_stress;
 mod tangential_handle;
 mod warnings;
 mod watching;
+mod what_matters;

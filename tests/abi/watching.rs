@@ -103,8 +103,8 @@ fn what_is_known_by_name() {
         // SAFETY: a text.
         unsafe { contact_normal_has(name.as_ptr()) }
     };
-    assert_eq!(["friction", "coating", "max_seconds", "stop", "warnings"].map(has), [1; 5]);
-    assert_eq!(["", "Friction", "friction ", "adhesion", "magnetism"].map(has), [0; 5]);
+    assert_eq!(["friction", "adhesion", "max_seconds", "stop", "warnings"].map(has), [1; 5]);
+    assert_eq!(["", "Friction", "friction ", "wear", "magnetism"].map(has), [0; 5]);
     // SAFETY: NULL is no name.
     assert_eq!(unsafe { contact_normal_has(std::ptr::null()) }, 0);
 }

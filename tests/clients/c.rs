@@ -93,6 +93,20 @@ fn wheel_rail() {
     assert_force(measures.force, prescribed.parse().expect("a force"));
 }
 
+/// What the Python package wrote: heights of a rough surface with holes, and a wheel on a rail.
+#[test]
+fn gap() {
+    let file = gap_file("ground");
+    let measures = check_example("gap", &[&file, "1.2288"]);
+    assert_certified(&measures, TOLERANCE);
+    assert_force(measures.force, 1.2288);
+}
+
+/// A gap that Python's `Gap.write` wrote.
+pub fn gap_file(name: &str) -> String {
+    root().join(format!("data/gaps/{name}.txt")).to_string_lossy().into_owned()
+}
+
 #[test]
 fn norm_inner_solve() {
     // The tolerance of its inner solves.
@@ -137,6 +151,7 @@ fn the_effects() {
 fn the_examples_under_valgrind() {
     let folder = scratch("c_valgrind");
     let data = root().join("data/wheel_rail/y4_82kN.txt").to_string_lossy().into_owned();
+    let ground = gap_file("ground");
     let small = |text: String| {
         text.replace("COUNT = 200", "COUNT = 5")
             .replace("N = 32, M = 2 * N + 1, DEPTHS = 101", "N = 8, M = 2 * N + 1, DEPTHS = 3")
@@ -158,6 +173,7 @@ fn the_examples_under_valgrind() {
         let arguments = match name.as_str() {
             "hertz" | "ledger" => vec!["24"],
             "wheel_rail" => vec![data.as_str()],
+            "gap" => vec![ground.as_str(), "1.2288"],
             _ => Vec::new(),
         };
         let printed = run_under_valgrind(&program, &arguments, &folder);

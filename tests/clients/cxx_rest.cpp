@@ -1,6 +1,7 @@
 // contact_normal.hpp: what else C has, each called once and compared. Prints one line per check that fails, and the number of checks.
 #include <contact_normal.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -22,6 +23,8 @@ static void expect(bool holds, const char *what)
     }
 }
 
+static constexpr cn::fields of_adhesion = cn::fields::contact_pressure | cn::fields::attraction;
+static constexpr cn::fields of_effects = of_adhesion | cn::fields::traction | cn::fields::slip | cn::fields::stick_slip;
 static const cn::grid GRID{32, 24, 0.1, 0.1};
 static const cn::body STEEL{82000.0, 0.28}, RUBBER{1.0, 0.49};
 
@@ -52,7 +55,7 @@ static void fields_of_a_result()
     const std::vector<double> h = ball(GRID, 0.01);
     const cn::scene scene = cn::scene(GRID, STEEL).undeformed_distance(h).force(500.0);
     const cn::result all = cn::solve(scene);
-    expect(all.holds(cn::fields::all - (cn::fields::traction | cn::fields::slip | cn::fields::stick_slip)), "a solve holds all");
+    expect(all.holds(cn::fields::all - of_effects), "a solve holds all");
     expect(!all.holds(cn::fields::traction) && all.traction[0].empty() && all.stick_slip.empty(), "but no tractions without friction");
 
     cn::solver solver(scene);
@@ -145,6 +148,29 @@ static void accuracies()
     expect(thrown_by([&] { cn::cost_of_accuracy(scene, std::vector<double>{}); }, "n is 0") == CONTACT_NORMAL_INVALID_ARGUMENT, "no targets");
 }
 
+static void adhesions()
+{
+    const cn::grid grid{32, 32, 6.0 / 32, 6.0 / 32};
+    std::vector<double> h;
+    for (int i = 0; i < 32 * 32; i++) {
+        const double x = (i % 32 - 15.5) * grid.dx, y = (i / 32 - 15.5) * grid.dy;
+        h.push_back(0.5 * (x * x + y * y));
+    }
+    cn::scene scene(grid, {0.375, 0.0}, {std::numeric_limits<double>::infinity(), 0.0});
+    scene.undeformed_distance(h);
+    const cn::adhesion sticky = cn::adhesion(0.3183).range(0.5648).law(CONTACT_NORMAL_LAW_EXPONENTIAL).start(CONTACT_NORMAL_START_AUTO).stiffness();
+    const cn::result found = cn::solve(cn::scene(scene).adhesion(sticky).force(-1.0));
+    expect(found && found.holds(of_adhesion) && found.report.adhesion.stiffness > 0.0, "a pull is held");
+    double off = 0.0;
+    for (std::size_t i = 0; i < h.size(); i++)
+        if (found.contact[i]) off = std::max(off, std::abs(found.contact_pressure[i] - found.attraction[i] - found.pressure[i]));
+    expect(off < 1e-12, "contact pressure less attraction is pressure");
+    const std::vector<double> works(h.size(), 0.3183);
+    const cn::result least = cn::pull_off(cn::scene(scene).adhesion(cn::adhesion(works).range(0.5648)).force(0.0));
+    expect(least.report.normal.force < -1.6 && least.report.normal.force > -2.0, "the pull-off is between JKR and DMT");
+    expect(thrown_by([&] { cn::solve(cn::scene(scene).adhesion(sticky).force(-2.5)); }, "pull-off") == CONTACT_NORMAL_INFEASIBLE, "no more than that");
+}
+
 static void frictions()
 {
     const std::vector<double> h = ball(GRID, 0.01);
@@ -152,7 +178,7 @@ static void frictions()
     scene.undeformed_distance(h).force(500.0);
     const cn::friction moved = cn::friction(0.3).creepage(0, -1e-4);
     const cn::result found = cn::solve(cn::scene(scene).friction(moved));
-    expect(found.holds(cn::fields::all) && found.traction[0].size() == h.size(), "with friction all is held");
+    expect(found.holds(cn::fields::all - of_adhesion) && found.traction[0].size() == h.size(), "with friction all is held");
     const cn::result alone = cn::solve_tangential(cn::scene(GRID, STEEL).friction(moved), found.pressure);
     expect(alone.holds(cn::fields::traction | cn::fields::slip | cn::fields::stick_slip) && alone.pressure.empty(), "the tangential problem alone");
     expect(std::abs(alone.report.tangential.force[0] / found.report.tangential.force[0] - 1.0) < 1e-4, "has the same force");
@@ -293,6 +319,7 @@ int main()
     fields_of_a_result();
     batches();
     accuracies();
+    adhesions();
     frictions();
     stops();
     the_library();

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::c::gap_file;
 use crate::generated::header;
 use crate::support::{
     assert_certified, recompute, root, run, run_linked, run_under_valgrind, scratch, EXAMPLES_OF_EFFECTS,
@@ -84,6 +85,12 @@ fn wheel_rail_prints_what_is_expected() {
     check_example("wheel_rail", &[&wheel_rail_case()], &["-O2"], PER_UPDATE * 1e-8);
 }
 
+/// What the Python package wrote; the tolerance that the example asks for.
+#[test]
+fn gap_prints_what_is_expected() {
+    check_example("gap", &[&gap_file("wheel_rail"), "80000"], &["-O2"], 1e-9);
+}
+
 /// Their solutions are compared with closed forms and direct sums in tests of their own.
 #[test]
 fn the_effects_print_what_is_expected() {
@@ -122,8 +129,12 @@ fn the_examples_under_valgrind() {
             continue;
         }
         let program = compile(file.to_str().expect("a path in UTF-8"), &["-g", "-O1"], &folder);
-        let case = wheel_rail_case();
-        let arguments = if program.ends_with("wheel_rail") { vec![case.as_str()] } else { Vec::new() };
+        let (case, gap) = (wheel_rail_case(), gap_file("wheel_rail"));
+        let arguments = match program.file_name().and_then(|name| name.to_str()) {
+            Some("wheel_rail") => vec![case.as_str()],
+            Some("gap") => vec![gap.as_str(), "80000"],
+            _ => Vec::new(),
+        };
         let printed = run_under_valgrind(&program, &arguments, &folder);
         assert!(!printed.is_empty(), "{}", file.display());
         count += 1;

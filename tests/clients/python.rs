@@ -144,9 +144,51 @@ fn the_friction_example_prints_what_is_expected_and_draws() {
     prints_what_is_expected_and_draws("friction");
 }
 
+/// An example that takes a folder for its pictures and a file for the gap that it makes.
+fn makes_the_gap(name: &str, gap: &str, pictures: &[&str]) {
+    let folder = scratch(&format!("python_{name}"));
+    let example = root().join("python_examples").join(name).with_extension("py");
+    let printed = run(python_in(&folder).arg(&example).args([".", "gap.txt"]));
+    let expected = std::fs::read_to_string(example.with_extension("expected")).expect("what is expected");
+    assert_eq!(printed, expected);
+    for picture in pictures {
+        let picture = folder.join(format!("{name}_{picture}.png"));
+        let drawn = std::fs::metadata(&picture).unwrap_or_else(|e| panic!("{}: {e}", picture.display()));
+        assert!(drawn.len() > 10_000, "{}: {} bytes", picture.display(), drawn.len());
+    }
+    // The examples in C and Fortran read this gap from data/gaps. Transforms of another machine may round otherwise.
+    let distances = |path: &Path| -> Vec<f64> {
+        let text = std::fs::read_to_string(path).expect("a gap");
+        text.lines().skip(2).flat_map(str::split_whitespace).map(number).collect()
+    };
+    let (made, kept) = (distances(&folder.join("gap.txt")), distances(&root().join("data/gaps").join(gap)));
+    assert_eq!(made.len(), kept.len());
+    assert!(made.iter().zip(&kept).all(|(a, b)| a == b || (a - b).abs() < 1e-9), "{gap} is not what {name} makes");
+}
+
+#[test]
+fn from_heights_to_a_gap() {
+    makes_the_gap("heights_to_gap", "ground.txt", &["array", "faults", "level", "gap", "pressures"]);
+}
+
+#[test]
+fn from_profiles_to_a_gap() {
+    makes_the_gap("profiles_to_gap", "wheel_rail.txt", &["place", "shift", "gap", "forces"]);
+}
+
+#[test]
+fn the_adhesion_example_prints_what_is_expected_and_draws() {
+    prints_what_is_expected_and_draws("adhesion");
+}
+
 #[test]
 fn the_rolling_example_prints_what_is_expected_and_draws() {
     prints_what_is_expected_and_draws("rolling");
+}
+
+#[test]
+fn the_rough_surface_example_prints_what_is_expected_and_draws() {
+    prints_what_is_expected_and_draws("rough_surface");
 }
 
 #[test]

@@ -9,16 +9,25 @@ use crate::judge::{self, estimates, prices, searches, QUANTITIES, TARGETS};
 use crate::random::Random;
 use crate::surfaces::{held_back, studied, Surface, BODIES};
 
-const SIZES: [usize; 5] = [64, 100, 128, 200, 256];
+const SIZES: [usize; 4] = [64, 100, 128, 200];
+/// Grids with few elements across the contact, of which those count that have enough for the quantity.
+const COARSE: [usize; 4] = [16, 24, 32, 48];
 
 /// At most 5 % below 0.3 of the true error, at most 10 % unknown, of each surface; infinite peaks are never trusted. A cusp (r^1.5) is the
 /// exception that is allowed to be unknown: the pressure of its peak is finite by a hair.
 fn assert_estimates_hold(surfaces: judge::Surfaces, families: usize) {
+    for ((quantity, family), estimates) in estimates(surfaces, 0..2, &COARSE) {
+        let what = format!("{} of {family}, few elements: {estimates:?}", QUANTITIES[quantity]);
+        // A peak that these do not resolve is unknown.
+        assert!(estimates.low() <= 0.05, "{what}");
+        assert_eq!(estimates.trusted_infinite, 0, "{what}");
+    }
     let found = estimates(surfaces, 0..2, &SIZES);
     assert_eq!(found.len(), QUANTITIES.len() * families);
     for ((quantity, family), estimates) in found {
         let what = format!("{} of {family}: {estimates:?}", QUANTITIES[quantity]);
-        assert_eq!(estimates.runs, 2 * 2 * SIZES.len(), "{what}");
+        // But for areas of a few contacts all have enough elements across.
+        assert!(estimates.runs >= 2 * 2, "{what}");
         assert!(estimates.low() <= 0.05, "{what}");
         assert!(estimates.unknown() <= 0.1 || family == "r^1.5" && quantity == 1, "{what}");
         assert_eq!(estimates.trusted_infinite, 0, "{what}");
@@ -35,8 +44,8 @@ fn estimates_hold_on_surfaces_that_nothing_was_chosen_by() {
     assert_estimates_hold(held_back, 10);
 }
 
-/// Of OK answers at most 2 % beyond the target and none by more than 1.5, on at most twice the elements of the cheapest safe grid in the
-/// median and with 32 elements across. A flat punch of first order may need more elements than there are; nothing stagnates.
+/// Of OK answers at most 2 % beyond the target and none by more than 1.5, at least 80 % within one doubling of the cheapest safe grid,
+/// and with 8 elements across. A flat punch of first order may need more elements than there are; nothing stagnates.
 fn assert_searches_hold(surfaces: judge::Surfaces, families: usize) {
     let all = searches(surfaces, 1..2);
     assert_eq!(all.len(), families * 2 * TARGETS.len());
@@ -50,14 +59,15 @@ fn assert_searches_hold(surfaces: judge::Surfaces, families: usize) {
         assert!(search.miss <= 1.5, "{what}: {} of the target", search.miss);
         missed += usize::from(search.miss > 1.0);
         let endless = search.family.contains("wave");
-        assert!(search.across.0 >= 32 && (endless || search.across.1 >= 32), "{what}: {:?}", search.across);
+        assert!(search.across.0 >= 8 && (endless || search.across.1 >= 8), "{what}: {:?}", search.across);
         ratios.extend(search.cheapest.map(|cheapest| search.elements as f64 / cheapest as f64));
     }
     ratios.sort_by(f64::total_cmp);
     assert!(50 * missed <= all.len(), "{missed} of {}", all.len());
     // Of nearly all the cheapest grid is known.
     assert!(10 * ratios.len() >= 8 * all.len(), "{} of {}", ratios.len(), all.len());
-    assert!(ratios[ratios.len() / 2] <= 2.0, "{ratios:?}");
+    let near = ratios.iter().filter(|ratio| **ratio <= 4.0).count();
+    assert!(10 * near >= 8 * ratios.len() && ratios[ratios.len() / 2] <= 4.0, "{ratios:?}");
 }
 
 #[test]
@@ -89,7 +99,7 @@ fn outcome_of(surface: &Surface, accuracy: &Accuracy) -> contact_normal::solver:
 fn targets_of_the_largest_pressure_and_the_area_are_kept() {
     for name in ["r^2", "r^4", "rotated ellipse"] {
         let surface = surface(name);
-        let asked = Accuracy { max_pressure_target: 3e-4, contact_area_target: 3e-3, ..Accuracy::new(1e-2) };
+        let asked = Accuracy::new(1e-2).with(Quantity::MaxPressure, 3e-4).with(Quantity::ContactArea, 3e-3);
         let outcome = outcome_of(&surface, &asked);
         assert_eq!(outcome.stop, Outcome::Converged, "{name}: {}", outcome.reason);
         let measures = outcome.report.measures;
@@ -108,7 +118,7 @@ fn targets_of_the_largest_pressure_and_the_area_are_kept() {
             "{name}"
         );
     }
-    let cone = outcome_of(&surface("cone"), &Accuracy { max_pressure_target: 1e-2, ..Accuracy::new(1e-2) });
+    let cone = outcome_of(&surface("cone"), &Accuracy::new(1e-2).with(Quantity::MaxPressure, 1e-2));
     assert_eq!(cone.stop, Outcome::Stagnated, "{}", cone.reason);
     assert!(cone.reason.contains("estimate"), "{}", cone.reason);
 }
@@ -139,7 +149,7 @@ fn prices_name_the_grid_that_does() {
         }
     }
     println!("{rows} rows, {near} within one doubling, {beyond} beyond their target");
-    assert!(100 * near >= 95 * rows && rows > 100, "{near} of {rows}");
+    assert!(100 * near >= 85 * rows && rows > 100, "{near} of {rows}");
     assert!(50 * beyond <= rows, "{beyond} of {rows}");
 }
 

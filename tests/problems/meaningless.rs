@@ -92,9 +92,9 @@ fn tolerances_and_targets_lie_below_1() {
         let wanted = (Quantity::MaxPressure, &[0.1, target][..]);
         names(cost_of_accuracy(&scene, &Options::default(), &Accuracy::new(0.1), wanted, None, None).map(drop), &words);
     }
-    let high = Accuracy { max_pressure_target: 1.0, ..Accuracy::new(0.1) };
+    let high = Accuracy::new(0.1).with(Quantity::MaxPressure, 1.0);
     names(solve_to_accuracy(&scene, &Options::default(), &high, None, None).map(drop), "max_pressure_target is 1");
-    let high = Accuracy { contact_area_target: 5.0, ..Accuracy::new(0.1) };
+    let high = Accuracy::new(0.1).with(Quantity::ContactArea, 5.0);
     names(solve_to_accuracy(&scene, &Options::default(), &high, None, None).map(drop), "contact_area_target is 5");
     // The largest that is a tolerance.
     assert!(solve(&scene, &Options { tolerance: 1.0f64.next_down(), ..Options::default() }).is_ok());

@@ -6,6 +6,7 @@ fn past(excess: Option<Falling>) -> Past {
     Past {
         grid: Grid::new(64, 32, 0.1, 0.2).expect("a grid"),
         across: (40, 33),
+        enough: 32,
         excesses: vec![excess],
         bytes: 100,
         seconds: 1.0,

@@ -49,6 +49,9 @@ impl Dump {
                 "contact_normal_solve" => {
                     contact_normal_solve(scene, options, self.pointer("fields")?, self.pointer("report")?)
                 }
+                "contact_normal_pull_off" => {
+                    contact_normal_pull_off(scene, options, self.pointer("fields")?, self.pointer("report")?)
+                }
                 "contact_normal_solver_new" => contact_normal_solver_new(scene, options, handle),
                 "contact_normal_solver_solve" => self.solve_with_handle(handle)?,
                 "contact_normal_solve_tangential" => self.tangential_again(handle)?,

@@ -1,4 +1,5 @@
-//! NORM as a step: an inner solve on C, from p = 0 as in the paper, or from the pressures that the solve starts with.
+//! NORM as a step: steps 3 and 2 of section 3. The inner solve on C starts from p = 0 as in the paper, or from the pressures that the solve
+//! starts with.
 
 use super::{conjugate_gradients, minimal_residual, InnerStop};
 use crate::contact::{admit, norm_of_distance, residual_norm, truncate};
@@ -128,6 +129,12 @@ impl Norm {
     }
 }
 
+/// Whether a trial leaves no more than round-off may be: then there is nothing to exchange.
+fn is_at_round_off<S: AdmissibleSet>(task: &Task<'_, '_, S>) -> bool {
+    let floor = Goal { tolerance: FLOOR.max(task.goal.tolerance), ..task.goal };
+    floor.holds(&Survey::of(task.state), 0.0, task.set)
+}
+
 /// p = 0 on C, from where an inner solve starts; elements at their limit keep their pressures.
 fn start_from_zero<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<()> {
     let (state, set) = (&mut *task.state, task.set);
@@ -193,29 +200,30 @@ impl<S: AdmissibleSet> Step<S> for Norm {
     }
 
     fn step(&mut self, task: &mut Task<'_, '_, S>) -> Result<Change> {
-        match self.next {
-            Next::GoOn => {
-                if task.state.p.iter().all(|p| *p == 0.0) {
-                    start_from_zero(task)?;
-                }
-            }
+        // 3. A new contact area by the contact conditions. 1. The first one is there.
+        let from_zero = match self.next {
+            Next::GoOn => task.state.p.iter().all(|p| *p == 0.0),
             Next::Exchange => {
                 if !self.exchange(task)? {
                     return Ok(Change { update: self.update, ..Change::default() });
                 }
-                start_from_zero(task)?;
+                true
             }
             Next::ExchangeOne => {
-                let floor = Goal { tolerance: FLOOR.max(task.goal.tolerance), ..task.goal };
-                if floor.holds(&Survey::of(task.state), 0.0, task.set) {
+                if is_at_round_off(task) {
                     return Ok(Change { gives_up: true, ..Change::default() });
                 }
                 self.exchange_one(task.state, task.set);
-                start_from_zero(task)?;
+                true
             }
+        };
+        if from_zero {
+            start_from_zero(task)?;
         }
+        // 2. The equations on it.
         let update = self.solve(task)?;
         self.update = update;
+        // 4. Repeat where the conditions do not hold.
         let Task { state, set, goal, monitor, .. } = task;
         monitor.count.active_set_steps += 1;
         let changes = if S::FIXED { 0 } else { violators(state, *set) as u64 };

@@ -257,7 +257,7 @@ fn truncate_to<S: AdmissibleSet>(state: &mut State, set: S) {
 }
 
 /// Shifts the distances of a coarser grid to the mean of the finer one's; not where elements have no surface, which leave e its freedom.
-fn shift_to_mean(fine: &[f64], coarse: &mut [f64]) {
+pub fn shift_to_mean(fine: &[f64], coarse: &mut [f64]) {
     let shift = mean(fine) - mean(coarse);
     if shift.is_finite() {
         coarse.iter_mut().for_each(|h| *h += shift);

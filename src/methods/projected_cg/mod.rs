@@ -26,7 +26,9 @@ mod uniform;
 mod vectors;
 mod window;
 
+pub use coarse_grids::shift_to_mean;
 pub use iteration::{Cycle, End};
+pub use preconditioner::Preconditioner;
 pub use predictor::Predictor;
 pub use step::ProjectedCg;
 pub use vectors::Iteration;

@@ -2,22 +2,19 @@
 
 use std::fmt;
 
-use super::outlook::{across, Falling, Outlook, Quantity};
+use super::outlook::{across, Outlook};
 use super::solved::Solved;
 use crate::error::{invalid, require, Result};
 use crate::grid::Grid;
 use crate::progress::Outcome;
 use crate::solver::estimates::SECONDS_EXPONENT;
+use crate::solver::quantities::{Falling, Quantity};
 
 /// The accuracy that is asked for, and what it may cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
-    /// Relative error of the force, or of the approach when the force is prescribed.
-    pub target: f64,
-    /// Relative error of the largest pressure; 0: not asked for.
-    pub max_pressure_target: f64,
-    /// Relative error of the corrected contact area; 0: not asked for.
-    pub contact_area_target: f64,
+    /// Relative errors of the quantities, by their [numbers](Quantity::number); 0: not asked for.
+    pub targets: [f64; Quantity::ALL.len()],
     /// Seconds for all grids together; 0: no limit. A solve that takes longer than predicted is stopped.
     pub max_seconds: f64,
     /// Bytes that the solver of a grid may hold, with that of the grid before it; 0: no limit.
@@ -27,10 +24,16 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// A target, no limits but the number of elements.
+    /// A target of the force (of the approach when the force is prescribed); no limits but the number of elements.
     pub fn new(target: f64) -> Accuracy {
-        let (max_pressure_target, contact_area_target) = (0.0, 0.0);
-        Accuracy { target, max_pressure_target, contact_area_target, max_seconds: 0.0, max_bytes: 0, max_elements: 0 }
+        let none = Accuracy { targets: [0.0; Quantity::ALL.len()], max_seconds: 0.0, max_bytes: 0, max_elements: 0 };
+        none.with(Quantity::Force, target)
+    }
+
+    /// The same with a target of another quantity.
+    pub fn with(mut self, quantity: Quantity, target: f64) -> Accuracy {
+        self.targets[quantity.number()] = target;
+        self
     }
 }
 
@@ -40,6 +43,8 @@ pub(super) struct Past {
     pub grid: Grid,
     /// Elements across the contact area.
     pub across: (usize, usize),
+    /// And so many are enough for all that is asked for.
+    pub enough: usize,
     /// The errors over their targets, where known.
     pub excesses: Vec<Option<Falling>>,
     /// Bytes held by its solver.
@@ -72,8 +77,8 @@ const LEAST_TOLERANCE: f64 = 1e-12;
 /// The residual, relative to the target of the force, and of the largest pressure: what it adds to the error does not count.
 const TOLERANCE_PER_TARGET: f64 = 0.1;
 const TOLERANCE_PER_PRESSURE: f64 = 0.01;
-/// With fewer elements across, a grid's estimate is not believed, and need not be there.
-pub(super) const ENOUGH_ACROSS: usize = 32;
+/// Grids with fewer elements in the longer direction need not have an estimate.
+const SMALL_GRID: usize = 32;
 /// Grids with more that have none, and grids without contact, before it is given up.
 const MOST_WITHOUT: usize = 3;
 /// Predictions over more doublings are not worth much, and a grid in between costs 1/64 of the last.
@@ -95,6 +100,7 @@ impl Past {
         Past {
             grid: problem.grid,
             across: across(solved.solver.state(), problem.coefficients.repeats(&problem.grid)),
+            enough: accuracy.wanted().map(|(quantity, _)| quantity.enough_across()).max().unwrap_or(1),
             excesses: accuracy.excesses(&solved.outlook),
             bytes: solved.report.bytes,
             seconds: seconds.0,
@@ -105,12 +111,12 @@ impl Past {
 
     /// Whether there are enough elements across the contact.
     pub fn is_resolved(&self) -> bool {
-        self.across.0.min(self.across.1) >= ENOUGH_ACROSS
+        self.across.0.min(self.across.1) >= self.enough
     }
 
     /// Whether there should be an estimate, and is none.
     pub fn lacks_estimate(&self) -> bool {
-        self.grid.mx.max(self.grid.my) >= ENOUGH_ACROSS && self.worst().is_none()
+        self.grid.mx.max(self.grid.my) >= SMALL_GRID && self.worst().is_none()
     }
 
     /// The largest error over its target, if all are known.
@@ -150,16 +156,23 @@ impl Accuracy {
     pub(super) fn excesses(&self, outlook: &Outlook) -> Vec<Option<Falling>> {
         let of =
             |(quantity, target): (Quantity, f64)| outlook.falling(quantity).and_then(|falling| falling.over(target));
-        self.targets().into_iter().map(of).collect()
+        self.wanted().map(of).collect()
     }
 
     /// Refuses what makes no sense.
     pub fn check(&self) -> Result<()> {
-        require_target(self.target)?;
-        let more =
-            [("max_pressure_target", self.max_pressure_target), ("contact_area_target", self.contact_area_target)];
-        for (name, target) in more {
-            require((0.0..1.0).contains(&target), name, target, "it must lie between 0 and 1, or be 0 for none")?;
+        for (quantity, target) in Quantity::ALL.into_iter().zip(self.targets) {
+            match quantity {
+                Quantity::Force if self.targets.iter().all(|target| *target == 0.0) => require_target(target)?,
+                _ => {
+                    let name = match quantity {
+                        Quantity::Force => "target".into(),
+                        other => format!("{}_target", other.name()),
+                    };
+                    let rule = "it must lie between 0 and 1, or be 0 for none";
+                    require((0.0..1.0).contains(&target), &name, target, rule)?;
+                }
+            }
         }
         self.check_limits()
     }
@@ -183,19 +196,14 @@ impl Accuracy {
     }
 
     /// What is asked for.
-    pub(super) fn targets(&self) -> Vec<(Quantity, f64)> {
-        let all = [
-            (Quantity::Force, self.target),
-            (Quantity::MaxPressure, self.max_pressure_target),
-            (Quantity::ContactArea, self.contact_area_target),
-        ];
-        all.into_iter().filter(|(_, target)| *target > 0.0).collect()
+    pub(super) fn wanted(&self) -> impl Iterator<Item = (Quantity, f64)> + '_ {
+        Quantity::ALL.into_iter().zip(self.targets).filter(|(_, target)| *target > 0.0)
     }
 
     /// The tolerance that it takes, at most that of the caller.
     pub(super) fn tolerance(&self, at_most: f64) -> f64 {
         let of = |(quantity, target): (Quantity, f64)| tolerance_for(quantity, target);
-        self.targets().into_iter().map(of).fold(at_most, f64::min).max(LEAST_TOLERANCE)
+        self.wanted().map(of).fold(at_most, f64::min).max(LEAST_TOLERANCE)
     }
 
     /// Whether the time is over.
@@ -210,7 +218,7 @@ impl Accuracy {
         without_contact: usize,
         without_estimate: usize,
     ) -> Option<(Outcome, String)> {
-        let least = self.targets().into_iter().map(|(_, target)| target).fold(f64::INFINITY, f64::min);
+        let least = self.wanted().map(|(_, target)| target).fold(f64::INFINITY, f64::min);
         if least < ROUND_OFF {
             return Some((Outcome::Stagnated, format!("target is {least:e}, below round-off")));
         }
@@ -242,7 +250,7 @@ impl Accuracy {
         if across == 0 || past.worst().is_none() {
             return 1;
         }
-        let enough = |k: u32| across.saturating_mul(1 << k) >= ENOUGH_ACROSS;
+        let enough = |k: u32| across.saturating_mul(1 << k) >= past.enough;
         let met = |k: u32| enough(k) && past.after(k).is_none_or(|worst| worst <= 1.0);
         (1..MOST_DOUBLINGS).find(|k| met(*k)).unwrap_or(MOST_DOUBLINGS)
     }
@@ -253,8 +261,9 @@ impl Accuracy {
         let why = match past.is_resolved() {
             true => String::new(),
             false => format!(
-                "; {} elements across the contact are less than {ENOUGH_ACROSS}",
-                past.across.0.min(past.across.1)
+                "; {} elements across the contact are less than {}",
+                past.across.0.min(past.across.1),
+                past.enough
             ),
         };
         let in_the_way = |limit: String| Some(format!("{limit} is in the way of {mx} x {my} elements{why}"));
@@ -279,7 +288,7 @@ impl Accuracy {
 
 /// The residual that leaves of a target what it is.
 pub(super) fn tolerance_for(quantity: Quantity, target: f64) -> f64 {
-    let part = if quantity == Quantity::MaxPressure { TOLERANCE_PER_PRESSURE } else { TOLERANCE_PER_TARGET };
+    let part = if quantity.is_local() { TOLERANCE_PER_PRESSURE } else { TOLERANCE_PER_TARGET };
     part * target
 }
 

@@ -2,54 +2,13 @@
 
 use crate::contact::State;
 use crate::scene::Load;
+use crate::solver::quantities::{Falling, Lack, Quantity, Sequence};
 use crate::solver::{Report, Solver};
-
-/// What an accuracy is asked of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
-    /// The force, or the approach if the force is prescribed.
-    Force,
-    /// The largest pressure.
-    MaxPressure,
-    /// The corrected contact area.
-    ContactArea,
-}
-
-/// An error: what falls by 4 with a doubling of the elements in both directions, what falls by 2, and what the residual hides.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Falling {
-    /// What falls by 4.
-    pub(super) by_four: f64,
-    /// What falls by 2.
-    pub(super) by_two: f64,
-    /// What stays.
-    pub(super) hidden: f64,
-}
-
-impl Falling {
-    /// As it is.
-    pub fn now(&self) -> f64 {
-        self.after(0)
-    }
-
-    /// After so many doublings; with a negative number before them.
-    pub fn after(&self, doublings: i32) -> f64 {
-        let ratio = 0.5_f64.powi(doublings);
-        self.by_four * ratio * ratio + self.by_two * ratio + self.hidden
-    }
-
-    pub(super) fn over(self, whole: f64) -> Option<Falling> {
-        let [by_four, by_two, hidden] = [self.by_four, self.by_two, self.hidden].map(|part| part / whole.abs());
-        (by_four + by_two + hidden).is_finite().then_some(Falling { by_four, by_two, hidden })
-    }
-}
 
 /// The relative errors of a solution, where they are known.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Outlook {
-    force: Option<Falling>,
-    max_pressure: Option<Falling>,
-    contact_area: Option<Falling>,
+    falling: [Option<Falling>; Quantity::ALL.len()],
 }
 
 impl Outlook {
@@ -66,11 +25,17 @@ impl Outlook {
         let force = Falling { by_four: whole - by_two, by_two, hidden };
         let peak = Falling { by_four: error.max_pressure, ..Falling::default() };
         let area = Falling { by_two: error.corrected_area, ..Falling::default() };
-        Outlook {
-            force: if known { force.over(found) } else { None },
-            max_pressure: if error.max_pressure >= 0.0 { peak.over(measures.max_pressure) } else { None },
-            contact_area: if error.corrected_area >= 0.0 { area.over(measures.corrected_area) } else { None },
-        }
+        let mut outlook = Outlook::default();
+        outlook.set(Quantity::Force, if known { force.over(found) } else { None });
+        let peak = if error.max_pressure >= 0.0 { peak.over(measures.max_pressure) } else { None };
+        outlook.set(Quantity::MaxPressure, peak);
+        let area = if error.corrected_area >= 0.0 { area.over(measures.corrected_area) } else { None };
+        outlook.set(Quantity::ContactArea, area);
+        outlook
+    }
+
+    fn set(&mut self, quantity: Quantity, falling: Option<Falling>) {
+        self.falling[quantity.number()] = falling;
     }
 
     /// The relative error.
@@ -80,10 +45,34 @@ impl Outlook {
 
     /// The relative error on this and finer grids.
     pub fn falling(&self, quantity: Quantity) -> Option<Falling> {
-        match quantity {
-            Quantity::Force => self.force,
-            Quantity::MaxPressure => self.max_pressure,
-            Quantity::ContactArea => self.contact_area,
+        self.falling[quantity.number()]
+    }
+}
+
+/// The values of quantities without an estimate from one grid, grid by grid.
+#[derive(Clone, Debug)]
+pub struct History {
+    sequences: Vec<(Quantity, Sequence)>,
+}
+
+impl History {
+    /// Of those among `wanted` that need it.
+    pub fn of(wanted: impl Iterator<Item = Quantity>) -> History {
+        let needed = wanted.filter(|quantity| !quantity.has_estimate());
+        History { sequences: needed.map(|quantity| (quantity, Sequence::default())).collect() }
+    }
+
+    /// Which.
+    pub fn wanted(&self) -> Vec<Quantity> {
+        self.sequences.iter().map(|(quantity, _)| *quantity).collect()
+    }
+
+    /// Adds the values of a grid, in the order of [`wanted`](Self::wanted), and tells the outlook what they say.
+    pub fn add(&mut self, doublings: i32, values: &[Result<f64, Lack>], residual: f64, outlook: &mut Outlook) {
+        for ((quantity, sequence), value) in self.sequences.iter_mut().zip(values) {
+            let Ok(value) = *value else { continue };
+            sequence.add(doublings, value, residual * value.abs());
+            outlook.set(*quantity, sequence.falling().and_then(|falling| falling.over(value)));
         }
     }
 }

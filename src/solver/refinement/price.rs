@@ -1,10 +1,11 @@
 //! One row of the price list, from samples.
 
-use super::next_grid::{tolerance_for, ENOUGH_ACROSS, MOST_ELEMENTS, ROUND_OFF};
+use super::next_grid::{tolerance_for, MOST_ELEMENTS, ROUND_OFF};
 use super::sample::Sample;
-use super::{scaled, Accuracy, Quantity};
+use super::Accuracy;
 use crate::grid::Grid;
-use crate::scene::Scene;
+use crate::scene::{scaled, Scene};
+use crate::solver::quantities::Quantity;
 
 /// The power of the number of elements with which seconds grow (docs/performance.md).
 const GROWTH: f64 = 1.08;
@@ -61,16 +62,27 @@ pub(super) fn seconds_on(samples: &[Sample], elements: f64) -> f64 {
         let ratio = elements / sample.elements;
         sample.setup * ratio.powf(of_setup) + (sample.seconds - sample.setup) * ratio.powf(GROWTH)
     };
-    samples.iter().filter(|sample| sample.elements <= elements).map(carried).fold(f64::INFINITY, f64::min)
+    let seconds =
+        samples.iter().filter(|sample| sample.elements <= elements).map(carried).fold(f64::INFINITY, f64::min);
+    // A grid coarser than all samples: the first of them, carried down. Infinite seconds would let the samples grow without end.
+    if seconds.is_finite() {
+        seconds
+    } else {
+        samples.first().map_or(f64::INFINITY, carried)
+    }
 }
 
 /// Doublings from the last sample to the first grid that does, and the seconds of one thread to the tolerance of the samples.
-pub(super) fn predict(scene: &Scene<'_>, samples: &[Sample], target: f64) -> Option<(i32, f64)> {
+pub(super) fn predict(
+    scene: &Scene<'_>,
+    samples: &[Sample],
+    (quantity, target): (Quantity, f64),
+) -> Option<(i32, f64)> {
     let last = samples.last()?;
     let falling = last.falling?;
     let (least, most) = (-(last.across.ilog2() as i32), (MOST_ELEMENTS as f64).log2() as i32);
     let does = |k: &i32| {
-        let enough = last.across as f64 * 2f64.powi(*k) >= ENOUGH_ACROSS as f64;
+        let enough = last.across as f64 * 2f64.powi(*k) >= quantity.enough_across() as f64;
         enough && falling.after(*k) <= target && scaled(&scene.grid, last.doublings + k).is_ok()
     };
     let k = (least..=most).find(does)?;
@@ -101,7 +113,7 @@ pub(super) fn price(
     }
     let last = samples.last().filter(|last| last.across >= ACROSS);
     let Some((last, falling)) = last.and_then(|last| Some((last, last.falling?))) else { return nothing };
-    let Some((k, seconds)) = predict(scene, samples, target) else {
+    let Some((k, seconds)) = predict(scene, samples, (quantity, target)) else {
         return Price { obstacle: Some(Obstacle::Elements), ..nothing };
     };
     let Ok(grid) = scaled(&scene.grid, last.doublings + k) else { return nothing };

@@ -6,13 +6,15 @@
 use std::time::Instant;
 
 use super::next_grid::{require_target, tolerance_for};
+use super::outlook::History;
 use super::price::{price, ACROSS};
 pub use super::price::{Obstacle, Price};
 use super::sample::{Sample, Taken};
-use super::{check, scaled, Accuracy, Quantity, SurfaceCallback};
+use super::{check, Accuracy, SurfaceCallback};
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::scene::Scene;
+use crate::scene::{scaled, Scene};
+use crate::solver::quantities::Quantity;
 use crate::solver::{Options, Outcome, ProgressCallback};
 
 /// The samples take at most this part of the seconds of the dearest accuracy, or these seconds; less a margin for the last of them.
@@ -47,6 +49,8 @@ pub fn cost_of_accuracy(
     for &target in targets {
         require_target(target)?;
     }
+    quantity.check(scene)?;
+    let mut history = History::of(std::iter::once(quantity));
     let least = targets.iter().copied().fold(f64::INFINITY, f64::min);
     let tolerance = tolerance_for(quantity, least).clamp(1e-12, options.tolerance);
     let options = Options { tolerance, estimates: true, ..*options };
@@ -59,7 +63,7 @@ pub fn cost_of_accuracy(
     while samples.len() < MOST_SAMPLES {
         let spare = FOR_TIMES * (SECONDS - began.elapsed().as_secs_f64());
         let sample = match Sample::take(scene, &one, (doublings, spare), quantity, (&mut surface, &mut progress))? {
-            Taken::Sample(sample) => sample,
+            Taken::Sample(sample) => sample.carried_on(&mut history),
             Taken::Cancelled => return Ok((Outcome::Cancelled, list(&samples, 1.0))),
             Taken::Unsolved => break,
         };

@@ -2,11 +2,12 @@
 
 use std::time::Instant;
 
-use super::outlook::{across, Falling};
+use super::outlook::{across, History, Outlook};
 use super::solved::Solved;
-use super::{on_grid, scaled, Quantity, SurfaceCallback};
+use super::{on_grid, SurfaceCallback};
 use crate::error::Result;
-use crate::scene::Scene;
+use crate::scene::{scaled, Scene};
+use crate::solver::quantities::{Falling, Lack, Quantity};
 use crate::solver::{Options, Outcome, Progress, ProgressCallback};
 
 /// Samples are timed again, so often at most: the first solve of a size is slow, and machines are busy.
@@ -30,6 +31,10 @@ pub(super) struct Sample {
     /// In the direction with fewer of them.
     pub(super) across: usize,
     pub(super) falling: Option<Falling>,
+    /// The quantity, where its error does not follow from one grid.
+    values: Vec<std::result::Result<f64, Lack>>,
+    residual: f64,
+    quantity: Quantity,
     pub(super) bytes: f64,
     /// Until the residual was first at most that: seconds since the start of the surface.
     pub(super) reached: Vec<(f64, f64)>,
@@ -79,12 +84,14 @@ impl Sample {
             }
             progress.as_mut().is_some_and(|progress| progress(told))
         };
-        let Solved { solver, report, outlook } =
-            match on_grid(scene, options, doublings, surface, &mut Some(&mut watch), &|_| false)? {
-                Ok(solved) => solved,
-                Err((Outcome::Cancelled, ..)) => return Ok(Taken::Cancelled),
-                Err(_) => return Ok(Taken::Unsolved),
-            };
+        let wanted: &[Quantity] = if quantity.has_estimate() { &[] } else { &[quantity] };
+        let solved = match on_grid(scene, (options, wanted), doublings, surface, &mut Some(&mut watch), &|_| false)? {
+            Ok(solved) => solved,
+            Err((Outcome::Cancelled, ..)) => return Ok(Taken::Cancelled),
+            Err(_) => return Ok(Taken::Unsolved),
+        };
+        let residual = solved.residual();
+        let Solved { solver, report, outlook, values } = solved;
         let seconds = began.elapsed().as_secs_f64();
         let (x, y) = across(solver.state(), solver.influence().repeats(solver.grid()));
         Ok(Taken::Sample(Sample {
@@ -92,11 +99,22 @@ impl Sample {
             elements: elements as f64,
             across: x.min(y),
             falling: outlook.falling(quantity),
+            values,
+            residual,
+            quantity,
             bytes: report.bytes as f64,
             reached,
             seconds,
             setup: report.setup_seconds,
         }))
+    }
+
+    /// With the error that the values of this and coarser grids have.
+    pub(super) fn carried_on(mut self, history: &mut History) -> Sample {
+        let mut outlook = Outlook::default();
+        history.add(self.doublings, &self.values, self.residual, &mut outlook);
+        self.falling = self.falling.or(outlook.falling(self.quantity));
+        self
     }
 
     /// Seconds to a residual: what follows the last iteration is needed by any.

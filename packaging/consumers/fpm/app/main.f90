@@ -1,4 +1,4 @@
-! The same in Fortran. Prints the force.
+! The paper's problem: an ellipse of steel on steel, pressed by 0.1091 mm. Prints the force.
 program force
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t
   use contact_normal

@@ -207,6 +207,21 @@
 #define CONTACT_NORMAL_KIND_SOLVER_INFO 21
 
 /*
+ `kind`: `contact_normal_quantity_row`, of the first row of an array. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_QUANTITY_ROW 22
+
+/*
+ `kind`: `contact_normal_effects_row`, of the first row of an array. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_EFFECTS_ROW 23
+
+/*
+ `kind`: `contact_normal_adhesion`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_ADHESION 24
+
+/*
  `load`: that one of `approach` and `force` is given which is set; both or none is refused.
  */
 #define CONTACT_NORMAL_PRESCRIBED_UNSET 0
@@ -260,6 +275,41 @@
  `fields->stick_slip`: it slips.
  */
 #define CONTACT_NORMAL_STICK_SLIP_SLIP 2
+
+/*
+ `law`: sigma = w/rho exp(-e/rho).
+ */
+#define CONTACT_NORMAL_LAW_EXPONENTIAL 0
+
+/*
+ `law`: sigma = w/rho up to the range, 0 beyond, the edge smeared over `smear` of the range on both sides.
+ */
+#define CONTACT_NORMAL_LAW_DUGDALE 1
+
+/*
+ `law`: sigma = w/rho (1 - e/(3 rho))^2 up to three ranges.
+ */
+#define CONTACT_NORMAL_LAW_CUBIC 2
+
+/*
+ `law`: sigma = w/rho (1 + e/(2 rho))^-3.
+ */
+#define CONTACT_NORMAL_LAW_VAN_DER_WAALS 3
+
+/*
+ `start`: on coarser grids with longer ranges, from the contact without attraction.
+ */
+#define CONTACT_NORMAL_START_AUTO 0
+
+/*
+ `start`: from a larger approach: what is in contact stays so.
+ */
+#define CONTACT_NORMAL_START_FROM_CONTACT 1
+
+/*
+ `start`: from bodies apart: nothing snaps in before it must.
+ */
+#define CONTACT_NORMAL_START_FROM_APART 2
 
 /*
  `method`: the fastest way known that is safe.
@@ -383,6 +433,16 @@
 #define CONTACT_NORMAL_WARNING_ERROR_UNKNOWN 8
 
 /*
+ `warnings`: an element alone is unstable under the attraction: the elements are too coarse for its range (`adhesion.resolution` above 1).
+ */
+#define CONTACT_NORMAL_WARNING_RANGE 16
+
+/*
+ `warnings`: the attraction reaches the border of the grid (`adhesion.border_share` above 0.001): the grid does not contain it.
+ */
+#define CONTACT_NORMAL_WARNING_ATTRACTION 32
+
+/*
  `untrusted`: the error of the force (or the approach) cannot be estimated: contact is on single elements.
  */
 #define CONTACT_NORMAL_UNTRUSTED_FORCE 1
@@ -428,6 +488,51 @@
 #define CONTACT_NORMAL_QUANTITY_CONTACT_AREA 2
 
 /*
+ `quantity`: the mean of the deformed distance over the elements with a surface.
+ */
+#define CONTACT_NORMAL_QUANTITY_MEAN_GAP 3
+
+/*
+ `quantity`: dF/d approach, as `contact_normal_solver_stiffness` has it.
+ */
+#define CONTACT_NORMAL_QUANTITY_STIFFNESS 4
+
+/*
+ `quantity`: the length of the tangential force.
+ */
+#define CONTACT_NORMAL_QUANTITY_TANGENTIAL_FORCE 5
+
+/*
+ `quantity`: the length of the creepage, in those directions in which the force is prescribed.
+ */
+#define CONTACT_NORMAL_QUANTITY_CREEPAGE 6
+
+/*
+ `quantity`: the moment of the tractions about the spin centre.
+ */
+#define CONTACT_NORMAL_QUANTITY_SPIN_MOMENT 7
+
+/*
+ `quantity`: the area of stick.
+ */
+#define CONTACT_NORMAL_QUANTITY_STICK_AREA 8
+
+/*
+ `quantity`: the largest von Mises stress in both bodies, over all depths.
+ */
+#define CONTACT_NORMAL_QUANTITY_MAX_VON_MISES 9
+
+/*
+ `quantity`: the depth of the largest von Mises stress.
+ */
+#define CONTACT_NORMAL_QUANTITY_VON_MISES_DEPTH 10
+
+/*
+ `quantity`: the largest shear stress in both bodies, over all depths.
+ */
+#define CONTACT_NORMAL_QUANTITY_MAX_SHEAR 11
+
+/*
  `obstacle`: none; the accuracy is to be had.
  */
 #define CONTACT_NORMAL_OBSTACLE_NONE 0
@@ -456,6 +561,117 @@
  `obstacle`: it takes longer than `accuracy->max_seconds`.
  */
 #define CONTACT_NORMAL_OBSTACLE_TIME 5
+
+/*
+ `lack`: nothing is missing.
+ */
+#define CONTACT_NORMAL_LACK_NONE 0
+
+/*
+ `lack`: there is no value, since the scene has no friction.
+ */
+#define CONTACT_NORMAL_LACK_NO_FRICTION 1
+
+/*
+ `lack`: there is no value, since the scene prescribes it.
+ */
+#define CONTACT_NORMAL_LACK_PRESCRIBED 2
+
+/*
+ `lack`: there is no value, since an effect of the scene stands against it: stresses are those of half-spaces.
+ */
+#define CONTACT_NORMAL_LACK_EFFECT 3
+
+/*
+ `lack`: there is no value, since there is no contact.
+ */
+#define CONTACT_NORMAL_LACK_NO_CONTACT 4
+
+/*
+ `lack`: there is no error, since the value grows from grid to grid.
+ */
+#define CONTACT_NORMAL_LACK_SINGULAR 5
+
+/*
+ `lack`: there is no error, since one grid alone was solved.
+ */
+#define CONTACT_NORMAL_LACK_ONE_GRID 6
+
+/*
+ `lack`: a grid was not solved.
+ */
+#define CONTACT_NORMAL_LACK_UNSOLVED 7
+
+/*
+ `omitted`: nothing.
+ */
+#define CONTACT_NORMAL_OMIT_NONE 0
+
+/*
+ `omitted`: the coatings; the bodies are all of the material below.
+ */
+#define CONTACT_NORMAL_OMIT_COATING 1
+
+/*
+ `omitted`: the period; the scene stands alone.
+ */
+#define CONTACT_NORMAL_OMIT_PERIOD 2
+
+/*
+ `omitted`: the patches; all feel each other.
+ */
+#define CONTACT_NORMAL_OMIT_PATCHES 3
+
+/*
+ `omitted`: the thin compliant layer.
+ */
+#define CONTACT_NORMAL_OMIT_LAYER 4
+
+/*
+ `omitted`: the limit of pressures.
+ */
+#define CONTACT_NORMAL_OMIT_PRESSURE_LIMIT 5
+
+/*
+ `omitted`: friction, with what tractions of unlike bodies do to pressures.
+ */
+#define CONTACT_NORMAL_OMIT_FRICTION 6
+
+/*
+ `omitted`: that bodies are unlike; in their place there are like bodies of the same compliances, so that pressures and tractions do not
+ feel each other.
+ */
+#define CONTACT_NORMAL_OMIT_COUPLING 7
+
+/*
+ `omitted`: the spin.
+ */
+#define CONTACT_NORMAL_OMIT_SPIN 8
+
+/*
+ `omitted`: the tangential compliance of a third body.
+ */
+#define CONTACT_NORMAL_OMIT_FRICTION_COMPLIANCE 9
+
+/*
+ `omitted`: the coatings, in whose place there is a thin layer with the compression t/M of each, M being the oedometric modulus.
+ */
+#define CONTACT_NORMAL_OMIT_COATING_AS_LAYER 10
+
+/*
+ `verdict`: the change is too near to the target, or its error is not known; more time decides.
+ */
+#define CONTACT_NORMAL_VERDICT_NOT_DECIDED 0
+
+/*
+ `verdict`: the quantity changes by less than the target, the error of the change included.
+ */
+#define CONTACT_NORMAL_VERDICT_NEGLIGIBLE 1
+
+/*
+ `verdict`: it changes by more than the target.
+ */
+#define CONTACT_NORMAL_VERDICT_NEEDED 2
 
 /*
  Log level: nothing.
@@ -767,6 +983,51 @@ typedef struct contact_normal_friction {
 } contact_normal_friction;
 
 /*
+ Effect: attraction across the gap, `p = q - sigma(e)` with contact pressures q >= 0. The scene's force may then be negative. Pressures
+ are total ones, negative where the bodies pull at each other; `contact` is 1 where e = 0. A work of 0 is no adhesion. Several states may
+ belong to one approach: `start` says which one is looked for, and initial_guess PREVIOUS follows the one before. A force has one stable
+ state, with dF/dapproach > 0; below the pull-off force there is none (INFEASIBLE). See docs/adhesion.md.
+ */
+typedef struct contact_normal_adhesion {
+  /*
+   Set by `contact_normal_adhesion_init`.
+   */
+  int64_t struct_size;
+  /*
+   CONTACT_NORMAL_LAW_...; default EXPONENTIAL.
+   */
+  int32_t law;
+  /*
+   CONTACT_NORMAL_START_...; default AUTO. Read where the approach is given and initial_guess is NONE.
+   */
+  int32_t start;
+  /*
+   w of all elements, an energy per area, >= 0; default 0. Not read if there are `works_of_adhesion`.
+   */
+  double work_of_adhesion;
+  /*
+   That of each element, `[my][mx]`, or NULL (default).
+   */
+  const double *works_of_adhesion;
+  /*
+   rho, a length; default 0: the shortest that the elements carry. `report->adhesion.range` says which was used.
+   */
+  double range;
+  /*
+   DUGDALE: the part of the range over which its edge is smeared, in (0, 1]; default 0.3.
+   */
+  double smear;
+  /*
+   1: dF/dapproach, in `report->adhesion.stiffness`; default 0.
+   */
+  int32_t stiffness;
+  /*
+   Must be 0.
+   */
+  int32_t reserved;
+} contact_normal_adhesion;
+
+/*
  What is simulated: `e = h - approach + A p`, with e = 0 and p >= 0 in contact, e > 0 and p = 0 outside. Any consistent
  system of units.
  */
@@ -816,7 +1077,7 @@ typedef struct contact_normal_scene {
    */
   double approach;
   /*
-   Prescribed force, the sum of p dx dy: >= 0, with active_set FIXED also negative. Default NaN: not set.
+   Prescribed force, the sum of p dx dy: >= 0, with active_set FIXED or with adhesion also negative. Default NaN: not set.
    */
   double force;
   /*
@@ -851,6 +1112,10 @@ typedef struct contact_normal_scene {
    Effect, or NULL (default): friction between the bodies.
    */
   const struct contact_normal_friction *friction;
+  /*
+   Effect, or NULL (default): attraction between the bodies.
+   */
+  const struct contact_normal_adhesion *adhesion;
 } contact_normal_scene;
 
 /*
@@ -1007,6 +1272,12 @@ typedef struct contact_normal_options {
    `contact-normal-replay` (docs/dump.md). %p in it is the number of the process, %n that of the dump in the process, %% a %.
    */
   const char *dump;
+  /*
+   > 0, of `contact_normal_solve` alone: effects whose omission changes force or approach, largest pressure, area and tangential forces
+   by less than this part, as `contact_normal_effects_bill` says, are left out; `report->accuracy.neglected` has which. Friction stays.
+   Below 1. Default 0: nothing is left out. Since 0.2.
+   */
+  double neglect_below;
 } contact_normal_options;
 
 /*
@@ -1019,7 +1290,7 @@ typedef struct contact_normal_fields {
    */
   int64_t struct_size;
   /*
-   p. Read as the initial guess when that is GIVEN. Exactly 0 outside the contact area.
+   p. Read as the initial guess when that is GIVEN. Exactly 0 outside the contact area, but with adhesion: that acts there.
    */
   double *pressure;
   /*
@@ -1047,6 +1318,14 @@ typedef struct contact_normal_fields {
    With friction: CONTACT_NORMAL_STICK_SLIP_... of each element; EXTERIOR without friction.
    */
   int32_t *stick_slip;
+  /*
+   With adhesion: q = p + sigma in contact, 0 outside; without adhesion p.
+   */
+  double *contact_pressure;
+  /*
+   With adhesion: sigma(e) >= 0; 0 without adhesion.
+   */
+  double *attraction;
 } contact_normal_fields;
 
 /*
@@ -1296,9 +1575,17 @@ typedef struct contact_normal_report_accuracy {
    */
   double halved_error_force;
   /*
+   What `options->neglect_below` left out: the sum of `1 << (o - 1)` over CONTACT_NORMAL_OMIT_... o. Since 0.2.
+   */
+  int64_t neglected;
+  /*
+   By how much that may be wrong: the largest relative change of a quantity, its error included. Since 0.2.
+   */
+  double neglected_error;
+  /*
    Room for later versions: 0.
    */
-  double reserved[8];
+  double reserved[6];
 } contact_normal_report_accuracy;
 
 /*
@@ -1352,6 +1639,62 @@ typedef struct contact_normal_report_statistics {
 } contact_normal_report_statistics;
 
 /*
+ What was found of adhesion: a group of `contact_normal_report`. Without adhesion all is 0.
+ */
+typedef struct contact_normal_report_adhesion {
+  /*
+   The sum of contact pressures q dx dy.
+   */
+  double repulsive_force;
+  /*
+   The sum of -sigma dx dy: <= 0. Both together are `normal.force`.
+   */
+  double adhesive_force;
+  /*
+   The sum of 1/2 p u dx dy.
+   */
+  double elastic_energy;
+  /*
+   Less the work that the attraction has done: <= 0. The change of both energies by the approach is the force.
+   */
+  double adhesive_energy;
+  /*
+   `||p + sigma(e)|| / ||p||`, the first outside C, 2-norms, with a fresh product: it is at most the tolerance, too.
+   */
+  double law_residual;
+  /*
+   rho as it was used, a length.
+   */
+  double range;
+  /*
+   kappa: the largest stiffness of the attraction, times what an element displaces itself by. Above 1/2 the elements are too coarse for
+   the range, and the bits of `accuracy.untrusted` are set; above 1 an element snaps alone.
+   */
+  double resolution;
+  /*
+   The part of the attraction that acts on the border of the grid: the grid does not contain it where that is more than 0.001.
+   */
+  double border_share;
+  /*
+   dF/dapproach if `adhesion->stiffness` is 1, else 0.
+   */
+  double stiffness;
+  /*
+   1: the bodies have snapped: the state before (initial_guess PREVIOUS or GIVEN) could not be followed, and the elements in contact
+   are more, or fewer, by a quarter at least; else 0.
+   */
+  int32_t jumped;
+  /*
+   Always 0.
+   */
+  int32_t reserved_integer;
+  /*
+   Room for later versions: 0.
+   */
+  double reserved[6];
+} contact_normal_report_adhesion;
+
+/*
  What a solve found and what it cost, in groups. Written only when the status is >= 0. A group grows into the room at its end, which is 0
  where the library does not know what a newer header has there; later groups come at the end of the report.
  */
@@ -1396,6 +1739,10 @@ typedef struct contact_normal_report {
    What it cost.
    */
   struct contact_normal_report_statistics statistics;
+  /*
+   What was found of adhesion.
+   */
+  struct contact_normal_report_adhesion adhesion;
 } contact_normal_report;
 
 /*
@@ -1571,6 +1918,42 @@ typedef struct contact_normal_accuracy {
    Estimated relative error of the corrected contact area at most, below 1; 0 (default): not asked for.
    */
   double contact_area_target;
+  /*
+   The same of the mean gap. This and what follows is estimated from grids with fewer elements, which are solved, too. Since 0.2.
+   */
+  double mean_gap_target;
+  /*
+   Of the stiffness dF/d approach.
+   */
+  double stiffness_target;
+  /*
+   Of the length of the tangential force.
+   */
+  double tangential_force_target;
+  /*
+   Of the length of the creepage that is found.
+   */
+  double creepage_target;
+  /*
+   Of the moment about the spin centre.
+   */
+  double spin_moment_target;
+  /*
+   Of the area of stick.
+   */
+  double stick_area_target;
+  /*
+   Of the largest von Mises stress.
+   */
+  double max_von_mises_target;
+  /*
+   Of its depth.
+   */
+  double von_mises_depth_target;
+  /*
+   Of the largest shear stress.
+   */
+  double max_shear_target;
 } contact_normal_accuracy;
 
 /*
@@ -1630,6 +2013,110 @@ typedef struct contact_normal_price {
    */
   int32_t reserved;
 } contact_normal_price;
+
+/*
+ A quantity on one grid.
+ */
+typedef struct contact_normal_quantity_row {
+  /*
+   Set by `contact_normal_quantity_row_init`, which the first row of an array needs, and by the call.
+   */
+  int64_t struct_size;
+  /*
+   CONTACT_NORMAL_QUANTITY_...
+   */
+  int32_t quantity;
+  /*
+   CONTACT_NORMAL_LACK_...: why there is no value or no error.
+   */
+  int32_t lack;
+  /*
+   Elements in x.
+   */
+  int32_t mx;
+  /*
+   Elements in y.
+   */
+  int32_t my;
+  /*
+   The value; NaN: there is none.
+   */
+  double value;
+  /*
+   Its estimated error, in its own unit; < 0: not known.
+   */
+  double error;
+  /*
+   Seconds of set-up and solve on this grid, the same for all quantities; stresses and stiffness not included.
+   */
+  double seconds;
+  /*
+   Products on this grid, in work units: one product of the grid is one.
+   */
+  double work_units;
+} contact_normal_quantity_row;
+
+/*
+ What leaving out an effect, or two, does to a quantity, and what it saves.
+ */
+typedef struct contact_normal_effects_row {
+  /*
+   Set by `contact_normal_effects_row_init`, which the first row of an array needs, and by the call.
+   */
+  int64_t struct_size;
+  /*
+   CONTACT_NORMAL_OMIT_...: what is left out.
+   */
+  int32_t omitted;
+  /*
+   What is left out beside it; NONE: nothing.
+   */
+  int32_t also_omitted;
+  /*
+   CONTACT_NORMAL_QUANTITY_...
+   */
+  int32_t quantity;
+  /*
+   CONTACT_NORMAL_VERDICT_...
+   */
+  int32_t verdict;
+  /*
+   CONTACT_NORMAL_LACK_...: why a value, a change or its error is not known.
+   */
+  int32_t lack;
+  /*
+   0.
+   */
+  int32_t reserved;
+  /*
+   The value of the scene as it is, on the last of the small grids; NaN: there is none.
+   */
+  double value;
+  /*
+   What leaving out adds to it; NaN: not known.
+   */
+  double change;
+  /*
+   How far the change may be off; < 0: not known.
+   */
+  double change_error;
+  /*
+   Predicted seconds of a whole call for the scene on its own grid, with one thread.
+   */
+  double seconds;
+  /*
+   The same without what is left out.
+   */
+  double seconds_without;
+  /*
+   Predicted bytes of its solver.
+   */
+  double bytes;
+  /*
+   The same without what is left out.
+   */
+  double bytes_without;
+} contact_normal_effects_row;
 
 /*
  The exact Hertz solution.
@@ -1806,6 +2293,16 @@ contact_normal_status contact_normal_solve(const struct contact_normal_scene *sc
                                            struct contact_normal_report *report);
 
 /*
+ Finds the pull-off: from the load of the scene, which has adhesion, the approach goes down until the force rises again. The result is the
+ state there, its force the least that an equilibrium has (`report->normal.force`). A load to begin with that is safe is a force of 0.
+ `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.2.
+ */
+contact_normal_status contact_normal_pull_off(const struct contact_normal_scene *scene,
+                                              const struct contact_normal_options *options,
+                                              struct contact_normal_fields *fields,
+                                              struct contact_normal_report *report);
+
+/*
  Sets up a solver for the grid, the bodies, the effects and the influence coefficients of `scene`, and for the cycle,
  precision and threads of `options` (NULL: the defaults). Each solve takes an undeformed distance and a load of its own: they need not be
  set, and what is set must be valid. `*solver` is written only when the status is OK; free it with `contact_normal_solver_free`.
@@ -1946,10 +2443,12 @@ contact_normal_status contact_normal_solver_solve_batch(struct contact_normal_so
 
 /*
  Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->accuracy.error_force` is at most
- `accuracy->target` times the force (or the approach, when the force is prescribed), and those of the largest pressure and the
- corrected area at most their targets, with 32 or more elements across the contact in both directions. With `accuracy->surface` the
- scene's undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, target / 10 and
- max_pressure_target / 100. OK: the targets are met. ITERATION_LIMIT: a limit of time, memory or elements is in the way of the next
+ `accuracy->target` times the force (or the approach, when the force is prescribed), and those of the other quantities
+ at most their targets, with 32 or more elements across the contact in both directions. With `accuracy->surface` the
+ scene's undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, a tenth of the
+ targets, and a hundredth of those of single pressures and stresses. With a target of another quantity than force, largest pressure and area up to two grids with fewer elements
+ are solved first. Arrays of one value per element (compliances, limits, coefficients of friction, weights, tractions before) have their
+ means on other grids. UNSUPPORTED: own coefficients, FIXED contact, and stresses of coated bodies. OK: the targets are met. ITERATION_LIMIT: a limit of time, memory or elements is in the way of the next
  grid. CANCELLED: by the surface or the progress callback. STAGNATED: a target is below round-off, or no estimate can be trusted (a
  largest pressure that is singular has none). In these cases `contact_normal_last_error` says the best reached, and report and handle
  hold it. `*solver` (`solver` NULL: not wanted) is a handle with the result for `contact_normal_solver_fields`, to be freed by
@@ -1978,6 +2477,42 @@ contact_normal_status contact_normal_cost_of_accuracy(const struct contact_norma
                                                       int32_t n,
                                                       const double *targets,
                                                       struct contact_normal_price *rows);
+
+/*
+ Solves the scene on its grid and on `coarser` grids (0 to 12), each with half the elements of the next in both directions and solved from
+ nothing, and writes `n` rows for each grid, coarsest first: `rows[k n + i]` is that of `quantities[i]` (CONTACT_NORMAL_QUANTITY_...) on grid k.
+ There are `(coarser + 1) n` rows; where a grid of few elements cannot be halved any more, fewer grids, and `*written` (NULL: not wanted)
+ has the number of rows. Errors of force, largest pressure and area are the estimates of the report; errors of all others follow from the
+ grids before, so that the coarsest has none. Arrays of one value per element have their means on coarser grids. ITERATION_LIMIT, STAGNATED:
+ the scene's own grid was not solved. UNSUPPORTED: own coefficients, tractions kept by a handle, FIXED contact. Since 0.2.
+ */
+contact_normal_status contact_normal_quantities(const struct contact_normal_scene *scene,
+                                                const struct contact_normal_options *options,
+                                                int32_t n,
+                                                const int32_t *quantities,
+                                                int32_t coarser,
+                                                struct contact_normal_quantity_row *rows,
+                                                int32_t *written);
+
+/*
+ Says for each effect that the scene names, and for each refinement that it has without naming it (the coupling of unlike bodies, the
+ spin, a coating instead of a thin layer), how much each of the `n` `quantities` (CONTACT_NORMAL_QUANTITY_...) changes without it, how far
+ that may be off, and what it costs on the scene's own grid; the verdict is by the relative accuracy `target`, between 0 and 1. `pairs` 1:
+ pairs are left out, too; 0: they are not. The scene is solved on small grids, for at most 5 % of its own predicted seconds or 100 ms, or
+ `options->max_seconds` where that is given. `*count` is the number of rows: n for each effect, in the order of the constants, then n for
+ each pair; `rows` has room for `capacity` of them, the first ones, and rows NULL asks for the count alone, which takes no time.
+ ITERATION_LIMIT, CANCELLED: by `options`; rows hold what was known by then. UNSUPPORTED: own coefficients, tractions kept by a handle,
+ FIXED contact. Since 0.2.
+ */
+contact_normal_status contact_normal_effects_bill(const struct contact_normal_scene *scene,
+                                                  const struct contact_normal_options *options,
+                                                  double target,
+                                                  int32_t pairs,
+                                                  int32_t n,
+                                                  const int32_t *quantities,
+                                                  int32_t capacity,
+                                                  struct contact_normal_effects_row *rows,
+                                                  int32_t *count);
 
 /*
  Exact contact of two bodies with `h = curvature_x x^2 + curvature_y y^2` (1/length, positive), for `load`
@@ -2065,8 +2600,8 @@ contact_normal_status contact_normal_keep(int64_t bytes);
 contact_normal_status contact_normal_kept(int64_t *bytes, int32_t *threads);
 
 /*
- 1 if this library has what is called so, else 0: an effect of a scene ("friction", "coating"), an option ("max_seconds", "stop"), a member of
- the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables"), or what calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "sensitivities", "warnings", "keep", "release", "dump",
+ 1 if this library has what is called so, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop"), a member of
+ the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables"), or what calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump",
  "set_option", "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
  */
 int32_t contact_normal_has(const char *name);
@@ -2265,6 +2800,30 @@ static inline void contact_normal_cycle_init(contact_normal_cycle *cycle)
 static inline void contact_normal_solver_info_init(contact_normal_solver_info *solver_info)
 {
   contact_normal_init(CONTACT_NORMAL_KIND_SOLVER_INFO, solver_info, (int64_t)sizeof(contact_normal_solver_info));
+}
+
+/*
+ Fills a contact_normal_quantity_row with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_quantity_row_init(contact_normal_quantity_row *quantity_row)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_QUANTITY_ROW, quantity_row, (int64_t)sizeof(contact_normal_quantity_row));
+}
+
+/*
+ Fills a contact_normal_effects_row with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_effects_row_init(contact_normal_effects_row *effects_row)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_EFFECTS_ROW, effects_row, (int64_t)sizeof(contact_normal_effects_row));
+}
+
+/*
+ Fills a contact_normal_adhesion with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_adhesion_init(contact_normal_adhesion *adhesion)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_ADHESION, adhesion, (int64_t)sizeof(contact_normal_adhesion));
 }
 
 #endif  /* CONTACT_NORMAL_H */

@@ -1,0 +1,25 @@
+"""On the site, a picture that has a dark one, of the same name in pictures/dark, is shown on light pages only, and that on dark pages."""
+
+from pathlib import Path
+
+from docutils import nodes
+from sphinx.transforms import SphinxTransform
+
+here = Path(__file__).parent
+
+
+class DarkPictures(SphinxTransform):
+    """Puts the dark picture beside the light one; the theme shows one of them."""
+
+    default_priority = 100
+
+    def apply(self, **kwargs):
+        for light in list(self.document.findall(nodes.image)):
+            place = Path(light["uri"])
+            dark = place.parent / "dark" / place.name
+            if (here / self.env.docname).parent.joinpath(dark).exists():
+                other = light.deepcopy()
+                other["uri"] = str(dark)
+                light["classes"].append("only-light")
+                other["classes"].append("only-dark")
+                light.parent.insert(light.parent.index(light) + 1, other)

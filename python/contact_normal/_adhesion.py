@@ -1,0 +1,40 @@
+"""The effect of adhesion as the struct of the C ABI."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ._arguments import doubles, flag, number, pointer
+from ._constants import value_of
+from ._library import initialised
+
+_KNOWN = ("law", "work", "range", "smear", "start", "stiffness")
+
+
+def adhesion(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
+    """A `contact_normal_adhesion` and the array that it points to."""
+    if not isinstance(value, Mapping):
+        raise TypeError(f"adhesion is {value!r}; it must be a mapping of {', '.join(_KNOWN)}")
+    unknown = [str(name) for name in value if name not in _KNOWN]
+    if unknown:
+        raise ValueError(f"adhesion has {', '.join(sorted(unknown))}; it may have {', '.join(_KNOWN)}")
+    given = {name: one for name, one in value.items() if one is not None}
+    if "work" not in given:
+        raise ValueError("adhesion has no work: give the work of adhesion, one or (my, mx)")
+    effect, works = initialised("adhesion"), None
+    if np.ndim(given["work"]) == 0:
+        effect.work_of_adhesion = number("adhesion['work']", given["work"])
+    else:
+        works = doubles("adhesion['work']", given["work"], shape)
+        effect.works_of_adhesion = pointer(works)
+    for name in ("range", "smear"):
+        if name in given:
+            setattr(effect, name, number(f"adhesion['{name}']", given[name]))
+    for name in ("law", "start"):
+        if name in given:
+            setattr(effect, name, value_of(name, given[name]))
+    effect.stiffness = flag("adhesion['stiffness']", given.get("stiffness", False))
+    return effect, works

@@ -1,0 +1,59 @@
+"""The command line: `contact-normal solve`, `prices`, `bill`, `creep-table`, `replay`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+
+from . import _command_bill, _command_prices, _command_replay, _command_solve, _command_table
+from ._library import VERSION, ContactNormalError
+
+# What the program returns; the page on the command line has the same table.
+STOPPED_EARLY, REFUSED, NO_FILE, INTERRUPTED = 1, 3, 4, 130
+_CODES = """\
+exit codes:
+  0    done; of a solve: its contact conditions hold to the tolerance
+  1    stopped early: the best so far is printed and written; of replay: another status than that of the file
+  2    the options are wrong; of replay: the file is no dump
+  3    refused: the scene, a value or a file's contents; the message names the rule
+  4    a file cannot be read or written, or a package or program that this needs is not installed
+  130  interrupted
+"""
+
+
+def parser() -> argparse.ArgumentParser:
+    """The parser of all commands."""
+    top = argparse.ArgumentParser(
+        prog="contact-normal", description="Where two elastic bodies touch when they are pressed together, and with what pressure.",
+        epilog=_CODES, formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    top.add_argument("--version", action="version", version=f"contact-normal {VERSION}")
+    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for module in (_command_solve, _command_prices, _command_bill, _command_table, _command_replay):
+        module.add(commands)
+    return top
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs one command; returns the exit code.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        By default those of the process.
+    """
+    given = parser().parse_args(arguments)
+    try:
+        return int(given.run(given))
+    except (ContactNormalError, ValueError, TypeError) as error:
+        return _failed(error, REFUSED)
+    except (OSError, ImportError) as error:
+        return _failed(error, NO_FILE)
+    except KeyboardInterrupt:
+        return _failed("interrupted", INTERRUPTED)
+
+
+def _failed(why: object, code: int) -> int:
+    print(f"contact-normal: {why}", file=sys.stderr)
+    return code

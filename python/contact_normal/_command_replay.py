@@ -1,0 +1,39 @@
+"""`contact-normal replay`: makes the call of a dump again, by the program contact-normal-replay."""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any
+
+from ._library import candidates
+
+PROGRAM = "contact-normal-replay"
+
+
+def add(commands: Any) -> None:
+    """The command and its options."""
+    command = commands.add_parser("replay", help="makes the call of a dump again",
+                                  description="Makes the call of a dump again, by contact-normal-replay, whose exit code it returns.")
+    command.add_argument("file", help="what a call with the option dump has written")
+    command.set_defaults(run=run)
+
+
+def program() -> str:
+    """The program beside the library, or in bin beside its lib, or in PATH."""
+    folder = Path(candidates()[0]).resolve().parent
+    for place in (folder, folder.parent / "bin"):
+        found = shutil.which(PROGRAM, path=str(place))
+        if found:
+            return found
+    found = shutil.which(PROGRAM)
+    if not found:
+        raise FileNotFoundError(f"{PROGRAM} is not beside the library and not in PATH: `make install` of the project installs it")
+    return found
+
+
+def run(given: argparse.Namespace) -> int:
+    """Runs the program."""
+    return subprocess.run([program(), given.file], check=False).returncode

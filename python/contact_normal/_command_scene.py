@@ -1,0 +1,109 @@
+"""Options of the command line that several commands have: the surface, the bodies and the load."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import sys
+from typing import Any
+
+import numpy as np
+
+from .surface import Gap, Heights, faults, gap, level, read
+
+ELASTIC = ("young_modulus", "shear_modulus", "poisson_ratio", "e_star")
+LOADS = ("force", "approach", "mean_pressure")
+
+
+def add_scene(command: argparse.ArgumentParser) -> None:
+    """The options of a surface, bodies and a load."""
+    surface = command.add_argument_group("surface")
+    surface.add_argument("file", help="heights: .npy, .npz, text, .nc; .x3p, .sur and more by SurfaceTopography")
+    surface.add_argument("--gap", action="store_true",
+                         help="the file holds the undeformed distance h; without this: heights z of body 1 towards a plane, h = max z - z")
+    surface.add_argument("--level", choices=("mean", "plane", "quadric"), help="removes a tilt or a form, fitted by least squares")
+    surface.add_argument("--faults", action="store_true", help="finds fill values and spikes, prints them, and makes them holes")
+    surface.add_argument("--variable", metavar="NAME", help="which array of an .npz or .nc file")
+    surface.add_argument("--dx", type=float, help="element size along a row; by default what the file says")
+    surface.add_argument("--dy", type=float, help="element size across rows; by default what the file says, else dx")
+    surface.add_argument("--hole", type=float, metavar="VALUE", help="elements with this value have no surface, as those with NaN")
+    surface.add_argument("--units", nargs=2, metavar=("LENGTH", "FORCE"), help="names for output, as: --units m N; they change no number")
+    bodies = command.add_argument_group("bodies: one modulus; one value, or one for each body")
+    bodies.add_argument("--young-modulus", type=float, nargs="+", metavar="E")
+    bodies.add_argument("--shear-modulus", type=float, nargs="+", metavar="G")
+    bodies.add_argument("--poisson-ratio", type=float, nargs="+", metavar="NU")
+    bodies.add_argument("--e-star", type=float, metavar="E*", help="1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2")
+    load = command.add_argument_group("load: one of these").add_mutually_exclusive_group(required=True)
+    for name, text in zip(LOADS, ("normal force", "approach of the bodies", "force over the area of the grid")):
+        load.add_argument("--" + name.replace("_", "-"), type=float, help=text)
+    command.add_argument("--tolerance", type=float, help="of the residual; default 1e-6")
+    command.add_argument("--threads", type=int, default=0, help="default 0: all cores")
+
+
+def add_effects(command: argparse.ArgumentParser) -> None:
+    """The options of effects."""
+    effects = command.add_argument_group("effects")
+    effects.add_argument("--period", choices=("x", "y", "xy"), help="the grid is one period of a scene that repeats itself")
+    effects.add_argument("--pressure-limit", type=float, metavar="P", help="no pressure is larger: hardness")
+    effects.add_argument("--layer", type=float, metavar="C", help="compliance of a thin layer, a length per pressure")
+    for body in (1, 2):
+        effects.add_argument(f"--coating-{body}", type=float, nargs=3, metavar=("T", "G", "NU"),
+                             help=f"a layer bonded to body {body}: thickness, shear modulus, Poisson ratio")
+
+
+def effects_of(given: argparse.Namespace) -> dict[str, Any]:
+    """Effects as the functions of the package take them."""
+    coating = tuple(tuple(layer) if layer else None for layer in (given.coating_1, given.coating_2))
+    return {"period": given.period, "pressure_limit": given.pressure_limit, "layer": given.layer, "coating": coating if any(coating) else None}
+
+
+def gap_of(given: argparse.Namespace) -> Gap:
+    """The undeformed distance that the options name."""
+    if given.gap and Gap.is_in(given.file):
+        found = Gap.read(given.file)
+        return dataclasses.replace(found, units=tuple(given.units) if given.units else None)
+    heights = _heights_of(given)
+    if given.faults:
+        found_faults = faults(heights)
+        print(found_faults, file=sys.stderr)
+        heights = found_faults.removed
+    if given.level:
+        heights = level(heights, given.level)
+    if heights.holes.all():
+        raise ValueError(f"{given.file} has no element with a surface")
+    if given.gap:
+        return Gap(np.where(heights.holes, np.inf, heights.z), heights.dx, heights.dy, units=heights.units)
+    return gap(heights)
+
+
+def _heights_of(given: argparse.Namespace) -> Heights:
+    """What the file holds, with what the options say of it."""
+    said: dict[str, Any] = {"fill": given.hole} if given.hole is not None else {}
+    if given.dx is not None:
+        said.update(dx=given.dx, dy=given.dx if given.dy is None else given.dy)
+    if given.units:
+        said["units"] = tuple(given.units)
+    try:
+        heights = read(given.file, given.variable, **said)
+    except (OSError, ImportError, TypeError, ValueError):
+        raise
+    except Exception as error:  # of the reader of another package
+        raise ValueError(f"{given.file}: {error}") from error
+    if heights.units and not given.units:
+        print(f"lengths in {heights.units[0]}, as {given.file} says: moduli and load must be in units that go with it", file=sys.stderr)
+    return dataclasses.replace(heights, period=given.period if "period" in given else None)
+
+
+def scene_arguments(given: argparse.Namespace) -> dict[str, Any]:
+    """Bodies, load and options as the functions of the package take them."""
+    found: dict[str, Any] = {name: getattr(given, name) for name in LOADS}
+    for name in ELASTIC:
+        value = getattr(given, name)
+        if isinstance(value, list):
+            if len(value) > 2:
+                raise ValueError(f"--{name.replace('_', '-')} has {len(value)} values; it takes one, or one for each of the two bodies")
+            value = value[0] if len(value) == 1 else tuple(value)
+        found[name] = value
+    if given.tolerance is not None:
+        found["tolerance"] = given.tolerance
+    return {**found, "threads": given.threads}

@@ -1,0 +1,110 @@
+"""A gap: the undeformed distance of two surfaces on a grid, with what a solve, a picture or a program in C or Fortran needs of it."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._grid import centres
+from ._units import Units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ._arguments import Doubles
+    from ._result import Result
+
+# What every file of a gap begins with.
+_HEAD = "# Undeformed distance on a grid, made by contact-normal"
+
+
+@dataclass(frozen=True, eq=False)
+class Gap:
+    """The undeformed distance of two surfaces on a grid of rectangular elements; x and y of it are the centres of columns and rows.
+
+    Attributes
+    ----------
+    h : ndarray, (my, mx)
+        Undeformed distance of each element, a length; x runs along a row. +inf: no surface there.
+    dx, dy : float
+        Element sizes, lengths.
+    middle : (float, float)
+        Where the middle of the grid lies in the coordinates of the surfaces.
+    period : {"x", "y", "xy"} or None
+        Directions in which the grid is one period of a scene that repeats itself.
+    units : (str, str) or None
+        Names of the units of lengths and forces.
+    """
+
+    h: Doubles
+    dx: float
+    dy: float
+    middle: tuple[float, float] = (0.0, 0.0)
+    period: str | None = None
+    units: Units = None
+
+    @property
+    def x(self) -> Doubles:
+        """Centres of the columns."""
+        return centres(self.h.shape[1], self.dx, self.middle[0])
+
+    @property
+    def y(self) -> Doubles:
+        """Centres of the rows."""
+        return centres(self.h.shape[0], self.dy, self.middle[1])
+
+    @property
+    def area(self) -> float:
+        """Area of the grid, which is the number of elements times the size of one. A mean pressure is a force over this area."""
+        return float(self.h.size * self.dx * self.dy)
+
+    def solve(self, **scene: Any) -> Result:
+        """Presses the two surfaces together: `contact_normal.solve` of this gap. The arguments are a load, elastic constants, effects and
+        options. Places of the result are in the coordinates of the surfaces; those of arguments, as `spin_centre`, are relative to the
+        middle of the grid."""
+        from ._solve import solve
+
+        result = solve(self.h, self.dx, self.dy, **{"period": self.period, "units": self.units, **scene})
+        result._centre = self.middle
+        return result
+
+    def write(self, path: str | os.PathLike[str], comment: str = "") -> None:
+        """Writes the gap as text, which the examples `gap.c` and `gap.f90` read.
+
+        The file has two lines that begin with "#", then `mx my dx dy`, then one undeformed distance a line, x fastest. "inf" stands where there
+        is no surface.
+        """
+        if "\n" in comment:
+            raise ValueError("comment has several lines; it must be one")
+        my, mx = self.h.shape
+        lines = [_HEAD, f"# {comment}", f"{mx} {my} {float(self.dx)!r} {float(self.dy)!r}", *(repr(float(value)) for value in self.h.flat)]
+        Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+    @staticmethod
+    def is_in(path: str | os.PathLike[str]) -> bool:
+        """Whether `write` wrote the file."""
+        with open(path, "rb") as file:
+            return file.readline().rstrip() == _HEAD.encode()
+
+    @classmethod
+    def read(cls, path: str | os.PathLike[str]) -> Gap:
+        """The gap of a file that `write` wrote. Middle, period and units are not in the file."""
+        lines = Path(path).read_text(encoding="utf-8").splitlines()
+        if len(lines) < 3 or lines[0] != _HEAD:
+            raise ValueError(f"{path} does not begin with {_HEAD!r}: it is no file of a gap")
+        words = lines[2].split()
+        mx, my, dx, dy = int(words[0]), int(words[1]), float(words[2]), float(words[3])
+        h = np.array([float(line) for line in lines[3:]])
+        if h.size != mx * my:
+            raise ValueError(f"{path} has {h.size} distances; {mx} x {my} elements need {mx * my}")
+        return cls(h.reshape(my, mx), dx, dy)
+
+    def plot(self, axes: Axes | None = None, largest: float | None = None) -> Axes:
+        """Draws the undeformed distance, up to `largest` if it is given. Elements without a surface are white."""
+        from ._plot_surfaces import plot_gap
+
+        return plot_gap(self, axes, largest)

@@ -1,0 +1,46 @@
+"""Scenes and options that are given together, by the names that `solve` has for them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from ._arguments import Both, SolveOptions, options
+from ._scene import Scene
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+EFFECTS = ("influence", "layer", "pressure_limit", "period", "patches", "row_tables", "coating", "friction")
+_LOADS = ("approach", "force", "mean_pressure", "shear_modulus", "poisson_ratio", "young_modulus", "e_star")
+
+
+class SceneArguments(SolveOptions, total=False):
+    """What `solve` takes beside the undeformed distance and the sizes of elements: see there."""
+
+    approach: float | None
+    force: float | None
+    mean_pressure: float | None
+    shear_modulus: Both | None
+    poisson_ratio: Both | None
+    young_modulus: Both | None
+    e_star: float | None
+    layer: npt.ArrayLike | None
+    pressure_limit: npt.ArrayLike | None
+    period: str | None
+    patches: tuple[npt.ArrayLike, npt.ArrayLike] | None
+    coating: Any
+    friction: Mapping[str, Any] | None
+
+
+def effects_in(given: dict[str, Any]) -> dict[str, Any]:
+    """Takes the effects out of `given`."""
+    return {name: given.pop(name) for name in EFFECTS if name in given}
+
+
+def scene_and_options(h: Any, dx: Any, dy: Any, given: Mapping[str, Any]) -> tuple[Scene, Any]:
+    """The scene, and a `contact_normal_options`."""
+    rest = dict(given)
+    effects = effects_in(rest)
+    loads = {name: rest.pop(name, None) for name in _LOADS}
+    return Scene(h, dx, dy, effects=effects, **loads), options(rest)

@@ -1,0 +1,101 @@
+"""Pictures of the surface, seen from above."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._axes import EDGE, edges, exterior, name_axes, new_axes
+from ._units import label, with_unit
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    from matplotlib.axes import Axes
+
+    from ._result import Result
+    from ._solved import Solved
+
+STICK, SLIP = (0.78, 0.87, 0.96), (0.99, 0.85, 0.74)
+# Lines of more segments are drawn as pixels in files of vectors.
+_SEGMENTS = 4000
+
+
+def plot_pressure(result: Result, axes: Axes | None) -> Axes:
+    """See `Result.plot`."""
+    axes = axes or new_axes((6.8, 5.1))
+    my, mx = result.pressure.shape
+    x_edges, y_edges = edges(result.x, result.dx), edges(result.y, result.dy)
+    shown = np.ma.masked_where(~result.contact, result.pressure)
+    image = axes.imshow(
+        shown,
+        origin="lower",
+        extent=(x_edges[0], x_edges[-1], y_edges[0], y_edges[-1]),
+        cmap="viridis",
+        vmin=0.0,
+        interpolation="nearest",
+    )
+    axes.set_facecolor(exterior(axes))
+    _outline(axes, result.contact, x_edges, y_edges)
+    axes.figure.colorbar(image, ax=axes, shrink=0.9, label=label("pressure", "pressure", result.units))
+    name_axes(axes, result.units)
+    force, approach = with_unit(f"{result.force:.5g}", "force", result.units), with_unit(f"{result.approach:.5g}", "length", result.units)
+    axes.set_title(f"force {force}, approach {approach}, {mx} × {my} elements", fontsize=10)
+    return axes
+
+
+def plot_traction(result: Solved, axes: Axes | None) -> Axes:
+    """See `Result.plot_traction`."""
+    axes = axes or new_axes((6.8, 5.1))
+    my, mx = result.stick_slip.shape
+    x_edges, y_edges = edges(result.x, result.dx), edges(result.y, result.dy)
+    shown = np.ones((my, mx, 3)) * exterior(axes)
+    for side, colour in ((1, STICK), (2, SLIP)):
+        shown[result.stick_slip == side] = colour
+    extent = (x_edges[0], x_edges[-1], y_edges[0], y_edges[-1])
+    axes.imshow(shown, origin="lower", extent=extent, interpolation="nearest")
+    _arrows(result, axes)
+    _outline(axes, result.stick_slip > 0, x_edges, y_edges)
+    _outline(axes, result.stick_slip == 1, x_edges, y_edges)
+    fx, fy = result.tangential_force
+    name_axes(axes, result.units)
+    force = with_unit(f"({fx:.4g}, {fy:.4g})", "force", result.units)
+    axes.set_title(f"tractions: force {force}; stick blue, slip orange", fontsize=10)
+    return axes
+
+
+def _arrows(result: Solved, axes: Axes) -> None:
+    """Some twenty arrows across the contact area, the longest somewhat longer than their distance, and what one of round length stands for."""
+    rows, columns = np.nonzero(result.stick_slip > 0)
+    across = max(np.ptp(rows), np.ptp(columns)) + 1 if rows.size else 1
+    step = -(-int(across) // 20)
+    chosen = np.zeros(result.stick_slip.shape, dtype=bool)
+    chosen[step // 2 :: step, step // 2 :: step] = True
+    iy, ix = np.nonzero(chosen & (result.stick_slip > 0))
+    qx, qy = result.traction[:, iy, ix]
+    largest = float(np.hypot(result.traction[0], result.traction[1]).max(initial=0.0)) or 1.0
+    scale = largest / (1.3 * step * min(result.dx, result.dy))
+    arrows = axes.quiver(result.x[ix], result.y[iy], qx, qy, angles="xy", scale_units="xy", scale=scale, pivot="mid", width=0.004)
+    unit = 10.0 ** np.floor(np.log10(largest))
+    shown = unit * max(step for step in (1.0, 2.0, 5.0) if step * unit <= largest)
+    axes.quiverkey(arrows, 0.98, 0.04, shown, with_unit(f"{shown:g}", "pressure", result.units), labelpos="W", coordinates="axes",
+                   color=axes.xaxis.label.get_color())
+
+
+def _outline(axes: Axes, contact: npt.NDArray[np.bool_], x_edges: Any, y_edges: Any) -> None:
+    """The border of the contact area along the edges of its elements: thin where elements are small, so that it does not cover them."""
+    from matplotlib.collections import LineCollection
+
+    padded = np.pad(contact, 1)
+    rows, columns = np.nonzero(padded[1:, 1:-1] != padded[:-1, 1:-1])
+    flat = np.stack([x_edges[columns], y_edges[rows], x_edges[columns + 1], y_edges[rows]], axis=1)
+    rows, columns = np.nonzero(padded[1:-1, 1:] != padded[1:-1, :-1])
+    upright = np.stack([x_edges[columns], y_edges[rows], x_edges[columns], y_edges[rows + 1]], axis=1)
+    segments = np.concatenate([flat, upright]).reshape(-1, 2, 2)
+    box = axes.get_position()
+    figure: Any = axes.figure
+    width, height = figure.get_size_inches() * (box.width, box.height)
+    points = 72.0 * min(width / contact.shape[1], height / contact.shape[0])
+    lines = LineCollection(list(segments), colors=EDGE, linewidths=min(1.6, 0.25 * points), capstyle="projecting",
+                           rasterized=len(segments) > _SEGMENTS)
+    axes.add_collection(lines, autolim=False)

@@ -1,0 +1,135 @@
+"""Pictures with curves: the ledger, sections, pressures by their size, area against load, creep forces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._axes import EDGE, SIZE, borders, line_of, new_axes
+from ._units import label, with_unit
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ._creep_forces import CreepForceTable
+    from ._result import Result
+    from ._solved import Solved
+
+def plot_ledger(ledger: Sequence[dict[str, float]], estimated: str, axes: Axes | None) -> Axes:
+    """See `Ledger.plot`."""
+    axes = axes or new_axes(SIZE)
+    for name, error, of in (
+        ("pressures (rms)", "error_pressure", None),
+        (estimated, "error_force", estimated),
+        ("largest pressure", "error_max_pressure", "max_pressure"),
+    ):
+        scales = [1.0 if of is None else row[of] for row in ledger]
+        points = [(row["seconds"], row[error] / scale) for row, scale in zip(ledger, scales) if row[error] > 0 and scale > 0]
+        if points:
+            axes.loglog(*zip(*points), "o-", label=name)
+    shown = 0.0
+    for row in ledger:
+        if row["seconds"] < 1.15 * shown:  # its label would lie on the one before
+            continue
+        shown = row["seconds"]
+        axes.axvline(row["seconds"], color="0.5", alpha=0.3, linewidth=1.0, zorder=0)
+        axes.annotate(
+            f"{row['mx']:.0f} × {row['my']:.0f}",
+            (row["seconds"], 0.99),
+            xycoords=("data", "axes fraction"),
+            rotation=90,
+            va="top",
+            ha="right",
+            fontsize=8,
+        )
+    if axes.has_data():
+        from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda seconds, _: f"{seconds:g}"))
+        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.margins(y=0.2)
+    axes.set(xlabel="time [s]", ylabel="estimated relative error", title="What accuracy costs: the ledger of one solve")
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small")
+    return axes
+
+
+def plot_section(result: Result, x: float | None, y: float | None, axes: Axes | None) -> Axes:
+    """See `Result.plot_section`."""
+    along, across, where, line = line_of(x, y, result)
+    places, d = getattr(result, along), getattr(result, "d" + along)
+    axes = axes or new_axes(SIZE)
+    axes.fill_between(places, result.pressure[line], alpha=0.2, linewidth=0.0)
+    axes.plot(places, result.pressure[line])
+    _mark_borders(axes, borders(result.contact[line], places, d))
+    axes.set(xlabel=label(along, "length", result.units), ylabel=label("pressure", "pressure", result.units), xlim=(places[0], places[-1]))
+    axes.set_ylim(bottom=min(0.0, float(result.pressure[line].min())))
+    axes.set_title(f"{across} = {with_unit(f'{where:.4g}', 'length', result.units)}; dotted: the contact's edge", fontsize=10)
+    return axes
+
+
+def _mark_borders(axes: Axes, places: Any) -> None:
+    # Many borders, of a rough surface, are thin lines, so that they do not cover the curve.
+    for place in places:
+        axes.axvline(place, color=EDGE, linestyle=":", linewidth=1.2 if len(places) <= 12 else 0.4, zorder=0)
+
+
+def plot_histogram(result: Solved, bins: int, axes: Axes | None) -> Axes:
+    """See `Result.plot_histogram`."""
+    axes = axes or new_axes(SIZE)
+    inside = result.pressure[result.contact]
+    share = np.full(inside.shape, 100.0 / max(1, inside.size))
+    axes.hist(inside, bins=bins, weights=share)
+    axes.set(xlabel=label("pressure", "pressure", result.units), ylabel="share of the contact area [%]")
+    area = with_unit(f"{result.contact_area:.4g}", "area", result.units)
+    axes.set_title(f"contact area {area}, largest pressure {with_unit(f'{result.max_pressure:.4g}', 'pressure', result.units)}", fontsize=10)
+    return axes
+
+
+def plot_contact_area(results: Sequence[Solved], axes: Axes | None = None) -> Axes:
+    """Draws the contact area of several results over their normal forces.
+
+    Parameters
+    ----------
+    results : sequence of Result
+        In any order; units are those of the first.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; by default the axes of a new figure.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes, to add to or to save.
+    """
+    if not results:
+        raise ValueError("results is empty; it must have at least one result")
+    axes, units = axes or new_axes(SIZE), results[0].units
+    places = sorted((result.force, result.contact_area) for result in results)
+    axes.plot(*zip(*places), "o-")
+    axes.set(xlabel=label("normal force", "force", units), ylabel=label("contact area", "area", units))
+    axes.set_xlim(left=0.0)
+    axes.set_ylim(bottom=0.0)
+    return axes
+
+
+def plot_creep_forces(table: CreepForceTable, of: str, eta: float, axis_ratio: float, poisson_ratio: float | None, axes: Axes | None) -> Axes:
+    """See `CreepForceTable.plot`."""
+    names = {"force_x": (0, "force $F_x$"), "force_y": (1, "force $F_y$"), "moment": (2, "moment $M_z$")}
+    if of not in names:
+        raise ValueError(f"of is {of!r}; it must be one of {', '.join(names)}")
+    axes = axes or new_axes(SIZE)
+    which, text = names[of]
+    first, last = float(table.xi[0] if table.of_surface else -table.xi[-1]), float(table.xi[-1])
+    xi = np.linspace(first, last, 201)
+    for phi in table.phi:
+        *forces, error = table.forces(xi, eta, phi, axis_ratio=axis_ratio, poisson_ratio=poisson_ratio)
+        (line,) = axes.plot(xi, forces[which], label=f"$\\phi$ = {phi:g}")
+        if not table.of_surface:  # errors are relative to mu N, as the forces are
+            axes.fill_between(xi, forces[which] - error, forces[which] + error, color=line.get_color(), alpha=0.3, linewidth=0.0)
+    per = "" if table.of_surface else " / ($\\mu N c$)" if of == "moment" else " / ($\\mu N$)"
+    axes.set(xlabel="creepage $\\xi$" if table.of_surface else "creepage $G c^2 \\xi/(\\mu N)$", ylabel=text + per)
+    axes.legend(title="spin" if table.of_surface else "spin $G c^3 \\phi/(\\mu N)$")
+    return axes

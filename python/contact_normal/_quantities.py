@@ -1,0 +1,158 @@
+"""Quantities of a scene, grid by grid, with their errors."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from . import _constants
+from ._arguments import integer
+from ._calls import called
+from ._given import SceneArguments, scene_and_options
+from ._library import check, initialised, library
+from ._structs import QuantityRow
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    from matplotlib.axes import Axes
+    from typing_extensions import Unpack
+
+_PREFIX = "QUANTITY_"
+# The numbers of the library, by name.
+QUANTITIES: dict[str, int] = {
+    name[len(_PREFIX):].lower(): value for name, value in vars(_constants).items() if name.startswith(_PREFIX)
+}
+_NAMES = {number: name for name, number in QUANTITIES.items()}
+LACKS = ("", "no friction", "prescribed", "not with an effect of the scene", "no contact", "singular", "one grid", "unsolved")
+
+
+def numbers(name: str, wanted: Sequence[str]) -> Any:
+    """The numbers of some quantities, as a C array."""
+    if isinstance(wanted, str):
+        raise TypeError(f"{name} is {wanted!r}; it must be a sequence of names")
+    for each in wanted:
+        if each not in QUANTITIES:
+            raise ValueError(f"{name} has {each!r}; it must hold some of {', '.join(QUANTITIES)}")
+    return (ctypes.c_int32 * len(wanted))(*[QUANTITIES[each] for each in wanted])
+
+
+class Quantity(NamedTuple):
+    """A quantity on one grid.
+
+    Attributes
+    ----------
+    name : str
+        "force", "max_pressure", ...
+    shape : (my, mx)
+        The grid.
+    value : float
+        nan: there is none, and `lack` says why.
+    error : float
+        Estimated error, in the unit of the value; negative: not known, and `lack` says why.
+    seconds, work_units : float
+        Of set-up and solve on this grid; products on it.
+    lack : str
+        "no friction", "prescribed", "not with an effect of the scene", "no contact", "singular" (it grows from grid to grid), "one grid",
+        "unsolved"; "": nothing is missing.
+    """
+
+    name: str
+    shape: tuple[int, int]
+    value: float
+    error: float
+    seconds: float
+    work_units: float
+    lack: str
+
+    @classmethod
+    def of(cls, row: QuantityRow) -> Quantity:
+        """The row of the library."""
+        return cls(
+            _NAMES[row.quantity], (row.my, row.mx), row.value, row.error, row.seconds, row.work_units, LACKS[row.lack],
+        )
+
+
+class Quantities(list[Quantity]):
+    """The rows of `quantities`, coarsest grid first."""
+
+    def last(self, name: str) -> Quantity:
+        """The row of a quantity on the finest grid."""
+        return [row for row in self if row.name == name][-1]
+
+    def __str__(self) -> str:
+        lines = [f"{'quantity':18}{'grid':>13}{'value':>16}{'error':>12}{'seconds':>12}"]
+        for row in self:
+            grid, error = f"{row.shape[1]} x {row.shape[0]}", f"{row.error:.2g}" if row.error >= 0 else row.lack
+            lines.append(f"{row.name:18}{grid:>13}{row.value:16.8g}{error:>12}{row.seconds:12.2g}")
+        return "\n".join(lines)
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draws the relative error of each quantity against the seconds of each grid.
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes, optional
+            Where to draw; by default the axes of a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes.
+        """
+        from ._plot_accuracy import plot_quantities
+
+        return plot_quantities(self, axes)
+
+
+def quantities(
+    h: npt.ArrayLike,
+    dx: float,
+    dy: float,
+    *,
+    names: Sequence[str] = ("force", "max_pressure", "contact_area"),
+    coarser: int = 2,
+    **given: Unpack[SceneArguments],
+) -> Quantities:
+    """Values and errors of quantities, on the grid of the scene and on coarser ones.
+
+    Parameters
+    ----------
+    h, dx, dy, **given
+        As for `solve`, with its effects and options; without own coefficients.
+    names : sequence of str
+        "force" (of the approach, if the force is prescribed), "max_pressure", "contact_area", "mean_gap", "stiffness", "tangential_force",
+        "creepage", "spin_moment", "stick_area", "max_von_mises", "von_mises_depth", "max_shear".
+    coarser : int
+        Grids below that of the scene, each with half the elements of the next in both directions: 0 to 12. Errors of all but the first three
+        quantities follow from these.
+
+    Returns
+    -------
+    Quantities
+        A list of `Quantity`: for each grid, coarsest first, one for each name.
+
+    Raises
+    ------
+    ContactNormalError
+        If the library refuses the scene or an option, or does not solve it.
+
+    Examples
+    --------
+    >>> import numpy as np, contact_normal
+    >>> x = (np.arange(64) - 31.5) * 0.1
+    >>> h = (x[None, :] ** 2 + x[:, None] ** 2) / 100.0
+    >>> rows = contact_normal.quantities(h, 0.1, 0.1, names=["force", "max_von_mises"], approach=0.05, e_star=1e5, poisson_ratio=0.3)
+    >>> [row.shape for row in rows if row.name == "force"]
+    [(16, 16), (32, 32), (64, 64)]
+    """
+    scene, struct = scene_and_options(h, dx, dy, given)
+    wanted, grids = numbers("names", names), integer("coarser", coarser)
+    room = max(1, len(wanted) * (max(0, grids) + 1))
+    rows, written = (QuantityRow * room)(initialised("quantity_row")), ctypes.c_int32(0)
+    status, message = called(
+        library.contact_normal_quantities, ctypes.byref(scene.struct), ctypes.byref(struct), len(wanted), wanted, grids, rows,
+        ctypes.byref(written), keep=(scene,),
+    )
+    check(status, message)
+    return Quantities(Quantity.of(row) for row in rows[: written.value])

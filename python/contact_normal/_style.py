@@ -1,0 +1,18 @@
+"""The style of this project's pictures: contact_normal.mplstyle, and dark.mplstyle over it for dark pages."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+LIGHT = Path(__file__).with_name("contact_normal.mplstyle")
+DARK = Path(__file__).with_name("dark.mplstyle")
+
+
+def matplotlib_style(dark: bool = False) -> Any:
+    """A context in which matplotlib draws in the style. Needs matplotlib."""
+    try:
+        from matplotlib import style
+    except ImportError as error:
+        raise ImportError("pictures need matplotlib: pip install 'contact-normal[plot]'") from error
+    return style.context([LIGHT, DARK] if dark else [LIGHT])

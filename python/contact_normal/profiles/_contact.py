@@ -1,0 +1,140 @@
+"""Where a wheel touches a rail."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._bodies import Position, Track, Wheelset
+from ._patch import ContactPoint, Pair
+
+if TYPE_CHECKING:
+    from .._arguments import Doubles
+
+# Places between two points of the wheel's curve at which the clearance is looked at.
+_BETWEEN = 6
+# An interval around a minimum is divided by 32 points, nine times: it shrinks by 16^9.
+_SECTIONS, _PARTS = 9, 32
+# Steps of the search of a roll, in which each has about 1.6 times the digits of the one before.
+_ROLLS = 40
+
+
+def _lowest(pair: Pair, t: Any) -> tuple[Doubles, Doubles, Doubles]:
+    """The place on each circle of the wheel whose normal has no part along the rail, in coordinates of the track.
+
+    Only there a wheel can touch a rail, which is the same all along x. With e the radial direction at an angle theta from straight
+    below and r the radius, the normal is e - r' e_y in the wheelset; its part along x is a sin(theta) + b cos(theta) - c r'.
+    """
+    y, radius, dy, dz = pair.tread.at(t)
+    turned = pair.position.rotation()
+    along = turned[0]
+    wanted = dz / dy * along[1] / np.hypot(along[0], along[2])
+    theta = np.arcsin(np.clip(wanted, -1.0, 1.0)) - np.arctan2(along[2], along[0])
+    places = turned @ np.stack([radius * np.sin(theta), y, radius * np.cos(theta)])
+    x, y, z = places + pair.axle()[:, None]
+    return x, y, z
+
+
+def _clearance(pair: Pair, t: Any) -> Doubles:
+    """Vertical distance of these lowest places from the rail, infinite beside it."""
+    _, y, z = _lowest(pair, t)
+    on_rail = pair.rail.where(y, near=pair.rail.t[np.argmin(pair.rail.z)])
+    distance = pair.rail.at(np.where(np.isnan(on_rail), 0.0, on_rail))[1] - z
+    return np.asarray(np.where(np.isnan(on_rail), np.inf, distance))
+
+
+def _minima(pair: Pair) -> list[tuple[float, float]]:
+    """Local minima of the clearance along the wheel, the smallest first: clearance and t."""
+    t = pair.tread.between(_BETWEEN)
+    found = _clearance(pair, t)
+    inner = np.nonzero((found[1:-1] <= found[:-2]) & (found[1:-1] < found[2:]) & np.isfinite(found[1:-1]))[0] + 1
+    if not len(inner):
+        return []
+    low, high = t[inner - 1], t[inner + 1]
+    for _ in range(_SECTIONS):
+        places = low + (high - low) * (np.arange(_PARTS + 1) / _PARTS)[:, None]
+        least = np.clip(_clearance(pair, places.ravel()).reshape(places.shape).argmin(axis=0), 1, _PARTS - 1)
+        low, high = (np.take_along_axis(places, (least + by)[None], axis=0)[0] for by in (-1, 1))
+    middle = 0.5 * (low + high)
+    return sorted(zip(_clearance(pair, middle).tolist(), middle.tolist()))
+
+
+def _pair(track: Track, wheelset: Wheelset, position: Position, side: str) -> Pair:
+    seen = position.seen_from(side)
+    height = dataclasses.replace(seen, z=0.0 if seen.z is None else seen.z)
+    return Pair(track.placed().curve(), wheelset.tread(), wheelset.radius, height, side)
+
+
+def contact_points(
+    track: Track, wheelset: Wheelset, position: Position = Position(), side: str = "right", within: float = 0.0
+) -> list[ContactPoint]:
+    """Where a wheel touches its rail, or comes closest to it: the local minima of the vertical clearance.
+
+    Parameters
+    ----------
+    track, wheelset : Track, Wheelset
+        The profiles in their places.
+    position : Position
+        How the wheelset stands on the track. With z = None the wheelset is lowered until this wheel touches.
+    side : {"left", "right"}
+        Which wheel.
+    within : float
+        Other local minima are returned whose clearance is by at most this length larger, in mm. Loaded wheels may touch there too: each place
+        is a patch of its own.
+
+    Returns
+    -------
+    list of ContactPoint
+        The closest one first.
+
+    Raises
+    ------
+    ValueError
+        If the wheel is nowhere above the rail.
+    """
+    pair = _pair(track, wheelset, position, side)
+    minima = _minima(pair)
+    if not minima:
+        raise ValueError(f"the {side} wheel is nowhere above its rail: position.y is {position.y}, the gauge {track.gauge}")
+    if position.z is None:
+        lowered = minima[0][0]
+        pair = dataclasses.replace(pair, position=dataclasses.replace(pair.position, z=lowered))
+        minima = [(clearance - lowered, t) for clearance, t in minima]
+    x, y, z = _lowest(pair, np.array([t for _, t in minima]))
+    on_rail = pair.rail.where(y, near=pair.rail.t[np.argmin(pair.rail.z)])
+    places = [(clearance, float(y[k]), float(z[k])) for k, (clearance, _) in enumerate(minima)]
+    points = []
+    for k, (clearance, t) in enumerate(minima):
+        if clearance - minima[0][0] <= within:
+            others = tuple(places[:k] + places[k + 1 :])
+            points.append(ContactPoint(pair, float(x[k]), float(on_rail[k]), t, others, clearance))
+    return points
+
+
+def settled(track: Track, wheelset: Wheelset, y: float = 0.0, yaw: float = 0.0) -> Position:
+    """The position in which both wheels touch: height and roll of a wheelset that is shifted and yawed.
+
+    The roll is found by the secant method: the roll at which both wheels are lowered by the same length.
+    """
+
+    def lowered(roll: float) -> tuple[float, float]:
+        position = Position(y, None, roll, yaw)
+        left, right = (_minima(_pair(track, wheelset, position, side)) for side in ("left", "right"))
+        if not (left and right):
+            raise ValueError(f"y is {y}: one wheel is nowhere above its rail")
+        return left[0][0], right[0][0]
+
+    # A roll lowers the right wheel and lifts the left one by half of the distance of the wheels: the first guess of the slope.
+    slope, roll = 2.0 * wheelset.origin, 0.0
+    left, right = lowered(roll)
+    for _ in range(_ROLLS):
+        change = (right - left) / slope
+        if not abs(change) > 1e-14:
+            break
+        moved = lowered(roll + change)
+        if moved[1] - moved[0] != right - left:
+            slope = -((moved[1] - moved[0]) - (right - left)) / change
+        roll, (left, right) = roll + change, moved
+    return Position(y, 0.5 * (left + right), roll, yaw)

@@ -1,0 +1,237 @@
+"""The place where a wheel touches a rail: angle, rolling radius, gap, creepages, forces."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .._arguments import number
+from .._gap import Gap
+from ._bodies import Position
+from ._curve import Curve
+
+if TYPE_CHECKING:
+    from .._arguments import Doubles
+    from .._result import Result
+
+# Newton's steps for a distance along the normal. Each doubles the digits; the start is off by the curvature of the wheel only.
+_STEPS = 8
+# A grid is made for the approach times the second number, and made anew if it was made for more than the first one.
+_LOOSE, _RESERVE = 1.5, 1.1
+# The grid of a patch has at most this many elements on each side of the contact point; the first one that is tried.
+_FARTHEST = 1024
+_LEAST = 8
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """A rail and a wheel in their places, mirrored for the left side: y outwards, z downwards."""
+
+    rail: Curve
+    tread: Curve
+    radius: float
+    position: Position
+    side: str
+
+    def axle(self) -> Doubles:
+        """The middle of the axle, in coordinates of the track."""
+        assert self.position.z is not None
+        return np.array([0.0, self.position.y, self.position.z - self.radius])
+
+
+@dataclass(frozen=True, eq=False)
+class ContactPoint:
+    """Where a wheel touches a rail.
+
+    The patch has coordinates of its own, whose origin is this point: x forward along the rail, y along the surface of the rail towards the field
+    side, and the normal from the rail into the wheel. The wheel is body 1, the rail body 2.
+    """
+
+    _pair: Pair
+    _x: float
+    _on_rail: float
+    _on_wheel: float
+    # Clearance, y and z of the other places where the wheel is close to the rail.
+    _others: tuple[tuple[float, float, float], ...]
+    clearance: float
+    """Vertical distance of both surfaces here, in mm. It is 0 if they touch, and negative if the position lets them overlap."""
+
+    @property
+    def place(self) -> tuple[float, float, float]:
+        """x forward, y to the right, z downwards, in mm, from the top of the rails in the middle of the track; on the rail."""
+        y, z, _, _ = (float(value) for value in self._pair.rail.at(self._on_rail))
+        return self._x, (y if self._pair.side == "right" else -y), z
+
+    @property
+    def position(self) -> Position:
+        """Where the wheelset stands, with the height that was found."""
+        seen = self._pair.position
+        return seen if self._pair.side == "right" else Position(-seen.y, seen.z, -seen.roll, -seen.yaw)
+
+    @property
+    def angle(self) -> float:
+        """The contact angle in rad, by which the surface of the rail rises towards the field side. At the flange it is large and positive."""
+        _, _, dy, dz = self._pair.rail.at(self._on_rail)
+        return float(np.arctan2(-dz, dy))
+
+    @property
+    def rolling_radius(self) -> float:
+        """Distance of the point of the wheel from the axle, in mm."""
+        return float(self._pair.tread.at(self._on_wheel)[1])
+
+    def _axes(self) -> Doubles:
+        """The unit vectors of the patch, in coordinates of the track that are mirrored for the left side: x, y, normal."""
+        c, s = np.cos(self.angle), np.sin(self.angle)
+        return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, -s, -c]])
+
+    def distance(self, x: Any, y: Any) -> Doubles:
+        """The undeformed distance along the normal at places of the patch, in mm: positive where the wheel is above the rail, inf beside one of them.
+
+        Parameters
+        ----------
+        x, y : array_like, (mx,) and (my,)
+            Places in coordinates of the patch, in mm.
+
+        Returns
+        -------
+        ndarray, (my, mx)
+        """
+        x, y = np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64)
+        pair, (ex, ey, normal) = self._pair, self._axes()
+        origin = np.array([self._x, *(float(value) for value in pair.rail.at(self._on_rail)[:2])])
+        # The rail is the same all along x.
+        along = (ey[1], ey[2])
+        on_rail = pair.rail.where(y + along[0] * origin[1] + along[1] * origin[2], along, self._on_rail)
+        rail_y, rail_z, _, _ = pair.rail.at(np.where(np.isnan(on_rail), 0.0, on_rail))
+        rail = (rail_y - origin[1]) * normal[1] + (rail_z - origin[2]) * normal[2]
+        # The wheel: the n at which origin + x ex + y ey + n normal lies on its surface, whose distance from the axle is the radius there.
+        turned = pair.position.rotation()
+        base = (origin - pair.axle() + x[None, :, None] * ex + y[:, None, None] * ey) @ turned
+        step = normal @ turned
+        n = np.zeros(base.shape[:2])
+        for _ in range(_STEPS):
+            at = base + n[:, :, None] * step
+            on_wheel = pair.tread.where(at[:, :, 1], near=self._on_wheel)
+            _, radius, dy, dz = pair.tread.at(np.where(np.isnan(on_wheel), self._on_wheel, on_wheel))
+            from_axle = np.hypot(at[:, :, 0], at[:, :, 2])
+            slope = (at[:, :, 0] * step[0] + at[:, :, 2] * step[2]) / from_axle - dz / dy * step[1]
+            n -= (from_axle - radius) / slope
+        n[np.isnan(on_wheel)] = np.inf
+        n[np.isnan(on_rail), :] = np.inf
+        return np.asarray(n - rail[:, None])
+
+    def gap(self, dx: float, dy: float, depth: float) -> Gap:
+        """The undeformed distance on a grid of elements of dx by dy, in mm, as large as a contact with an approach of `depth` can need.
+
+        Pressures >= 0 displace by u >= 0, so h - approach + u = 0 needs h <= approach: an element whose distance exceeds the least one by more than
+        `depth` cannot touch. The grid has one row and one column of such elements on each side. The contact point is the centre of an element.
+        """
+        dx, dy, depth = number("dx", dx), number("dy", dy), number("depth", depth)
+        for name, value in (("dx", dx), ("dy", dy), ("depth", depth)):
+            if not value > 0.0:
+                raise ValueError(f"{name} is {value}; it must be positive")
+        reach = _LEAST
+        while True:
+            if reach > _FARTHEST:
+                raise ValueError(f"depth is {depth}: the grid would need more than {2 * _FARTHEST} elements of {dx} x {dy} in a direction")
+            k = np.arange(-reach, reach + 1)
+            # Both axes first: they tell of most grids that are too small.
+            ahead, aside = self.distance(k * dx, [0.0])[0], self.distance([0.0], k * dy)[:, 0]
+            if min(ahead[0], ahead[-1], aside[0], aside[-1]) >= min(ahead.min(), aside.min()) + depth:
+                h = self.distance(k * dx, k * dy)
+                is_near = h < h.min() + depth
+                if not (is_near[[0, -1]].any() or is_near[:, [0, -1]].any()):
+                    break
+            reach *= 2
+        rows, columns = (slice(near[0] - 1, near[-1] + 2) for near in (np.nonzero(is_near.any(axis=axis))[0] for axis in (1, 0)))
+        middle = (float(k[columns][[0, -1]].mean()) * dx, float(k[rows][[0, -1]].mean()) * dy)
+        return Gap(np.ascontiguousarray(h[rows, columns]), dx, dy, middle, units=("mm", "N"))
+
+    def press(
+        self, force: float, dx: float, dy: float, *, depth: float = 0.01, friction: dict[str, Any] | None = None, **scene: Any
+    ) -> tuple[Gap, Result]:
+        """Presses wheel and rail together by a force along the normal: the gap, on a grid as large as needed, and the result.
+
+        Parameters
+        ----------
+        force : float
+            Normal force, in N.
+        dx, dy : float
+            Element sizes, in mm.
+        depth : float
+            First guess of the approach, in mm. The grid is made anew until `depth` is 1 to 1.5 times the approach that is found.
+            A warning tells if the wheel would also touch at another place, which is not in the grid.
+        friction : dict, optional
+            As that of `contact_normal.solve`. Its spin is about the contact point.
+        **scene
+            Elastic constants, effects and options of `contact_normal.solve`.
+        """
+        may_shrink = True
+        while True:
+            gap = self.gap(dx, dy, depth)
+            result = gap.solve(force=force, **scene)
+            approach = result.approach - float(gap.h.min())
+            if not approach > depth:
+                # Once is enough: a smaller grid may lack a second patch that carried a part of the force.
+                if not may_shrink or not depth > _LOOSE * approach > 0.0:
+                    break
+                may_shrink = False
+            # A grid that is too small finds a larger approach than there is.
+            depth = _RESERVE * approach
+        self._warn_of_others(gap, approach)
+        if friction is not None:
+            centre = (-gap.middle[0], -gap.middle[1])
+            result = gap.solve(force=force, friction={"spin_centre": centre, **friction}, **scene)
+        return gap, result
+
+    def _warn_of_others(self, gap: Gap, approach: float) -> None:
+        """Warns if the wheel would touch at another place, too, that is not in the grid."""
+        (_, ey, _), (y0, z0) = self._axes(), (float(value) for value in self._pair.rail.at(self._on_rail)[:2])
+        for clearance, y, z in self._others:
+            along = (y - y0) * ey[1] + (z - z0) * ey[2]
+            if clearance - self.clearance < approach and not gap.y[0] <= along <= gap.y[-1]:
+                warnings.warn(f"the wheel also touches the rail {along:.1f} mm beside this patch, where it is {clearance - self.clearance:.3g} mm "
+                              f"farther off and the approach is {approach:.3g} mm: a part of the force is carried there", stacklevel=3)
+
+    def creepages(
+        self, speed: float, *, pitch_rate: float | None = None, yaw_rate: float = 0.0, roll_rate: float = 0.0,
+        lateral_speed: float = 0.0, vertical_speed: float = 0.0,
+    ) -> tuple[float, float, float]:
+        """Creepages xi, eta and the spin phi at this point: the velocity of the wheel relative to the rail over `speed`.
+
+        xi is along x of the patch, eta along y, and phi in rad/mm turns x towards y, as `friction` of `contact_normal.solve` takes them for
+        `STEADY_ROLLING`: `dict(creepage=(xi, eta), spin=phi)`.
+
+        Parameters
+        ----------
+        speed : float
+            Forward speed of the wheelset, in mm/s.
+        pitch_rate : float, optional
+            Rate of rotation about the axle, in rad/s, positive; by default that of pure rolling on the nominal radius.
+        yaw_rate, roll_rate : float
+            Rates of the angles of the position, in rad/s.
+        lateral_speed, vertical_speed : float
+            Of the middle of the axle: to the right, and downwards, in mm/s.
+        """
+        if not number("speed", speed) > 0.0:
+            raise ValueError(f"speed is {speed}; it must be positive")
+        pair, (ex, ey, _) = self._pair, self._axes()
+        sign = 1.0 if pair.side == "right" else -1.0
+        turned, seen = pair.position.rotation(), pair.position
+        ahead = np.array([np.cos(seen.yaw), np.sin(seen.yaw), 0.0])
+        rate = speed / pair.radius if pitch_rate is None else number("pitch_rate", pitch_rate)
+        # z is downwards: a wheel that rolls forward turns from z to x, backwards about y.
+        spin = -rate * turned[:, 1] + sign * (number("roll_rate", roll_rate) * ahead + number("yaw_rate", yaw_rate) * np.array([0.0, 0.0, 1.0]))
+        axle_speed = np.array([speed, sign * number("lateral_speed", lateral_speed), number("vertical_speed", vertical_speed)])
+        place = np.array([self._x, *(float(value) for value in pair.rail.at(self._on_rail)[:2])])
+        slip = axle_speed + np.cross(spin, place - pair.axle())
+        return float(slip @ ex / speed), float(slip @ ey / speed), float(spin @ np.cross(ex, ey) / speed)
+
+    def force_on_wheel(self, result: Result) -> tuple[float, float, float]:
+        """The force of a result on the wheel, in N: forward, to the right, downwards."""
+        x, y = result.tangential_force
+        found = np.array([x, y, result.force]) @ self._axes()
+        return float(found[0]), float(found[1] if self._pair.side == "right" else -found[1]), float(found[2])

@@ -1,0 +1,135 @@
+"""Points of the cross-section of a wheel or a rail."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .._arguments import number, real
+from ._curve import Curve, growing
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .._arguments import Doubles
+
+# Steeper faces are cut: z is needed as a function of y. Flanges are at most 75 degrees.
+STEEPEST = np.deg2rad(85.0)
+
+# Points closer than this, in mm, count as one: their directions are round-off of a file of eight digits.
+CLOSEST = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """Points of the cross-section of a wheel or a rail, those of the right-hand side of a track.
+
+    y grows outwards, from the middle of the track to the field side, z grows downwards, and the points are in the order of growing y, as one
+    walks along the tread or the head. So the flange of a wheel is at the smallest y and points to large z; the top of a rail has the smallest z.
+
+    Attributes
+    ----------
+    y, z : ndarray, (n,)
+        The points, in mm.
+    kind : {"wheel", "rail"}
+        What it is.
+    name : str
+        For messages and pictures.
+    """
+
+    y: Doubles
+    z: Doubles
+    kind: str
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        y, z = real("y", self.y), real("z", self.z)
+        if self.kind not in ("wheel", "rail"):
+            raise ValueError(f'kind is {self.kind!r}; it must be "wheel" or "rail"')
+        if y.ndim != 1 or y.shape != z.shape or len(y) < 4:
+            raise ValueError(f"y and z have shapes {y.shape} and {z.shape}; they must be rows of at least 4 points")
+        if not (np.isfinite(y).all() and np.isfinite(z).all()):
+            raise ValueError(f"{self._title()} has points that are not finite")
+        object.__setattr__(self, "y", y)
+        object.__setattr__(self, "z", z)
+        self._check_orientation()
+
+    def _title(self) -> str:
+        return self.name or f"the {self.kind}"
+
+    def _check_orientation(self) -> None:
+        """Refuses a profile that is upside down, reversed or mirrored: contact would be somewhere, and wrong."""
+        if self.y[0] > self.y[-1]:
+            raise ValueError(f"{self._title()} begins at the larger y; its points must be in the order of growing y: reversed()")
+        above, below = np.median(self.z) - self.z.min(), self.z.max() - np.median(self.z)
+        if self.kind == "wheel":
+            if above > below:
+                raise ValueError(f"{self._title()} has its flange at the smallest z; z must grow downwards: upside_down=True")
+            if self.y[np.argmax(self.z)] > 0.5 * (self.y[0] + self.y[-1]):
+                raise ValueError(f"{self._title()} has its flange at large y; y must grow to the field side: mirror=True")
+        elif above > below or np.argmin(self.z) in (0, len(self.z) - 1):
+            raise ValueError(f"{self._title()} has its top at the largest z; z must grow downwards: upside_down=True")
+
+    def moved(self, y: float = 0.0, z: float = 0.0) -> Profile:
+        """Moved by y and z, in mm."""
+        return dataclasses.replace(self, y=self.y + number("y", y), z=self.z + number("z", z))
+
+    def rotated(self, angle: float) -> Profile:
+        """Rotated about the origin by an angle in rad. A rail of an inclination of 1:40 is rotated by 1/40: its top moves to the track."""
+        c, s = np.cos(number("angle", angle)), np.sin(angle)
+        return dataclasses.replace(self, y=c * self.y + s * self.z, z=c * self.z - s * self.y)
+
+    def smoothed(self, wave_length: float) -> Profile:
+        """Without waves shorter than a length in mm, for measured profiles, whose noise would become contact.
+
+        z is the smoothing spline of Reinsch (1967): a wave of length L keeps 1/(1 + (wave_length/L)^4) of its height. y does not change. Steep faces,
+        which `curve` cuts, are not smoothed.
+        """
+        length = number("wave_length", wave_length)
+        if not length > 0.0:
+            raise ValueError(f"wave_length is {length}; it must be positive")
+        chosen = self._usable()
+        y, z, d = self.y[chosen], self.z[chosen], np.diff(self.y[chosen])
+        # (W + c Q R^-1 Q') f = W z, where f'' = R^-1 Q' f at the inner points, and W holds the length of each.
+        q = np.zeros((len(y), len(y) - 2))
+        k = np.arange(len(y) - 2)
+        q[k, k], q[k + 1, k], q[k + 2, k] = 1.0 / d[:-1], -1.0 / d[:-1] - 1.0 / d[1:], 1.0 / d[1:]
+        r = np.diag((d[:-1] + d[1:]) / 3.0) + np.diag(d[1:-1] / 6.0, 1) + np.diag(d[1:-1] / 6.0, -1)
+        weights = np.convolve(np.concatenate([d[:1], d, d[-1:]]), [0.5, 0.5], "valid")
+        stiffness = (length / (2.0 * np.pi)) ** 4 * q @ np.linalg.solve(r, q.T)
+        smooth = self.z.copy()
+        smooth[chosen] = np.linalg.solve(np.diag(weights) + stiffness, weights * z)
+        return dataclasses.replace(self, z=smooth)
+
+    def _usable(self) -> Any:
+        """Indices of the points that a curve goes through: from the tread or the top to the first steep face on either side."""
+        middle = int(np.argmin(self.z))
+        if self.kind == "wheel":
+            middle = int(np.argmin(np.abs(self.y - 0.5 * (self.y[np.argmax(self.z)] + self.y[-1]))))
+        # A face is steep where y + z/tan or y - z/tan does not grow.
+        flat = 1.0 / np.tan(STEEPEST)
+        first, last = 0, len(self.y) - 1
+        for sign in (flat, -flat):
+            one, other = growing(self.y + sign * self.z, middle)
+            first, last = max(first, one), min(last, other)
+        kept = [first]
+        for k in range(first + 1, last + 1):
+            if np.hypot(self.y[k] - self.y[kept[-1]], self.z[k] - self.z[kept[-1]]) >= CLOSEST:
+                kept.append(k)
+        return np.array(kept)
+
+    def curve(self) -> Curve:
+        """The smooth curve through the points, without vertical faces: natural cubic splines over the length of the polygon."""
+        chosen = self._usable()
+        if len(chosen) < 4:
+            raise ValueError(f"{self._title()} has {len(chosen)} points between its steep faces; at least 4 are needed")
+        return Curve(self.y[chosen], self.z[chosen])
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draws the points, as one sees them: z downwards."""
+        from .._plot_surfaces import plot_profile
+
+        return plot_profile(self, axes)

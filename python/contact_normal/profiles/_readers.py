@@ -1,0 +1,117 @@
+"""Profiles from files: SIMPACK's .prr and .prw, MiniProf's .ban and .whl, plain columns.
+
+Each reader was written from the public description of its format, and from the comments that such files carry.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+
+import numpy as np
+
+from .._arguments import number
+from ._profile import Profile
+
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
+# Kinds by the ends of file names; .ban is Danish for a track.
+_KINDS = {".prr": "rail", ".prw": "wheel", ".ban": "rail", ".whl": "wheel"}
+_UPSIDE_DOWN = ".ban", ".whl"
+
+
+def read(
+    path: str | os.PathLike[str],
+    kind: str | None = None,
+    *,
+    columns: tuple[int, int] = (0, 1),
+    mirror: bool = False,
+    upside_down: bool | None = None,
+    scale: float = 1.0,
+) -> Profile:
+    """Reads a profile from a file.
+
+    Parameters
+    ----------
+    path : str or path
+        `.prr` and `.prw` are read as SIMPACK's rails and wheels; `.ban` and `.whl` as MiniProf's, which are columns of numbers below lines
+        `NAME=value`; all other files as columns of numbers. Lines that do not begin with a number are skipped.
+    kind : {"wheel", "rail"}, optional
+        What it is; by default what the end of the file's name says.
+    columns : (int, int)
+        The columns of y and z.
+    mirror : bool
+        Whether y grows towards the middle of the track in the file.
+    upside_down : bool, optional
+        Whether z grows upwards in the file; by default of `.ban` and `.whl` only.
+    scale : float
+        Millimetres in the unit of the file. The header of `.prr` and `.prw` has its own unit, which is obeyed.
+
+    Returns
+    -------
+    Profile
+        In mm, in its own coordinates: `Track` and `Wheelset` put it in its place.
+
+    Raises
+    ------
+    ValueError
+        If the file has no profile, or the profile is mirrored or upside down; the message names the argument that turns it.
+    """
+    end = Path(path).suffix.lower()
+    kind = _KINDS.get(end) if kind is None else kind
+    if kind is None:
+        raise ValueError(f'{path}: kind is not known; give "wheel" or "rail"')
+    text = Path(path).read_text(encoding="latin-1")
+    points, in_mm = _simpack(text, path) if end in (".prr", ".prw") else (_columns(text, columns, path), 1.0)
+    y, z = points.T * (in_mm * number("scale", scale))
+    if mirror:
+        y = -y
+    if (end in _UPSIDE_DOWN) if upside_down is None else upside_down:
+        z = -z
+    if y[0] > y[-1]:
+        y, z = y[::-1], z[::-1]
+    return Profile(np.ascontiguousarray(y), np.ascontiguousarray(z), kind, Path(path).name)
+
+
+def _columns(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) -> np.ndarray:
+    """Two columns of the lines that begin with numbers."""
+    rows = []
+    for line in text.splitlines():
+        words = line.replace(";", " ").replace(",", " ").split()
+        if len(words) <= max(columns) or not all(re.fullmatch(_NUMBER, words[column]) for column in (0, *columns)):
+            continue
+        rows.append([float(re.sub("[dD]", "e", words[column])) for column in columns])
+    if len(rows) < 4:
+        raise ValueError(f"{path} has {len(rows)} points in the columns {columns}; at least 4 are needed")
+    return np.array(rows)
+
+
+def _simpack(text: str, path: str | os.PathLike[str]) -> tuple[np.ndarray, float]:
+    """The points of a .prr or .prw file, moved, rotated, mirrored and reversed as its header says, and the mm in its unit."""
+    text = "\n".join(line.split("!")[0] for line in text.splitlines())
+    found = re.search(r"point\.begin(.*?)point\.end", text, re.DOTALL)
+    if not found:
+        raise ValueError(f"{path} has no points between point.begin and point.end")
+    points = _columns(found.group(1), (0, 1), path)
+    said = dict(re.findall(rf"^\s*([\w.]+)\s*=\s*({_NUMBER})\s*$", text[: found.start()], re.MULTILINE))
+
+    def value(name: str, default: float) -> float:
+        return float(re.sub("[dD]", "e", said.get(name, str(default))))
+
+    y, z = points[:, 0] + value("shift.y", 0.0), points[:, 1] + value("shift.z", 0.0)
+    angle = value("rotate", 0.0) / value("units.ang.f", 1.0)
+    y, z = np.cos(angle) * y - np.sin(angle) * z, np.sin(angle) * y + np.cos(angle) * z
+    inside = np.ones(len(y), dtype=bool)
+    # Bounds count where the lower one is below the upper one.
+    for values, axis in ((y, "y"), (z, "z")):
+        low, high = value(f"bound.{axis}.min", 1.0), value(f"bound.{axis}.max", 0.0)
+        if low < high:
+            inside &= (values >= low) & (values <= high)
+    y, z = y[inside], z[inside]
+    if value("mirror.y", 0.0):
+        y = -y
+    if value("mirror.z", 0.0):
+        z = -z
+    if value("inversion", 0.0):
+        y, z = y[::-1], z[::-1]
+    return np.column_stack([y, z]), 1000.0 / value("units.len.f", 1000.0)

@@ -1,0 +1,209 @@
+"""Heights of a surface on a grid, the way the library lays out its arrays."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .._arguments import flag, number, real, two
+from .._grid import centres
+from .._units import Units, checked
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    from matplotlib.axes import Axes
+
+    from .._arguments import Doubles
+
+# Spacings of coordinates that differ by more than this part are not those of one grid: files have five digits or more.
+_EQUAL = 1e-3
+
+
+# Elements that are worked on at a time: some megabytes.
+_BLOCK = 1 << 18
+
+
+def blocks(shape: tuple[int, ...]) -> Iterator[slice]:
+    """Rows of an array, some at a time, so that large maps need no memory of many times their own."""
+    rows = max(1, _BLOCK // max(shape[1], 1))
+    for first in range(0, shape[0], rows):
+        yield slice(first, min(first + rows, shape[0]))
+
+
+@dataclass(frozen=True, eq=False)
+class Heights:
+    """Heights of a surface, positive out of the material; x and y of it are the centres of columns and rows, relative to the middle.
+
+    Attributes
+    ----------
+    z : ndarray, (my, mx)
+        Heights, lengths; x runs along a row. NaN: not measured.
+    dx, dy : float
+        Element sizes.
+    period : {"x", "y", "xy"} or None
+        Directions in which the grid is one period of the surface.
+    units : (str, str) or None
+        Names of the units of lengths and forces.
+    """
+
+    z: Doubles
+    dx: float
+    dy: float
+    period: str | None = None
+    units: Units = None
+
+    @property
+    def x(self) -> Doubles:
+        """Centres of the columns, relative to the middle."""
+        return centres(self.z.shape[1], self.dx)
+
+    @property
+    def y(self) -> Doubles:
+        """Centres of the rows, relative to the middle."""
+        return centres(self.z.shape[0], self.dy)
+
+    @property
+    def holes(self) -> npt.NDArray[np.bool_]:
+        """Where nothing was measured."""
+        return np.isnan(self.z)
+
+    @property
+    def area(self) -> float:
+        """Area of the grid, which is the number of elements times the size of one."""
+        return float(self.z.size * self.dx * self.dy)
+
+    def force(self, mean_pressure: float) -> float:
+        """The force of a mean pressure over the area of the whole grid, holes included."""
+        return number("mean_pressure", mean_pressure) * self.area
+
+    def without(self, where: npt.ArrayLike) -> Heights:
+        """Without the heights at some elements, a mask of booleans: they become holes."""
+        mask = np.asarray(where)
+        if mask.dtype != bool or mask.shape != self.z.shape:
+            raise ValueError(f"where has shape {mask.shape} and dtype {mask.dtype}; it must be a mask of booleans, {self.z.shape}")
+        return dataclasses.replace(self, z=np.where(mask, np.nan, self.z))
+
+    def turned_over(self, about: str = "y") -> Heights:
+        """The same surface after its body was turned over, about an axis along x or y, to lie on another one: the heights keep their sign,
+        and x, or y, runs the other way."""
+        if about not in ("x", "y"):
+            raise ValueError(f'about is {about!r}; it must be "x" or "y"')
+        return dataclasses.replace(self, z=np.ascontiguousarray(self.z[:, ::-1] if about == "y" else self.z[::-1]))
+
+    def plot(self, axes: Axes | None = None, marked: npt.ArrayLike | None = None) -> Axes:
+        """Draws the heights; holes are white, and elements of the mask `marked` are red."""
+        from .._plot_surfaces import plot_heights
+
+        return plot_heights(self, axes, marked)
+
+
+def _spacing(name: str, places: Any, count: int) -> tuple[float, bool]:
+    """The spacing of coordinates, and whether they fall."""
+    values = real(name, places)
+    if values.shape != (count,) or count < 2:
+        raise ValueError(f"{name} has shape {values.shape}; it must be ({count},): the centre of each element")
+    steps = np.diff(values)
+    d = float(steps.mean())
+    if not np.abs(steps - d).max() <= _EQUAL * abs(d):
+        raise ValueError(f"{name} is not evenly spaced: from {np.abs(steps).min():.6g} to {np.abs(steps).max():.6g}")
+    return abs(d), d < 0.0
+
+
+def _plain(values: Any) -> Doubles:
+    """An array of two indices, NaN where nothing was measured."""
+    if isinstance(values, np.ma.MaskedArray):
+        values = np.ma.filled(values.astype(np.float64), np.nan)
+    z = real("values", values)
+    if z.ndim != 2 or not z.size:
+        raise ValueError(f"values has shape {z.shape}; heights have two indices")
+    return np.asarray(np.where(np.isfinite(z), z, np.nan))
+
+
+def _element_sizes(
+    shape: tuple[int, ...], dx: Any, dy: Any, size: Any, span: Any, x: Any, y: Any
+) -> tuple[tuple[float, float], tuple[bool, bool]]:
+    """The sizes of an element by the one way in which they are given, and whether coordinates fall."""
+    my, mx = shape
+    ways = (dx is not None or dy is not None, size is not None, span is not None, x is not None or y is not None)
+    if sum(ways) != 1:
+        raise TypeError("give the size of an element in one way: dx and dy, or size, or span, or x and y")
+    falls = False, False
+    if ways[0]:
+        sizes = number("dx", dx), number("dy", dy)
+    elif ways[1]:
+        lx, ly = two("size", size)
+        sizes = lx / mx, ly / my
+    elif ways[2]:
+        if min(mx, my) < 2:
+            raise ValueError(f"span needs at least 2 samples in each direction; there are {mx} and {my}")
+        lx, ly = two("span", span)
+        sizes = lx / (mx - 1), ly / (my - 1)
+    else:
+        (one, x_falls), (other, y_falls) = _spacing("x", x, mx), _spacing("y", y, my)
+        sizes, falls = (one, other), (x_falls, y_falls)
+    if not all(d > 0.0 and np.isfinite(d) for d in sizes):
+        raise ValueError(f"element sizes are {sizes[0]} and {sizes[1]}; they must be positive and finite")
+    return sizes, falls
+
+
+def heights(
+    values: npt.ArrayLike,
+    dx: float | None = None,
+    dy: float | None = None,
+    *,
+    size: tuple[float, float] | None = None,
+    span: tuple[float, float] | None = None,
+    x: npt.ArrayLike | None = None,
+    y: npt.ArrayLike | None = None,
+    axes: str = "yx",
+    top_first: bool = False,
+    fill: float | None = None,
+    period: str | None = None,
+    units: tuple[str, str] | None = None,
+) -> Heights:
+    """Heights from an array, turned so that x runs along a row, with the size of an element.
+
+    Parameters
+    ----------
+    values : array_like
+        Heights. NaN, infinite and masked: not measured.
+    dx, dy : float
+        Element sizes. In their place one of `size`, `span`, or `x` and `y`:
+    size : (float, float)
+        Lengths of the measured field in x and in y, that is of mx and of my elements.
+    span : (float, float)
+        Lengths from the first to the last sample, that is of mx - 1 and of my - 1 elements.
+    x, y : array_like, (mx,) and (my,)
+        Coordinates of the samples. Where they fall, the array is reversed.
+    axes : {"yx", "xy"}
+        What the indices of `values` are: "yx": values[iy, ix]; "xy": values[ix, iy].
+    top_first : bool
+        Whether the first row is that of the largest y, as in an image.
+    fill : float, optional
+        A value that stands for "not measured". `faults` finds it if you do not know it.
+    period : {"x", "y", "xy"}, optional
+        Directions in which the surface repeats itself.
+    units : (str, str), optional
+        Names of the units of lengths and forces, as ("mm", "N").
+
+    Returns
+    -------
+    Heights
+    """
+    z = _plain(values)
+    if axes not in ("yx", "xy"):
+        raise ValueError(f'axes is {axes!r}; it must be "yx" or "xy"')
+    if period not in (None, "x", "y", "xy"):
+        raise ValueError(f'period is {period!r}; it must be "x", "y" or "xy"')
+    z = z.T if axes == "xy" else z
+    (one, other), (x_falls, y_falls) = _element_sizes(z.shape, dx, dy, size, span, x, y)
+    if flag("top_first", top_first):
+        y_falls = not y_falls
+    z = z[:: -1 if y_falls else 1, :: -1 if x_falls else 1]
+    if fill is not None:
+        z = np.where(z == number("fill", fill), np.nan, z)
+    return Heights(np.ascontiguousarray(z), one, other, period, checked(units))

@@ -1,0 +1,124 @@
+"""Tilt and form of a surface: fitted by least squares and removed."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ._heights import Heights, blocks
+
+if TYPE_CHECKING:
+    from .._arguments import Doubles
+
+# Normal equations are singular if their eigenvalues differ by more than round-off lets them: 2^-52 times a million terms.
+_SINGULAR = 1e-10
+
+# Powers of x and y of each form.
+FORMS = {
+    "mean": ((0, 0),),
+    "plane": ((0, 0), (1, 0), (0, 1)),
+    "quadric": ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Form:
+    """A polynomial in x and y, relative to the middle of the grid, fitted to heights.
+
+    Attributes
+    ----------
+    kind : {"mean", "plane", "quadric"}
+        Which terms it has.
+    coefficients : tuple of float
+        Of 1; x, y; x^2, x y, y^2.
+    rms : float
+        Root mean square of the heights that are left.
+    """
+
+    kind: str
+    coefficients: tuple[float, ...]
+    rms: float
+
+    @property
+    def tilt(self) -> tuple[float, float]:
+        """Slopes in x and y at the middle."""
+        _, x, y = (*self.coefficients, 0.0, 0.0)[:3]
+        return x, y
+
+    @property
+    def radii(self) -> tuple[float, float]:
+        """Radii of curvature in x and y at the middle, positive for a ball, inf for a plane."""
+        square = (*self.coefficients, *[0.0] * 6)[3:6]
+        rx, ry = (np.inf if c == 0.0 else -0.5 / c for c in (square[0], square[2]))
+        return float(rx), float(ry)
+
+    def values(self, heights: Heights) -> Doubles:
+        """The form at the elements of these heights."""
+        x, y = heights.x[None, :], heights.y[:, None]
+        zero = np.zeros(heights.z.shape)
+        return np.asarray(sum((c * x**i * y**j for c, (i, j) in zip(self.coefficients, FORMS[self.kind])), zero))
+
+
+def form(heights: Heights, kind: str = "plane") -> Form:
+    """Fits a form to the measured heights by least squares.
+
+    Parameters
+    ----------
+    heights : Heights
+        Without spikes and fill values: each counts with its square.
+    kind : {"mean", "plane", "quadric"}
+        A mean height; a plane; a plane and curvatures.
+    """
+    if kind not in FORMS:
+        raise ValueError(f"kind is {kind!r}; it must be one of {', '.join(FORMS)}")
+    powers = FORMS[kind]
+    # Scaled to [-1, 1]: there the normal equations of these monomials are well conditioned.
+    scales = 0.5 * heights.dx * heights.z.shape[1], 0.5 * heights.dy * heights.z.shape[0]
+    count, matrix, right = 0, np.zeros((len(powers), len(powers))), np.zeros(len(powers))
+    for rows in blocks(heights.z.shape):
+        z = heights.z[rows]
+        known = np.isfinite(z)
+        x, y = (np.broadcast_to(places, z.shape)[known] for places in (heights.x[None, :] / scales[0], heights.y[rows, None] / scales[1]))
+        columns = np.stack([x**i * y**j for i, j in powers])
+        count, matrix, right = count + x.size, matrix + columns @ columns.T, right + columns @ z[known]
+    sizes = np.linalg.eigvalsh(matrix)
+    if not sizes[0] > _SINGULAR * sizes[-1]:
+        raise ValueError(f"a {kind} has {len(powers)} unknowns; {count} heights of the {heights.z.shape} elements do not determine them")
+    scaled = np.linalg.solve(matrix, right)
+    found = Form(kind, tuple(float(c / (scales[0] ** i * scales[1] ** j)) for c, (i, j) in zip(scaled, powers)), 0.0)
+    return dataclasses.replace(found, rms=float(np.sqrt(np.nanmean((heights.z - found.values(heights)) ** 2))))
+
+
+def level(heights: Heights, kind: str = "plane") -> Heights:
+    """Heights without their tilt or form, fitted by least squares.
+
+    A least-squares plane is a convention of metrology. A body that is free to tilt takes another one: `balance`. With a period, only "mean" leaves
+    the period whole.
+
+    Parameters
+    ----------
+    heights : Heights
+        Without spikes and fill values.
+    kind : {"mean", "plane", "quadric"}
+        See `form`. "quadric" also removes the curvature; add the ideal form by a gap of its own where it belongs to the contact.
+    """
+    if heights.period and kind != "mean":
+        raise ValueError(f"the surface repeats itself in {heights.period}: a {kind} would break the period; level it with period None, or by its mean")
+    return dataclasses.replace(heights, z=heights.z - form(heights, kind).values(heights))
+
+
+def border_jumps(heights: Heights) -> tuple[float, float]:
+    """How much larger steps across the border are than steps inside, in x and in y, as ratios of root mean squares.
+
+    About 1 where a surface repeats itself with the grid as its period; much larger where it does not, or where a tilt is left.
+    """
+
+    def ratio(z: Doubles) -> float:
+        steps = np.diff(z, axis=1)
+        inside, across = np.nanmean(steps**2), np.nanmean((z[:, 0] - z[:, -1]) ** 2)
+        return float(np.sqrt(across / inside)) if inside > 0.0 else (0.0 if across == 0.0 else float("inf"))
+
+    return ratio(heights.z), ratio(heights.z.T)

@@ -1,0 +1,164 @@
+"""The gap of two surfaces, and the tilt that a free body takes under a load."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .._arguments import number, two
+from .._gap import Gap
+from ._heights import Heights
+
+if TYPE_CHECKING:
+    from .._arguments import Both, Doubles
+    from .._result import Result
+
+# Solves that `balance` may take.
+_SOLVES = 60
+# A first change of the tilt lifts one side by this part of the approach.
+_TRIAL = 0.1
+# The shortest part of a step that is tried.
+_SHORTEST = 1.0 / 64.0
+
+
+def gap(lower: Heights, upper: Heights | None = None, *, turned: str = "y") -> Gap:
+    """The gap of a surface and a plane, or of two surfaces face to face.
+
+    The undeformed distance is 0 where the surfaces touch first, and +inf at holes of either: no pressures are there.
+
+    Parameters
+    ----------
+    lower : Heights
+        A surface; heights are positive out of the material.
+    upper : Heights, optional
+        The other one, measured like the first, from outside. None: a plane.
+    turned : {"y", "x", ""}
+        About which axis the upper body is turned over to lie on the lower one. "": its array is already laid out as it will lie.
+    """
+    z, period, units = lower.z, lower.period, lower.units
+    if upper is not None:
+        if upper.z.shape != z.shape or not np.allclose((upper.dx, upper.dy), (lower.dx, lower.dy), rtol=1e-9, atol=0.0):
+            sides = [f"{side.z.shape} elements of {side.dx} x {side.dy}" for side in (lower, upper)]
+            raise ValueError(f"the surfaces have {sides[0]} and {sides[1]}; grids must be equal")
+        if upper.period != period:
+            raise ValueError(f"the periods are {period!r} and {upper.period!r}; they must be equal")
+        z = z + (upper.turned_over(turned) if turned else upper).z
+    if np.isnan(z).all():
+        raise ValueError("no element was measured on both surfaces")
+    h = np.nanmax(z) - z
+    h[np.isnan(h)] = np.inf
+    return Gap(h, lower.dx, lower.dy, period=period, units=units)
+
+
+def e_star(young_modulus: Both, poisson_ratio: Both) -> float:
+    """E* of two bodies: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (Johnson, Contact Mechanics, 1985, section 4.2). One value stands for both bodies, inf for
+    a rigid one."""
+    sum_of = 0.0
+    for body in range(2):
+        young, nu = (number(name, value if np.ndim(value) == 0 else two(name, value)[body])
+                     for name, value in (("young_modulus", young_modulus), ("poisson_ratio", poisson_ratio)))
+        if not young > 0.0 or not -1.0 <= nu <= 0.5:
+            raise ValueError(f"young_modulus is {young} and poisson_ratio {nu}; they must be positive, and between -1 and 0.5")
+        sum_of += (1.0 - nu**2) / young
+    return 1.0 / sum_of if sum_of > 0.0 else float("inf")
+
+
+@dataclass(frozen=True, eq=False)
+class Balanced:
+    """What `balance` found.
+
+    Attributes
+    ----------
+    gap : Gap
+        The gap with the tilt removed.
+    tilt : (float, float)
+        Slopes in x and y that were subtracted from the undeformed distance.
+    result : Result
+        The solve of this gap.
+    centre : (float, float)
+        Centre of the pressures.
+    """
+
+    gap: Gap
+    tilt: tuple[float, float]
+    result: Result
+    centre: tuple[float, float]
+
+
+def _tilted(gap: Gap, tilt: Doubles) -> Gap:
+    h = gap.h - tilt[0] * gap.x[None, :] - tilt[1] * gap.y[:, None]
+    return dataclasses.replace(gap, h=h - h.min())
+
+
+def _centre(gap: Gap, result: Result) -> Doubles:
+    """Centre of the pressures, in coordinates of the gap."""
+    weights = result.pressure / result.pressure.sum()
+    return np.array([weights.sum(axis=0) @ gap.x, weights.sum(axis=1) @ gap.y])
+
+
+def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolerance: float = 1e-4, **scene: Any) -> Balanced:
+    """The tilt that a body takes which is pressed on by a force at a point and free to tilt: the moments of the pressures about this point are 0.
+
+    Unlike a least-squares plane it depends on the load: a body rests on its summits. The tilt minimises a convex energy, so it is the only one. It is
+    found by Newton's method with Broyden's updates, in four to ten solves.
+
+    Parameters
+    ----------
+    gap : Gap
+        Without a period: a body that repeats itself cannot tilt.
+    force : float
+        Normal force.
+    at : (float, float)
+        Where the force acts, in coordinates of the gap.
+    tolerance : float
+        How close the centre of the pressures must come to `at`, relative to the length of the grid.
+    **scene
+        Elastic constants, effects and options of `contact_normal.solve`.
+
+    Returns
+    -------
+    Balanced
+
+    Raises
+    ------
+    ValueError
+        If no tilt balances the force, because `at` is not between elements that can carry it.
+    """
+    if gap.period:
+        raise ValueError(f"the gap repeats itself in {gap.period}: a body with a period cannot tilt")
+    aim = np.array(two("at", at))
+    sizes = np.array([gap.h.shape[1] * gap.dx, gap.h.shape[0] * gap.dy])
+
+    def solved(tilt: Doubles) -> tuple[Result, Doubles]:
+        result = _tilted(gap, tilt).solve(force=force, **scene)
+        return result, _centre(gap, result) - aim
+
+    tilt = np.zeros(2)
+    result, off = solved(tilt)
+    trial = _TRIAL * max(result.approach, 1e-3 * float(np.ptp(gap.h[np.isfinite(gap.h)]))) / sizes
+    slopes = np.empty((2, 2))
+    for k in range(2):
+        step = np.where(np.arange(2) == k, trial * -np.sign(off + 1e-300), 0.0)
+        slopes[:, k] = (solved(tilt + step)[1] - off) / step[k]
+    for _ in range(_SOLVES):
+        if np.abs(off / sizes).max() <= tolerance:
+            x, y = (float(place) for place in off + aim)
+            return Balanced(_tilted(gap, tilt), (float(tilt[0]), float(tilt[1])), result, (x, y))
+        try:
+            step = -np.linalg.solve(slopes, off)
+        except np.linalg.LinAlgError:
+            break
+        part = 1.0
+        while True:
+            moved, there = solved(tilt + part * step)
+            if np.abs(there / sizes).max() < np.abs(off / sizes).max() or part < _SHORTEST:
+                break
+            part *= 0.5
+        step = part * step
+        slopes += np.outer(there - off - slopes @ step, step) / (step @ step)
+        tilt, result, off = tilt + step, moved, there
+    raise ValueError(f"no tilt was found that brings the centre of the pressures to {at}: it stays {tuple(off.tolist())} away; "
+                     "are there elements all around it?")

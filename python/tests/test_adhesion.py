@@ -1,0 +1,63 @@
+"""Adhesion: a sphere in the units of Johnson, Kendall and Roberts, R = 1, w = 1/pi, E* = 3/4."""
+
+from __future__ import annotations
+
+import unittest
+from typing import Any
+
+import numpy as np
+
+import contact_normal
+
+D = 6.0 / 64
+X = (np.arange(64) - 31.5) * D
+H = (X[None, :] ** 2 + X[:, None] ** 2) / 2
+STICKY = {"work": 1 / np.pi, "range": 0.5647539}
+
+
+def solve(**given: Any) -> contact_normal.Result:
+    return contact_normal.solve(H, D, D, **{"e_star": 0.75, "adhesion": STICKY, **given})
+
+
+class Adhesion(unittest.TestCase):
+    def test_pressures_are_those_of_contact_less_the_attraction(self) -> None:
+        found = solve(approach=0.2)
+        self.assertEqual(found.status, contact_normal.OK)
+        self.assertTrue((found.contact_pressure >= -1e-6 * found.max_pressure).all() and (found.attraction >= 0).all())
+        self.assertTrue((found.contact_pressure[~found.contact] == 0).all())
+        rest = found.pressure - (found.contact_pressure - found.attraction)
+        self.assertLess(np.linalg.norm(rest), 2e-6 * np.linalg.norm(found.pressure))
+        law = 1 / np.pi / 0.5647539 * np.exp(-np.maximum(found.deformed_distance, 0) / 0.5647539)
+        np.testing.assert_allclose(found.attraction, law, rtol=1e-12, atol=1e-15)
+        forces = found.report["repulsive_force"] + found.report["adhesive_force"]
+        self.assertAlmostEqual(forces, found.force, places=5)
+
+    def test_a_pull_is_held_or_refused(self) -> None:
+        found = solve(force=-1.4, adhesion={**STICKY, "stiffness": True})
+        self.assertGreater(found.approach, -0.55)
+        self.assertGreater(found.report["stiffness"], 0)
+        with self.assertRaisesRegex(contact_normal.ContactNormalError, "pull-off force"):
+            solve(force=-1.8)
+
+    def test_the_pull_off_is_between_jkr_and_dmt(self) -> None:
+        found = contact_normal.pull_off(H, D, D, e_star=0.75, adhesion=STICKY)
+        self.assertTrue(-1.67 < found.force < -1.66, found.force)
+
+    def test_arguments_are_refused_by_name(self) -> None:
+        for wrong, named in (({}, "no work"), ({"work": 1.0, "rho": 1.0}, "rho"), ({"work": 1.0, "law": "LINEAR"}, "LINEAR")):
+            with self.assertRaisesRegex(ValueError, named):
+                solve(approach=0.2, adhesion=wrong)
+        with self.assertRaisesRegex(contact_normal.ContactNormalError, "friction"):
+            solve(approach=0.2, friction={"coefficient": 0.3, "creepage": (0.1, 0.0), "motion": "SHIFT"}, e_star=None, shear_modulus=0.375,
+                  poisson_ratio=0.0)
+
+    def test_a_handle_follows_a_branch(self) -> None:
+        with contact_normal.Solver(64, 64, D, D, e_star=0.75) as solver:
+            solver.solve(H, approach=0.2, adhesion=STICKY)
+            found = solver.solve(H, approach=0.1, adhesion=STICKY, initial_guess="PREVIOUS")
+        self.assertAlmostEqual(found.force, solve(approach=0.1).force, places=4)
+        self.assertEqual(found.report["jumped"], 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

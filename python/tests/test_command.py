@@ -1,0 +1,241 @@
+"""The command line: what it reads, prints, writes and returns. Files that need more than numpy: tests_tables/test_command_files.py."""
+
+import contextlib
+import importlib
+import io
+import os
+import re
+import stat
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+import numpy as np
+
+import contact_normal as cn
+from contact_normal._command import main
+from contact_normal.surface import Gap
+
+# A steel ball of 50 mm on steel, off the middle, so that no transposed or mirrored grid passes; mm and N.
+MY, MX, DX, DY, RADIUS, FORCE = 40, 56, 0.06, 0.05, 50.0, 1000.0
+MODULUS, RATIO = 82000.0, 0.28
+X, Y = (np.arange(MX) - 30.0) * DX, (np.arange(MY) - 17.0) * DY
+HEIGHTS = 3.0 - (X[None, :] ** 2 + Y[:, None] ** 2) / (2 * RADIUS)
+STEEL = ("--shear-modulus", str(MODULUS), "--poisson-ratio", str(RATIO))
+BALL = ("--dx", str(DX), "--dy", str(DY), "--force", str(FORCE), *STEEL)
+
+
+def called(*arguments):
+    """The exit code and what was printed, on stdout and on stderr."""
+    out, told = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(told):
+        try:
+            code = main([str(argument) for argument in arguments])
+        except SystemExit as ended:
+            code = ended.code
+    return code, out.getvalue(), told.getvalue()
+
+
+def without(name):
+    """Imports of this package fail."""
+    imported = importlib.import_module
+
+    def refused(wanted, *more):
+        if wanted == name:
+            raise ImportError(f"No module named {name!r}")
+        return imported(wanted, *more)
+
+    return mock.patch("importlib.import_module", refused)
+
+
+class Commands(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.npy = self.folder / "ball.npy"
+        np.save(self.npy, HEIGHTS)
+
+    def solved(self, file, *options):
+        """The arrays of a solve by the command line."""
+        written = self.folder / "out.npz"
+        code, _, told = called("solve", file, *options, "-o", written)
+        self.assertEqual((code, told), (0, ""))
+        with np.load(written) as arrays:
+            return dict(arrays)
+
+    def undeformed(self, found):
+        """h - approach, of e = h - approach + u."""
+        return found["deformed_distance"] - found["displacement"]
+
+    def test_a_ball_has_the_pressures_of_hertz(self):
+        code, out, told = called("solve", self.npy, *BALL, "--units", "mm", "N")
+        self.assertEqual((code, told), (0, ""))
+        values = dict(re.match(r"(.{24})(.*)", line).groups() for line in out.splitlines())
+        values = {name.strip(): value for name, value in values.items()}
+        self.assertEqual((values["status"], values["elements"], values["force"]), ("solved", "56 x 40", "1000 N"))
+        e_star = MODULUS / (1 - RATIO)
+        largest = (6 * FORCE * e_star**2 / (np.pi**3 * RADIUS**2)) ** (1 / 3)
+        approach = (9 * FORCE**2 / (16 * RADIUS * e_star**2)) ** (1 / 3)
+        # On some 14 elements to the radius, errors are of the order of (1/14)^2.
+        self.assertAlmostEqual(float(values["largest pressure"].removesuffix(" MPa")) / largest, 1.0, delta=1 / 14**2)
+        self.assertAlmostEqual(float(values["approach"].removesuffix(" mm")) / approach, 1.0, delta=1 / 14**2)
+
+    def test_surfaces_are_read_the_right_way_round(self):
+        gap = HEIGHTS.max() - HEIGHTS
+        for name, save in (
+            ("a.txt", lambda path, z: np.savetxt(path, z, header="heights, mm")),
+            ("a.csv", lambda path, z: np.savetxt(path, z, delimiter=",")),
+            ("a.npz", lambda path, z: np.savez(path, heights=z)),
+        ):
+            save(self.folder / name, HEIGHTS)
+            found = self.solved(self.folder / name, *BALL)
+            self.assertEqual((found["dx"], found["dy"], found["pressure"].shape), (DX, DY, (MY, MX)))
+            h = self.undeformed(found)
+            # Round-off of displacements of some .01 beside distances of .1: far below 1e-12.
+            np.testing.assert_allclose(h - h.min(), gap, atol=1e-12)
+        np.save(self.npy, gap)
+        h = self.undeformed(self.solved(self.npy, *BALL, "--gap"))
+        np.testing.assert_allclose(h - h.min(), gap, atol=1e-12)
+        # What the package writes as a gap has its element sizes.
+        Gap(gap, DX, DY).write(self.folder / "gap.txt")
+        h = self.undeformed(self.solved(self.folder / "gap.txt", *BALL[4:], "--gap"))
+        np.testing.assert_allclose(h - h.min(), gap, atol=1e-12)
+
+    def test_tilt_and_spikes_are_removed(self):
+        plain = self.solved(self.npy, *BALL)
+        spoiled = HEIGHTS + 0.1 * X[None, :] - 0.2 * Y[:, None]
+        spoiled[3, 50] += 5.0
+        np.save(self.npy, spoiled)
+        self.assertLess(self.solved(self.npy, *BALL)["contact"].sum(), 9)  # the spike carries the ball
+        code, _, told = called("solve", self.npy, *BALL, "--faults", "--level", "plane", "-o", self.folder / "level.npz")
+        self.assertEqual((code, "spike" in told), (0, True), told)
+        level = np.load(self.folder / "level.npz")
+        # A ball whose axis lies off the middle has a plane of its own, so its top moves; it is as large as before.
+        self.assertFalse(level["contact"][3, 50])
+        self.assertAlmostEqual(level["pressure"].max() / plain["pressure"].max(), 1.0, delta=1e-2)
+
+    def test_holes_have_no_surface(self):
+        inside = np.zeros((MY, MX), dtype=bool)
+        inside[17, 30] = True  # the top of the ball
+        for hole, options in ((np.nan, ()), (-9999.0, ("--hole", "-9999"))):
+            np.save(self.npy, np.where(inside, hole, HEIGHTS))
+            found = self.solved(self.npy, *BALL, *options)
+            self.assertEqual((found["contact"][17, 30], found["contact"][17, 31]), (False, True))
+        # A fill value that is not named is a pit for heights: the contact is that without it.
+        self.assertEqual(called("solve", self.npy, *BALL)[0], 0)
+        np.save(self.npy, np.full((4, 4), np.nan))
+        code, _, told = called("solve", self.npy, *BALL)
+        self.assertEqual((code, "has no element with a surface" in told), (3, True))
+
+    def test_bodies_and_effects_reach_the_library(self):
+        pair = self.solved(self.npy, *BALL[:6], "--young-modulus", "210000", "70000", "--poisson-ratio", "0.28", "0.33")
+        e_star = 1 / ((1 - 0.28**2) / 210000 + (1 - 0.33**2) / 70000)
+        same = self.solved(self.npy, *BALL[:6], "--e-star", e_star)
+        # Both to a residual of 1e-6; pressures converge two digits behind.
+        np.testing.assert_allclose(pair["pressure"], same["pressure"], atol=1e-4 * same["pressure"].max())
+        self.assertGreater(same["pressure"].max(), 600.0)
+        self.assertEqual(self.solved(self.npy, *BALL, "--pressure-limit", "600")["pressure"].max(), 600.0)
+        self.assertLess(self.solved(self.npy, *BALL, "--layer", "1e-4")["pressure"].max(), 0.5 * same["pressure"].max())
+        mean = self.solved(self.npy, *BALL[:4], "--mean-pressure", "50", *STEEL, "--period", "xy")
+        self.assertAlmostEqual(mean["pressure"].mean(), 50.0, delta=1e-9)
+
+    def test_exit_codes(self):
+        cut = ("--tolerance", "1e-30")
+        for code, arguments, words in (
+            (1, ("solve", self.npy, *BALL, *cut), ""),
+            (1, ("creep-table", "--xi", "0.1", "--elements", "9", *cut), ""),
+            (2, ("solve", self.npy, "--dx", "0.1", *STEEL), "one of the arguments --force --approach --mean-pressure is required"),
+            (2, ("solve", self.npy, *BALL, "--approach", "1"), "not allowed with argument"),
+            (2, ("turn",), "invalid choice: 'turn'"),
+            (3, ("solve", self.npy, "--dx", "-1", *BALL[2:]), "element sizes are -1.0 and 0.05; they must be positive and finite"),
+            (3, ("solve", self.npy, *BALL, "--tolerance", "2"), "(status -2: an invalid argument)"),
+            (3, ("solve", self.npy, "--force", "1", *STEEL), "give the size of an element in one way"),
+            (3, ("solve", self.npy, *BALL, "-o", "p.xlsx"), "p.xlsx must end in one of .nc, .npz, .vtk, .vtu"),
+            (3, ("solve", self.npy, *BALL, "--plot", "p.gif"), "p.gif must end in one of .png, .svg, .pdf"),
+            (3, ("solve", self.npy, *BALL[:6], "--e-star", "1", "--poisson-ratio", "1", "2", "3"), "--poisson-ratio has 3 values"),
+            (3, ("creep-table", "--xi", "0:1"), "--xi is 0:1; it must be numbers as 0,0.5,1 or first:last:count"),
+            (4, ("solve", self.folder / "none.npy", *BALL), "No such file or directory"),
+            (4, ("solve", self.npy, *BALL, "-o", self.folder / "no" / "p.npz"), "No such file or directory"),
+        ):
+            found, _, told = called(*arguments)
+            self.assertEqual(found, code, arguments)
+            self.assertIn(words, told)
+        np.save(self.npy, HEIGHTS[None])
+        self.assertEqual(called("solve", self.npy, *BALL)[::2], (3, "contact-normal: values has shape (1, 40, 56); heights have two indices\n"))
+        with mock.patch("contact_normal._command_solve.solve", side_effect=KeyboardInterrupt):
+            np.save(self.npy, HEIGHTS)
+            self.assertEqual(called("solve", self.npy, *BALL)[::2], (130, "contact-normal: interrupted\n"))
+
+    def test_what_is_missing_is_named(self):
+        (self.folder / "a.x3p").touch()
+        for package, arguments, extra in (
+            ("SurfaceTopography", ("solve", self.folder / "a.x3p", *BALL), "contact-normal[surface]"),
+            ("meshio", ("solve", self.npy, *BALL, "-o", "p.vtu"), "contact-normal[vtk]"),
+            ("xarray", ("solve", self.npy, *BALL, "-o", "p.nc"), "contact-normal[tables]"),
+        ):
+            with without(package):
+                code, _, told = called(*arguments)
+            self.assertEqual((code, extra in told), (4, True), told)
+
+    def test_several_grids_in_a_file_are_named(self):
+        np.savez(self.folder / "two.npz", a=HEIGHTS, b=2 * HEIGHTS)
+        code, _, told = called("solve", self.folder / "two.npz", *BALL)
+        self.assertEqual((code, "has a, b; give variable, one of them" in told), (3, True))
+        h = self.undeformed(self.solved(self.folder / "two.npz", *BALL, "--variable", "b"))
+        np.testing.assert_allclose(h - h.min(), 2 * (HEIGHTS.max() - HEIGHTS), atol=1e-12)
+
+    def test_pictures_and_progress(self):
+        code, _, told = called("solve", self.npy, *BALL, "--plot", "--progress")
+        self.assertEqual((code, "56 x 40, cycle" in told), (0, True))
+        self.assertEqual(self.npy.with_suffix(".png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        code, _, _ = called("solve", self.npy, *BALL, "--plot", self.folder / "p.svg")
+        self.assertIn("<svg", (self.folder / "p.svg").read_text())
+
+    def test_prices(self):
+        code, out, _ = called("prices", self.npy, *BALL, "--targets", "1e-2", "1e-15")
+        rows = [line.split() for line in out.splitlines()]
+        self.assertEqual((code, rows[0][:2], rows[1][0], rows[2][0]), (0, ["relative", "error"], "1.0e-02", "1.0e-15"))
+        # Enough for forces: docs/accuracy.md.
+        self.assertGreaterEqual(int(rows[1][1]), 8)
+        self.assertTrue(out.rstrip().endswith("below round-off"), out)
+
+    def test_bills(self):
+        code, out, told = called("bill", self.npy, *BALL, "--layer", "1e-12", "--pressure-limit", "300", "--plot", self.folder / "bill.svg")
+        self.assertEqual((code, told), (0, ""))
+        # The ball's largest pressure is 1000: a limit of 300 is reached.
+        self.assertEqual(out.splitlines()[-1], "needed: pressure_limit; negligible: layer")
+        self.assertGreater((self.folder / "bill.svg").stat().st_size, 1000)
+        code, out, _ = called("bill", self.npy, *BALL)
+        self.assertEqual((code, out), (0, "the scene names no effect: there is nothing to leave out\n"))
+
+    def test_creep_tables(self):
+        code, out, _ = called("creep-table", "--xi", "0:0.02:3", "--eta", "0", "--phi", "0", "--elements", "35")
+        rows = [dict(zip(out.splitlines()[0].split(), map(float, line.split()))) for line in out.splitlines()[1:]]
+        self.assertEqual((code, [row["xi"] for row in rows], rows[0]["force_x"]), (0, [0.0, 0.01, 0.02], 0.0))
+        # Kalker's linear theory: C11 of a circle is 4.12 to 4.27 for Poisson ratios of .25 to .3; saturation takes 1.4 %, first order in
+        # 1/35 a few percent.
+        self.assertLess(abs(rows[1]["force_x"] / (-0.01 * 4.2) - 1), 0.1)
+
+    def test_a_replay_returns_what_the_program_does(self):
+        with mock.patch.dict(os.environ, {"PATH": ""}):
+            with mock.patch("contact_normal._command_replay.candidates", return_value=[str(self.folder / "lib" / "x.so")]):
+                code, _, told = called("replay", "failed.dump")
+                self.assertEqual((code, "contact-normal-replay is not beside the library" in told), (4, True))
+                (self.folder / "bin").mkdir()
+                program = self.folder / "bin" / "contact-normal-replay"
+                program.write_text(f'#!/bin/sh\necho "$@" > {self.folder}/asked\nexit 2\n')
+                program.chmod(program.stat().st_mode | stat.S_IEXEC)
+                self.assertEqual(called("replay", "failed.dump")[0], 2)
+        self.assertEqual((self.folder / "asked").read_text(), "failed.dump\n")
+
+    def test_the_module_is_a_program(self):
+        printed = subprocess.run([sys.executable, "-m", "contact_normal", "--version"], capture_output=True, text=True, check=True)
+        self.assertEqual(printed.stdout, f"contact-normal {cn.VERSION}\n")
+
+
+if __name__ == "__main__":
+    unittest.main()

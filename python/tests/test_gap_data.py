@@ -1,0 +1,41 @@
+"""The files that docs/heights_to_gap.md and docs/profiles_to_gap.md begin with are those that the examples make."""
+
+import sys
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+from contact_normal import profiles
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "python_examples"))
+
+import heights_to_gap  # noqa: E402
+import profiles_to_gap  # noqa: E402
+
+
+class Data(unittest.TestCase):
+    def test_heights(self):
+        kept = np.load(ROOT / "data" / "heights" / "ground.npy")
+        # Heights are rounded to 1e-8; a transform of another machine may round to the next one.
+        np.testing.assert_allclose(kept, heights_to_gap.ground(), rtol=0, atol=2e-8)
+
+    def test_profiles(self):
+        for name, made in (("arcs.prr", profiles_to_gap.made_rail()), ("arcs.prw", profiles_to_gap.made_wheel())):
+            kept = profiles.read(ROOT / "data" / "profiles" / name)
+            # Written with seven digits behind the point.
+            np.testing.assert_allclose(np.stack([kept.y, kept.z], axis=1), made, rtol=0, atol=1.01e-7)
+
+    def test_arcs_are_those_of_their_radii(self):
+        rail = profiles_to_gap.made_rail()
+        head = rail[np.abs(rail[:, 0]) < 10.3]
+        np.testing.assert_allclose(np.hypot(head[:, 0], head[:, 1] - 300.0), 300.0, atol=1e-9)
+        # The flanks are 1:20, and the corner is that of an arc of 13: its three points have one circle.
+        slopes = np.diff(rail[-80:, 0]) / np.diff(rail[-80:, 1])
+        np.testing.assert_allclose(slopes, 1.0 / 20.0, atol=1e-9)
+        corner = rail[(rail[:, 1] > 4.0) & (rail[:, 1] < 10.0) & (rail[:, 0] > 0)]
+        a, b, c = corner[[0, len(corner) // 2, -1]]
+        sides = [np.linalg.norm(p - q) for p, q in ((a, b), (b, c), (c, a))]
+        area = 0.5 * abs((b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0])
+        self.assertAlmostEqual(np.prod(sides) / (4.0 * area), 13.0, delta=1e-6)

@@ -1,0 +1,163 @@
+"""Profiles: their orientation, their places, smooth curves through them, and the files that hold them."""
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+from contact_normal import profiles
+from contact_normal.profiles._curve import Curve
+from test_profiles import CONE, EXACT, HEAD, MIDDLE, TRACK, rail, wheel
+
+
+class Profiles(unittest.TestCase):
+    def test_the_track_puts_the_gauge_point_in_its_place(self):
+        placed = TRACK.placed()
+        self.assertAlmostEqual(placed.z.min(), 0.0, delta=EXACT)
+        below = np.argsort(placed.z[:60])
+        self.assertAlmostEqual(np.interp(14.0, placed.z[:60][below], placed.y[:60][below]), 717.5, delta=1e-9)
+        with self.assertRaisesRegex(ValueError, "gauge_height is 50.0; the rail ends 40 mm below its top"):
+            profiles.Track(rail(), gauge_height=50.0).placed()
+
+    def test_an_inclined_rail_turns_its_top_to_the_track(self):
+        inclined = profiles.Track(rail(), inclination=CONE).placed().curve()
+        y, z, _, _ = inclined.at(inclined.between(20))
+        self.assertAlmostEqual(z.min(), 0.0, delta=1e-6)
+        # The head was symmetric: an arc whose top is now CONE HEAD further to the field side in it than before, from gauge face to gauge face.
+        inner, outer = np.interp(10.0, z[: z.argmin()][::-1], y[: z.argmin()][::-1]), np.interp(10.0, z[z.argmin() :], y[z.argmin() :])
+        self.assertAlmostEqual(y[z.argmin()] - 0.5 * (inner + outer), np.arctan(CONE) * HEAD, delta=1.0)
+
+    def test_splines_pass_where_the_arc_does(self):
+        curve = TRACK.placed().curve()
+        y = np.linspace(MIDDLE - 30.0, MIDDLE + 30.0, 977)
+        t = curve.where(y, near=curve.t[len(curve.t) // 2])
+        found_y, z, dy, dz = curve.at(t)
+        np.testing.assert_allclose(found_y, y, atol=1e-11)
+        np.testing.assert_allclose(z, HEAD - np.sqrt(HEAD**2 - (y - MIDDLE) ** 2), atol=EXACT)
+        np.testing.assert_allclose(dz / dy, (y - MIDDLE) / np.sqrt(HEAD**2 - (y - MIDDLE) ** 2), atol=1e-6)
+        self.assertTrue(np.isnan(curve.where(MIDDLE + 50.0)))
+
+    def test_a_curve_is_the_natural_spline(self):
+        rng = np.random.default_rng(3)
+        y, z = np.cumsum(rng.uniform(0.2, 1.0, 12)), rng.normal(size=12)
+        curve = Curve(y, z)
+        np.testing.assert_allclose(np.diff(curve.t), np.hypot(np.diff(y), np.diff(z)), rtol=1e-13)
+        for points, values, slopes in ((y, 0, 2), (z, 1, 3)):
+            np.testing.assert_allclose(curve.at(curve.t)[values], points, atol=1e-13)
+            # It is a cubic between points, so differences of its derivative, a parabola, are exact second derivatives at the middle of two places.
+            step = 1e-3
+            before, after = curve.at(curve.t[1:-1] - 1e-9)[slopes], curve.at(curve.t[1:-1] + 1e-9)[slopes]
+            np.testing.assert_allclose(before, after, atol=1e-7)
+
+            def second(t, slopes=slopes):
+                return (curve.at(t + step)[slopes] - curve.at(t - step)[slopes]) / (2 * step)
+
+            left = 2 * second(curve.t[1:-1] - step) - second(curve.t[1:-1] - 2 * step)
+            right = 2 * second(curve.t[1:-1] + step) - second(curve.t[1:-1] + 2 * step)
+            # Second derivatives are linear: from both sides to one value, and to 0 at the ends.
+            np.testing.assert_allclose(left, right, atol=1e-8)
+            for end, inwards in ((curve.t[0], step), (curve.t[-1], -step)):
+                self.assertAlmostEqual(2 * second(end + inwards) - second(end + 2 * inwards), 0.0, delta=1e-8)
+            # The derivative is that of the values.
+            at = np.linspace(curve.t[0] + 0.01, curve.t[-1] - 0.01, 50)
+            np.testing.assert_allclose((curve.at(at + 1e-5)[values] - curve.at(at - 1e-5)[values]) / 2e-5, curve.at(at)[slopes], atol=1e-7)
+
+    def test_a_place_is_searched_around_another_one(self):
+        y = np.linspace(0.0, 4.0 * np.pi, 200)
+        curve = Curve(y, -np.cos(y))
+        for near, expected in ((0.25, 0.5 * np.pi), (0.75, 2.5 * np.pi)):
+            found = curve.where(0.0, (0.0, 1.0), near * curve.t[-1])
+            self.assertAlmostEqual(float(curve.at(found)[0]), expected, delta=1e-6)
+        self.assertTrue(np.isnan(curve.where(1.5, (0.0, 1.0), 0.25 * curve.t[-1])))
+
+    def test_points_that_lie_on_each_other_count_once(self):
+        plain = wheel()
+        twice = profiles.Profile(np.insert(plain.y, 180, plain.y[180] - 2e-5), np.insert(plain.z, 180, plain.z[180] + 1e-6), "wheel")
+        self.assertEqual(len(twice.curve().y), len(plain.curve().y))
+        self.assertLess(np.abs(np.diff(twice.curve().at(twice.curve().between(7))[3][1200:])).max(), 1e-4)
+
+    def test_turned_profiles_are_refused_by_the_argument_that_turns_them(self):
+        for kind, made in (("wheel", wheel()), ("rail", rail())):
+            with self.assertRaisesRegex(ValueError, "upside_down=True"):
+                profiles.Profile(made.y, -made.z, kind)
+            with self.assertRaisesRegex(ValueError, "in the order of growing y"):
+                profiles.Profile(made.y[::-1], made.z[::-1], kind)
+        made = wheel()
+        with self.assertRaisesRegex(ValueError, "mirror=True"):
+            profiles.Profile(-made.y[::-1], made.z[::-1], "wheel")
+        with self.assertRaisesRegex(ValueError, 'kind is \'tyre\'; it must be "wheel" or "rail"'):
+            profiles.Profile(made.y, made.z, "tyre")
+        for y, z in ((made.y[1:], made.z), (made.y[:3], made.z[:3]), (made.y[:20].reshape(2, 10), made.z[:20].reshape(2, 10))):
+            with self.assertRaisesRegex(ValueError, "they must be rows of at least 4 points"):
+                profiles.Profile(y, z, "wheel")
+        with self.assertRaisesRegex(ValueError, "points that are not finite"):
+            profiles.Profile(np.where(made.y > 0, np.nan, made.y), made.z, "wheel")
+        with self.assertRaisesRegex(ValueError, "rail is a wheel"):
+            profiles.Track(made).placed()
+        with self.assertRaisesRegex(ValueError, "wheel is a rail"):
+            profiles.Wheelset(rail()).tread()
+
+    def test_smoothing_takes_short_waves_and_leaves_long_ones(self):
+        made, length = wheel(0.0), 10.0
+        inner = (made.y > -20.0) & (made.y < 45.0)
+        for wave in (5.0, 10.0, 20.0):
+            waves = np.where(made.y > -35.2, 1e-3 * np.cos(2 * np.pi * made.y / wave), 0.0)
+            smooth = profiles.Profile(made.y, made.z + waves, "wheel").smoothed(length)
+            kept = (smooth.z - made.smoothed(length).z)[inner] @ waves[inner] / (waves[inner] @ waves[inner])
+            # The formula is that of a continuous line without ends.
+            self.assertAlmostEqual(kept, 1.0 / (1.0 + (length / wave) ** 4), delta=0.01)
+        with self.assertRaisesRegex(ValueError, "wave_length is 0.0"):
+            made.smoothed(0.0)
+
+
+class Files(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def written(self, name, text):
+        path = Path(self.folder.name, name)
+        path.write_text(text)
+        return path
+
+    def simpack(self, name, header, y, z):
+        points = "\n".join(f"  {a!r}  {b!r}   ! {k}" for k, (a, b) in enumerate(zip(y.tolist(), z.tolist())))
+        return self.written(name, f"! units.len.f = 7 in a comment\nspline.begin\n{header}\n    point.begin\n    ! y z\n{points}\n    point.end\nspline.end\n")
+
+    def assert_same(self, found, expected):
+        np.testing.assert_allclose(found.y, expected.y, atol=1e-12)
+        np.testing.assert_allclose(found.z, expected.z, atol=1e-12)
+        self.assertEqual(found.kind, expected.kind)
+
+    def test_the_header_of_simpack_is_obeyed(self):
+        made = wheel()
+        self.assert_same(profiles.read(self.simpack("a.prw", "", made.y, made.z)), made)
+        # As the benchmark's wheel: the flange at large y, mirrored and reversed by flags; in metres.
+        header = "mirror.y = 1 ! mirrored\n inversion = 1\n units.len.f = +1.000e+00"
+        self.assert_same(profiles.read(self.simpack("b.prw", header, -made.y / 1000.0, made.z / 1000.0)), made)
+        self.assert_same(profiles.read(self.simpack("c.PRW", "mirror.z = 1", made.y, -made.z)), made)
+        self.assert_same(profiles.read(self.simpack("d.prw", "shift.y = 2.5\nshift.z = -1", made.y - 2.5, made.z + 1.0)), made)
+        c, s = np.cos(0.1), np.sin(0.1)
+        self.assert_same(profiles.read(self.simpack("e.prw", "rotate = 0.1", c * made.y + s * made.z, c * made.z - s * made.y)), made)
+        bounded = profiles.read(self.simpack("f.prw", "bound.y.min = -1e3\nbound.y.max = 40.0", made.y, made.z))
+        self.assertEqual(bounded.y.max(), 40.0)
+        with self.assertRaisesRegex(ValueError, "mirror=True"):
+            profiles.read(self.simpack("g.prw", "", -made.y[::-1], made.z[::-1]))
+        with self.assertRaisesRegex(ValueError, "no points between point.begin and point.end"):
+            profiles.read(self.written("h.prr", "header.begin\nheader.end\n"))
+
+    def test_columns_below_a_header(self):
+        made = rail()
+        head = "ProgramName=own\nXYPOINTS=3\nColumnDef=X,Y,A,C\n\n"
+        rows = "\n".join(f"{y!r}\t{-z!r}\t0.1\t0" for y, z in zip(made.y.tolist(), made.z.tolist()))
+        self.assert_same(profiles.read(self.written("a.ban", head + rows)), made)
+        rows = "\n".join(f"{k} {z!r} {y!r}" for k, (y, z) in enumerate(zip((made.y / 25.4).tolist(), (made.z / 25.4).tolist())))
+        self.assert_same(profiles.read(self.written("inches.txt", "points\n" + rows), "rail", columns=(2, 1), scale=25.4), made)
+        made = wheel()
+        rows = "\n".join(f"{-y!r}, {z!r}" for y, z in zip(made.y.tolist(), made.z.tolist()))
+        self.assert_same(profiles.read(self.written("mirrored.csv", rows), "wheel", mirror=True), made)
+        with self.assertRaisesRegex(ValueError, 'kind is not known; give "wheel" or "rail"'):
+            profiles.read(self.written("b.txt", rows))
+        with self.assertRaisesRegex(ValueError, r"has 0 points in the columns \(0, 1\)"):
+            profiles.read(self.written("c.whl", head))

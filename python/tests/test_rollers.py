@@ -1,0 +1,87 @@
+"""Rollers: their gaps in closed form, and the pressures that their profiles are made for."""
+
+import unittest
+
+import numpy as np
+
+import contact_normal as cn
+from contact_normal import rollers
+
+E_STAR = 210e3 / (2 * (1 - 0.3**2))  # N/mm2; lengths in mm, forces in N.
+LENGTH, RADII = 14.0, (6.0, 25.0)
+
+
+class Gaps(unittest.TestCase):
+    def test_circles_are_exact(self):
+        gap = rollers.gap((2.0, 10.0), (20, 10), (6.0, -9.0), crown_radii=(100.0, np.inf), tilt=1e-3, units=("mm", "N"))
+        x, y = (np.arange(20) - 9.5) * 0.1, np.arange(10) - 4.5
+        expected = (6.0 - np.sqrt(36.0 - x**2)) - (9.0 - np.sqrt(81.0 - x**2)) + (100.0 - np.sqrt(1e4 - y[:, None] ** 2)) + 1e-3 * y[:, None]
+        np.testing.assert_allclose(gap.h, expected, atol=1e-14 * 100)
+        self.assertEqual((gap.dx, gap.dy, gap.units), (0.1, 1.0, ("mm", "N")))
+        # No surface beyond a roller.
+        self.assertTrue(np.isinf(rollers.gap((14.0, 1.0), (14, 1), (6.0,)).h[0, [0, -1]]).all())
+
+    def test_profiles(self):
+        y = np.array([-8.0, -7.0, -3.0, 0.0, 2.0, 6.5])
+        np.testing.assert_array_equal(rollers.no_drop(LENGTH)(y), [np.inf, 0, 0, 0, 0, 0])
+        np.testing.assert_allclose(rollers.crown(LENGTH, 500.0, 4.0)(y[1:]), 500.0 - np.sqrt(500.0**2 - np.array([5.0, 1.0, 0.0, 0.0, 4.5]) ** 2), atol=1e-12)
+        lundberg = rollers.logarithmic(LENGTH, 9000.0, E_STAR)(y)
+        np.testing.assert_array_equal(np.isinf(lundberg), [True, True, False, False, False, False])
+        np.testing.assert_allclose(lundberg[2:], 9000.0 / (np.pi * LENGTH * E_STAR) * np.log(1 / (1 - (y[2:] / 7.0) ** 2)), rtol=1e-13)
+        np.testing.assert_allclose(rollers.iso_16281(LENGTH, 12.0)(y)[2:], 0.00035 * 12.0 * np.log(1 / (1 - (y[2:] / 7.0) ** 2)), rtol=1e-13)
+
+    def test_the_standard_is_the_profile_of_lundberg_for_3000(self):
+        # A roller on a plane: p0^2 = force E*/(pi length radius).
+        force = np.pi * LENGTH * 6.0 * 3000.0**2 / E_STAR
+        ratio = rollers.iso_16281(LENGTH, 12.0)(np.array([3.0])) / rollers.logarithmic(LENGTH, force, E_STAR)(np.array([3.0]))
+        # The standard rounds to two digits.
+        self.assertAlmostEqual(ratio[0], 1.0, delta=0.05)
+
+    def test_what_is_no_roller_is_refused(self):
+        for wrong, message in (
+            (lambda: rollers.gap((1, 1), (4, 4), (6.0, -5.0)), "their curvatures add up to"),
+            (lambda: rollers.gap((1, 1), (4, 4), (np.inf,)), "their curvatures add up to 0.0"),
+            (lambda: rollers.gap((1, 1), (4, 0), (6.0,)), "elements are 4 and 0"),
+            (lambda: rollers.gap((0, 1), (4, 4), (6.0,)), r"size\[0\] is 0.0; it must be positive"),
+            (lambda: rollers.iso_16281(40.0, 12.0), "lengths of up to 2.5 times the diameter, 30.0"),
+            (lambda: rollers.crown(14.0, 500.0, 14.0), "straight is 14.0"),
+            (lambda: rollers.logarithmic(14.0, 0.0, E_STAR), "force is 0.0; it must be positive"),
+        ):
+            with self.assertRaisesRegex(ValueError, message):
+                wrong()
+        with self.assertRaisesRegex(TypeError, "give either drop or crown_radii"):
+            rollers.gap((1, 1), (4, 4), (6.0,), drop=rollers.no_drop(1.0), crown_radii=(5.0,))
+
+
+class Pressures(unittest.TestCase):
+    FORCE = 9000.0
+    LINE = np.sqrt(FORCE / LENGTH * E_STAR / np.pi * (1 / RADII[0] + 1 / RADII[1]))
+
+    def along(self, drop, elements=(48, 56)):
+        result = rollers.gap((1.2, LENGTH), elements, RADII, drop=drop).solve(force=self.FORCE, e_star=E_STAR)
+        self.assertEqual(result.status, cn.OK)
+        return result.pressure.max(axis=1)
+
+    def test_lundbergs_profile_has_even_pressures(self):
+        p = self.along(rollers.logarithmic(LENGTH, self.FORCE, E_STAR))
+        # The middle half is that of Hertz' line; 24 elements to half a width are good to 0.2 %.
+        np.testing.assert_allclose(p[14:42], self.LINE, rtol=2e-3)
+        # Nowhere more than a few per cent, but for the last two rows, where the drop has no bound.
+        self.assertLess(p.max() / self.LINE, 1.03)
+
+    def test_sharp_ends_and_crowns_do_not(self):
+        sharp = self.along(rollers.no_drop(LENGTH))
+        self.assertGreater(sharp[0] / self.LINE, 1.4)
+        crowned = self.along(rollers.crown(LENGTH, 500.0))
+        self.assertEqual(crowned[0], 0.0)
+        self.assertGreater(crowned[28] / self.LINE, 1.15)
+
+    def test_a_crowned_contact_is_that_of_hertz(self):
+        gap = rollers.gap((0.6, 0.6), (60, 60), (8.0, -24.0), crown_radii=(12.0,))
+        # 1/8 - 1/24 = 1/12: a ball of 12 mm.
+        radius = 0.2
+        force = radius**3 / 12.0 * E_STAR / 0.75
+        result = gap.solve(force=force, e_star=E_STAR)
+        # 20 elements to a radius, and circles that are parabolas to (0.2/8)^2/4.
+        self.assertAlmostEqual(result.max_pressure / (1.5 * force / (np.pi * radius**2)), 1.0, delta=5e-3)
+        self.assertAlmostEqual(result.approach / (radius**2 / 12.0), 1.0, delta=5e-3)

@@ -1,0 +1,97 @@
+"""Heights and gaps in files, and pictures of them."""
+
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+import matplotlib
+import numpy as np
+
+from contact_normal import surface
+from test_surface import rough
+
+matplotlib.use("Agg")
+from matplotlib import pyplot  # noqa: E402
+
+
+class Files(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def test_arrays_of_numpy_and_text(self):
+        z = rough(16)[:5]
+        np.save(self.folder / "a.npy", z)
+        np.savez(self.folder / "one.npz", heights=z)
+        np.savez(self.folder / "two.npz", heights=z, other=z)
+        np.savetxt(self.folder / "a.txt", z, fmt="%.17g")
+        np.savetxt(self.folder / "a.csv", z, fmt="%.17g", delimiter=",")
+        for name, given in (("a.npy", {}), ("one.npz", {}), ("two.npz", {"variable": "heights"}), ("a.txt", {}), ("a.csv", {})):
+            made = surface.read(self.folder / name, dx=1.0, dy=2.0, **given)
+            np.testing.assert_array_equal(made.z, z)
+            self.assertEqual((made.dx, made.dy), (1.0, 2.0))
+        with self.assertRaisesRegex(ValueError, "has heights, other; give variable, one of them"):
+            surface.read(self.folder / "two.npz", dx=1.0, dy=2.0)
+
+    def test_files_keep_every_bit(self):
+        path = self.folder / "gap.txt"
+        gap = surface.gap(surface.heights(np.where(rough() > 1, np.nan, rough())[:40], 1 / 3, 1 / 7))
+        gap.write(path, "rough")
+        lines = path.read_text().splitlines()
+        self.assertEqual(lines[1:3], ["# rough", f"64 40 {1 / 3!r} {1 / 7!r}"])
+        self.assertEqual(len(lines), 3 + 64 * 40)
+        self.assertIn("inf", lines)
+        read = surface.Gap.read(path)
+        np.testing.assert_array_equal(read.h, gap.h)
+        self.assertEqual((read.dx, read.dy), (1 / 3, 1 / 7))
+        path.write_text("\n".join(lines[:-1]))
+        with self.assertRaisesRegex(ValueError, "has 2559 distances; 64 x 40 elements need 2560"):
+            surface.Gap.read(path)
+        path.write_text("1 2 3\n")
+        with self.assertRaisesRegex(ValueError, "it is no file of a gap"):
+            surface.Gap.read(path)
+        with self.assertRaisesRegex(ValueError, "comment has several lines"):
+            gap.write(path, "a\nb")
+
+    def test_a_missing_package_is_named(self):
+        with mock.patch.dict(sys.modules, {"SurfaceTopography": None}):
+            with self.assertRaisesRegex(ImportError, r"files \.x3p need SurfaceTopography: pip install 'contact-normal\[surface\]'"):
+                surface.read(self.folder / "a.x3p")
+        with mock.patch.dict(sys.modules, {"xarray": None, "netCDF4": None}):
+            with self.assertRaisesRegex(ImportError, "xarray and netCDF4: pip install"):
+                surface.read(self.folder / "a.nc")
+
+    def test_a_topography_has_x_first(self):
+        z = rough(16)[:5]
+        topography = mock.Mock(dim=2, is_uniform=True, physical_sizes=(1.0, 2.0), is_periodic=True, unit="um", heights=lambda: z)
+        package = mock.Mock(read_topography=lambda path: topography)
+        with mock.patch.dict(sys.modules, {"SurfaceTopography": package}):
+            made = surface.read(self.folder / "a.x3p")
+        np.testing.assert_array_equal(made.z, z.T)
+        self.assertEqual((made.dx, made.dy, made.period, made.units), (1.0 / 5, 2.0 / 16, "xy", ("um", "N")))
+        self.assertIsNone(surface.from_topography(topography, period=None).period)
+        with self.assertRaisesRegex(ValueError, "a line scan or not uniform"):
+            surface.from_topography(mock.Mock(dim=1, is_uniform=True))
+
+
+class Pictures(unittest.TestCase):
+    def tearDown(self):
+        pyplot.close("all")
+
+    def test_they_name_quantities_and_units(self):
+        z = rough()
+        z[5, 7], z[20:22, 20] = 9.0, np.nan
+        made = surface.heights(z, 0.5, 0.5, units=("um", "N"))
+        axes = surface.faults(made).plot()
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("x [um]", "y [um]"))
+        self.assertEqual(axes.figure.axes[1].get_ylabel(), "height z [um]")
+        (marked,) = axes.get_lines()
+        np.testing.assert_allclose(marked.get_xydata(), [(made.x[7], made.y[5])])
+        shown = axes.images[0].get_array()
+        self.assertEqual(shown.mask.sum(), 3)
+        drawn = surface.gap(made).plot(largest=2.0)
+        self.assertEqual(drawn.figure.axes[1].get_ylabel(), "undeformed distance h [um]")
+        self.assertEqual(drawn.images[0].get_clim()[1], 2.0)

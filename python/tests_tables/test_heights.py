@@ -1,0 +1,49 @@
+"""Heights from datasets of xarray and NetCDF files."""
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+import xarray
+
+from contact_normal import surface
+
+Z = np.random.default_rng(5).normal(size=(5, 7))
+
+
+class Heights(unittest.TestCase):
+    def test_dimensions_in_any_order_and_falling_coordinates(self):
+        x, y = 0.5 * np.arange(7), 0.25 * np.arange(5)
+        for array, expected in (
+            (xarray.DataArray(Z, dims=("y", "x"), coords={"x": x, "y": y}), Z),
+            (xarray.DataArray(Z.T, dims=("x", "y"), coords={"x": x, "y": y}), Z),
+            (xarray.DataArray(Z, dims=("row", "column"), coords={"column": x, "row": y[::-1]}), Z[::-1]),
+        ):
+            made = surface.from_xarray(array)
+            np.testing.assert_array_equal(made.z, expected)
+            self.assertEqual((made.dx, made.dy, made.units), (0.5, 0.25, None))
+
+    def test_units_are_told_if_all_agree(self):
+        told = {"units": "um"}
+        array = xarray.DataArray(Z, dims=("y", "x"), coords={"x": ("x", np.arange(7.0), told), "y": ("y", np.arange(5.0), told)}, attrs=told)
+        self.assertEqual(surface.from_xarray(array).units, ("um", "N"))
+        self.assertEqual(surface.from_xarray(array, units=("m", "kN")).units, ("m", "kN"))
+        self.assertIsNone(surface.from_xarray(array.assign_attrs(units="nm")).units)
+
+    def test_what_has_no_grid_is_refused(self):
+        with self.assertRaisesRegex(ValueError, "the dimension x has no coordinates"):
+            surface.from_xarray(xarray.DataArray(Z, dims=("y", "x"), coords={"y": np.arange(5)}))
+        with self.assertRaisesRegex(ValueError, "heights have two"):
+            surface.from_xarray(xarray.DataArray(Z[0], dims=("x",), coords={"x": np.arange(7)}))
+
+    def test_files(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "a.nc")
+            array = xarray.DataArray(Z, dims=("y", "x"), coords={"x": np.arange(7) * 0.1, "y": np.arange(5) * 0.2})
+            xarray.Dataset({"z": array, "other": array + 1}).to_netcdf(path, engine="netcdf4")
+            made = surface.read(path, "z")
+            np.testing.assert_array_equal(made.z, Z)
+            self.assertAlmostEqual(made.dy, 0.2, delta=1e-12)
+            with self.assertRaisesRegex(ValueError, "has z, other; give variable"):
+                surface.read(path)

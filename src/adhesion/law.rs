@@ -1,0 +1,137 @@
+//! Laws of attraction: the traction sigma between two surfaces at a distance e, positive where they attract each other.
+//!
+//! ```text
+//! w = integral_0^inf sigma(e) de      the work of adhesion
+//! W(e) = integral_e^inf sigma         the work left at a distance e, W(0) = w
+//! s(e) = -sigma'(e) >= 0              the stiffness
+//!
+//! t = e/rho       sigma rho/w            s rho^2/w                      W/w
+//! EXPONENTIAL     exp(-t)                exp(-t)                        exp(-t)
+//! DUGDALE         1 up to 1 - eta,       1/(2 eta) from 1 - eta         1 - t up to 1 - eta,
+//!                 0 from 1 + eta on      to 1 + eta                     (1 + eta - t)^2/(4 eta) up to 1 + eta
+//! CUBIC           (1 - t/3)^2, t < 3     2/3 (1 - t/3)                  (1 - t/3)^3
+//! VAN_DER_WAALS   (1 + t/2)^-3           3/2 (1 + t/2)^-4               (1 + t/2)^-2
+//! ```
+//!
+//! All have sigma(0) = w/rho. EXPONENTIAL is the one of the contact-mechanics challenge (Muser et al. 2017), DUGDALE that of Maugis 1992
+//! with a smeared edge, VAN_DER_WAALS that of half-spaces with w/rho = A_H/(6 pi (2 rho)^3).
+
+/// How the attraction falls with the distance.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Law {
+    /// Exponentially.
+    #[default]
+    Exponential,
+    /// Constant up to the range, 0 beyond, the edge smeared linearly over this part of the range on both sides.
+    Dugdale(f64),
+    /// As a parabola that ends at three ranges.
+    Cubic,
+    /// As the third power of the distance from twice the range before the surface.
+    VanDerWaals,
+}
+
+/// Ranges beyond which the exponential law counts as 0: it is less than half a rounding error of sigma(0) there.
+const EXPONENTIAL_REACH: f64 = 40.0;
+
+impl Law {
+    /// s(e) rho^2/w where it is largest: what a range has to be for an element to carry it depends on that.
+    pub fn steepness(self) -> f64 {
+        match self {
+            Law::Exponential => 1.0,
+            Law::Dugdale(smear) => 0.5 / smear,
+            Law::Cubic => 2.0 / 3.0,
+            Law::VanDerWaals => 1.5,
+        }
+    }
+
+    /// The shortest range that elements carry, which displace themselves by a0 under a unit pressure: the one at which
+    /// `kappa = s a0` is so much.
+    pub fn shortest_range(self, work: f64, self_influence: f64, kappa: f64) -> f64 {
+        (self.steepness() * work * self_influence / kappa).sqrt()
+    }
+
+    /// sigma rho/w at t = e/rho.
+    #[inline]
+    fn traction(self, t: f64) -> f64 {
+        match self {
+            Law::Exponential if t < EXPONENTIAL_REACH => (-t).exp(),
+            Law::Exponential => 0.0,
+            Law::Dugdale(smear) => ((1.0 + smear - t) / (2.0 * smear)).clamp(0.0, 1.0),
+            Law::Cubic => (1.0 - t / 3.0).max(0.0).powi(2),
+            Law::VanDerWaals => (1.0 + 0.5 * t).powi(-3),
+        }
+    }
+
+    /// s rho^2/w.
+    #[inline]
+    fn slope(self, t: f64) -> f64 {
+        match self {
+            Law::Exponential => self.traction(t),
+            Law::Dugdale(smear) if (t - 1.0).abs() < smear => 0.5 / smear,
+            Law::Dugdale(_) => 0.0,
+            Law::Cubic => 2.0 / 3.0 * (1.0 - t / 3.0).max(0.0),
+            Law::VanDerWaals => 1.5 * (1.0 + 0.5 * t).powi(-4),
+        }
+    }
+
+    /// W/w.
+    #[inline]
+    fn work_left(self, t: f64) -> f64 {
+        match self {
+            Law::Exponential => self.traction(t),
+            Law::Dugdale(smear) if t < 1.0 - smear => 1.0 - t,
+            Law::Dugdale(smear) => (1.0 + smear - t).max(0.0).powi(2) / (4.0 * smear),
+            Law::Cubic => (1.0 - t / 3.0).max(0.0).powi(3),
+            Law::VanDerWaals => (1.0 + 0.5 * t).powi(-2),
+        }
+    }
+}
+
+/// A law with its range.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Attraction {
+    /// The law.
+    pub law: Law,
+    /// rho, a length.
+    pub range: f64,
+}
+
+impl Attraction {
+    /// sigma at a distance, which counts as 0 where it is negative; w: the work of adhesion there.
+    #[inline]
+    pub fn traction(&self, w: f64, e: f64) -> f64 {
+        w / self.range * self.law.traction(self.ranges(e))
+    }
+
+    /// s at a distance.
+    #[inline]
+    pub fn stiffness(&self, w: f64, e: f64) -> f64 {
+        w / self.range / self.range * self.law.slope(self.ranges(e))
+    }
+
+    /// W at a distance.
+    #[inline]
+    pub fn work_left(&self, w: f64, e: f64) -> f64 {
+        w * self.law.work_left(self.ranges(e))
+    }
+
+    /// The distance at which the exponential law has the traction sigma; infinite where it has none.
+    #[inline]
+    pub fn distance_of(&self, w: f64, sigma: f64) -> f64 {
+        if sigma > 0.0 {
+            -self.range * (sigma * self.range / w).ln()
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// kappa: what a range has to be, as the largest stiffness times what an element displaces itself by. Above 1 one element alone snaps.
+    pub fn resolution(&self, work: f64, self_influence: f64) -> f64 {
+        self.law.steepness() * work / self.range / self.range * self_influence
+    }
+
+    #[inline]
+    fn ranges(&self, e: f64) -> f64 {
+        e.max(0.0) / self.range
+    }
+}

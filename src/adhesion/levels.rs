@@ -1,0 +1,108 @@
+//! The grids of a nested iteration. Coarser ones keep the work of adhesion and get a longer range, one that their elements carry.
+
+use std::sync::Arc;
+
+use super::law::{Attraction, Law};
+use super::level::Level;
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::influence::Coefficients;
+use crate::memory::{reserve, sparse};
+use crate::methods::multigrid::{coarsen, transfer};
+use crate::methods::projected_cg::shift_to_mean;
+use crate::operator::Operator;
+use crate::threads::Threads;
+
+/// The coarsest grid has at most this many elements in each direction.
+const COARSEST: usize = 31;
+/// `kappa = s a0` of the shortest range that elements carry.
+pub const CARRIED: f64 = 0.4;
+
+/// What of a scene the grids take over.
+#[derive(Clone, Copy, Debug)]
+pub struct Surfaces<'a> {
+    /// h; `+infinity` where there is no surface.
+    pub h: &'a [f64],
+    /// How the attraction falls with the distance.
+    pub law: Law,
+    /// rho; 0: the shortest that the elements carry.
+    pub range: f64,
+    /// w where it is the same everywhere.
+    pub work: f64,
+    /// w of each element.
+    pub works: Option<&'a [f64]>,
+}
+
+/// The grids, finest first, of which the finest has this operator.
+pub fn levels(
+    grid: Grid,
+    coefficients: &Coefficients,
+    operator: Arc<Operator<f64>>,
+    threads: &Threads,
+) -> Result<Vec<Level>> {
+    let below = || std::iter::successors(coarsen(&grid, COARSEST), |grid| coarsen(grid, COARSEST));
+    let mut levels = sparse(1 + below().count(), "the grids of adhesion")?;
+    levels.push(Level::new((grid, coefficients.clone()), operator, 1.0, threads)?);
+    let (mut fine, mut coefficients) = (grid, coefficients.clone());
+    for coarse in below() {
+        coefficients = coefficients.coarsen(&fine, &coarse)?;
+        fine = coarse;
+        let threads = &threads.suited_to(fine.len());
+        let operator = Arc::new(Operator::new(&coefficients, &fine, threads)?);
+        let work = fine.len() as f64 / grid.len() as f64;
+        levels.push(Level::new((fine, coefficients.clone()), operator, work, threads)?);
+    }
+    Ok(levels)
+}
+
+/// Takes the surfaces of a scene over to all grids.
+pub fn take_surfaces(levels: &mut [Level], given: Surfaces<'_>) -> Result<()> {
+    let Surfaces { h, law, work, works, .. } = given;
+    let largest = works.map_or(work, |works| works.iter().copied().fold(0.0, f64::max));
+    for l in 0..levels.len() {
+        let (finer, coarser) = levels.split_at_mut(l);
+        let Level { problem, surface, .. } = &mut coarser[0];
+        let (n, a0) = (problem.grid.len(), problem.self_influence());
+        let carried = law.shortest_range(largest, a0, CARRIED);
+        let range = match finer.first() {
+            None if given.range > 0.0 => given.range,
+            None => carried,
+            Some(finest) => finest.surface.attraction.range.max(carried),
+        };
+        (surface.attraction, surface.work) = (Attraction { law, range }, largest);
+        for values in [&mut surface.h, &mut surface.works] {
+            reserve(values, n, "the surfaces of adhesion")?;
+            values.clear();
+        }
+        let has_works = works.is_some();
+        match finer.last() {
+            None => {
+                surface.h.extend_from_slice(h);
+                surface.works.extend_from_slice(works.unwrap_or_default());
+            }
+            Some(Level { problem: fine, surface: from, .. }) => {
+                surface.h.resize(n, 0.0);
+                let (from_grid, to_grid) = (&fine.grid, &problem.grid);
+                transfer::restrict_distance(from_grid, to_grid, &from.h, f64::MAX, &mut surface.h, &problem.threads);
+                if problem.coefficients.is_mean_free() {
+                    shift_to_mean(&from.h, &mut surface.h);
+                }
+                if has_works {
+                    surface.works.resize(n, 0.0);
+                    transfer::restrict_mean(from_grid, to_grid, |i| from.works[i], &mut surface.works);
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The pressures of the next coarser grid, piecewise constant, their displacements by a fresh product, and the approach.
+pub fn prolong(coarse: &Level, fine: &mut Level) -> Result<()> {
+    let (from, to) = (coarse.problem.grid, fine.problem.grid);
+    let p = fine.now.p.field.as_flattened_mut();
+    transfer::interpolate(&to, &from, coarse.now.p.field.as_flattened(), p, |to, value| *to = value);
+    p.iter_mut().zip(&fine.surface.h).filter(|(_, h)| h.is_infinite()).for_each(|(p, _)| *p = 0.0);
+    fine.now.p.border = coarse.now.p.border;
+    fine.refresh()
+}

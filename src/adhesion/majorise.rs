@@ -1,0 +1,118 @@
+//! Majorise-minimise: the attraction stands still, the contact problem that is left is solved, and again.
+//!
+//! ```text
+//! sigma_k = sigma(e);    e = h - approach - A sigma_k + A q,  q >= 0,  e >= 0,  q e = 0;    p = q - sigma_k
+//! ```
+//!
+//! W is convex, so that the energy with sigma_k lies above that of the law and touches it at the last state: every step goes downhill, whatever the
+//! attraction.
+
+use super::level::{Level, MakeFrozen};
+use super::newton::{End, Goal};
+use super::unknowns::Measured;
+use crate::contact::Freshness;
+use crate::error::Result;
+use crate::methods::fields;
+use crate::progress::{Monitor, Outcome};
+use crate::scene::Load;
+
+/// A frozen problem is solved to this part of what the attraction is off, but at least to `LEAST`.
+const PART: f64 = 0.05;
+const LEAST: f64 = 1e-2;
+/// And at most to this part of the tolerance.
+const ENOUGH: f64 = 0.5;
+
+/// How descent ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Descent {
+    /// As a loop of Newton's method.
+    By(End),
+    /// The force pulls more than all attraction holds: the bodies part.
+    Parted,
+}
+
+/// What descent goes through.
+#[derive(Clone, Copy)]
+pub struct Steps<'a> {
+    /// So many steps at most.
+    pub most: u64,
+    /// Whether the first one begins without any attraction.
+    pub from_none: bool,
+    /// Makes what solves the frozen problems.
+    pub make: MakeFrozen<'a>,
+}
+
+/// Goes down from what the level holds, whose contact area and u need not be those of its p.
+pub fn descend(
+    level: &mut Level,
+    goal: Goal,
+    steps: Steps<'_>,
+    monitor: &mut Monitor<'_>,
+) -> Result<(Descent, Measured)> {
+    level.prepare_frozen(steps.make)?;
+    let mut measured = level.measure(false, goal.wanted);
+    for step in 0..steps.most {
+        if goal.is_interrupted(monitor) {
+            return Ok((Descent::By(End::Interrupted), measured));
+        }
+        let off = if step == 0 { LEAST / PART } else { measured.law };
+        let tolerance = (PART * off).min(LEAST).max(ENOUGH * goal.tolerance);
+        if !one(level, (goal, tolerance), steps.from_none && step == 0, monitor)? {
+            return Ok((Descent::Parted, measured));
+        }
+        measured = level.measure(false, goal.wanted);
+        if measured.worst() < goal.tolerance {
+            if goal.certified {
+                level.refresh()?;
+                measured = level.measure(false, goal.wanted);
+                level.count_products(monitor);
+            }
+            if measured.worst() < goal.tolerance {
+                return Ok((Descent::By(End::Solved), measured));
+            }
+        }
+    }
+    Ok((Descent::By(End::Failed), measured))
+}
+
+/// One step. False where no pressure carries the force.
+fn one(level: &mut Level, (goal, tolerance): (Goal, f64), from_none: bool, monitor: &mut Monitor<'_>) -> Result<bool> {
+    let (n, threads) = (level.now.u.len(), level.problem.threads.clone());
+    let Some((mut frozen, mut state)) = level.frozen.take() else { return Ok(false) };
+    let mut fields = std::mem::take(&mut level.fields);
+    let mut attraction = fields.take(n)?;
+    let (surface, now) = (&level.surface, &level.now);
+    fields::fill(&threads, &mut attraction, |i| {
+        [if from_none { 0.0 } else { surface.traction(i, surface.distance(i, now)) }]
+    });
+    let [held] = fields::sum(&threads, n, |i| attraction[i]);
+    let (problem, product) = (&mut level.problem, &mut level.product);
+    problem.displace(attraction.as_flattened(), product)?;
+    for i in 0..n {
+        let q = level.now.p.field[i][0] + attraction[i][0];
+        (state.h[i], state.p[i]) = (level.surface.h[i] - product[i], if q > 0.0 { q } else { 0.0 });
+        state.contact[i] = state.p[i] > 0.0;
+    }
+    state.approach = level.now.approach();
+    let area = problem.grid.element_area();
+    state.load = match goal.wanted {
+        None => Load::Approach(state.approach),
+        Some(wanted) => Load::Force((wanted + held) * area),
+    };
+    state.u_is = Freshness::Stale;
+    let carried = !matches!(state.load, Load::Force(force) if !(force > 0.0));
+    if carried {
+        let outcome = frozen.solve(problem, &mut state, (tolerance, goal.most), monitor)?;
+        log::debug!("the contact problem of a still attraction: {outcome:?}");
+        let _: Outcome = outcome;
+        for i in 0..n {
+            level.now.p.field[i] = [state.p[i] - attraction[i][0]];
+            level.now.u[i] = [state.u[i] - product[i]];
+        }
+        level.now.p.border = [state.approach];
+    }
+    fields.give(attraction);
+    (level.fields, level.frozen) = (fields, Some((frozen, state)));
+    level.count_products(monitor);
+    Ok(carried)
+}

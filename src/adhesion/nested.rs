@@ -1,0 +1,114 @@
+//! Nested iteration: the coarsest grid first, each from what the one before it found. Their longer ranges have little hysteresis.
+
+use super::level::{Level, MakeFrozen};
+use super::levels::prolong;
+use super::majorise::{descend, Descent, Steps};
+use super::newton::{End, Goal};
+use super::request::Start;
+use super::robust::{self, Ended};
+use crate::error::Result;
+use crate::progress::Monitor;
+
+/// Coarser grids are solved to this: what they leave wrong costs more on the finest.
+pub const COARSE: f64 = 1e-2;
+/// Steps of descent with which the coarsest grid begins, and the finest where it begins apart.
+const FIRST: u64 = 3;
+const FROM_APART: u64 = 12;
+/// From contact: an approach of so many ranges more, in so many steps.
+const DEEPER: f64 = 4.0;
+const DEEPER_STEPS: u32 = 4;
+
+/// Solves the finest of `levels` from nothing.
+pub fn solve(
+    levels: &mut [Level],
+    goal: Goal,
+    (start, make): (Start, MakeFrozen<'_>),
+    monitor: &mut Monitor<'_>,
+) -> Result<Ended> {
+    let last = levels.len() - 1;
+    if start == Start::Apart && goal.wanted.is_none() {
+        let level = &mut levels[0];
+        begin(level, goal);
+        let steps = Steps { most: FROM_APART, from_none: true, make };
+        let (end, measured) = descend(level, goal, steps, monitor)?;
+        return match end {
+            Descent::By(End::Failed) => robust::solve(level, goal, (false, make), monitor),
+            end => Ok(Ended { end, measured, descended: true }),
+        };
+    }
+    for l in (1..=last).rev() {
+        monitor.enter_grid();
+        let coarse = coarse_goal(levels, l, goal);
+        let ended = one(levels, l, coarse, (start, make), monitor)?;
+        if ended.end == Descent::By(End::Interrupted) && monitor.is_cancelled() {
+            break;
+        }
+        let (fine, coarse) = levels.split_at_mut(l);
+        prolong(&coarse[0], &mut fine[l - 1])?;
+        fine[l - 1].count_products(monitor);
+    }
+    monitor.enter_grid();
+    one(levels, 0, goal, (start, make), monitor)
+}
+
+/// What a coarser grid has to reach: its elements are larger, so that fewer pressures add up to the same force.
+pub fn coarse_goal(levels: &[Level], l: usize, goal: Goal) -> Goal {
+    let area = |l: usize| levels[l].problem.grid.element_area();
+    let wanted = goal.wanted.map(|wanted| wanted * area(0) / area(l));
+    let tolerance = if l == 0 { goal.tolerance } else { goal.tolerance.max(COARSE) };
+    Goal { tolerance, wanted, certified: l == 0, ..goal }
+}
+
+/// Solves one grid: the coarsest from nothing.
+fn one(
+    levels: &mut [Level],
+    l: usize,
+    goal: Goal,
+    (start, make): (Start, MakeFrozen<'_>),
+    monitor: &mut Monitor<'_>,
+) -> Result<Ended> {
+    let level = &mut levels[l..];
+    let (is_coarsest, level) = (level.len() == 1, &mut level[0]);
+    if is_coarsest {
+        let approach = begin(level, goal);
+        if start == Start::Contact && goal.wanted.is_none() {
+            return from_contact(level, goal, (approach, make), monitor);
+        }
+        let steps = Steps { most: FIRST, from_none: true, make };
+        let (end, measured) = descend(level, goal, steps, monitor)?;
+        if matches!(end, Descent::By(End::Interrupted)) {
+            return Ok(Ended { end, measured, descended: false });
+        }
+    }
+    robust::solve(level, goal, (false, make), monitor)
+}
+
+/// p = 0 at the approach that is given, or that of a first touch. Returns the approach.
+fn begin(level: &mut Level, goal: Goal) -> f64 {
+    level.now.unload();
+    if goal.wanted.is_some() {
+        let lowest = crate::contact::lowest(&level.surface.h);
+        level.now.p.border = [if lowest.is_finite() { lowest } else { 0.0 }];
+    }
+    level.now.approach()
+}
+
+/// From a larger approach down to the one that is given, so that what is in contact stays so.
+fn from_contact(
+    level: &mut Level,
+    goal: Goal,
+    (approach, make): (f64, MakeFrozen<'_>),
+    monitor: &mut Monitor<'_>,
+) -> Result<Ended> {
+    let apart = (crate::contact::lowest(&level.surface.h) - approach).max(0.0);
+    let deeper = Some(apart + DEEPER * level.surface.attraction.range).filter(|by| by.is_finite()).unwrap_or(0.0);
+    level.now.p.border = [approach + deeper];
+    let first = Goal { tolerance: goal.tolerance.max(COARSE), certified: false, ..goal };
+    descend(level, first, Steps { most: FIRST, from_none: true, make }, monitor)?;
+    for step in (1..=DEEPER_STEPS).rev() {
+        level.now.p.border = [approach + deeper * f64::from(step) / f64::from(DEEPER_STEPS)];
+        robust::solve(level, first, (step < DEEPER_STEPS, make), monitor)?;
+    }
+    level.now.p.border = [approach];
+    robust::solve(level, goal, (true, make), monitor)
+}

@@ -1,0 +1,180 @@
+//! Semismooth Newton on total pressures. Each step predicts C by the natural map `q - e/a0 > 0` and linearises the rest:
+//!
+//! ```text
+//! in C  e = 0,      outside  p = -sigma(e)
+//! ```
+//!
+//! Far from the solution the exponential law is linearised at the mean of e and of the distance that -p belongs to: from e alone the tangent of a steep
+//! law reaches too far. There is no line search: where steps fail descent takes over ([`robust`](super::robust)).
+//!
+//! A warm start keeps the last contact area in its first step. A change of the approach lifts e in all of C, and the natural map, which knows
+//! the compliance of one element only, would release the inside.
+
+use super::law::Law;
+use super::level::Level;
+use super::system::Linearised;
+use super::unknowns::Measured;
+use crate::error::Result;
+use crate::methods::fgmres::{self, Bordered, Until};
+use crate::methods::fields;
+use crate::progress::Monitor;
+
+/// Steps at most.
+const MOST_STEPS: u64 = 20;
+/// Above this residual a step linearises at the mean distance, and its linear system is solved to `FAR`; below to `NEAR`.
+const CLOSE: f64 = 2e-2;
+const FAR: f64 = 0.2;
+const NEAR: f64 = 0.1;
+/// The mean distance lies within so many ranges of e.
+const WITHIN: f64 = 3.0;
+/// Directions of a linear solve at most: what takes more is a system that is nearly singular.
+const DIRECTIONS: usize = 30;
+/// A residual beyond that is a failure.
+const LOST: f64 = 1e12;
+/// The linear solve of the stiffness of the contact.
+const OF_STIFFNESS: f64 = 1e-3;
+
+/// How a loop ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// The measures are met; where it is asked for, with a fresh product.
+    Solved,
+    /// No step brings more.
+    Failed,
+    /// The caller cancelled, or no cycle is left.
+    Interrupted,
+}
+
+/// What a loop on one grid has to reach.
+#[derive(Clone, Copy, Debug)]
+pub struct Goal {
+    /// Of the worst measure.
+    pub tolerance: f64,
+    /// The sum of p where the force is given.
+    pub wanted: Option<f64>,
+    /// Whether a fresh product has to confirm it.
+    pub certified: bool,
+    /// Cycles on the finest grid at most.
+    pub most: u64,
+}
+
+impl Goal {
+    /// Whether no cycle is left, or the caller cancelled.
+    pub fn is_interrupted(&self, monitor: &Monitor<'_>) -> bool {
+        monitor.is_cancelled() || monitor.count.cycles >= self.most
+    }
+}
+
+/// Iterates from what the level holds. `keeps`: the first step keeps its contact area.
+pub fn newton(level: &mut Level, goal: Goal, keeps: bool, monitor: &mut Monitor<'_>) -> Result<(End, Measured)> {
+    let mut measured = Measured::default();
+    for step in 0..=MOST_STEPS {
+        measured = level.measure(keeps && step == 0, goal.wanted);
+        let worst = measured.worst();
+        if worst < goal.tolerance && step > 0 {
+            if !goal.certified {
+                return Ok((End::Solved, measured));
+            }
+            level.refresh()?;
+            measured = level.measure(false, goal.wanted);
+            level.count_products(monitor);
+            if measured.worst() < goal.tolerance {
+                return Ok((End::Solved, measured));
+            }
+        }
+        if goal.is_interrupted(monitor) {
+            return Ok((End::Interrupted, measured));
+        }
+        if !(worst < LOST) || step == MOST_STEPS {
+            break;
+        }
+        take_step(level, goal.wanted, measured.residual())?;
+        level.count_products(monitor);
+        monitor.cycle_done(&level.problem.grid, 0, 0.0, worst);
+    }
+    Ok((End::Failed, measured))
+}
+
+/// One step.
+fn take_step(level: &mut Level, wanted: Option<f64>, worst: f64) -> Result<()> {
+    let (n, threads) = (level.now.u.len(), level.problem.threads.clone());
+    let mut fields = std::mem::take(&mut level.fields);
+    let (mut stiffness, mut right) = (fields.take(n)?, fields.take(n)?);
+    linearise(level, worst > CLOSE, &mut stiffness, &mut right);
+    let [sum, count] =
+        fields::sum(&threads, n, |i| [level.now.p.field[i][0], f64::from(u8::from(level.now.contact[i]))]);
+    let border = [wanted.map_or(0.0, |wanted| wanted - sum)];
+    let weight = if wanted.is_some() { 1.0 / f64::max(count, 1.0) } else { 0.0 };
+    let r = Bordered { field: right, border };
+    let norm = (fields::dot(&threads, &r.field, &r.field) + weight * border[0] * border[0]).sqrt();
+    let until = Until { target: norm * if worst > CLOSE { FAR } else { NEAR }, most: DIRECTIONS };
+    let mut system = Linearised::new(level, &stiffness, wanted.is_some(), &mut fields)?;
+    let found = fgmres::solve(&mut system, r, (until, weight), &threads, &mut fields)?;
+    system.give(&mut fields);
+    found.add_to(&mut level.now.p, &mut level.now.u, &threads, &mut fields);
+    fields.give(stiffness);
+    level.fields = fields;
+    Ok(())
+}
+
+/// s, and the right-hand side, of the contact area of now.
+fn linearise(level: &Level, at_mean: bool, stiffness: &mut [[f64; 1]], right: &mut [[f64; 1]]) {
+    let (surface, now, a0, threads) = (&level.surface, &level.now, level.self_influence(), &level.problem.threads);
+    let range = surface.attraction.range;
+    let at_mean = at_mean && surface.attraction.law == Law::Exponential;
+    // The distance at which element i is linearised.
+    let place = |i: usize, e: f64| {
+        let e = e.max(0.0);
+        match at_mean {
+            false => e,
+            true => {
+                let of_pressure = surface.attraction.distance_of(surface.work_at(i), -now.p.field[i][0]);
+                let of_pressure = if of_pressure.is_finite() { of_pressure.max(0.0) } else { e };
+                (0.5 * (e + of_pressure.clamp(e - WITHIN * range, e + WITHIN * range))).max(0.0)
+            }
+        }
+    };
+    fields::fill(threads, stiffness, |i| {
+        let e = surface.distance(i, now);
+        if now.contact[i] || !e.is_finite() {
+            return [0.0];
+        }
+        [surface.attraction.stiffness(surface.work_at(i), place(i, e))]
+    });
+    let stiffness = &*stiffness;
+    fields::fill(threads, right, |i| {
+        let (e, p) = (surface.distance(i, now), now.p.field[i][0]);
+        if now.contact[i] {
+            return [-e / a0];
+        }
+        if !e.is_finite() {
+            return [-p];
+        }
+        let at = place(i, e);
+        [-(p + surface.traction(i, at) - stiffness[i][0] * (e - at))]
+    });
+}
+
+/// dF/dapproach per area of an element, at the state of now: the force that holds an equilibrium grows with the approach where it is stable.
+pub fn stiffness_of_contact(level: &mut Level, monitor: &mut Monitor<'_>) -> Result<f64> {
+    let (n, threads) = (level.now.u.len(), level.problem.threads.clone());
+    let mut fields = std::mem::take(&mut level.fields);
+    let (mut stiffness, mut right) = (fields.take(n)?, fields.take(n)?);
+    linearise(level, false, &mut stiffness, &mut right);
+    let mut system = Linearised::new(level, &stiffness, false, &mut fields)?;
+    system.fill_column(-1.0, &mut right);
+    let norm = fields::dot(&threads, &right, &right).sqrt();
+    let until = Until { target: norm * OF_STIFFNESS, most: DIRECTIONS };
+    let r = Bordered { field: right, border: [0.0] };
+    let found = fgmres::solve(&mut system, r, (until, 0.0), &threads, &mut fields)?;
+    let mut sum = 0.0;
+    for (y, direction) in found.y.iter().zip(&found.directions) {
+        let [of_direction] = fields::sum(&threads, n, |i| direction.z.field[i]);
+        sum += y * of_direction;
+    }
+    found.directions.into_iter().for_each(|direction| direction.give(&mut fields));
+    fields.give(stiffness);
+    level.fields = fields;
+    level.count_products(monitor);
+    Ok(sum)
+}

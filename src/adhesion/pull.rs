@@ -1,0 +1,176 @@
+//! Forces that pull. Two equilibria belong to one of them, of which the one with dF/dapproach > 0 is stable; below the pull-off force there is none.
+//!
+//! So the approach goes down the stable branch from a state of more force, until the force that is wanted lies between two states, or the force rises
+//! again: then the least one is the pull-off force.
+
+use super::level::{Level, MakeFrozen};
+use super::majorise::Descent;
+use super::newton::{newton, stiffness_of_contact, End, Goal};
+use super::robust;
+use super::unknowns::{energies, Unknowns};
+use crate::error::Result;
+use crate::progress::Monitor;
+
+/// The first step: this part of the length that the elastic energy and the stiffness have together.
+const FIRST: f64 = 0.25;
+/// Steps at most, and how small they become around the least force.
+const MOST_STEPS: u32 = 80;
+const SMALLEST: f64 = 1.0 / 64.0;
+/// Of secants at most, between two states.
+const SECANTS: u32 = 40;
+
+/// Where a walk ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Walk {
+    /// At the force that was wanted, on the stable branch.
+    Found,
+    /// At the least force, a sum of pressures, which is not as low as the one that was wanted.
+    Least {
+        /// The sum of p.
+        sum: f64,
+        /// The approach there.
+        approach: f64,
+    },
+    /// The caller cancelled, or no cycle is left.
+    Interrupted,
+    /// No state is found on the way.
+    Lost,
+}
+
+/// A state on the way.
+struct Place {
+    at: Unknowns,
+    sum: f64,
+}
+
+impl Place {
+    fn approach(&self) -> f64 {
+        self.at.approach()
+    }
+}
+
+/// The sum of p at an approach, from what the level holds; none where no state is found.
+fn solve_at(
+    level: &mut Level,
+    approach: f64,
+    (goal, make): (Goal, MakeFrozen<'_>),
+    monitor: &mut Monitor<'_>,
+) -> Result<Option<f64>> {
+    level.now.p.border = [approach];
+    let by_approach = Goal { wanted: None, ..goal };
+    let ended = robust::solve(level, by_approach, (true, make), monitor)?;
+    Ok((ended.end == Descent::By(End::Solved)).then_some(ended.measured.pressures))
+}
+
+/// Walks down from what the level holds, the state of more force. Without a force that is wanted: to the least force, whose state the level then has.
+pub fn walk(level: &mut Level, (goal, make): (Goal, MakeFrozen<'_>), monitor: &mut Monitor<'_>) -> Result<Walk> {
+    let from = level.now.approach();
+    let Some(sum) = solve_at(level, from, (goal, make), monitor)? else { return Ok(lost(goal, monitor)) };
+    let mut best = Place { at: Unknowns::default(), sum };
+    best.at.copy_from(&level.now)?;
+    let mut step = first_step(level, monitor)?;
+    let (smallest, mut higher) = (SMALLEST * step, None);
+    if !(step > 0.0) {
+        return Ok(lost(goal, monitor));
+    }
+    let mut beyond = None;
+    for _ in 0..MOST_STEPS {
+        let approach = best.approach() - step;
+        let found = solve_at(level, approach, (goal, make), monitor)?;
+        if goal.is_interrupted(monitor) {
+            return Ok(Walk::Interrupted);
+        }
+        match found {
+            Some(sum) if goal.wanted.is_some_and(|wanted| sum <= wanted) => {
+                return between(level, best, (sum, approach), (goal, make), monitor);
+            }
+            Some(sum) if sum < best.sum => {
+                higher = Some((best.approach(), best.sum));
+                best.at.copy_from(&level.now)?;
+                best.sum = sum;
+            }
+            other => {
+                beyond = other.map(|sum| (approach, sum));
+                level.now.copy_from(&best.at)?;
+                step *= 0.5;
+            }
+        }
+        if step < smallest {
+            break;
+        }
+    }
+    let here = (best.approach(), best.sum);
+    if let (Some(higher), Some(beyond)) = (higher, beyond) {
+        // The vertex of a parabola, if that is a state of less force yet.
+        let vertex = vertex([higher, here, beyond]).filter(|at| *at < higher.0 && *at > beyond.0);
+        if let Some(sum) = vertex.map(|at| solve_at(level, at, (goal, make), monitor)).transpose()?.flatten() {
+            if sum < best.sum {
+                best.at.copy_from(&level.now)?;
+                best.sum = sum;
+            }
+        }
+    }
+    level.now.copy_from(&best.at)?;
+    Ok(Walk::Least { sum: best.sum, approach: best.approach() })
+}
+
+/// Why no state was found.
+fn lost(goal: Goal, monitor: &Monitor<'_>) -> Walk {
+    if goal.is_interrupted(monitor) {
+        Walk::Interrupted
+    } else {
+        Walk::Lost
+    }
+}
+
+/// A length of the elastic contact: where it holds the energy of a spring of its stiffness.
+fn first_step(level: &mut Level, monitor: &mut Monitor<'_>) -> Result<f64> {
+    let [elastic, _] = energies(&level.surface, &level.now, &level.problem.threads);
+    let stiffness = stiffness_of_contact(level, monitor)?;
+    Ok(FIRST * (elastic / stiffness.abs()).sqrt())
+}
+
+/// The state of the force that is wanted, between the `best` state of more force and one of less.
+fn between(
+    level: &mut Level,
+    mut best: Place,
+    (mut sum_low, mut low): (f64, f64),
+    (goal, make): (Goal, MakeFrozen<'_>),
+    monitor: &mut Monitor<'_>,
+) -> Result<Walk> {
+    let Some(wanted) = goal.wanted else { return Ok(Walk::Lost) };
+    for secant in 0..SECANTS {
+        if goal.is_interrupted(monitor) {
+            return Ok(Walk::Interrupted);
+        }
+        let part = ((best.sum - wanted) / (best.sum - sum_low)).clamp(0.0, 1.0);
+        // Now and then the middle: the secant may stand still at one end.
+        let part = if secant % 3 == 2 { 0.5 } else { part };
+        let approach = best.approach() + part * (low - best.approach());
+        level.now.copy_from(&best.at)?;
+        level.now.p.border = [approach];
+        let (end, _) = newton(level, goal, true, monitor)?;
+        let reached = level.now.approach();
+        let slack = best.approach() - low;
+        if end == End::Solved && reached <= best.approach() + slack && reached >= low - slack {
+            return Ok(Walk::Found);
+        }
+        level.now.copy_from(&best.at)?;
+        match solve_at(level, approach, (goal, make), monitor)? {
+            Some(sum) if sum > wanted => {
+                best.at.copy_from(&level.now)?;
+                best.sum = sum;
+            }
+            Some(sum) => (sum_low, low) = (sum, approach),
+            None => return Ok(lost(goal, monitor)),
+        }
+    }
+    Ok(Walk::Lost)
+}
+
+/// Where the parabola through three points is least.
+fn vertex([(x0, y0), (x1, y1), (x2, y2)]: [(f64, f64); 3]) -> Option<f64> {
+    let (d0, d2) = ((y0 - y1) / (x0 - x1), (y2 - y1) / (x2 - x1));
+    let curvature = (d0 - d2) / (x0 - x2);
+    (curvature > 0.0).then(|| 0.5 * (x0 + x1 - d0 / curvature))
+}

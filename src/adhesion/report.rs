@@ -1,0 +1,157 @@
+//! What is found of adhesion, and how well the conditions hold.
+
+use super::level::Level;
+use super::unknowns::{energies, Measured, Unknowns};
+use crate::contact::Certificate;
+use crate::grid::Grid;
+use crate::methods::fields;
+use crate::progress::{DiscretisationError, LedgerRow, Measures, Monitor};
+
+/// What a solve with adhesion found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Report {
+    /// The sum of contact pressures q dx dy.
+    pub repulsive_force: f64,
+    /// The sum of -sigma dx dy: negative.
+    pub adhesive_force: f64,
+    /// The sum of 1/2 p u dx dy.
+    pub elastic_energy: f64,
+    /// The sum of -W(e) dx dy: negative.
+    pub adhesive_energy: f64,
+    /// `||p + sigma(e)||` outside C, relative to `||p||`.
+    pub law_residual: f64,
+    /// rho as it was used.
+    pub range: f64,
+    /// kappa: the largest stiffness of the attraction times what an element displaces itself by. Above 1/2 elements are too coarse.
+    pub resolution: f64,
+    /// The part of the sum of sigma on the border of the grid, in directions that do not repeat themselves.
+    pub border_share: f64,
+    /// dF/dapproach; none: not asked for.
+    pub stiffness: Option<f64>,
+    /// Whether the bodies have snapped: the state before could not be followed, and more than a quarter of the contact is another one.
+    pub jumped: bool,
+}
+
+/// kappa up to which elements resolve the attraction.
+pub const RESOLVED: f64 = 0.5;
+/// kappa beyond which an element alone is unstable.
+pub const UNSTABLE: f64 = 1.0;
+/// Of the attraction on the border, up to which the grid contains it.
+pub const CONTAINED: f64 = 1e-3;
+
+impl Report {
+    /// Of the state of a grid.
+    pub(super) fn of(level: &Level, measured: &Measured) -> Report {
+        let (surface, now, grid) = (&level.surface, &level.now, level.problem.grid);
+        let threads = &level.problem.threads;
+        let (in_x, in_y) = level.problem.coefficients.repeats(&grid);
+        let is_border = |i: usize| {
+            let (x, y) = (i % grid.mx, i / grid.mx);
+            !in_x && (x == 0 || x + 1 == grid.mx) || !in_y && grid.my > 1 && (y == 0 || y + 1 == grid.my)
+        };
+        let [q, sigma, at_border] = fields::sum(threads, now.u.len(), |i| {
+            let sigma = surface.traction(i, surface.distance(i, now));
+            let q = if now.contact[i] { now.p.field[i][0] + sigma } else { 0.0 };
+            [q, sigma, if is_border(i) { sigma } else { 0.0 }]
+        });
+        let [elastic, adhesive] = energies(surface, now, threads);
+        let area = grid.element_area();
+        Report {
+            repulsive_force: area * q,
+            adhesive_force: -area * sigma,
+            elastic_energy: area * elastic,
+            adhesive_energy: -area * adhesive,
+            law_residual: measured.law,
+            range: surface.attraction.range,
+            resolution: surface.attraction.resolution(surface.work, level.self_influence()),
+            border_share: if sigma > 0.0 { at_border / sigma } else { 0.0 },
+            stiffness: None,
+            jumped: false,
+        }
+    }
+
+    /// Bits of [`DiscretisationError`] that elements as coarse as these, or a grid as small, do not earn.
+    pub fn untrusted(&self) -> u32 {
+        let all = DiscretisationError::FORCE | DiscretisationError::MAX_PRESSURE | DiscretisationError::PRESSURE;
+        if self.resolution > RESOLVED || self.border_share > CONTAINED {
+            all
+        } else {
+            0
+        }
+    }
+
+    /// What to do about elements that are too coarse; none where they are not.
+    pub fn advice(&self) -> Option<String> {
+        (self.resolution > RESOLVED).then(|| {
+            let factor = self.resolution / RESOLVED;
+            format!(
+                "the elements are {factor:.3} times too large for the range {:e} of the attraction (kappa is {:.3}): take elements so much \
+                 smaller, or a range of at least {:e}",
+                self.range, self.resolution, self.range * factor.sqrt()
+            )
+        })
+    }
+}
+
+/// The pressures of contact q = p + sigma on C, 0 outside.
+pub fn contact_pressure(level: &Level, i: usize) -> f64 {
+    let (surface, now) = (&level.surface, &level.now);
+    if now.contact[i] {
+        now.p.field[i][0] + surface.traction(i, surface.distance(i, now))
+    } else {
+        0.0
+    }
+}
+
+/// The measures of a grid.
+pub fn measures(level: &Level, measured: &Measured) -> Measures {
+    let (surface, now, grid) = (&level.surface, &level.now, level.problem.grid);
+    let threads = &level.problem.threads;
+    let [work, elastic] = fields::sum(threads, now.u.len(), |i| {
+        let e = surface.distance(i, now).abs();
+        let q = contact_pressure(level, i).abs();
+        [if q > 0.0 { q * e } else { 0.0 }, (now.p.field[i][0] * now.u[i][0]).abs()]
+    });
+    let largest = fields::largest(threads, now.u.len(), |i| now.p.field[i][0]);
+    let least = -fields::largest(threads, now.u.len(), |i| -now.p.field[i][0]);
+    let area = grid.element_area();
+    Measures {
+        certificate: Certificate {
+            residual: measured.distance,
+            violation: measured.penetration,
+            complementarity: if work == 0.0 { 0.0 } else { work / elastic },
+            min_pressure: least,
+        },
+        approach: now.approach(),
+        force: measured.pressures * area,
+        max_pressure: largest,
+        contact_count: measured.count,
+        edge_count: edge_count(&grid, now),
+        contact_area: measured.count as f64 * area,
+        corrected_area: -1.0,
+    }
+}
+
+/// Elements in contact on the first or last row or column.
+fn edge_count(grid: &Grid, now: &Unknowns) -> usize {
+    let is_edge = |i: usize| {
+        let (x, y) = (i % grid.mx, i / grid.mx);
+        x == 0 || x + 1 == grid.mx || y == 0 || y + 1 == grid.my
+    };
+    (0..grid.len()).filter(|&i| now.contact[i] && is_edge(i)).count()
+}
+
+/// Writes the ledger row of a grid.
+pub fn close_grid(level: &Level, measured: &Measured, monitor: &mut Monitor<'_>) {
+    let (grid, count) = (level.problem.grid, monitor.count);
+    let row = LedgerRow {
+        mx: grid.mx,
+        my: grid.my,
+        cycles: count.cycles,
+        seconds: monitor.seconds(),
+        work_units: count.work_units,
+        measures: measures(level, measured),
+        error: DiscretisationError::default(),
+    };
+    monitor.ledger.rows.push(row);
+}

@@ -1,0 +1,71 @@
+//! One grid: Newton's method, and where it fails or ends uphill, some steps of descent from the last good state, and Newton's method again.
+
+use super::level::{Level, MakeFrozen};
+use super::majorise::{descend, Descent, Steps};
+use super::newton::{newton, End, Goal};
+use super::unknowns::{energies, Measured};
+use crate::error::Result;
+use crate::progress::Monitor;
+
+/// Times that Newton's method is tried.
+const ROUNDS: u32 = 12;
+/// Steps of descent between.
+const BETWEEN: u64 = 5;
+/// An energy of more by this part is uphill.
+const UPHILL: f64 = 1e-6;
+
+/// How a grid ended.
+#[derive(Clone, Copy, Debug)]
+pub struct Ended {
+    /// Why.
+    pub end: Descent,
+    /// What holds.
+    pub measured: Measured,
+    /// Whether descent was needed: the state that it began from was not followed.
+    pub descended: bool,
+}
+
+/// The energy that an equilibrium makes least, per area of an element: elastic energy less work of adhesion, and less that of a force that is given.
+pub fn energy(level: &Level, wanted: Option<f64>) -> f64 {
+    let [elastic, adhesive] = energies(&level.surface, &level.now, &level.problem.threads);
+    elastic - adhesive - wanted.map_or(0.0, |wanted| wanted * level.now.approach())
+}
+
+/// Solves a grid from what it holds. `keeps`: the first step of Newton's method keeps the contact area.
+pub fn solve(
+    level: &mut Level,
+    goal: Goal,
+    (keeps, make): (bool, MakeFrozen<'_>),
+    monitor: &mut Monitor<'_>,
+) -> Result<Ended> {
+    let mut good = std::mem::take(&mut level.good);
+    good.copy_from(&level.now)?;
+    let mut ended = None;
+    let (mut least, mut descended) = (f64::INFINITY, false);
+    for round in 0..ROUNDS {
+        let (end, measured) = newton(level, goal, keeps && round == 0, monitor)?;
+        let is_downhill = || energy(level, goal.wanted) <= least + UPHILL * least.abs();
+        if end == End::Interrupted || end == End::Solved && is_downhill() {
+            ended = Some((Descent::By(end), measured));
+            break;
+        }
+        descended = true;
+        log::debug!("adhesion: Newton's method {end:?} with {measured:?}; descent goes on");
+        level.now.copy_from(&good)?;
+        let steps = Steps { most: BETWEEN, from_none: false, make };
+        let (end, measured) = descend(level, goal, steps, monitor)?;
+        if end != Descent::By(End::Failed) {
+            ended = Some((end, measured));
+            break;
+        }
+        least = energy(level, goal.wanted);
+        good.copy_from(&level.now)?;
+    }
+    level.good = good;
+    let (end, measured) = match ended {
+        Some(ended) => ended,
+        // All that is left goes downhill only.
+        None => descend(level, goal, Steps { most: goal.most, from_none: false, make }, monitor)?,
+    };
+    Ok(Ended { end, measured, descended })
+}

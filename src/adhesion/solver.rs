@@ -1,0 +1,238 @@
+//! The whole solve, and its result.
+
+use std::sync::Arc;
+
+use super::level::{Level, MakeFrozen};
+use super::levels::{levels, prolong, take_surfaces};
+use super::majorise::Descent;
+use super::nested::{self, coarse_goal};
+use super::newton::{newton, stiffness_of_contact, End, Goal};
+use super::pull::{walk, Walk};
+use super::report::{close_grid, contact_pressure, Report};
+use super::request::{Request, Start, State};
+use super::robust;
+use crate::error::{Error, Result};
+use crate::grid::Grid;
+use crate::influence::Coefficients;
+use crate::operator::Operator;
+use crate::progress::{Monitor, Outcome};
+use crate::scene::Load;
+use crate::threads::Threads;
+
+/// Where Newton's method could not follow a state, the bodies have snapped if so large a part of their contact is another one.
+const SNAPPED: f64 = 0.25;
+
+/// Grids and memory for many solves on one grid.
+pub struct Solver {
+    levels: Vec<Level>,
+    /// Whether what the finest grid holds could not be followed from the state before.
+    jumped: bool,
+}
+
+impl Solver {
+    /// On a grid with these coefficients, and their operator.
+    pub fn new(
+        grid: Grid,
+        coefficients: &Coefficients,
+        operator: Arc<Operator<f64>>,
+        threads: &Threads,
+    ) -> Result<Solver> {
+        Ok(Solver { levels: levels(grid, coefficients, operator, threads)?, jumped: false })
+    }
+
+    /// The finest grid, with what was found.
+    pub fn finest(&self) -> &Level {
+        &self.levels[0]
+    }
+
+    /// The contact pressure q of element i, and its attraction sigma.
+    pub fn split(&self, i: usize) -> (f64, f64) {
+        let level = self.finest();
+        (contact_pressure(level, i), level.surface.traction(i, level.surface.distance(i, &level.now)))
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.levels.iter().map(Level::bytes).sum()
+    }
+
+    /// Solves. The finest grid then has what was found, with u = A p by a fresh product.
+    pub fn solve(
+        &mut self,
+        request: &Request<'_>,
+        make: MakeFrozen<'_>,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<(Outcome, Report)> {
+        take_surfaces(&mut self.levels, request.surfaces)?;
+        let area = self.levels[0].problem.grid.element_area();
+        let wanted = match request.load {
+            Load::Approach(_) => None,
+            Load::Force(force) => Some(force / area),
+        };
+        let goal = Goal { tolerance: request.tolerance, wanted, certified: true, most: request.max_cycles };
+        self.jumped = false;
+        if let Load::Approach(approach) = request.load {
+            self.levels.iter_mut().for_each(|level| level.now.p.border = [approach]);
+        }
+        let end = match request.state {
+            Some(state) => self.go_on(&state, goal, (request.start, make), monitor)?,
+            None => self.from_nothing(goal, (request.start, make), monitor)?,
+        };
+        let end = match (end, request.pull_off) {
+            (Descent::By(End::Solved), true) => self.pull_off(goal, make, monitor)?,
+            (end, _) => end,
+        };
+        self.conclude(end, (goal, request.stiffness), monitor)
+    }
+
+    /// From a state: along its branch.
+    fn go_on(
+        &mut self,
+        state: &State<'_>,
+        goal: Goal,
+        (start, make): (Start, MakeFrozen<'_>),
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Descent> {
+        let level = &mut self.levels[0];
+        level.now.p.field.as_flattened_mut().copy_from_slice(state.pressure);
+        level.now.contact.copy_from_slice(state.contact);
+        if goal.wanted.is_some() {
+            level.now.p.border = [state.approach];
+        }
+        level.refresh()?;
+        level.count_products(monitor);
+        if !pulls(goal) {
+            let before = state.contact.iter().filter(|&&inside| inside).count();
+            let ended = robust::solve(level, goal, (true, make), monitor)?;
+            let change = before.abs_diff(ended.measured.count) as f64;
+            self.jumped = ended.descended && change > SNAPPED * before.max(ended.measured.count) as f64;
+            return Ok(ended.end);
+        }
+        let (end, _) = newton(level, goal, true, monitor)?;
+        if end == End::Interrupted || end == End::Solved && stiffness_of_contact(level, monitor)? > 0.0 {
+            return Ok(Descent::By(end));
+        }
+        self.jumped = true;
+        self.from_nothing(goal, (start, make), monitor)
+    }
+
+    fn from_nothing(
+        &mut self,
+        goal: Goal,
+        (start, make): (Start, MakeFrozen<'_>),
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Descent> {
+        if !pulls(goal) {
+            return Ok(nested::solve(&mut self.levels, goal, (start, make), monitor)?.end);
+        }
+        if self.is_found_from_coarse(goal, (start, make), monitor)? {
+            return Ok(Descent::By(End::Solved));
+        }
+        // Down the stable branch of the finest grid.
+        let unloaded = Goal { wanted: Some(0.0), ..goal };
+        let ended = nested::solve(&mut self.levels, unloaded, (start, make), monitor)?;
+        if ended.end != Descent::By(End::Solved) {
+            return Ok(ended.end);
+        }
+        match walk(&mut self.levels[0], (goal, make), monitor)? {
+            Walk::Found => Ok(Descent::By(End::Solved)),
+            Walk::Interrupted => Ok(Descent::By(End::Interrupted)),
+            Walk::Lost => Ok(Descent::By(End::Failed)),
+            Walk::Least { sum, approach } => {
+                let area = self.levels[0].problem.grid.element_area();
+                let force = goal.wanted.unwrap_or(0.0) * area;
+                Err(Error::Infeasible(format!(
+                    "force is {force:e}; the attraction holds a pull of {:e} at most (the pull-off force), at an approach of {approach:e}",
+                    sum * area
+                )))
+            }
+        }
+    }
+
+    /// Down the stable branch on the coarsest grid, which costs little, and then from grid to grid by the force. False where that does not end on the
+    /// stable branch.
+    fn is_found_from_coarse(
+        &mut self,
+        goal: Goal,
+        (start, make): (Start, MakeFrozen<'_>),
+        monitor: &mut Monitor<'_>,
+    ) -> Result<bool> {
+        let last = self.levels.len() - 1;
+        if last == 0 {
+            return Ok(false);
+        }
+        let coarse = coarse_goal(&self.levels, last, goal);
+        let unloaded = Goal { wanted: Some(0.0), ..coarse };
+        monitor.enter_grid();
+        let ended = nested::solve(&mut self.levels[last..], unloaded, (start, make), monitor)?;
+        let is_found = ended.end == Descent::By(End::Solved)
+            && walk(&mut self.levels[last], (coarse, make), monitor)? == Walk::Found;
+        if !is_found {
+            return Ok(false);
+        }
+        for l in (0..last).rev() {
+            let (fine, below) = self.levels.split_at_mut(l + 1);
+            prolong(&below[0], &mut fine[l])?;
+            let goal = coarse_goal(&self.levels, l, goal);
+            monitor.enter_grid();
+            let (end, _) = newton(&mut self.levels[l], goal, false, monitor)?;
+            if end != End::Solved {
+                return Ok(false);
+            }
+        }
+        Ok(stiffness_of_contact(&mut self.levels[0], monitor)? > 0.0)
+    }
+
+    /// From the state of now to that of the least force.
+    fn pull_off(&mut self, goal: Goal, make: MakeFrozen<'_>, monitor: &mut Monitor<'_>) -> Result<Descent> {
+        let goal = Goal { wanted: None, ..goal };
+        Ok(match walk(&mut self.levels[0], (goal, make), monitor)? {
+            Walk::Least { .. } | Walk::Found => Descent::By(End::Solved),
+            Walk::Interrupted => Descent::By(End::Interrupted),
+            Walk::Lost => Descent::By(End::Failed),
+        })
+    }
+
+    /// Takes the measures of what was found, by a fresh product: what is solved has one.
+    fn conclude(
+        &mut self,
+        end: Descent,
+        (goal, stiffness): (Goal, bool),
+        monitor: &mut Monitor<'_>,
+    ) -> Result<(Outcome, Report)> {
+        let level = &mut self.levels[0];
+        let wanted = goal.wanted;
+        let mut end = end;
+        if end == Descent::Parted && wanted == Some(0.0) {
+            // Nothing attracts and nothing pulls.
+            level.now.unload();
+            end = Descent::By(End::Solved);
+        }
+        if end != Descent::By(End::Solved) {
+            level.refresh()?;
+            level.count_products(monitor);
+        }
+        let measured = level.measure(false, wanted);
+        let mut report = Report::of(level, &measured);
+        report.jumped = self.jumped;
+        if stiffness && end == Descent::By(End::Solved) {
+            let area = level.problem.grid.element_area();
+            report.stiffness = Some(area * stiffness_of_contact(level, monitor)?);
+        }
+        close_grid(level, &measured, monitor);
+        if let Some(advice) = report.advice() {
+            log::warn!("{advice}");
+        }
+        let outcome = match end {
+            Descent::By(End::Solved) => Outcome::Converged,
+            Descent::By(End::Interrupted) => monitor.interrupted(),
+            Descent::By(End::Failed) | Descent::Parted => Outcome::Stagnated,
+        };
+        Ok((if monitor.is_cancelled() { Outcome::Cancelled } else { outcome }, report))
+    }
+}
+
+/// Whether the force that is given pulls.
+fn pulls(goal: Goal) -> bool {
+    goal.wanted.is_some_and(|wanted| wanted < 0.0)
+}

@@ -1,0 +1,200 @@
+//! The unknowns of one grid, and what is known about them.
+
+use super::law::Attraction;
+use crate::error::Result;
+use crate::memory::{unwritten, zeros};
+use crate::methods::fgmres::Bordered;
+use crate::methods::fields;
+use crate::threads::Threads;
+
+/// A number per element, as fields of one number.
+pub type One = [f64; 1];
+
+/// What memory is for.
+pub const MEMORY: &str = "the adhesion problem";
+
+/// Total pressures p with the approach as their border, u = A p, and the contact area.
+#[derive(Default)]
+pub struct Unknowns {
+    /// p, and the approach.
+    pub p: Bordered<1>,
+    /// u = A p, as carried from step to step.
+    pub u: Vec<One>,
+    /// C.
+    pub contact: Vec<bool>,
+}
+
+impl Unknowns {
+    /// p = 0 on n elements.
+    pub fn new(n: usize) -> Result<Unknowns> {
+        let p = Bordered { field: zeros(n, MEMORY)?, border: [0.0] };
+        Ok(Unknowns { p, u: zeros(n, MEMORY)?, contact: zeros(n, MEMORY)? })
+    }
+
+    /// The approach.
+    pub fn approach(&self) -> f64 {
+        self.p.border[0]
+    }
+
+    /// p = 0, and nothing is in contact.
+    pub fn unload(&mut self) {
+        self.p.field.fill([0.0]);
+        self.u.fill([0.0]);
+        self.contact.fill(false);
+    }
+
+    /// Takes what others hold.
+    pub fn copy_from(&mut self, other: &Unknowns) -> Result<()> {
+        let n = other.u.len();
+        unwritten(&mut self.p.field, n, [f64::NAN], MEMORY, &Threads::One)?;
+        unwritten(&mut self.u, n, [f64::NAN], MEMORY, &Threads::One)?;
+        unwritten(&mut self.contact, n, false, MEMORY, &Threads::One)?;
+        self.p.field.copy_from_slice(&other.p.field);
+        self.u.copy_from_slice(&other.u);
+        self.contact.copy_from_slice(&other.contact);
+        self.p.border = other.p.border;
+        Ok(())
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.u.len() * (2 * size_of::<f64>() + 1)
+    }
+}
+
+/// What the unknowns are measured against: h, the law and the work of adhesion of each element.
+#[derive(Default)]
+pub struct Surface {
+    /// h; `+infinity` where there is no surface.
+    pub h: Vec<f64>,
+    /// The law, with the range of this grid.
+    pub attraction: Attraction,
+    /// w of each element; empty where it is the same everywhere.
+    pub works: Vec<f64>,
+    /// w where it is the same everywhere, or the largest.
+    pub work: f64,
+}
+
+impl Surface {
+    /// w of element i.
+    #[inline]
+    pub fn work_at(&self, i: usize) -> f64 {
+        self.works.get(i).copied().unwrap_or(self.work)
+    }
+
+    /// sigma of element i at a distance.
+    #[inline]
+    pub fn traction(&self, i: usize, e: f64) -> f64 {
+        self.attraction.traction(self.work_at(i), e)
+    }
+
+    /// e = h - approach + u of element i.
+    #[inline]
+    pub fn distance(&self, i: usize, unknowns: &Unknowns) -> f64 {
+        self.h[i] - unknowns.p.border[0] + unknowns.u[i][0]
+    }
+}
+
+/// How well the conditions hold, each number relative to its own scale.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Measured {
+    /// rms over C of e, relative to that of `h - approach`, or to what one element displaces itself by, whichever is larger.
+    pub distance: f64,
+    /// Largest -e outside C, a length.
+    pub penetration: f64,
+    /// The same relative to the scale of `distance`.
+    pub violation: f64,
+    /// `||p + sigma(e)||` outside C, relative to `||p||`.
+    pub law: f64,
+    /// What the sum of p lacks of the force that is given, relative to the sum of |p|.
+    pub force: f64,
+    /// Elements in contact.
+    pub count: usize,
+    /// The sum of p.
+    pub pressures: f64,
+}
+
+impl Measured {
+    /// The worst of all; infinite where one is no number.
+    pub fn worst(&self) -> f64 {
+        largest([self.distance, self.violation, self.law, self.force])
+    }
+
+    /// The same without the violation, which one element alone can keep large: how far a step of Newton's method has to go.
+    pub fn residual(&self) -> f64 {
+        largest([self.distance, self.law, self.force])
+    }
+}
+
+/// The largest of some values, infinite where one is no number.
+fn largest<const K: usize>(values: [f64; K]) -> f64 {
+    values.into_iter().fold(0.0, |worst: f64, value| match value {
+        value if value <= worst => worst,
+        value if value.is_nan() => f64::INFINITY,
+        value => value,
+    })
+}
+
+/// Takes C from the natural map q - e/a0 > 0, unless it `is_kept`, and measures. `wanted`: the sum of p where the force is given.
+pub fn measure(
+    surface: &Surface,
+    unknowns: &mut Unknowns,
+    self_influence: f64,
+    (is_kept, wanted): (bool, Option<f64>),
+    threads: &Threads,
+) -> Measured {
+    let Unknowns { p, u, contact } = unknowns;
+    let (p, approach, u) = (&p.field, p.border[0], &*u);
+    let [ee, dd, count, qq, pp, pc, sum, all] =
+        fields::over(threads, contact.chunks_mut(fields::BLOCK), |first, contact| {
+            let mut sums = [0.0; 8];
+            for (k, inside) in contact.iter_mut().enumerate() {
+                let i = first + k;
+                let ([p], e) = (p[i], surface.h[i] - approach + u[i][0]);
+                let q = p + surface.traction(i, e);
+                *inside = if is_kept { *inside } else { q - e / self_influence > 0.0 };
+                (sums[4], sums[6], sums[7]) = (sums[4] + p * p, sums[6] + p, sums[7] + p.abs());
+                if *inside {
+                    let d = surface.h[i] - approach;
+                    (sums[0], sums[1], sums[2], sums[5]) =
+                        (sums[0] + e * e, sums[1] + d * d, sums[2] + 1.0, sums[5] + p * p);
+                } else {
+                    sums[3] += q * q;
+                }
+            }
+            sums
+        });
+    let penetration =
+        fields::largest(
+            threads,
+            u.len(),
+            |i| {
+                if unknowns.contact[i] {
+                    0.0
+                } else {
+                    approach - surface.h[i] - u[i][0]
+                }
+            },
+        );
+    let n = f64::max(count, 1.0);
+    let scale = (dd / n).sqrt().max(self_influence * (pc / n).sqrt());
+    let scale = if count > 0.0 { scale } else { scale.max(self_influence * (pp / u.len() as f64).sqrt()) };
+    let ratio = |value: f64, of: f64| if value == 0.0 { 0.0 } else { value / of };
+    Measured {
+        distance: ratio((ee / n).sqrt(), scale),
+        penetration,
+        violation: ratio(penetration, scale),
+        law: ratio(qq.sqrt(), pp.sqrt()),
+        force: wanted.map_or(0.0, |wanted| ratio((sum - wanted).abs(), all)),
+        count: count as usize,
+        pressures: sum,
+    }
+}
+
+/// The elastic energy `1/2 sum p u`, and the work that the attraction has done, `sum W(e)`, both per area of an element.
+pub fn energies(surface: &Surface, unknowns: &Unknowns, threads: &Threads) -> [f64; 2] {
+    fields::sum(threads, unknowns.u.len(), |i| {
+        let e = surface.distance(i, unknowns);
+        [0.5 * unknowns.p.field[i][0] * unknowns.u[i][0], surface.attraction.work_left(surface.work_at(i), e)]
+    })
+}

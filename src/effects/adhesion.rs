@@ -1,0 +1,130 @@
+//! Effect: attractive forces across the gap, by a law: `p = q - sigma(e)` with contact pressures `q >= 0`.
+//!
+//! See [`adhesion`](crate::adhesion) for the problem that is solved.
+
+use super::effect::{check_values, Effect, Value};
+use super::properties::{Properties, Stresses};
+use crate::adhesion::{Law, Start};
+use crate::error::{invalid, require, Error, Result};
+use crate::grid::Grid;
+use crate::scene::{Load, Plain};
+
+/// Work and range lie within these powers of ten: their squares, and quotients of them, are numbers.
+const RANGE: (f64, f64) = (1e-70, 1e70);
+
+/// w, a force per length (an energy per area): the same everywhere or one per element, `[my][mx]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Work<'a> {
+    /// The same everywhere.
+    Uniform(f64),
+    /// One per element.
+    PerElement(&'a [f64]),
+}
+
+/// Attraction between the bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Adhesion<'a> {
+    /// How the attraction falls with the distance.
+    pub law: Law,
+    /// The work of adhesion, >= 0.
+    pub work: Work<'a>,
+    /// rho, a length; 0: the shortest that the elements carry.
+    pub range: f64,
+    /// Which of several states a start from nothing looks for.
+    pub start: Start,
+    /// Whether dF/dapproach is asked for.
+    pub stiffness: bool,
+}
+
+impl Adhesion<'_> {
+    /// Whether anything attracts: a work of 0 everywhere is no adhesion.
+    pub fn attracts(&self) -> bool {
+        match self.work {
+            Work::Uniform(work) => work != 0.0,
+            Work::PerElement(works) => works.iter().any(|work| *work != 0.0),
+        }
+    }
+}
+
+impl Effect for Adhesion<'_> {
+    fn name(&self) -> &'static str {
+        "adhesion"
+    }
+
+    fn properties(&self) -> Properties<'_> {
+        Properties {
+            excludes: &["row_tables", "patches", "pressure_limit", "friction"],
+            without_multigrid: Some("adhesion"),
+            with_given_area: false,
+            one_grid: Some(
+                "the error of a grid that has to resolve its range is not estimated: solve on grids of your own",
+            ),
+            own_coefficients: None,
+            repeats: (false, false),
+            limits: None,
+            is_beside: false,
+            continues: None,
+        }
+    }
+
+    // A scene has to know of what is wrong, too.
+    fn is_one(&self, scene: &Plain<'_>) -> bool {
+        self.attracts() || self.check(&scene.grid).is_err()
+    }
+
+    fn check(&self, grid: &Grid) -> Result<()> {
+        let require_work = |name: &str, work: f64| match work {
+            work if !work.is_finite() => Err(Error::NotFinite(format!("{name} is {work}; it must be finite"))),
+            work if work < 0.0 => invalid(format!("{name} is {work}; a work of adhesion must not be negative")),
+            work if work != 0.0 && !(RANGE.0..RANGE.1).contains(&work) => invalid(format!(
+                "{name} is {work}; it must be 0 or lie in {:e}..{:e}: choose other units",
+                RANGE.0, RANGE.1
+            )),
+            _ => Ok(()),
+        };
+        match self.work {
+            Work::Uniform(work) => require_work("adhesion->work_of_adhesion", work)?,
+            Work::PerElement(works) => check_values("adhesion->works_of_adhesion", works, grid, require_work)?,
+        }
+        let is_range = self.range == 0.0 || (RANGE.0..RANGE.1).contains(&self.range);
+        require(
+            is_range,
+            "adhesion->range",
+            self.range,
+            "it must be 0, for the shortest that the elements carry, or lie in 1e-70..1e70",
+        )?;
+        if let Law::Dugdale(smear) = self.law {
+            let rule = "the part of the range over which the edge is smeared must lie in (0, 1]";
+            require(smear > 0.0 && smear <= 1.0, "adhesion->smear", smear, rule)?;
+        }
+        Ok(())
+    }
+
+    fn check_load(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<()> {
+        self.check(&scene.grid)?;
+        let repeats = others.iter().flatten().any(|other| other.properties().repeats == (true, true));
+        if repeats && scene.grid.len() == 1 {
+            let message = "adhesion is given on a grid of one element with two periods, which displaces nothing; this version does not solve that";
+            return Err(Error::Unsupported(message.into()));
+        }
+        if let (Load::Force(force), true) = (scene.load, scene.undeformed_distance.iter().all(|h| h.is_infinite())) {
+            if force < 0.0 {
+                return Err(Error::Infeasible(format!(
+                    "force is {force}, but undeformed_distance is infinite on every element: nothing can carry it"
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    // It may be another one for each solve.
+    fn values(&self, _tell: &mut dyn FnMut(&'static str, Value<'_>)) {}
+
+    fn gives_way(&self, _scene: &Plain<'_>) -> bool {
+        false
+    }
+
+    fn stresses(&self, _b: usize, _scene: &Plain<'_>) -> Stresses<'_> {
+        Stresses::Same
+    }
+}

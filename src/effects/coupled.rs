@@ -1,0 +1,71 @@
+//! What is coupled with the normal problem: both are solved in turns, and a step leaves something to the next one.
+
+use crate::contact::State;
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::memory::zeros;
+use crate::progress::{Monitor, Outcome};
+
+/// A problem of its own that displaces the undeformed distance of the normal one. `state` holds the solution of the normal problem, with
+/// the distance that was made last.
+///
+/// ```text
+/// repeat   solve           its own problem, with the pressures of the normal one
+///          displace        h by what was found
+///          until the certificate of the normal problem holds with that distance; else the normal problem once more
+/// step_done
+/// ```
+pub trait Coupled {
+    /// Solves its own problem with the pressures of a normal problem that ended with `stop`. Says how that ended.
+    fn solve(&mut self, stop: Outcome, state: &State, monitor: &mut Monitor<'_>) -> Result<Outcome>;
+
+    /// Whether it displaces the undeformed distance; if not, there is one turn.
+    fn displaces(&self) -> bool;
+
+    /// Adds what it displaces to the undeformed distance of the scene.
+    fn displace(&mut self, distance: &mut [f64]);
+
+    /// Whether the options leave it work for another turn.
+    fn has_work_left(&self) -> bool;
+
+    /// The step is done: keeps what the next one continues from.
+    fn step_done(&mut self, state: &State);
+}
+
+/// What an effect keeps from step to step: fields of one value per element.
+#[derive(Debug, Default)]
+pub struct History {
+    fields: Vec<Vec<f64>>,
+    has_step: bool,
+}
+
+impl History {
+    /// So many fields, which are 0 where no step was done.
+    pub fn fields(&mut self, count: usize, grid: &Grid) -> Result<&mut [Vec<f64>]> {
+        while self.fields.len() < count {
+            self.fields.push(zeros(grid.len(), "what an effect keeps from step to step")?);
+        }
+        Ok(&mut self.fields[..count])
+    }
+
+    /// Whether a step was done.
+    pub fn has_step(&self) -> bool {
+        self.has_step
+    }
+
+    /// A step is done.
+    pub fn keep(&mut self) {
+        self.has_step = true;
+    }
+
+    /// There is no last step.
+    pub fn forget(&mut self) {
+        self.fields.iter_mut().for_each(|field| field.fill(0.0));
+        self.has_step = false;
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.fields.iter().map(|field| size_of_val(&field[..])).sum()
+    }
+}

@@ -1,0 +1,144 @@
+//! `contact_normal_quantities`: what can be asked of a scene, grid by grid, with errors.
+
+use super::arguments::{count, required, Regions};
+use super::conclusion::Conclusion;
+use super::guard::guard;
+use super::options::{self, contact_normal_options};
+use super::price_list::quantity_of;
+use super::scene::{contact_normal_scene, Named};
+use super::status::{contact_normal_status, Refusal};
+use super::structs::{versioned, Rows};
+use super::watcher::{watched, why, Watcher};
+use crate::solver::{self, Lack, Quantity, QuantityRow};
+
+/// `lack`: nothing is missing.
+pub const CONTACT_NORMAL_LACK_NONE: i32 = 0;
+/// `lack`: there is no value, since the scene has no friction.
+pub const CONTACT_NORMAL_LACK_NO_FRICTION: i32 = 1;
+/// `lack`: there is no value, since the scene prescribes it.
+pub const CONTACT_NORMAL_LACK_PRESCRIBED: i32 = 2;
+/// `lack`: there is no value, since an effect of the scene stands against it: stresses are those of half-spaces.
+pub const CONTACT_NORMAL_LACK_EFFECT: i32 = 3;
+/// `lack`: there is no value, since there is no contact.
+pub const CONTACT_NORMAL_LACK_NO_CONTACT: i32 = 4;
+/// `lack`: there is no error, since the value grows from grid to grid.
+pub const CONTACT_NORMAL_LACK_SINGULAR: i32 = 5;
+/// `lack`: there is no error, since one grid alone was solved.
+pub const CONTACT_NORMAL_LACK_ONE_GRID: i32 = 6;
+/// `lack`: a grid was not solved.
+pub const CONTACT_NORMAL_LACK_UNSOLVED: i32 = 7;
+
+/// A quantity on one grid.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct contact_normal_quantity_row {
+    /// Set by `contact_normal_quantity_row_init`, which the first row of an array needs, and by the call.
+    pub struct_size: i64,
+    /// CONTACT_NORMAL_QUANTITY_...
+    pub quantity: i32,
+    /// CONTACT_NORMAL_LACK_...: why there is no value or no error.
+    pub lack: i32,
+    /// Elements in x.
+    pub mx: i32,
+    /// Elements in y.
+    pub my: i32,
+    /// The value; NaN: there is none.
+    pub value: f64,
+    /// Its estimated error, in its own unit; < 0: not known.
+    pub error: f64,
+    /// Seconds of set-up and solve on this grid, the same for all quantities; stresses and stiffness not included.
+    pub seconds: f64,
+    /// Products on this grid, in work units: one product of the grid is one.
+    pub work_units: f64,
+}
+
+versioned! { contact_normal_quantity_row, contact_normal_quantity_row_init, 56, error: -1.0 }
+
+/// The number of what is missing.
+pub(super) fn lack_of(lack: Option<Lack>) -> i32 {
+    match lack {
+        None => CONTACT_NORMAL_LACK_NONE,
+        Some(Lack::NoFriction) => CONTACT_NORMAL_LACK_NO_FRICTION,
+        Some(Lack::Prescribed) => CONTACT_NORMAL_LACK_PRESCRIBED,
+        Some(Lack::Effect) => CONTACT_NORMAL_LACK_EFFECT,
+        Some(Lack::NoContact) => CONTACT_NORMAL_LACK_NO_CONTACT,
+        Some(Lack::Singular) => CONTACT_NORMAL_LACK_SINGULAR,
+        Some(Lack::OneGrid) => CONTACT_NORMAL_LACK_ONE_GRID,
+        Some(Lack::Unsolved) => CONTACT_NORMAL_LACK_UNSOLVED,
+    }
+}
+
+impl From<&QuantityRow> for contact_normal_quantity_row {
+    fn from(row: &QuantityRow) -> Self {
+        contact_normal_quantity_row {
+            struct_size: size_of::<contact_normal_quantity_row>() as i64,
+            quantity: row.quantity.number() as i32,
+            lack: lack_of(row.lack),
+            mx: row.grid.mx as i32,
+            my: row.grid.my as i32,
+            value: row.value.unwrap_or(f64::NAN),
+            error: row.error.unwrap_or(-1.0),
+            seconds: row.seconds,
+            work_units: row.work_units,
+        }
+    }
+}
+
+/// The quantities of an array of numbers.
+pub(super) fn quantities_of(numbers: &[i32]) -> Result<Vec<Quantity>, Refusal> {
+    let of = |(i, number): (usize, &i32)| quantity_of(&format!("quantities[{i}]"), *number);
+    numbers.iter().enumerate().map(of).collect()
+}
+
+/// Grids below the scene's own at most: the coarsest has 1/4096 of its elements in each direction.
+const MOST_COARSER: i32 = 12;
+
+/// Solves the scene on its grid and on `coarser` grids (0 to 12), each with half the elements of the next in both directions and solved from
+/// nothing, and writes `n` rows for each grid, coarsest first: `rows[k n + i]` is that of `quantities[i]` (CONTACT_NORMAL_QUANTITY_...) on grid k.
+/// There are `(coarser + 1) n` rows; where a grid of few elements cannot be halved any more, fewer grids, and `*written` (NULL: not wanted)
+/// has the number of rows. Errors of force, largest pressure and area are the estimates of the report; errors of all others follow from the
+/// grids before, so that the coarsest has none. Arrays of one value per element have their means on coarser grids. ITERATION_LIMIT, STAGNATED:
+/// the scene's own grid was not solved. UNSUPPORTED: own coefficients, tractions kept by a handle, FIXED contact. Since 0.2.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_quantities(
+    scene: *const contact_normal_scene,
+    options: *const contact_normal_options,
+    n: i32,
+    quantities: *const i32,
+    coarser: i32,
+    rows: *mut contact_normal_quantity_row,
+    written: *mut i32,
+) -> contact_normal_status {
+    guard(|| {
+        let n = count("n", n)?;
+        if !(0..=MOST_COARSER).contains(&coarser) {
+            return Err(Refusal::invalid(format!("coarser is {coarser}; it must lie in 0..{MOST_COARSER}")));
+        }
+        // SAFETY: each pointer is NULL or points to what it says, by the conventions of the ABI.
+        let (translated, named, wanted) =
+            unsafe { (options::translate(options)?, Named::read(scene)?, required("quantities", quantities, n)?) };
+        // SAFETY: NULL or rows of which the first declares its size.
+        let to = unsafe { Rows::of(rows, "rows")? };
+        let mut regions = Regions::default();
+        named.add_to(&mut regions, scene)?;
+        translated.add_to(&mut regions, options)?;
+        regions.input("quantities", wanted.as_ptr(), n)?;
+        regions.output_rows("rows", rows, &to, n * (coarser as usize + 1))?;
+        regions.output("written", written, 1)?;
+        regions.check()?;
+        let wanted = quantities_of(wanted)?;
+        // SAFETY: as above.
+        let scene = unsafe { named.translate()? };
+        let concluded = watched(Watcher::of(&translated), |progress| {
+            let (stop, found) = solver::quantities(&scene, &translated.options, &wanted, coarser as usize, progress)?;
+            // SAFETY: the caller has room for all rows.
+            found.iter().enumerate().for_each(|(i, row)| unsafe { to.write(i, &row.into()) });
+            if !written.is_null() {
+                // SAFETY: not NULL: an integer of the caller's.
+                unsafe { written.write(found.len() as i32) };
+            }
+            Ok(Conclusion::of(stop, || why(stop).into()))
+        });
+        concluded?.conclude()
+    })
+}

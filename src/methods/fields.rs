@@ -1,0 +1,169 @@
+//! Passes over fields of K numbers per element, by several threads: sums are taken in blocks of fixed length and order, so that they have the
+//! same bits for any number of threads.
+
+use crate::error::Result;
+use crate::memory::unwritten;
+use crate::sums::Sums;
+use crate::threads::Threads;
+
+/// Elements of a block: both fields of it stay in the nearest cache.
+pub const BLOCK: usize = 1024;
+
+/// Fields of one length that are used again; of vectors of the plane if nothing else is said.
+#[derive(Default)]
+pub struct Fields<const K: usize = 2> {
+    free: Vec<Vec<[f64; K]>>,
+}
+
+impl<const K: usize> Fields<K> {
+    /// A field of n elements, which holds anything.
+    pub fn take(&mut self, n: usize) -> Result<Vec<[f64; K]>> {
+        let mut field = self.free.pop().unwrap_or_default();
+        unwritten(&mut field, n, [f64::NAN; K], "the iteration of Newton's method", &Threads::One)?;
+        Ok(field)
+    }
+
+    /// Takes a field back.
+    pub fn give(&mut self, field: Vec<[f64; K]>) {
+        self.free.push(field);
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.free.iter().map(|field| field.capacity() * size_of::<[f64; K]>()).sum()
+    }
+}
+
+/// `v . w`.
+pub fn dot<const K: usize>(threads: &Threads, v: &[[f64; K]], w: &[[f64; K]]) -> f64 {
+    let mut sums = vec![0.0; v.len().div_ceil(BLOCK)];
+    threads.for_each_plain_row(&mut sums, 1, |k, sum| {
+        let block = k * BLOCK..((k + 1) * BLOCK).min(v.len());
+        sum[0] = dot_of_block(&v[block.clone()], &w[block]);
+    });
+    sums.iter().sum()
+}
+
+/// `to += a v`, and then `to . w`.
+pub fn add_and_dot<const K: usize>(
+    threads: &Threads,
+    to: &mut [[f64; K]],
+    a: f64,
+    v: &[[f64; K]],
+    w: &[[f64; K]],
+) -> f64 {
+    add_and_sum(threads, to, a, v, |start, to| dot_of_block(to, &w[start..start + to.len()]))
+}
+
+/// `to += a v`, and then `to . to`.
+pub fn add_and_square<const K: usize>(threads: &Threads, to: &mut [[f64; K]], a: f64, v: &[[f64; K]]) -> f64 {
+    add_and_sum(threads, to, a, v, |_, to| dot_of_block(to, to))
+}
+
+/// `to += a v`, and then the sum of what `of` makes of each block of it, which starts at an element.
+fn add_and_sum<const K: usize>(
+    threads: &Threads,
+    to: &mut [[f64; K]],
+    a: f64,
+    v: &[[f64; K]],
+    of: impl Fn(usize, &[[f64; K]]) -> f64 + Sync + Send,
+) -> f64 {
+    let mut sums = vec![0.0; v.len().div_ceil(BLOCK)];
+    threads.for_each_row_pair((to, BLOCK), (&mut sums[..], 1), |k, to, sum| {
+        let start = k * BLOCK;
+        to.iter_mut().zip(&v[start..]).for_each(|(to, v)| *to = plus(*to, a, *v));
+        sum[0] = of(start, to);
+    });
+    sums.iter().sum()
+}
+
+/// `to += sum of a_j v_j`, in one pass.
+pub fn add_all<const K: usize>(threads: &Threads, to: &mut [[f64; K]], terms: &[(f64, &[[f64; K]])]) {
+    threads.for_each_plain_row(to, BLOCK, |k, to| {
+        for (a, v) in terms {
+            let v = &v[k * BLOCK..k * BLOCK + to.len()];
+            to.iter_mut().zip(v).for_each(|(to, v)| *to = plus(*to, *a, *v));
+        }
+    });
+}
+
+/// `to *= a`.
+pub fn scale<const K: usize>(threads: &Threads, to: &mut [[f64; K]], a: f64) {
+    threads.for_each_plain_row(to, BLOCK, |_, to| {
+        to.iter_mut().for_each(|to| *to = to.map(|value| a * value));
+    });
+}
+
+/// `to = f(i, to)` for each element i.
+pub fn map<const K: usize>(
+    threads: &Threads,
+    to: &mut [[f64; K]],
+    f: impl Fn(usize, [f64; K]) -> [f64; K] + Sync + Send,
+) {
+    threads.for_each_plain_row(to, BLOCK, |k, to| {
+        to.iter_mut().enumerate().for_each(|(i, to)| *to = f(k * BLOCK + i, *to));
+    });
+}
+
+/// `to = f(i)` for each element i.
+pub fn fill<const K: usize>(threads: &Threads, to: &mut [[f64; K]], f: impl Fn(usize) -> [f64; K] + Sync + Send) {
+    threads.for_each_plain_row(to, BLOCK, |k, to| {
+        to.iter_mut().enumerate().for_each(|(i, to)| *to = f(k * BLOCK + i));
+    });
+}
+
+/// The sums of f over n elements.
+pub fn sum<const K: usize>(threads: &Threads, n: usize, f: impl Fn(usize) -> [f64; K] + Sync + Send) -> [f64; K] {
+    let add = |sums: [f64; K], terms: [f64; K]| std::array::from_fn(|k| sums[k] + terms[k]);
+    let mut sums = vec![[0.0; K]; n.div_ceil(BLOCK)];
+    threads.for_each_plain_row(&mut sums, 1, |k, sum| {
+        sum[0] = (k * BLOCK..((k + 1) * BLOCK).min(n)).map(&f).fold([0.0; K], add);
+    });
+    sums.into_iter().fold([0.0; K], add)
+}
+
+/// The largest value of f over n elements, or 0.
+pub fn largest(threads: &Threads, n: usize, f: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
+    let mut largest = vec![0.0; n.div_ceil(BLOCK)];
+    threads.for_each_plain_row(&mut largest, 1, |k, largest| {
+        largest[0] = (k * BLOCK..((k + 1) * BLOCK).min(n)).map(&f).fold(0.0, f64::max);
+    });
+    largest.into_iter().fold(0.0, f64::max)
+}
+
+/// Calls `work(first element, block)` on each of the blocks that several fields were cut into, and adds up what it returns.
+pub fn over<B: Send, const K: usize>(
+    threads: &Threads,
+    blocks: impl Iterator<Item = B>,
+    work: impl Fn(usize, &mut B) -> [f64; K] + Sync + Send,
+) -> [f64; K] {
+    let added = |all: [f64; K], sums: [f64; K]| std::array::from_fn(|k| all[k] + sums[k]);
+    if threads.count() == 1 {
+        let one = |(k, mut block): (usize, B)| pulp::Arch::new().dispatch(|| work(k * BLOCK, &mut block));
+        return blocks.enumerate().map(one).fold([0.0; K], added);
+    }
+    let mut blocks: Vec<(B, [f64; K])> = blocks.map(|block| (block, [0.0; K])).collect();
+    threads.for_each(&mut blocks, |k, (block, sums)| *sums = work(k * BLOCK, block));
+    blocks.into_iter().map(|(_, sums)| sums).fold([0.0; K], added)
+}
+
+/// Four sums side by side: one would wait for each addition.
+#[inline(always)]
+fn dot_of_block<const K: usize>(v: &[[f64; K]], w: &[[f64; K]]) -> f64 {
+    let mut sums = Sums::new();
+    sums.add::<f64, 2, 0>([v.as_flattened(), w.as_flattened()], [], |[v, w], []| [v * w]);
+    let [sum] = sums.values();
+    sum
+}
+
+/// `v . w` of one element.
+#[inline]
+pub fn dot_one<const K: usize>(v: &[f64; K], w: &[f64; K]) -> f64 {
+    (1..K).fold(v[0] * w[0], |sum, k| sum + v[k] * w[k])
+}
+
+/// `v + a w` of one element.
+#[inline]
+pub fn plus<const K: usize>(v: [f64; K], a: f64, w: [f64; K]) -> [f64; K] {
+    std::array::from_fn(|k| v[k] + a * w[k])
+}

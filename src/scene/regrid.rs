@@ -1,0 +1,219 @@
+//! A scene on another grid over the same rectangle: coarser or finer, in any ratio.
+
+use super::{refine, Coefficient, Friction, Layer, Motion, Patches, PressureLimit, Previous, Scene};
+use crate::effects::check_other_grids;
+use crate::error::{invalid, Result};
+use crate::grid::Grid;
+use crate::memory::{collected, zeros};
+
+/// The grid over the rectangle of `grid` with twice the elements in both directions, so many times; with half of them, rounded, and at least
+/// one, if the number is negative.
+pub fn scaled(grid: &Grid, doublings: i32) -> Result<Grid> {
+    let Grid { mx, my, dx, dy } = *grid;
+    if doublings >= 0 {
+        let parts = 1_usize.checked_shl(doublings as u32).unwrap_or(0);
+        return match (mx.checked_mul(parts), my.checked_mul(parts)) {
+            (Some(mx), Some(my)) if parts > 0 => Grid::new(mx, my, dx / parts as f64, dy / parts as f64),
+            _ => invalid(format!("{mx} x {my} elements cannot be divided {doublings} times")),
+        };
+    }
+    let joined = 2f64.powi(-doublings);
+    let fewer = |m: usize| ((m as f64 / joined).round() as usize).max(1);
+    let (fewer_x, fewer_y) = (fewer(mx), fewer(my));
+    let length = |m: usize, fewer: usize, d: f64| d * (m as f64 / fewer as f64);
+    Grid::new(fewer_x, fewer_y, length(mx, fewer_x, dx), length(my, fewer_y, dy))
+}
+
+/// The undeformed distance `h` of `grid` at the centres of a coarser grid: the weighted mean of the four centres around each that have a
+/// surface, or none if fewer than two have one (of a centre that is one of `grid`, its own).
+pub fn sample(h: &[f64], grid: &Grid, coarse: &Grid) -> Result<Vec<f64>> {
+    let columns: Vec<[(usize, f64); 2]> = (0..coarse.mx).map(|i| between(i, coarse.mx, grid.mx)).collect();
+    let mut sampled = zeros(coarse.len(), "undeformed distances of a coarser grid")?;
+    for (iy, row) in sampled.chunks_exact_mut(coarse.mx).enumerate() {
+        let rows = between(iy, coarse.my, grid.my);
+        for (value, columns) in row.iter_mut().zip(&columns) {
+            let (mut sum, mut weights, mut count, mut all) = (0.0, 0.0, 0, 0);
+            for ((y, of_y), (x, of_x)) in rows.iter().flat_map(|y| columns.iter().map(move |x| (*y, *x))) {
+                let (h, weight) = (h[grid.index(x, y)], of_y * of_x);
+                all += usize::from(weight > 0.0);
+                if weight > 0.0 && h.is_finite() {
+                    (sum, weights, count) = (sum + weight * h, weights + weight, count + 1);
+                }
+            }
+            *value = if count < all.min(2) { f64::INFINITY } else { sum / weights };
+        }
+    }
+    Ok(sampled)
+}
+
+/// The two of `m` centres around centre i of `coarse`, with their weights.
+fn between(i: usize, coarse: usize, m: usize) -> [(usize, f64); 2] {
+    // Whole numbers until the end, so that a centre in the middle is there exactly.
+    let (twice, whole) = ((2 * i + 1) * m - coarse, 2 * coarse);
+    let (first, part) = (twice / whole, (twice % whole) as f64 / whole as f64);
+    [(first, 1.0 - part), ((first + 1).min(m - 1), part)]
+}
+
+/// From one grid to another.
+struct Regrid {
+    from: Grid,
+    to: Grid,
+}
+
+impl Regrid {
+    /// Means over the elements of the other grid.
+    fn means(&self, values: &[f64]) -> Result<Vec<f64>> {
+        let parts = |m: usize, to: usize| -> Vec<Vec<(usize, f64)>> { (0..to).map(|i| parts(i, to, m)).collect() };
+        let (columns, rows) = (parts(self.from.mx, self.to.mx), parts(self.from.my, self.to.my));
+        let of = |i: usize| -> f64 {
+            let (rows, columns) = (&rows[i / self.to.mx], &columns[i % self.to.mx]);
+            let row = |y: usize| -> f64 { columns.iter().map(|(x, part)| part * values[self.from.index(*x, y)]).sum() };
+            rows.iter().map(|(y, part)| part * row(*y)).sum()
+        };
+        Ok(collected((0..self.to.len()).map(of), "values of a scene on another grid")?)
+    }
+
+    fn pair(&self, pair: Option<[&[f64]; 2]>, factor: f64) -> Result<Option<[Vec<f64>; 2]>> {
+        let Some([x, y]) = pair else { return Ok(None) };
+        let mut pair = [self.means(x)?, self.means(y)?];
+        pair.iter_mut().flatten().for_each(|value| *value *= factor);
+        Ok(Some(pair))
+    }
+
+    /// What is in the elements around the centres of the other grid.
+    fn at_centres(&self, values: &[i32]) -> Result<Vec<i32>> {
+        let at = |i: usize, to: usize, m: usize| (2 * i + 1) * m / (2 * to);
+        let of = |i: usize| {
+            let (x, y) = (i % self.to.mx, i / self.to.mx);
+            values[self.from.index(at(x, self.to.mx, self.from.mx), at(y, self.to.my, self.from.my))]
+        };
+        Ok(collected((0..self.to.len()).map(of), "patches of a scene on another grid")?)
+    }
+
+    fn of_coefficient(&self, coefficient: Coefficient<'_>) -> Result<Option<Vec<f64>>> {
+        match coefficient {
+            Coefficient::Uniform(_) => Ok(None),
+            Coefficient::PerElement(values) => self.means(values).map(Some),
+        }
+    }
+}
+
+/// The elements out of `m` that element i of `to` covers, with the parts of it that they are.
+fn parts(i: usize, to: usize, m: usize) -> Vec<(usize, f64)> {
+    // In units of 1/(to m) of the whole length.
+    let (start, end) = (i * m, (i + 1) * m);
+    let part = |x: usize| (end.min((x + 1) * to) - start.max(x * to)) as f64 / m as f64;
+    (start / to..end.div_ceil(to)).map(|x| (x, part(x))).collect()
+}
+
+/// What a scene holds one of per element, on another grid.
+pub struct Regridded {
+    grid: Grid,
+    undeformed_distance: Vec<f64>,
+    layer: Option<Vec<f64>>,
+    limits: Option<Vec<f64>>,
+    patches: Option<Vec<i32>>,
+    coefficients: Option<Vec<f64>>,
+    compliances: Option<Vec<f64>>,
+    weights: Option<[Vec<f64>; 2]>,
+    rigid_slip: Option<[Vec<f64>; 2]>,
+    previous: Option<[Vec<f64>; 2]>,
+    rolling_distance: f64,
+}
+
+impl Regridded {
+    /// A scene on the grid `to`. `surface`: the undeformed distance on it; none: that of the scene, [refined](refine) by a whole ratio or
+    /// [sampled](sample). Compliances, limits, coefficients of friction, weights and tractions are means over the elements. A step of
+    /// transient rolling stays as long as it is; a step of steady rolling that is one element long stays one element long.
+    ///
+    /// # Errors
+    /// `Unsupported`: own coefficients, which are those of one grid; tractions before that a solver keeps.
+    pub fn new(scene: &Scene<'_>, to: Grid, surface: Option<Vec<f64>>) -> Result<Regridded> {
+        check_other_grids(scene)?;
+        let from = scene.grid;
+        let regrid = Regrid { from, to };
+        let friction = scene.friction.as_ref();
+        let (before, rolling_distance) = friction.map_or((1.0, 0.0), |friction| {
+            let stays = friction.motion == Motion::TransientRolling;
+            (friction.distance(&from), if stays { friction.distance(&from) } else { friction.rolling_distance })
+        });
+        let step = friction.map_or(1.0, |friction| Friction { rolling_distance, ..*friction }.distance(&to));
+        let of_layer = match scene.layer {
+            Some(Layer::PerElement(values)) => Some(regrid.means(values)?),
+            _ => None,
+        };
+        let limits = match scene.pressure_limit {
+            Some(PressureLimit::PerElement(values)) => Some(regrid.means(values)?),
+            _ => None,
+        };
+        let mut undeformed_distance = match surface {
+            Some(surface) => surface,
+            None => distance(scene.undeformed_distance, &from, &to)?,
+        };
+        let patches = scene.patches.map(|patches| regrid.at_centres(patches.patch)).transpose()?;
+        // Where there is no patch there is no surface, also in a scene of which the patches are left out.
+        for (h, patch) in undeformed_distance.iter_mut().zip(patches.iter().flatten()) {
+            if *patch < 0 {
+                *h = f64::INFINITY;
+            }
+        }
+        let of = |coefficient: Option<Coefficient<'_>>| {
+            coefficient.map_or(Ok(None), |coefficient| regrid.of_coefficient(coefficient))
+        };
+        Ok(Regridded {
+            grid: to,
+            undeformed_distance,
+            layer: of_layer,
+            limits,
+            patches,
+            coefficients: of(friction.map(|friction| friction.coefficient))?,
+            compliances: of(friction.map(|friction| friction.compliance))?,
+            weights: regrid.pair(friction.and_then(|friction| friction.weights), 1.0)?,
+            rigid_slip: regrid.pair(friction.and_then(|friction| friction.rigid_slip), step / before)?,
+            previous: match friction.map(|friction| friction.previous) {
+                Some(Previous::Given(tractions)) => regrid.pair(Some(tractions), 1.0)?,
+                _ => None,
+            },
+            rolling_distance,
+        })
+    }
+
+    /// `scene`, which this was made of, on the other grid.
+    pub fn scene<'a>(&'a self, scene: &Scene<'a>) -> Scene<'a> {
+        let per_element = |values: &'a Option<Vec<f64>>, uniform: Coefficient<'a>| {
+            values.as_ref().map_or(uniform, |values| Coefficient::PerElement(values))
+        };
+        let pair = |pair: &'a Option<[Vec<f64>; 2]>| pair.as_ref().map(|[x, y]| [&x[..], &y[..]]);
+        Scene {
+            grid: self.grid,
+            undeformed_distance: &self.undeformed_distance,
+            layer: scene.layer.map(|layer| self.layer.as_ref().map_or(layer, |values| Layer::PerElement(values))),
+            pressure_limit: scene
+                .pressure_limit
+                .map(|limit| self.limits.as_ref().map_or(limit, |values| PressureLimit::PerElement(values))),
+            patches: scene
+                .patches
+                .map(|patches| Patches { patch: self.patches.as_deref().unwrap_or_default(), ..patches }),
+            friction: scene.friction.map(|friction| Friction {
+                coefficient: per_element(&self.coefficients, friction.coefficient),
+                compliance: per_element(&self.compliances, friction.compliance),
+                weights: pair(&self.weights),
+                rigid_slip: pair(&self.rigid_slip),
+                previous: pair(&self.previous).map_or(Previous::None, Previous::Given),
+                rolling_distance: self.rolling_distance,
+                initial: None,
+                ..friction
+            }),
+            ..scene.clone()
+        }
+    }
+}
+
+/// h on another grid: by cubics on one with a whole number of elements for each one, else by samples.
+fn distance(h: &[f64], from: &Grid, to: &Grid) -> Result<Vec<f64>> {
+    let (x, y) = (to.mx / from.mx, to.my / from.my);
+    if x == y && x >= 1 && to.mx == x * from.mx && to.my == y * from.my {
+        return refine(h, from, x);
+    }
+    sample(h, from, to)
+}

@@ -1,0 +1,184 @@
+//! Scenes with adhesion: they are solved on their own grids, by [`adhesion`](crate::adhesion); contact problems whose attraction stands still by the
+//! methods of every other scene.
+
+use super::methods::{self, Methods};
+use super::take_over::{is_without_contact, take_distance};
+use super::{check, Criterion, Guess, InitialGuess, Method, Options, ProgressCallback, Report, Solver};
+use crate::adhesion::{self, Frozen, Request, Surfaces};
+use crate::contact::{self, lowest, Freshness, NonNegative, Problem, State, Survey};
+use crate::effects::{self, Adhesion, Work};
+use crate::error::{invalid, Error, Result};
+use crate::grid::Grid;
+use crate::methods::{Start, Task};
+use crate::progress::{Goal, Monitor, Outcome, Progress};
+use crate::scene::{Load, Scene};
+
+/// What solves contact problems whose attraction stands still: the methods of AUTO.
+struct Plain(Methods);
+
+impl Frozen for Plain {
+    fn solve(
+        &mut self,
+        problem: &mut contact::Problem,
+        state: &mut State,
+        (tolerance, max_cycles): (f64, u64),
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Outcome> {
+        let lowest = lowest(&state.h);
+        state.round_off = problem.round_off();
+        state.reached_limit = false;
+        if is_without_contact(state, lowest, false) {
+            return Ok(Outcome::Converged);
+        }
+        problem.refresh(state, NonNegative)?;
+        let survey = Survey::by(state, &problem.threads);
+        let own_grid = state.grid;
+        let mut tell = |progress: &Progress| {
+            let Progress { mx, my, active_set_changes, update, residual, .. } = *progress;
+            let grid = Grid { mx, my, ..own_grid };
+            !monitor.cycle_done(&grid, active_set_changes, update, residual)
+        };
+        // It counts for itself: a cycle on a coarser grid of its own is none of this one.
+        let mut own = Monitor::new(Some(&mut tell), Vec::new(), false);
+        let goal = Goal { criterion: Criterion::Residual, tolerance, max_cycles };
+        let mut task = Task { problem, state, lowest, set: NonNegative, goal, monitor: &mut own };
+        let stages = methods::stages::<NonNegative>(Method::Auto, true, false);
+        self.0.solve(&mut task, (Start::Given, Some(survey)), stages, 0.0)
+    }
+
+    fn bytes(&self) -> usize {
+        self.0.bytes()
+    }
+}
+
+impl Solver {
+    /// Contact pressure q and attraction sigma of element i of the last result; none if its scene had no adhesion.
+    pub fn adhesion(&self) -> Option<impl Fn(usize) -> (f64, f64) + '_> {
+        let solver = self.adhesion.as_deref().filter(|_| self.has_result && self.is_adhesive)?;
+        Some(|i| solver.split(i))
+    }
+
+    /// Looks for the least force that an equilibrium has: from the load of the scene the approach goes down until the force rises again. The result is
+    /// the state there.
+    pub fn pull_off(
+        &mut self,
+        scene: &Scene<'_>,
+        options: &Options,
+        progress: Option<ProgressCallback<'_>>,
+    ) -> Result<(Outcome, Report)> {
+        let lowest = scene.check_distance_and_load(&self.problem.threads)?;
+        self.set_up.check(scene, options, &self.problem)?;
+        check::guess(scene, options, None)?;
+        let Some(adhesion) = scene.attraction() else {
+            return invalid("adhesion is not given, or its work is 0: nothing holds the bodies together".into());
+        };
+        self.solve_adhesive((scene, lowest), (adhesion, true), options, None, progress)
+    }
+
+    /// Solves a scene with adhesion, which is checked. `lowest`: the least distance.
+    pub(super) fn solve_adhesive(
+        &mut self,
+        (scene, lowest): (&Scene<'_>, f64),
+        (adhesion, pull_off): (&Adhesion<'_>, bool),
+        options: &Options,
+        guess: Option<Guess<'_>>,
+        progress: Option<ProgressCallback<'_>>,
+    ) -> Result<(Outcome, Report)> {
+        check_options(options)?;
+        // What the mean pressure compresses is a part of the approach here, whatever the load.
+        self.suit(Load::Approach(0.0))?;
+        check::range((scene, lowest), &self.problem, self.set_up.largest_influence, None)?;
+        if !self.problem.symmetric {
+            let message = "adhesion is given, and the influence coefficients are not symmetric; this version does not solve them together";
+            return Err(Error::Unsupported(message.into()));
+        }
+        let goes_on = options.initial_guess == InitialGuess::Previous && self.has_result;
+        self.methods.projected_cg.forget_windows();
+        self.methods.projected_cg.forget_solutions();
+        let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), false);
+        self.has_result = false;
+        take_distance(&mut self.state, scene.undeformed_distance, &self.problem.threads);
+        let outcome = self.run_adhesive((scene, lowest), (adhesion, pull_off), (options, guess, goes_on), &mut monitor);
+        self.ledger = std::mem::take(&mut monitor.ledger.rows);
+        let (stop, found) = outcome?;
+        // There is no step before any more.
+        self.friction.iter_mut().for_each(|before| before.forget());
+        effects::keep(scene, &mut self.beside.histories);
+        let mut report = Report { adhesion: Some(found), ..Report::of(&monitor, options.tolerance) };
+        report.measures = self.ledger.last().map(|row| row.measures).unwrap_or_default();
+        report.error.untrusted = found.untrusted();
+        report.solve_seconds = monitor.seconds();
+        report.setup_seconds = std::mem::take(&mut self.setup_seconds);
+        report.bytes = self.bytes() as u64;
+        report.log(options.method, &self.problem.grid, stop);
+        (self.has_result, self.is_adhesive) = (true, true);
+        Ok((stop, report))
+    }
+
+    fn run_adhesive(
+        &mut self,
+        (scene, lowest): (&Scene<'_>, f64),
+        (adhesion, pull_off): (&Adhesion<'_>, bool),
+        (options, guess, goes_on): (&Options, Option<Guess<'_>>, bool),
+        monitor: &mut Monitor<'_>,
+    ) -> Result<(Outcome, adhesion::Report)> {
+        let mut solver = match self.adhesion.take() {
+            Some(solver) => solver,
+            None => {
+                let operator = self.problem.operator()?.clone();
+                let Problem { grid, coefficients, threads, .. } = &self.problem;
+                Box::new(adhesion::Solver::new(*grid, coefficients, operator, threads)?)
+            }
+        };
+        let state = &self.state;
+        let from = match guess {
+            _ if goes_on => {
+                Some(adhesion::State { pressure: &state.p, contact: &state.contact, approach: state.approach })
+            }
+            Some(guess) => Some(adhesion::State { pressure: guess.pressure, contact: guess.contact, approach: lowest }),
+            None => None,
+        };
+        let (work, works) = match adhesion.work {
+            Work::Uniform(work) => (work, None),
+            Work::PerElement(works) => (0.0, Some(works)),
+        };
+        let surfaces = Surfaces { h: &state.h, law: adhesion.law, range: adhesion.range, work, works };
+        let request = Request {
+            surfaces,
+            load: scene.load,
+            pull_off,
+            start: adhesion.start,
+            state: from.filter(|from| lowest.is_finite() && from.approach.is_finite()),
+            stiffness: adhesion.stiffness,
+            tolerance: options.tolerance,
+            max_cycles: options.max_cycles as u64,
+        };
+        let make = |problem: &contact::Problem| -> Result<Box<dyn Frozen>> {
+            Ok(Box::new(Plain(Methods::new(problem, options)?)))
+        };
+        let outcome = solver.solve(&request, &make, monitor);
+        if outcome.is_ok() {
+            let (state, found) = (&mut self.state, solver.finest());
+            state.p.copy_from_slice(found.now.p.field.as_flattened());
+            state.u.copy_from_slice(found.now.u.as_flattened());
+            state.contact.copy_from_slice(&found.now.contact);
+            state.at_limit.fill(false);
+            (state.load, state.approach, state.reached_limit) = (scene.load, found.now.approach(), false);
+            (state.round_off, state.u_is) = (self.problem.round_off(), Freshness::Exact);
+        }
+        self.adhesion = Some(solver);
+        outcome
+    }
+}
+
+/// Refuses options that adhesion is not solved with.
+fn check_options(options: &Options) -> Result<()> {
+    let (name, rule) = match options {
+        Options { method: Method::Norm | Method::Multigrid | Method::FullMultigrid, .. } => {
+            ("method is another one", "it must be AUTO or PROJECTED_CG")
+        }
+        Options { criterion: Criterion::Update, .. } => ("criterion is UPDATE", "it must be RESIDUAL"),
+        _ => return Ok(()),
+    };
+    Err(Error::Unsupported(format!("adhesion is given, and {name}: {rule} in this version")))
+}

@@ -1,0 +1,47 @@
+//! What a solver keeps of what is solved beside the normal problem, but for friction.
+
+use crate::effects::{History, COUNT};
+use crate::error::Result;
+use crate::memory::zeros;
+
+/// What a solver keeps of what is solved beside the normal problem.
+#[derive(Default)]
+pub struct Beside {
+    /// What each effect keeps from step to step.
+    pub histories: [History; COUNT],
+    /// What coupled problems displace.
+    pub distances: Distances,
+}
+
+impl Beside {
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.histories.iter().map(History::bytes).sum::<usize>() + self.distances.bytes()
+    }
+}
+
+/// The undeformed distance of a scene, a copy, for a callback may change the caller's; and that with what coupled problems displace.
+#[derive(Default)]
+pub struct Distances {
+    /// That of the scene.
+    pub own: Vec<f64>,
+    /// That which was made last.
+    pub displaced: Vec<f64>,
+}
+
+impl Distances {
+    /// Takes over that of the scene.
+    pub fn take(&mut self, h: &[f64]) -> Result<()> {
+        for values in [&mut self.own, &mut self.displaced] {
+            if values.is_empty() {
+                *values = zeros(h.len(), "the distance with what coupled problems displace")?;
+            }
+        }
+        self.own.copy_from_slice(h);
+        Ok(())
+    }
+
+    fn bytes(&self) -> usize {
+        size_of_val(&self.own[..]) + size_of_val(&self.displaced[..])
+    }
+}

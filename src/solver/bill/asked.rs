@@ -1,0 +1,19 @@
+//! What a bill is asked for.
+
+/// What the bill is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BillOptions {
+    /// The accuracy asked for: changes that are smaller, relative to the quantity, are negligible.
+    pub target: f64,
+    /// Seconds at most; 0: 5 % of what the scene is predicted to take, or a tenth of a second.
+    pub max_seconds: f64,
+    /// Whether pairs are left out, too.
+    pub pairs: bool,
+}
+
+impl BillOptions {
+    /// With pairs, in the time that it takes by default.
+    pub fn new(target: f64) -> BillOptions {
+        BillOptions { target, max_seconds: 0.0, pairs: true }
+    }
+}

@@ -1,0 +1,118 @@
+//! Leaving out what the bill says is negligible.
+
+use std::time::Instant;
+
+use super::asked::BillOptions;
+use super::omission::Omission;
+use super::small_grids::{self, SmallGrids};
+use super::verdict::{BillRow, Verdict};
+use crate::error::Result;
+use crate::scene::Scene;
+use crate::solver::quantities::Quantity;
+use crate::solver::{InitialGuess, Options};
+
+/// What was left out of a scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Neglected {
+    /// Each of them.
+    pub omissions: Vec<Omission>,
+    /// By how much that may be wrong, relative to the quantities; 0 where nothing was left out.
+    pub error: f64,
+}
+
+/// The normal quantities that must not change: force or approach, largest pressure, area.
+const KEPT: [Quantity; 3] = [Quantity::Force, Quantity::MaxPressure, Quantity::ContactArea];
+
+impl Neglected {
+    /// What may be left out of `scene` at a target, all together: each of it is negligible, and what is left of the scene is solved once
+    /// more on small grids. Where that changes too much, the one with the largest change comes back. What makes the result of another kind is
+    /// never left out: friction, and a layer in the place of a coating.
+    pub fn of(scene: &Scene<'_>, options: &Options, target: f64) -> Result<Neglected> {
+        let asked = BillOptions { pairs: false, ..BillOptions::new(target) };
+        let wanted = kept(scene);
+        let options = &Options { initial_guess: InitialGuess::None, ..*options };
+        let stays = |one: &Omission| match one {
+            Omission::Friction | Omission::CoatingAsLayer => true,
+            // Where there is no patch there is no surface: that stays.
+            Omission::Patches => scene.patches.is_some_and(|patches| patches.patch.iter().any(|patch| *patch < 0)),
+            _ => false,
+        };
+        let singles: Vec<Omission> = Omission::of(scene).into_iter().filter(|one| !stays(one)).collect();
+        small_grids::check(scene, options, &asked)?;
+        let began = Instant::now();
+        let rows = bill(scene, options, &asked, &wanted, singles.iter().map(|one| vec![*one]).collect(), began)?;
+        let mut left: Vec<(Omission, f64)> = singles
+            .into_iter()
+            .filter_map(|one| {
+                let of_this: Vec<&BillRow> = rows.iter().filter(|row| row.omission == one).collect();
+                let holds = of_this.iter().all(|row| row.verdict == Verdict::Negligible);
+                holds.then(|| (one, largest(&of_this)))
+            })
+            .collect();
+        left.sort_by(|a, b| a.1.total_cmp(&b.1));
+        while let Some((_, alone)) = left.last().copied() {
+            let omissions: Vec<Omission> = left.iter().map(|(one, _)| *one).collect();
+            let error = match omissions.len() {
+                1 => Some(alone),
+                _ => together(scene, options, &asked, &wanted, &omissions)?,
+            };
+            if let Some(error) = error {
+                return Ok(Neglected { omissions, error });
+            }
+            left.pop();
+        }
+        Ok(Neglected::default())
+    }
+
+    /// One bit for each: `1 << (number - 1)`.
+    pub fn bits(&self) -> i64 {
+        self.omissions.iter().map(|one| 1 << (one.number() - 1)).sum()
+    }
+
+    /// The scene without it.
+    pub fn leave_out<'a>(&self, scene: &Scene<'a>) -> Scene<'a> {
+        self.omissions.iter().fold(scene.clone(), |scene, omission| omission.leave_out(&scene))
+    }
+}
+
+/// Those that a scene has.
+fn kept(scene: &Scene<'_>) -> Vec<Quantity> {
+    let tangential = [Quantity::TangentialForce, Quantity::Creepage];
+    KEPT.into_iter().chain(tangential.into_iter().filter(|quantity| quantity.check(scene).is_ok())).collect()
+}
+
+/// The largest relative change of these rows, errors included.
+fn largest(rows: &[&BillRow]) -> f64 {
+    let of = |row: &&BillRow| match (row.value, row.change, row.error) {
+        (Some(value), Some(change), Some(error)) if value != 0.0 => (change.abs() + error) / value.abs(),
+        (_, Some(0.0), Some(0.0)) => 0.0,
+        _ => f64::INFINITY,
+    };
+    rows.iter().map(of).fold(0.0, f64::max)
+}
+
+fn bill(
+    scene: &Scene<'_>,
+    options: &Options,
+    asked: &BillOptions,
+    wanted: &[Quantity],
+    left_out: Vec<Vec<Omission>>,
+    began: Instant,
+) -> Result<Vec<BillRow>> {
+    let mut grids = SmallGrids::new(scene, options, asked, wanted, left_out);
+    grids.solve(began, None)?;
+    Ok(grids.rows())
+}
+
+/// The largest relative change without all of them; none where it is not negligible.
+fn together(
+    scene: &Scene<'_>,
+    options: &Options,
+    asked: &BillOptions,
+    wanted: &[Quantity],
+    omissions: &[Omission],
+) -> Result<Option<f64>> {
+    let rows = bill(scene, options, asked, wanted, vec![omissions.to_vec()], Instant::now())?;
+    let holds = rows.iter().all(|row| row.verdict == Verdict::Negligible);
+    Ok(holds.then(|| largest(&rows.iter().collect::<Vec<_>>())))
+}

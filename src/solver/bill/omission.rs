@@ -1,0 +1,178 @@
+//! What can be left out of a scene: the effects that it names, and the refinements that it has without naming them.
+
+use crate::effects::replace_bodies;
+use crate::scene::{Bodies, Coefficient, Friction, Layer, Scene};
+
+/// Something that is left out, or that something simpler takes the place of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Omission {
+    /// The coatings: the bodies are all of the material below.
+    Coating,
+    /// The period: the scene stands alone.
+    Period,
+    /// The patches: all feel each other.
+    Patches,
+    /// The thin compliant layer.
+    Layer,
+    /// The limit of pressures.
+    PressureLimit,
+    /// Friction, with what tractions of unlike bodies do to pressures.
+    Friction,
+    /// That bodies are unlike: tractions and pressures do not feel each other.
+    Coupling,
+    /// The spin.
+    Spin,
+    /// The tangential compliance of a third body.
+    FrictionCompliance,
+    /// The coatings, in whose place a thin compliant layer is put: their limit for waves that are long beside their thickness.
+    CoatingAsLayer,
+}
+
+impl Omission {
+    /// All, in the order of their numbers in the C ABI, which begin at 1.
+    pub const ALL: [Omission; 10] = [
+        Omission::Coating,
+        Omission::Period,
+        Omission::Patches,
+        Omission::Layer,
+        Omission::PressureLimit,
+        Omission::Friction,
+        Omission::Coupling,
+        Omission::Spin,
+        Omission::FrictionCompliance,
+        Omission::CoatingAsLayer,
+    ];
+
+    /// Its number, from 1 on.
+    pub fn number(self) -> usize {
+        self as usize + 1
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        const NAMES: [&str; 10] = [
+            "coating",
+            "period",
+            "patches",
+            "layer",
+            "pressure_limit",
+            "friction",
+            "coupling",
+            "spin",
+            "friction_compliance",
+            "coating_as_layer",
+        ];
+        NAMES[self as usize]
+    }
+
+    /// What a bill leaves out of a scene: each of them, then the pairs.
+    pub fn left_out_of(scene: &Scene<'_>, pairs: bool) -> Vec<Vec<Omission>> {
+        let all = Omission::of(scene);
+        let mut left_out: Vec<Vec<Omission>> = all.iter().map(|one| vec![*one]).collect();
+        for (k, one) in all.iter().enumerate().filter(|_| pairs) {
+            let others = all[k + 1..].iter().filter(|other| one.goes_with(**other));
+            left_out.extend(others.map(|other| vec![*one, *other]));
+        }
+        left_out
+    }
+
+    /// Those that a scene has.
+    pub fn of(scene: &Scene<'_>) -> Vec<Omission> {
+        Omission::ALL.into_iter().filter(|omission| omission.is_in(scene)).collect()
+    }
+
+    fn is_in(self, scene: &Scene<'_>) -> bool {
+        let friction = scene.friction.as_ref();
+        match self {
+            Omission::Coating => has_coating(scene),
+            Omission::CoatingAsLayer => has_coating(scene) && as_layer(scene).is_some(),
+            Omission::Period => scene.period.is_some_and(|period| period.x || period.y),
+            Omission::Patches => scene.patches.is_some(),
+            Omission::Layer => scene.layer.is_some(),
+            Omission::PressureLimit => scene.pressure_limit.is_some(),
+            Omission::Friction => friction.is_some(),
+            Omission::Coupling => friction.is_some() && !replace_bodies(scene) && unlike(&scene.bodies) != 0.0,
+            Omission::Spin => friction.is_some_and(|friction| friction.spin != 0.0),
+            Omission::FrictionCompliance => {
+                friction.is_some_and(|friction| friction.compliance != Coefficient::Uniform(0.0))
+            }
+        }
+    }
+
+    /// Whether leaving out both is another scene than leaving out one of them.
+    pub fn goes_with(self, other: Omission) -> bool {
+        use Omission::{Coating, CoatingAsLayer, Coupling, Friction, FrictionCompliance, Layer, Spin};
+        let same = |a: Omission, b: Omission| {
+            matches!((a, b), (Coating, CoatingAsLayer) | (Layer, CoatingAsLayer))
+                || a == Friction && [Coupling, Spin, FrictionCompliance].contains(&b)
+        };
+        self != other && !same(self, other) && !same(other, self)
+    }
+
+    /// The scene without it.
+    pub fn leave_out<'a>(self, scene: &Scene<'a>) -> Scene<'a> {
+        let mut left = scene.clone();
+        match self {
+            Omission::Coating => left.coating = None,
+            Omission::CoatingAsLayer => {
+                left.layer = as_layer(scene);
+                left.coating = None;
+            }
+            Omission::Period => left.period = None,
+            // What is in no patch has no surface all the same.
+            Omission::Patches => left.patches = None,
+            Omission::Layer => left.layer = None,
+            Omission::PressureLimit => left.pressure_limit = None,
+            Omission::Friction => left.friction = None,
+            Omission::Coupling => left.bodies = alike(&scene.bodies),
+            Omission::Spin => left.friction = scene.friction.map(|friction| Friction { spin: 0.0, ..friction }),
+            Omission::FrictionCompliance => {
+                let without = |friction| Friction { compliance: Coefficient::Uniform(0.0), ..friction };
+                left.friction = scene.friction.map(without);
+            }
+        }
+        left
+    }
+}
+
+fn has_coating(scene: &Scene<'_>) -> bool {
+    let plain = scene.plain();
+    scene.coating.is_some_and(|coating| (0..2).any(|body| coating.in_effect(body, &plain).is_some()))
+}
+
+/// What couples normal and tangential problem: `(1 - 2 nu1)/G1 - (1 - 2 nu2)/G2`.
+fn unlike(bodies: &Bodies) -> f64 {
+    let of = |b: usize| (1.0 - 2.0 * bodies.poisson_ratio[b]) / bodies.shear_modulus[b];
+    of(0) - of(1)
+}
+
+/// Like bodies of the same compliance, normal and tangential: the means of 1/G and of nu/G.
+fn alike(bodies: &Bodies) -> Bodies {
+    let mean = |of: [f64; 2]| 0.5 * (of[0] + of[1]);
+    let compliance = mean([0, 1].map(|b| 1.0 / bodies.shear_modulus[b]));
+    let ratio = mean([0, 1].map(|b| bodies.poisson_ratio[b] / bodies.shear_modulus[b])) / compliance;
+    Bodies::same(1.0 / compliance, ratio.min(0.5))
+}
+
+/// Of a wave that is long beside a coating: its wave number times the thickness. What a thin layer leaves out is of this order.
+const LONG: f64 = 1e-3;
+
+/// The thin layer that gives way to long waves as the coatings do, together with the layer there is; none if that differs from element to
+/// element, and where the coatings are stiffer than the bodies.
+fn as_layer<'a>(scene: &Scene<'a>) -> Option<Layer<'a>> {
+    let there = match scene.layer {
+        None => 0.0,
+        Some(Layer::Uniform(compliance)) => compliance,
+        Some(Layer::PerElement(_)) => return None,
+    };
+    let (plain, coating) = (scene.plain(), scene.coating?);
+    let thickest =
+        (0..2).filter_map(|body| coating.in_effect(body, &plain)).map(|layer| layer.thickness).fold(0.0, f64::max);
+    let wave_number = LONG / thickest;
+    // Of half-spaces alone: 2/(E* k).
+    let added = coating.compliance(&plain, wave_number).ok()? - 2.0 * scene.bodies.compliance() / wave_number;
+    if added < 0.0 {
+        return None;
+    }
+    Some(Layer::Uniform(there + added))
+}

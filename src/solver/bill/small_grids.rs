@@ -1,0 +1,165 @@
+//! The small grids that a bill is made of: on each the scene is solved as it is, and without what can be left out.
+
+use std::time::Instant;
+
+use super::asked::BillOptions;
+use super::omission::Omission;
+use super::verdict::{self, BillRow, Measured};
+use crate::effects;
+use crate::error::{require, Error, Result};
+use crate::scene::{scaled, Regridded, Scene};
+use crate::solver::quantities::{Lack, OnGrid, Quantity, Sequence};
+use crate::solver::{Options, Outcome, ProgressCallback};
+use crate::threads::Threads;
+
+/// Seconds that a bill may take whatever the scene does, and the part of the scene's.
+const SECONDS: f64 = 0.1;
+const PART: f64 = 0.05;
+/// The next grid takes so many times as long, at most.
+const NEXT: f64 = 5.0;
+/// Seconds grow with this power of the number of elements (docs/performance.md).
+const GROWTH: f64 = 1.08;
+/// Elements of the first grid in its longer direction, at least.
+const FIRST: usize = 16;
+/// Of the target, what residuals may hide.
+const TOLERANCE_PER_TARGET: f64 = 0.01;
+
+/// Refuses what has no bill.
+pub fn check(scene: &Scene<'_>, options: &Options, asked: &BillOptions) -> Result<()> {
+    options.check_several_grids()?;
+    let (target, seconds) = (asked.target, asked.max_seconds);
+    require(target > 0.0 && target < 1.0, "target", target, "it must lie between 0 and 1")?;
+    let is_limit = seconds >= 0.0 && seconds.is_finite();
+    require(is_limit, "max_seconds", seconds, "it must be positive, or 0 for the default")?;
+    scene.check(&Threads::One)?;
+    scene.check_area(None)?;
+    effects::check_other_grids(scene)
+}
+
+/// The scene with something left out, or as it is where nothing is.
+pub struct Variant {
+    pub left_out: Vec<Omission>,
+    /// By quantity: the value, on each grid.
+    pub values: Vec<std::result::Result<f64, Lack>>,
+    /// By quantity: the change against the scene as it is, grid by grid.
+    pub changes: Vec<Sequence>,
+    /// On the finest grid so far.
+    pub seconds: f64,
+    pub bytes: f64,
+}
+
+/// All variants on the grids so far.
+pub struct SmallGrids<'s, 'a> {
+    scene: &'s Scene<'a>,
+    options: Options,
+    asked: BillOptions,
+    wanted: Vec<Quantity>,
+    /// The first: the scene as it is.
+    pub variants: Vec<Variant>,
+    /// Elements of the scene's grid over those of the last grid.
+    ratio: f64,
+}
+
+impl<'s, 'a> SmallGrids<'s, 'a> {
+    /// `left_out`: one variant each.
+    pub fn new(
+        scene: &'s Scene<'a>,
+        options: &Options,
+        asked: &BillOptions,
+        wanted: &[Quantity],
+        left_out: Vec<Vec<Omission>>,
+    ) -> SmallGrids<'s, 'a> {
+        let tolerance = (TOLERANCE_PER_TARGET * asked.target).clamp(1e-12, options.tolerance.max(1e-12));
+        let options = Options { tolerance, threads: 1, estimates: true, ..*options };
+        let of = |left_out: Vec<Omission>| Variant {
+            left_out,
+            values: vec![Err(Lack::Unsolved); wanted.len()],
+            changes: vec![Sequence::default(); wanted.len()],
+            seconds: 0.0,
+            bytes: 0.0,
+        };
+        let variants = std::iter::once(vec![]).chain(left_out).map(of).collect();
+        SmallGrids { scene, options, asked: *asked, wanted: wanted.to_vec(), variants, ratio: 1.0 }
+    }
+
+    /// Solves on finer and finer grids, as long as there is time, and not beyond the scene's own.
+    pub fn solve(&mut self, began: Instant, mut progress: Option<ProgressCallback<'_>>) -> Result<Outcome> {
+        if self.variants.len() < 2 {
+            return Ok(Outcome::Converged);
+        }
+        let elements = self.scene.grid.mx.max(self.scene.grid.my);
+        // At least two grids: of one alone nothing is known of errors.
+        let first = -((elements / FIRST).max(2).ilog2() as i32);
+        for doublings in first..=0 {
+            let entered = Instant::now();
+            if !self.on(doublings, &mut progress)? {
+                return Ok(Outcome::Cancelled);
+            }
+            let next = entered.elapsed().as_secs_f64() * NEXT;
+            let whole = self.variants[0].seconds * self.ratio.powf(GROWTH);
+            let most = if self.asked.max_seconds > 0.0 { self.asked.max_seconds } else { SECONDS.max(PART * whole) };
+            let known = doublings > first;
+            if known && began.elapsed().as_secs_f64() + next > most {
+                break;
+            }
+        }
+        Ok(Outcome::Converged)
+    }
+
+    /// One grid; false: cancelled.
+    fn on(&mut self, doublings: i32, progress: &mut Option<ProgressCallback<'_>>) -> Result<bool> {
+        let grid = scaled(&self.scene.grid, doublings)?;
+        self.ratio = self.scene.grid.len() as f64 / grid.len() as f64;
+        let regridded = Regridded::new(self.scene, grid, None)?;
+        let scene = regridded.scene(self.scene);
+        let mut as_it_is: Vec<std::result::Result<f64, Lack>> = vec![];
+        for (k, variant) in self.variants.iter_mut().enumerate() {
+            let left = variant.left_out.iter().fold(scene.clone(), |scene, omission| omission.leave_out(&scene));
+            let watch = progress.as_mut().map(|progress| &mut **progress as ProgressCallback<'_>);
+            let found = match OnGrid::solve(&left, &self.options, &self.wanted, watch) {
+                Ok(found) => found,
+                // What is left is no scene that can be solved: nothing is known of it.
+                Err(Error::Infeasible(_) | Error::Unsupported(_)) if k > 0 => continue,
+                // A coarse grid alone may carry less.
+                Err(Error::Infeasible(_)) if doublings < 0 => return Ok(true),
+                Err(error) => return Err(error),
+            };
+            if found.outcome == Outcome::Cancelled {
+                return Ok(false);
+            }
+            (variant.seconds, variant.bytes) = (found.seconds, found.bytes as f64);
+            for (q, quantity) in self.wanted.iter().enumerate() {
+                let value = verdict::without(*quantity, &variant.left_out, found.values[q]);
+                variant.values[q] = value;
+                if let (Ok(value), Some(Ok(before))) = (value, as_it_is.get(q)) {
+                    variant.changes[q].add(doublings, value - before, found.residual * before.abs());
+                }
+            }
+            if k == 0 {
+                as_it_is = variant.values.clone();
+            }
+        }
+        Ok(true)
+    }
+
+    /// The rows.
+    pub fn rows(&self) -> Vec<BillRow> {
+        let Some((whole, variants)) = self.variants.split_first() else { return vec![] };
+        let scale = self.ratio.powf(GROWTH);
+        let of = |variant: &Variant| -> Vec<BillRow> {
+            let row = |(q, quantity): (usize, &Quantity)| {
+                let measured = Measured {
+                    quantity: *quantity,
+                    value: whole.values[q],
+                    without: variant.values[q],
+                    change: &variant.changes[q],
+                };
+                let costs = [whole.seconds * scale, variant.seconds * scale];
+                let bytes = [whole.bytes * self.ratio, variant.bytes * self.ratio];
+                measured.row(&variant.left_out, self.asked.target, costs, bytes)
+            };
+            self.wanted.iter().enumerate().map(row).collect()
+        };
+        variants.iter().flat_map(of).collect()
+    }
+}

@@ -1,0 +1,98 @@
+//! One row of the bill: a change, its error, and what follows from both.
+
+use super::omission::Omission;
+use crate::solver::quantities::{Lack, Quantity, Sequence};
+
+/// What a row says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The quantity changes by less than the target, its error included.
+    Negligible,
+    /// It changes by more than the target, less its error.
+    Needed,
+    /// The change is too near to the target, or its error is not known: more time decides, that is finer grids.
+    NotDecided,
+}
+
+/// What leaving out one thing, or two, does to a quantity, and what it saves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BillRow {
+    /// What is left out.
+    pub omission: Omission,
+    /// What is left out beside it.
+    pub other: Option<Omission>,
+    /// Of which the change is.
+    pub quantity: Quantity,
+    /// The value of the scene as it is, on the last small grid; none: it has none.
+    pub value: Option<f64>,
+    /// What is added to it by leaving out.
+    pub change: Option<f64>,
+    /// How far the change may be off; none: not known.
+    pub error: Option<f64>,
+    /// Why one of them is not known.
+    pub lack: Option<Lack>,
+    /// Negligible, needed, or not decided.
+    pub verdict: Verdict,
+    /// Predicted seconds of the scene on its own grid with one thread, and without what is left out.
+    pub seconds: [f64; 2],
+    /// The same of bytes.
+    pub bytes: [f64; 2],
+}
+
+/// A quantity with and without.
+pub struct Measured<'a> {
+    pub quantity: Quantity,
+    pub value: Result<f64, Lack>,
+    pub without: Result<f64, Lack>,
+    pub change: &'a Sequence,
+}
+
+impl Measured<'_> {
+    /// The row.
+    pub fn row(&self, left_out: &[Omission], target: f64, seconds: [f64; 2], bytes: [f64; 2]) -> BillRow {
+        let change = self.change.value();
+        let error = self.change.falling().map(|falling| falling.now());
+        let verdict = match (self.value, change, error) {
+            (Ok(value), Some(change), Some(error)) => decide(value, change, error, target),
+            _ => Verdict::NotDecided,
+        };
+        let lack = match (self.value, self.without, error) {
+            (Err(lack), ..) | (_, Err(lack), _) => Some(lack),
+            (.., Some(_)) => None,
+            _ if self.change.len() < 2 => Some(Lack::OneGrid),
+            _ => Some(Lack::Singular),
+        };
+        BillRow {
+            omission: left_out[0],
+            other: left_out.get(1).copied(),
+            quantity: self.quantity,
+            value: self.value.ok(),
+            change,
+            error,
+            lack,
+            verdict,
+            seconds,
+            bytes,
+        }
+    }
+}
+
+fn decide(value: f64, change: f64, error: f64, target: f64) -> Verdict {
+    let allowed = target * value.abs();
+    if change.abs() + error <= allowed {
+        Verdict::Negligible
+    } else if change.abs() - error > allowed {
+        Verdict::Needed
+    } else {
+        Verdict::NotDecided
+    }
+}
+
+/// The value of a quantity where something is left out: without friction there are no tractions.
+pub fn without(quantity: Quantity, left_out: &[Omission], value: Result<f64, Lack>) -> Result<f64, Lack> {
+    let has_no_friction = left_out.contains(&Omission::Friction);
+    match (quantity, value) {
+        (Quantity::TangentialForce | Quantity::SpinMoment, Err(Lack::NoFriction)) if has_no_friction => Ok(0.0),
+        (_, value) => value,
+    }
+}

@@ -1,0 +1,162 @@
+//! The largest stresses below the surface, over all depths.
+//!
+//! The largest value of a depth is first taken at depths that grow by a ratio, from a quarter of an element to the length of what is loaded.
+//! Then parabolas through the three best depths find the largest one (successive parabolic interpolation; Brent 1973, chapter 5).
+
+use crate::bounding_box::bounding_box;
+use crate::error::Result;
+use crate::friction::Vector;
+use crate::grid::Grid;
+use crate::memory::collected;
+use crate::scene::Patches;
+use crate::stress::{subsurface_stress, Body, Depth, Loads, Wanted, MOST_SLENDER};
+use crate::threads::Threads;
+
+/// From depth to depth.
+const RATIO: f64 = 1.6;
+/// Of the longer side of an element: the first depth.
+const FIRST: f64 = 0.25;
+/// Parabolas at most, and how near they come to the depth, relative to it.
+const PARABOLAS: usize = 8;
+const NEAR: f64 = 1e-3;
+
+/// A largest value, and its depth.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Peak {
+    pub value: f64,
+    pub depth: f64,
+}
+
+impl Peak {
+    /// The larger of both.
+    pub fn or(self, other: Peak) -> Peak {
+        if other.value > self.value {
+            other
+        } else {
+            self
+        }
+    }
+}
+
+/// Which stress.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stress {
+    VonMises,
+    Shear,
+}
+
+impl Stress {
+    fn wanted(self) -> Wanted {
+        match self {
+            Stress::VonMises => Wanted { von_mises: true, ..Wanted::default() },
+            Stress::Shear => Wanted { maximum_shear: true, ..Wanted::default() },
+        }
+    }
+
+    fn largest(self, depth: &Depth) -> f64 {
+        let values = if self == Stress::VonMises { &depth.von_mises } else { &depth.maximum_shear };
+        values.iter().fold(0.0, |largest: f64, value| largest.max(*value))
+    }
+}
+
+/// What loads a surface: pressures, and tractions in x and in y, on body 1.
+pub struct Surface<'a> {
+    grid: Grid,
+    periodic: bool,
+    pressure: Vec<f64>,
+    tractions: Option<[Vec<f64>; 2]>,
+    patches: Option<Patches<'a>>,
+}
+
+impl<'a> Surface<'a> {
+    /// Of a result. Where it repeats itself, or where patches are given, the whole grid; else the part that is loaded.
+    pub fn of(
+        (grid, periodic): (Grid, bool),
+        pressure: &[f64],
+        tractions: Option<&[Vector]>,
+        patches: Option<Patches<'a>>,
+        threads: &Threads,
+    ) -> Result<Option<Surface<'a>>> {
+        let presses = |p: &f64| *p != 0.0;
+        let loaded = bounding_box(pressure, &grid, threads, |row| row.iter().any(presses), presses);
+        let Some(loaded) = loaded else { return Ok(None) };
+        let whole = periodic || patches.is_some();
+        let (columns, rows) = if whole { (0..grid.mx, 0..grid.my) } else { loaded };
+        let cut = |value: &dyn Fn(usize) -> f64| {
+            let (first, width) = (rows.start * grid.mx + columns.start, columns.len());
+            let of_part = |k: usize| value(first + k / width * grid.mx + k % width);
+            collected((0..width * rows.len()).map(of_part), "loads of a largest stress")
+        };
+        let tractions = match tractions {
+            Some(q) => Some([cut(&|i| q[i][0])?, cut(&|i| q[i][1])?]),
+            None => None,
+        };
+        let part = Grid { mx: columns.len(), my: rows.len(), ..grid };
+        Ok(Some(Surface { grid: part, periodic, pressure: cut(&|i| pressure[i])?, tractions, patches }))
+    }
+
+    /// The same as body 2 has it: tractions are opposite.
+    pub fn of_body_2(mut self) -> Surface<'a> {
+        self.tractions.iter_mut().flatten().flatten().for_each(|q| *q = -*q);
+        self
+    }
+
+    /// Whether bodies of the same Poisson ratio have the same stresses.
+    pub fn is_the_same_for_both(&self) -> bool {
+        self.tractions.is_none()
+    }
+
+    /// The largest stress over all depths, and its depth, in a body of this Poisson ratio.
+    pub fn peak(&self, stress: Stress, poisson_ratio: f64, threads: &Threads) -> Result<Peak> {
+        let (short, long) = (self.grid.dx.min(self.grid.dy), self.grid.dx.max(self.grid.dy));
+        // Of very slender elements that repeat themselves stresses near the surface are not computed.
+        let slender = self.periodic && long > MOST_SLENDER * short;
+        let first = if slender { long } else { FIRST * long };
+        let extent = (self.grid.mx as f64 * self.grid.dx).max(self.grid.my as f64 * self.grid.dy);
+        let mut depths: Vec<f64> = if slender { vec![] } else { vec![0.0] };
+        depths.extend(std::iter::successors(Some(first), |z| Some(z * RATIO)).take_while(|z| *z < RATIO * extent));
+        let of = |depths: &[f64]| self.largest(stress, poisson_ratio, depths, threads);
+        let mut known = of(&depths)?;
+        for _ in 0..PARABOLAS {
+            let best = (0..known.len()).max_by(|a, b| known[*a].value.total_cmp(&known[*b].value)).unwrap_or(0);
+            if best == 0 || best + 1 == known.len() {
+                break;
+            }
+            let z = vertex([known[best - 1], known[best], known[best + 1]]);
+            if (z - known[best].depth).abs() <= NEAR * known[best].depth {
+                break;
+            }
+            let at = if z < known[best].depth { best } else { best + 1 };
+            known.insert(at, of(&[z])?[0]);
+        }
+        Ok(known.into_iter().fold(Peak::default(), Peak::or))
+    }
+
+    fn largest(&self, stress: Stress, poisson_ratio: f64, depths: &[f64], threads: &Threads) -> Result<Vec<Peak>> {
+        let body = Body { grid: self.grid, poisson_ratio, periodic: self.periodic };
+        let [x, y] = match &self.tractions {
+            Some([x, y]) => [Some(&x[..]), Some(&y[..])],
+            None => [None, None],
+        };
+        let loads = Loads { pressure: Some(&self.pressure), traction_x: x, traction_y: y, patches: self.patches };
+        let mut peaks = Vec::new();
+        let each = |k: usize, depth: &Depth| peaks.push(Peak { value: stress.largest(depth), depth: depths[k] });
+        subsurface_stress(&body, &loads, depths, &stress.wanted(), threads, None, each)?;
+        Ok(peaks)
+    }
+}
+
+/// The depth of the vertex of the parabola through three points, of which the one in the middle is the highest; between the outer two. Where
+/// the vertex is the middle itself, a little beside it.
+fn vertex([a, b, c]: [Peak; 3]) -> f64 {
+    let (left, right) = (b.depth - a.depth, c.depth - b.depth);
+    let (rise, fall) = ((b.value - a.value) / left, (b.value - c.value) / right);
+    // Slopes at the middles of both parts; between them they fall linearly.
+    let z = 0.5 * (a.depth + b.depth) + 0.5 * (left + right) * rise / (rise + fall);
+    let margin = 0.02;
+    if z.is_finite() {
+        z.clamp(a.depth + margin * left, c.depth - margin * right)
+    } else {
+        b.depth
+    }
+}

@@ -1,0 +1,108 @@
+//! What can be asked of a result: the quantities, their values on one grid, and their errors from several.
+//!
+//! Forces, pressures and areas have estimates from one grid (module `estimates`). All other quantities are compared on grids of twice and
+//! four times the elements ([`Sequence`]).
+
+mod deepest;
+mod on_grids;
+mod sequence;
+mod values;
+
+pub use on_grids::{quantities, OnGrid, QuantityRow};
+pub use sequence::{Falling, Sequence};
+pub use values::{values, Lack};
+
+/// What an accuracy or a price is asked of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// The force, or the approach if the force is prescribed.
+    Force,
+    /// The largest pressure.
+    MaxPressure,
+    /// The corrected contact area.
+    ContactArea,
+    /// The mean of the deformed distance over all elements with a surface.
+    MeanGap,
+    /// dF/d approach, with the contact area as it is.
+    Stiffness,
+    /// The length of the tangential force.
+    TangentialForce,
+    /// The length of the creepage, in those directions in which it is found: where the force is prescribed.
+    Creepage,
+    /// The moment of the tractions about the spin centre.
+    SpinMoment,
+    /// The area of stick.
+    StickArea,
+    /// The largest von Mises stress in both bodies.
+    MaxVonMises,
+    /// The depth at which it is.
+    VonMisesDepth,
+    /// The largest shear stress in both bodies.
+    MaxShear,
+}
+
+impl Quantity {
+    /// All of them, in the order of their numbers in the C ABI.
+    pub const ALL: [Quantity; 12] = [
+        Quantity::Force,
+        Quantity::MaxPressure,
+        Quantity::ContactArea,
+        Quantity::MeanGap,
+        Quantity::Stiffness,
+        Quantity::TangentialForce,
+        Quantity::Creepage,
+        Quantity::SpinMoment,
+        Quantity::StickArea,
+        Quantity::MaxVonMises,
+        Quantity::VonMisesDepth,
+        Quantity::MaxShear,
+    ];
+
+    /// Its number.
+    pub fn number(self) -> usize {
+        self as usize
+    }
+
+    /// Its name, the same in C, Fortran and Python.
+    pub fn name(self) -> &'static str {
+        const NAMES: [&str; 12] = [
+            "force",
+            "max_pressure",
+            "contact_area",
+            "mean_gap",
+            "stiffness",
+            "tangential_force",
+            "creepage",
+            "spin_moment",
+            "stick_area",
+            "max_von_mises",
+            "von_mises_depth",
+            "max_shear",
+        ];
+        NAMES[self.number()]
+    }
+
+    /// Whether its error is estimated from one grid.
+    pub fn has_estimate(self) -> bool {
+        matches!(self, Quantity::Force | Quantity::MaxPressure | Quantity::ContactArea)
+    }
+
+    /// Elements across the contact, in the direction with fewer, from which on its estimate is believed. Measured on balls, ellipses, cones, two
+    /// balls, tori, superellipsoids, blunt rollers and punches anywhere between the elements: from there on at most 5 % of the estimates are below
+    /// the error, and none is below a third of it (docs/notes/2026-11-accuracy.md). Areas jump by whole rows of elements. Of what follows from
+    /// several grids the coarsest has a quarter of these elements.
+    pub fn enough_across(self) -> usize {
+        match self {
+            Quantity::Force => 8,
+            Quantity::MaxPressure => 12,
+            Quantity::ContactArea | Quantity::StickArea => 32,
+            _ => 16,
+        }
+    }
+
+    /// Whether it follows from single pressures, not from sums of them.
+    pub fn is_local(self) -> bool {
+        use Quantity::{MaxPressure, MaxShear, MaxVonMises, VonMisesDepth};
+        matches!(self, MaxPressure | MaxVonMises | VonMisesDepth | MaxShear)
+    }
+}

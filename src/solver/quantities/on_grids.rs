@@ -1,0 +1,148 @@
+//! Quantities of a scene on its grid and on coarser ones, with their errors: a ledger for everything that can be asked.
+
+use std::time::Instant;
+
+use super::{values, Lack, Quantity, Sequence};
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::scene::{scaled, Regridded, Scene};
+use crate::solver::{Options, Outcome, ProgressCallback, Report, Solver};
+
+/// What one grid gives of a quantity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct QuantityRow {
+    /// Which.
+    pub quantity: Quantity,
+    /// The grid.
+    pub grid: Grid,
+    /// Its value, if it has one.
+    pub value: Option<f64>,
+    /// How far that is off, if that is known.
+    pub error: Option<f64>,
+    /// Why one of them is not known.
+    pub lack: Option<Lack>,
+    /// Seconds of set-up and solve of the grid, the same for all its quantities; stresses and stiffness not included.
+    pub seconds: f64,
+    /// Products of the grid, in work units.
+    pub work_units: f64,
+}
+
+/// A grid that was solved.
+pub struct OnGrid {
+    /// The grid.
+    pub grid: Grid,
+    /// How the solve ended.
+    pub outcome: Outcome,
+    /// The values of the quantities asked for, in their order.
+    pub values: Vec<std::result::Result<f64, Lack>>,
+    /// Errors from this grid alone.
+    pub estimates: Vec<Option<f64>>,
+    /// The relative residual.
+    pub residual: f64,
+    /// What it cost.
+    pub seconds: f64,
+    /// Products, in work units.
+    pub work_units: f64,
+    /// Bytes of its solver.
+    pub bytes: u64,
+}
+
+impl OnGrid {
+    /// Solves a scene and takes the values.
+    pub fn solve(
+        scene: &Scene<'_>,
+        options: &Options,
+        wanted: &[Quantity],
+        progress: Option<ProgressCallback<'_>>,
+    ) -> Result<OnGrid> {
+        let began = Instant::now();
+        let (mut solver, lowest) = Solver::for_scene(scene, options)?;
+        let (outcome, report) = solver.solve_checked((scene, lowest), options, None, progress)?;
+        let seconds = began.elapsed().as_secs_f64();
+        let values = match outcome {
+            Outcome::Converged => values(&mut solver, scene, &report, wanted)?,
+            _ => vec![Err(Lack::Unsolved); wanted.len()],
+        };
+        let residual = report.measures.certificate.residual;
+        let residual = report.friction.map_or(residual, |found| residual.max(found.certificate.residual));
+        Ok(OnGrid {
+            grid: scene.grid,
+            outcome,
+            values,
+            estimates: wanted.iter().map(|quantity| estimate(&report, *quantity)).collect(),
+            residual,
+            seconds,
+            work_units: report.count.work_units + report.friction.map_or(0.0, |found| found.products),
+            bytes: report.bytes,
+        })
+    }
+}
+
+/// The error that a report has.
+fn estimate(report: &Report, quantity: Quantity) -> Option<f64> {
+    let error = match quantity {
+        Quantity::Force => report.error.force,
+        Quantity::MaxPressure => report.error.max_pressure,
+        Quantity::ContactArea => report.error.corrected_area,
+        _ => -1.0,
+    };
+    Some(error).filter(|error| *error >= 0.0)
+}
+
+/// The values of `wanted` on the grid of the scene and on `coarser` grids with half the elements each, coarsest first, one row for each grid
+/// and quantity. Each grid is solved from nothing. Errors of force, largest pressure and area are the estimates of the report, all others
+/// follow from the grids before ([`Sequence`]): of the coarsest grid alone nothing is known.
+///
+/// # Errors
+/// Those of a solve on any of the grids; `Unsupported`: own coefficients, kept tractions, and a contact area that is fixed.
+pub fn quantities(
+    scene: &Scene<'_>,
+    options: &Options,
+    wanted: &[Quantity],
+    coarser: usize,
+    mut progress: Option<ProgressCallback<'_>>,
+) -> Result<(Outcome, Vec<QuantityRow>)> {
+    options.check_several_grids()?;
+    scene.check(&crate::threads::Threads::One)?;
+    let options = Options { estimates: true, ..*options };
+    let mut sequences = vec![Sequence::default(); wanted.len()];
+    let (mut rows, mut worst, mut before) = (Vec::new(), Outcome::Converged, None);
+    for doublings in -(coarser as i32)..=0 {
+        let grid = scaled(&scene.grid, doublings)?;
+        // So few elements cannot be halved any more.
+        if before == Some(grid) {
+            continue;
+        }
+        before = Some(grid);
+        let regridded = (doublings < 0).then(|| Regridded::new(scene, grid, None)).transpose()?;
+        let on_this = regridded.as_ref().map_or_else(|| scene.clone(), |regridded| regridded.scene(scene));
+        let watch = progress.as_mut().map(|progress| &mut **progress as ProgressCallback<'_>);
+        let found = OnGrid::solve(&on_this, &options, wanted, watch)?;
+        if found.outcome == Outcome::Cancelled {
+            return Ok((Outcome::Cancelled, rows));
+        }
+        if doublings == 0 {
+            worst = found.outcome;
+        }
+        for (k, quantity) in wanted.iter().enumerate() {
+            rows.push(row(*quantity, k, &found, doublings, &mut sequences[k]));
+        }
+    }
+    Ok((worst, rows))
+}
+
+fn row(quantity: Quantity, k: usize, found: &OnGrid, doublings: i32, sequence: &mut Sequence) -> QuantityRow {
+    let value = found.values[k].ok();
+    if let Some(value) = value {
+        sequence.add(doublings, value, found.residual * value.abs());
+    }
+    let of_sequence = value.and_then(|_| sequence.falling()).map(|falling| falling.now());
+    let error = if quantity.has_estimate() { value.and(found.estimates[k]).or(of_sequence) } else { of_sequence };
+    let lack = match (found.values[k], error) {
+        (Err(lack), _) => Some(lack),
+        (Ok(_), Some(_)) => None,
+        (Ok(_), None) if sequence.len() < 2 => Some(Lack::OneGrid),
+        (Ok(_), None) => Some(Lack::Singular),
+    };
+    QuantityRow { quantity, grid: found.grid, value, error, lack, seconds: found.seconds, work_units: found.work_units }
+}

@@ -1,0 +1,140 @@
+//! The error of a quantity from its values on grids of more and more elements.
+//!
+//! With elements of size h a value is off by `c h^q`, q being 1 or 2 (Richardson). Between two grids, k doublings apart, it changes by `d`, so
+//! that `d/(2^k - 1)` is left where q = 1, and `d/(4^k - 1)` where q = 2. Areas jump from grid to grid: so no error is less than that of
+//! first order that the grid before has promised, unless both say that the order is the second.
+
+/// An error: what falls by 4 with a doubling of the elements in both directions, what falls by 2, and what the residual hides.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Falling {
+    /// What falls by 4.
+    pub by_four: f64,
+    /// What falls by 2.
+    pub by_two: f64,
+    /// What stays.
+    pub hidden: f64,
+}
+
+impl Falling {
+    /// As it is.
+    pub fn now(&self) -> f64 {
+        self.after(0)
+    }
+
+    /// After so many doublings; with a negative number before them.
+    pub fn after(&self, doublings: i32) -> f64 {
+        let ratio = 0.5_f64.powi(doublings);
+        self.by_four * ratio * ratio + self.by_two * ratio + self.hidden
+    }
+
+    /// Relative to a value, if that is one.
+    pub fn over(self, whole: f64) -> Option<Falling> {
+        let [by_four, by_two, hidden] = [self.by_four, self.by_two, self.hidden].map(|part| part / whole.abs());
+        (by_four + by_two + hidden).is_finite().then_some(Falling { by_four, by_two, hidden })
+    }
+}
+
+/// Changes that fall by less than this with a doubling, thrice or as often as is known, do not come to an end: the quantity is singular.
+/// A logarithm changes by the same each time, a change of first order by a half.
+const SINGULAR: f64 = 0.8;
+/// Of the error of first order, what one of second order leaves at most: a quarter, and half of that for what is irregular.
+const SECOND_ORDER: f64 = 0.38;
+/// An error of second order is taken so many times, since its order is known from three grids only.
+const MARGIN: f64 = 2.0;
+
+/// Values of one quantity on grids of the same rectangle, coarsest first.
+#[derive(Clone, Debug, Default)]
+pub struct Sequence {
+    points: Vec<Point>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    doublings: i32,
+    value: f64,
+    hidden: f64,
+}
+
+impl Sequence {
+    /// Adds a grid with so many doublings, more than the one before. `hidden`: what the residual may hide of the value.
+    pub fn add(&mut self, doublings: i32, value: f64, hidden: f64) {
+        self.points.push(Point { doublings, value, hidden });
+    }
+
+    /// The value on the last grid.
+    pub fn value(&self) -> Option<f64> {
+        self.points.last().map(|point| point.value)
+    }
+
+    /// Grids so far.
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// The error on the last grid; none from one grid alone, or where the changes do not fall.
+    pub fn falling(&self) -> Option<Falling> {
+        let last = self.points.last()?;
+        let changes = self.changes();
+        let (newest, before) = (changes.last()?, changes.iter().rev().nth(1));
+        let hidden = last.hidden;
+        let Some(before) = before else {
+            return Some(Falling { by_four: 0.0, by_two: newest.first_order(), hidden });
+        };
+        if is_singular(&changes, hidden) {
+            return None;
+        }
+        // What the change before has promised of this grid.
+        let promised = before.first_order() * 0.5_f64.powi(newest.doublings);
+        let found = newest.first_order();
+        if found <= 2.0 * SECOND_ORDER * promised {
+            let second = newest.second_order().max(before.second_order() * 0.25_f64.powi(newest.doublings));
+            return Some(Falling { by_four: MARGIN * second, by_two: 0.0, hidden });
+        }
+        Some(Falling { by_four: 0.0, by_two: found.max(promised), hidden })
+    }
+
+    fn changes(&self) -> Vec<Change> {
+        let of = |pair: &[Point]| Change {
+            by: pair[1].value - pair[0].value,
+            doublings: pair[1].doublings - pair[0].doublings,
+        };
+        self.points.windows(2).map(of).collect()
+    }
+}
+
+/// From one grid to the next.
+#[derive(Clone, Copy, Debug)]
+struct Change {
+    by: f64,
+    doublings: i32,
+}
+
+impl Change {
+    /// What is left where errors are of first order.
+    fn first_order(&self) -> f64 {
+        self.by.abs() / (2f64.powi(self.doublings) - 1.0)
+    }
+
+    /// The same of second order.
+    fn second_order(&self) -> f64 {
+        self.by.abs() / (4f64.powi(self.doublings) - 1.0)
+    }
+
+    /// The change of a doubling.
+    fn of_one(&self) -> f64 {
+        self.by / f64::from(self.doublings)
+    }
+}
+
+/// Whether the last three changes, or the two that there are, have one sign and do not fall. What the residual hides is no change.
+fn is_singular(changes: &[Change], hidden: f64) -> bool {
+    let last = &changes[changes.len().saturating_sub(3)..];
+    last.windows(2).all(|pair| {
+        let (before, now) = (pair[0].of_one(), pair[1].of_one());
+        now.abs() > hidden && before * now > 0.0 && now.abs() > SINGULAR * before.abs()
+    })
+}
+
+#[cfg(test)]
+#[path = "../../../tests/unit/sequence.rs"]
+mod tests;

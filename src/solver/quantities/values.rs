@@ -1,0 +1,177 @@
+//! The values of quantities on one grid.
+
+use super::deepest::{Peak, Stress, Surface};
+use super::Quantity;
+use crate::error::{invalid, Error, Result};
+use crate::friction::STICK;
+use crate::scene::{Prescribed, Scene};
+use crate::solver::{Outcome, Report, Solver};
+use crate::stress::of_scene;
+use crate::sums::in_blocks;
+
+/// Why a quantity has no value, or its value no error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lack {
+    /// The scene has no friction.
+    NoFriction,
+    /// The scene prescribes it.
+    Prescribed,
+    /// It is not computed with an effect of the scene.
+    Effect,
+    /// There is no contact.
+    NoContact,
+    /// It grows from grid to grid: it is infinite, or no grid resolves it.
+    Singular,
+    /// One grid alone was solved.
+    OneGrid,
+    /// A grid was not solved.
+    Unsolved,
+}
+
+impl Quantity {
+    /// Refuses a quantity that a scene has on no grid.
+    pub fn check(self, scene: &Scene<'_>) -> Result<()> {
+        let name = self.name();
+        match self.lack(scene) {
+            None => Ok(()),
+            Some(Lack::NoFriction) => invalid(format!("{name} is asked for, but friction is not given")),
+            Some(Lack::Prescribed) => invalid(format!("{name} is asked for, but the scene prescribes it")),
+            Some(_) => Err(Error::Unsupported(format!(
+                "{name} is asked for; stresses are those of half-spaces, without coating, own coefficients or a period in one direction"
+            ))),
+        }
+    }
+
+    /// Why a scene has it on no grid.
+    fn lack(self, scene: &Scene<'_>) -> Option<Lack> {
+        use Quantity::{Creepage, MaxShear, MaxVonMises, SpinMoment, StickArea, TangentialForce, VonMisesDepth};
+        match self {
+            TangentialForce | Creepage | SpinMoment | StickArea => {
+                let Some(friction) = &scene.friction else { return Some(Lack::NoFriction) };
+                let is_found = friction.prescribed.map(|prescribed| matches!(prescribed, Prescribed::Force(_)));
+                let is_prescribed = match self {
+                    TangentialForce => is_found == [true; 2],
+                    Creepage => is_found == [false; 2],
+                    _ => false,
+                };
+                is_prescribed.then_some(Lack::Prescribed)
+            }
+            MaxVonMises | VonMisesDepth | MaxShear => {
+                let solved = [1, 2].iter().all(|body| of_scene(scene, *body, [None; 3]).is_ok());
+                (!solved).then_some(Lack::Effect)
+            }
+            _ => None,
+        }
+    }
+}
+
+/// The values of `wanted` after a solve of `scene`. Stiffness and stresses are computed here: they cost more than the solve may have.
+pub fn values(
+    solver: &mut Solver,
+    scene: &Scene<'_>,
+    report: &Report,
+    wanted: &[Quantity],
+) -> Result<Vec<std::result::Result<f64, Lack>>> {
+    let mut stresses = [None, None];
+    let mut values = Vec::new();
+    for quantity in wanted {
+        if let Some(lack) = quantity.lack(scene) {
+            values.push(Err(lack));
+            continue;
+        }
+        values.push(match quantity {
+            Quantity::Force => Ok(report.measures.found(scene.load)),
+            Quantity::MaxPressure => Ok(report.measures.max_pressure),
+            Quantity::ContactArea => Ok(area(report)),
+            Quantity::MeanGap => Ok(mean_gap(solver)),
+            Quantity::Stiffness => stiffness(solver)?,
+            Quantity::MaxVonMises => peak(solver, scene, &mut stresses, Stress::VonMises)?.map(|peak| peak.value),
+            Quantity::VonMisesDepth => peak(solver, scene, &mut stresses, Stress::VonMises)?.map(|peak| peak.depth),
+            Quantity::MaxShear => peak(solver, scene, &mut stresses, Stress::Shear)?.map(|peak| peak.value),
+            _ => tangential(solver, scene, report, *quantity),
+        });
+    }
+    Ok(values)
+}
+
+/// The corrected area; counted where it is not known.
+fn area(report: &Report) -> f64 {
+    let measures = &report.measures;
+    if measures.corrected_area >= 0.0 {
+        measures.corrected_area
+    } else {
+        measures.contact_area
+    }
+}
+
+fn mean_gap(solver: &Solver) -> f64 {
+    let state = solver.state();
+    let finite = |i: &usize| state.h[*i].is_finite();
+    let count = (0..state.h.len()).filter(finite).count();
+    in_blocks((0..state.h.len()).filter(finite).map(|i| state.deformed_distance(i))) / count.max(1) as f64
+}
+
+fn stiffness(solver: &mut Solver) -> Result<std::result::Result<f64, Lack>> {
+    match solver.stiffness() {
+        Ok((Outcome::Converged, stiffness)) if stiffness.value > 0.0 => Ok(Ok(stiffness.value)),
+        Ok((Outcome::Converged, _)) => Ok(Err(Lack::NoContact)),
+        Ok(_) => Ok(Err(Lack::Unsolved)),
+        Err(Error::Infeasible(_)) => Ok(Err(Lack::Singular)),
+        Err(error) => Err(error),
+    }
+}
+
+fn tangential(
+    solver: &Solver,
+    scene: &Scene<'_>,
+    report: &Report,
+    quantity: Quantity,
+) -> std::result::Result<f64, Lack> {
+    let found = (&scene.friction, &report.friction, solver.friction());
+    let (Some(friction), Some(found), Some(solution)) = found else { return Err(Lack::NoFriction) };
+    let is_found = friction.prescribed.map(|prescribed| matches!(prescribed, Prescribed::Force(_)));
+    match quantity {
+        Quantity::TangentialForce => Ok(found.force[0].hypot(found.force[1])),
+        Quantity::Creepage => {
+            let of = |k: usize| if is_found[k] { found.creepage[k] } else { 0.0 };
+            Ok(of(0).hypot(of(1)))
+        }
+        Quantity::SpinMoment => Ok(found.moment),
+        _ => {
+            let sticks = solution.stick_slip.iter().filter(|of| **of == STICK).count();
+            Ok(sticks as f64 * solver.grid().element_area())
+        }
+    }
+}
+
+/// The largest stress in both bodies: computed once.
+fn peak(
+    solver: &Solver,
+    scene: &Scene<'_>,
+    known: &mut [Option<std::result::Result<Peak, Lack>>; 2],
+    stress: Stress,
+) -> Result<std::result::Result<Peak, Lack>> {
+    let place = &mut known[usize::from(stress == Stress::Shear)];
+    match place {
+        Some(known) => Ok(*known),
+        None => Ok(*place.insert(peak_of(solver, scene, stress)?)),
+    }
+}
+
+fn peak_of(solver: &Solver, scene: &Scene<'_>, stress: Stress) -> Result<std::result::Result<Peak, Lack>> {
+    let (body, loads) = of_scene(scene, 1, [None; 3])?;
+    let tractions = solver.friction().map(|solution| &solution.traction[..]);
+    let threads = &solver.problem.threads;
+    let grid = (*solver.grid(), body.periodic);
+    let surface = Surface::of(grid, &solver.state().p, tractions, loads.patches, threads)?;
+    let Some(surface) = surface else { return Ok(Err(Lack::NoContact)) };
+    let bodies = &scene.bodies;
+    let elastic = |b: usize| bodies.shear_modulus[b].is_finite();
+    let alike = surface.is_the_same_for_both() && bodies.poisson_ratio[0] == bodies.poisson_ratio[1];
+    let of = |surface: &Surface<'_>, b: usize| surface.peak(stress, bodies.poisson_ratio[b], threads);
+    let mut largest = if elastic(0) { of(&surface, 0)? } else { Peak::default() };
+    if elastic(1) && !(alike && elastic(0)) {
+        largest = largest.or(of(&surface.of_body_2(), 1)?);
+    }
+    Ok(Ok(largest))
+}

@@ -1,0 +1,122 @@
+//! What is solved beside the normal problem: friction, and the problems of effects that are coupled with it.
+
+use super::beside::Beside;
+use super::tangential::{Tangent, Turn};
+use super::tangential_turn::TangentialTurn;
+use super::turns::Turns;
+use super::{Options, Solver};
+use crate::effects::{self, Continues};
+use crate::error::{invalid, Error, Result};
+use crate::friction::Report;
+use crate::progress::{Monitor, Outcome};
+use crate::scene::{Friction, Scene};
+
+impl Solver {
+    /// Refuses a step that continues from what is not there.
+    pub(super) fn check_continues(&self, scene: &Scene<'_>) -> Result<()> {
+        for (k, name, Continues { from, .. }) in effects::continuing(scene) {
+            let has_step = match name {
+                Friction::NAME => self.friction().is_some(),
+                _ => self.has_result && self.beside.histories[k].has_step(),
+            };
+            if !has_step {
+                return invalid(format!("{name} continues, but this solver holds no {from} yet"));
+            }
+        }
+        Ok(())
+    }
+
+    /// What a scene has beside the normal problem, which ended with `stop`. Returns a report of friction, too.
+    pub(super) fn solve_beside(
+        &mut self,
+        scene: &Scene<'_>,
+        options: &Options,
+        stop: Outcome,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<(Outcome, Option<Report>)> {
+        let mut tangent = match scene.friction {
+            Some(_) => Some(self.take_tangent(scene, options)?),
+            None => None,
+        };
+        let mut beside = std::mem::take(&mut self.beside);
+        let outcome = match effects::beside(scene).next() {
+            Some(_) => self.solve_step(tangent.as_deref_mut(), &mut beside, (scene, options), stop, monitor),
+            None => Ok((stop, None)),
+        };
+        if outcome.is_ok() {
+            effects::keep(scene, &mut beside.histories);
+        }
+        self.beside = beside;
+        match (tangent, &outcome) {
+            (Some(tangent), _) => self.friction = Some(tangent),
+            (None, Ok(_)) => self.friction.iter_mut().for_each(|before| before.forget()),
+            (None, Err(_)) => {}
+        }
+        outcome
+    }
+
+    /// All of it, and what was asked for beside. Without a result the last step stays. What was cancelled stays so.
+    fn solve_step(
+        &mut self,
+        tangent: Option<&mut Tangent>,
+        beside: &mut Beside,
+        (scene, options): (&Scene<'_>, &Options),
+        stop: Outcome,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<(Outcome, Option<Report>)> {
+        let threads = self.problem.threads.clone();
+        check_derivatives(scene, tangent.as_deref())?;
+        let last = tangent.as_deref().map_or(Ok(None), Tangent::last)?;
+        // Of unlike bodies derivatives follow when the turns are over.
+        let follow = tangent.as_deref().is_some_and(|tangent| !tangent.is_of_like_bodies());
+        let during =
+            scene.friction.map(|friction| Friction { sensitivities: friction.sensitivities && !follow, ..friction });
+        let friction = tangent.zip(during.as_ref()).map(|(tangent, friction)| {
+            TangentialTurn::new(tangent, Turn { scene, friction, options, threads: &threads })
+        });
+        let others = effects::coupled(scene, &mut beside.histories)?;
+        let mut turns = Turns { friction, others, distances: &mut beside.distances };
+        let solved = self.take_turns(&mut turns, (scene, options), stop, monitor).and_then(|stop| {
+            self.add_derivatives(&mut turns, scene, monitor)?;
+            Ok(stop)
+        });
+        match solved {
+            Ok(stop) => {
+                turns.all().for_each(|coupled| coupled.step_done(&self.state));
+                let stop = if monitor.is_cancelled() { Outcome::Cancelled } else { stop };
+                Ok((stop, turns.friction.and_then(|friction| friction.found)))
+            }
+            Err(error) => {
+                if let Some(friction) = turns.friction {
+                    friction.tangent.go_back(last);
+                }
+                Err(error)
+            }
+        }
+    }
+
+    /// The derivatives of the tangential forces of unlike bodies, if they are asked for.
+    fn add_derivatives(&mut self, turns: &mut Turns<'_>, scene: &Scene<'_>, monitor: &mut Monitor<'_>) -> Result<()> {
+        let Some(TangentialTurn { tangent, turn, found: Some(found) }) = &mut turns.friction else { return Ok(()) };
+        let wanted = scene.friction.as_ref().filter(|friction| friction.sensitivities && !tangent.is_of_like_bodies());
+        match wanted {
+            Some(friction) if !monitor.is_cancelled() => {
+                self.add_sensitivities(tangent, &Turn { friction, ..*turn }, found, monitor)
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Refuses derivatives of unlike bodies' forces where something else displaces, too: they leave that out.
+fn check_derivatives(scene: &Scene<'_>, tangent: Option<&Tangent>) -> Result<()> {
+    let wanted = scene.friction.is_some_and(|friction| friction.sensitivities)
+        && tangent.is_some_and(|tangent| !tangent.is_of_like_bodies());
+    let is_other = |name: &&str| wanted && *name != Friction::NAME;
+    match effects::beside(scene).find(is_other) {
+        Some(name) => Err(Error::Unsupported(format!(
+            "friction->sensitivities are asked for of unlike bodies, and {name} is given; this version does not solve them together"
+        ))),
+        None => Ok(()),
+    }
+}

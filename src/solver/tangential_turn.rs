@@ -1,0 +1,63 @@
+//! The tangential problem of a step, as one that is [coupled](Coupled) with the normal problem.
+
+use super::tangential::{Tangent, Turn};
+use super::{Options, Outcome};
+use crate::contact::State;
+use crate::effects::Coupled;
+use crate::error::Result;
+use crate::friction::{Report, Start};
+use crate::progress::Monitor;
+
+/// What solves it, and what was found so far.
+pub struct TangentialTurn<'a> {
+    /// What solves it.
+    pub tangent: &'a mut Tangent,
+    /// The step.
+    pub turn: Turn<'a>,
+    /// Of the last solve, with the products and the seconds of all.
+    pub found: Option<Report>,
+}
+
+impl<'a> TangentialTurn<'a> {
+    /// Of which nothing is solved yet.
+    pub fn new(tangent: &'a mut Tangent, turn: Turn<'a>) -> TangentialTurn<'a> {
+        TangentialTurn { tangent, turn, found: None }
+    }
+
+    /// Iterations that the options leave.
+    fn left(&self) -> usize {
+        let done = self.found.as_ref().map_or(0, |found| found.products as usize);
+        self.turn.options.max_cycles.saturating_sub(done)
+    }
+}
+
+impl Coupled for TangentialTurn<'_> {
+    fn solve(&mut self, stop: Outcome, state: &State, monitor: &mut Monitor<'_>) -> Result<Outcome> {
+        let rest = Options { max_cycles: self.left(), ..*self.turn.options };
+        let turn = Turn { options: &rest, ..self.turn };
+        let start = if self.found.is_some() { Start::Again } else { turn.start() };
+        let (outcome, mut found) = self.tangent.solve_after(stop, &turn, &state.p, start, monitor)?;
+        if let Some(before) = &self.found {
+            (found.products, found.seconds) = (found.products + before.products, found.seconds + before.seconds);
+        }
+        self.found = Some(found);
+        Ok(outcome)
+    }
+
+    // Tractions of like bodies displace nothing along the normal.
+    fn displaces(&self) -> bool {
+        !self.tangent.is_of_like_bodies()
+    }
+
+    fn displace(&mut self, distance: &mut [f64]) {
+        self.tangent.displace(distance);
+    }
+
+    fn has_work_left(&self) -> bool {
+        self.left() > 0
+    }
+
+    fn step_done(&mut self, state: &State) {
+        self.tangent.keep_pressures(&state.p);
+    }
+}

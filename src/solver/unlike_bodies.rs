@@ -1,0 +1,137 @@
+//! What couples the normal and the tangential problem of unlike bodies, on one grid: see [`Coupling`].
+
+use crate::effects::{Friction, Motion, Previous};
+use crate::error::Result;
+use crate::friction::{Coupling, Source, Vector};
+use crate::grid::Grid;
+use crate::memory::zeros;
+use crate::threads::Threads;
+
+/// What memory is for.
+const FIELDS: &str = "the coupling of unlike bodies";
+
+/// Both products, and what they displace.
+pub struct UnlikeBodies {
+    source: Source,
+    here: Coupling,
+    /// Of rolling: at the places before the step, which are so many elements away.
+    there: Option<((f64, f64), Coupling)>,
+    sideways: Vec<Vector>,
+    along_normal: Vec<f64>,
+    /// Pressures of the last step.
+    last_pressure: Vec<f64>,
+}
+
+/// Which pressures there were before a step.
+enum Before {
+    /// None: from rest.
+    None,
+    /// Those of now: in steady rolling, and where tractions are given.
+    Same,
+    /// Those of the last result.
+    Last,
+}
+
+impl Before {
+    fn of(friction: &Friction<'_>) -> Before {
+        match (friction.motion, friction.previous) {
+            (Motion::SteadyRolling, _) | (_, Previous::Given(_)) => Before::Same,
+            (_, Previous::None) => Before::None,
+            (_, Previous::Kept) => Before::Last,
+        }
+    }
+}
+
+impl UnlikeBodies {
+    /// On a grid.
+    pub fn new(grid: &Grid, source: Source, threads: &Threads) -> Result<UnlikeBodies> {
+        let n = grid.len();
+        Ok(UnlikeBodies {
+            here: Coupling::new(grid, &source, (0.0, 0.0), threads)?,
+            source,
+            there: None,
+            sideways: zeros(n, FIELDS)?,
+            along_normal: zeros(n, FIELDS)?,
+            last_pressure: zeros(n, FIELDS)?,
+        })
+    }
+
+    /// The last pressures are those of another one.
+    pub fn take_last_of(&mut self, other: &mut UnlikeBodies) {
+        std::mem::swap(&mut self.last_pressure, &mut other.last_pressure);
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let there = self.there.as_ref().map_or(0, |(_, there)| there.bytes());
+        let fields = size_of::<Vector>() + 2 * size_of::<f64>();
+        self.source.bytes() + self.here.bytes() + there + self.along_normal.len() * fields
+    }
+
+    /// What the last pressures displace sideways.
+    pub fn sideways(&self) -> &[Vector] {
+        &self.sideways
+    }
+
+    /// The sideways displacements by pressures p, less those before the step: from rest none; where tractions are given, the pressures
+    /// before were the same.
+    pub fn displace_sideways(
+        &mut self,
+        grid: &Grid,
+        friction: &Friction<'_>,
+        p: &[f64],
+        threads: &Threads,
+    ) -> Result<()> {
+        self.sideways.fill([0.0; 2]);
+        self.here.add_sideways(p, 1.0, &mut self.sideways);
+        let before = match Before::of(friction) {
+            Before::None => return Ok(()),
+            Before::Same => p,
+            Before::Last => &self.last_pressure,
+        };
+        if friction.motion == Motion::Shift {
+            self.here.add_sideways(before, -1.0, &mut self.sideways);
+            return Ok(());
+        }
+        let by = friction.elements_rolled(grid);
+        if !self.there.as_ref().is_some_and(|(known, _)| *known == by) {
+            self.there = Some((by, Coupling::new(grid, &self.source, by, threads)?));
+        }
+        if let Some((_, there)) = &mut self.there {
+            there.add_sideways(before, -1.0, &mut self.sideways);
+        }
+        Ok(())
+    }
+
+    /// Adds by how much the last [sideways displacements](UnlikeBodies::displace_sideways) change where the pressures change by dp.
+    pub fn add_change(&mut self, friction: &Friction<'_>, dp: &[f64], to: &mut [Vector]) {
+        match (Before::of(friction), friction.motion) {
+            // Both changes are the same.
+            (Before::Same, Motion::Shift) => {}
+            (Before::Same, _) => {
+                self.here.add_sideways(dp, 1.0, to);
+                if let Some((_, there)) = &mut self.there {
+                    there.add_sideways(dp, -1.0, to);
+                }
+            }
+            (Before::None | Before::Last, _) => self.here.add_sideways(dp, 1.0, to),
+        }
+    }
+
+    /// The displacements along the normal by tractions.
+    pub fn along_normal(&mut self, traction: &[Vector], to: &mut [f64]) {
+        self.here.along_normal(traction, to);
+    }
+
+    /// Adds what tractions displace along the normal to an undeformed distance.
+    pub fn displace(&mut self, traction: &[Vector], distance: &mut [f64]) {
+        let UnlikeBodies { here, along_normal, .. } = self;
+        here.along_normal(traction, along_normal);
+        distance.iter_mut().zip(along_normal).for_each(|(distance, displaced)| *distance += *displaced);
+    }
+
+    /// The step is done: the next one may continue from its pressures.
+    pub fn keep_pressures(&mut self, p: &[f64]) {
+        self.last_pressure.copy_from_slice(p);
+    }
+}

@@ -1,0 +1,12 @@
+//! Adhesion: every number is compared with a closed form, a printed result, or a certificate of the test's own product.
+
+mod certificate;
+mod hard_cases;
+mod loop_of_loading;
+mod maugis;
+mod pairs;
+mod pulls;
+mod random;
+mod sphere;
+mod support;
+mod westergaard;

@@ -1,0 +1,89 @@
+//! Spheres in the units of Johnson, Kendall and Roberts, and certificates by products that the library knows nothing of.
+//!
+//! R = 1, w = 1/pi, E* = 3/4: forces in pi w R, radii in (pi w R^2/K)^(1/3), approaches in (pi^2 w^2 R/K^2)^(1/3), with K = 4/3 E* = 1.
+
+use std::f64::consts::PI;
+
+use contact_normal::adhesion::{Law, Report, Start};
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Adhesion, Bodies, Load, Scene, Work};
+use contact_normal::solver::{self, Options, Outcome, Solver};
+
+/// E* of the sphere.
+pub const MODULUS: f64 = 0.75;
+
+/// Two bodies of an E*.
+pub fn bodies(modulus: f64) -> Bodies {
+    // 1/E* = (1 - nu)/(2 G) of the one that is not rigid.
+    Bodies { shear_modulus: [0.5 * modulus, f64::INFINITY], poisson_ratio: [0.0; 2] }
+}
+
+/// Adhesion of one work.
+pub fn adhesion(law: Law, work: f64, range: f64) -> Adhesion<'static> {
+    Adhesion { law, work: Work::Uniform(work), range, start: Start::Auto, stiffness: false }
+}
+
+/// A sphere on a square grid.
+pub struct Sphere {
+    pub grid: Grid,
+    pub h: Vec<f64>,
+    pub adhesion: Adhesion<'static>,
+}
+
+impl Sphere {
+    /// Of n x n elements within a half-width.
+    pub fn new(n: usize, half_width: f64, law: Law, range: f64) -> Sphere {
+        let d = 2.0 * half_width / n as f64;
+        let grid = Grid::new(n, n, d, d).expect("a grid");
+        let at = |i: usize| (i as f64 + 0.5) * d - half_width;
+        let h = (0..n * n).map(|i| 0.5 * (at(i % n).powi(2) + at(i / n).powi(2))).collect();
+        Sphere { grid, h, adhesion: adhesion(law, 1.0 / PI, range) }
+    }
+
+    /// With the exponential law, by Tabor's parameter (R w^2/E*^2)^(1/3)/rho.
+    pub fn by_tabor(tabor: f64, n: usize, half_width: f64) -> Sphere {
+        Sphere::new(n, half_width, Law::Exponential, range_of(tabor))
+    }
+
+    pub fn scene(&self, load: Load) -> Scene<'_> {
+        Scene { adhesion: Some(self.adhesion), ..Scene::new(self.grid, &self.h, bodies(MODULUS), load) }
+    }
+
+    /// Solved from nothing.
+    pub fn solve(&self, load: Load) -> (Solver, Found) {
+        let (solver, outcome, report) = solver::solve(&self.scene(load), &Options::default()).expect("a solve");
+        assert_eq!(outcome, Outcome::Converged, "{load:?}");
+        let found = Found::of(&report);
+        (solver, found)
+    }
+}
+
+/// rho of Tabor's parameter.
+pub fn range_of(tabor: f64) -> f64 {
+    (1.0 / (PI * MODULUS).powi(2)).cbrt() / tabor
+}
+
+/// What a solve found.
+#[derive(Clone, Copy, Debug)]
+pub struct Found {
+    pub force: f64,
+    pub approach: f64,
+    /// That of a circle of the contact area.
+    pub radius: f64,
+    pub work_units: f64,
+    pub products: u64,
+    pub adhesion: Report,
+}
+
+impl Found {
+    pub fn of(report: &solver::Report) -> Found {
+        Found {
+            force: report.measures.force,
+            approach: report.measures.approach,
+            radius: (report.measures.contact_area / PI).sqrt(),
+            work_units: report.count.work_units,
+            products: report.count.matrix_products,
+            adhesion: report.adhesion.expect("a scene with adhesion"),
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! The bill of effects: its changes against solves of the whole grid with and without each effect, its verdicts, and what is left out by it.
+
+use contact_normal::error::Error;
+use contact_normal::grid::Grid;
+use contact_normal::scene::{
+    Bodies, Coating, Coefficient, Friction, Layer, Load, Motion, Patches, Period, Prescribed, PressureLimit, Scene,
+};
+use contact_normal::solver::{
+    effects_bill, quantities, BillOptions, BillRow, Neglected, Omission, Options, Outcome, Quantity, Verdict,
+};
+
+use crate::random::Random;
+
+const M: usize = 64;
+const WANTED: [Quantity; 3] = [Quantity::Force, Quantity::MaxPressure, Quantity::ContactArea];
+
+fn grid() -> Grid {
+    Grid::new(M, M, 0.05, 0.05).expect("a grid")
+}
+
+fn ball() -> Vec<f64> {
+    let at = |k: usize| (k as f64 - 0.5 * (M as f64 - 1.0)) * 0.05;
+    (0..M * M).map(|i| (at(i % M).powi(2) + at(i / M).powi(2)) / 100.0).collect()
+}
+
+fn plain(h: &[f64]) -> Scene<'_> {
+    Scene::new(grid(), h, Bodies { shear_modulus: [8e4, 3e4], poisson_ratio: [0.28, 0.35] }, Load::Approach(0.02))
+}
+
+fn bill(scene: &Scene<'_>, target: f64, wanted: &[Quantity]) -> Vec<BillRow> {
+    // More than enough seconds: the grids do not depend on the machine.
+    let asked = BillOptions { max_seconds: 1e3, ..BillOptions::new(target) };
+    let (stop, rows) = effects_bill(scene, &Options::default(), &asked, wanted, None).expect("a bill");
+    assert_eq!(stop, Outcome::Converged);
+    rows
+}
+
+/// Values on the whole grid.
+fn solved(scene: &Scene<'_>, wanted: &[Quantity]) -> Vec<f64> {
+    let options = Options { tolerance: 1e-9, ..Options::default() };
+    let (_, rows) = quantities(scene, &options, wanted, 0, None).expect("a solvable scene");
+    rows.iter().map(|row| row.value.unwrap_or(0.0)).collect()
+}
+
+/// All effects that go together, of sizes that are drawn.
+fn with_effects<'a>(h: &'a [f64], patch: &'a [i32], random: &mut Random) -> Scene<'a> {
+    let mut scene = plain(h);
+    let size = 10f64.powf(-3.0 + 4.0 * random.uniform());
+    match (random.uniform() * 4.0) as usize {
+        0 => scene.layer = Some(Layer::Uniform(1e-7 * size)),
+        1 => scene.coating = Some(Coating::of_body_1(0.05 * size.min(1.0), 2e5, 0.25)),
+        2 => scene.pressure_limit = Some(PressureLimit::Uniform(300.0 + 3000.0 * random.uniform())),
+        _ => {
+            scene.patches = Some(Patches { count: 2, patch, factors: &[1.0, 0.9, 0.9, 1.0] });
+        }
+    }
+    if scene.patches.is_none() && scene.coating.is_none() {
+        let prescribed = [Prescribed::Creepage(-1e-3), Prescribed::Creepage(0.0)];
+        let motion = if random.uniform() < 0.5 { Motion::Shift } else { Motion::SteadyRolling };
+        let compliance = Coefficient::Uniform(1e-7 * size);
+        scene.friction = Some(Friction { prescribed, motion, spin: 1e-4 * size, compliance, ..Friction::new(0.3) });
+    }
+    scene
+}
+
+#[test]
+fn changes_and_verdicts_are_those_of_the_whole_grid() {
+    let h = ball();
+    let patch: Vec<i32> = (0..M * M).map(|i| i32::from(i % M >= M / 2)).collect();
+    let mut decided = 0;
+    for seed in 0..12 {
+        let scene = with_effects(&h, &patch, &mut Random::new(seed));
+        let mut wanted = WANTED.to_vec();
+        if scene.friction.is_some() {
+            wanted.push(Quantity::TangentialForce);
+        }
+        let before = solved(&scene, &wanted);
+        for row in bill(&scene, 1e-2, &wanted) {
+            let left = [Some(row.omission), row.other].into_iter().flatten();
+            let without = left.fold(scene.clone(), |scene, one| one.leave_out(&scene));
+            let q = wanted.iter().position(|quantity| *quantity == row.quantity).expect("asked for");
+            let change = solved(&without, &wanted)[q] - before[q];
+            let (value, found) = (row.value.expect("a value"), row.change.expect("a change"));
+            // The last of the small grids is the whole one here: what differs is the tolerance, a hundredth of the target at most.
+            let allowed = 2e-4 * before[q].abs();
+            assert!((found - change).abs() <= allowed, "{seed} {row:?}: {change:e}");
+            assert!((value - before[q]).abs() <= allowed, "{seed} {row:?}");
+            match row.verdict {
+                Verdict::Negligible => assert!(change.abs() <= 1e-2 * value.abs(), "{seed} {row:?}"),
+                Verdict::Needed => assert!(change.abs() > 1e-2 * value.abs(), "{seed} {row:?}"),
+                Verdict::NotDecided => continue,
+            }
+            decided += 1;
+        }
+    }
+    assert!(decided > 60, "{decided}");
+}
+
+/// In the short time that it takes by default, on a grid of which the small ones are a small part.
+#[test]
+fn small_grids_tell_of_the_whole_one() {
+    let m = 256;
+    let grid = Grid::new(m, m, 0.0125, 0.0125).expect("a grid");
+    let at = |k: usize| (k as f64 - 0.5 * (m as f64 - 1.0)) * 0.0125;
+    let h: Vec<f64> = (0..m * m).map(|i| (at(i % m).powi(2) + at(i / m).powi(2)) / 100.0).collect();
+    let scene = Scene { layer: Some(Layer::Uniform(2e-7)), grid, ..plain(&h) };
+    let (stop, rows) =
+        effects_bill(&scene, &Options::default(), &BillOptions::new(1e-3), &WANTED, None).expect("a bill");
+    assert_eq!((stop, rows.len()), (Outcome::Converged, 3));
+    let (with, without) = (solved(&scene, &WANTED), solved(&Omission::Layer.leave_out(&scene), &WANTED));
+    for (q, row) in rows.iter().enumerate() {
+        let (change, error) = (row.change.expect("a change"), row.error.expect("an error"));
+        let truth = without[q] - with[q];
+        // The residual of the whole grid's solves is 1e-9.
+        assert!((change - truth).abs() <= 1.5 * error + 1e-6 * with[q].abs(), "{row:?}: {truth:e}");
+        assert!(row.seconds[0] > 0.0 && row.bytes[0] > 1e6, "{row:?}");
+    }
+}
+
+#[test]
+fn like_bodies_in_the_place_of_unlike_ones_have_their_compliances() {
+    let h = ball();
+    let scene = Scene { friction: Some(Friction::new(0.3)), ..plain(&h) };
+    let left = Omission::Coupling.leave_out(&scene);
+    let of = |bodies: &Bodies, f: fn(f64) -> f64| -> f64 {
+        (0..2).map(|b| f(bodies.poisson_ratio[b]) / bodies.shear_modulus[b]).sum()
+    };
+    for f in [|nu: f64| 1.0 - nu, |_| 1.0, |nu: f64| nu] {
+        let (before, after) = (of(&scene.bodies, f), of(&left.bodies, f));
+        assert!((after / before - 1.0).abs() < 1e-14, "{before:e} {after:e}");
+    }
+    let couples = |nu: f64| 1.0 - 2.0 * nu;
+    let [a, b] = [0, 1].map(|b| couples(left.bodies.poisson_ratio[b]) / left.bodies.shear_modulus[b]);
+    assert_eq!(a, b);
+}
+
+#[test]
+fn a_thin_coating_is_a_layer() {
+    let h = ball();
+    // A hundredth of an element thick, and as soft as that shows.
+    let scene = Scene { coating: Some(Coating::of_body_1(5e-4, 40.0, 0.3)), ..plain(&h) };
+    let rows = bill(&scene, 1e-2, &WANTED);
+    let verdicts = |omission: Omission| -> Vec<Verdict> {
+        rows.iter().filter(|row| row.omission == omission).map(|row| row.verdict).collect()
+    };
+    assert!(verdicts(Omission::Coating).contains(&Verdict::Needed), "{rows:#?}");
+    assert_eq!(verdicts(Omission::CoatingAsLayer), vec![Verdict::Negligible; 3], "{rows:#?}");
+    // One of both takes the place of the coating: they are no pair.
+    assert!(rows.iter().all(|row| row.other.is_none()));
+}
+
+#[test]
+fn a_plain_scene_has_no_bill() {
+    let h = ball();
+    assert!(bill(&plain(&h), 1e-2, &WANTED).is_empty());
+    let neglected = Neglected::of(&plain(&h), &Options::default(), 1e-2).expect("nothing");
+    assert_eq!(neglected, Neglected::default());
+}
+
+#[test]
+fn what_has_no_bill_is_refused_by_name() {
+    let h = ball();
+    let scene = plain(&h);
+    for (target, seconds, name) in [(0.0, 0.0, "target"), (1.0, 0.0, "target"), (0.1, f64::NAN, "max_seconds")] {
+        let asked = BillOptions { max_seconds: seconds, ..BillOptions::new(target) };
+        let refused = effects_bill(&scene, &Options::default(), &asked, &WANTED, None);
+        let message = refused.expect_err("refused").to_string();
+        assert!(message.contains(name), "{message}");
+    }
+    let table = contact_normal::influence::Table::new(M, M, &vec![1.0; 4 * M * M], &grid()).expect("a table");
+    let own = Scene { influence: Some(table), ..plain(&h) };
+    let refused = effects_bill(&own, &Options::default(), &BillOptions::new(0.1), &WANTED, None);
+    assert!(matches!(refused, Err(Error::Unsupported(message)) if message.contains("influence")));
+}
+
+/// What is left out changes no quantity by more than the target, on the whole grid; more than nothing is left out of half of the scenes.
+#[test]
+fn what_is_neglected_changes_less_than_the_target() {
+    let h = ball();
+    let patch: Vec<i32> = (0..M * M).map(|i| i32::from(i % M >= M / 2)).collect();
+    let target = 1e-2;
+    let mut left_out = 0;
+    for seed in 100..124 {
+        let scene = with_effects(&h, &patch, &mut Random::new(seed));
+        let neglected = Neglected::of(&scene, &Options::default(), target).expect("a scene");
+        assert!(neglected.error <= target, "{seed} {neglected:?}");
+        assert!(!neglected.omissions.contains(&Omission::Friction));
+        left_out += usize::from(!neglected.omissions.is_empty());
+        let (with, without) = (solved(&scene, &WANTED), solved(&neglected.leave_out(&scene), &WANTED));
+        for (a, b) in with.iter().zip(&without) {
+            assert!((a - b).abs() <= target * a.abs(), "{seed} {neglected:?}: {a} {b}");
+        }
+        if neglected.omissions.is_empty() {
+            assert_eq!(with, without);
+        }
+    }
+    assert!(left_out >= 6, "{left_out}");
+}
+
+#[test]
+fn a_period_that_does_not_matter_is_negligible() {
+    // Contact on a hundredth of the period in each direction.
+    let h: Vec<f64> = ball().iter().map(|h| 400.0 * h).collect();
+    let scene = Scene { period: Some(Period { x: false, y: true }), ..plain(&h) };
+    let verdicts =
+        |scene: &Scene<'_>| -> Vec<Verdict> { bill(scene, 0.2, &WANTED).iter().map(|row| row.verdict).collect() };
+    assert!(!verdicts(&scene).contains(&Verdict::Needed));
+    let near = ball();
+    let scene = Scene { period: Some(Period { x: true, y: true }), load: Load::Approach(0.012), ..plain(&near) };
+    let (stop, rows) =
+        effects_bill(&scene, &Options::default(), &BillOptions::new(1e-2), &[Quantity::Force], None).expect("a bill");
+    assert_eq!((stop, rows[0].verdict), (Outcome::Converged, Verdict::Needed), "{rows:?}");
+}

@@ -1,0 +1,55 @@
+//! Errors from values on several grids, on sequences whose limit is known.
+
+use super::Sequence;
+
+fn of(doublings: &[i32], value: impl Fn(f64) -> f64) -> Sequence {
+    let mut sequence = Sequence::default();
+    for &k in doublings {
+        sequence.add(k, value(0.5_f64.powi(k)), 0.0);
+    }
+    sequence
+}
+
+#[test]
+fn errors_of_first_and_second_order_are_covered_and_carried_on() {
+    for doublings in [&[0, 1, 2][..], &[-2, -1, 0], &[0, 1, 4], &[0, 2, 3], &[0, 1, 2, 3]] {
+        for (order, most) in [(1, 1.01), (2, 2.01)] {
+            let value = |h: f64| 3.0 + 0.7 * h.powi(order);
+            let last = *doublings.last().expect("a grid");
+            let falling = of(doublings, value).falling().expect("an error");
+            for more in 0..3 {
+                let truth = 0.7 * 0.5_f64.powi(order * (last + more));
+                let estimated = falling.after(more);
+                assert!(
+                    (0.99 * truth..=most * truth).contains(&estimated),
+                    "{doublings:?} {order} {more}: {estimated} of {truth}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn two_grids_count_as_first_order() {
+    let falling = of(&[0, 1], |h| 1.0 + h).falling().expect("an error");
+    assert_eq!((falling.by_two, falling.by_four), (0.5, 0.0));
+    assert!(of(&[0], |h| h).falling().is_none());
+}
+
+#[test]
+fn what_grows_without_an_end_has_no_error() {
+    // The tip of a cone; the edge of a punch.
+    assert!(of(&[0, 1, 2], |h| -h.ln()).falling().is_none());
+    assert!(of(&[0, 1, 2, 3], |h| h.powf(-0.5)).falling().is_none());
+}
+
+#[test]
+fn what_jumps_is_covered_by_the_change_before() {
+    let mut sequence = Sequence::default();
+    for (k, value) in [1.3, 1.1, 1.1].into_iter().enumerate() {
+        sequence.add(k as i32, value, 1e-6);
+    }
+    let falling = sequence.falling().expect("an error");
+    assert!(falling.now() >= 0.03, "{falling:?}");
+    assert_eq!(falling.hidden, 1e-6);
+}
