@@ -74,7 +74,7 @@ pub struct Displaced {
 
 enum Product {
     Toeplitz(Box<Toeplitz<f64>>, Memory<f64>),
-    ByRow(RowProduct),
+    ByRow(Box<RowProduct>),
 }
 
 impl Displaced {
@@ -110,7 +110,7 @@ pub fn displaced<'a>(
     if !kept.as_ref().is_some_and(|kept| kept.by == by && kept.grid == grid && kept.first == first) {
         *kept = None;
         let product = match rows {
-            Some(rows) => Product::ByRow(RowProduct::displaced(tangential, rows, &grid, by.0, threads)?),
+            Some(rows) => Product::ByRow(Box::new(RowProduct::displaced(tangential, rows, &grid, by.0, threads)?)),
             None => {
                 let operator = Box::new(Toeplitz::displaced(tangential, &grid, by, threads)?);
                 let workspace = operator.workspace()?;

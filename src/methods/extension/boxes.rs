@@ -87,7 +87,7 @@ impl<T: Real> pulp::NullaryFnOnce for Extend<'_, T> {
             #[inline(always)]
             |_, _, elements, sums| {
                 for ((value, near), sum) in values[elements.clone()].iter_mut().zip(&near[elements]).zip(sums) {
-                    *value = *value + sum.0 * share(*near, absent);
+                    *value += sum.0 * share(*near, absent);
                 }
             },
         );
@@ -152,7 +152,7 @@ impl<T: Real> pulp::NullaryFnOnce for Collect<'_, T> {
             },
             #[inline(always)]
             |_, _, elements, sums| {
-                values[elements].iter_mut().zip(sums).for_each(|(value, sum)| *value = *value + sum.0);
+                values[elements].iter_mut().zip(sums).for_each(|(value, sum)| *value += sum.0);
             },
         );
     }
