@@ -654,9 +654,15 @@
 #define CONTACT_NORMAL_OMIT_FRICTION_COMPLIANCE 9
 
 /*
- `omitted`: the coatings, in whose place there is a thin layer with the compression t/M of each, M being the oedometric modulus.
+ `omitted`: the coatings, in whose place there is a thin layer: their limit for waves that are long beside their thickness. Of coatings
+ that are softer than the body below.
  */
 #define CONTACT_NORMAL_OMIT_COATING_AS_LAYER 10
+
+/*
+ `omitted`: adhesion; nothing attracts.
+ */
+#define CONTACT_NORMAL_OMIT_ADHESION 11
 
 /*
  `verdict`: the change is too near to the target, or its error is not known; more time decides.
@@ -2444,7 +2450,7 @@ contact_normal_status contact_normal_solver_solve_batch(struct contact_normal_so
 /*
  Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->accuracy.error_force` is at most
  `accuracy->target` times the force (or the approach, when the force is prescribed), and those of the other quantities
- at most their targets, with 32 or more elements across the contact in both directions. With `accuracy->surface` the
+ at most their targets, with enough elements across the contact in both directions: 8 for forces, 12 for the largest pressure, 32 for areas, 16 for the others. With `accuracy->surface` the
  scene's undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, a tenth of the
  targets, and a hundredth of those of single pressures and stresses. With a target of another quantity than force, largest pressure and area up to two grids with fewer elements
  are solved first. Arrays of one value per element (compliances, limits, coefficients of friction, weights, tractions before) have their
