@@ -79,6 +79,9 @@ def main(picture=None):
             verdict = "needed" if omitted[0] in bill.needed else "negligible" if omitted[0] in bill.negligible else "not decided"
             print(f"{name:16}{omitted[0].replace('_', ' '):20}{quantity:>18}{round(most.relative, 3) + 0.0:10.1%}  {verdict}")
         if picture and name == "wheel on rail":
+            import matplotlib
+
+            matplotlib.use("Agg")
             axes = bill.plot()
             axes.set_title("Wheel on rail: what 1 % calls for", fontsize=10)
             axes.figure.savefig(picture)

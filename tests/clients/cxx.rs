@@ -63,6 +63,8 @@ fn the_cxx_header_has_every_function_and_member_of_the_header() {
         "report",
         "accuracy",
         "price",
+        "quantity_row",
+        "effects_row",
         "progress",
         "hertz",
         "ledger",

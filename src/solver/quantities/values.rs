@@ -43,7 +43,9 @@ impl Quantity {
         }
     }
 
-    /// Why a scene has it on no grid.
+    /// Why a scene has it on no grid. Not inlined: taken out of a loop over quantities, questions to effects that a scene does not name look at
+    /// memory that nobody has written, which is harmless, and which valgrind tells.
+    #[inline(never)]
     fn lack(self, scene: &Scene<'_>) -> Option<Lack> {
         use Quantity::{Creepage, MaxShear, MaxVonMises, SpinMoment, StickArea, TangentialForce, VonMisesDepth};
         match self {
