@@ -21,6 +21,11 @@ impl Solver {
         &self.problem.grid
     }
 
+    /// Whether nothing is estimated from the last result: pressures are at their limit, or something attracts.
+    pub(crate) fn lacks_estimates(&self) -> bool {
+        self.state.has_limited() || self.is_adhesive
+    }
+
     /// Whether there is a result: of the last solve, unless that failed.
     pub fn has_solved(&self) -> bool {
         self.has_result

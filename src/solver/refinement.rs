@@ -21,7 +21,7 @@ use crate::operator::zeros;
 use crate::scene::{scaled, Regridded, Scene};
 use crate::threads::Threads;
 use next_grid::{Next, Past};
-use outlook::{History, Outlook};
+use outlook::{History, Outlook, Values};
 use solved::Solved;
 
 /// Writes the undeformed distance of a grid over the rectangle of the scene; says whether to cancel.
@@ -52,7 +52,7 @@ type OnGrid = std::result::Result<Solved, (Outcome, String, Option<Solved>)>;
 
 /// Solves on the grid of `scene`, then on finer ones with twice (4, 8 times) the elements in both directions, each from
 /// nothing, until the estimated relative errors are at most the targets, with [enough](Quantity::enough_across) elements across the contact in both directions. `surface`
-/// writes the undeformed distance of each grid (that of `scene` is then not read); without one the scene's is [refined](refine).
+/// writes the undeformed distance of each grid (that of `scene` is then not read); without one the scene's is [refined](crate::scene::refine).
 ///
 /// The first grid is solved whatever the limits are. A finer grid that runs out of time or cycles counts only if it is estimated to be
 /// the better one all the same, and none that is cancelled; else the result is that of the grid before.
@@ -77,11 +77,7 @@ pub fn solve_to_accuracy(
         let (entered, is_first) = (began.elapsed().as_secs_f64(), best.is_none());
         let late = |_: &Progress| !is_first && accuracy.is_late(began.elapsed().as_secs_f64());
         let solved = match on_grid(scene, (&options, &wanted), doublings, &mut surface, &mut progress, &late) {
-            Ok(Ok(mut solved)) => {
-                let residual = solved.residual();
-                history.add(doublings, &solved.values, residual, &mut solved.outlook);
-                solved
-            }
+            Ok(Ok(solved)) => in_history(&mut history, doublings, solved),
             // Coarser grids than the scene's only tell of errors.
             Ok(Err((stop, ..))) if doublings < 0 && stop != Outcome::Cancelled => {
                 doublings += 1;
@@ -116,6 +112,14 @@ pub fn solve_to_accuracy(
         before = Some(past);
     };
     Ok(Refinement::of(best, stop, why, began.elapsed().as_secs_f64()))
+}
+
+/// Adds the values of a grid, of which its outlook is told.
+fn in_history(history: &mut History, doublings: i32, mut solved: Solved) -> Solved {
+    let (residual, lack_estimates) = (solved.residual(), solved.lacks_estimates);
+    let values = Values { of: &solved.values, residual, lack_estimates };
+    history.add(doublings, &values, &mut solved.outlook);
+    solved
 }
 
 /// Doublings of the coarsest grid that the history begins with: two halvings, where enough elements are left.
@@ -208,7 +212,8 @@ fn on_grid(
     let (stop, report) = solver.solve_checked((scene, lowest), options, None, Some(&mut watch))?;
     let outlook = Outlook::of(&solver, &report, scene.load);
     let values = if stop == Outcome::Cancelled { vec![] } else { values(&mut solver, scene, &report, wanted)? };
-    let solved = Solved { solver, report, outlook, values };
+    let lacks_estimates = solver.lacks_estimates();
+    let solved = Solved { solver, report, outlook, values, lacks_estimates };
     Ok(match stop {
         Outcome::Converged => Ok(solved),
         Outcome::Cancelled if is_late => Err((Outcome::IterationLimit, on("max_seconds was reached"), Some(solved))),

@@ -201,8 +201,11 @@ fn a_price_list_needs_no_callback_and_obeys_one() {
         false
     };
     let (_, from_callback) = list(Some(&mut write)).expect("a price list");
-    let grids = |list: &[contact_normal::solver::Price]| list.iter().map(|row| row.grid).collect::<Vec<_>>();
-    assert_eq!(grids(&from_array), grids(&from_callback));
+    // Coarser grids have means of the array, which are a little above the surface: an estimate near its target may fall on the other side.
+    for (array, callback) in from_array.iter().zip(&from_callback) {
+        let [array, callback] = [array, callback].map(|row| row.grid.expect("a grid").mx);
+        assert!(array <= 2 * callback && callback <= 2 * array, "{array} {callback}");
+    }
     let mut cancels = |_: &Grid, _: &mut [f64]| true;
     let (stop, rows) = list(Some(&mut cancels)).expect("rows");
     assert_eq!((stop, rows.len(), rows[0].grid), (Outcome::Cancelled, TARGETS.len(), None));

@@ -37,6 +37,8 @@ pub struct OnGrid {
     pub values: Vec<std::result::Result<f64, Lack>>,
     /// Errors from this grid alone.
     pub estimates: Vec<Option<f64>>,
+    /// Whether nothing is estimated from one such grid: a limit is reached, or something attracts.
+    pub lacks_estimates: bool,
     /// The relative residual.
     pub residual: f64,
     /// What it cost.
@@ -70,6 +72,7 @@ impl OnGrid {
             outcome,
             values,
             estimates: wanted.iter().map(|quantity| estimate(&report, *quantity)).collect(),
+            lacks_estimates: solver.lacks_estimates(),
             residual,
             seconds,
             work_units: report.count.work_units + report.friction.map_or(0.0, |found| found.products),
@@ -91,7 +94,7 @@ fn estimate(report: &Report, quantity: Quantity) -> Option<f64> {
 
 /// The values of `wanted` on the grid of the scene and on `coarser` grids with half the elements each, coarsest first, one row for each grid
 /// and quantity. Each grid is solved from nothing. Errors of force, largest pressure and area are the estimates of the report, all others
-/// follow from the grids before ([`Sequence`]): of the coarsest grid alone nothing is known.
+/// follow from the grids before (module `sequence`): of the coarsest grid alone nothing is known.
 ///
 /// # Errors
 /// Those of a solve on any of the grids; `Unsupported`: own coefficients, kept tractions, and a contact area that is fixed.
@@ -137,7 +140,7 @@ fn row(quantity: Quantity, k: usize, found: &OnGrid, doublings: i32, sequence: &
         sequence.add(doublings, value, found.residual * value.abs());
     }
     let falling = |sequence: &Sequence| match quantity.has_estimate() {
-        true => sequence.falling_instead(),
+        true => sequence.falling_instead().filter(|_| found.lacks_estimates),
         false => sequence.falling(),
     };
     let of_sequence = value.and_then(|_| falling(sequence)).map(|falling| falling.now());
@@ -145,7 +148,7 @@ fn row(quantity: Quantity, k: usize, found: &OnGrid, doublings: i32, sequence: &
     let lack = match (found.values[k], error) {
         (Err(lack), _) => Some(lack),
         (Ok(_), Some(_)) => None,
-        (Ok(_), None) if sequence.len() < 2 + usize::from(quantity.has_estimate()) => Some(Lack::OneGrid),
+        (Ok(_), None) if sequence.len() < 2 + usize::from(found.lacks_estimates) => Some(Lack::OneGrid),
         (Ok(_), None) => Some(Lack::Singular),
     };
     QuantityRow { quantity, grid: found.grid, value, error, lack, seconds: found.seconds, work_units: found.work_units }

@@ -2,6 +2,7 @@
 
 use super::deepest::{Peak, Stress, Surface};
 use super::Quantity;
+use crate::contact::Outline;
 use crate::error::{invalid, Error, Result};
 use crate::friction::STICK;
 use crate::scene::{Prescribed, Scene};
@@ -87,7 +88,7 @@ pub fn values(
         values.push(match quantity {
             Quantity::Force => Ok(report.measures.found(scene.load)),
             Quantity::MaxPressure => Ok(report.measures.max_pressure),
-            Quantity::ContactArea => Ok(area(report)),
+            Quantity::ContactArea => Ok(area(solver, report)),
             Quantity::MeanGap => Ok(mean_gap(solver)),
             Quantity::Stiffness => stiffness(solver)?,
             Quantity::MaxVonMises => peak(solver, scene, &mut stresses, Stress::VonMises)?.map(|peak| peak.value),
@@ -99,13 +100,14 @@ pub fn values(
     Ok(values)
 }
 
-/// The corrected area; counted where it is not known.
-fn area(report: &Report) -> f64 {
+/// The corrected area.
+fn area(solver: &Solver, report: &Report) -> f64 {
     let measures = &report.measures;
     if measures.corrected_area >= 0.0 {
         measures.corrected_area
     } else {
-        measures.contact_area
+        let state = solver.state();
+        Outline::of(state).corrected_area(state, measures.contact_count)
     }
 }
 

@@ -71,21 +71,30 @@ impl History {
         self.sequences.iter().map(|(quantity, _)| *quantity).collect()
     }
 
-    /// Adds the values of a grid, in the order of [`wanted`](Self::wanted), and tells the outlook what they say.
-    pub fn add(&mut self, doublings: i32, values: &[Result<f64, Lack>], residual: f64, outlook: &mut Outlook) {
-        // Single peaks have none though the force has one: they are singular, or not resolved.
-        let has_estimates = outlook.falling(Quantity::Force).is_some();
-        for ((quantity, sequence), value) in self.sequences.iter_mut().zip(values) {
+    /// Adds the values of a grid, and tells its outlook what they say.
+    pub fn add(&mut self, doublings: i32, values: &Values<'_>, outlook: &mut Outlook) {
+        for ((quantity, sequence), value) in self.sequences.iter_mut().zip(values.of) {
             let Ok(value) = *value else { continue };
-            sequence.add(doublings, value, residual * value.abs());
+            sequence.add(doublings, value, values.residual * value.abs());
             let falling = match quantity.has_estimate() {
                 false => sequence.falling(),
-                true if has_estimates || outlook.falling(*quantity).is_some() => continue,
+                // Single peaks have none though the force has one: they are singular, or not resolved.
+                true if !values.lack_estimates => continue,
                 true => sequence.falling_instead(),
             };
             outlook.set(*quantity, falling.and_then(|falling| falling.over(value)));
         }
     }
+}
+
+/// What one grid gives, in the order of what is wanted.
+pub struct Values<'a> {
+    /// The values.
+    pub of: &'a [Result<f64, Lack>],
+    /// The relative residual.
+    pub residual: f64,
+    /// Whether nothing is estimated from one such grid.
+    pub lack_estimates: bool,
 }
 
 /// Elements across the contact area, along x and y; as many as need be in a direction in which it repeats itself without an end.

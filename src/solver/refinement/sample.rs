@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::outlook::{across, History, Outlook};
+use super::outlook::{across, History, Outlook, Values};
 use super::solved::Solved;
 use super::{on_grid, SurfaceCallback};
 use crate::error::Result;
@@ -34,6 +34,7 @@ pub(super) struct Sample {
     /// The quantity, where its error does not follow from one grid.
     values: Vec<std::result::Result<f64, Lack>>,
     residual: f64,
+    lacks_estimates: bool,
     outlook: Outlook,
     quantity: Quantity,
     pub(super) bytes: f64,
@@ -93,7 +94,7 @@ impl Sample {
                 Err(_) => return Ok(Taken::Unsolved),
             };
         let residual = solved.residual();
-        let Solved { solver, report, outlook, values } = solved;
+        let Solved { solver, report, outlook, values, lacks_estimates } = solved;
         let seconds = began.elapsed().as_secs_f64();
         let (x, y) = across(solver.state(), solver.influence().repeats(solver.grid()));
         Ok(Taken::Sample(Sample {
@@ -103,6 +104,7 @@ impl Sample {
             falling: outlook.falling(quantity),
             values,
             residual,
+            lacks_estimates,
             outlook,
             quantity,
             bytes: report.bytes as f64,
@@ -114,7 +116,8 @@ impl Sample {
 
     /// With the error that the values of this and coarser grids have.
     pub(super) fn carried_on(mut self, history: &mut History) -> Sample {
-        history.add(self.doublings, &self.values, self.residual, &mut self.outlook);
+        let values = Values { of: &self.values, residual: self.residual, lack_estimates: self.lacks_estimates };
+        history.add(self.doublings, &values, &mut self.outlook);
         self.falling = self.outlook.falling(self.quantity);
         self
     }

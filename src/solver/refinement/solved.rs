@@ -11,6 +11,8 @@ pub(super) struct Solved {
     pub(super) outlook: Outlook,
     /// Of the quantities that were asked for beside.
     pub(super) values: Vec<Result<f64, Lack>>,
+    /// Whether nothing is estimated from one such grid: a limit is reached, or something attracts.
+    pub(super) lacks_estimates: bool,
 }
 
 impl Solved {
