@@ -44,8 +44,8 @@ impl Quantity {
         }
     }
 
-    /// Why a scene has it on no grid. Not inlined: taken out of a loop over quantities, questions to effects that a scene does not name look at
-    /// memory that nobody has written, which is harmless, and which valgrind tells.
+    /// Why a scene has it on no grid. Not inlined, as the functions below: taken out of the loop over quantities, questions to effects that a
+    /// scene does not name look at memory that nobody has written, which is harmless, and which valgrind tells.
     #[inline(never)]
     fn lack(self, scene: &Scene<'_>) -> Option<Lack> {
         use Quantity::{Creepage, MaxShear, MaxVonMises, SpinMoment, StickArea, TangentialForce, VonMisesDepth};
@@ -118,6 +118,7 @@ fn mean_gap(solver: &Solver) -> f64 {
     in_blocks((0..state.h.len()).filter(finite).map(|i| state.deformed_distance(i))) / count.max(1) as f64
 }
 
+#[inline(never)]
 fn stiffness(solver: &mut Solver) -> Result<std::result::Result<f64, Lack>> {
     match solver.stiffness() {
         Ok((Outcome::Converged, stiffness)) if stiffness.value > 0.0 => Ok(Ok(stiffness.value)),
@@ -128,6 +129,7 @@ fn stiffness(solver: &mut Solver) -> Result<std::result::Result<f64, Lack>> {
     }
 }
 
+#[inline(never)]
 fn tangential(
     solver: &Solver,
     scene: &Scene<'_>,
@@ -152,6 +154,7 @@ fn tangential(
 }
 
 /// The largest stress in both bodies: computed once.
+#[inline(never)]
 fn peak(
     solver: &Solver,
     scene: &Scene<'_>,
@@ -165,6 +168,7 @@ fn peak(
     }
 }
 
+#[inline(never)]
 fn peak_of(solver: &Solver, scene: &Scene<'_>, stress: Stress) -> Result<std::result::Result<Peak, Lack>> {
     let (body, loads) = of_scene(scene, 1, [None; 3])?;
     let tractions = solver.friction().map(|solution| &solution.traction[..]);
