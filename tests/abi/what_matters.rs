@@ -23,8 +23,8 @@ fn of_layer() -> Call {
 }
 
 fn quantities(call: &Call, n: i32, wanted: *const i32, coarser: i32) -> (i32, Vec<contact_normal_quantity_row>, i32) {
-    let mut row = contact_normal_quantity_row::default();
-    row.struct_size = size_of::<Longer<contact_normal_quantity_row>>() as i64;
+    let struct_size = size_of::<Longer<contact_normal_quantity_row>>() as i64;
+    let row = contact_normal_quantity_row { struct_size, ..Default::default() };
     let mut rows = vec![Longer { row, unknown: -7 }; 8];
     // What the first row says of what this library does not know must be 0.
     rows[0].unknown = 0;

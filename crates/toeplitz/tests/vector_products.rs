@@ -27,7 +27,7 @@ fn apply<T: Real>(product: &VectorProduct<T>, q: [&[f64]; 2]) -> [Vec<f64>; 2] {
     let mut u = [vec![f64::NAN; mx * my], vec![f64::NAN; mx * my]];
     let loaded = q.map(|q| -> Range<usize> {
         let rows = || q.chunks_exact(mx).enumerate().filter(|(_, row)| row.iter().any(|q| *q != 0.0));
-        rows().next().map_or(0..0, |(first, _)| first..rows().last().map_or(0, |(last, _)| last + 1))
+        rows().next().map_or(0..0, |(first, _)| first..rows().next_back().map_or(0, |(last, _)| last + 1))
     });
     let load = |component: usize, first: usize, rows: &mut [T]| {
         rows.iter_mut().zip(&q[component][first * mx..]).for_each(|(to, q)| *to = T::of(*q));

@@ -18,7 +18,7 @@ pub(super) type Callbacks<'c, 's, 'p> = (&'c mut Option<SurfaceCallback<'s>>, &'
 
 /// What became of a sample.
 pub(super) enum Taken {
-    Sample(Sample),
+    Sample(Box<Sample>),
     /// By a callback.
     Cancelled,
     Unsolved,
@@ -97,7 +97,7 @@ impl Sample {
         let Solved { solver, report, outlook, values, lacks_estimates } = solved;
         let seconds = began.elapsed().as_secs_f64();
         let (x, y) = across(solver.state(), solver.influence().repeats(solver.grid()));
-        Ok(Taken::Sample(Sample {
+        Ok(Taken::Sample(Box::new(Sample {
             doublings,
             elements: elements as f64,
             across: x.min(y),
@@ -111,7 +111,7 @@ impl Sample {
             reached,
             seconds,
             setup: report.setup_seconds,
-        }))
+        })))
     }
 
     /// With the error that the values of this and coarser grids have.
