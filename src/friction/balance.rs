@@ -13,7 +13,7 @@ use super::forces::{sum_of_bounds, Forces};
 use super::plane::{add, onto_disc, plus, square, Vector};
 use super::problem::{Problem, State};
 use super::system::pseudo_inverse;
-use super::vectors;
+use crate::methods::fields;
 
 /// Forces that are met to this part of the sum of all bounds are met.
 const MET: f64 = 1e-13;
@@ -24,7 +24,7 @@ const PROGRESS: f64 = 0.5;
 
 /// The sum of tractions that the natural map makes, and its derivative by `-rho dc`: xx, xy, yy.
 fn response(problem: &Problem, state: &State, rho: f64, dc: Vector) -> (Vector, [Vector; 2]) {
-    let [x, y, xx, xy, yy] = vectors::sum(problem.threads(), problem.bound.len(), |i| {
+    let [x, y, xx, xy, yy] = fields::sum(problem.threads(), problem.bound.len(), |i| {
         let g = problem.bound[i];
         if !(g > 0.0) {
             return [0.0; 5];
@@ -51,7 +51,7 @@ pub fn balanced(problem: &Problem, state: &State, rho: f64, forces: Forces) -> V
     let bounds = sum_of_bounds(problem);
     let part = square(forces.only_given(forces.sum)).sqrt() / bounds;
     // Where dc is larger than that all slip against it, more than F.
-    let furthest = vectors::largest(problem.threads(), problem.bound.len(), |i| {
+    let furthest = fields::largest(problem.threads(), problem.bound.len(), |i| {
         let reach = if problem.bound[i] > 0.0 { square(problem.slip_at(i, &state.u)).sqrt() } else { 0.0 };
         reach + (square(state.q[i]).sqrt() + problem.bound[i]) / rho
     });

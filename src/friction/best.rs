@@ -4,8 +4,8 @@ use super::certificate::Certificate;
 use super::forces::Forces;
 use super::plane::Vector;
 use super::problem::{Problem, State};
-use super::vectors::{self, Fields};
 use crate::error::Result;
+use crate::methods::fields::{self, Fields};
 
 /// Tractions, the creepages found with them, and how far they are from the conditions.
 pub struct Best {
@@ -29,7 +29,7 @@ impl Best {
         if self.q.len() != state.q.len() {
             self.q = fields.take(state.q.len())?;
         }
-        vectors::fill(problem.threads(), &mut self.q, |i| state.q[i]);
+        fields::fill(problem.threads(), &mut self.q, |i| state.q[i]);
         (self.offset, self.worst) = (problem.offset, worst);
         Ok(())
     }
@@ -51,7 +51,7 @@ impl Best {
     /// Goes on from the best, if there is one.
     pub fn take_up(&mut self, problem: &mut Problem, state: &mut State) {
         if self.q.len() == state.q.len() {
-            vectors::map(&problem.threads().clone(), &mut state.q, |i, _| self.q[i]);
+            fields::map(&problem.threads().clone(), &mut state.q, |i, _| self.q[i]);
             problem.offset = self.offset;
             problem.refresh(state);
         }

@@ -17,8 +17,8 @@ use super::sensitivity;
 use super::shift::{self, Goal, Memory};
 use super::step::compliance;
 use super::system::pseudo_inverse;
-use super::vectors;
 use crate::error::Result;
+use crate::methods::fields;
 use crate::progress::Outcome;
 
 /// Where more than this part of C slips the natural map is tried first.
@@ -166,7 +166,7 @@ impl Trials {
     fn new(problem: &Problem, forces: Forces, bounds: f64) -> Trials {
         // What all tractions together displace at most, of both components, here and a step ahead.
         let displaced = 8.0 * problem.operators.greatest() * bounds;
-        let rigid = vectors::largest(problem.threads(), problem.bound.len(), |i| {
+        let rigid = fields::largest(problem.threads(), problem.bound.len(), |i| {
             let inside = problem.bound[i] > 0.0;
             if inside {
                 square(problem.slip[i]).sqrt()
@@ -222,7 +222,7 @@ fn slope(problem: &mut Problem, memory: &mut Memory, forces: Forces) -> Result<[
     for k in (0..2).filter(|&k| forces.given[k]) {
         let mut change = fields.take(problem.grid.len())?;
         let unit = [[1.0, 0.0], [0.0, 1.0]][k];
-        vectors::fill(problem.threads(), &mut change, |i| problem.weighted(i, unit));
+        fields::fill(problem.threads(), &mut change, |i| problem.weighted(i, unit));
         sensitivity::solve(problem, tangent, (fields, &mut change), SLOPE)?;
         let by = forces.only_given(sum_of(problem, &change));
         (falls[0][k], falls[1][k]) = (-by[0], -by[1]);

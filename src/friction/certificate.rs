@@ -14,7 +14,7 @@
 
 use super::plane::{add, dot, square, Vector};
 use super::problem::{Problem, State};
-use super::vectors::{self, BLOCK};
+use crate::methods::fields::{self, BLOCK};
 
 /// Tractions of more than this part of the bound are on the circle: round-off of the projection is far below.
 pub const ON_THE_CIRCLE: f64 = 1.0 - 1e-7;
@@ -50,7 +50,7 @@ impl Certificate {
     /// Of a state whose u is A q.
     pub fn of(problem: &Problem, state: &State) -> Certificate {
         let blocks = (0..problem.bound.len()).step_by(BLOCK);
-        let sums = vectors::over(problem.threads(), blocks, |start, _| {
+        let sums = fields::over(problem.threads(), blocks, |start, _| {
             let [mut squares, mut gap, mut work, mut slips] = [0.0; 4];
             for i in start..(start + BLOCK).min(problem.bound.len()) {
                 let g = problem.bound[i];

@@ -3,11 +3,11 @@
 use super::plane::{add, square, Vector};
 use super::problem::Problem;
 use super::scales::Scales;
-use super::vectors;
 use crate::effects::{Friction, Prescribed};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::memory::sparse;
+use crate::methods::fields;
 use crate::sums::in_blocks;
 
 /// Forces that are given.
@@ -159,15 +159,15 @@ fn reach([x, y]: [&[f64]; 2], [along, aside]: Vector, n: usize, bound: &impl Fn(
 
 /// The sum of a field that is 0 outside C, times the weights of creepages.
 pub fn sum_of(problem: &Problem, field: &[Vector]) -> Vector {
-    vectors::sum(problem.threads(), field.len(), |i| problem.weighted(i, field[i]))
+    fields::sum(problem.threads(), field.len(), |i| problem.weighted(i, field[i]))
 }
 
 /// The sum of g.
 pub fn sum_of_bounds(problem: &Problem) -> f64 {
-    vectors::sum(problem.threads(), problem.bound.len(), |i| [problem.bound[i]])[0]
+    fields::sum(problem.threads(), problem.bound.len(), |i| [problem.bound[i]])[0]
 }
 
 /// The sum of two fields.
 pub fn sum_of_both(problem: &Problem, v: &[Vector], w: &[Vector]) -> Vector {
-    vectors::sum(problem.threads(), v.len(), |i| problem.weighted(i, add(v[i], w[i])))
+    fields::sum(problem.threads(), v.len(), |i| problem.weighted(i, add(v[i], w[i])))
 }

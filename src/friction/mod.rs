@@ -8,7 +8,7 @@
 //! | `problem`, `plane`, `certificate`, `tangent` | the problem on one grid, how well its conditions hold, which elements slip |
 //! | `tables`, `row_tables`, `row_product` | coefficients of the caller's own, also per loaded row, and products with these |
 //! | `excess` | a layer between the bodies that differs between elements |
-//! | `vectors`, `lanes`, `beside` | passes over fields, in vectors of the machine, residuals continued beside C |
+//! | `lanes`, `beside` | passes over fields by component in vectors of the machine, residuals continued beside C; fields of pairs: `methods::fields` |
 //! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for motions that are given; the fields of these, on C alone |
 //! | `newton`, `step`, `system`, `sweep`, `forces`, `best` | semismooth Newton, for steady rolling, for forces that are given and where the gradients stall |
 //! | `balance`, `corral`, `bracket` | creepages of forces that are given, where Newton's method stalls |
@@ -63,7 +63,6 @@ mod toeplitz;
 mod unit;
 mod window;
 
-use crate::methods::{fgmres, fields as vectors};
 pub use certificate::Certificate;
 pub use coefficients::{Compliance, Tangential};
 pub use cross::{Coupling, CrossTables, Source};

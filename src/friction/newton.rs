@@ -21,8 +21,8 @@ use super::problem::{Problem, State};
 use super::shift::Goal;
 use super::step::{compliance, polish, step, Effort};
 use super::tangent::{rho_of, Measures, Tangent};
-use super::vectors::Fields;
 use crate::error::Result;
+use crate::methods::fields::Fields;
 use crate::progress::Outcome;
 
 /// The inner residual relative to that of the step.

@@ -5,10 +5,10 @@
 //! that is filled up with elements that are nowhere, of which all is zero.
 
 use super::lanes::LANES;
-use super::vectors::BLOCK;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::reserve;
+use crate::methods::fields::BLOCK;
 use crate::operator::fft::Real;
 
 /// Where the elements of C are.

@@ -1,5 +1,7 @@
 //! Vectors of the plane, and discs in it.
 
+pub use crate::methods::fields::plus;
+
 /// A vector of the plane: `[x, y]`.
 pub type Vector = [f64; 2];
 
@@ -46,12 +48,6 @@ pub fn dot(v: Vector, w: Vector) -> f64 {
 #[inline]
 pub fn add(v: Vector, w: Vector) -> Vector {
     [v[0] + w[0], v[1] + w[1]]
-}
-
-/// `v + a w`.
-#[inline]
-pub fn plus(v: Vector, a: f64, w: Vector) -> Vector {
-    [v[0] + a * w[0], v[1] + a * w[1]]
 }
 
 /// The traction nearest to q within a disc of radius g.

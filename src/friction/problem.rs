@@ -17,11 +17,11 @@ use super::places::Places;
 use super::plane::{add, clip, square, Vector};
 use super::row_tables::RowTables;
 use super::sweep::Rolling;
-use super::vectors::{self, BLOCK};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{blank, keep};
 use crate::methods::extension::Extension;
+use crate::methods::fields::{self, BLOCK};
 use crate::threads::Threads;
 
 const FIELDS: &str = "tangential fields";
@@ -164,9 +164,9 @@ impl Problem {
         count_near(&mut self.extension, &self.bound);
         self.places.contact_changed(&self.bound);
         let (threads, bound) = (self.threads(), &self.bound);
-        let largest = vectors::largest(threads, bound.len(), |i| bound[i]);
+        let largest = fields::largest(threads, bound.len(), |i| bound[i]);
         // Without friction 0/0: nothing.
-        let [squares] = vectors::sum(threads, bound.len(), |i| [(bound[i] / largest).max(0.0).powi(2)]);
+        let [squares] = fields::sum(threads, bound.len(), |i| [(bound[i] / largest).max(0.0).powi(2)]);
         self.rms_bound = largest * (squares / self.count().max(1) as f64).sqrt();
     }
 
@@ -232,7 +232,7 @@ impl Problem {
     /// rms over C of a field.
     pub fn rms(&self, value: impl Fn(usize) -> Vector + Sync + Send) -> f64 {
         let squared = |i: usize| [if self.bound[i] > 0.0 { square(value(i)) } else { 0.0 }];
-        let [sum] = vectors::sum(self.threads(), self.bound.len(), squared);
+        let [sum] = fields::sum(self.threads(), self.bound.len(), squared);
         self.rms_of(sum)
     }
 
@@ -270,7 +270,7 @@ impl Problem {
 
     fn clip(&self, state: &mut State) {
         let (bound, threads) = (&self.bound, self.threads());
-        vectors::map(threads, &mut state.q, |i, q| clip(q, bound[i]));
+        fields::map(threads, &mut state.q, |i, q| clip(q, bound[i]));
     }
 
     /// Products since the last call.

@@ -8,14 +8,14 @@
 //!
 //! with B for A in steady rolling. Sums of dq and of its moments are the derivatives.
 
-use super::fgmres::{self, Bordered, Until};
 use super::forces::Forces;
 use super::plane::Vector;
 use super::problem::{Problem, State};
 use super::system::TangentSystem;
 use super::tangent::Tangent;
-use super::vectors::{self, Fields};
 use crate::error::Result;
+use crate::methods::fgmres::{self, Bordered, Until};
+use crate::methods::fields::{self, Fields};
 
 /// The residual of the linear solves of derivatives that are reported, relative.
 pub const TOLERANCE: f64 = 1e-5;
@@ -44,22 +44,22 @@ pub fn solve(
 ) -> Result<()> {
     let (n, threads) = (dw.len(), problem.threads().clone());
     // Unit tractions: the system is linear, and single precision has a small range.
-    let size = vectors::dot(&threads, dw, dw).sqrt();
+    let size = fields::dot(&threads, dw, dw).sqrt();
     let scale = problem.rms_bound() / size;
     if !(scale > 0.0 && scale < f64::INFINITY) {
-        vectors::fill(&threads, dw, |_| [0.0; 2]);
+        fields::fill(&threads, dw, |_| [0.0; 2]);
         return Ok(());
     }
     let mut system = TangentSystem::new(problem, tangent, Forces::NONE, fields)?;
     let mut r = fields.take(n)?;
-    vectors::fill(&threads, &mut r, |i| tangent.project_inside(i, dw[i].map(|w| -w * scale)));
-    let first = vectors::dot(&threads, &r, &r).sqrt();
+    fields::fill(&threads, &mut r, |i| tangent.project_inside(i, dw[i].map(|w| -w * scale)));
+    let first = fields::dot(&threads, &r, &r).sqrt();
     let until = Until { target: tolerance * first, most: DIRECTIONS };
     let mut x = Bordered { field: fields.take(n)?, border: [0.0; 2] };
     x.field.fill([0.0; 2]);
     let mut product = fields.take(n)?;
     for _ in 0..MOST_CALLS {
-        let left = vectors::dot(&threads, &r, &r).sqrt();
+        let left = fields::dot(&threads, &r, &r).sqrt();
         if !(left > tolerance * first) {
             break;
         }
@@ -71,12 +71,12 @@ pub fn solve(
         let given = Bordered { field: given, border: [0.0; 2] };
         let found = fgmres::solve(&mut system, given, (until, 0.0), &threads, fields)?;
         found.add_to(&mut gained, &mut product, &threads, fields);
-        vectors::add_all(&threads, &mut x.field, &[(1.0, &gained.field)]);
+        fields::add_all(&threads, &mut x.field, &[(1.0, &gained.field)]);
         system.subtract(&gained, &product, &mut r);
         fields.give(gained.field);
     }
     system.give(fields);
-    vectors::fill(&threads, dw, |i| x.field[i].map(|q| q / scale));
+    fields::fill(&threads, dw, |i| x.field[i].map(|q| q / scale));
     [r, product, x.field].into_iter().for_each(|field| fields.give(field));
     Ok(())
 }

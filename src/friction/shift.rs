@@ -17,8 +17,8 @@ use super::certificate::relative;
 use super::discs::{Discs, Sums};
 use super::problem::{Problem, State};
 use super::tangent::Tangent;
-use super::vectors::Fields;
 use crate::error::Result;
+use crate::methods::fields::Fields;
 use crate::operator::fft::Real;
 use crate::progress::Outcome;
 

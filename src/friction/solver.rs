@@ -10,13 +10,13 @@ use super::request::{before, Request, Start};
 use super::scales::Scales;
 use super::solution::{Report, Solution};
 use super::sweep::Rolling;
-use super::vectors;
 use super::window::{Displaced, Window};
 use super::Tangential;
 use crate::effects::{Coefficient, Friction, Motion, Prescribed, Previous};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::keep;
+use crate::methods::fields;
 use crate::progress::Outcome;
 use crate::sums::in_blocks;
 use crate::threads::Threads;
@@ -158,7 +158,7 @@ impl Solver {
             let forces = forces.in_units_of(&self.scales);
             end = self.solve_in((window, rolling), request, forces, watch, &mut report)?;
             let Problem { bound, operators, .. } = &self.levels[0].problem;
-            let [carried] = vectors::sum(&operators.threads, bound.len(), |k| [bound[k]]);
+            let [carried] = fields::sum(&operators.threads, bound.len(), |k| [bound[k]]);
             [report.carried, _] = self.scales.own_traction([carried * self.grid.element_area(), 0.0]);
         }
         self.window = window;

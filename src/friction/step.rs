@@ -10,14 +10,14 @@
 //! Where x0 is short there is nothing to start with: all products are GMRES'.
 
 use super::certificate::scale;
-use super::fgmres::{self, Bordered, Until};
 use super::forces::{sum_of, sum_of_both, sum_of_bounds, Forces};
 use super::plane::{add, plus, square, Vector};
 use super::problem::{Problem, State};
 use super::system::TangentSystem;
 use super::tangent::{Side, Tangent};
-use super::vectors::{self, Fields};
 use crate::error::Result;
+use crate::methods::fgmres::{self, Bordered, Until};
+use crate::methods::fields::{self, Fields};
 use crate::threads::Threads;
 
 /// theta where nothing slips, and how fast it comes to 1 with D.
@@ -72,15 +72,15 @@ fn to_the_circle(tangent: &Tangent, bound: &[f64], state: &State, i: usize) -> V
 /// x0, as a root of a sum of squares.
 fn way_to_the_circles(problem: &Problem, tangent: &Tangent, state: &State) -> f64 {
     let squared = |i: usize| [square(to_the_circle(tangent, &problem.bound, state, i))];
-    let [sum] = vectors::sum(problem.threads(), problem.bound.len(), squared);
+    let [sum] = fields::sum(problem.threads(), problem.bound.len(), squared);
     sum.sqrt()
 }
 
 impl Start {
     fn nothing(n: usize, threads: &Threads, fields: &mut Fields) -> Result<Start> {
         let (mut gained, mut along) = (fields.take(n)?, fields.take(n)?);
-        vectors::fill(threads, &mut gained, |_| [0.0; 2]);
-        vectors::fill(threads, &mut along, |_| [0.0; 2]);
+        fields::fill(threads, &mut gained, |_| [0.0; 2]);
+        fields::fill(threads, &mut along, |_| [0.0; 2]);
         Ok(Start { gained, along, by: [0.0; 2] })
     }
 
@@ -89,12 +89,12 @@ impl Start {
         let mut along = fields.take(n)?;
         system.precondition_field(&tangent.projected, &mut along);
         let (a0, bound) = (system.problem.operators.self_influence, &system.problem.bound);
-        vectors::map(&threads, &mut along, |i, z| {
+        fields::map(&threads, &mut along, |i, z| {
             let theta = 1.0 - (1.0 - LEAST_THETA) / (1.0 + TURNED * tangent.curvature[i] / a0);
             z.map(|z| theta * z)
         });
         let mut gained = fields.take(n)?;
-        vectors::fill(&threads, &mut gained, |i| add(to_the_circle(tangent, bound, state, i), along[i]));
+        fields::fill(&threads, &mut gained, |i| add(to_the_circle(tangent, bound, state, i), along[i]));
         let mut by = [0.0; 2];
         if forces.any() {
             let sum = sum_of_both(system.problem, &state.q, &gained);
@@ -118,8 +118,8 @@ pub fn polish(
     let mut system = TangentSystem::new(problem, tangent, forces, fields)?;
     let Start { gained, along, by } = Start::new(&mut system, state, forces, fields)?;
     system.give(fields);
-    problem.update = problem.rms_of(vectors::dot(problem.threads(), &gained, &gained));
-    vectors::add_all(problem.threads(), &mut state.q, &[(1.0, &gained)]);
+    problem.update = problem.rms_of(fields::dot(problem.threads(), &gained, &gained));
+    fields::add_all(problem.threads(), &mut state.q, &[(1.0, &gained)]);
     problem.offset = add(problem.offset, by);
     [gained, along].into_iter().for_each(|field| fields.give(field));
     problem.refresh(state);
@@ -149,7 +149,7 @@ pub fn step(
     let weight = border_weight(problem, state, forces);
     let sum = sum_of(problem, &state.q);
     let missing = forces.only_given([forces.sum[0] - sum[0], forces.sum[1] - sum[1]]);
-    let projected = vectors::dot(&threads, &tangent.projected, &tangent.projected);
+    let projected = fields::dot(&threads, &tangent.projected, &tangent.projected);
     let target = effort.inner * projected.max(weight * square(missing)).sqrt();
     let mut system = TangentSystem::new(problem, tangent, forces, fields)?;
     let mut product = fields.take(n)?;
@@ -157,7 +157,7 @@ pub fn step(
     let all = effort.left * system.problem.rms_bound() * (system.problem.count() as f64).sqrt();
     let is_short = compliance(system.problem) * way <= SHORT * target && way <= SHORT * all;
     let Start { gained, along, by } = if is_short {
-        vectors::fill(&threads, &mut product, |_| [0.0; 2]);
+        fields::fill(&threads, &mut product, |_| [0.0; 2]);
         Start::nothing(n, &threads, fields)?
     } else {
         let start = Start::new(&mut system, state, forces, fields)?;
@@ -165,7 +165,7 @@ pub fn step(
         start
     };
     let mut r = fields.take(n)?;
-    vectors::fill(&threads, &mut r, |i| {
+    fields::fill(&threads, &mut r, |i| {
         let left = plus(
             tangent.projected[i],
             -1.0,
@@ -184,9 +184,9 @@ pub fn step(
     let mut gained = Bordered { field: gained, border: by };
     found.add_to(&mut gained, &mut product, &threads, fields);
     system.give(fields);
-    problem.update = effort.length * problem.rms_of(vectors::dot(&threads, &gained.field, &gained.field));
-    vectors::add_all(&threads, &mut state.q, &[(effort.length, &gained.field)]);
-    vectors::add_all(&threads, &mut state.u, &[(effort.length, &product)]);
+    problem.update = effort.length * problem.rms_of(fields::dot(&threads, &gained.field, &gained.field));
+    fields::add_all(&threads, &mut state.q, &[(effort.length, &gained.field)]);
+    fields::add_all(&threads, &mut state.u, &[(effort.length, &product)]);
     fields.give(gained.field);
     fields.give(product);
     problem.offset = plus(problem.offset, effort.length, forces.only_given(gained.border));

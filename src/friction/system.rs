@@ -7,13 +7,13 @@
 //!
 //! preconditioned by `y = M r;  dc = S^-1 (sum y - f);  z = y - Y dc` with `Y_k = M P e_k` and `S_jk = sum (Y_k)_j`.
 
-use super::fgmres::{Bordered, Direction, System};
 use super::forces::{sum_of, Forces};
 use super::plane::{add, plus, Vector};
 use super::problem::Problem;
 use super::tangent::Tangent;
-use super::vectors::{self, Fields};
 use crate::error::Result;
+use crate::methods::fgmres::{Bordered, Direction, System};
+use crate::methods::fields::{self, Fields};
 
 /// Eigenvalues of the border below this part of the largest are none.
 const SINGULAR: f64 = 1e-8;
@@ -47,7 +47,7 @@ impl<'a> TangentSystem<'a> {
             }
             let mut unit = fields.take(n)?;
             let weighted = |i: usize| system.problem.weighted(i, e);
-            vectors::fill(system.problem.threads(), &mut unit, |i| tangent.project_inside(i, weighted(i)));
+            fields::fill(system.problem.threads(), &mut unit, |i| tangent.project_inside(i, weighted(i)));
             let mut column = fields.take(n)?;
             system.precondition_field(&unit, &mut column);
             fields.give(unit);
@@ -95,14 +95,14 @@ impl<'a> TangentSystem<'a> {
     pub fn balance(&self, creepages: Vector, z: &mut [Vector]) {
         let terms: Vec<(f64, &[Vector])> =
             creepages.iter().zip(&self.border).filter(|(_, y)| !y.is_empty()).map(|(c, y)| (-c, &y[..])).collect();
-        vectors::add_all(self.problem.threads(), z, &terms);
+        fields::add_all(self.problem.threads(), z, &terms);
     }
 
     /// `H` of a vector, whose field was multiplied by A.
     fn apply(&self, z: &Bordered, product: &[Vector], fields: &mut Fields) -> Result<Bordered> {
         let tangent = self.tangent;
         let mut h = fields.take(product.len())?;
-        vectors::fill(self.problem.threads(), &mut h, |i| {
+        fields::fill(self.problem.threads(), &mut h, |i| {
             let pushed = tangent.project_inside(i, add(product[i], self.problem.weighted(i, z.border)));
             plus(pushed, tangent.curvature[i], z.field[i])
         });
@@ -113,7 +113,7 @@ impl<'a> TangentSystem<'a> {
     /// `r -= H z` of a field, whose product with A is given.
     pub fn subtract(&self, z: &Bordered, product: &[Vector], r: &mut [Vector]) {
         let tangent = self.tangent;
-        vectors::map(self.problem.threads(), r, |i, r| {
+        fields::map(self.problem.threads(), r, |i, r| {
             let left = plus(r, -1.0, tangent.project_inside(i, product[i]));
             plus(left, -tangent.curvature[i], z.field[i])
         });

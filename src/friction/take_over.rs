@@ -10,12 +10,12 @@ use super::scales::Scales;
 use super::solution::{Solution, EXTERIOR};
 use super::solver::Solver;
 use super::sweep::{Rolling, Sweep};
-use super::vectors;
 use super::window::{displaced, Window};
 use crate::effects::{Coefficient, Friction, Motion, Prescribed, Previous};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::{blank, collected, unwritten, zeros};
+use crate::methods::fields;
 
 /// Where more than this part of C slips after the step before, Newton's method is the faster one for the next step.
 const MOSTLY_SLIP: f64 = 0.8;
@@ -40,7 +40,7 @@ impl Solver {
         let rows = window.grid(&self.grid).my;
         let threads = self.threads.suited_to(self.grid.len());
         let of_row = |iy: usize| window.row(&self.grid, iy).map(&bound).fold(0.0, f64::max);
-        vectors::largest(&threads, rows, of_row)
+        fields::largest(&threads, rows, of_row)
     }
 
     /// Room for the result.
@@ -238,7 +238,7 @@ fn creepage_of(problem: &Problem, state: &State, k: usize) -> f64 {
             [0.0; 2]
         }
     };
-    let [slip, weights] = vectors::sum(problem.threads(), problem.bound.len(), terms);
+    let [slip, weights] = fields::sum(problem.threads(), problem.bound.len(), terms);
     if weights > 0.0 {
         -slip / weights
     } else {

@@ -15,9 +15,9 @@
 use super::certificate::{relative, rest};
 use super::plane::{add, dot, plus, square, Vector};
 use super::problem::{Problem, State};
-use super::vectors::{self, BLOCK};
 use crate::error::Result;
 use crate::memory::zeros;
+use crate::methods::fields::{self, BLOCK};
 
 /// How fast the preconditioner leaves the inverse of A for that of D, as D grows beside the influence of an element on itself.
 pub(super) const MIXED: f64 = 0.5;
@@ -149,7 +149,7 @@ impl Tangent {
             (curvature.chunks_mut(BLOCK), mixings.chunks_mut(BLOCK), projected.chunks_mut(BLOCK));
         let blocks = sides.zip(normals).zip(curvatures.zip(mixings)).zip(projecteds);
         let sums =
-            vectors::over(problem.threads(), blocks, |start, (((side, normal), (curvature, mixings)), projected)| {
+            fields::over(problem.threads(), blocks, |start, (((side, normal), (curvature, mixings)), projected)| {
                 let [mut squares, mut excess, mut slips, mut rigid, mut displaced] = [0.0; 5];
                 for k in 0..side.len() {
                     let i = start + k;
@@ -206,14 +206,14 @@ impl Tangent {
             _ => (1.0 - self.mixing[i]) / (self.curvature[i] + beyond(i) + a0),
         };
         let Some((_, sweep)) = &problem.operators.rolling else {
-            vectors::map(&threads, z, |i, z| plus(self.project_inside(i, z.map(|z| self.mixing[i] * z)), own(i), r[i]));
+            fields::map(&threads, z, |i, z| plus(self.project_inside(i, z.map(|z| self.mixing[i] * z)), own(i), r[i]));
             return;
         };
-        vectors::map(&threads, z, |i, z| self.project_inside(i, z.map(|z| self.mixing[i] * z)));
+        fields::map(&threads, z, |i, z| self.project_inside(i, z.map(|z| self.mixing[i] * z)));
         let project = |i: usize, v: Vector| self.project_inside(i, v);
         if problem.operators.excess.is_none() {
             sweep.solve(&problem.grid, |i| self.mixing[i], project, &threads, z);
-            return vectors::map(&threads, z, |i, z| plus(z, own(i), r[i]));
+            return fields::map(&threads, z, |i, z| plus(z, own(i), r[i]));
         }
         // What a layer displaces is rolled over, too: from element to element (a + r) x is passed on, for r differs.
         let a = problem.operators.greatest();
@@ -222,10 +222,10 @@ impl Tangent {
             Side::Stick => (1.0 - self.mixing[i]) / (a + beyond(i)),
             _ => 0.0,
         };
-        vectors::map(&threads, z, |i, z| plus(z, of_layer(i), r[i]).map(|z| soft(i) * z));
+        fields::map(&threads, z, |i, z| plus(z, of_layer(i), r[i]).map(|z| soft(i) * z));
         sweep.solve(&problem.grid, |i| mixing(self.curvature[i], a0 * soft(i)), project, &threads, z);
         let after = |i: usize| if self.side[i] == Side::Slip { own(i) } else { 0.0 };
-        vectors::map(&threads, z, |i, z| plus(z.map(|z| z / soft(i)), after(i), r[i]));
+        fields::map(&threads, z, |i, z| plus(z.map(|z| z / soft(i)), after(i), r[i]));
     }
 
     /// `z = X' M X E r`, of no meaning outside C. `mixed` is overwritten.
@@ -235,7 +235,7 @@ impl Tangent {
         let Problem { operators, extension, .. } = problem;
         // The sweep starts from nothing at each leading edge: what is beside C does not help it.
         let Some(extension) = extension else {
-            vectors::fill(&threads, mixed, |i| r[i].map(|r| self.mixing[i] * r));
+            fields::fill(&threads, mixed, |i| r[i].map(|r| self.mixing[i] * r));
             return operators.precondition(mixed, unit, z);
         };
         // By component: both fields have room for that.
@@ -249,6 +249,6 @@ impl Tangent {
         let (to_x, to_y) = mixed.as_flattened_mut().split_at_mut(n);
         let apply = |r: [&[f64]; 2], z: [&mut [f64]; 2]| operators.precondition_components(r, unit, z);
         extension.between([x, y], [&mut *to_x, &mut *to_y], compliance, apply);
-        vectors::fill(&threads, z, |i| [to_x[i], to_y[i]]);
+        fields::fill(&threads, z, |i| [to_x[i], to_y[i]]);
     }
 }

@@ -10,6 +10,7 @@ mod solved;
 use std::time::Instant;
 
 pub use next_grid::Accuracy;
+pub use price::GROWTH;
 pub use price_list::{cost_of_accuracy, Obstacle, Price};
 
 use super::quantities::{values, Quantity};
@@ -77,7 +78,10 @@ pub fn solve_to_accuracy(
         let (entered, is_first) = (began.elapsed().as_secs_f64(), best.is_none());
         let late = |_: &Progress| !is_first && accuracy.is_late(began.elapsed().as_secs_f64());
         let solved = match on_grid(scene, (&options, &wanted), doublings, &mut surface, &mut progress, &late) {
-            Ok(Ok(solved)) => in_history(&mut history, doublings, solved),
+            Ok(Ok(mut solved)) => {
+                history.add(doublings, &solved.values, &mut solved.outlook);
+                solved
+            }
             // Coarser grids than the scene's only tell of errors.
             Ok(Err((stop, ..))) if doublings < 0 && stop != Outcome::Cancelled => {
                 doublings += 1;
@@ -112,14 +116,6 @@ pub fn solve_to_accuracy(
         before = Some(past);
     };
     Ok(Refinement::of(best, stop, why, began.elapsed().as_secs_f64()))
-}
-
-/// Adds the values of a grid, of which its outlook is told.
-fn in_history(history: &mut History, doublings: i32, mut solved: Solved) -> Solved {
-    let (residual, lack_estimates) = (solved.residual(), solved.lacks_estimates);
-    let values = Values { of: &solved.values, residual, lack_estimates };
-    history.add(doublings, &values, &mut solved.outlook);
-    solved
 }
 
 /// Doublings of the coarsest grid that the history begins with: two halvings, where enough elements are left.
@@ -211,9 +207,9 @@ fn on_grid(
     };
     let (stop, report) = solver.solve_checked((scene, lowest), options, None, Some(&mut watch))?;
     let outlook = Outlook::of(&solver, &report, scene.load);
-    let values = if stop == Outcome::Cancelled { vec![] } else { values(&mut solver, scene, &report, wanted)? };
-    let lacks_estimates = solver.lacks_estimates();
-    let solved = Solved { solver, report, outlook, values, lacks_estimates };
+    let of = if stop == Outcome::Cancelled { vec![] } else { values(&mut solver, scene, &report, wanted)? };
+    let values = Values { of, residual: report.residual(), lack_estimates: solver.lacks_estimates() };
+    let solved = Solved { solver, report, outlook, values };
     Ok(match stop {
         Outcome::Converged => Ok(solved),
         Outcome::Cancelled if is_late => Err((Outcome::IterationLimit, on("max_seconds was reached"), Some(solved))),

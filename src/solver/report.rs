@@ -68,6 +68,12 @@ impl Report {
         Report { count: monitor.count, measures, tolerance, ..Report::default() }
     }
 
+    /// The larger one of the relative residuals of the normal and the tangential problem.
+    pub(super) fn residual(&self) -> f64 {
+        let normal = self.measures.certificate.residual;
+        self.friction.map_or(normal, |found| normal.max(found.certificate.residual))
+    }
+
     /// Says in the log how a solve went.
     pub(super) fn log(&self, method: Method, grid: &Grid, stop: Outcome) {
         let (Grid { mx, my, .. }, residual) = (grid, self.measures.certificate.residual);

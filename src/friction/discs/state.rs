@@ -6,11 +6,11 @@ use super::super::plane::add;
 use super::super::problem::{Problem, State};
 use super::super::tangent::rho_of;
 use super::super::unit::unit_of;
-use super::super::vectors::over;
 use super::fields::{Fields, FIELDS};
 use super::Discs;
 use crate::error::Result;
 use crate::memory::unwritten;
+use crate::methods::fields::over;
 use crate::operator::fft::Real;
 
 /// What memory is for.

@@ -14,8 +14,6 @@ pub use neglect::Neglected;
 pub use omission::Omission;
 pub use verdict::{BillRow, Verdict};
 
-use std::time::Instant;
-
 use super::quantities::Quantity;
 use super::{Options, Outcome, ProgressCallback};
 use crate::error::Result;
@@ -35,9 +33,8 @@ pub fn effects_bill(
     progress: Option<ProgressCallback<'_>>,
 ) -> Result<(Outcome, Vec<BillRow>)> {
     small_grids::check(scene, options, asked)?;
-    let began = Instant::now();
     let left_out = Omission::left_out_of(scene, asked.pairs);
     let mut grids = SmallGrids::new(scene, options, asked, wanted, left_out);
-    let outcome = grids.solve(began, progress)?;
+    let outcome = grids.solve(progress)?;
     Ok((outcome, grids.rows()))
 }

@@ -1,7 +1,5 @@
 //! Leaving out what the bill says is negligible.
 
-use std::time::Instant;
-
 use super::asked::BillOptions;
 use super::omission::Omission;
 use super::small_grids::{self, SmallGrids};
@@ -39,8 +37,7 @@ impl Neglected {
         };
         let singles: Vec<Omission> = Omission::of(scene).into_iter().filter(|one| !stays(one)).collect();
         small_grids::check(scene, options, &asked)?;
-        let began = Instant::now();
-        let rows = bill(scene, options, &asked, &wanted, singles.iter().map(|one| vec![*one]).collect(), began)?;
+        let rows = bill(scene, options, &asked, &wanted, singles.iter().map(|one| vec![*one]).collect())?;
         let mut left: Vec<(Omission, f64)> = singles
             .into_iter()
             .filter_map(|one| {
@@ -97,10 +94,9 @@ fn bill(
     asked: &BillOptions,
     wanted: &[Quantity],
     left_out: Vec<Vec<Omission>>,
-    began: Instant,
 ) -> Result<Vec<BillRow>> {
     let mut grids = SmallGrids::new(scene, options, asked, wanted, left_out);
-    grids.solve(began, None)?;
+    grids.solve(None)?;
     Ok(grids.rows())
 }
 
@@ -112,7 +108,7 @@ fn together(
     wanted: &[Quantity],
     omissions: &[Omission],
 ) -> Result<Option<f64>> {
-    let rows = bill(scene, options, asked, wanted, vec![omissions.to_vec()], Instant::now())?;
+    let rows = bill(scene, options, asked, wanted, vec![omissions.to_vec()])?;
     let holds = rows.iter().all(|row| row.verdict == Verdict::Negligible);
     Ok(holds.then(|| largest(&rows.iter().collect::<Vec<_>>())))
 }

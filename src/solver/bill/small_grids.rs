@@ -9,6 +9,7 @@ use crate::effects;
 use crate::error::{require, Error, Result};
 use crate::scene::{scaled, Regridded, Scene};
 use crate::solver::quantities::{Lack, OnGrid, Quantity, Sequence};
+use crate::solver::refinement::GROWTH;
 use crate::solver::{Options, Outcome, ProgressCallback};
 use crate::threads::Threads;
 
@@ -17,8 +18,6 @@ const SECONDS: f64 = 0.1;
 const PART: f64 = 0.05;
 /// The next grid takes so many times as long, at most.
 const NEXT: f64 = 5.0;
-/// Seconds grow with this power of the number of elements (docs/performance.md).
-const GROWTH: f64 = 1.08;
 /// Elements of the first grid in its longer direction, at least.
 const FIRST: usize = 16;
 /// Of the target, what residuals may hide.
@@ -83,7 +82,8 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
     }
 
     /// Solves on finer and finer grids, as long as there is time, and not beyond the scene's own.
-    pub fn solve(&mut self, began: Instant, mut progress: Option<ProgressCallback<'_>>) -> Result<Outcome> {
+    pub fn solve(&mut self, mut progress: Option<ProgressCallback<'_>>) -> Result<Outcome> {
+        let began = Instant::now();
         if self.variants.len() < 2 {
             return Ok(Outcome::Converged);
         }

@@ -87,6 +87,14 @@ impl Quantity {
         matches!(self, Quantity::Force | Quantity::MaxPressure | Quantity::ContactArea)
     }
 
+    /// Its error from several grids, where one grid has no estimate of it: of forces, pressures and areas only where nothing is estimated at all
+    /// (`lacks_estimates`: a single peak without an estimate is singular, or not resolved), and from three grids at least, since a value that
+    /// is infinite shows in its changes only.
+    pub fn error_of(self, sequence: &Sequence, lacks_estimates: bool) -> Option<Falling> {
+        let is_known = !self.has_estimate() || lacks_estimates && sequence.len() > 2;
+        sequence.falling().filter(|_| is_known)
+    }
+
     /// Elements across the contact, in the direction with fewer, from which on its estimate is believed. Measured on balls, ellipses, cones, two
     /// balls, tori, superellipsoids, blunt rollers and punches anywhere between the elements: from there on at most 5 % of the estimates are below
     /// the error, and none is below a third of it (docs/notes/2026-11-accuracy.md). Areas jump by whole rows of elements. Of what follows from

@@ -65,15 +65,13 @@ impl OnGrid {
             Outcome::Converged => values(&mut solver, scene, &report, wanted)?,
             _ => vec![Err(Lack::Unsolved); wanted.len()],
         };
-        let residual = report.measures.certificate.residual;
-        let residual = report.friction.map_or(residual, |found| residual.max(found.certificate.residual));
         Ok(OnGrid {
             grid: scene.grid,
             outcome,
             values,
             estimates: wanted.iter().map(|quantity| estimate(&report, *quantity)).collect(),
             lacks_estimates: solver.lacks_estimates(),
-            residual,
+            residual: report.residual(),
             seconds,
             work_units: report.count.work_units + report.friction.map_or(0.0, |found| found.products),
             bytes: report.bytes,
@@ -139,11 +137,8 @@ fn row(quantity: Quantity, k: usize, found: &OnGrid, doublings: i32, sequence: &
     if let Some(value) = value {
         sequence.add(doublings, value, found.residual * value.abs());
     }
-    let falling = |sequence: &Sequence| match quantity.has_estimate() {
-        true => sequence.falling_instead().filter(|_| found.lacks_estimates),
-        false => sequence.falling(),
-    };
-    let of_sequence = value.and_then(|_| falling(sequence)).map(|falling| falling.now());
+    let falling = value.and_then(|_| quantity.error_of(sequence, found.lacks_estimates));
+    let of_sequence = falling.map(|falling| falling.now());
     let error = value.and(found.estimates[k]).or(of_sequence);
     let lack = match (found.values[k], error) {
         (Err(lack), _) => Some(lack),

@@ -66,12 +66,6 @@ impl Sequence {
         self.points.last().map(|point| point.value)
     }
 
-    /// The same where the report of one grid should have an estimate and has none: from three grids at least, since a value that is infinite
-    /// shows in its changes only.
-    pub fn falling_instead(&self) -> Option<Falling> {
-        self.falling().filter(|_| self.len() > 2)
-    }
-
     /// Grids so far.
     pub fn len(&self) -> usize {
         self.points.len()

@@ -72,28 +72,26 @@ impl History {
     }
 
     /// Adds the values of a grid, and tells its outlook what they say.
-    pub fn add(&mut self, doublings: i32, values: &Values<'_>, outlook: &mut Outlook) {
-        for ((quantity, sequence), value) in self.sequences.iter_mut().zip(values.of) {
+    pub fn add(&mut self, doublings: i32, values: &Values, outlook: &mut Outlook) {
+        for ((quantity, sequence), value) in self.sequences.iter_mut().zip(&values.of) {
             let Ok(value) = *value else { continue };
             sequence.add(doublings, value, values.residual * value.abs());
-            let falling = match quantity.has_estimate() {
-                false => sequence.falling(),
-                // Single peaks have none though the force has one: they are singular, or not resolved.
-                true if !values.lack_estimates => continue,
-                true => sequence.falling_instead(),
-            };
-            outlook.set(*quantity, falling.and_then(|falling| falling.over(value)));
+            // What one grid has said stays.
+            if !quantity.has_estimate() || values.lack_estimates {
+                let falling = quantity.error_of(sequence, values.lack_estimates);
+                outlook.set(*quantity, falling.and_then(|falling| falling.over(value)));
+            }
         }
     }
 }
 
 /// What one grid gives, in the order of what is wanted.
-pub struct Values<'a> {
+pub struct Values {
     /// The values.
-    pub of: &'a [Result<f64, Lack>],
+    pub of: Vec<Result<f64, Lack>>,
     /// The relative residual.
     pub residual: f64,
-    /// Whether nothing is estimated from one such grid.
+    /// Whether nothing is estimated from one such grid: a limit is reached, or something attracts.
     pub lack_estimates: bool,
 }
 

@@ -7,8 +7,8 @@ use crate::grid::Grid;
 use crate::scene::{scaled, Scene};
 use crate::solver::quantities::Quantity;
 
-/// The power of the number of elements with which seconds grow (docs/performance.md).
-const GROWTH: f64 = 1.08;
+/// The power of the number of elements with which seconds of whole calls grow (docs/performance.md).
+pub const GROWTH: f64 = 1.08;
 /// That of set-ups, at least.
 const SETUP_GROWTH: f64 = 0.4;
 /// Elements across the contact on a sample that can be carried on.
@@ -79,7 +79,7 @@ pub(super) fn predict(
     (quantity, target): (Quantity, f64),
 ) -> Option<(i32, f64)> {
     let last = samples.last()?;
-    let falling = last.falling?;
+    let falling = last.falling()?;
     let (least, most) = (-(last.across.ilog2() as i32), (MOST_ELEMENTS as f64).log2() as i32);
     let does = |k: &i32| {
         let enough = last.across as f64 * 2f64.powi(*k) >= quantity.enough_across() as f64;
@@ -112,7 +112,7 @@ pub(super) fn price(
         return Price { obstacle: Some(Obstacle::RoundOff), ..nothing };
     }
     let last = samples.last().filter(|last| last.across >= ACROSS);
-    let Some((last, falling)) = last.and_then(|last| Some((last, last.falling?))) else { return nothing };
+    let Some((last, falling)) = last.and_then(|last| Some((last, last.falling()?))) else { return nothing };
     let Some((k, seconds)) = predict(scene, samples, (quantity, target)) else {
         return Price { obstacle: Some(Obstacle::Elements), ..nothing };
     };

@@ -7,7 +7,7 @@ use super::solved::Solved;
 use super::{on_grid, SurfaceCallback};
 use crate::error::Result;
 use crate::scene::{scaled, Scene};
-use crate::solver::quantities::{Falling, Lack, Quantity};
+use crate::solver::quantities::{Falling, Quantity};
 use crate::solver::{Options, Outcome, Progress, ProgressCallback};
 
 /// Samples are timed again, so often at most: the first solve of a size is slow, and machines are busy.
@@ -30,11 +30,7 @@ pub(super) struct Sample {
     pub(super) elements: f64,
     /// In the direction with fewer of them.
     pub(super) across: usize,
-    pub(super) falling: Option<Falling>,
-    /// The quantity, where its error does not follow from one grid.
-    values: Vec<std::result::Result<f64, Lack>>,
-    residual: f64,
-    lacks_estimates: bool,
+    values: Values,
     outlook: Outlook,
     quantity: Quantity,
     pub(super) bytes: f64,
@@ -93,18 +89,14 @@ impl Sample {
                 Err((Outcome::Cancelled, ..)) => return Ok(Taken::Cancelled),
                 Err(_) => return Ok(Taken::Unsolved),
             };
-        let residual = solved.residual();
-        let Solved { solver, report, outlook, values, lacks_estimates } = solved;
+        let Solved { solver, report, outlook, values } = solved;
         let seconds = began.elapsed().as_secs_f64();
         let (x, y) = across(solver.state(), solver.influence().repeats(solver.grid()));
         Ok(Taken::Sample(Box::new(Sample {
             doublings,
             elements: elements as f64,
             across: x.min(y),
-            falling: outlook.falling(quantity),
             values,
-            residual,
-            lacks_estimates,
             outlook,
             quantity,
             bytes: report.bytes as f64,
@@ -116,10 +108,13 @@ impl Sample {
 
     /// With the error that the values of this and coarser grids have.
     pub(super) fn carried_on(mut self, history: &mut History) -> Sample {
-        let values = Values { of: &self.values, residual: self.residual, lack_estimates: self.lacks_estimates };
-        history.add(self.doublings, &values, &mut self.outlook);
-        self.falling = self.outlook.falling(self.quantity);
+        history.add(self.doublings, &self.values, &mut self.outlook);
         self
+    }
+
+    /// The relative error of the quantity, on this and finer grids.
+    pub(super) fn falling(&self) -> Option<Falling> {
+        self.outlook.falling(self.quantity)
     }
 
     /// Seconds to a residual: what follows the last iteration is needed by any.
