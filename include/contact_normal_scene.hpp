@@ -72,7 +72,7 @@ public:
         layer_->compliances = per_element("layer", compliances);
         return *this;
     }
-    /// A coating on body 1 or 2 of the scene: an elastic layer of this thickness and material, bonded to the body.
+    /// A coating on body 1 or 2 of the scene: an elastic layer of this thickness and material, bonded to the body, which may be rigid.
     scene &coating(std::size_t body, double thickness, const contact_normal::body &material) &
     {
         if (body < 1 || body > 2) detail::refuse("body is " + std::to_string(body) + "; it must be 1 or 2");

@@ -81,7 +81,7 @@ def solve(
         Own coefficients of each loaded row, row and offset in x.
     coating : (of body 1, of body 2), optional
         Of each None or `(thickness, shear_modulus, poisson_ratio)`: an elastic layer bonded to the body. The elastic constants above
-        are then those of the body below.
+        are then those of the body below, which may be rigid (inf).
     friction : mapping, optional
         Friction between the bodies: "coefficient" (one, or (my, mx)); "motion", "SHIFT" (default), "TRANSIENT_ROLLING" or
         "STEADY_ROLLING"; "creepage", a pair; "force", a pair of tangential forces, None where the creepage is given; "spin",

@@ -8,7 +8,7 @@ use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::influence::{Coefficients, Kernel};
 use crate::memory::Held;
-use crate::scene::Plain;
+use crate::scene::{Bodies, Plain};
 
 /// A value of an effect.
 #[derive(Clone, Copy, Debug)]
@@ -59,9 +59,9 @@ pub trait Effect {
         Ok(())
     }
 
-    /// Refuses bodies that it is not solved with.
-    fn check_bodies(&self, _scene: &Plain<'_>) -> Result<()> {
-        Ok(())
+    /// The materials at the surfaces of the bodies, where it covers them; none: the bodies' own.
+    fn at_surface(&self, _scene: &Plain<'_>) -> Option<Bodies> {
+        None
     }
 
     /// Its own kernel, in place of the half-space's; others may have a say in it.

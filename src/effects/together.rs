@@ -74,10 +74,10 @@ pub fn replace_bodies(scene: &Scene<'_>) -> bool {
     own_coefficients(scene).is_some()
 }
 
-/// Checks the bodies, of which some effects ask more.
+/// Checks the bodies, each by itself, and both together as they are at their surfaces.
 pub fn check_bodies(scene: &Scene<'_>) -> Result<()> {
-    effects(scene).try_for_each(|effect| effect.check_bodies(&scene.plain()))?;
-    scene.bodies.check()
+    scene.bodies.check_each()?;
+    effects(scene).find_map(|effect| effect.at_surface(&scene.plain())).unwrap_or(scene.bodies).check()
 }
 
 /// The first effect that is not solved on a contact area that is given.

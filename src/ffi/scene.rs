@@ -38,7 +38,7 @@ pub struct contact_normal_scene {
     pub dy: f64,
     /// h, the gap between the surfaces before they deform, `[my][mx]`, x fastest: a length. +infinity: no surface there, the element stays exterior. Default NULL: to be set.
     pub undeformed_distance: *const f64,
-    /// G of the two bodies: a pressure, positive; +infinity: rigid (one of them at most). Default 0: to be set.
+    /// G of the two bodies: a pressure, positive; +infinity: rigid (one surface at most, below a coating both). Default 0: to be set.
     pub shear_modulus: [f64; 2],
     /// nu of the two bodies, in (-1, 0.5]; default 0.
     pub poisson_ratio: [f64; 2],

@@ -24,6 +24,7 @@ mod batch;
 mod bill;
 mod coated_period;
 mod coating;
+mod coating_on_rigid;
 mod coefficients;
 mod effects;
 mod estimates;

@@ -707,7 +707,8 @@ typedef struct contact_normal_solver contact_normal_solver;
 typedef int32_t contact_normal_status;
 
 /*
- Effect: a coating, an elastic layer bonded to a body. `shear_modulus` and `poisson_ratio` of the scene are then those of the body below.
+ Effect: a coating, an elastic layer bonded to a body. `shear_modulus` and `poisson_ratio` of the scene are then those of the body below,
+ which may be rigid: +infinity.
  */
 typedef struct contact_normal_coating {
   /*
@@ -719,7 +720,7 @@ typedef struct contact_normal_coating {
    */
   double thickness;
   /*
-   Its G, a pressure > 0, 1e-4 to 1e4 times that of the body; default 0: to be set.
+   Its G, a pressure > 0, at most 1e4 times that of the body; default 0: to be set.
    */
   double shear_modulus;
   /*
@@ -1063,7 +1064,7 @@ typedef struct contact_normal_scene {
    */
   const double *undeformed_distance;
   /*
-   G of the two bodies: a pressure, positive; +infinity: rigid (one of them at most). Default 0: to be set.
+   G of the two bodies: a pressure, positive; +infinity: rigid (one surface at most, below a coating both). Default 0: to be set.
    */
   double shear_modulus[2];
   /*
@@ -2280,7 +2281,7 @@ void contact_normal_init(int32_t kind,
                          int64_t size);
 
 /*
- What a coated body with this `shear_modulus` and `poisson_ratio` below gives way to a pressure wave: the amplitude of the
+ What a coated body with this `shear_modulus` (+infinity: rigid) and `poisson_ratio` below gives way to a pressure wave: the amplitude of the
  displacement over that of the pressure, for `wave_number` (2 pi over the wave's length) > 0. To compare a coating with a formula of
  one's own: `(1 - nu)/(G k)` for a body of one material. Since 0.2.
  */
