@@ -53,6 +53,7 @@
 //! | [`solver`] | THE loop (section 4.1), nested iteration (section 4.3), which methods in which order, the report |
 //! | [`friction`], [`adhesion`] | the tangential problem; attraction across the gap |
 //! | [`stress`] | stresses below the surface, from pressures and tractions |
+//! | [`visco`] | Prony series of bodies that relax, and their step in time |
 //! | [`analytic`] | the Hertz solution |
 //! | `blocks`, `bounding_box` | passes over a grid, by all threads and in vectors |
 //! | [`threads`], and of the same crate, `par`, `memory` and `sums` | the pool, memory by the size of the grid, sums in a fixed order |
@@ -79,6 +80,7 @@ pub mod progress;
 pub mod scene;
 pub mod solver;
 pub mod stress;
+pub mod visco;
 
 pub use par::threads;
 pub(crate) use par::{memory, sums};

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::coupled::{Coupled, History};
+use super::memory::Memory;
 use super::properties::{Properties, Stresses};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
@@ -76,6 +77,16 @@ pub trait Effect {
 
     /// The undeformed distance that it makes of `h`; none: the same.
     fn surface(&self, _h: &[f64]) -> Result<Option<Vec<f64>>> {
+        Ok(None)
+    }
+
+    /// What bodies remember of the steps before, `history`, in a step of this one.
+    fn memory(
+        &self,
+        _scene: &Plain<'_>,
+        _others: &[Option<&dyn Effect>],
+        _history: &mut History,
+    ) -> Result<Option<Box<dyn Memory>>> {
         Ok(None)
     }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::coupled::{Coupled, History};
 use super::effect::Effect;
 use super::list::with_effects;
+use super::memory::Memory;
 use super::properties::{Continues, Layout, PressureLimit, Properties};
 use crate::error::{invalid, Error, Result};
 use crate::influence::{Coefficients, HalfSpace};
@@ -130,6 +131,17 @@ pub fn coupled<'s>(scene: &'s Scene<'_>, histories: &'s mut [History; COUNT]) ->
         }
     }
     Ok(coupled)
+}
+
+/// What bodies remember, and which effect of the list says so.
+pub fn memory(scene: &Scene<'_>, histories: &mut [History; COUNT]) -> Result<Option<(usize, Box<dyn Memory>)>> {
+    let (plain, list) = (scene.plain(), list(scene));
+    for (k, (effect, history)) in list.iter().zip(histories).enumerate() {
+        if let Some(memory) = effect.map_or(Ok(None), |effect| effect.memory(&plain, &list, history))? {
+            return Ok(Some((k, memory)));
+        }
+    }
+    Ok(None)
 }
 
 /// A step of the effects that a scene names is done; of those that it does not name there is none any more.

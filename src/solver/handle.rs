@@ -94,7 +94,7 @@ impl Solver {
         // Workers share the coefficients of the finest grid.
         let own = |worker: &Solver| worker.bytes() - worker.influence().bytes();
         let workers: usize = self.workers.iter().flatten().map(own).sum();
-        let limits = self.limits.len() * size_of::<f64>();
+        let limits = (self.limits.len() + self.remembered.len()) * size_of::<f64>();
         let friction = self.friction.as_deref().into_iter().chain(&self.crew).map(Tangent::bytes).sum::<usize>();
         let tables = self.own_tables.as_ref().map_or(0, |tables| tables.bytes());
         let adhesion = self.adhesion.as_ref().map_or(0, |adhesion| adhesion.bytes());

@@ -36,6 +36,7 @@ mod tangential_turn;
 mod turns;
 mod unlike_bodies;
 mod unlike_sensitivities;
+mod with_memory;
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -108,6 +109,10 @@ pub struct Solver {
     adhesion: Option<Box<crate::adhesion::Solver>>,
     /// Whether the last result is one of a scene with adhesion.
     is_adhesive: bool,
+    /// What bodies remember, and the distances of their step; empty where they remember nothing.
+    remembered: Vec<f64>,
+    /// Of the bodies in the last result, in that of the set-up: 1 where they remember nothing.
+    compliance: f64,
     /// Tangential coefficients of the caller's own.
     own_tables: Option<Arc<KeptInfluence>>,
     /// For tables of tangential problems: of one thread each, made when first needed.
@@ -201,6 +206,8 @@ impl Solver {
             friction: None,
             adhesion: None,
             is_adhesive: false,
+            remembered: Vec::new(),
+            compliance: 1.0,
             own_tables: None,
             crew: Vec::new(),
             workers: Vec::new(),
@@ -234,12 +241,26 @@ impl Solver {
         if let Some(h) = effects::surface(scene)? {
             let scene = &Scene { undeformed_distance: &h, ..scene.clone() };
             let lowest = scene.check_distance_and_load(&self.problem.threads)?;
-            return self.solve_surface((scene, lowest), options, guess, progress);
+            return self.solve_step_in_time((scene, lowest), options, guess, progress);
         }
-        self.solve_surface((scene, lowest), options, guess, progress)
+        self.solve_step_in_time((scene, lowest), options, guess, progress)
     }
 
-    /// The same for a scene that is checked, with the undeformed distance that its effects make.
+    /// The same with the undeformed distance that its effects make: bodies may remember the steps before.
+    fn solve_step_in_time(
+        &mut self,
+        (scene, lowest): (&Scene<'_>, f64),
+        options: &Options,
+        guess: Option<Guess<'_>>,
+        progress: Option<ProgressCallback<'_>>,
+    ) -> Result<(Outcome, Report)> {
+        match effects::memory(scene, &mut self.beside.histories)? {
+            Some((k, memory)) => self.solve_with_memory((scene, k, &*memory), options, guess, progress),
+            None => self.solve_surface((scene, lowest), options, guess, progress),
+        }
+    }
+
+    /// A scene that is checked, whose bodies remember nothing, or whose distances have what they remember.
     fn solve_surface(
         &mut self,
         (scene, lowest): (&Scene<'_>, f64),
@@ -248,6 +269,7 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
         check::guess(scene, options, guess)?;
+        self.compliance = 1.0;
         if let Some(adhesion) = scene.attraction() {
             return self.solve_adhesive((scene, lowest), (adhesion, false), options, guess, progress);
         }

@@ -63,5 +63,7 @@ mod stress_on_edges;
 mod subsurface_stress;
 mod support;
 mod threads;
+mod visco;
+mod visco_steps;
 mod wheel_rail;
 mod white_noise;
