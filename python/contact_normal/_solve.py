@@ -44,6 +44,7 @@ def solve(
     coating: Any = None,
     friction: Mapping[str, Any] | None = None,
     adhesion: Mapping[str, Any] | None = None,
+    visco: Mapping[str, Any] | None = None,
     pressure: npt.ArrayLike | None = None,
     contact: npt.ArrayLike | None = None,
     units: tuple[str, str] | None = None,
@@ -97,6 +98,11 @@ def solve(
         "CUBIC" or "VAN_DER_WAALS"; "range", a length, by default the shortest that the elements carry; "smear", of DUGDALE; "start",
         "AUTO" (default), "FROM_CONTACT" or "FROM_APART": which of several states; "stiffness": True for dF/dapproach. `force` may then be
         negative. docs/adhesion.md says which law and which range.
+    visco : mapping, optional
+        Bodies that relax: "modulus" and "time", pairs (of body 1, of body 2) of the moduli and the relaxation times of their branches, None
+        where a body is elastic; `shear_modulus` is that at once. "time_step" of the step, 0 (default) for a jump; "form", "AUTO" (default),
+        "RELAXATION", "CREEP" or "BACKWARD_EULER"; "continues": from the step that a `Solver` made last. `report` has the "time", the
+        "step_error" and the "compliance". docs/visco.md has the equations.
     pressure, contact : array_like, (my, mx), optional
         Initial guess: the pressures, or the contact area (booleans or integers) that there may be; with `active_set="FIXED"` `contact` is
         the contact area.
@@ -131,7 +137,7 @@ def solve(
     (0, 1000, (64, 64))
     """
     effects = {"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches,
-               "row_tables": row_tables, "coating": coating, "friction": friction, "adhesion": adhesion}
+               "row_tables": row_tables, "coating": coating, "friction": friction, "adhesion": adhesion, "visco": visco}
     scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects, mean_pressure=mean_pressure, young_modulus=young_modulus,
                   e_star=e_star)
     struct = options(given)

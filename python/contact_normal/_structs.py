@@ -128,6 +128,20 @@ class Adhesion(ctypes.Structure):
     ]
 
 
+class Visco(ctypes.Structure):
+    """contact_normal_visco."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("branches", c_int32 * 2),
+        ("modulus", POINTER(c_double) * 2),
+        ("time", POINTER(c_double) * 2),
+        ("time_step", c_double),
+        ("form", c_int32),
+        ("continues", c_int32),
+    ]
+
+
 class Scene(ctypes.Structure):
     """contact_normal_scene."""
 
@@ -153,6 +167,7 @@ class Scene(ctypes.Structure):
         ("coating", POINTER(Coating) * 2),
         ("friction", POINTER(Friction)),
         ("adhesion", POINTER(Adhesion)),
+        ("visco", POINTER(Visco)),
     ]
 
 
@@ -352,6 +367,17 @@ class ReportAdhesion(ctypes.Structure):
     ]
 
 
+class ReportVisco(ctypes.Structure):
+    """contact_normal_report_visco."""
+
+    _fields_ = [
+        ("time", c_double),
+        ("step_error", c_double),
+        ("compliance", c_double),
+        ("reserved", c_double * 5),
+    ]
+
+
 class Report(ctypes.Structure):
     """contact_normal_report."""
 
@@ -367,6 +393,7 @@ class Report(ctypes.Structure):
         ("accuracy", ReportAccuracy),
         ("statistics", ReportStatistics),
         ("adhesion", ReportAdhesion),
+        ("visco", ReportVisco),
     ]
 
 
@@ -575,4 +602,5 @@ KINDS: dict[str, tuple[int, type[ctypes.Structure]]] = {
     "quantity_row": (22, QuantityRow),
     "effects_row": (23, EffectsRow),
     "adhesion": (24, Adhesion),
+    "visco": (25, Visco),
 }

@@ -25,6 +25,7 @@ use super::special::contact_normal_hertz_solution;
 use super::status::CONTACT_NORMAL_OK;
 use super::stress_outputs::{contact_normal_stress_maximum, contact_normal_stress_outputs};
 use super::structs;
+use super::visco::contact_normal_visco;
 
 /// `kind`: `contact_normal_scene`. Since 0.1.
 pub const CONTACT_NORMAL_KIND_SCENE: i32 = 1;
@@ -74,6 +75,8 @@ pub const CONTACT_NORMAL_KIND_QUANTITY_ROW: i32 = 22;
 pub const CONTACT_NORMAL_KIND_EFFECTS_ROW: i32 = 23;
 /// `kind`: `contact_normal_adhesion`. Since 0.2.
 pub const CONTACT_NORMAL_KIND_ADHESION: i32 = 24;
+/// `kind`: `contact_normal_visco`. Since 0.2.
+pub const CONTACT_NORMAL_KIND_VISCO: i32 = 25;
 
 /// Fills a struct of this `kind` (CONTACT_NORMAL_KIND_...), which has `size` bytes in the caller's header, with its defaults. Programs in C
 /// and C++ call the function that the header has for each struct, as `contact_normal_scene_init(&scene)`; others call this one with the
@@ -134,6 +137,7 @@ kinds! {
     CONTACT_NORMAL_KIND_QUANTITY_ROW => contact_normal_quantity_row,
     CONTACT_NORMAL_KIND_EFFECTS_ROW => contact_normal_effects_row,
     CONTACT_NORMAL_KIND_ADHESION => contact_normal_adhesion,
+    CONTACT_NORMAL_KIND_VISCO => contact_normal_visco,
 }
 
 #[cfg(test)]

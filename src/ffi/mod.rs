@@ -47,6 +47,7 @@ mod stress;
 mod stress_outputs;
 mod structs;
 mod tangential;
+mod visco;
 mod warnings;
 mod watcher;
 
@@ -81,4 +82,5 @@ pub use status::*;
 pub use stress::*;
 pub use stress_outputs::*;
 pub use tangential::*;
+pub use visco::*;
 pub use warnings::*;

@@ -58,7 +58,6 @@ pub use tangential_calls::solve_tangential;
 use crate::contact::{self, Curvature, State};
 use crate::effects::{self, KeptInfluence, Layout, Named};
 use crate::error::Result;
-use crate::friction;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::progress::Monitor;
@@ -246,20 +245,6 @@ impl Solver {
         self.solve_step_in_time((scene, lowest), options, guess, progress)
     }
 
-    /// The same with the undeformed distance that its effects make: bodies may remember the steps before.
-    fn solve_step_in_time(
-        &mut self,
-        (scene, lowest): (&Scene<'_>, f64),
-        options: &Options,
-        guess: Option<Guess<'_>>,
-        progress: Option<ProgressCallback<'_>>,
-    ) -> Result<(Outcome, Report)> {
-        match effects::memory(scene, &mut self.beside.histories)? {
-            Some((k, memory)) => self.solve_with_memory((scene, k, &*memory), options, guess, progress),
-            None => self.solve_surface((scene, lowest), options, guess, progress),
-        }
-    }
-
     /// A scene that is checked, whose bodies remember nothing, or whose distances have what they remember.
     fn solve_surface(
         &mut self,
@@ -302,11 +287,6 @@ impl Solver {
         report.bytes = self.bytes() as u64;
         report.log(options.method, &self.problem.grid, stop);
         Ok((stop, report))
-    }
-
-    /// Tractions, slip and stick area of the last result; none if its scene had no friction.
-    pub fn friction(&self) -> Option<&friction::Solution> {
-        self.friction.as_deref().filter(|_| self.has_result).and_then(Tangent::solution)
     }
 
     /// The errors of the report and the ledger. Limits that are reached have other rims, row tables other displacements than the estimates know.

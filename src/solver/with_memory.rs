@@ -2,15 +2,29 @@
 
 use super::{Guess, Options, Outcome, ProgressCallback, Report, Solver};
 use crate::contact::{lowest, Freshness};
-use crate::effects::Memory;
+use crate::effects::{self, Memory};
 use crate::error::Result;
 use crate::memory::zeros;
 use crate::scene::{Load, Scene};
 
 impl Solver {
+    /// Solves a scene that is checked, with the undeformed distance that its effects make: bodies may remember the steps before.
+    pub(super) fn solve_step_in_time(
+        &mut self,
+        (scene, lowest): (&Scene<'_>, f64),
+        options: &Options,
+        guess: Option<Guess<'_>>,
+        progress: Option<ProgressCallback<'_>>,
+    ) -> Result<(Outcome, Report)> {
+        match effects::memory(scene, &mut self.beside.histories)? {
+            Some((k, memory)) => self.solve_with_memory((scene, k, &*memory), options, guess, progress),
+            None => self.solve_surface((scene, lowest), options, guess, progress),
+        }
+    }
+
     /// Solves a step of a scene that is checked, as a problem of other lengths; `k`: the effect. A step that is refused, or fails, leaves what the
     /// bodies remember.
-    pub(super) fn solve_with_memory(
+    fn solve_with_memory(
         &mut self,
         (scene, k, memory): (&Scene<'_>, usize, &dyn Memory),
         options: &Options,

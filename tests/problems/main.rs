@@ -26,6 +26,7 @@ mod coated_period;
 mod coating;
 mod coating_on_rigid;
 mod coefficients;
+mod dashpots;
 mod effects;
 mod estimates;
 mod estimates_at_edges;

@@ -79,7 +79,8 @@ fn creep_is_the_inverse_of_relaxation() {
             let x = i as f64 / n as f64;
             // s/t = 1/(1 + exp(-2 sinh(pi z))): double exponential.
             let z = 6.0 * (x - 0.5);
-            let (part, late) = (1.0 / (1.0 + (-2.0 * (PI * z).sinh()).exp()), 1.0 / (1.0 + (2.0 * (PI * z).sinh()).exp()));
+            let (part, late) =
+                (1.0 / (1.0 + (-2.0 * (PI * z).sinh()).exp()), 1.0 / (1.0 + (2.0 * (PI * z).sinh()).exp()));
             let weight = 2.0 * PI * (PI * z).cosh() * part * late * 6.0 / n as f64 * t;
             if weight > 1e-30 {
                 sum += weight * relaxation(g, (moduli, times), t * late) * held(&series, &[t * part], Form::Creep) / g;

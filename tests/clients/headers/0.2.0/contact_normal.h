@@ -222,6 +222,11 @@
 #define CONTACT_NORMAL_KIND_ADHESION 24
 
 /*
+ `kind`: `contact_normal_visco`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_VISCO 25
+
+/*
  `load`: that one of `approach` and `force` is given which is set; both or none is refused.
  */
 #define CONTACT_NORMAL_PRESCRIBED_UNSET 0
@@ -310,6 +315,26 @@
  `start`: from bodies apart: nothing snaps in before it must.
  */
 #define CONTACT_NORMAL_START_FROM_APART 2
+
+/*
+ `form`: RELAXATION where the approach is given, CREEP where the force is.
+ */
+#define CONTACT_NORMAL_FORM_AUTO 0
+
+/*
+ `form`: displacements are linear in the step; second order, exact where the approach is held.
+ */
+#define CONTACT_NORMAL_FORM_RELAXATION 1
+
+/*
+ `form`: pressures are linear in the step; second order, exact where they are held.
+ */
+#define CONTACT_NORMAL_FORM_CREEP 2
+
+/*
+ `form`: backward Euler; first order, to compare with programs that have it.
+ */
+#define CONTACT_NORMAL_FORM_BACKWARD_EULER 3
 
 /*
  `method`: the fastest way known that is safe.
@@ -1035,6 +1060,43 @@ typedef struct contact_normal_adhesion {
 } contact_normal_adhesion;
 
 /*
+ Effect: bodies that relax, and a step of `time_step` of them. The `shear_modulus` of the scene is that at once, and falls to
+ `G(t) = G - sum of modulus (1 - exp(-t/time))` at a constant Poisson ratio; of a coated body it is that of the coating, on a rigid body. A
+ solver handle remembers the steps before: the first step has `continues` 0, the others 1. `displacement` and `deformed_distance` contain what is
+ left of the steps before. See docs/visco.md.
+ */
+typedef struct contact_normal_visco {
+  /*
+   Set by `contact_normal_visco_init`.
+   */
+  int64_t struct_size;
+  /*
+   Branches of body 1 and body 2, 0 (default: an elastic body) to 32.
+   */
+  int32_t branches[2];
+  /*
+   Moduli of the branches of each body, pressures >= 0 that add up to at most its shear modulus. Default NULL: to be set where there are branches.
+   */
+  const double *modulus[2];
+  /*
+   Relaxation times of the branches, > 0. Default NULL: to be set where there are branches.
+   */
+  const double *time[2];
+  /*
+   Time of the step, >= 0; default 0: the load jumps, and the bodies give way at once.
+   */
+  double time_step;
+  /*
+   CONTACT_NORMAL_FORM_...; default AUTO.
+   */
+  int32_t form;
+  /*
+   1: the step begins where the last one of the solver ended; 0 (default): at rest, at time 0.
+   */
+  int32_t continues;
+} contact_normal_visco;
+
+/*
  What is simulated: `e = h - approach + A p`, with e = 0 and p >= 0 in contact, e > 0 and p = 0 outside. Any consistent
  system of units.
  */
@@ -1123,6 +1185,10 @@ typedef struct contact_normal_scene {
    Effect, or NULL (default): attraction between the bodies.
    */
   const struct contact_normal_adhesion *adhesion;
+  /*
+   Effect, or NULL (default): bodies that relax, and a step of time of them.
+   */
+  const struct contact_normal_visco *visco;
 } contact_normal_scene;
 
 /*
@@ -1702,6 +1768,28 @@ typedef struct contact_normal_report_adhesion {
 } contact_normal_report_adhesion;
 
 /*
+ What was found of a step in time: a group of `contact_normal_report`. Without bodies that relax all is 0.
+ */
+typedef struct contact_normal_report_visco {
+  /*
+   Since the bodies were at rest: the sum of the steps.
+   */
+  double time;
+  /*
+   How far the step may be off: what its form and another one differ by, rms of the displacements in contact over that of h - approach.
+   */
+  double step_error;
+  /*
+   The compliance of the bodies in the step, in that at once.
+   */
+  double compliance;
+  /*
+   Room for later versions: 0.
+   */
+  double reserved[5];
+} contact_normal_report_visco;
+
+/*
  What a solve found and what it cost, in groups. Written only when the status is >= 0. A group grows into the room at its end, which is 0
  where the library does not know what a newer header has there; later groups come at the end of the report.
  */
@@ -1750,6 +1838,10 @@ typedef struct contact_normal_report {
    What was found of adhesion.
    */
   struct contact_normal_report_adhesion adhesion;
+  /*
+   What was found of a step in time.
+   */
+  struct contact_normal_report_visco visco;
 } contact_normal_report;
 
 /*
@@ -2831,6 +2923,14 @@ static inline void contact_normal_effects_row_init(contact_normal_effects_row *e
 static inline void contact_normal_adhesion_init(contact_normal_adhesion *adhesion)
 {
   contact_normal_init(CONTACT_NORMAL_KIND_ADHESION, adhesion, (int64_t)sizeof(contact_normal_adhesion));
+}
+
+/*
+ Fills a contact_normal_visco with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_visco_init(contact_normal_visco *visco)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_VISCO, visco, (int64_t)sizeof(contact_normal_visco));
 }
 
 #endif  /* CONTACT_NORMAL_H */
