@@ -96,8 +96,9 @@ def solve(
     adhesion : mapping, optional
         Attraction across the gap: "work" of adhesion, an energy per area (one, or (my, mx)); "law", "EXPONENTIAL" (default), "DUGDALE",
         "CUBIC" or "VAN_DER_WAALS"; "range", a length, by default the shortest that the elements carry; "smear", of DUGDALE; "start",
-        "AUTO" (default), "FROM_CONTACT" or "FROM_APART": which of several states; "stiffness": True for dF/dapproach. `force` may then be
-        negative. docs/adhesion.md says which law and which range.
+        "AUTO" (default), "FROM_CONTACT" or "FROM_APART": which of several states; "stiffness": True for dF/dapproach; "stability": True for
+        how near the state is to a snap; "shear_strength", a traction that adds to the bound of friction in contact. `force` may then be negative.
+        docs/adhesion.md says which law and which range.
     visco : mapping, optional
         Bodies that relax: "modulus" and "time", pairs (of body 1, of body 2) of the moduli and the relaxation times of their branches, None
         where a body is elastic; `shear_modulus` is that at once. "time_step" of the step, 0 (default) for a jump; "form", "AUTO" (default),

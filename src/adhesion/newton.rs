@@ -117,6 +117,16 @@ fn take_step(level: &mut Level, wanted: Option<f64>, worst: f64) -> Result<()> {
     Ok(())
 }
 
+/// s at the state of now.
+pub fn stiffnesses(level: &Level, stiffness: &mut [[f64; 1]]) {
+    let (surface, now) = (&level.surface, &level.now);
+    fields::fill(&level.problem.threads, stiffness, |i| {
+        let e = surface.distance(i, now);
+        let is_apart = !now.contact[i] && e.is_finite();
+        [if is_apart { surface.attraction.stiffness(surface.work_at(i), e.max(0.0)) } else { 0.0 }]
+    });
+}
+
 /// s, and the right-hand side, of the contact area of now.
 fn linearise(level: &Level, at_mean: bool, stiffness: &mut [[f64; 1]], right: &mut [[f64; 1]]) {
     let (surface, now, a0, threads) = (&level.surface, &level.now, level.self_influence(), &level.problem.threads);

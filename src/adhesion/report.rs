@@ -28,6 +28,8 @@ pub struct Report {
     pub border_share: f64,
     /// dF/dapproach; none: not asked for.
     pub stiffness: Option<f64>,
+    /// `1 - lambda`, see [`stability`](super::stability): positive in a stable state, 0 at a snap; none: not asked for.
+    pub stability: Option<f64>,
     /// Whether the bodies have snapped: the state before could not be followed, and more than a quarter of the contact is another one.
     pub jumped: bool,
 }
@@ -66,6 +68,7 @@ impl Report {
             resolution: surface.attraction.resolution(surface.work, level.self_influence()),
             border_share: if sigma > 0.0 { at_border / sigma } else { 0.0 },
             stiffness: None,
+            stability: None,
             jumped: false,
         }
     }

@@ -11,6 +11,7 @@ use super::pull::{walk, Walk};
 use super::report::{close_grid, contact_pressure, Report};
 use super::request::{Request, Start, State};
 use super::robust;
+use super::stability::stability;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::influence::Coefficients;
@@ -82,7 +83,7 @@ impl Solver {
             (Descent::By(End::Solved), true) => self.pull_off(goal, make, monitor)?,
             (end, _) => end,
         };
-        self.conclude(end, (goal, request.stiffness), monitor)
+        self.conclude(end, goal, request, monitor)
     }
 
     /// From a state: along its branch.
@@ -137,7 +138,7 @@ impl Solver {
         match walk(&mut self.levels[0], (goal, make), monitor)? {
             Walk::Found => Ok(Descent::By(End::Solved)),
             Walk::Interrupted => Ok(Descent::By(End::Interrupted)),
-            Walk::Lost => Ok(Descent::By(End::Failed)),
+            Walk::Lost => self.beyond_all_attraction(goal).map_or(Ok(Descent::By(End::Failed)), Err),
             Walk::Least { sum, approach } => {
                 let area = self.levels[0].problem.grid.element_area();
                 let force = goal.wanted.unwrap_or(0.0) * area;
@@ -211,7 +212,8 @@ impl Solver {
     fn conclude(
         &mut self,
         end: Descent,
-        (goal, stiffness): (Goal, bool),
+        goal: Goal,
+        request: &Request<'_>,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, Report)> {
         let level = &mut self.levels[0];
@@ -229,9 +231,13 @@ impl Solver {
         let measured = level.measure(false, wanted);
         let mut report = Report::of(level, &measured);
         report.jumped = self.jumped;
-        if stiffness && end == Descent::By(End::Solved) {
+        let is_solved = end == Descent::By(End::Solved);
+        if request.stiffness && is_solved {
             let area = level.problem.grid.element_area();
             report.stiffness = Some(area * stiffness_of_contact(level, monitor)?);
+        }
+        if request.stability && is_solved {
+            report.stability = Some(stability(level, monitor)?);
         }
         close_grid(level, &measured, monitor);
         if let Some(advice) = report.advice() {

@@ -4,6 +4,7 @@
 //! undeformed distances and loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call.
 
 mod adhesion;
+mod adhesive_friction;
 mod batch;
 mod beside;
 mod best;

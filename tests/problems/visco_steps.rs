@@ -8,7 +8,7 @@ use contact_normal::scene::{
     Visco, Work,
 };
 use contact_normal::solver::{
-    solve, solve_to_accuracy, Accuracy, ActiveSet, Guess, InitialGuess, Method, Options, Outcome, Problem, Solver,
+    solve, solve_to_accuracy, Accuracy, ActiveSet, Guess, Method, Options, Outcome, Problem, Solver,
 };
 use contact_normal::visco::Form;
 
@@ -209,14 +209,14 @@ fn what_is_not_solved_is_refused_by_name() {
         change(&mut visco);
         refusal(Scene { visco: Some(visco), ..plain.clone() }).to_string()
     };
-    let nan = [f64::NAN, 1.0];
+    const NAN: [f64; 2] = [f64::NAN, 1.0];
     for (message, words) in [
         (visco(&|v| v.time_step = -0.1), "visco->time_step is -0.1"),
         (visco(&|v| v.time_step = f64::INFINITY), "visco->time_step is inf"),
         (visco(&|v| v.bodies[1].time = &[1.0]), "visco->branches[1] is 2 and 1"),
         (visco(&|v| v.bodies[0].time = &[1.0, 0.0]), "visco->time[0] is 0"),
         (visco(&|v| v.bodies[0].modulus = &[-1.0, 0.0]), "visco->modulus[0] is -1"),
-        (visco(&|v| v.bodies[0].modulus = &nan), "visco->modulus[0] is NaN"),
+        (visco(&|v| v.bodies[0].modulus = &NAN), "visco->modulus[0] is NaN"),
         (visco(&|v| v.bodies[1].modulus = &[2.0, 3.1]), "visco->modulus[1] adds up to 5.1"),
         (
             refusal(Scene { bodies: Bodies { shear_modulus: [f64::INFINITY, 5.0], ..BODIES }, ..plain.clone() })
@@ -233,6 +233,8 @@ fn what_is_not_solved_is_refused_by_name() {
         range: 0.01,
         start: contact_normal::adhesion::Start::Auto,
         stiffness: false,
+        stability: false,
+        shear_strength: 0.0,
     };
     let layer = Some(CoatingLayer { thickness: 0.3, shear_modulus: 5.0, poisson_ratio: 0.4 });
     let coating = |layers| Some(Coating { layers });
