@@ -1786,9 +1786,13 @@ typedef struct contact_normal_report_visco {
    */
   double time;
   /*
-   How far the step may be off: what its form and another one differ by, rms of the displacements in contact over that of h - approach.
+   How far this step may be off: what its form and another one differ by, rms of the displacements in contact over that of h - approach.
    */
   double step_error;
+  /*
+   The same of all steps since the bodies were at rest, added up: how far the result may be off. 0 without contact.
+   */
+  double time_error;
   /*
    The compliance of the bodies in the step, in that at once.
    */
@@ -1796,7 +1800,7 @@ typedef struct contact_normal_report_visco {
   /*
    Room for later versions: 0.
    */
-  double reserved[5];
+  double reserved[4];
 } contact_normal_report_visco;
 
 /*

@@ -53,7 +53,7 @@ def cycle(step, form="AUTO"):
         for k in range(round(1.8 / step)):
             now = {"time_step": step, "form": form, "continues": k > 0}
             result = solver.solve(h, approach=float(approach((k + 1) * step)), visco=now)
-            found.append((result.report["time"], result.force, result.report["step_error"]))
+            found.append((result.report["time"], result.force, result.report["time_error"]))
     return np.array(found).T
 
 
@@ -74,7 +74,7 @@ def draw(found, picture):
 
 
 found = {"steps of 0.1 s": cycle(0.1), "steps of 0.1 s, backward Euler": cycle(0.1, "BACKWARD_EULER")}
-print("  time  approach     force      Ting  step error  backward Euler")
+print("  time  approach     force      Ting  time error  backward Euler")
 (times, forces, errors), (_, euler, _) = found.values()
 for time, force, error, first_order in zip(times, forces, errors, euler):
     print(f"{time:6.2f} {float(approach(time)):9.3f} {force:9.3f} {ting(time):9.3f} {error:11.1e} {first_order:15.3f}")

@@ -103,7 +103,7 @@ def solve(
         Bodies that relax: "modulus" and "time", pairs (of body 1, of body 2) of the moduli and the relaxation times of their branches, None
         where a body is elastic; `shear_modulus` is that at once. "time_step" of the step, 0 (default) for a jump; "form", "AUTO" (default),
         "RELAXATION", "CREEP" or "BACKWARD_EULER"; "continues": from the step that a `Solver` made last. `report` has the "time", the
-        "step_error" and the "compliance". docs/visco.md has the equations.
+        "step_error", the "time_error" and the "compliance". docs/visco.md has the equations.
     pressure, contact : array_like, (my, mx), optional
         Initial guess: the pressures, or the contact area (booleans or integers) that there may be; with `active_set="FIXED"` `contact` is
         the contact area.

@@ -375,8 +375,9 @@ class ReportVisco(ctypes.Structure):
     _fields_ = [
         ("time", c_double),
         ("step_error", c_double),
+        ("time_error", c_double),
         ("compliance", c_double),
-        ("reserved", c_double * 5),
+        ("reserved", c_double * 4),
     ]
 
 

@@ -29,7 +29,7 @@ class Visco(unittest.TestCase):
                 time = sum((0.4, 0.1, 2.0)[: k + 1])
                 self.assertAlmostEqual(found.report["time"], time, places=12)
                 self.assertLess(abs(found.force / first.force / (modulus(time) / 8.0) - 1), 1e-8)
-                self.assertGreater(found.report["step_error"], 0)
+                self.assertGreater(found.report["time_error"], found.report["step_error"] if k else 0)
             # Anew, and refused on another handle.
             again = solver.solve(H, approach=0.02, visco={"time_step": 0.4})
             self.assertEqual(again.report["time"], 0.4)

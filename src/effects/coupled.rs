@@ -39,6 +39,8 @@ pub struct History {
     has_step: bool,
     /// Of the steps so far, for effects that have a time.
     pub time: f64,
+    /// What the steps so far may be off, added up: a length.
+    pub error: f64,
 }
 
 impl History {
@@ -73,7 +75,7 @@ impl History {
     /// There is no last step.
     pub fn forget(&mut self) {
         self.fields.iter_mut().for_each(|field| field.fill(0.0));
-        (self.has_step, self.time) = (false, 0.0);
+        (self.has_step, self.time, self.error) = (false, 0.0, 0.0);
     }
 
     /// Bytes held.

@@ -52,24 +52,20 @@ impl Step {
         bodies.iter().map(|body| body.share * body.map.compliance()).sum()
     }
 
-    /// What both forms differ by: rms of the displacements in contact, over that of h - approach.
-    fn error(&self, fields: &[Vec<f64>], state: &State) -> f64 {
-        if self.time_step == 0.0 {
-            return 0.0;
-        }
+    /// What both forms differ by, and h - approach: rms over the elements in contact.
+    fn error(&self, fields: &[Vec<f64>], state: &State) -> (f64, f64) {
         let (s, other) = (Step::compliance_of(&self.bodies), Step::compliance_of(&self.compared));
-        let (mut differences, mut distances) = (0.0, 0.0);
+        let (mut differences, mut distances, mut count) = (0.0, 0.0, 0usize);
         for i in (0..state.p.len()).filter(|&i| state.touches(i)) {
             let history = if self.continues { Step::history(&self.bodies, fields, i) } else { 0.0 };
             let compared = if self.continues { Step::history(&self.compared, fields, i) } else { 0.0 };
             differences += ((other - s) * state.u[i] + compared - history).powi(2);
             // The distances of the problem that was solved have the history, and are s times shorter.
             distances += (s * (state.h[i] - state.approach) - history).powi(2);
+            count += 1;
         }
-        if differences == 0.0 {
-            return 0.0;
-        }
-        (differences / distances).sqrt()
+        let rms = |squares: f64| (squares / count.max(1) as f64).sqrt();
+        (if self.time_step == 0.0 { 0.0 } else { rms(differences) }, rms(distances))
     }
 }
 
@@ -86,12 +82,13 @@ impl Memory for Step {
     }
 
     fn step_done(&self, history: &mut History, state: &State) -> Report {
-        let step_error = self.error(history.known(), state);
+        let (off, distance) = self.error(history.known(), state);
         if !self.continues {
             history.forget();
         }
         history.time += self.time_step;
-        let time = history.time;
+        history.error += off;
+        let (time, sum) = (history.time, history.error);
         let fields = history.known_mut();
         let (mut q, mut after) = ([0.0; MOST], [0.0; MOST]);
         for i in 0..state.u.len() {
@@ -106,6 +103,8 @@ impl Memory for Step {
             fields[0][i] = now;
         }
         history.keep();
-        Report { time, step_error, compliance: self.compliance() }
+        // Without contact there is nothing to compare with.
+        let relative = |length: f64| if distance > 0.0 { length / distance } else { 0.0 };
+        Report { time, step_error: relative(off), time_error: relative(sum), compliance: self.compliance() }
     }
 }

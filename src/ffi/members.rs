@@ -474,12 +474,12 @@ pub(super) const STRUCTS: &[Struct] = &[
     Struct { name: "contact_normal_report_visco", members: &[
         Member { name: "time", at: offset_of!(contact_normal_report_visco, time), kind: Double },
         Member { name: "step_error", at: offset_of!(contact_normal_report_visco, step_error), kind: Double },
+        Member { name: "time_error", at: offset_of!(contact_normal_report_visco, time_error), kind: Double },
         Member { name: "compliance", at: offset_of!(contact_normal_report_visco, compliance), kind: Double },
         Member { name: "reserved[0]", at: offset_of!(contact_normal_report_visco, reserved), kind: Double },
         Member { name: "reserved[1]", at: offset_of!(contact_normal_report_visco, reserved) + 8, kind: Double },
         Member { name: "reserved[2]", at: offset_of!(contact_normal_report_visco, reserved) + 16, kind: Double },
         Member { name: "reserved[3]", at: offset_of!(contact_normal_report_visco, reserved) + 24, kind: Double },
-        Member { name: "reserved[4]", at: offset_of!(contact_normal_report_visco, reserved) + 32, kind: Double },
     ] },
     Struct { name: "contact_normal_report", members: &[
         Member { name: "struct_size", at: offset_of!(contact_normal_report, struct_size), kind: Int64 },
@@ -591,12 +591,12 @@ pub(super) const STRUCTS: &[Struct] = &[
         Member { name: "adhesion.reserved[4]", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, reserved) + 32, kind: Double },
         Member { name: "visco.time", at: offset_of!(contact_normal_report, visco) + offset_of!(contact_normal_report_visco, time), kind: Double },
         Member { name: "visco.step_error", at: offset_of!(contact_normal_report, visco) + offset_of!(contact_normal_report_visco, step_error), kind: Double },
+        Member { name: "visco.time_error", at: offset_of!(contact_normal_report, visco) + offset_of!(contact_normal_report_visco, time_error), kind: Double },
         Member { name: "visco.compliance", at: offset_of!(contact_normal_report, visco) + offset_of!(contact_normal_report_visco, compliance), kind: Double },
         Member { name: "visco.reserved[0]", at: offset_of!(contact_normal_report, visco) + offset_of!(contact_normal_report_visco, reserved), kind: Double },
         Member { name: "visco.reserved[1]", at: offset_of!(contact_normal_report, visco) + offset_of!(contact_normal_report_visco, reserved) + 8, kind: Double },
         Member { name: "visco.reserved[2]", at: offset_of!(contact_normal_report, visco) + offset_of!(contact_normal_report_visco, reserved) + 16, kind: Double },
         Member { name: "visco.reserved[3]", at: offset_of!(contact_normal_report, visco) + offset_of!(contact_normal_report_visco, reserved) + 24, kind: Double },
-        Member { name: "visco.reserved[4]", at: offset_of!(contact_normal_report, visco) + offset_of!(contact_normal_report_visco, reserved) + 32, kind: Double },
     ] },
     Struct { name: "contact_normal_solver_info", members: &[
         Member { name: "struct_size", at: offset_of!(contact_normal_solver_info, struct_size), kind: Int64 },

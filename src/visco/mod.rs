@@ -30,6 +30,8 @@ pub struct Report {
     pub time: f64,
     /// What the form of the step and another one differ by: rms of the displacements in contact, over that of h - approach.
     pub step_error: f64,
+    /// The same of all steps since then, added up as lengths: nothing of them is taken for forgotten.
+    pub time_error: f64,
     /// The compliance of the bodies in the step, in that at once.
     pub compliance: f64,
 }

@@ -247,6 +247,7 @@ pub fn layout() -> Vec<(&'static str, usize)> {
         ("contact_normal_report_visco", size_of::<contact_normal_report_visco>()),
         ("contact_normal_report_visco.time", offset_of!(contact_normal_report_visco, time)),
         ("contact_normal_report_visco.step_error", offset_of!(contact_normal_report_visco, step_error)),
+        ("contact_normal_report_visco.time_error", offset_of!(contact_normal_report_visco, time_error)),
         ("contact_normal_report_visco.compliance", offset_of!(contact_normal_report_visco, compliance)),
         ("contact_normal_report_visco.reserved", offset_of!(contact_normal_report_visco, reserved)),
         ("contact_normal_report", size_of::<contact_normal_report>()),

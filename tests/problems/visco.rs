@@ -163,13 +163,49 @@ fn under_a_step_of_force_the_approach_follows_the_creep_function() {
         let (at, end, estimate) = off(step, None);
         assert!(at.abs() <= 2e-4 && end.abs() <= 5e-4, "creep, {step}: {at} {end}");
         let (other, ..) = off(step, Some(Form::Relaxation));
-        // Second order, and an estimate that is not below what it is of.
+        // Second order. The estimate of the step is not below what all steps are off together.
         assert!(other.abs() <= 0.35 * relaxation && other.abs() <= 2e-2, "relaxation, {step}: {other}");
         assert!(estimate >= at.abs(), "{step}: {estimate} for {at}");
         let (first, ..) = off(step, Some(Form::BackwardEuler));
         assert!(first.abs() <= 0.7 * euler && first.abs() >= 4e-3, "Euler, {step}: {first}");
         println!("step {step}: creep {at:.1e} {end:.1e} (estimate {estimate:.1e}), relaxation {other:.1e}, Euler {first:.1e}");
         (relaxation, euler) = (other.abs(), first.abs());
+    }
+}
+
+/// What all steps together may be off, beside what much shorter steps say: of second order for both forms, of first for Euler's.
+#[test]
+fn the_error_in_time_is_that_which_shorter_steps_find() {
+    let speed = 1.6 * RADIUS * RADIUS;
+    let by_approach = |t: f64| Load::Approach(speed * if t <= 1.0 { t } else { 2.0 - t });
+    let by_force = |t: f64| Load::Force(0.5 * G * RADIUS.powi(3) * 10.0 * (0.5 * PI * t).sin());
+    let places = [0.4, 0.6, 0.8, 1.0, 1.2];
+    let at = |step: f64, load: &dyn Fn(f64) -> Load, form: Option<Form>| {
+        let found = history(&times(step, 1.2), load, form);
+        places.map(|t| {
+            let report = &found[(t / step).round() as usize].0;
+            let measures = &report.measures;
+            let value = if matches!(load(t), Load::Force(_)) { measures.approach } else { measures.force };
+            (value, report.visco.unwrap().time_error)
+        })
+    };
+    let loads: [&dyn Fn(f64) -> Load; 2] = [&by_approach, &by_force];
+    for load in loads {
+        let exact = at(0.0125, load, None);
+        for (form, order) in [(Form::Relaxation, 2), (Form::Creep, 2), (Form::BackwardEuler, 1)] {
+            let mut before = f64::INFINITY;
+            for step in [0.2, 0.1, 0.05] {
+                let found = at(step, load, Some(form));
+                let largest = |of: &dyn Fn(usize) -> f64| (0..places.len()).map(of).fold(0.0, f64::max);
+                let off = largest(&|k| (found[k].0 / exact[k].0 - 1.0).abs());
+                let estimate = largest(&|k| found[k].1);
+                println!("{form:?} {step}: off {off:.1e}, estimated {estimate:.1e}");
+                // Forces grow with the power 3/2 of distances.
+                assert!(1.5 * estimate >= 0.5 * off && estimate <= 15.0 * off, "{form:?} {step}: {estimate} for {off}");
+                assert!(estimate < before * if order == 2 { 0.4 } else { 0.8 }, "{form:?} {step}: {estimate}");
+                before = estimate;
+            }
+        }
     }
 }
 
