@@ -80,7 +80,7 @@ impl Sequence<'_> {
     }
 
     fn note(&mut self, what: &str, found: &Found) {
-        self.history += &format!("{what} ({}), ", found.status);
+        self.history += &format!("{what} ({}{}), ", found.status, found.message);
         self.statuses.push(found.status);
     }
 
