@@ -16,8 +16,10 @@
 //! | `nested` | nested iteration; the starts from contact and from apart |
 //! | `pull` | forces that pull, and the pull-off |
 //! | `stability` | how near a state is to a snap |
+//! | `begin` | the starts from nothing |
 //! | `request`, `solver`, `report` | the whole solve |
 
+mod begin;
 mod law;
 mod level;
 mod levels;

@@ -45,7 +45,7 @@ pub enum End {
     Interrupted,
 }
 
-/// What a loop on one grid has to reach.
+/// The goal of a loop on one grid.
 #[derive(Clone, Copy, Debug)]
 pub struct Goal {
     /// Of the worst measure.

@@ -10,7 +10,7 @@ use crate::threads::Threads;
 /// A number per element, as fields of one number.
 pub type One = [f64; 1];
 
-/// What memory is for.
+/// Names its memory in messages.
 pub const MEMORY: &str = "the adhesion problem";
 
 /// Total pressures p with the approach as their border, u = A p, and the contact area.

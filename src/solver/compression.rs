@@ -25,6 +25,7 @@ impl Solver {
         self.methods.forget_operator();
         self.adhesion = None;
         self.state.u_is = Freshness::Stale;
+        self.set_up.largest_influence = coefficients.largest(&self.problem.grid);
         self.problem.renew(coefficients)?;
         self.methods.renew(&self.problem)?;
         if let Some(compressible) = &mut self.set_up.compressible {

@@ -56,7 +56,7 @@ pub struct Options {
     pub initial_guess: InitialGuess,
     /// See [`Criterion`]; between 0 and 1.
     pub tolerance: f64,
-    /// What has to become small.
+    /// Which number has to become small.
     pub criterion: Criterion,
     /// If positive: may stop once the residual is below this part of the estimated discretisation error (relative, of the force or
     /// approach, whichever is not prescribed), as the start from nothing suggests it by full multigrid or projected conjugate gradients.

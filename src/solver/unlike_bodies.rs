@@ -7,7 +7,7 @@ use crate::grid::Grid;
 use crate::memory::zeros;
 use crate::threads::Threads;
 
-/// What memory is for.
+/// Names its memory in messages.
 const FIELDS: &str = "the coupling of unlike bodies";
 
 /// Both products, and what they displace.
