@@ -60,16 +60,16 @@ def cycle(step, form="AUTO"):
 def draw(found, picture):
     import matplotlib.pyplot as plt
 
-    figure, axes = plt.subplots(figsize=(6.4, 4.2), dpi=150, layout="constrained")
+    figure, axes = plt.subplots()
     times = np.linspace(0, 1.8, 181)
     exact = [ting(t) for t in times]
-    axes.plot(approach(times), exact, "k-", linewidth=1, label="Ting")
+    axes.plot(approach(times), exact, "-", color="0.5", linewidth=1.2, label="Ting")
     for (name, (time, force, _)), style in zip(found.items(), ("o", "x")):
-        axes.plot(approach(time), force, style, markersize=4, label=name)
+        axes.plot(approach(time), force, style, markersize=5, label=name)
     elastic = 16 / 3 * G * np.sqrt(RADIUS) * approach(times[times <= TURN]) ** 1.5
-    axes.plot(approach(times[times <= TURN]), elastic, "k:", linewidth=1, label="elastic, G at once")
+    axes.plot(approach(times[times <= TURN]), elastic, ":", color="0.5", linewidth=1.2, label="elastic, G at once")
     axes.set(xlabel="approach, mm", ylabel="force, N", xlim=(0, 0.21), ylim=(0, 1.2 * max(exact)))
-    axes.legend(frameon=False)
+    axes.legend()
     figure.savefig(picture)
 
 
