@@ -11,7 +11,7 @@
 //! | pressure_limit | | yes | another one for each solve |
 //! | friction | period, patches; without tangential tables influence, row_tables, coating | yes | another one for each solve |
 //! | adhesion | row_tables, patches, pressure_limit, friction | no | another one for each solve |
-//! | visco | influence, row_tables, layer, friction, adhesion | yes | its moduli and times are those of the set-up |
+//! | visco | layer, friction, adhesion; influence, row_tables, coating of bodies that do not relax alike | yes | its moduli and times are those of the set-up |
 //!
 //! | effect | on a given contact area | to an accuracy | stresses below the surface | beside the normal problem |
 //! |---|---|---|---|---|

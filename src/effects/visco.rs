@@ -79,8 +79,8 @@ impl Visco<'_> {
         Ok(elastic.map(|b| body(b, compliance(b) / total)).collect())
     }
 
-    /// The coefficients of a coated body relax only with its whole compliance.
-    fn check_coating(&self, scene: &Plain<'_>, at_surface: &Bodies) -> Result<()> {
+    /// Coefficients that are not those of two half-spaces relax with their whole compliance alone: `of` is the effect that has them.
+    fn check_alike(&self, of: &str, scene: &Plain<'_>, at_surface: &Bodies) -> Result<()> {
         let series = self.series(at_surface)?;
         let is_coated = |b: usize| {
             let of = |bodies: &Bodies| (bodies.shear_modulus[b], bodies.poisson_ratio[b]);
@@ -100,16 +100,15 @@ impl Visco<'_> {
         if series[0] == series[1] || is_rigid(0) || is_rigid(1) {
             return Ok(());
         }
-        Err(Error::Unsupported(
-            "visco and coating are both given, and both bodies give way, but do not relax alike; this version does not solve that".into(),
-        ))
+        Err(Error::Unsupported(format!(
+            "visco and {of} are both given, and both bodies give way, but do not relax alike; this version does not solve that"
+        )))
     }
 }
 
-/// The materials at the surfaces, and whether a coating is there.
-fn surfaces(scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> (Bodies, bool) {
-    let covered = others.iter().flatten().find_map(|other| other.at_surface(scene));
-    (covered.unwrap_or(scene.bodies), covered.is_some())
+/// The materials at the surfaces.
+fn at_surface(scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Bodies {
+    others.iter().flatten().find_map(|other| other.at_surface(scene)).unwrap_or(scene.bodies)
 }
 
 impl Effect for Visco<'_> {
@@ -119,7 +118,7 @@ impl Effect for Visco<'_> {
 
     fn properties(&self) -> Properties<'_> {
         Properties {
-            excludes: &["influence", "row_tables", "layer", "friction", "adhesion"],
+            excludes: &["layer", "friction", "adhesion"],
             without_multigrid: None,
             with_given_area: true,
             one_grid: Some("what bodies remember is that of one grid"),
@@ -153,10 +152,13 @@ impl Effect for Visco<'_> {
 
     fn check_load(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<()> {
         self.check(&scene.grid)?;
-        let (at_surface, is_coated) = surfaces(scene, others);
-        match is_coated {
-            true => self.check_coating(scene, &at_surface),
-            false => self.series(&at_surface).map(drop),
+        let at_surface = at_surface(scene, others);
+        let is_other = |effect: &&&dyn Effect| {
+            effect.at_surface(scene).is_some() || effect.properties().own_coefficients.is_some()
+        };
+        match others.iter().flatten().find(is_other) {
+            Some(other) => self.check_alike(other.name(), scene, &at_surface),
+            None => self.series(&at_surface).map(drop),
         }
     }
 
@@ -183,7 +185,7 @@ impl Effect for Visco<'_> {
         others: &[Option<&dyn Effect>],
         history: &mut History,
     ) -> Result<Option<Box<dyn Memory>>> {
-        let (at_surface, _) = surfaces(scene, others);
+        let at_surface = at_surface(scene, others);
         let form = self.form.unwrap_or(match scene.load {
             Load::Approach(_) => Form::Relaxation,
             Load::Force(_) => Form::Creep,

@@ -90,6 +90,14 @@ fn beside_other_effects_steps_meet_the_conditions() {
         let period = Some(Period { x, y });
         assert_path("period", &Scene { period, ..plain.clone() }, both, &by_force, &options);
     }
+    // Coefficients of the test's own, as a whole: half of the compliance is that of a body that relaxes in the same way.
+    let alone = Bodies { shear_modulus: [f64::INFINITY, G], ..BODIES };
+    let kernel = Scene::new(grid(), &h, alone, Load::Approach(0.0)).coefficients().unwrap();
+    let entry = |i: usize| kernel.at((i % (2 * MX)) as i64 - MX as i64, (i / (2 * MX)) as i64 - MY as i64);
+    let table: Vec<f64> = (0..4 * MX * MY).map(|i| 1.3 * entry(i)).collect();
+    let influence = Some(Table::new(MX, MY, &table, &grid()).unwrap());
+    let own = Scene { influence, bodies: alone, ..relaxing(&h, [Branches::default(), SOLID]) };
+    assert_path("influence", &own, [0.0, 1.0], &PATH, &options);
     // A layer that relaxes on a rigid body, pressed by a rigid one, and with two periods; two like ones.
     let rigid = Bodies { shear_modulus: [f64::INFINITY; 2], ..BODIES };
     let layer = Some(CoatingLayer { thickness: 0.3, shear_modulus: G, poisson_ratio: 0.45 });
