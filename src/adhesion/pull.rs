@@ -151,7 +151,7 @@ fn down(
     Ok(None)
 }
 
-/// What comes behind a minimum.
+/// The continuation behind a minimum.
 enum Over {
     /// The force falls again.
     Falls,
@@ -176,7 +176,7 @@ fn over(
         if goal.is_interrupted(monitor) {
             return Ok(Over::Ended(Walk::Interrupted));
         }
-        // What is not found may be of less force.
+        // A state that is not found may have less force.
         let Some(sum) = found else { return Ok(Over::Ended(Walk::Lost)) };
         if level.now.contact.iter().all(|inside| !inside) {
             return Ok(Over::Apart);

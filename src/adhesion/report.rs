@@ -1,4 +1,4 @@
-//! What is found of adhesion, and how well the conditions hold.
+//! The results of adhesion, and how well its conditions hold.
 
 use super::level::Level;
 use super::unknowns::{energies, Measured, Unknowns};
@@ -7,7 +7,7 @@ use crate::grid::Grid;
 use crate::methods::fields;
 use crate::progress::{DiscretisationError, LedgerRow, Measures, Monitor};
 
-/// What a solve with adhesion found.
+/// The results of a solve with adhesion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
     /// The sum of contact pressures q dx dy.
@@ -83,7 +83,7 @@ impl Report {
         }
     }
 
-    /// What to do about elements that are too coarse; none where they are not.
+    /// Advice where elements are too coarse; none where they are not.
     pub fn advice(&self) -> Option<String> {
         (self.resolution > RESOLVED).then(|| {
             let factor = self.resolution / RESOLVED;

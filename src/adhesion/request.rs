@@ -1,4 +1,4 @@
-//! What is asked for.
+//! A request.
 
 use super::levels::Surfaces;
 use crate::scene::Load;

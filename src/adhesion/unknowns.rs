@@ -62,7 +62,7 @@ impl Unknowns {
     }
 }
 
-/// What the unknowns are measured against: h, the law and the work of adhesion of each element.
+/// The surfaces: h, the law and the work of adhesion of each element.
 #[derive(Default)]
 pub struct Surface {
     /// h; `+infinity` where there is no surface.
@@ -106,7 +106,7 @@ pub struct Measured {
     pub violation: f64,
     /// `||p + sigma(e)||` outside C, relative to `||p||`.
     pub law: f64,
-    /// What the sum of p lacks of the force that is given, relative to the sum of |p|.
+    /// The given force less the sum of p, relative to the sum of |p|.
     pub force: f64,
     /// Elements in contact.
     pub count: usize,

@@ -14,7 +14,7 @@ use crate::methods::{Start, Task};
 use crate::progress::{Goal, Monitor, Outcome, Progress};
 use crate::scene::{Load, Scene};
 
-/// What solves contact problems whose attraction stands still: the methods of AUTO.
+/// The solver of contact problems whose attraction stands still: the methods of AUTO.
 struct Plain(Methods);
 
 impl Frozen for Plain {
@@ -90,7 +90,7 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
         check_options(options)?;
-        // What the mean pressure compresses is a part of the approach here, whatever the load.
+        // The compression by the mean pressure is a part of the approach here, whatever the load.
         self.suit(Load::Approach(0.0))?;
         check::range((scene, lowest), &self.problem, self.set_up.largest_influence, None)?;
         if !self.problem.symmetric {

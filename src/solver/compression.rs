@@ -1,4 +1,4 @@
-//! What the mean pressure compresses: coefficients with a [constant](crate::influence::Kernel::constant), as those of coatings with two periods.
+//! Compression by the mean pressure: coefficients with a [constant](crate::influence::Kernel::constant), as those of coatings with two periods.
 //!
 //! A constant changes no pressure of a given force, but it hides what they are off: residuals are relative to the approach. So a given force
 //! is solved without it, and the result gets it at the end. A given approach is solved with it.

@@ -98,7 +98,7 @@ fn friction_of_table<'s>(scene: &'s Scene<'_>) -> Result<&'s Friction<'s>> {
     }
 }
 
-/// What is to be said of pressures that are given.
+/// The measures of pressures that are given.
 fn of_pressures(grid: &Grid, pressure: &[f64], options: &Options) -> Report {
     Report { measures: measures(grid, pressure), tolerance: options.tolerance, ..Report::default() }
 }

@@ -87,7 +87,7 @@ impl Solver {
         let Solver { problem, state, methods, set_up, has_result, .. } = self;
         let multigrid = set_up.without_multigrid.is_none();
         let stages = methods::stages::<S>(options.method, problem.symmetric, multigrid);
-        // What was solved before is gone from here on, unless this solve comes to an end.
+        // The last result is gone from here on, unless this solve comes to an end.
         let solved = std::mem::replace(has_result, false);
         if options.initial_guess != InitialGuess::Previous || !solved {
             methods.projected_cg.forget_windows();
@@ -116,7 +116,7 @@ impl Solver {
     }
 }
 
-/// What no iteration found may be p at its limit everywhere.
+/// Where no iteration converges, the answer may be p at its limit everywhere.
 fn look_at_full_limits<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<Option<Outcome>> {
     let found = take_over::full_at_limits(task.problem, task.state, task.set, &task.goal)?;
     task.count_products();

@@ -39,7 +39,7 @@ pub enum InitialGuess {
     None,
     /// The given pressures and contact area.
     Given,
-    /// What this solver found last.
+    /// The last result of this solver.
     Previous,
 }
 
@@ -148,7 +148,7 @@ impl Options {
         self.active_set == ActiveSet::Fixed
     }
 
-    /// What a solve has to reach.
+    /// The goal of a solve.
     pub fn goal(&self) -> Goal {
         Goal { criterion: self.criterion, tolerance: self.tolerance, max_cycles: self.max_cycles as u64 }
     }

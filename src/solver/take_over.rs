@@ -45,7 +45,7 @@ pub fn take_over<S: AdmissibleSet>(
     }
     if from == Start::Nothing {
         state.forget();
-        // What the solve before found is nothing to start from.
+        // The result of the solve before is nothing to start from.
         if let Load::Force(_) = scene.load {
             state.approach = 0.0;
         }
@@ -84,7 +84,7 @@ pub fn take_over<S: AdmissibleSet>(
 /// The pressures and the contact area to start from.
 fn take_pressures(state: &mut State, options: &Options, guess: Option<Guess<'_>>, solved: bool) -> Start {
     let fixed = options.is_fixed();
-    // What was at its limit was in contact.
+    // Elements at their limit were in contact.
     for (inside, at_limit) in state.contact.iter_mut().zip(&mut state.at_limit) {
         *inside |= std::mem::take(at_limit);
     }

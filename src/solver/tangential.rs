@@ -10,14 +10,14 @@ use crate::progress::Monitor;
 use crate::scene::{Friction, Prescribed, Scene};
 use crate::threads::Threads;
 
-/// What a solver keeps for scenes with friction.
+/// The state of a solver for scenes with friction.
 pub struct Tangent {
     solver: Solver,
     /// Of unlike bodies.
     unlike: Option<UnlikeBodies>,
 }
 
-/// What stands still while normal and tangential problem are solved in turns.
+/// The inputs that stand still while normal and tangential problem are solved in turns.
 pub struct Turn<'a> {
     /// The scene, with its own undeformed distance.
     pub scene: &'a Scene<'a>,
@@ -36,7 +36,7 @@ impl<'a> Turn<'a> {
     }
 }
 
-/// What couples the tractions of a scene with its pressures; none where its bodies are alike.
+/// The coupling of the tractions of a scene with its pressures; none where its bodies are alike.
 fn coupling(scene: &Scene<'_>) -> Result<Option<Source>> {
     Ok(match scene.friction.as_ref().and_then(|friction| friction.influence) {
         Some(own) => CrossTables::new(&own)?.map(Source::Tables),

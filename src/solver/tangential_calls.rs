@@ -15,7 +15,7 @@ use crate::sums::in_blocks;
 use crate::threads::Threads;
 
 impl Solver {
-    /// What solves friction, to be put back; made where there is none.
+    /// The solver of friction, to be put back; made where there is none.
     pub(super) fn take_tangent(&mut self, scene: &Scene<'_>, options: &Options) -> Result<Box<Tangent>> {
         match self.friction.take() {
             Some(tangent) => Ok(tangent),
@@ -122,7 +122,7 @@ pub(super) fn finite(grid: &Grid, pressure: &[f64]) -> Result<()> {
     Err(Error::NotFinite(format!("pressure of {element} is {p}; it must be finite")))
 }
 
-/// What is to be said of pressures that are given.
+/// The measures of pressures that are given.
 pub(super) fn measures(grid: &Grid, pressure: &[f64]) -> Measures {
     let pressing = || pressure.iter().filter(|p| **p > 0.0);
     Measures {
