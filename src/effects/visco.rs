@@ -86,8 +86,8 @@ impl Visco<'_> {
             let of = |bodies: &Bodies| (bodies.shear_modulus[b], bodies.poisson_ratio[b]);
             of(&scene.bodies) != of(at_surface)
         };
-        for b in 0..2 {
-            if is_coated(b) && !series[b].is_empty() && scene.bodies.shear_modulus[b].is_finite() {
+        for (b, series) in series.iter().enumerate() {
+            if is_coated(b) && !series.is_empty() && scene.bodies.shear_modulus[b].is_finite() {
                 return Err(Error::Unsupported(format!(
                     "visco is given, and body {} below its coating has the modulus {}; the layer relaxes, and the body does not: this version \
                      solves that on rigid bodies alone (+infinity)",

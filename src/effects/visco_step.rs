@@ -33,14 +33,14 @@ pub struct Step {
 impl Step {
     /// Fields of the history.
     pub fn fields(&self) -> usize {
-        1 + self.bodies.iter().map(|body| body.map.len()).sum::<usize>()
+        1 + self.bodies.iter().map(|body| body.map.branches()).sum::<usize>()
     }
 
     /// H of element i by the maps of either form, and `before` it `[A p, q...]`.
     fn history(bodies: &[Body], fields: &[Vec<f64>], i: usize) -> f64 {
         let (mut sum, mut first, mut q) = (0.0, 1, [0.0; MOST]);
         for Body { share, map } in bodies {
-            let n = map.len();
+            let n = map.branches();
             fields[first..first + n].iter().zip(&mut q).for_each(|(field, q)| *q = field[i]);
             sum += map.history(&q[..n], share * fields[0][i]);
             first += n;
@@ -94,7 +94,7 @@ impl Memory for Step {
         for i in 0..state.u.len() {
             let (before, now, mut first) = (fields[0][i], state.u[i], 1);
             for Body { share, map } in &self.bodies {
-                let n = map.len();
+                let n = map.branches();
                 fields[first..first + n].iter().zip(&mut q).for_each(|(field, q)| *q = field[i]);
                 map.advance(&q[..n], share * before, share * now, &mut after[..n]);
                 fields[first..first + n].iter_mut().zip(&after).for_each(|(field, after)| field[i] = *after);

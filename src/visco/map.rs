@@ -56,8 +56,8 @@ impl Map {
         let (of_u0, stiffness) = (sum(|w| w.2), series.rest + sum(|w| w.0 + w.2));
         let mut map = Map::empty(r);
         for (k, (e, now, before)) in weights.iter().enumerate() {
-            for l in 0..n {
-                let u = map.r[l] * (weights[l].0 + of_u0) / stiffness;
+            for (l, of_l) in weights.iter().enumerate() {
+                let u = map.r[l] * (of_l.0 + of_u0) / stiffness;
                 map.m[k * n + l] = if k == l { *e } else { 0.0 } + before * map.r[l] + now * u;
             }
             map.before[k] = before + now * of_u0 / stiffness;
@@ -80,8 +80,8 @@ impl Map {
             };
             for k in 0..n {
                 let shape = mode.shape[k] / mode.inertia;
-                for l in 0..n {
-                    map.m[k * n + l] += shape * e * map.r[l] * t[l] * mode.shape[l];
+                for (l, t) in t.iter().enumerate() {
+                    map.m[k * n + l] += shape * e * map.r[l] * t * mode.shape[l];
                 }
                 map.before[k] += shape * before;
                 map.now[k] += shape * now;
@@ -107,7 +107,7 @@ impl Map {
     }
 
     /// Number of branches.
-    pub fn len(&self) -> usize {
+    pub fn branches(&self) -> usize {
         self.r.len()
     }
 
