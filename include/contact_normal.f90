@@ -67,7 +67,7 @@ module contact_normal
     contact_normal_set_layer, contact_normal_set_pressure_limit, contact_normal_set_period, contact_normal_set_patches, &
     contact_normal_set_row_tables, contact_normal_set_coating, contact_normal_set_friction, &
     contact_normal_set_friction_fields, contact_normal_set_friction_results, contact_normal_set_tangential_influence, &
-    contact_normal_set_tangential_row_tables, contact_normal_set_adhesion, &
+    contact_normal_set_tangential_row_tables, contact_normal_set_adhesion, contact_normal_set_visco, &
     contact_normal_set_cycle, contact_normal_has, contact_normal_solver_query, &
     contact_normal_constant, contact_normal_set_option, contact_normal_set_cycle_option, contact_normal_set_dump, &
     contact_normal_solver_product, contact_normal_solver_stiffness
@@ -79,7 +79,8 @@ module contact_normal
   integer(c_int32_t), parameter :: SET_UNDEFORMED_DISTANCE = 1, SET_INFLUENCE = 2, SET_LAYER = 3, SET_PRESSURE_LIMIT = 4, &
     SET_PERIOD = 5, SET_PATCHES = 6, SET_ROW_TABLES = 7, SET_COATING = 8, SET_CYCLE = 9, SET_FRICTION = 10, &
     SET_TANGENTIAL_INFLUENCE = 11, SET_FRICTION_FIELDS = 12, SET_FRICTION_RESULTS = 13, SET_FIELDS = 14, &
-    SET_STRESS_OUTPUTS = 15, SET_LEDGER = 16, SOLVER_SOLVE_BATCH = 17, SET_TANGENTIAL_ROW_TABLES = 18, SET_ADHESION = 19
+    SET_STRESS_OUTPUTS = 15, SET_LEDGER = 16, SOLVER_SOLVE_BATCH = 17, SET_TANGENTIAL_ROW_TABLES = 18, SET_ADHESION = 19, &
+    SET_VISCO = 20
 
   interface attach
     procedure attach_doubles, attach_integers

@@ -222,6 +222,21 @@
 #define CONTACT_NORMAL_KIND_ADHESION 24
 
 /*
+ `kind`: `contact_normal_visco`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_VISCO 25
+
+/*
+ `kind`: `contact_normal_heat`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_HEAT 26
+
+/*
+ `kind`: `contact_normal_flash`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_FLASH 27
+
+/*
  `load`: that one of `approach` and `force` is given which is set; both or none is refused.
  */
 #define CONTACT_NORMAL_PRESCRIBED_UNSET 0
@@ -310,6 +325,26 @@
  `start`: from bodies apart: nothing snaps in before it must.
  */
 #define CONTACT_NORMAL_START_FROM_APART 2
+
+/*
+ `form`: RELAXATION where the approach is given, CREEP where the force is.
+ */
+#define CONTACT_NORMAL_FORM_AUTO 0
+
+/*
+ `form`: displacements are linear in the step; second order, exact where the approach is held.
+ */
+#define CONTACT_NORMAL_FORM_RELAXATION 1
+
+/*
+ `form`: pressures are linear in the step; second order, exact where they are held.
+ */
+#define CONTACT_NORMAL_FORM_CREEP 2
+
+/*
+ `form`: backward Euler; first order, to compare with programs that have it.
+ */
+#define CONTACT_NORMAL_FORM_BACKWARD_EULER 3
 
 /*
  `method`: the fastest way known that is safe.
@@ -707,7 +742,8 @@ typedef struct contact_normal_solver contact_normal_solver;
 typedef int32_t contact_normal_status;
 
 /*
- Effect: a coating, an elastic layer bonded to a body. `shear_modulus` and `poisson_ratio` of the scene are then those of the body below.
+ Effect: a coating, an elastic layer bonded to a body. `shear_modulus` and `poisson_ratio` of the scene are then those of the body below,
+ which may be rigid: +infinity.
  */
 typedef struct contact_normal_coating {
   /*
@@ -719,7 +755,7 @@ typedef struct contact_normal_coating {
    */
   double thickness;
   /*
-   Its G, a pressure > 0, 1e-4 to 1e4 times that of the body; default 0: to be set.
+   Its G, a pressure > 0, at most 1e4 times that of the body; default 0: to be set.
    */
   double shear_modulus;
   /*
@@ -1039,6 +1075,43 @@ typedef struct contact_normal_adhesion {
 } contact_normal_adhesion;
 
 /*
+ Effect: bodies that relax, and a step of `time_step` of them. The `shear_modulus` of the scene is that at once, and falls to
+ `G(t) = G - sum of modulus (1 - exp(-t/time))` at a constant Poisson ratio; of a coated body it is that of the coating, on a rigid body. A
+ solver handle remembers the steps before: the first step has `continues` 0, the others 1. `displacement` and `deformed_distance` contain what is
+ left of the steps before. See docs/visco.md.
+ */
+typedef struct contact_normal_visco {
+  /*
+   Set by `contact_normal_visco_init`.
+   */
+  int64_t struct_size;
+  /*
+   Branches of body 1 and body 2, 0 (default: an elastic body) to 32.
+   */
+  int32_t branches[2];
+  /*
+   Moduli of the branches of each body, pressures >= 0 that add up to at most its shear modulus. Default NULL: to be set where there are branches.
+   */
+  const double *modulus[2];
+  /*
+   Relaxation times of the branches, > 0. Default NULL: to be set where there are branches.
+   */
+  const double *time[2];
+  /*
+   Time of the step, >= 0; default 0: the load jumps, and the bodies give way at once.
+   */
+  double time_step;
+  /*
+   CONTACT_NORMAL_FORM_...; default AUTO.
+   */
+  int32_t form;
+  /*
+   1: the step begins where the last one of the solver ended; 0 (default): at rest, at time 0.
+   */
+  int32_t continues;
+} contact_normal_visco;
+
+/*
  What is simulated: `e = h - approach + A p`, with e = 0 and p >= 0 in contact, e > 0 and p = 0 outside. Any consistent
  system of units.
  */
@@ -1068,7 +1141,7 @@ typedef struct contact_normal_scene {
    */
   const double *undeformed_distance;
   /*
-   G of the two bodies: a pressure, positive; +infinity: rigid (one of them at most). Default 0: to be set.
+   G of the two bodies: a pressure, positive; +infinity: rigid (one surface at most, below a coating both). Default 0: to be set.
    */
   double shear_modulus[2];
   /*
@@ -1127,6 +1200,10 @@ typedef struct contact_normal_scene {
    Effect, or NULL (default): attraction between the bodies.
    */
   const struct contact_normal_adhesion *adhesion;
+  /*
+   Effect, or NULL (default): bodies that relax, and a step of time of them.
+   */
+  const struct contact_normal_visco *visco;
 } contact_normal_scene;
 
 /*
@@ -1711,6 +1788,32 @@ typedef struct contact_normal_report_adhesion {
 } contact_normal_report_adhesion;
 
 /*
+ What was found of a step in time: a group of `contact_normal_report`. Without bodies that relax all is 0.
+ */
+typedef struct contact_normal_report_visco {
+  /*
+   Since the bodies were at rest: the sum of the steps.
+   */
+  double time;
+  /*
+   How far this step may be off: what its form and another one differ by, rms of the displacements in contact over that of h - approach.
+   */
+  double step_error;
+  /*
+   The same of all steps since the bodies were at rest, added up: how far the result may be off. 0 without contact.
+   */
+  double time_error;
+  /*
+   The compliance of the bodies in the step, in that at once.
+   */
+  double compliance;
+  /*
+   Room for later versions: 0.
+   */
+  double reserved[4];
+} contact_normal_report_visco;
+
+/*
  What a solve found and what it cost, in groups. Written only when the status is >= 0. A group grows into the room at its end, which is 0
  where the library does not know what a newer header has there; later groups come at the end of the report.
  */
@@ -1752,13 +1855,17 @@ typedef struct contact_normal_report {
    */
   struct contact_normal_report_accuracy accuracy;
   /*
-   What it cost.
+   Its cost.
    */
   struct contact_normal_report_statistics statistics;
   /*
    What was found of adhesion.
    */
   struct contact_normal_report_adhesion adhesion;
+  /*
+   What was found of a step in time.
+   */
+  struct contact_normal_report_visco visco;
 } contact_normal_report;
 
 /*
@@ -2249,6 +2356,88 @@ typedef struct contact_normal_stress_outputs {
 } contact_normal_stress_outputs;
 
 /*
+ A steady flux of heat through the contact of two bodies whose surfaces move in x. Units of power, length, temperature and time are the
+ caller's, the same everywhere.
+ */
+typedef struct contact_normal_heat {
+  /*
+   Set by `contact_normal_heat_init`.
+   */
+  int64_t struct_size;
+  /*
+   Elements in x. Default 0: to be set.
+   */
+  int32_t mx;
+  /*
+   Elements in y. Default 0: to be set.
+   */
+  int32_t my;
+  /*
+   Length of an element in x. Default 0: to be set.
+   */
+  double dx;
+  /*
+   In y. Default 0: to be set.
+   */
+  double dy;
+  /*
+   The flux, `[my][mx]`, a power per area: of friction |q| times the speed of slip. Default NULL: to be set.
+   */
+  const double *heat_flux;
+  /*
+   lambda of body 1 and 2, power per length and temperature. Default 0: to be set.
+   */
+  double conductivity[2];
+  /*
+   kappa = lambda/(density times heat capacity) of both, area per time. Default 0: to be set.
+   */
+  double diffusivity[2];
+  /*
+   How fast each surface moves past the contact in +x, length per time, of any sign; 0 (default): it stands still. Of bodies that roll towards
+   +x at V both are -V.
+   */
+  double speed[2];
+  /*
+   The part of the heat that goes into body 1, 0 to 1; < 0 (default): that for which the largest temperatures of both are the same (Blok 1937).
+   */
+  double share;
+  /*
+   Threads; 1: one (default), 0: all cores.
+   */
+  int32_t threads;
+  /*
+   Must be 0.
+   */
+  int32_t reserved;
+} contact_normal_heat;
+
+/*
+ What `contact_normal_flash_temperature` found.
+ */
+typedef struct contact_normal_flash {
+  /*
+   Set by `contact_normal_flash_init`.
+   */
+  int64_t struct_size;
+  /*
+   The part of the heat that goes into body 1.
+   */
+  double share;
+  /*
+   The largest rise of body 1 and 2, a temperature.
+   */
+  double largest[2];
+  /*
+   Where that is in x, from the middle of the grid, of body 1 and 2.
+   */
+  double x[2];
+  /*
+   And in y.
+   */
+  double y[2];
+} contact_normal_flash;
+
+/*
  Called with a level, a message (valid during the call) and the user pointer; on the thread that called the library, in its
  floating-point environment, with no lock held. A handle that is solving refuses to be used.
  */
@@ -2290,7 +2479,7 @@ void contact_normal_init(int32_t kind,
                          int64_t size);
 
 /*
- What a coated body with this `shear_modulus` and `poisson_ratio` below gives way to a pressure wave: the amplitude of the
+ What a coated body with this `shear_modulus` (+infinity: rigid) and `poisson_ratio` below gives way to a pressure wave: the amplitude of the
  displacement over that of the pressure, for `wave_number` (2 pi over the wave's length) > 0. To compare a coating with a formula of
  one's own: `(1 - nu)/(G k)` for a body of one material. Since 0.2.
  */
@@ -2590,6 +2779,16 @@ contact_normal_status contact_normal_stress_at_points(const struct contact_norma
                                                       double *stress);
 
 /*
+ The steady flash temperature of both surfaces, above the temperature far away: each body is a half-space past which the sources of heat move
+ (Jaeger 1942). Without motion it is that of a source at rest. `temperature`: `[2][my][mx]`, of body 1, then of body 2; NULL: not wanted.
+ `flash` NULL: not wanted. The grid must hold all of the flux; downstream of it a rise beyond the grid is not computed. Products are FFTs; the
+ set-up takes some hundred function values an element and body. INVALID_ARGUMENT, NOT_FINITE: numbers out of their range. Since 0.2.
+ */
+contact_normal_status contact_normal_flash_temperature(const struct contact_normal_heat *heat,
+                                                       double *temperature,
+                                                       struct contact_normal_flash *flash);
+
+/*
  Sends log messages up to `level` (CONTACT_NORMAL_LOG_...) to `callback`; NULL: none, as at the start. For the whole process.
  UNSUPPORTED when a Rust host has set a logger of its own: it gets them. Since 0.1.
  */
@@ -2840,6 +3039,30 @@ static inline void contact_normal_effects_row_init(contact_normal_effects_row *e
 static inline void contact_normal_adhesion_init(contact_normal_adhesion *adhesion)
 {
   contact_normal_init(CONTACT_NORMAL_KIND_ADHESION, adhesion, (int64_t)sizeof(contact_normal_adhesion));
+}
+
+/*
+ Fills a contact_normal_visco with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_visco_init(contact_normal_visco *visco)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_VISCO, visco, (int64_t)sizeof(contact_normal_visco));
+}
+
+/*
+ Fills a contact_normal_heat with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_heat_init(contact_normal_heat *heat)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_HEAT, heat, (int64_t)sizeof(contact_normal_heat));
+}
+
+/*
+ Fills a contact_normal_flash with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_flash_init(contact_normal_flash *flash)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_FLASH, flash, (int64_t)sizeof(contact_normal_flash));
 }
 
 #endif  /* CONTACT_NORMAL_H */

@@ -28,5 +28,6 @@
 #include <contact_normal_solver.hpp>
 #include <contact_normal_stress.hpp>
 #include <contact_normal_tangential.hpp>
+#include <contact_normal_visco.hpp>
 
 #endif // CONTACT_NORMAL_HPP

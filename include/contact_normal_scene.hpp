@@ -5,6 +5,7 @@
 #include <contact_normal_adhesion.hpp>
 #include <contact_normal_arrays.hpp>
 #include <contact_normal_friction.hpp>
+#include <contact_normal_visco.hpp>
 
 #include <array>
 #include <memory>
@@ -72,7 +73,7 @@ public:
         layer_->compliances = per_element("layer", compliances);
         return *this;
     }
-    /// A coating on body 1 or 2 of the scene: an elastic layer of this thickness and material, bonded to the body.
+    /// A coating on body 1 or 2 of the scene: an elastic layer of this thickness and material, bonded to the body, which may be rigid.
     scene &coating(std::size_t body, double thickness, const contact_normal::body &material) &
     {
         if (body < 1 || body > 2) detail::refuse("body is " + std::to_string(body) + "; it must be 1 or 2");
@@ -106,6 +107,12 @@ public:
     scene &adhesion(const contact_normal::adhesion &of) &
     {
         adhesion_ = of.named(size());
+        return *this;
+    }
+    /// Bodies that relax, and a step of time of them. The arrays must live as long as the scene is solved.
+    scene &visco(const contact_normal::visco &of) &
+    {
+        visco_ = of.named();
         return *this;
     }
     /// The grid is one period in x, in y, or in both.
@@ -146,6 +153,7 @@ public:
     scene pressure_limit(borrowed<double> limits) && { return std::move(pressure_limit(limits)); }
     scene friction(const contact_normal::friction &of) && { return std::move(friction(of)); }
     scene adhesion(const contact_normal::adhesion &of) && { return std::move(adhesion(of)); }
+    scene visco(const contact_normal::visco &of) && { return std::move(visco(of)); }
     scene period(bool x, bool y) && { return std::move(period(x, y)); }
     scene patches(std::int32_t patches, borrowed<std::int32_t> patch, borrowed<double> factors) &&
     {
@@ -164,6 +172,7 @@ public:
         named.row_tables = row_tables_ ? &*row_tables_ : nullptr;
         named.friction = friction_ ? &*friction_ : nullptr;
         named.adhesion = adhesion_ ? &*adhesion_ : nullptr;
+        named.visco = visco_ ? &*visco_ : nullptr;
         for (std::size_t body : {0u, 1u}) named.coating[body] = coating_[body] ? &*coating_[body] : nullptr;
         return named;
     }
@@ -190,6 +199,7 @@ private:
     std::array<std::optional<contact_normal_coating>, 2> coating_;
     std::optional<contact_normal_friction> friction_;
     std::optional<contact_normal_adhesion> adhesion_;
+    std::optional<contact_normal_visco> visco_;
     std::shared_ptr<const contact_normal::friction::tables> tables_; // what `friction_` points to
 };
 

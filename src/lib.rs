@@ -54,6 +54,7 @@
 //! | [`friction`], [`adhesion`] | the tangential problem; attraction across the gap |
 //! | [`heat`] | flash temperature, from a flux of heat |
 //! | [`stress`] | stresses below the surface, from pressures and tractions |
+//! | [`visco`] | Prony series of bodies that relax, and their step in time |
 //! | [`analytic`] | the Hertz solution |
 //! | `blocks`, `bounding_box` | passes over a grid, by all threads and in vectors |
 //! | [`threads`], and of the same crate, `par`, `memory` and `sums` | the pool, memory by the size of the grid, sums in a fixed order |
@@ -81,6 +82,7 @@ pub mod progress;
 pub mod scene;
 pub mod solver;
 pub mod stress;
+pub mod visco;
 
 pub use par::threads;
 pub(crate) use par::{memory, sums};

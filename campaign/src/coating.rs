@@ -37,7 +37,7 @@ pub struct Coating {
 const ACCURACY: f64 = 2e-10;
 /// Points a side of an element. F has its singularities at +-2i, elements are at most two thicknesses long: `(2 + sqrt 5)^-24 = 1e-15`.
 const POINTS: usize = 12;
-/// Layers on one body or on both, of bodies that are not rigid; with two periods on small grids down to 1/16 of an element.
+/// Layers on one body or on both, of which one may be rigid; with two periods on small grids down to 1/16 of an element.
 pub fn random(
     random: &mut Random,
     grid: &Grid,
@@ -54,14 +54,20 @@ pub fn random(
             true => longer * random.decades(0.0626, 50.0),
             false => f64::max(longer * random.decades(0.5, 50.0), 0.02 * size),
         };
-        let poisson_ratio = if equal { poisson_ratio[b] } else { random.between(0.0, 0.5) };
-        let shear_modulus = shear_modulus[b] * if equal { 1.0 } else { factor };
+        // On a rigid body layers that are thin, too, and almost incompressible have too few elements across.
+        let is_rigid = shear_modulus[b].is_infinite();
+        let below = if is_rigid { shear_modulus[0] } else { shear_modulus[b] };
+        let poisson_ratio = match equal {
+            true => poisson_ratio[b],
+            false => random.between(0.0, if is_rigid && is_thin { 0.45 } else { 0.5 }),
+        };
+        let shear_modulus = below * if equal { 1.0 } else { factor };
         Layer { thickness: if random.chance(0.05) { 0.0 } else { thickness }, shear_modulus, poisson_ratio }
     };
     let layers = [layer(0), layer(1)];
     let layers = match random.integer(0, 2) {
-        1 if shear_modulus[1].is_finite() => [None, Some(layers[1])],
-        2 if shear_modulus[1].is_finite() => layers.map(Some),
+        1 => [None, Some(layers[1])],
+        2 => layers.map(Some),
         _ => [Some(layers[0]), None],
     };
     Coating { layers, shear_modulus, poisson_ratio }
@@ -182,9 +188,13 @@ mod tests {
     /// Nine elements are one that is three times as long: half as thick as those are long, and four times.
     #[test]
     fn nine_elements_are_one() {
-        for (t, mu, nu) in
-            [(1.5, 0.01, [0.5, 0.3]), (4.0, 0.2, [0.3, 0.1]), (1.5, 10.0, [0.0, 0.5]), (12.0, 100.0, [0.3, 0.3])]
-        {
+        for (t, mu, nu) in [
+            (1.5, 0.01, [0.5, 0.3]),
+            (4.0, 0.2, [0.3, 0.1]),
+            (1.5, 10.0, [0.0, 0.5]),
+            (1.5, 0.0, [0.5, 0.3]),
+            (12.0, 100.0, [0.3, 0.3]),
+        ] {
             let coating = of(t, mu, nu);
             let fine = coating.coefficients(&Grid { mx: 40, my: 40, dx: 1.0, dy: 0.7 }, None);
             let coarse = coating.coefficients(&Grid { mx: 12, my: 12, dx: 3.0, dy: 2.1 }, None);

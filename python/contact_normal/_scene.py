@@ -15,6 +15,7 @@ from ._bodies import bodies, load
 from ._constants import PRESCRIBED_APPROACH, PRESCRIBED_FORCE
 from ._friction import friction
 from ._library import initialised
+from ._visco import visco
 
 if TYPE_CHECKING:
     from ._arguments import Doubles, Integers
@@ -55,7 +56,7 @@ class Scene:
         setattr(self.struct, "approach" if self.struct.load == PRESCRIBED_APPROACH else "force", amount)
         for name, value in effects.items():
             if value is not None:
-                if name in ("coating", "friction"):
+                if name in ("coating", "friction", "visco"):
                     self.bodies.needs_poisson(name)
                 self._name(name, value)
 
@@ -106,6 +107,8 @@ class Scene:
             effect, arrays, self.remark = friction(value, self.shape)
         elif name == "adhesion":
             effect, arrays = adhesion(value, self.shape)
+        elif name == "visco":
+            effect, arrays = visco(value)
         elif name in ("layer", "pressure_limit"):
             effect, arrays = _per_element(name, value, self.shape)
         else:

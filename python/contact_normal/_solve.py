@@ -44,6 +44,7 @@ def solve(
     coating: Any = None,
     friction: Mapping[str, Any] | None = None,
     adhesion: Mapping[str, Any] | None = None,
+    visco: Mapping[str, Any] | None = None,
     pressure: npt.ArrayLike | None = None,
     contact: npt.ArrayLike | None = None,
     units: tuple[str, str] | None = None,
@@ -81,7 +82,7 @@ def solve(
         Own coefficients of each loaded row, row and offset in x.
     coating : (of body 1, of body 2), optional
         Of each None or `(thickness, shear_modulus, poisson_ratio)`: an elastic layer bonded to the body. The elastic constants above
-        are then those of the body below.
+        are then those of the body below, which may be rigid (inf).
     friction : mapping, optional
         Friction between the bodies: "coefficient" (one, or (my, mx)); "motion", "SHIFT" (default), "TRANSIENT_ROLLING" or
         "STEADY_ROLLING"; "creepage", a pair; "force", a pair of tangential forces, None where the creepage is given; "spin",
@@ -98,6 +99,11 @@ def solve(
         "AUTO" (default), "FROM_CONTACT" or "FROM_APART": which of several states; "stiffness": True for dF/dapproach; "stability": True for
         how near the state is to a snap; "shear_strength", a traction that adds to the bound of friction in contact. `force` may then be negative.
         docs/adhesion.md says which law and which range.
+    visco : mapping, optional
+        Bodies that relax: "modulus" and "time", pairs (of body 1, of body 2) of the moduli and the relaxation times of their branches, None
+        where a body is elastic; `shear_modulus` is that at once. "time_step" of the step, 0 (default) for a jump; "form", "AUTO" (default),
+        "RELAXATION", "CREEP" or "BACKWARD_EULER"; "continues": from the step that a `Solver` made last. `report` has the "time", the
+        "step_error", the "time_error" and the "compliance". docs/visco.md has the equations.
     pressure, contact : array_like, (my, mx), optional
         Initial guess: the pressures, or the contact area (booleans or integers) that there may be; with `active_set="FIXED"` `contact` is
         the contact area.
@@ -132,7 +138,7 @@ def solve(
     (0, 1000, (64, 64))
     """
     effects = {"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches,
-               "row_tables": row_tables, "coating": coating, "friction": friction, "adhesion": adhesion}
+               "row_tables": row_tables, "coating": coating, "friction": friction, "adhesion": adhesion, "visco": visco}
     scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects, mean_pressure=mean_pressure, young_modulus=young_modulus,
                   e_star=e_star)
     struct = options(given)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ._stress import SubsurfaceStress
 
 # The groups of a report.
-_GROUPS = ("normal", "tangential", "accuracy", "statistics", "adhesion")
+_GROUPS = ("normal", "tangential", "accuracy", "statistics", "adhesion", "visco")
 _WARNINGS = {
     "BORDER": WARNING_BORDER,
     "ONE_ELEMENT": WARNING_ONE_ELEMENT,

@@ -54,6 +54,8 @@ class Solver:
         As for `solve`: for all later solves.
     friction : mapping, optional
         Its "influence" and "influence_cross", or its "row_tables": the tangential coefficients of later solves, whose friction need not have them again.
+    visco : mapping, optional
+        Its "modulus" and "time": the branches of later solves, whose `visco` need not have them again.
 
     Examples
     --------
@@ -85,6 +87,7 @@ class Solver:
         row_tables: Any = None,
         coating: Any = None,
         friction: Mapping[str, Any] | None = None,
+        visco: Mapping[str, Any] | None = None,
         units: tuple[str, str] | None = None,
         **given: Unpack[SolveOptions],
     ) -> None:
@@ -94,10 +97,11 @@ class Solver:
         self._units = checked(units)
         self._effects = {"layer": layer, "period": period, "patches": patches, "coating": coating}
         self._given = given
+        self._visco = visco
         # The set-up reads neither the undeformed distance nor the load, but checks them. Counts that are no counts are left to the
         # library, whose message says so.
         scene = Scene(np.zeros([max(m, 0) for m in self._shape]), dx, dy, None, 0.0, **self._bodies,
-                      effects={"influence": influence, "row_tables": row_tables, "friction": friction, **self._effects})
+                      effects={"influence": influence, "row_tables": row_tables, "friction": friction, "visco": visco, **self._effects})
         struct, self._handle = options(given), Handle()
         create = partial(library.contact_normal_solver_new, ctypes.byref(scene.struct), ctypes.byref(struct))
         check(*called(partial(self._handle.set_up, create), keep=scene, short=is_short(scene.effort, 1000)))
@@ -109,8 +113,13 @@ class Solver:
         my, mx = self._shape
         return f"<Solver: {mx} x {my} elements{', closed' if self._handle.is_closed else ''}>"
 
-    def _scene(self, h: Any, loads: Mapping[str, Any], pressure_limit: Any, friction: Any, adhesion: Any = None) -> Scene:
-        effects = {"pressure_limit": pressure_limit, "friction": friction, "adhesion": adhesion, **self._effects}
+    def _scene(
+        self, h: Any, loads: Mapping[str, Any], pressure_limit: Any, friction: Any, adhesion: Any = None, visco: Mapping[str, Any] | None = None
+    ) -> Scene:
+        if visco is not None and not isinstance(visco, Mapping):
+            raise TypeError(f"visco is {visco!r}; it must be a mapping")
+        step = self._visco if visco is None else {**(self._visco or {}), **visco}
+        effects = {"pressure_limit": pressure_limit, "friction": friction, "adhesion": adhesion, "visco": step, **self._effects}
         dx, dy = self._size
         return Scene(shaped("h", distances("h", h), self._shape), dx, dy, **loads, **self._bodies, effects=effects)
 
@@ -124,6 +133,7 @@ class Solver:
         pressure_limit: npt.ArrayLike | None = None,
         friction: Mapping[str, Any] | None = None,
         adhesion: Mapping[str, Any] | None = None,
+        visco: Mapping[str, Any] | None = None,
         pressure: npt.ArrayLike | None = None,
         contact: npt.ArrayLike | None = None,
         progress: Callable[[Progress], Any] | bool | None = None,
@@ -135,14 +145,15 @@ class Solver:
         ----------
         h : array_like, (my, mx)
             Undeformed distance.
-        approach, force, mean_pressure, pressure_limit, friction, adhesion, pressure, contact, progress, **given
+        approach, force, mean_pressure, pressure_limit, friction, adhesion, visco, pressure, contact, progress, **given
             As for the function `solve`; options add to those of the set-up. `initial_guess="PREVIOUS"` starts from the last result.
 
         Returns
         -------
         Result
         """
-        scene = self._scene(h, {"approach": approach, "force": force, "mean_pressure": mean_pressure}, pressure_limit, friction, adhesion)
+        scene = self._scene(h, {"approach": approach, "force": force, "mean_pressure": mean_pressure}, pressure_limit, friction, adhesion,
+                            visco)
         struct = options({**self._given, **given})
         outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None, scene, adhesion is not None)
         watched = Watched(progress, struct, scene)

@@ -129,6 +129,20 @@ class Adhesion(ctypes.Structure):
     ]
 
 
+class Visco(ctypes.Structure):
+    """contact_normal_visco."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("branches", c_int32 * 2),
+        ("modulus", POINTER(c_double) * 2),
+        ("time", POINTER(c_double) * 2),
+        ("time_step", c_double),
+        ("form", c_int32),
+        ("continues", c_int32),
+    ]
+
+
 class Scene(ctypes.Structure):
     """contact_normal_scene."""
 
@@ -154,6 +168,7 @@ class Scene(ctypes.Structure):
         ("coating", POINTER(Coating) * 2),
         ("friction", POINTER(Friction)),
         ("adhesion", POINTER(Adhesion)),
+        ("visco", POINTER(Visco)),
     ]
 
 
@@ -354,6 +369,18 @@ class ReportAdhesion(ctypes.Structure):
     ]
 
 
+class ReportVisco(ctypes.Structure):
+    """contact_normal_report_visco."""
+
+    _fields_ = [
+        ("time", c_double),
+        ("step_error", c_double),
+        ("time_error", c_double),
+        ("compliance", c_double),
+        ("reserved", c_double * 4),
+    ]
+
+
 class Report(ctypes.Structure):
     """contact_normal_report."""
 
@@ -369,6 +396,7 @@ class Report(ctypes.Structure):
         ("accuracy", ReportAccuracy),
         ("statistics", ReportStatistics),
         ("adhesion", ReportAdhesion),
+        ("visco", ReportVisco),
     ]
 
 
@@ -512,37 +540,6 @@ class HertzSolution(ctypes.Structure):
     ]
 
 
-class Heat(ctypes.Structure):
-    """contact_normal_heat."""
-
-    _fields_ = [
-        ("struct_size", c_int64),
-        ("mx", c_int32),
-        ("my", c_int32),
-        ("dx", c_double),
-        ("dy", c_double),
-        ("heat_flux", POINTER(c_double)),
-        ("conductivity", c_double * 2),
-        ("diffusivity", c_double * 2),
-        ("speed", c_double * 2),
-        ("share", c_double),
-        ("threads", c_int32),
-        ("reserved", c_int32),
-    ]
-
-
-class Flash(ctypes.Structure):
-    """contact_normal_flash."""
-
-    _fields_ = [
-        ("struct_size", c_int64),
-        ("share", c_double),
-        ("largest", c_double * 2),
-        ("x", c_double * 2),
-        ("y", c_double * 2),
-    ]
-
-
 class StressMaximum(ctypes.Structure):
     """contact_normal_stress_maximum."""
 
@@ -571,6 +568,37 @@ class StressOutputs(ctypes.Structure):
         ("directions", POINTER(c_double) * 3),
         ("largest_von_mises", POINTER(StressMaximum)),
         ("largest_shear", POINTER(StressMaximum)),
+    ]
+
+
+class Heat(ctypes.Structure):
+    """contact_normal_heat."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("mx", c_int32),
+        ("my", c_int32),
+        ("dx", c_double),
+        ("dy", c_double),
+        ("heat_flux", POINTER(c_double)),
+        ("conductivity", c_double * 2),
+        ("diffusivity", c_double * 2),
+        ("speed", c_double * 2),
+        ("share", c_double),
+        ("threads", c_int32),
+        ("reserved", c_int32),
+    ]
+
+
+class Flash(ctypes.Structure):
+    """contact_normal_flash."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("share", c_double),
+        ("largest", c_double * 2),
+        ("x", c_double * 2),
+        ("y", c_double * 2),
     ]
 
 
@@ -608,6 +636,7 @@ KINDS: dict[str, tuple[int, type[ctypes.Structure]]] = {
     "quantity_row": (22, QuantityRow),
     "effects_row": (23, EffectsRow),
     "adhesion": (24, Adhesion),
+    "visco": (25, Visco),
     "heat": (26, Heat),
     "flash": (27, Flash),
 }

@@ -8,14 +8,17 @@ use super::{Effect, Value};
 use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
 use crate::influence::{radial, Coated, CoatedBody, CoatedPeriodic, Kernel};
-use crate::scene::Plain;
+use crate::scene::{Bodies, Plain};
 
-/// The shear modulus of a coating, in that of its substrate.
-const RATIOS: (f64, f64) = (1e-4, 1e4);
+/// The shear modulus of a coating is at most so many times that of its substrate.
+const STIFFEST: f64 = 1e4;
+/// Below this ratio, or on a rigid body, an incompressible layer has to be at least so many elements thick: nothing else gives way there.
+const RIGID: f64 = 1e-4;
+const THINNEST: f64 = 0.125;
 /// Of what elements measure, a layer thinner than that is none.
 const NOTHING: f64 = 1e-100;
 
-/// A bonded elastic layer; the body's own shear modulus and Poisson ratio are then those of the substrate.
+/// A bonded elastic layer; the body's own shear modulus and Poisson ratio are then those of the substrate, which may be rigid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoatingLayer {
     /// t, a length; 0: no coating.
@@ -60,16 +63,37 @@ impl Coating {
         let plain = CoatedBody { compliance: (1.0 - ratio) / (2.0 * PI * modulus), layer: None };
         let Some(layer) = self.in_effect(b, scene) else { return Ok(plain) };
         let CoatingLayer { thickness, shear_modulus, poisson_ratio } = layer;
-        self.check_below(scene)?;
-        let mu = shear_modulus / modulus;
-        if !(mu >= RATIOS.0 && mu <= RATIOS.1) {
+        let mu = self.ratio(b, scene);
+        if !(mu <= STIFFEST) {
             return invalid(format!(
-                "{} is {shear_modulus}, that of the body {modulus}; their ratio must lie in {:e}..{:e}",
-                NAMES[b][1], RATIOS.0, RATIOS.1
+                "{} is {shear_modulus}, that of the body {modulus}; their ratio must be at most {STIFFEST:e}",
+                NAMES[b][1]
             ));
         }
         let compliance = (1.0 - poisson_ratio) / (2.0 * PI * shear_modulus);
         Ok(CoatedBody { compliance, layer: Some((thickness, radial(mu, [poisson_ratio, ratio]))) })
+    }
+
+    /// Refuses a layer that gives way by shear alone, in waves that are shorter than elements: pressures that are constant on these see none of them.
+    fn check_thickness(&self, b: usize, (scene, body): (&Plain<'_>, &CoatedBody)) -> Result<()> {
+        let Some((t, radial)) = &body.layer else { return Ok(()) };
+        let longer = f64::max(scene.grid.dx, scene.grid.dy);
+        let (s, transfer) = (PI * t / longer, &radial.transfer);
+        // B(s) of a thin layer: what is below, its compression, and its shear.
+        let is_sheared = transfer.substrate + transfer.of_mean * s < 2.0 / 3.0 * s.powi(3) || transfer.of_mean == 0.0;
+        if self.ratio(b, scene) < RIGID && *t < THINNEST * longer && is_sheared {
+            return invalid(format!(
+                "{} is {t} on elements {} x {}; a layer that is almost incompressible, on a body that is rigid beside it, must be at least \
+                 {THINNEST} of the longer side: take smaller elements",
+                NAMES[b][0], scene.grid.dx, scene.grid.dy
+            ));
+        }
+        Ok(())
+    }
+
+    /// The shear modulus of a layer in that of the body: 0 on a rigid one.
+    fn ratio(&self, b: usize, scene: &Plain<'_>) -> f64 {
+        self.layers[b].map_or(1.0, |layer| layer.shear_modulus / scene.bodies.shear_modulus[b])
     }
 
     /// Both bodies; none: they have no coating in effect.
@@ -80,24 +104,22 @@ impl Coating {
 }
 
 impl Coating {
-    /// Refuses a rigid body below a coating.
-    pub fn check_below(&self, scene: &Plain<'_>) -> Result<()> {
-        let is_coated = |b: usize| self.in_effect(b, scene).is_some();
-        match (0..2).find(|&b| is_coated(b) && scene.bodies.shear_modulus[b] == f64::INFINITY) {
-            Some(b) => invalid(format!(
-                "shear_modulus[{b}] is {}, that of a rigid body, below coating[{b}]; the body below a coating must be elastic, at most {:e} times \
-                 as stiff as the coating",
-                f64::INFINITY, 1.0 / RATIOS.0
-            )),
-            None => Ok(()),
+    /// The materials at the surfaces: a body's own, or its layer's.
+    fn at_surface(&self, scene: &Plain<'_>) -> Bodies {
+        let mut bodies = scene.bodies;
+        for b in 0..2 {
+            if let Some(layer) = self.in_effect(b, scene) {
+                (bodies.shear_modulus[b], bodies.poisson_ratio[b]) = (layer.shear_modulus, layer.poisson_ratio);
+            }
         }
+        bodies
     }
 
     /// What both bodies give way to a pressure wave of wave number k > 0, after a check.
     pub fn compliance(&self, scene: &Plain<'_>, k: f64) -> Result<f64> {
         self.check(&scene.grid)?;
-        self.check_below(scene)?;
-        scene.bodies.check()?;
+        scene.bodies.check_each()?;
+        self.at_surface(scene).check()?;
         Ok((self.body(0, scene)?.of_wave(k)) + self.body(1, scene)?.of_wave(k))
     }
 }
@@ -140,6 +162,7 @@ impl Effect for Coating {
 
     fn kernel(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<Option<Arc<dyn Kernel>>> {
         let Some(bodies) = self.bodies(scene)? else { return Ok(None) };
+        (0..2).try_for_each(|b| self.check_thickness(b, (scene, &bodies[b])))?;
         let repeats = others.iter().flatten().map(|other| other.properties().repeats).find(|(x, y)| *x || *y);
         Ok(Some(match repeats {
             None => Arc::new(Coated::new(bodies, &scene.grid)?),
@@ -173,8 +196,8 @@ impl Effect for Coating {
         (0..2).any(|b| self.in_effect(b, scene).is_some()) || self.check(&scene.grid).is_err()
     }
 
-    fn check_bodies(&self, scene: &Plain<'_>) -> Result<()> {
-        self.check_below(scene)
+    fn at_surface(&self, scene: &Plain<'_>) -> Option<Bodies> {
+        Some(Coating::at_surface(self, scene))
     }
 
     fn stresses(&self, b: usize, scene: &Plain<'_>) -> Stresses<'_> {

@@ -37,6 +37,10 @@ pub trait Coupled {
 pub struct History {
     fields: Vec<Vec<f64>>,
     has_step: bool,
+    /// Of the steps so far, for effects that have a time.
+    pub time: f64,
+    /// What the steps so far may be off, added up: a length.
+    pub error: f64,
 }
 
 impl History {
@@ -46,6 +50,16 @@ impl History {
             self.fields.push(zeros(grid.len(), "what an effect keeps from step to step")?);
         }
         Ok(&mut self.fields[..count])
+    }
+
+    /// The fields that there are.
+    pub fn known(&self) -> &[Vec<f64>] {
+        &self.fields
+    }
+
+    /// The same, to be written.
+    pub fn known_mut(&mut self) -> &mut [Vec<f64>] {
+        &mut self.fields
     }
 
     /// Whether a step was done.
@@ -61,7 +75,7 @@ impl History {
     /// There is no last step.
     pub fn forget(&mut self) {
         self.fields.iter_mut().for_each(|field| field.fill(0.0));
-        self.has_step = false;
+        (self.has_step, self.time, self.error) = (false, 0.0, 0.0);
     }
 
     /// Bytes held.

@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use super::coupled::{Coupled, History};
+use super::memory::Memory;
 use super::properties::{Properties, Stresses};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::influence::{Coefficients, Kernel};
 use crate::memory::Held;
-use crate::scene::Plain;
+use crate::scene::{Bodies, Plain};
 
 /// A value of an effect.
 #[derive(Clone, Copy, Debug)]
@@ -59,9 +60,9 @@ pub trait Effect {
         Ok(())
     }
 
-    /// Refuses bodies that it is not solved with.
-    fn check_bodies(&self, _scene: &Plain<'_>) -> Result<()> {
-        Ok(())
+    /// The materials at the surfaces of the bodies, where it covers them; none: the bodies' own.
+    fn at_surface(&self, _scene: &Plain<'_>) -> Option<Bodies> {
+        None
     }
 
     /// Its own kernel, in place of the half-space's; others may have a say in it.
@@ -76,6 +77,16 @@ pub trait Effect {
 
     /// The undeformed distance that it makes of `h`; none: the same.
     fn surface(&self, _h: &[f64]) -> Result<Option<Vec<f64>>> {
+        Ok(None)
+    }
+
+    /// What bodies remember of the steps before, `history`, in a step of this one.
+    fn memory(
+        &self,
+        _scene: &Plain<'_>,
+        _others: &[Option<&dyn Effect>],
+        _history: &mut History,
+    ) -> Result<Option<Box<dyn Memory>>> {
         Ok(None)
     }
 

@@ -22,6 +22,8 @@ macro_rules! with_effects {
             friction: $crate::effects::Friction<'a>,
             /// Effect: attraction between the bodies.
             adhesion: $crate::effects::Adhesion<'a>,
+            /// Effect: bodies that relax.
+            visco: $crate::effects::Visco<'a>,
             /// Effect, in tests only: a foundation with memory.
             #[cfg(test)]
             foundation: $crate::effects::Foundation,

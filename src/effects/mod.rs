@@ -11,6 +11,7 @@
 //! | pressure_limit | | yes | another one for each solve |
 //! | friction | period, patches; without tangential tables influence, row_tables, coating | yes | another one for each solve |
 //! | adhesion | row_tables, patches, pressure_limit, friction | no | another one for each solve |
+//! | visco | layer, friction, adhesion; influence, row_tables, coating of bodies that do not relax alike | yes | its moduli and times are those of the set-up |
 //!
 //! | effect | on a given contact area | to an accuracy | stresses below the surface | beside the normal problem |
 //! |---|---|---|---|---|
@@ -22,10 +23,12 @@
 //! | pressure_limit | no | yes | yes | |
 //! | friction | yes | no | yes | the tangential problem, which may continue; of unlike bodies in turns |
 //! | adhesion | no | no | yes | |
+//! | visco | yes | no | yes | nothing: its step is a problem of other lengths, with what is left of the steps before |
 //!
 //! A new effect is a file with an `impl Effect`, its `mod`, and a line in the list (`list.rs`), which makes it a field of
 //! [`Scene`](crate::scene::Scene). The list has the order in which effects act; `together.rs` has what all of a scene say. What is solved
-//! in turns with the normal problem, or remembers the steps before, is [`Coupled`]. `tests/unit/foundation.rs` is an example.
+//! in turns with the normal problem, or remembers the steps before, is [`Coupled`]. `tests/unit/foundation.rs` is an example. What bodies themselves
+//! remember is [`Memory`].
 
 mod adhesion;
 mod coating;
@@ -35,6 +38,7 @@ mod friction;
 mod friction_checks;
 mod layer;
 pub(crate) mod list;
+mod memory;
 mod named;
 mod patches;
 mod period;
@@ -44,6 +48,8 @@ mod tables;
 mod tangential_influence;
 mod tangential_rows;
 mod together;
+mod visco;
+mod visco_step;
 
 pub use adhesion::{Adhesion, Work};
 pub use coating::{Coating, CoatingLayer};
@@ -51,6 +57,7 @@ pub use coupled::{Coupled, History};
 pub use effect::{Effect, Value};
 pub use friction::{Coefficient, Friction, Motion, Prescribed, Previous};
 pub use layer::Layer;
+pub use memory::Memory;
 pub use named::{Named, SET_THEM};
 pub use patches::Patches;
 pub use period::Period;
@@ -58,8 +65,9 @@ pub use properties::{Continues, Layout, PressureLimit, Properties, Stresses};
 pub use tangential_influence::{KeptInfluence, TangentialInfluence};
 pub use together::{
     beside, check_bodies, check_effects, check_other_grids, continuing, coupled, effects, excluded_method, keep,
-    limits, own_coefficients, repeats, replace_bodies, surface, without_given_area, COUNT,
+    limits, memory, own_coefficients, repeats, replace_bodies, surface, without_given_area, COUNT,
 };
+pub use visco::{Branches, Visco};
 
 #[cfg(test)]
 #[path = "../../tests/unit/foundation.rs"]

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::coupled::{Coupled, History};
 use super::effect::Effect;
 use super::list::with_effects;
+use super::memory::Memory;
 use super::properties::{Continues, Layout, PressureLimit, Properties};
 use crate::error::{invalid, Error, Result};
 use crate::influence::{Coefficients, HalfSpace};
@@ -74,10 +75,10 @@ pub fn replace_bodies(scene: &Scene<'_>) -> bool {
     own_coefficients(scene).is_some()
 }
 
-/// Checks the bodies, of which some effects ask more.
+/// Checks the bodies, each by itself, and both together as they are at their surfaces.
 pub fn check_bodies(scene: &Scene<'_>) -> Result<()> {
-    effects(scene).try_for_each(|effect| effect.check_bodies(&scene.plain()))?;
-    scene.bodies.check()
+    scene.bodies.check_each()?;
+    effects(scene).find_map(|effect| effect.at_surface(&scene.plain())).unwrap_or(scene.bodies).check()
 }
 
 /// The first effect that is not solved on a contact area that is given.
@@ -130,6 +131,17 @@ pub fn coupled<'s>(scene: &'s Scene<'_>, histories: &'s mut [History; COUNT]) ->
         }
     }
     Ok(coupled)
+}
+
+/// What bodies remember, and which effect of the list says so.
+pub fn memory(scene: &Scene<'_>, histories: &mut [History; COUNT]) -> Result<Option<(usize, Box<dyn Memory>)>> {
+    let (plain, list) = (scene.plain(), list(scene));
+    for (k, (effect, history)) in list.iter().zip(histories).enumerate() {
+        if let Some(memory) = effect.map_or(Ok(None), |effect| effect.memory(&plain, &list, history))? {
+            return Ok(Some((k, memory)));
+        }
+    }
+    Ok(None)
 }
 
 /// A step of the effects that a scene names is done; of those that it does not name there is none any more.

@@ -8,7 +8,8 @@ use crate::error::require;
 use crate::grid::Grid;
 use crate::scene::{Bodies, Coating, CoatingLayer, Load, Plain};
 
-/// Effect: a coating, an elastic layer bonded to a body. `shear_modulus` and `poisson_ratio` of the scene are then those of the body below.
+/// Effect: a coating, an elastic layer bonded to a body. `shear_modulus` and `poisson_ratio` of the scene are then those of the body below,
+/// which may be rigid: +infinity.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_coating {
@@ -16,7 +17,7 @@ pub struct contact_normal_coating {
     pub struct_size: i64,
     /// Its thickness, a length >= 0; default 0: no coating.
     pub thickness: f64,
-    /// Its G, a pressure > 0, 1e-4 to 1e4 times that of the body; default 0: to be set.
+    /// Its G, a pressure > 0, at most 1e4 times that of the body; default 0: to be set.
     pub shear_modulus: f64,
     /// Its nu, in (-1, 0.5]; default 0.
     pub poisson_ratio: f64,
@@ -24,7 +25,7 @@ pub struct contact_normal_coating {
 
 versioned! { contact_normal_coating, contact_normal_coating_init, 32 }
 
-/// What a coated body with this `shear_modulus` and `poisson_ratio` below gives way to a pressure wave: the amplitude of the
+/// What a coated body with this `shear_modulus` (+infinity: rigid) and `poisson_ratio` below gives way to a pressure wave: the amplitude of the
 /// displacement over that of the pressure, for `wave_number` (2 pi over the wave's length) > 0. To compare a coating with a formula of
 /// one's own: `(1 - nu)/(G k)` for a body of one material. Since 0.2.
 #[no_mangle]

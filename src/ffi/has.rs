@@ -5,7 +5,7 @@ use std::ffi::CStr;
 use libc::c_char;
 
 /// Effects of a scene, members of the options and the fields, and what functions do.
-const NAMES: [&str; 32] = [
+const NAMES: [&str; 33] = [
     "accuracy",
     "adhesion",
     "batch",
@@ -37,6 +37,7 @@ const NAMES: [&str; 32] = [
     "stop",
     "stress",
     "tangential_row_tables",
+    "visco",
     "warnings",
 ];
 

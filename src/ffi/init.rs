@@ -26,6 +26,7 @@ use super::special::contact_normal_hertz_solution;
 use super::status::CONTACT_NORMAL_OK;
 use super::stress_outputs::{contact_normal_stress_maximum, contact_normal_stress_outputs};
 use super::structs;
+use super::visco::contact_normal_visco;
 
 /// `kind`: `contact_normal_scene`. Since 0.1.
 pub const CONTACT_NORMAL_KIND_SCENE: i32 = 1;
@@ -75,6 +76,8 @@ pub const CONTACT_NORMAL_KIND_QUANTITY_ROW: i32 = 22;
 pub const CONTACT_NORMAL_KIND_EFFECTS_ROW: i32 = 23;
 /// `kind`: `contact_normal_adhesion`. Since 0.2.
 pub const CONTACT_NORMAL_KIND_ADHESION: i32 = 24;
+/// `kind`: `contact_normal_visco`. Since 0.2.
+pub const CONTACT_NORMAL_KIND_VISCO: i32 = 25;
 /// `kind`: `contact_normal_heat`. Since 0.2.
 pub const CONTACT_NORMAL_KIND_HEAT: i32 = 26;
 /// `kind`: `contact_normal_flash`. Since 0.2.
@@ -139,6 +142,7 @@ kinds! {
     CONTACT_NORMAL_KIND_QUANTITY_ROW => contact_normal_quantity_row,
     CONTACT_NORMAL_KIND_EFFECTS_ROW => contact_normal_effects_row,
     CONTACT_NORMAL_KIND_ADHESION => contact_normal_adhesion,
+    CONTACT_NORMAL_KIND_VISCO => contact_normal_visco,
     CONTACT_NORMAL_KIND_HEAT => contact_normal_heat,
     CONTACT_NORMAL_KIND_FLASH => contact_normal_flash,
 }

@@ -9,7 +9,7 @@ const NOT_ASSOCIATED: i64 = 2;
 const WRONG_SHAPE: i64 = 3;
 
 /// The procedures and their arguments, in the order of include/contact_normal.f90.
-const PROCEDURES: [(&str, &[&str]); 19] = [
+const PROCEDURES: [(&str, &[&str]); 20] = [
     ("set_undeformed_distance", &["scene", "h"]),
     ("set_influence", &["scene", "influence", "cx", "cy", "coefficients", "scale"]),
     ("set_layer", &["scene", "layer", "compliance", "compliances"]),
@@ -75,6 +75,7 @@ const PROCEDURES: [(&str, &[&str]); 19] = [
     ("solver_solve_batch", &["solver", "scenes", "options", "fields", "reports", "statuses"]),
     ("set_tangential_row_tables", &["friction", "tables", "cx", "xx", "yy", "xy", "scale"]),
     ("set_adhesion", &["scene", "adhesion", "work", "works", "range", "law"]),
+    ("set_visco", &["scene", "visco", "modulus_1", "time_1", "modulus_2", "time_2", "time_step", "continues"]),
 ];
 
 /// What a mark says, if this is one.
@@ -123,7 +124,7 @@ mod tests {
     fn other_sizes_are_no_marks() {
         let wrong = [
             mark(0, 1, 1),
-            mark(20, 1, 1),
+            mark(21, 1, 1),
             mark(1, 0, 1),
             mark(1, 4, 1),
             mark(1, NOT_ASSOCIATED, 0),

@@ -48,6 +48,7 @@ mod stress;
 mod stress_outputs;
 mod structs;
 mod tangential;
+mod visco;
 mod warnings;
 mod watcher;
 
@@ -83,4 +84,5 @@ pub use status::*;
 pub use stress::*;
 pub use stress_outputs::*;
 pub use tangential::*;
+pub use visco::*;
 pub use warnings::*;

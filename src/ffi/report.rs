@@ -3,6 +3,7 @@
 use super::adhesion::contact_normal_report_adhesion;
 use super::ledger::{contact_normal_ledger_row, copy, set_errors, set_measures};
 use super::structs::{versioned, Versioned};
+use super::visco::contact_normal_report_visco;
 use crate::friction;
 use crate::solver::{Limit, Report};
 
@@ -167,6 +168,8 @@ pub struct contact_normal_report {
     pub statistics: contact_normal_report_statistics,
     /// What was found of adhesion.
     pub adhesion: contact_normal_report_adhesion,
+    /// What was found of a step in time.
+    pub visco: contact_normal_report_visco,
 }
 
 versioned! {
@@ -197,6 +200,9 @@ impl contact_normal_report {
         copy!(report => statistics: setup_seconds, solve_seconds, bytes);
         if let Some(found) = &report.adhesion {
             to.adhesion.set(found);
+        }
+        if let Some(found) = &report.visco {
+            to.visco.set(found);
         }
         if let Some(found) = &report.friction {
             (statistics.tangential_products, statistics.tangential_seconds) = (found.products, found.seconds);

@@ -10,6 +10,7 @@ use super::friction::contact_normal_friction;
 use super::influence::{contact_normal_influence, contact_normal_row_tables};
 use super::status::Refusal;
 use super::structs::{self, versioned};
+use super::visco::contact_normal_visco;
 use crate::grid::Grid;
 use crate::memory::collected;
 use crate::scene::{Bodies, Coating, Load, Scene};
@@ -38,7 +39,7 @@ pub struct contact_normal_scene {
     pub dy: f64,
     /// h, the gap between the surfaces before they deform, `[my][mx]`, x fastest: a length. +infinity: no surface there, the element stays exterior. Default NULL: to be set.
     pub undeformed_distance: *const f64,
-    /// G of the two bodies: a pressure, positive; +infinity: rigid (one of them at most). Default 0: to be set.
+    /// G of the two bodies: a pressure, positive; +infinity: rigid (one surface at most, below a coating both). Default 0: to be set.
     pub shear_modulus: [f64; 2],
     /// nu of the two bodies, in (-1, 0.5]; default 0.
     pub poisson_ratio: [f64; 2],
@@ -68,6 +69,8 @@ pub struct contact_normal_scene {
     pub friction: *const contact_normal_friction,
     /// Effect, or NULL (default): attraction between the bodies.
     pub adhesion: *const contact_normal_adhesion,
+    /// Effect, or NULL (default): bodies that relax, and a step of time of them.
+    pub visco: *const contact_normal_visco,
 }
 
 versioned! { contact_normal_scene, contact_normal_scene_init, 168, approach: f64::NAN, force: f64::NAN }
@@ -116,6 +119,7 @@ pub(super) struct Named {
     coating: [Option<contact_normal_coating>; 2],
     friction: Option<contact_normal_friction>,
     adhesion: Option<contact_normal_adhesion>,
+    visco: Option<contact_normal_visco>,
 }
 
 impl Named {
@@ -138,6 +142,7 @@ impl Named {
                 ],
                 friction: structs::read_optional(scene.friction, "scene->friction")?,
                 adhesion: structs::read_optional(scene.adhesion, "scene->adhesion")?,
+                visco: structs::read_optional(scene.visco, "scene->visco")?,
                 scene,
             })
         }
@@ -176,7 +181,8 @@ impl Named {
         add(regions, grid, scene.coating[0], &self.coating[0])?;
         add(regions, grid, scene.coating[1], &self.coating[1])?;
         add(regions, grid, scene.friction, &self.friction)?;
-        add(regions, grid, scene.adhesion, &self.adhesion)
+        add(regions, grid, scene.adhesion, &self.adhesion)?;
+        add(regions, grid, scene.visco, &self.visco)
     }
 
     /// A copy of the undeformed distance.
@@ -233,6 +239,7 @@ impl Named {
                 }),
                 friction: self.friction.map(|friction| friction.translate(grid)).transpose()?,
                 adhesion: self.adhesion.map(|adhesion| adhesion.translate(grid)).transpose()?,
+                visco: self.visco.map(|visco| visco.translate()).transpose()?,
                 ..Scene::new(*grid, undeformed_distance, bodies, load)
             })
         }

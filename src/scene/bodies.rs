@@ -33,8 +33,8 @@ impl Bodies {
         Some(format!("{} is {}; this solver was set up for {}", now.0, now.1, then.1))
     }
 
-    /// Refuses what is no material.
-    pub fn check(&self) -> Result<()> {
+    /// Refuses what is no material, one body by itself: either may be rigid.
+    pub fn check_each(&self) -> Result<()> {
         for i in 0..2 {
             let (modulus, ratio) = (self.shear_modulus[i], self.poisson_ratio[i]);
             if modulus.is_nan() {
@@ -48,6 +48,12 @@ impl Bodies {
             let name = ["poisson_ratio[0]", "poisson_ratio[1]"][i];
             require(ratio > -1.0 && ratio <= 0.5, name, ratio, "it must lie in (-1, 0.5]")?;
         }
+        Ok(())
+    }
+
+    /// Refuses what is no material, and two rigid bodies.
+    pub fn check(&self) -> Result<()> {
+        self.check_each()?;
         if self.shear_modulus.iter().all(|modulus| modulus.is_infinite()) {
             return invalid("shear_modulus is infinite for both bodies; at least one of them must be elastic".into());
         }

@@ -7,6 +7,7 @@ use super::{LedgerRow, Options, Solver};
 use crate::contact::{Freshness, State};
 use crate::effects::{Effect, Layout};
 use crate::error::{invalid, Result};
+use crate::friction;
 use crate::grid::Grid;
 use crate::influence::{Coefficients, Table};
 
@@ -19,6 +20,11 @@ impl Solver {
     /// The grid that it was set up for.
     pub fn grid(&self) -> &Grid {
         &self.problem.grid
+    }
+
+    /// Tractions, slip and stick area of the last result; none if its scene had no friction.
+    pub fn friction(&self) -> Option<&friction::Solution> {
+        self.friction.as_deref().filter(|_| self.has_result).and_then(Tangent::solution)
     }
 
     /// Whether nothing is estimated from the last result: pressures are at their limit, or something attracts.
@@ -94,7 +100,7 @@ impl Solver {
         // Workers share the coefficients of the finest grid.
         let own = |worker: &Solver| worker.bytes() - worker.influence().bytes();
         let workers: usize = self.workers.iter().flatten().map(own).sum();
-        let limits = self.limits.len() * size_of::<f64>();
+        let limits = (self.limits.len() + self.remembered.len()) * size_of::<f64>();
         let friction = self.friction.as_deref().into_iter().chain(&self.crew).map(Tangent::bytes).sum::<usize>();
         let tables = self.own_tables.as_ref().map_or(0, |tables| tables.bytes());
         let adhesion = self.adhesion.as_ref().map_or(0, |adhesion| adhesion.bytes());

@@ -45,7 +45,7 @@ impl Solver {
     }
 
     /// dF/d approach of the last result: by how much the force grows with the approach while the contact area, pressures at their limit and
-    /// tractions stay. `A s = 1` is solved on the contact area, and the value is the sum of `s dx dy`; 0 without contact. Where the value could not
+    /// tractions stay, within the step in time of bodies that relax. `A s = 1` is solved on the contact area, and the value is the sum of `s dx dy`; 0 without contact. Where the value could not
     /// be had, the outcome says why. The last result stays. The first call sets up another solver of one thread, which is kept.
     pub fn stiffness(&mut self) -> Result<(Outcome, Stiffness)> {
         if !self.has_result {
@@ -70,10 +70,11 @@ impl Solver {
             estimates: false,
             ..set_up.options
         };
-        match &mut workers[0] {
-            Some(worker) => worker.stiffness_of(&state.contact, &options),
+        let (stop, found) = match &mut workers[0] {
+            Some(worker) => worker.stiffness_of(&state.contact, &options)?,
             None => unreachable!("it was set up"),
-        }
+        };
+        Ok((stop, Stiffness { value: found.value / self.compliance, ..found }))
     }
 
     /// The same of a contact area; this solver's own result is lost.

@@ -37,6 +37,7 @@ mod tangential_turn;
 mod turns;
 mod unlike_bodies;
 mod unlike_sensitivities;
+mod with_memory;
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -58,7 +59,6 @@ pub use tangential_calls::solve_tangential;
 use crate::contact::{self, Curvature, State};
 use crate::effects::{self, KeptInfluence, Layout, Named};
 use crate::error::Result;
-use crate::friction;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::progress::Monitor;
@@ -109,6 +109,10 @@ pub struct Solver {
     adhesion: Option<Box<crate::adhesion::Solver>>,
     /// Whether the last result is one of a scene with adhesion.
     is_adhesive: bool,
+    /// What bodies remember, and the distances of their step; empty where they remember nothing.
+    remembered: Vec<f64>,
+    /// Of the bodies in the last result, in that of the set-up: 1 where they remember nothing.
+    compliance: f64,
     /// Tangential coefficients of the caller's own.
     own_tables: Option<Arc<KeptInfluence>>,
     /// For tables of tangential problems: of one thread each, made when first needed.
@@ -202,6 +206,8 @@ impl Solver {
             friction: None,
             adhesion: None,
             is_adhesive: false,
+            remembered: Vec::new(),
+            compliance: 1.0,
             own_tables: None,
             crew: Vec::new(),
             workers: Vec::new(),
@@ -235,12 +241,12 @@ impl Solver {
         if let Some(h) = effects::surface(scene)? {
             let scene = &Scene { undeformed_distance: &h, ..scene.clone() };
             let lowest = scene.check_distance_and_load(&self.problem.threads)?;
-            return self.solve_surface((scene, lowest), options, guess, progress);
+            return self.solve_step_in_time((scene, lowest), options, guess, progress);
         }
-        self.solve_surface((scene, lowest), options, guess, progress)
+        self.solve_step_in_time((scene, lowest), options, guess, progress)
     }
 
-    /// The same for a scene that is checked, with the undeformed distance that its effects make.
+    /// A scene that is checked, whose bodies remember nothing, or whose distances have what they remember.
     fn solve_surface(
         &mut self,
         (scene, lowest): (&Scene<'_>, f64),
@@ -249,6 +255,7 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
         check::guess(scene, options, guess)?;
+        self.compliance = 1.0;
         if let Some(adhesion) = scene.attraction() {
             return self.solve_adhesive((scene, lowest), (adhesion, false), options, guess, progress);
         }
@@ -281,11 +288,6 @@ impl Solver {
         report.bytes = self.bytes() as u64;
         report.log(options.method, &self.problem.grid, stop);
         Ok((stop, report))
-    }
-
-    /// Tractions, slip and stick area of the last result; none if its scene had no friction.
-    pub fn friction(&self) -> Option<&friction::Solution> {
-        self.friction.as_deref().filter(|_| self.has_result).and_then(Tangent::solution)
     }
 
     /// The errors of the report and the ledger. Limits that are reached have other rims, row tables other displacements than the estimates know.

@@ -5,6 +5,7 @@ use crate::adhesion;
 use crate::friction;
 use crate::grid::Grid;
 use crate::progress::{Counters, DiscretisationError, Measures, Monitor, Outcome};
+use crate::visco;
 
 /// The limit of the accuracy of a solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -58,6 +59,8 @@ pub struct Report {
     pub friction: Option<friction::Report>,
     /// Of adhesion, if the scene has any.
     pub adhesion: Option<adhesion::Report>,
+    /// Of the step in time, if bodies relax.
+    pub visco: Option<visco::Report>,
 }
 
 impl Report {

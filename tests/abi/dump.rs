@@ -67,6 +67,7 @@ fn a_solve_with_every_effect_is_made_again_from_its_file() {
         "friction influence tables",
         "friction pressure_limit",
         "adhesion layer",
+        "visco pressure_limit",
     ] {
         let mut scene = Everything::new(effects);
         scene.options.max_cycles = 1;
@@ -95,7 +96,7 @@ fn every_pointer_of_a_scene_is_in_the_file() {
     let path = folder("every").join("failed");
     let path_text = text(&path);
     let mut scene = Everything::new(
-        "layer pressure_limit coating influence row_tables period patches friction tables tangential_rows adhesion",
+        "layer pressure_limit coating influence row_tables period patches friction tables tangential_rows adhesion visco",
     );
     scene.options.dump = path_text.as_ptr();
     // Effects that do not go together.

@@ -44,6 +44,7 @@ struct Structs {
     coating: [contact_normal_coating; 2],
     cycle: contact_normal_cycle,
     adhesion: contact_normal_adhesion,
+    visco: contact_normal_visco,
 }
 
 /// Coefficients of the half-space, `[2 CY][2 CX]`.
@@ -81,6 +82,8 @@ impl Everything {
         let mut s = Box::<Structs>::default();
         (s.layer.compliances, s.limit.limits) = (each(1e-7), each(1000.0));
         (s.adhesion.works_of_adhesion, s.adhesion.range) = (each(1e-3), 0.01);
+        (s.visco.branches, s.visco.time_step) = ([2, 3], 0.4);
+        (s.visco.modulus, s.visco.time) = ([each(2e4), each(1e4)], [each(0.1), each(1.0)]);
         let mut friction = Box::<contact_normal_friction>::default();
         (friction.coefficients, friction.creepage) = (each(0.01), [0.001, 0.0005]);
         friction.previous_traction = [each(0.1), each(0.05)];
@@ -135,6 +138,7 @@ impl Everything {
         scene.coating = [of(names("coating"), &s.coating[0]), of(names("coating"), &s.coating[1])];
         scene.friction = of(names("friction"), &friction);
         scene.adhesion = of(names("adhesion"), &s.adhesion);
+        scene.visco = of(names("visco"), &s.visco);
         let options = contact_normal_options { cycle: &s.cycle, ..Default::default() };
         Everything { scene, options, friction, h, with_outputs: false, _structs: s, _arrays: arrays, _patch: patch }
     }

@@ -171,6 +171,27 @@ static void adhesions()
     expect(thrown_by([&] { cn::solve(cn::scene(scene).adhesion(sticky).force(-2.5)); }, "pull-off") == CONTACT_NORMAL_INFEASIBLE, "no more than that");
 }
 
+static void relaxing()
+{
+    const cn::grid grid{32, 32, 0.02, 0.02};
+    std::vector<double> h;
+    for (int i = 0; i < 32 * 32; i++) {
+        const double x = (i % 32 - 15.5) * grid.dx, y = (i / 32 - 15.5) * grid.dy;
+        h.push_back(0.5 * (x * x + y * y));
+    }
+    const std::vector<double> moduli{4.0, 3.0}, times{0.3, 3.0};
+    cn::visco step = cn::visco(0.0).branches(2, moduli, times).form(CONTACT_NORMAL_FORM_AUTO);
+    cn::scene scene(grid, {std::numeric_limits<double>::infinity(), 0.0}, {8.0, 0.5});
+    scene.undeformed_distance(h).approach(0.02).visco(step);
+    cn::solver solver(scene);
+    const double first = solver.solve(scene).report.normal.force;
+    const cn::result found = solver.solve(cn::scene(scene).visco(step.time_step(0.4).continues()));
+    double left = 1.0;
+    for (std::size_t k = 0; k < 2; k++) left -= moduli[k] / 8.0 * (1.0 - std::exp(-0.4 / times[k]));
+    expect(std::abs(found.report.normal.force / first / left - 1.0) < 1e-5 && found.report.visco.time == 0.4, "a held approach relaxes");
+    expect(thrown_by([&] { cn::visco().branches(3, moduli, times); }, "body is 3") == CONTACT_NORMAL_INVALID_ARGUMENT, "there are two bodies");
+}
+
 static void frictions()
 {
     const std::vector<double> h = ball(GRID, 0.01);
@@ -320,6 +341,7 @@ int main()
     batches();
     accuracies();
     adhesions();
+    relaxing();
     frictions();
     stops();
     the_library();

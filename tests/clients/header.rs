@@ -21,6 +21,7 @@ fn the_committed_header_is_the_generated_one() {
         "effects",
         "friction",
         "adhesion",
+        "visco",
         "options",
         "warnings",
         "fields",

@@ -187,6 +187,11 @@ fn the_adhesion_example_prints_what_is_expected_and_draws() {
 }
 
 #[test]
+fn the_visco_example_prints_what_is_expected_and_draws() {
+    prints_what_is_expected_and_draws("visco");
+}
+
+#[test]
 fn the_rolling_example_prints_what_is_expected_and_draws() {
     prints_what_is_expected_and_draws("rolling");
 }

@@ -16,7 +16,7 @@ use crate::support::{assert_conditions, run};
 const RATIOS: [f64; 9] = [1e-4, 0.01, 0.1, 0.5, 0.999, 2.0, 10.0, 100.0, 1e4];
 
 /// One coated body on a rigid one, with (1 - nu)/(2 pi G) = 1 at its surface.
-fn coated(mu: f64, nu: [f64; 2], t: f64, grid: &Grid) -> Coated {
+pub fn coated(mu: f64, nu: [f64; 2], t: f64, grid: &Grid) -> Coated {
     let rigid = CoatedBody { compliance: 0.0, layer: None };
     let layer = CoatedBody { compliance: 1.0, layer: Some((t, radial(mu, nu))) };
     Coated::new([layer, rigid], grid).unwrap()
@@ -116,7 +116,7 @@ fn gauss(n: usize) -> Vec<(f64, f64)> {
 
 /// The coefficient at an offset in x by its definition: Hankel's integral `F(rho) = integral of (B(s) - 1) J0(s rho) ds` at each of
 /// `n x n` Gauss points of each of `parts x parts` parts of the element, and Love's integral of 1/r.
-fn by_hankel_integrals(
+pub fn by_hankel_integrals(
     mu: f64,
     nu: [f64; 2],
     t: f64,

@@ -88,8 +88,9 @@ impl Omission {
     fn is_in(self, scene: &Scene<'_>) -> bool {
         let friction = scene.friction.as_ref();
         match self {
-            Omission::Coating => has_coating(scene),
-            Omission::CoatingAsLayer => has_coating(scene) && as_layer(scene).is_some(),
+            // Without the coatings two rigid bodies do not give way at all.
+            Omission::Coating => has_coating(scene) && scene.bodies.check().is_ok(),
+            Omission::CoatingAsLayer => has_coating(scene) && scene.bodies.check().is_ok() && as_layer(scene).is_some(),
             Omission::Period => scene.period.is_some_and(|period| period.x || period.y),
             Omission::Patches => scene.patches.is_some(),
             Omission::Layer => scene.layer.is_some(),

@@ -1,0 +1,62 @@
+"""Steps of a body that relaxes, beside tamaas (MaxwellViscoelastic, backward Euler): `visco_tamaas.py [ELEMENTS]`, with tamaas installed."""
+
+import sys
+import time
+
+import numpy as np
+import tamaas
+
+import contact_normal as cn
+
+N = int(sys.argv[1]) if len(sys.argv) > 1 else 128
+DX, RADIUS, NU = 1.0 / N, 1.0, 0.5
+REST, MODULI, TIMES = 1.0, [4.0, 3.0], [0.3, 3.0]
+STEP, STEPS, MEAN = 0.2, 10, 0.3
+G = REST + sum(MODULI)
+
+
+def gap():
+    x = (np.arange(N) + 0.5) * DX - 0.5
+    return (x[None, :] ** 2 + x[:, None] ** 2) / (2 * RADIUS)
+
+
+def coefficients():
+    """Those of tamaas: of points, not of elements, on a period; 2 p/(E* k) for each wave."""
+    k = 2 * np.pi * np.fft.fftfreq(N, DX)
+    k = np.hypot(k[:, None], k[None, :])
+    wave = np.where(k > 0, (1 - NU) / G / np.where(k > 0, k, 1), 0)
+    places = np.arange(-N, N) % N
+    return np.fft.ifft2(wave).real[np.ix_(places, places)]
+
+
+def own():
+    pressures = []
+    branches = {"modulus": (None, MODULI), "time": (None, TIMES)}
+    with cn.Solver(N, N, DX, DX, shear_modulus=(np.inf, G), poisson_ratio=(0, NU), influence=coefficients(), visco=branches, tolerance=1e-12) as solver:
+        for k in range(STEPS):
+            step = {"time_step": STEP, "form": "BACKWARD_EULER", "continues": k > 0}
+            found = solver.solve(gap(), mean_pressure=MEAN, visco=step, initial_guess="PREVIOUS" if k else "NONE")
+            pressures.append(found.pressure)
+    return pressures
+
+
+def theirs():
+    tamaas.set_log_level(tamaas.LogLevel.error)
+    model = tamaas.Model(tamaas.model_type.basic_2d, [1.0, 1.0], [N, N])
+    model.nu, model.E = NU, 2 * REST * (1 + NU)
+    solver = tamaas.MaxwellViscoelastic(model, -gap(), 1e-12, STEP, MODULI, TIMES)
+    solver.max_iter = 5000
+    pressures = []
+    for _ in range(STEPS):
+        solver.solve(MEAN)
+        pressures.append(model.traction.reshape(N, N).copy())
+    return pressures
+
+
+seconds, found = [], []
+for solve in (own, theirs):
+    began = time.perf_counter()
+    found.append(solve())
+    seconds.append(time.perf_counter() - began)
+off = max(np.abs(p - q).max() / q.max() for p, q in zip(*found))
+print(f"{N} x {N} elements, {STEPS} steps: pressures differ by {off:.1e} of the largest; {seconds[0]:.3f} s, tamaas {seconds[1]:.3f} s")

@@ -1,0 +1,206 @@
+//! Effect: bodies that relax. See [`visco`](crate::visco) for the equations of a step.
+
+use super::coupled::History;
+use super::effect::{Effect, Value};
+use super::memory::Memory;
+use super::properties::{Continues, Properties, Stresses};
+use super::visco_step::{Body, Step};
+use crate::error::{invalid, require, Error, Result};
+use crate::grid::Grid;
+use crate::scene::{Bodies, Load, Plain};
+use crate::visco::{Form, Series, MOST};
+
+/// The branches of a body's Prony series.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Branches<'a> {
+    /// `G_k`, pressures >= 0; together at most the body's shear modulus, which is that at once.
+    pub modulus: &'a [f64],
+    /// `t_k`, times > 0.
+    pub time: &'a [f64],
+}
+
+/// A step in time of bodies that relax.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Visco<'a> {
+    /// Of body 1 and 2; of a coated one those of its layer.
+    pub bodies: [Branches<'a>; 2],
+    /// The time of the step, >= 0; 0: a jump.
+    pub time_step: f64,
+    /// What is linear in it; none: the displacement where the approach is given, the pressures where the force is.
+    pub form: Option<Form>,
+    /// Whether the step begins where the last one ended; if not, at rest.
+    pub continues: bool,
+}
+
+/// The members of body 1 and 2: their counts, moduli and times.
+const NAMES: [[&str; 3]; 2] = [
+    ["visco->branches[0]", "visco->modulus[0]", "visco->time[0]"],
+    ["visco->branches[1]", "visco->modulus[1]", "visco->time[1]"],
+];
+const CONTINUES: Continues =
+    Continues { member: "visco->continues", from: "step in time", instead: "begin each problem at rest" };
+
+impl Visco<'_> {
+    /// The series of both bodies, with the moduli of what is at their surfaces.
+    fn series(&self, at_surface: &Bodies) -> Result<[Series; 2]> {
+        let of = |b: usize| {
+            let (Branches { modulus, time }, g) = (self.bodies[b], at_surface.shear_modulus[b]);
+            if g.is_infinite() && !modulus.is_empty() {
+                return invalid(format!(
+                    "{} is {}, but shear_modulus[{b}] is {g}: a rigid body has no branches",
+                    NAMES[b][0],
+                    modulus.len()
+                ));
+            }
+            Series::new(g, modulus, time).map_or_else(
+                || {
+                    let sum: f64 = modulus.iter().sum();
+                    invalid(format!(
+                        "{} adds up to {sum}; it must be at most the modulus of the body at once, which is {g}",
+                        NAMES[b][1]
+                    ))
+                },
+                Ok,
+            )
+        };
+        Ok([of(0)?, of(1)?])
+    }
+
+    /// The maps of both bodies, or one of what relaxes alike.
+    fn bodies(&self, at_surface: &Bodies, form: Form) -> Result<Vec<Body>> {
+        let series = self.series(at_surface)?;
+        let compliance = |b: usize| (1.0 - at_surface.poisson_ratio[b]) / (2.0 * at_surface.shear_modulus[b]);
+        let total = compliance(0) + compliance(1);
+        let body = |b: usize, share: f64| Body::new(&series[b], share, (self.time_step, form));
+        if series[0] == series[1] {
+            return Ok(vec![body(0, 1.0)]);
+        }
+        let elastic = (0..2).filter(|&b| compliance(b) > 0.0);
+        Ok(elastic.map(|b| body(b, compliance(b) / total)).collect())
+    }
+
+    /// Coefficients that are not those of two half-spaces relax with their whole compliance alone: `of` is the effect that has them.
+    fn check_alike(&self, of: &str, scene: &Plain<'_>, at_surface: &Bodies) -> Result<()> {
+        let series = self.series(at_surface)?;
+        let is_coated = |b: usize| {
+            let of = |bodies: &Bodies| (bodies.shear_modulus[b], bodies.poisson_ratio[b]);
+            of(&scene.bodies) != of(at_surface)
+        };
+        for (b, series) in series.iter().enumerate() {
+            if is_coated(b) && !series.is_empty() && scene.bodies.shear_modulus[b].is_finite() {
+                return Err(Error::Unsupported(format!(
+                    "visco is given, and body {} below its coating has the modulus {}; the layer relaxes, and the body does not: this version \
+                     solves that on rigid bodies alone (+infinity)",
+                    b + 1,
+                    scene.bodies.shear_modulus[b]
+                )));
+            }
+        }
+        let is_rigid = |b: usize| at_surface.shear_modulus[b].is_infinite();
+        if series[0] == series[1] || is_rigid(0) || is_rigid(1) {
+            return Ok(());
+        }
+        Err(Error::Unsupported(format!(
+            "visco and {of} are both given, and both bodies give way, but do not relax alike; this version does not solve that"
+        )))
+    }
+}
+
+/// The materials at the surfaces.
+fn at_surface(scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Bodies {
+    others.iter().flatten().find_map(|other| other.at_surface(scene)).unwrap_or(scene.bodies)
+}
+
+impl Effect for Visco<'_> {
+    fn name(&self) -> &'static str {
+        "visco"
+    }
+
+    fn properties(&self) -> Properties<'_> {
+        Properties {
+            excludes: &["layer", "friction", "adhesion"],
+            without_multigrid: None,
+            with_given_area: true,
+            one_grid: Some("what bodies remember is that of one grid"),
+            own_coefficients: None,
+            repeats: (false, false),
+            limits: None,
+            is_beside: false,
+            continues: self.continues.then_some(CONTINUES),
+        }
+    }
+
+    // Without branches the bodies are elastic. A scene has to know of what is wrong, too.
+    fn is_one(&self, scene: &Plain<'_>) -> bool {
+        self.bodies.iter().any(|branches| !branches.modulus.is_empty()) || self.check(&scene.grid).is_err()
+    }
+
+    fn check(&self, _grid: &Grid) -> Result<()> {
+        for (Branches { modulus, time }, [count, g, t]) in self.bodies.iter().zip(NAMES) {
+            if modulus.len() > MOST || modulus.len() != time.len() {
+                let rule = format!("there are {MOST} at most, each with a time");
+                return invalid(format!("{count} is {} and {}; {rule}", modulus.len(), time.len()));
+            }
+            for (modulus, time) in modulus.iter().zip(*time) {
+                require(*modulus >= 0.0 && modulus.is_finite(), g, *modulus, "it must be 0 or more, and finite")?;
+                require(*time > 0.0 && time.is_finite(), t, *time, "it must be positive and finite")?;
+            }
+        }
+        let rule = "it must be 0, for a jump, or positive and finite";
+        require(self.time_step >= 0.0 && self.time_step.is_finite(), "visco->time_step", self.time_step, rule)
+    }
+
+    fn check_load(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<()> {
+        self.check(&scene.grid)?;
+        let at_surface = at_surface(scene, others);
+        let is_other = |effect: &&&dyn Effect| {
+            effect.at_surface(scene).is_some() || effect.properties().own_coefficients.is_some()
+        };
+        match others.iter().flatten().find(is_other) {
+            Some(other) => self.check_alike(other.name(), scene, &at_surface),
+            None => self.series(&at_surface).map(drop),
+        }
+    }
+
+    // The step may be another one for each solve.
+    fn values(&self, tell: &mut dyn FnMut(&'static str, Value<'_>)) {
+        for (branches, [_, modulus, time]) in self.bodies.iter().zip(NAMES) {
+            tell(modulus, Value::Array(branches.modulus));
+            tell(time, Value::Array(branches.time));
+        }
+    }
+
+    fn gives_way(&self, _scene: &Plain<'_>) -> bool {
+        false
+    }
+
+    // Of given pressures, with a Poisson ratio that does not change.
+    fn stresses(&self, _b: usize, _scene: &Plain<'_>) -> Stresses<'_> {
+        Stresses::Same
+    }
+
+    fn memory(
+        &self,
+        scene: &Plain<'_>,
+        others: &[Option<&dyn Effect>],
+        history: &mut History,
+    ) -> Result<Option<Box<dyn Memory>>> {
+        let at_surface = at_surface(scene, others);
+        let form = self.form.unwrap_or(match scene.load {
+            Load::Approach(_) => Form::Relaxation,
+            Load::Force(_) => Form::Creep,
+        });
+        let other = if form == Form::Relaxation { Form::Creep } else { Form::Relaxation };
+        let [bodies, compared] = [self.bodies(&at_surface, form)?, self.bodies(&at_surface, other)?];
+        let step = Step { time_step: self.time_step, bodies, compared, continues: self.continues };
+        if !(step.compliance().is_normal() && (1.0 / step.compliance()).is_normal()) {
+            return invalid(format!(
+                "visco->time_step is {}, in which bodies that have no modulus in the end give way by {:e} times what they do at once",
+                self.time_step,
+                step.compliance()
+            ));
+        }
+        history.fields(step.fields(), &scene.grid)?;
+        Ok(Some(Box::new(step)))
+    }
+}

@@ -1,0 +1,110 @@
+//! A step in time of bodies that relax, on the elements of a grid.
+//!
+//! The history has A p of the last step, and after it what the dashpots of each body have given way, branch by branch.
+
+use super::coupled::History;
+use super::memory::Memory;
+use crate::contact::State;
+use crate::visco::{Form, Map, Report, Series, MOST};
+
+/// A body: its share of the compliance at once, and its step.
+pub struct Body {
+    share: f64,
+    map: Map,
+}
+
+impl Body {
+    /// A step of a time and a form.
+    pub fn new(series: &Series, share: f64, (time_step, form): (f64, Form)) -> Body {
+        Body { share, map: Map::new(series, time_step, form) }
+    }
+}
+
+/// The step.
+pub struct Step {
+    pub time_step: f64,
+    pub bodies: Vec<Body>,
+    /// The same by another form, for the error.
+    pub compared: Vec<Body>,
+    /// Whether there is a step before.
+    pub continues: bool,
+}
+
+impl Step {
+    /// Fields of the history.
+    pub fn fields(&self) -> usize {
+        1 + self.bodies.iter().map(|body| body.map.branches()).sum::<usize>()
+    }
+
+    /// H of element i by the maps of either form, and `before` it `[A p, q...]`.
+    fn history(bodies: &[Body], fields: &[Vec<f64>], i: usize) -> f64 {
+        let (mut sum, mut first, mut q) = (0.0, 1, [0.0; MOST]);
+        for Body { share, map } in bodies {
+            let n = map.branches();
+            fields[first..first + n].iter().zip(&mut q).for_each(|(field, q)| *q = field[i]);
+            sum += map.history(&q[..n], share * fields[0][i]);
+            first += n;
+        }
+        sum
+    }
+
+    fn compliance_of(bodies: &[Body]) -> f64 {
+        bodies.iter().map(|body| body.share * body.map.compliance()).sum()
+    }
+
+    /// What both forms differ by, and h - approach: rms over the elements in contact.
+    fn error(&self, fields: &[Vec<f64>], state: &State) -> (f64, f64) {
+        let (s, other) = (Step::compliance_of(&self.bodies), Step::compliance_of(&self.compared));
+        let (mut differences, mut distances, mut count) = (0.0, 0.0, 0usize);
+        for i in (0..state.p.len()).filter(|&i| state.touches(i)) {
+            let history = if self.continues { Step::history(&self.bodies, fields, i) } else { 0.0 };
+            let compared = if self.continues { Step::history(&self.compared, fields, i) } else { 0.0 };
+            differences += ((other - s) * state.u[i] + compared - history).powi(2);
+            // The distances of the problem that was solved have the history, and are s times shorter.
+            distances += (s * (state.h[i] - state.approach) - history).powi(2);
+            count += 1;
+        }
+        let rms = |squares: f64| (squares / count.max(1) as f64).sqrt();
+        (if self.time_step == 0.0 { 0.0 } else { rms(differences) }, rms(distances))
+    }
+}
+
+impl Memory for Step {
+    fn compliance(&self) -> f64 {
+        Step::compliance_of(&self.bodies)
+    }
+
+    fn fill(&self, history: &History, displacement: &mut [f64]) {
+        let fields = history.known();
+        for (i, displacement) in displacement.iter_mut().enumerate() {
+            *displacement = if self.continues { Step::history(&self.bodies, fields, i) } else { 0.0 };
+        }
+    }
+
+    fn step_done(&self, history: &mut History, state: &State) -> Report {
+        let (off, distance) = self.error(history.known(), state);
+        if !self.continues {
+            history.forget();
+        }
+        history.time += self.time_step;
+        history.error += off;
+        let (time, sum) = (history.time, history.error);
+        let fields = history.known_mut();
+        let (mut q, mut after) = ([0.0; MOST], [0.0; MOST]);
+        for i in 0..state.u.len() {
+            let (before, now, mut first) = (fields[0][i], state.u[i], 1);
+            for Body { share, map } in &self.bodies {
+                let n = map.branches();
+                fields[first..first + n].iter().zip(&mut q).for_each(|(field, q)| *q = field[i]);
+                map.advance(&q[..n], share * before, share * now, &mut after[..n]);
+                fields[first..first + n].iter_mut().zip(&after).for_each(|(field, after)| field[i] = *after);
+                first += n;
+            }
+            fields[0][i] = now;
+        }
+        history.keep();
+        // Without contact there is nothing to compare with.
+        let relative = |length: f64| if distance > 0.0 { length / distance } else { 0.0 };
+        Report { time, step_error: relative(off), time_error: relative(sum), compliance: self.compliance() }
+    }
+}

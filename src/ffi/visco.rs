@@ -1,0 +1,122 @@
+//! `contact_normal_visco`.
+
+use super::arguments::{count, required, GivenEffect, Regions};
+use super::status::Refusal;
+use super::structs::versioned;
+use crate::grid::Grid;
+use crate::scene::{Branches, Visco};
+use crate::visco::{Form, Report, MOST};
+
+/// `form`: RELAXATION where the approach is given, CREEP where the force is.
+pub const CONTACT_NORMAL_FORM_AUTO: i32 = 0;
+/// `form`: displacements are linear in the step; second order, exact where the approach is held.
+pub const CONTACT_NORMAL_FORM_RELAXATION: i32 = 1;
+/// `form`: pressures are linear in the step; second order, exact where they are held.
+pub const CONTACT_NORMAL_FORM_CREEP: i32 = 2;
+/// `form`: backward Euler; first order, to compare with programs that have it.
+pub const CONTACT_NORMAL_FORM_BACKWARD_EULER: i32 = 3;
+
+/// Effect: bodies that relax, and a step of `time_step` of them. The `shear_modulus` of the scene is that at once, and falls to
+/// `G(t) = G - sum of modulus (1 - exp(-t/time))` at a constant Poisson ratio; of a coated body it is that of the coating, on a rigid body. A
+/// solver handle remembers the steps before: the first step has `continues` 0, the others 1. `displacement` and `deformed_distance` contain what is
+/// left of the steps before. See docs/visco.md.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct contact_normal_visco {
+    /// Set by `contact_normal_visco_init`.
+    pub struct_size: i64,
+    /// Branches of body 1 and body 2, 0 (default: an elastic body) to 32.
+    pub branches: [i32; 2],
+    /// Moduli of the branches of each body, pressures >= 0 that add up to at most its shear modulus. Default NULL: to be set where there are branches.
+    pub modulus: [*const f64; 2],
+    /// Relaxation times of the branches, > 0. Default NULL: to be set where there are branches.
+    pub time: [*const f64; 2],
+    /// Time of the step, >= 0; default 0: the load jumps, and the bodies give way at once.
+    pub time_step: f64,
+    /// CONTACT_NORMAL_FORM_...; default AUTO.
+    pub form: i32,
+    /// 1: the step begins where the last one of the solver ended; 0 (default): at rest, at time 0.
+    pub continues: i32,
+}
+
+versioned! { contact_normal_visco, contact_normal_visco_init, 64 }
+
+const NAMES: [[&str; 3]; 2] = [
+    ["visco->branches[0]", "visco->modulus[0]", "visco->time[0]"],
+    ["visco->branches[1]", "visco->modulus[1]", "visco->time[1]"],
+];
+
+impl contact_normal_visco {
+    /// The caller's arrays must live as long as the result is used.
+    pub(super) unsafe fn translate<'a>(&self) -> Result<Visco<'a>, Refusal> {
+        let refused = |name: &str, value: i32, rule: &str| {
+            Err(Refusal::invalid(format!("visco->{name} is {value}; it must be {rule}")))
+        };
+        let mut bodies = [Branches::default(); 2];
+        for (b, body) in bodies.iter_mut().enumerate() {
+            let [name, modulus, time] = NAMES[b];
+            if self.branches[b] == 0 {
+                continue;
+            }
+            let branches = count(name, self.branches[b])?;
+            if branches > MOST {
+                return Err(Refusal::invalid(format!("{name} is {branches}; it must be at most {MOST}")));
+            }
+            // SAFETY: NULL or as many values as branches, by the conventions of the ABI.
+            let (modulus, time) =
+                unsafe { (required(modulus, self.modulus[b], branches)?, required(time, self.time[b], branches)?) };
+            *body = Branches { modulus, time };
+        }
+        let form = match self.form {
+            CONTACT_NORMAL_FORM_AUTO => None,
+            CONTACT_NORMAL_FORM_RELAXATION => Some(Form::Relaxation),
+            CONTACT_NORMAL_FORM_CREEP => Some(Form::Creep),
+            CONTACT_NORMAL_FORM_BACKWARD_EULER => Some(Form::BackwardEuler),
+            other => return refused("form", other, "AUTO 0, RELAXATION 1, CREEP 2 or BACKWARD_EULER 3"),
+        };
+        let continues = match self.continues {
+            0 => false,
+            1 => true,
+            other => return refused("continues", other, "0 or 1"),
+        };
+        Ok(Visco { bodies, time_step: self.time_step, form, continues })
+    }
+
+    /// Values that are read of a body.
+    fn values(&self, b: usize) -> usize {
+        usize::try_from(self.branches[b]).ok().filter(|branches| *branches <= MOST).unwrap_or(0)
+    }
+}
+
+impl GivenEffect for contact_normal_visco {
+    fn add_to(&self, regions: &mut Regions, _grid: &Grid) -> Result<(), Refusal> {
+        for (b, [_, modulus, time]) in NAMES.into_iter().enumerate() {
+            regions.input(modulus, self.modulus[b], self.values(b))?;
+            regions.input(time, self.time[b], self.values(b))?;
+        }
+        Ok(())
+    }
+}
+
+/// What was found of a step in time: a group of `contact_normal_report`. Without bodies that relax all is 0.
+#[repr(C)]
+#[derive(Clone, Copy, Default)]
+pub struct contact_normal_report_visco {
+    /// Since the bodies were at rest: the sum of the steps.
+    pub time: f64,
+    /// How far this step may be off: what its form and another one differ by, rms of the displacements in contact over that of h - approach.
+    pub step_error: f64,
+    /// The same of all steps since the bodies were at rest, added up: how far the result may be off. 0 without contact.
+    pub time_error: f64,
+    /// The compliance of the bodies in the step, in that at once.
+    pub compliance: f64,
+    /// Room for later versions: 0.
+    pub reserved: [f64; 4],
+}
+
+impl contact_normal_report_visco {
+    pub(super) fn set(&mut self, found: &Report) {
+        (self.time, self.compliance) = (found.time, found.compliance);
+        (self.step_error, self.time_error) = (found.step_error, found.time_error);
+    }
+}

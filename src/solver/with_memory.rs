@@ -1,0 +1,91 @@
+//! Steps of bodies that remember: see [`Memory`].
+
+use super::{Guess, Options, Outcome, ProgressCallback, Report, Solver};
+use crate::contact::{lowest, Freshness};
+use crate::effects::{self, Memory};
+use crate::error::Result;
+use crate::memory::zeros;
+use crate::scene::{Load, Scene};
+
+impl Solver {
+    /// Solves a scene that is checked, with the undeformed distance that its effects make: bodies may remember the steps before.
+    pub(super) fn solve_step_in_time(
+        &mut self,
+        (scene, lowest): (&Scene<'_>, f64),
+        options: &Options,
+        guess: Option<Guess<'_>>,
+        progress: Option<ProgressCallback<'_>>,
+    ) -> Result<(Outcome, Report)> {
+        match effects::memory(scene, &mut self.beside.histories)? {
+            Some((k, memory)) => self.solve_with_memory((scene, k, &*memory), options, guess, progress),
+            None => self.solve_surface((scene, lowest), options, guess, progress),
+        }
+    }
+
+    /// Solves a step of a scene that is checked, as a problem of other lengths; `k`: the effect. A step that is refused, or fails, leaves what the
+    /// bodies remember.
+    fn solve_with_memory(
+        &mut self,
+        (scene, k, memory): (&Scene<'_>, usize, &dyn Memory),
+        options: &Options,
+        guess: Option<Guess<'_>>,
+        progress: Option<ProgressCallback<'_>>,
+    ) -> Result<(Outcome, Report)> {
+        self.check_continues(scene)?;
+        let s = memory.compliance();
+        let mut remembered = std::mem::take(&mut self.remembered);
+        if remembered.is_empty() {
+            remembered = zeros(2 * scene.grid.len(), "what bodies remember")?;
+        }
+        let (history, distance) = remembered.split_at_mut(scene.grid.len());
+        memory.fill(&self.beside.histories[k], history);
+        for ((distance, h), history) in distance.iter_mut().zip(scene.undeformed_distance).zip(&*history) {
+            *distance = (h + history) / s;
+        }
+        let load = match scene.load {
+            Load::Approach(approach) => Load::Approach(approach / s),
+            force => force,
+        };
+        let step = Scene { undeformed_distance: distance, load, ..scene.clone() };
+        let outcome = self.solve_surface((&step, lowest(distance)), options, guess, progress);
+        let outcome = outcome.map(|(stop, mut report)| {
+            report.visco = Some(memory.step_done(&mut self.beside.histories[k], &self.state));
+            self.lengthen(s, scene.load, &mut report);
+            let state = &mut self.state;
+            for (i, history) in history.iter().enumerate() {
+                state.u[i] += history;
+                state.h[i] = s * state.h[i] - history;
+            }
+            state.u_is = Freshness::Stale;
+            state.load = scene.load;
+            self.compliance = s;
+            (stop, report)
+        });
+        self.remembered = remembered;
+        outcome
+    }
+
+    /// Lengths of the result, of the report and of the ledger, which are those of the problem that was solved.
+    fn lengthen(&mut self, s: f64, load: Load, report: &mut Report) {
+        let state = &mut self.state;
+        state.u.iter_mut().for_each(|u| *u *= s);
+        state.approach *= s;
+        if let Load::Approach(approach) = load {
+            state.approach = approach;
+        }
+        let approach = state.approach;
+        // Of a force that is given it is the approach that is off.
+        let of_found = if matches!(load, Load::Force(_)) { s } else { 1.0 };
+        // What is not known is negative.
+        let lengthened = |value: f64| if value > 0.0 { value * of_found } else { value };
+        for row in &mut self.ledger {
+            row.measures.approach *= s;
+            row.measures.certificate.violation *= s;
+            row.error.force = lengthened(row.error.force);
+        }
+        report.measures.approach = approach;
+        report.measures.certificate.violation *= s;
+        report.error.force = lengthened(report.error.force);
+        report.halving.force = lengthened(report.halving.force);
+    }
+}

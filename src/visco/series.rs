@@ -1,0 +1,62 @@
+//! A Prony series, in order.
+
+/// Branches of a body at most.
+pub const MOST: usize = 32;
+
+/// What is left of a sum of moduli by rounding.
+const ROUNDING: f64 = 1e-14;
+/// Times that differ by less than this part are one.
+const EQUAL: f64 = 1e-9;
+
+/// `r_k` and `t_k`, the longest time first, all of them positive, no two times equal to nine digits.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Series {
+    /// `r_k`.
+    pub fractions: Vec<f64>,
+    /// `t_k`.
+    pub times: Vec<f64>,
+    /// `1 - sum of r_k`: what is left of the modulus in the end; 0: a fluid.
+    pub rest: f64,
+}
+
+impl Series {
+    /// Branches of these moduli and times of a body of modulus G at once. None where they add up to more than G.
+    pub fn new(g: f64, modulus: &[f64], time: &[f64]) -> Option<Series> {
+        let counts = |modulus: f64| modulus > f64::EPSILON * g;
+        let mut branches: Vec<(f64, f64)> = time
+            .iter()
+            .zip(modulus)
+            .filter(|(_, modulus)| counts(**modulus))
+            .map(|(t, modulus)| (*t, modulus / g))
+            .collect();
+        branches.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut series = Series { rest: 1.0, ..Series::default() };
+        for (t, r) in branches {
+            series.rest -= r;
+            match series.times.last() {
+                Some(last) if last - t <= EQUAL * last => *series.fractions.last_mut()? += r,
+                _ => {
+                    series.times.push(t);
+                    series.fractions.push(r);
+                }
+            }
+        }
+        if series.rest < -ROUNDING {
+            return None;
+        }
+        if series.rest < ROUNDING {
+            series.rest = 0.0;
+        }
+        Some(series)
+    }
+
+    /// Number of branches.
+    pub fn len(&self) -> usize {
+        self.times.len()
+    }
+
+    /// Whether the body is elastic.
+    pub fn is_empty(&self) -> bool {
+        self.times.is_empty()
+    }
+}
