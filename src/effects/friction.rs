@@ -4,6 +4,7 @@
 //! are alike; it is solved first.
 
 use super::effect::{check_values, Effect, Value};
+use super::friction_law::{FrictionLaw, PlasticLayer};
 use super::properties::{Continues, Properties, Stresses};
 use super::tangential_influence::TangentialInfluence;
 use crate::error::{invalid, require, Error, Result};
@@ -39,6 +40,9 @@ const ROUND_OFF: f64 = 1e-14;
 const OWN_COEFFICIENTS: &str =
     "friction->influence and friction->row_tables are those of one grid, and this asks for several";
 const KEPT: &str = "friction->continues begins with what a handle found on its own grid, and this asks for several: give previous_traction";
+
+const HISTORY: &str =
+    "friction->previous_coefficient and friction->previous_yield_limit are those of one grid, and this asks for several";
 
 const CONTINUES: Continues =
     Continues { member: "friction->continues", from: "tractions", instead: "give previous_traction" };
@@ -111,6 +115,14 @@ pub struct Friction<'a> {
     pub influence: Option<TangentialInfluence<'a>>,
     /// Whether the derivatives of the forces by the creepages and the spin are asked for.
     pub sensitivities: bool,
+    /// How the coefficient falls with the slip velocity; none: not at all.
+    pub law: Option<FrictionLaw>,
+    /// A layer that yields; none: tractions are bounded by friction alone.
+    pub layer: Option<PlasticLayer>,
+    /// Before the step, `[my][mx]`: coefficients that particles had (of a law with memory), in rolling where these were then; none: those at rest.
+    pub coefficients_before: Option<&'a [f64]>,
+    /// And yield limits; none: those of fresh material.
+    pub yield_limits: Option<&'a [f64]>,
 }
 
 impl Friction<'_> {
@@ -135,6 +147,10 @@ impl Friction<'_> {
             compliance: Coefficient::Uniform(0.0),
             influence: None,
             sensitivities: false,
+            law: None,
+            layer: None,
+            coefficients_before: None,
+            yield_limits: None,
         }
     }
 
@@ -212,7 +228,9 @@ impl Effect for Friction<'_> {
             None => &["influence", "row_tables", "period", "patches", "coating"],
         };
         let continues = (self.previous == Previous::Kept).then_some(CONTINUES);
-        let one_grid = self.influence.map(|_| OWN_COEFFICIENTS).or(continues.map(|_| KEPT));
+        let has_history = self.coefficients_before.is_some() || self.yield_limits.is_some();
+        let one_grid =
+            self.influence.map(|_| OWN_COEFFICIENTS).or(continues.map(|_| KEPT)).or(has_history.then_some(HISTORY));
         Properties {
             excludes,
             without_multigrid: None,
@@ -248,10 +266,12 @@ impl Effect for Friction<'_> {
         }
         self.check_step(grid)?;
         self.check_range(grid)?;
-        self.check_influence(grid)
+        self.check_influence(grid)?;
+        self.check_law(grid)
     }
 
     fn check_load(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<()> {
+        self.check_bodies_of_law(&scene.bodies)?;
         let Bodies { shear_modulus: [g1, g2], poisson_ratio: [nu1, nu2] } = scene.bodies;
         let has_bodies = others.iter().flatten().all(|other| other.properties().own_coefficients.is_none());
         let lacks_cross = self.influence.is_some_and(|influence| influence.cross.is_none());

@@ -5,7 +5,7 @@ use std::ffi::CStr;
 use libc::c_char;
 
 /// Effects of a scene, members of the options and the fields, and what functions do.
-const NAMES: [&str; 32] = [
+const NAMES: [&str; 34] = [
     "accuracy",
     "adhesion",
     "batch",
@@ -19,6 +19,7 @@ const NAMES: [&str; 32] = [
     "influence",
     "initial_traction",
     "keep",
+    "law",
     "layer",
     "max_seconds",
     "patches",
@@ -38,10 +39,11 @@ const NAMES: [&str; 32] = [
     "stress",
     "tangential_row_tables",
     "warnings",
+    "yield_limit",
 ];
 
 /// 1 if this library has what is called so, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop"), a member of
-/// the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables"), or what calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump",
+/// the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "yield_limit"), or what calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump",
 /// "set_option", "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_has(name: *const c_char) -> i32 {

@@ -17,7 +17,7 @@ impl Solver {
         window: Option<Window>,
         report: &mut Report,
     ) {
-        let Solution { traction, slip, stick_slip } = &mut self.solution;
+        let Solution { traction, slip, stick_slip, .. } = &mut self.solution;
         let (grid, scales, threads) = (self.grid, self.scales, self.threads.suited_to(self.grid.len()));
         let distance = friction.distance(&grid);
         let mut offset = [0.0; 2];
@@ -35,7 +35,7 @@ impl Solver {
                         scales.own_traction(state.q[k])
                     } else {
                         let i = iy * grid.mx + ix;
-                        against(slip[ix], friction.coefficient.at(i) * pressure[i])
+                        against(slip[ix], friction.bound_at(i, pressure[i]))
                     };
                 }
             });

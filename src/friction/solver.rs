@@ -2,6 +2,7 @@
 
 use super::certificate::Certificate;
 use super::forces::Forces;
+use super::law::Particle;
 use super::levels::{levels, Level};
 use super::nested::{self, Work, COARSE, COUNTS};
 use super::plane::Vector;
@@ -40,6 +41,8 @@ pub struct Solver {
     pub(super) solution: Solution,
     /// The tractions before the step, where they were kept.
     pub(super) before: Vec<Vector>,
+    /// What particles had before the step, where that was kept.
+    pub(super) particles_before: Vec<Particle>,
     /// The creepages found, times the length rolled.
     pub(super) offset: Vector,
     pub(super) has_solution: bool,
@@ -59,7 +62,7 @@ struct Near {
 
 impl Drop for Solver {
     fn drop(&mut self) {
-        let Solution { traction, slip, stick_slip } = &mut self.solution;
+        let Solution { traction, slip, stick_slip, .. } = &mut self.solution;
         keep([traction, slip, &mut self.before]);
         keep([stick_slip]);
     }
@@ -80,6 +83,7 @@ impl Solver {
             displaced: None,
             solution: Solution::default(),
             before: Vec::new(),
+            particles_before: Vec::new(),
             offset: [0.0; 2],
             has_solution: false,
             window: None,
@@ -138,6 +142,7 @@ impl Solver {
         let forces = Forces::of(friction, &self.grid, bound)?;
         if keeps && !matches!(request.start, Start::Again) {
             self.keep_tractions()?;
+            self.keep_particles();
         }
         let kept = &self.before;
         let from_rest =
@@ -168,6 +173,7 @@ impl Solver {
             report.products += self.take_products();
         }
         self.write(friction, pressure, window, &mut report);
+        self.write_particles(friction, pressure)?;
         report.missing = self.missing(friction, &report);
         self.has_solution = true;
         report.seconds = began.elapsed().as_secs_f64();
@@ -187,6 +193,11 @@ impl Solver {
         let from_rest = report.from_rest;
         self.set_up(window, rolling)?;
         let mut had_slip = self.begin(request, from_rest, window, bound)?;
+        if request.friction.has_law() {
+            let end = self.iterate_with_law(request, window, watch, report)?;
+            [report.update, _] = self.scales.own_traction([self.levels[0].problem.update, 0.0]);
+            return Ok(end);
+        }
         let mut is_worth_something = false;
         if request.start.is_guess() {
             let near = self.look(forces, request.tolerance);

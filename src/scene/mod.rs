@@ -8,8 +8,8 @@ mod regrid;
 mod with_effects;
 
 pub use crate::effects::{
-    Adhesion, Coating, CoatingLayer, Coefficient, Friction, Layer, Motion, Patches, Period, Prescribed, PressureLimit,
-    Previous, TangentialInfluence, Work,
+    Adhesion, Coating, CoatingLayer, Coefficient, Fall, Friction, FrictionLaw, Layer, Motion, Patches, Period,
+    PlasticLayer, Prescribed, PressureLimit, Previous, TangentialInfluence, Work,
 };
 pub use bodies::Bodies;
 pub use load::Load;
