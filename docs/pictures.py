@@ -38,6 +38,7 @@ EXAMPLES = {
     "ledger": Example(("ledger",)),
     "price_list": Example(("price_list",)),
     "what_matters": Example(("what_matters",)),
+    "adhesion": Example(("adhesion_loop", "adhesion_rough"), takes_folder=True),
 }
 
 

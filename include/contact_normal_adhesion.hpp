@@ -40,6 +40,19 @@ public:
         return *this;
     }
 
+    /// How near the state is to a snap is wanted.
+    adhesion &stability()
+    {
+        adhesion_.stability = 1;
+        return *this;
+    }
+    /// A traction that adds to the bound of friction in contact.
+    adhesion &shear_strength(double strength)
+    {
+        adhesion_.shear_strength = strength;
+        return *this;
+    }
+
     /// The struct of the C ABI, for a grid of so many elements.
     contact_normal_adhesion named(std::size_t size) const
     {

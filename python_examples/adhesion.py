@@ -1,4 +1,4 @@
-"""A sphere that sticks: loading and unloading beside JKR, Maugis and DMT: `python3 adhesion.py [picture.png]`."""
+"""A sphere that sticks: loading and unloading beside JKR, Maugis and DMT; a rough surface from weak to sticky: `python3 adhesion.py [FOLDER]`."""
 
 import sys
 
@@ -10,6 +10,8 @@ import contact_normal as cn
 WORK, E_STAR, TABOR = 1 / np.pi, 0.75, 3.0
 RANGE = (WORK / E_STAR) ** (2 / 3) / TABOR
 M, HALF_WIDTH = 128, 2.0
+# Rough: elements, mean pressures over E*, works of adhesion over the energy of full contact.
+N, MEANS, PARTS = 128, (0.0005, 0.001, 0.002, 0.004, 0.006, 0.008), (0.0, 0.03, 0.1, 0.2, 0.4)
 
 
 def jkr():
@@ -56,16 +58,53 @@ def loop():
     return np.array(found), len(closer)
 
 
-def draw(found, closest, picture):
+def rough():
+    """Heights on a unit square that repeats itself: waves of random phases, rms slope 0.1."""
+    k = np.fft.fftfreq(N, 1 / N)
+    number = np.hypot(k[:, None], k[None, :])
+    inside = (number >= 4) & (number <= 16)
+    waves = np.where(inside, number, 1.0) ** -1.8 * inside * np.exp(2j * np.pi * np.random.default_rng(3).random((N, N)))
+    heights = np.fft.ifft2(waves).real
+    slopes = [np.fft.ifft2(2j * np.pi * axis * np.fft.fft2(heights)).real for axis in (k[:, None], k[None, :])]
+    heights *= 0.1 / np.sqrt(sum((slope**2).mean() for slope in slopes))
+    # What flattens it, an energy per area: E* q a^2/4 of a wave of wave number q and mean square a^2/2.
+    wave = 2 * np.pi * number
+    return heights, 0.25 * (wave * np.abs(np.fft.fft2(heights)) ** 2).sum() / N**4
+
+
+def weak_to_sticky():
+    """Contact area by the mean pressure, for works of adhesion from none to half of the energy that flattens the surface."""
+    heights, full = rough()
+    table = {}
+    for part in PARTS:
+        with cn.Solver(N, N, 1 / N, 1 / N, e_star=1.0, period="xy") as solver:
+            adhesion = {"work": part * full, "range": np.sqrt(part * full * 4 / N * np.arcsinh(1) / np.pi / 0.25)} if part else None
+            found = [solver.solve(heights.max() - heights, force=mean, adhesion=adhesion) for mean in MEANS]
+        table[part] = [(result.contact == 1).mean() for result in found]
+    return table
+
+
+def draw_loop(found, closest, picture):
     import matplotlib.pyplot as plt
 
-    figure, axes = plt.subplots(figsize=(6.4, 4.2), dpi=150, layout="constrained")
-    for name, (approach, force), style in (("JKR", jkr(), "k-"), ("DMT", dmt(), "k:"), ("Maugis", maugis(2 * WORK / RANGE), "k--")):
-        axes.plot(approach, force, style, linewidth=1, label=name)
-    axes.plot(*found[:closest, :2].T, "o", color="tab:blue", markersize=4, label="closer")
-    axes.plot(*found[closest:, :2].T, "x", color="tab:red", markersize=5, label="away")
+    figure, axes = plt.subplots()
+    for name, (approach, force), style in (("JKR", jkr(), "-"), ("DMT", dmt(), ":"), ("Maugis", maugis(2 * WORK / RANGE), "--")):
+        axes.plot(approach, force, style, color="0.5", linewidth=1.2, label=name)
+    axes.plot(*found[:closest, :2].T, "o", markersize=4, label="closer")
+    axes.plot(*found[closest:, :2].T, "x", markersize=6, label="away")
     axes.set(xlabel="approach, in $(\\pi^2 w^2 R/K^2)^{1/3}$", ylabel="force, in $\\pi w R$", xlim=(-1.3, 1.1), ylim=(-2.1, 0.4))
-    axes.legend(frameon=False)
+    axes.legend()
+    figure.savefig(picture)
+
+
+def draw_rough(table, picture):
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots()
+    for part, areas in reversed(table.items()):
+        axes.plot(1e3 * np.array(MEANS), np.array(areas), "o-", markersize=4, label=f"{part:g}" if part else "none")
+    axes.set(xlabel="mean pressure, in $10^{-3} E^*$", ylabel="contact area, a part of all", xlim=(0, None), ylim=(0, None))
+    axes.legend(title="work of adhesion, of the\nenergy that flattens it", title_fontsize=10)
     figure.savefig(picture)
 
 
@@ -73,5 +112,11 @@ found, closest = loop()
 print("approach     force  jumped")
 for approach, force, jumped in found:
     print(f"{approach:8.2f} {force:9.4f} {jumped:7.0f}")
+table = weak_to_sticky()
+print("contact area of a rough surface, in per cent, by mean pressure and work of adhesion")
+print("p/E*     " + "".join(f"{f'w {part:g}':>9}" for part in PARTS))
+for k, mean in enumerate(MEANS):
+    print(f"{mean:<9g}" + "".join(f"{100 * areas[k]:9.1f}" for areas in table.values()))
 if len(sys.argv) > 1:
-    draw(found, closest, sys.argv[1])
+    draw_loop(found, closest, f"{sys.argv[1]}/adhesion_loop.svg")
+    draw_rough(table, f"{sys.argv[1]}/adhesion_rough.svg")

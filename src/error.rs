@@ -1,4 +1,4 @@
-//! What can go wrong. Each message names the argument, its value and the rule it breaks.
+//! Errors. Each message names the argument, its value and the rule it breaks.
 
 /// Why a problem was refused or could not be solved. The C ABI maps each kind to a negative status.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

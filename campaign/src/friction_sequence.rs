@@ -80,7 +80,7 @@ impl Sequence<'_> {
     }
 
     fn note(&mut self, what: &str, found: &Found) {
-        self.history += &format!("{what} ({}), ", found.status);
+        self.history += &format!("{what} ({}{}), ", found.status, found.message);
         self.statuses.push(found.status);
     }
 
@@ -116,9 +116,10 @@ impl Sequence<'_> {
         let found = self.handle.solve(place, Some((slide, From::Handle)), stop);
         self.note("continued", &found);
         if found.status == CONTACT_NORMAL_INVALID_ARGUMENT {
-            // Nothing to continue from: no call with friction was the last one.
+            // Nothing to continue from: no call with friction was the last one. Or steady rolling by less than a tenth of an element.
             let nothing = held.status < 0 || held.q.iter().all(|q| *q == [0.0; 2]);
-            self.fail_unless(nothing, "a step continues from what the handle holds");
+            let is_short = self.case.step_is_too_short();
+            self.fail_unless(nothing || is_short, "a step continues from what the handle holds");
             self.keeps(&held);
         } else if held.status >= 0 {
             let before = Before { q: held.q.clone(), p: held.p.clone() };

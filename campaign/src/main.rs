@@ -6,6 +6,7 @@
 //! cargo run --release -p campaign -- --measured 5000  cases of what people bring, of seeds 0..5000
 //! cargo run --release -p campaign -- --friction 5000  cases with friction alone, of seeds 0..5000
 //! cargo run --release -p campaign -- --measured --friction 5000
+//! cargo run --release -p campaign -- --adhesion 5000  cases with adhesion alone, of seeds 0..5000
 //! cargo run --release -p campaign -- --seed 17        one case again, with all that is known of it
 //! cargo run --release -p campaign -- --measured --seed 17
 //! cargo run --release -p campaign -- --replay FILE    the scene of a dump (docs/dump.md)
@@ -29,6 +30,7 @@ fn main() -> ExitCode {
         return dumped(&arguments[0]);
     }
     let (is_measured, is_friction, one) = (named("--measured"), named("--friction"), named("--seed"));
+    let is_adhesive = named("--adhesion");
     let number = |i: usize| arguments.get(i).and_then(|text| text.parse::<u64>().ok());
     let run = if is_measured { measured } else { ordinary };
     if one {
@@ -37,6 +39,9 @@ fn main() -> ExitCode {
     let (count, first) = (number(0).unwrap_or(1000), number(1).unwrap_or(0));
     if is_friction {
         return friction(count, first, is_measured);
+    }
+    if is_adhesive {
+        return adhesion(count, first);
     }
     let mut account = Account::default();
     for seed in first..first + count {
@@ -110,5 +115,25 @@ fn friction(count: u64, first: u64, is_measured: bool) -> ExitCode {
     for (why, (calls, seed)) in excuses {
         println!("| {why} | {calls} | {seed} |");
     }
+    end(!failed)
+}
+
+/// Cases with adhesion: how the calls ended, their products, and what was not kept.
+fn adhesion(count: u64, first: u64) -> ExitCode {
+    let (mut ends, mut excuses, mut failed, mut products) = (BTreeMap::new(), BTreeMap::new(), false, Vec::new());
+    for seed in first..first + count {
+        let run = campaign::adhesion::run(&mut Random::new(seed ^ 0x00ad_4e51));
+        run.statuses.iter().for_each(|status| *ends.entry(*status).or_insert(0) += 1);
+        run.verdict.excuses.iter().for_each(|why| excuses.entry(*why).or_insert((0, seed)).0 += 1);
+        products.extend(run.products);
+        for failure in run.verdict.failures {
+            failed = true;
+            println!("seed {seed}: {}: {}", failure.promise, failure.details);
+        }
+    }
+    products.sort_by(f64::total_cmp);
+    let part = |of: f64| products.get((of * products.len() as f64) as usize).copied().unwrap_or_default();
+    println!("statuses {ends:?}; products: median {:.1}, 90 % {:.1}, 99 % {:.1}", part(0.5), part(0.9), part(0.99));
+    println!("excused: {excuses:?}");
     end(!failed)
 }

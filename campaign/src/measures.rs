@@ -109,3 +109,11 @@ impl Measures {
         self.residual <= tolerance * self.distance + rounding * self.count.sqrt() && (case.how.fixed.is_some() || free)
     }
 }
+
+/// The sum of two halves: n equal terms, one by one, would be off by some n eps/4 of it.
+pub fn pairwise(values: &[f64]) -> f64 {
+    match values.len() {
+        0..=64 => values.iter().sum(),
+        n => pairwise(&values[..n / 2]) + pairwise(&values[n / 2..]),
+    }
+}

@@ -5,7 +5,7 @@ use contact_normal::ffi::*;
 use crate::call::Outputs;
 use crate::case::Case;
 use crate::grid::Load;
-use crate::measures::Measures;
+use crate::measures::{pairwise, Measures};
 use crate::verdict::{Failure, Verdict};
 
 fn failure(promise: &'static str, details: String) -> Vec<Failure> {
@@ -183,9 +183,10 @@ fn solved(case: &Case, found: &Outputs, m: &Measures, sizes: &str) -> Vec<Failur
         }
     }
     if let Load::Force(prescribed) = case.load {
-        let force = found.p.iter().sum::<f64>() * case.grid.element_area();
+        let force = pairwise(&found.p) * case.grid.element_area();
         // With tension on a fixed area the sum cancels.
-        let size = found.p.iter().map(|p| p.abs()).sum::<f64>() * case.grid.element_area();
+        let sizes: Vec<f64> = found.p.iter().map(|p| p.abs()).collect();
+        let size = pairwise(&sizes) * case.grid.element_area();
         if !((force - prescribed).abs() <= 1e-12 * size.max(prescribed)) {
             failures.extend(failure("OK: force", format!("{force:e} for {prescribed:e}")));
         }

@@ -11,7 +11,7 @@ from ._arguments import doubles, flag, number, pointer
 from ._constants import value_of
 from ._library import initialised
 
-_KNOWN = ("law", "work", "range", "smear", "start", "stiffness")
+_KNOWN = ("law", "work", "range", "smear", "start", "stiffness", "stability", "shear_strength")
 
 
 def adhesion(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
@@ -30,11 +30,12 @@ def adhesion(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
     else:
         works = doubles("adhesion['work']", given["work"], shape)
         effect.works_of_adhesion = pointer(works)
-    for name in ("range", "smear"):
+    for name in ("range", "smear", "shear_strength"):
         if name in given:
             setattr(effect, name, number(f"adhesion['{name}']", given[name]))
     for name in ("law", "start"):
         if name in given:
             setattr(effect, name, value_of(name, given[name]))
-    effect.stiffness = flag("adhesion['stiffness']", given.get("stiffness", False))
+    for name in ("stiffness", "stability"):
+        setattr(effect, name, flag(f"adhesion['{name}']", given.get(name, False)))
     return effect, works

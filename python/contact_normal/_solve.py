@@ -98,8 +98,9 @@ def solve(
     adhesion : mapping, optional
         Attraction across the gap: "work" of adhesion, an energy per area (one, or (my, mx)); "law", "EXPONENTIAL" (default), "DUGDALE",
         "CUBIC" or "VAN_DER_WAALS"; "range", a length, by default the shortest that the elements carry; "smear", of DUGDALE; "start",
-        "AUTO" (default), "FROM_CONTACT" or "FROM_APART": which of several states; "stiffness": True for dF/dapproach. `force` may then be
-        negative. docs/adhesion.md says which law and which range.
+        "AUTO" (default), "FROM_CONTACT" or "FROM_APART": which of several states; "stiffness": True for dF/dapproach; "stability": True for
+        how near the state is to a snap; "shear_strength", a traction that adds to the bound of friction in contact. `force` may then be negative.
+        docs/adhesion.md says which law and which range.
     pressure, contact : array_like, (my, mx), optional
         Initial guess: the pressures, or the contact area (booleans or integers) that there may be; with `active_set="FIXED"` `contact` is
         the contact area.

@@ -124,7 +124,8 @@ class Adhesion(ctypes.Structure):
         ("range", c_double),
         ("smear", c_double),
         ("stiffness", c_int32),
-        ("reserved", c_int32),
+        ("stability", c_int32),
+        ("shear_strength", c_double),
     ]
 
 
@@ -346,9 +347,10 @@ class ReportAdhesion(ctypes.Structure):
         ("resolution", c_double),
         ("border_share", c_double),
         ("stiffness", c_double),
+        ("stability", c_double),
         ("jumped", c_int32),
         ("reserved_integer", c_int32),
-        ("reserved", c_double * 6),
+        ("reserved", c_double * 5),
     ]
 
 

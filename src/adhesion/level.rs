@@ -48,9 +48,9 @@ pub struct Level {
     pub problem: contact::Problem,
     /// The work of a product, that on the finest grid being 1.
     pub work: f64,
-    /// What the unknowns are measured against.
+    /// The surfaces.
     pub surface: Surface,
-    /// What is known now.
+    /// The unknowns now.
     pub now: Unknowns,
     /// The last state from which descent has to go on.
     pub good: Unknowns,
@@ -155,7 +155,7 @@ impl Level {
     }
 }
 
-/// What the preconditioner leaves to its caller.
+/// The value outside C, which the preconditioner leaves to its caller.
 fn z_outside() -> [f64; 1] {
     [0.0]
 }

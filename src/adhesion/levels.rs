@@ -18,7 +18,7 @@ const COARSEST: usize = 31;
 /// `kappa = s a0` of the shortest range that elements carry.
 pub const CARRIED: f64 = 0.4;
 
-/// What of a scene the grids take over.
+/// The inputs of a scene that the grids take over.
 #[derive(Clone, Copy, Debug)]
 pub struct Surfaces<'a> {
     /// h; `+infinity` where there is no surface.

@@ -31,7 +31,7 @@ pub enum Descent {
     Parted,
 }
 
-/// What descent goes through.
+/// How descent proceeds.
 #[derive(Clone, Copy)]
 pub struct Steps<'a> {
     /// So many steps at most.

@@ -15,8 +15,11 @@
 //! | `majorise`, `robust` | descent by contact problems whose attraction stands still, and Newton's method with that behind it |
 //! | `nested` | nested iteration; the starts from contact and from apart |
 //! | `pull` | forces that pull, and the pull-off |
+//! | `stability` | how near a state is to a snap |
+//! | `begin` | the starts from nothing |
 //! | `request`, `solver`, `report` | the whole solve |
 
+mod begin;
 mod law;
 mod level;
 mod levels;
@@ -28,6 +31,7 @@ mod report;
 mod request;
 mod robust;
 mod solver;
+mod stability;
 mod system;
 mod unknowns;
 

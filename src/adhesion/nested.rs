@@ -51,7 +51,7 @@ pub fn solve(
     one(levels, 0, goal, (start, make), monitor)
 }
 
-/// What a coarser grid has to reach: its elements are larger, so that fewer pressures add up to the same force.
+/// The goal of a coarser grid: its elements are larger, so that fewer pressures add up to the same force.
 pub fn coarse_goal(levels: &[Level], l: usize, goal: Goal) -> Goal {
     let area = |l: usize| levels[l].problem.grid.element_area();
     let wanted = goal.wanted.map(|wanted| wanted * area(0) / area(l));

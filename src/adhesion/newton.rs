@@ -45,7 +45,7 @@ pub enum End {
     Interrupted,
 }
 
-/// What a loop on one grid has to reach.
+/// The goal of a loop on one grid.
 #[derive(Clone, Copy, Debug)]
 pub struct Goal {
     /// Of the worst measure.
@@ -115,6 +115,16 @@ fn take_step(level: &mut Level, wanted: Option<f64>, worst: f64) -> Result<()> {
     fields.give(stiffness);
     level.fields = fields;
     Ok(())
+}
+
+/// s at the state of now.
+pub fn stiffnesses(level: &Level, stiffness: &mut [[f64; 1]]) {
+    let (surface, now) = (&level.surface, &level.now);
+    fields::fill(&level.problem.threads, stiffness, |i| {
+        let e = surface.distance(i, now);
+        let is_apart = !now.contact[i] && e.is_finite();
+        [if is_apart { surface.attraction.stiffness(surface.work_at(i), e.max(0.0)) } else { 0.0 }]
+    });
 }
 
 /// s, and the right-hand side, of the contact area of now.

@@ -9,13 +9,16 @@ use super::newton::{newton, stiffness_of_contact, End, Goal};
 use super::robust;
 use super::unknowns::{energies, Unknowns};
 use crate::error::Result;
+use crate::methods::fields;
 use crate::progress::Monitor;
 
-/// The first step: this part of the length that the elastic energy and the stiffness have together.
+/// The first step: this part of the length that the energy and the stiffness of the contact have together.
 const FIRST: f64 = 0.25;
 /// Steps at most, and how small they become around the least force.
 const MOST_STEPS: u32 = 80;
-const SMALLEST: f64 = 1.0 / 64.0;
+const SMALLEST: f64 = 1.0 / 256.0;
+/// Minima of the force at most on the way.
+const MOST_MINIMA: u32 = 40;
 /// Of secants at most, between two states.
 const SECANTS: u32 = 40;
 
@@ -47,6 +50,12 @@ impl Place {
     fn approach(&self) -> f64 {
         self.at.approach()
     }
+
+    /// Takes what a level holds.
+    fn take(&mut self, level: &Level, sum: f64) -> Result<()> {
+        self.sum = sum;
+        self.at.copy_from(&level.now)
+    }
 }
 
 /// The sum of p at an approach, from what the level holds; none where no state is found.
@@ -63,31 +72,60 @@ fn solve_at(
 }
 
 /// Walks down from what the level holds, the state of more force. Without a force that is wanted: to the least force, whose state the level then has.
+///
+/// Where asperities part one after the other the force has several minima: the walk goes on until nothing is in contact.
 pub fn walk(level: &mut Level, (goal, make): (Goal, MakeFrozen<'_>), monitor: &mut Monitor<'_>) -> Result<Walk> {
     let from = level.now.approach();
     let Some(sum) = solve_at(level, from, (goal, make), monitor)? else { return Ok(lost(goal, monitor)) };
     let mut best = Place { at: Unknowns::default(), sum };
     best.at.copy_from(&level.now)?;
-    let mut step = first_step(level, monitor)?;
-    let (smallest, mut higher) = (SMALLEST * step, None);
+    let step = first_step(level, monitor)?;
     if !(step > 0.0) {
         return Ok(lost(goal, monitor));
     }
-    let mut beyond = None;
+    let mut least: Option<Place> = None;
+    for _ in 0..MOST_MINIMA {
+        if let Some(end) = down(level, &mut best, step, (goal, make), monitor)? {
+            return Ok(end);
+        }
+        if least.as_ref().is_none_or(|least| best.sum < least.sum) {
+            let mut place = Place { at: Unknowns::default(), sum: best.sum };
+            place.at.copy_from(&best.at)?;
+            least = Some(place);
+        }
+        match over(level, &mut best, step, (goal, make), monitor)? {
+            Over::Falls => {}
+            Over::Apart => break,
+            Over::Ended(walk) => return Ok(walk),
+        }
+    }
+    let Some(least) = least else { return Ok(lost(goal, monitor)) };
+    level.now.copy_from(&least.at)?;
+    Ok(Walk::Least { sum: least.sum, approach: least.approach() })
+}
+
+/// Down to a minimum of the force, which `best` then has. Returns how the walk ended, if it did: at the force that is wanted, or where no cycle is left.
+fn down(
+    level: &mut Level,
+    best: &mut Place,
+    mut step: f64,
+    (goal, make): (Goal, MakeFrozen<'_>),
+    monitor: &mut Monitor<'_>,
+) -> Result<Option<Walk>> {
+    let (smallest, mut higher, mut beyond) = (SMALLEST * step, None, None);
     for _ in 0..MOST_STEPS {
         let approach = best.approach() - step;
         let found = solve_at(level, approach, (goal, make), monitor)?;
         if goal.is_interrupted(monitor) {
-            return Ok(Walk::Interrupted);
+            return Ok(Some(Walk::Interrupted));
         }
         match found {
             Some(sum) if goal.wanted.is_some_and(|wanted| sum <= wanted) => {
-                return between(level, best, (sum, approach), (goal, make), monitor);
+                return between(level, best, (sum, approach), (goal, make), monitor).map(Some);
             }
             Some(sum) if sum < best.sum => {
                 higher = Some((best.approach(), best.sum));
-                best.at.copy_from(&level.now)?;
-                best.sum = sum;
+                best.take(level, sum)?;
             }
             other => {
                 beyond = other.map(|sum| (approach, sum));
@@ -105,13 +143,51 @@ pub fn walk(level: &mut Level, (goal, make): (Goal, MakeFrozen<'_>), monitor: &m
         let vertex = vertex([higher, here, beyond]).filter(|at| *at < higher.0 && *at > beyond.0);
         if let Some(sum) = vertex.map(|at| solve_at(level, at, (goal, make), monitor)).transpose()?.flatten() {
             if sum < best.sum {
-                best.at.copy_from(&level.now)?;
-                best.sum = sum;
+                best.take(level, sum)?;
             }
         }
     }
     level.now.copy_from(&best.at)?;
-    Ok(Walk::Least { sum: best.sum, approach: best.approach() })
+    Ok(None)
+}
+
+/// The continuation behind a minimum.
+enum Over {
+    /// The force falls again.
+    Falls,
+    /// Nothing is in contact any more.
+    Apart,
+    /// The walk ends there.
+    Ended(Walk),
+}
+
+/// From a minimum over what rises behind it, until the force falls again, of which `best` then has the state before.
+fn over(
+    level: &mut Level,
+    best: &mut Place,
+    step: f64,
+    (goal, make): (Goal, MakeFrozen<'_>),
+    monitor: &mut Monitor<'_>,
+) -> Result<Over> {
+    let mut approach = best.approach();
+    for k in 0..MOST_STEPS {
+        approach -= step;
+        let found = solve_at(level, approach, (goal, make), monitor)?;
+        if goal.is_interrupted(monitor) {
+            return Ok(Over::Ended(Walk::Interrupted));
+        }
+        // A state that is not found may have less force.
+        let Some(sum) = found else { return Ok(Over::Ended(Walk::Lost)) };
+        if level.now.contact.iter().all(|inside| !inside) {
+            return Ok(Over::Apart);
+        }
+        if k > 0 && sum < best.sum {
+            level.now.copy_from(&best.at)?;
+            return Ok(Over::Falls);
+        }
+        best.take(level, sum)?;
+    }
+    Ok(Over::Ended(Walk::Lost))
 }
 
 /// Why no state was found.
@@ -123,17 +199,21 @@ fn lost(goal: Goal, monitor: &Monitor<'_>) -> Walk {
     }
 }
 
-/// A length of the elastic contact: where it holds the energy of a spring of its stiffness.
+/// A length of the contact: where a spring of its stiffness holds its elastic energy and the work that parts it. The elastic energy alone is nothing
+/// where attraction and contact pressures cancel, as below a flat punch without a load.
 fn first_step(level: &mut Level, monitor: &mut Monitor<'_>) -> Result<f64> {
-    let [elastic, _] = energies(&level.surface, &level.now, &level.problem.threads);
+    let Level { surface, now, problem, .. } = &*level;
+    let [elastic, _] = energies(surface, now, &problem.threads);
+    let of_element = |i: usize| [if now.contact[i] { surface.work_at(i) } else { 0.0 }];
+    let [parting] = fields::sum(&problem.threads, now.u.len(), of_element);
     let stiffness = stiffness_of_contact(level, monitor)?;
-    Ok(FIRST * (elastic / stiffness.abs()).sqrt())
+    Ok(FIRST * ((elastic + parting) / stiffness.abs()).sqrt())
 }
 
 /// The state of the force that is wanted, between the `best` state of more force and one of less.
 fn between(
     level: &mut Level,
-    mut best: Place,
+    best: &mut Place,
     (mut sum_low, mut low): (f64, f64),
     (goal, make): (Goal, MakeFrozen<'_>),
     monitor: &mut Monitor<'_>,
@@ -157,10 +237,7 @@ fn between(
         }
         level.now.copy_from(&best.at)?;
         match solve_at(level, approach, (goal, make), monitor)? {
-            Some(sum) if sum > wanted => {
-                best.at.copy_from(&level.now)?;
-                best.sum = sum;
-            }
+            Some(sum) if sum > wanted => best.take(level, sum)?,
             Some(sum) => (sum_low, low) = (sum, approach),
             None => return Ok(lost(goal, monitor)),
         }

@@ -1,4 +1,4 @@
-//! What is found of adhesion, and how well the conditions hold.
+//! The results of adhesion, and how well its conditions hold.
 
 use super::level::Level;
 use super::unknowns::{energies, Measured, Unknowns};
@@ -7,7 +7,7 @@ use crate::grid::Grid;
 use crate::methods::fields;
 use crate::progress::{DiscretisationError, LedgerRow, Measures, Monitor};
 
-/// What a solve with adhesion found.
+/// The results of a solve with adhesion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
     /// The sum of contact pressures q dx dy.
@@ -28,6 +28,8 @@ pub struct Report {
     pub border_share: f64,
     /// dF/dapproach; none: not asked for.
     pub stiffness: Option<f64>,
+    /// `1 - lambda`, see [`stability`](super::stability): positive in a stable state, 0 at a snap; none: not asked for.
+    pub stability: Option<f64>,
     /// Whether the bodies have snapped: the state before could not be followed, and more than a quarter of the contact is another one.
     pub jumped: bool,
 }
@@ -66,6 +68,7 @@ impl Report {
             resolution: surface.attraction.resolution(surface.work, level.self_influence()),
             border_share: if sigma > 0.0 { at_border / sigma } else { 0.0 },
             stiffness: None,
+            stability: None,
             jumped: false,
         }
     }
@@ -80,7 +83,7 @@ impl Report {
         }
     }
 
-    /// What to do about elements that are too coarse; none where they are not.
+    /// Advice where elements are too coarse; none where they are not.
     pub fn advice(&self) -> Option<String> {
         (self.resolution > RESOLVED).then(|| {
             let factor = self.resolution / RESOLVED;

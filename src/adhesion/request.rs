@@ -1,4 +1,4 @@
-//! What is asked for.
+//! A request.
 
 use super::levels::Surfaces;
 use crate::scene::Load;
@@ -41,6 +41,8 @@ pub struct Request<'a> {
     pub state: Option<State<'a>>,
     /// Whether dF/dapproach is asked for.
     pub stiffness: bool,
+    /// Whether it is asked for how near the state is to a snap.
+    pub stability: bool,
     /// Of each measure.
     pub tolerance: f64,
     /// Cycles on the finest grid at most.

@@ -19,7 +19,7 @@ const UPHILL: f64 = 1e-6;
 pub struct Ended {
     /// Why.
     pub end: Descent,
-    /// What holds.
+    /// How well the conditions hold.
     pub measured: Measured,
     /// Whether descent was needed: the state that it began from was not followed.
     pub descended: bool,

@@ -3,15 +3,15 @@
 use std::sync::Arc;
 
 use super::level::{Level, MakeFrozen};
-use super::levels::{levels, prolong, take_surfaces};
+use super::levels::{levels, take_surfaces};
 use super::majorise::Descent;
-use super::nested::{self, coarse_goal};
 use super::newton::{newton, stiffness_of_contact, End, Goal};
 use super::pull::{walk, Walk};
 use super::report::{close_grid, contact_pressure, Report};
 use super::request::{Request, Start, State};
 use super::robust;
-use crate::error::{Error, Result};
+use super::stability::stability;
+use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::operator::Operator;
@@ -24,7 +24,7 @@ const SNAPPED: f64 = 0.25;
 
 /// Grids and memory for many solves on one grid.
 pub struct Solver {
-    levels: Vec<Level>,
+    pub(super) levels: Vec<Level>,
     /// Whether what the finest grid holds could not be followed from the state before.
     jumped: bool,
 }
@@ -82,7 +82,7 @@ impl Solver {
             (Descent::By(End::Solved), true) => self.pull_off(goal, make, monitor)?,
             (end, _) => end,
         };
-        self.conclude(end, (goal, request.stiffness), monitor)
+        self.conclude(end, goal, request, monitor)
     }
 
     /// From a state: along its branch.
@@ -116,87 +116,6 @@ impl Solver {
         self.begin_anew(goal, (start, make), monitor)
     }
 
-    fn begin_anew(
-        &mut self,
-        goal: Goal,
-        (start, make): (Start, MakeFrozen<'_>),
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Descent> {
-        if !pulls(goal) {
-            return Ok(nested::solve(&mut self.levels, goal, (start, make), monitor)?.end);
-        }
-        if self.is_found_from_coarse(goal, (start, make), monitor)? {
-            return Ok(Descent::By(End::Solved));
-        }
-        // Down the stable branch of the finest grid.
-        let unloaded = Goal { wanted: Some(0.0), ..goal };
-        let ended = nested::solve(&mut self.levels, unloaded, (start, make), monitor)?;
-        if ended.end != Descent::By(End::Solved) {
-            return self.beyond_all_attraction(goal).map_or(Ok(ended.end), Err);
-        }
-        match walk(&mut self.levels[0], (goal, make), monitor)? {
-            Walk::Found => Ok(Descent::By(End::Solved)),
-            Walk::Interrupted => Ok(Descent::By(End::Interrupted)),
-            Walk::Lost => Ok(Descent::By(End::Failed)),
-            Walk::Least { sum, approach } => {
-                let area = self.levels[0].problem.grid.element_area();
-                let force = goal.wanted.unwrap_or(0.0) * area;
-                Err(Error::Infeasible(format!(
-                    "force is {force:e}; the attraction holds a pull of {:e} at most (the pull-off force), at an approach of {approach:e}",
-                    sum * area
-                )))
-            }
-        }
-    }
-
-    /// Why no state holds a pull of more than all attraction at a distance of 0.
-    fn beyond_all_attraction(&self, goal: Goal) -> Option<Error> {
-        let Level { surface, problem, .. } = &self.levels[0];
-        let area = problem.grid.element_area();
-        let of_element = |i: usize| if surface.h[i].is_finite() { surface.traction(i, 0.0) } else { 0.0 };
-        let most = (0..surface.h.len()).map(of_element).sum::<f64>();
-        let wanted = goal.wanted.filter(|wanted| -wanted > most)?;
-        Some(Error::Infeasible(format!(
-            "force is {:e}; all of the attraction, at a distance of 0 everywhere, holds a pull of {:e}",
-            wanted * area,
-            -most * area
-        )))
-    }
-
-    /// Down the stable branch on the coarsest grid, which costs little, and then from grid to grid by the force. False where that does not end on the
-    /// stable branch.
-    fn is_found_from_coarse(
-        &mut self,
-        goal: Goal,
-        (start, make): (Start, MakeFrozen<'_>),
-        monitor: &mut Monitor<'_>,
-    ) -> Result<bool> {
-        let last = self.levels.len() - 1;
-        if last == 0 {
-            return Ok(false);
-        }
-        let coarse = coarse_goal(&self.levels, last, goal);
-        let unloaded = Goal { wanted: Some(0.0), ..coarse };
-        monitor.enter_grid();
-        let ended = nested::solve(&mut self.levels[last..], unloaded, (start, make), monitor)?;
-        let is_found = ended.end == Descent::By(End::Solved)
-            && walk(&mut self.levels[last], (coarse, make), monitor)? == Walk::Found;
-        if !is_found {
-            return Ok(false);
-        }
-        for l in (0..last).rev() {
-            let (fine, below) = self.levels.split_at_mut(l + 1);
-            prolong(&below[0], &mut fine[l])?;
-            let goal = coarse_goal(&self.levels, l, goal);
-            monitor.enter_grid();
-            let (end, _) = newton(&mut self.levels[l], goal, false, monitor)?;
-            if end != End::Solved {
-                return Ok(false);
-            }
-        }
-        Ok(stiffness_of_contact(&mut self.levels[0], monitor)? > 0.0)
-    }
-
     /// From the state of now to that of the least force.
     fn pull_off(&mut self, goal: Goal, make: MakeFrozen<'_>, monitor: &mut Monitor<'_>) -> Result<Descent> {
         let goal = Goal { wanted: None, ..goal };
@@ -211,7 +130,8 @@ impl Solver {
     fn conclude(
         &mut self,
         end: Descent,
-        (goal, stiffness): (Goal, bool),
+        goal: Goal,
+        request: &Request<'_>,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, Report)> {
         let level = &mut self.levels[0];
@@ -229,9 +149,13 @@ impl Solver {
         let measured = level.measure(false, wanted);
         let mut report = Report::of(level, &measured);
         report.jumped = self.jumped;
-        if stiffness && end == Descent::By(End::Solved) {
+        let is_solved = end == Descent::By(End::Solved);
+        if request.stiffness && is_solved {
             let area = level.problem.grid.element_area();
             report.stiffness = Some(area * stiffness_of_contact(level, monitor)?);
+        }
+        if request.stability && is_solved {
+            report.stability = Some(stability(level, monitor)?);
         }
         close_grid(level, &measured, monitor);
         if let Some(advice) = report.advice() {
@@ -247,6 +171,6 @@ impl Solver {
 }
 
 /// Whether the force that is given pulls.
-fn pulls(goal: Goal) -> bool {
+pub(super) fn pulls(goal: Goal) -> bool {
     goal.wanted.is_some_and(|wanted| wanted < 0.0)
 }

@@ -10,7 +10,7 @@ use crate::threads::Threads;
 /// A number per element, as fields of one number.
 pub type One = [f64; 1];
 
-/// What memory is for.
+/// Names its memory in messages.
 pub const MEMORY: &str = "the adhesion problem";
 
 /// Total pressures p with the approach as their border, u = A p, and the contact area.
@@ -62,7 +62,7 @@ impl Unknowns {
     }
 }
 
-/// What the unknowns are measured against: h, the law and the work of adhesion of each element.
+/// The surfaces: h, the law and the work of adhesion of each element.
 #[derive(Default)]
 pub struct Surface {
     /// h; `+infinity` where there is no surface.
@@ -106,7 +106,7 @@ pub struct Measured {
     pub violation: f64,
     /// `||p + sigma(e)||` outside C, relative to `||p||`.
     pub law: f64,
-    /// What the sum of p lacks of the force that is given, relative to the sum of |p|.
+    /// The given force less the sum of p, relative to the sum of |p|.
     pub force: f64,
     /// Elements in contact.
     pub count: usize,

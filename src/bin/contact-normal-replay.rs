@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use contact_normal::ffi::dump::{Dump, Replayed};
 use contact_normal::ffi::{contact_normal_last_error, contact_normal_report, contact_normal_status_text};
 
-/// What the program returns where the file is no dump, or the call is not in it whole.
+/// The exit status where the file is no dump, or does not hold the whole call.
 const NOT_MADE: u8 = 2;
 
 fn main() -> ExitCode {

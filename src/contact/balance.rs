@@ -61,7 +61,7 @@ impl State {
                 self.p.iter_mut().for_each(|p| *p *= pressures / all);
                 self.contact.iter_mut().zip(&mut self.at_limit).for_each(|(inside, at)| *inside |= std::mem::take(at));
             } else if self.carries(threads) {
-                // What is at its limit carries all of it.
+                // An element at its limit carries all of it.
                 break;
             } else {
                 self.spread(missing);

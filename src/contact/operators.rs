@@ -28,7 +28,7 @@ const SMALLEST_GRID: usize = 128 * 128;
 /// A reach is worth an operator of its own where its periods have at most this part of the elements of the full ones.
 const WORTHWHILE: f64 = 0.8;
 
-/// What operators are made of.
+/// The inputs of an operator.
 #[derive(Clone, Copy)]
 pub(super) struct MadeOf<'a> {
     pub coefficients: &'a Coefficients,
@@ -153,7 +153,7 @@ impl MadeOf<'_> {
         grid.len() >= SMALLEST_GRID && is_toeplitz && coefficients.is_even(grid)
     }
 
-    /// What p reaches, if that is worth an operator of its own.
+    /// The reach of p, if that is worth an operator of its own.
     fn reach_of(&self, p: &[f64]) -> Option<Reach> {
         if !self.is_for_parts() {
             return None;

@@ -1,4 +1,4 @@
-//! What every method works on: the grid, the influence coefficients, the operator. The solver owns it.
+//! The problem that every method works on: grid, influence coefficients, operator. The solver owns it.
 
 use std::sync::Arc;
 
@@ -119,7 +119,7 @@ impl Problem {
     pub fn round_off(&self) -> f64 {
         let own = ROUND_OFF * self.self_influence();
         match self.coefficients.is_mean_free() {
-            // What cancels are displacements by waves of up to the whole grid.
+            // Displacements by waves of up to the whole grid cancel.
             true => own * (1.0 + self.grid.mx.max(self.grid.my) as f64 / WAVE),
             false => own,
         }

@@ -1,10 +1,10 @@
-//! What a state found, kept to go back to.
+//! A copy of the result of a state, to go back to.
 
 use super::State;
 use crate::error::Result;
 use crate::memory::{keep, reserve};
 
-/// What a state had found, but for u: to go back to it.
+/// A copy of the result of a state without u, to go back to.
 #[derive(Default)]
 pub struct Snapshot {
     p: Vec<f64>,

@@ -26,7 +26,7 @@ pub struct State {
     pub p: Vec<f64>,
     /// u = A p, as far as `u_is` says.
     pub u: Vec<f64>,
-    /// What u is worth.
+    /// How fresh u is.
     pub u_is: Freshness,
     /// C.
     pub contact: Vec<bool>,
@@ -36,7 +36,7 @@ pub struct State {
     pub reached_limit: bool,
     /// The approach: given, or the current estimate when the force is prescribed.
     pub approach: f64,
-    /// What is prescribed.
+    /// The load.
     pub load: Load,
     /// The round-off of a displacement, per unit of pressure: below it nothing is known.
     pub round_off: f64,
@@ -269,7 +269,7 @@ impl State {
         }
     }
 
-    /// What was found before is nothing to start from.
+    /// Forgets the last result: nothing to start from.
     pub fn forget(&mut self) {
         self.at_limit.fill(false);
         self.u_is = Freshness::Stale;

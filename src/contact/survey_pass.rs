@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::State;
 
-/// What one pass over a state whose u is A p tells.
+/// The measures of one pass over a state whose u is A p.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Survey {
     /// 2-norm over C of `e = h - approach + u`.

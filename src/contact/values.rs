@@ -1,8 +1,8 @@
-//! What displacements are worth, and what is asked of whole arrays of pressures and distances.
+//! How fresh displacements are, and questions to whole arrays of pressures and distances.
 
 use crate::sums::least;
 
-/// What the u of a state is worth.
+/// How fresh the u of a state is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Freshness {
     /// A p.

@@ -3,6 +3,7 @@
 //! See [`adhesion`](crate::adhesion) for the problem that is solved.
 
 use super::effect::{check_values, Effect, Value};
+use super::friction::LARGEST;
 use super::properties::{Properties, Stresses};
 use crate::adhesion::{Law, Start};
 use crate::error::{invalid, require, Error, Result};
@@ -34,6 +35,10 @@ pub struct Adhesion<'a> {
     pub start: Start,
     /// Whether dF/dapproach is asked for.
     pub stiffness: bool,
+    /// Whether it is asked for how near the state is to a snap.
+    pub stability: bool,
+    /// tau0 >= 0, a traction: with friction the bound in contact is `mu q + tau0`.
+    pub shear_strength: f64,
 }
 
 impl Adhesion<'_> {
@@ -53,7 +58,7 @@ impl Effect for Adhesion<'_> {
 
     fn properties(&self) -> Properties<'_> {
         Properties {
-            excludes: &["row_tables", "patches", "pressure_limit", "friction"],
+            excludes: &["row_tables", "pressure_limit"],
             without_multigrid: Some("adhesion"),
             with_given_area: false,
             one_grid: (self.range == 0.0)
@@ -92,6 +97,9 @@ impl Effect for Adhesion<'_> {
             self.range,
             "it must be 0, for the shortest that the elements carry, or lie in 1e-70..1e70",
         )?;
+        let strength = self.shear_strength;
+        let rule = "a shear strength must be 0 or more, and below 1e140";
+        require((0.0..LARGEST).contains(&strength), "adhesion->shear_strength", strength, rule)?;
         if let Law::Dugdale(smear) = self.law {
             let rule = "the part of the range over which the edge is smeared must lie in (0, 1]";
             require(smear > 0.0 && smear <= 1.0, "adhesion->smear", smear, rule)?;

@@ -77,7 +77,7 @@ pub enum Previous<'a> {
     None,
     /// Tractions in x and y, `[my][mx]` each.
     Given([&'a [f64]; 2]),
-    /// What this solver found last.
+    /// The last result of this solver.
     Kept,
 }
 

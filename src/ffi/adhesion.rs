@@ -1,6 +1,6 @@
 //! `contact_normal_adhesion`.
 
-use super::arguments::{optional, reserved, GivenEffect, Regions};
+use super::arguments::{optional, GivenEffect, Regions};
 use super::ledger::copy;
 use super::status::Refusal;
 use super::structs::versioned;
@@ -47,16 +47,18 @@ pub struct contact_normal_adhesion {
     pub smear: f64,
     /// 1: dF/dapproach, in `report->adhesion.stiffness`; default 0.
     pub stiffness: i32,
-    /// Must be 0.
-    pub reserved: i32,
+    /// 1: how near the state is to a snap, in `report->adhesion.stability`, for 10 to 100 products; default 0.
+    pub stability: i32,
+    /// tau0, a traction >= 0, default 0: with friction the bound in contact is `mu q + tau0`, q being the contact pressure. Not read without
+    /// friction.
+    pub shear_strength: f64,
 }
 
-versioned! { contact_normal_adhesion, contact_normal_adhesion_init, 56, smear: 0.3 }
+versioned! { contact_normal_adhesion, contact_normal_adhesion_init, 64, smear: 0.3 }
 
 impl contact_normal_adhesion {
     /// The caller's arrays must live as long as the result is used.
     pub(super) unsafe fn translate<'a>(&self, grid: &Grid) -> Result<Adhesion<'a>, Refusal> {
-        reserved("adhesion->reserved", self.reserved)?;
         let refused = |name: &str, value: i32, rule: &str| {
             Err(Refusal::invalid(format!("adhesion->{name} is {value}; it must be {rule}")))
         };
@@ -73,15 +75,17 @@ impl contact_normal_adhesion {
             CONTACT_NORMAL_START_FROM_APART => Start::Apart,
             other => return refused("start", other, "AUTO 0, FROM_CONTACT 1 or FROM_APART 2"),
         };
-        let stiffness = match self.stiffness {
-            0 => false,
-            1 => true,
-            other => return refused("stiffness", other, "0 or 1"),
+        let switch = |name: &str, value: i32| match value {
+            0 => Ok(false),
+            1 => Ok(true),
+            other => Err(Refusal::invalid(format!("adhesion->{name} is {other}; it must be 0 or 1"))),
         };
+        let (stiffness, stability) = (switch("stiffness", self.stiffness)?, switch("stability", self.stability)?);
         // SAFETY: NULL or one value per element, by the conventions of the ABI.
         let works = unsafe { optional(self.works_of_adhesion, grid.len()) };
         let work = works.map_or(Work::Uniform(self.work_of_adhesion), Work::PerElement);
-        Ok(Adhesion { law, work, range: self.range, start, stiffness })
+        let (range, shear_strength) = (self.range, self.shear_strength);
+        Ok(Adhesion { law, work, range, start, stiffness, stability, shear_strength })
     }
 }
 
@@ -114,19 +118,23 @@ pub struct contact_normal_report_adhesion {
     pub border_share: f64,
     /// dF/dapproach if `adhesion->stiffness` is 1, else 0.
     pub stiffness: f64,
+    /// 1 - lambda if `adhesion->stability` is 1, else 0; lambda is the largest eigenvalue of how a change of the attraction outside the
+    /// contact comes back to itself. Positive in a stable state (of a given approach), near 0 where a small step may snap.
+    pub stability: f64,
     /// 1: the bodies have snapped: the state before (initial_guess PREVIOUS or GIVEN) could not be followed, and the elements in contact
     /// are more, or fewer, by a quarter at least; else 0.
     pub jumped: i32,
     /// Always 0.
     pub reserved_integer: i32,
     /// Room for later versions: 0.
-    pub reserved: [f64; 6],
+    pub reserved: [f64; 5],
 }
 
 impl contact_normal_report_adhesion {
     pub(super) fn set(&mut self, found: &Report) {
         copy!(found => self: repulsive_force, adhesive_force, elastic_energy, adhesive_energy);
         copy!(found => self: law_residual, range, resolution, border_share);
-        (self.stiffness, self.jumped) = (found.stiffness.unwrap_or(0.0), i32::from(found.jumped));
+        (self.stiffness, self.stability) = (found.stiffness.unwrap_or(0.0), found.stability.unwrap_or(0.0));
+        self.jumped = i32::from(found.jumped);
     }
 }

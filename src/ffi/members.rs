@@ -259,7 +259,8 @@ pub(super) const STRUCTS: &[Struct] = &[
         Member { name: "range", at: offset_of!(contact_normal_adhesion, range), kind: Double },
         Member { name: "smear", at: offset_of!(contact_normal_adhesion, smear), kind: Double },
         Member { name: "stiffness", at: offset_of!(contact_normal_adhesion, stiffness), kind: Int32 },
-        Member { name: "reserved", at: offset_of!(contact_normal_adhesion, reserved), kind: Int32 },
+        Member { name: "stability", at: offset_of!(contact_normal_adhesion, stability), kind: Int32 },
+        Member { name: "shear_strength", at: offset_of!(contact_normal_adhesion, shear_strength), kind: Double },
     ] },
     Struct { name: "contact_normal_scene", members: &[
         Member { name: "struct_size", at: offset_of!(contact_normal_scene, struct_size), kind: Int64 },
@@ -466,6 +467,7 @@ pub(super) const STRUCTS: &[Struct] = &[
         Member { name: "resolution", at: offset_of!(contact_normal_report_adhesion, resolution), kind: Double },
         Member { name: "border_share", at: offset_of!(contact_normal_report_adhesion, border_share), kind: Double },
         Member { name: "stiffness", at: offset_of!(contact_normal_report_adhesion, stiffness), kind: Double },
+        Member { name: "stability", at: offset_of!(contact_normal_report_adhesion, stability), kind: Double },
         Member { name: "jumped", at: offset_of!(contact_normal_report_adhesion, jumped), kind: Int32 },
         Member { name: "reserved_integer", at: offset_of!(contact_normal_report_adhesion, reserved_integer), kind: Int32 },
         Member { name: "reserved[0]", at: offset_of!(contact_normal_report_adhesion, reserved), kind: Double },
@@ -473,7 +475,6 @@ pub(super) const STRUCTS: &[Struct] = &[
         Member { name: "reserved[2]", at: offset_of!(contact_normal_report_adhesion, reserved) + 16, kind: Double },
         Member { name: "reserved[3]", at: offset_of!(contact_normal_report_adhesion, reserved) + 24, kind: Double },
         Member { name: "reserved[4]", at: offset_of!(contact_normal_report_adhesion, reserved) + 32, kind: Double },
-        Member { name: "reserved[5]", at: offset_of!(contact_normal_report_adhesion, reserved) + 40, kind: Double },
     ] },
     Struct { name: "contact_normal_report", members: &[
         Member { name: "struct_size", at: offset_of!(contact_normal_report, struct_size), kind: Int64 },
@@ -575,6 +576,7 @@ pub(super) const STRUCTS: &[Struct] = &[
         Member { name: "adhesion.resolution", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, resolution), kind: Double },
         Member { name: "adhesion.border_share", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, border_share), kind: Double },
         Member { name: "adhesion.stiffness", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, stiffness), kind: Double },
+        Member { name: "adhesion.stability", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, stability), kind: Double },
         Member { name: "adhesion.jumped", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, jumped), kind: Int32 },
         Member { name: "adhesion.reserved_integer", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, reserved_integer), kind: Int32 },
         Member { name: "adhesion.reserved[0]", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, reserved), kind: Double },
@@ -582,7 +584,6 @@ pub(super) const STRUCTS: &[Struct] = &[
         Member { name: "adhesion.reserved[2]", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, reserved) + 16, kind: Double },
         Member { name: "adhesion.reserved[3]", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, reserved) + 24, kind: Double },
         Member { name: "adhesion.reserved[4]", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, reserved) + 32, kind: Double },
-        Member { name: "adhesion.reserved[5]", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, reserved) + 40, kind: Double },
     ] },
     Struct { name: "contact_normal_solver_info", members: &[
         Member { name: "struct_size", at: offset_of!(contact_normal_solver_info, struct_size), kind: Int64 },

@@ -166,7 +166,7 @@ pub struct contact_normal_report {
     pub tangential: contact_normal_report_tangential,
     /// How wrong it is.
     pub accuracy: contact_normal_report_accuracy,
-    /// What it cost.
+    /// Its cost.
     pub statistics: contact_normal_report_statistics,
     /// What was found of adhesion.
     pub adhesion: contact_normal_report_adhesion,

@@ -31,7 +31,7 @@ const NEGLIGIBLE: f64 = 1e-30;
 /// Tractions before the step are at most so many times the largest bound.
 const LARGEST_BEFORE: f64 = 1e150;
 
-/// What memory is for.
+/// Names its memory in messages.
 const FIELDS: &str = "tangential fields";
 
 impl Solver {

@@ -52,12 +52,12 @@ impl Coefficients {
         self.diagonal.is_some()
     }
 
-    /// What the layer adds to the coefficient at offset (0, 0), everywhere.
+    /// The compliance that the layer adds to the coefficient at offset (0, 0) everywhere.
     fn least(&self) -> f64 {
         self.diagonal.as_ref().map_or(0.0, |layer| layer.least)
     }
 
-    /// What element `i` has on the diagonal beyond the kernel: the compliance of its layer.
+    /// The diagonal of element `i` beyond the kernel: the compliance of its layer.
     pub fn layer(&self, i: usize) -> f64 {
         self.least() + self.diagonal().map_or(0.0, |more| more[i])
     }
@@ -144,7 +144,7 @@ impl Coefficients {
         self.kernel.repeats(grid)
     }
 
-    /// What A has on the diagonal beyond the coefficient at offset (0, 0), per element; none where it is the same everywhere.
+    /// The diagonal of A beyond the coefficient at offset (0, 0), per element; none where it is the same everywhere.
     pub fn diagonal(&self) -> Option<&[f64]> {
         self.diagonal.as_ref().and_then(Layer::more)
     }

@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::collected;
 
-/// What memory is for.
+/// Names its memory in messages.
 const LAYER: &str = "the layer";
 
 /// What a compliance is measured against, in self-influences: a layer of less hardly matters. The smallest eigenvalue of A is 0.3.
@@ -25,7 +25,7 @@ const MOST_LEVELS: f64 = 4.0;
 pub struct Layer {
     /// The least c: added to the coefficient at offset (0, 0), everywhere.
     pub(super) least: f64,
-    /// What is more, per element; none when c is uniform.
+    /// The compliance beyond the least one, per element; none where c is uniform.
     more: Option<Arc<Vec<f64>>>,
     /// The one c of preconditioners.
     pub(super) typical: f64,
@@ -50,7 +50,7 @@ impl Layer {
         Ok(Layer { least, more, typical: (geometric - short).max(0.0), mean: c.iter().sum::<f64>() / n })
     }
 
-    /// What is added to the displacements of single elements: for the operator.
+    /// The diagonal that the operator adds to the displacements of single elements.
     pub fn more(&self) -> Option<&[f64]> {
         self.more.as_ref().map(|more| &more[..])
     }

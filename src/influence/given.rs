@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::memory::{blank, reserve};
 
-/// What memory is for.
+/// Names its memory in messages.
 pub(super) const TABLE: &str = "the influence coefficients";
 
 /// Coefficients of one direction that are kept.

@@ -17,7 +17,7 @@ use crate::grid::Grid;
 /// Chebyshev nodes in each direction. The nearest singularity of what they represent lies on the ellipse of sum of semi-axes 4.5 or
 /// beyond (see `reach`): `4.5^-24 = 2e-16` is left.
 pub(super) const NODES: usize = 12;
-/// What a grid of 8 elements covers of its period: half, and half an element.
+/// The part of its period that a grid of 8 elements covers: half, and half an element.
 const COARSE: f64 = 0.5626;
 /// Periods beyond which the waves of a line of images are gone: `exp(-2 pi 6) = 4e-17`.
 const FADED: f64 = 6.0;
@@ -34,7 +34,7 @@ pub(super) enum Lines {
     Y,
 }
 
-/// What of a grid images are summed for.
+/// The offsets of a grid for which images are summed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Near {
     /// Offsets in x and in y; one at least.
@@ -61,7 +61,7 @@ pub(super) fn lengths(grid: &Grid) -> (f64, f64) {
     (grid.mx as f64 * grid.dx, grid.my as f64 * grid.dy)
 }
 
-/// What all but the near images contribute, per unit strength, as a polynomial on `|x| <= half.0, |y| <= half.1`.
+/// The contribution of all far images, per unit strength, as a polynomial on `|x| <= half.0, |y| <= half.1`.
 #[derive(Debug, PartialEq)]
 pub(super) struct Far {
     directions: (bool, bool),
@@ -160,7 +160,7 @@ impl Far {
         }
     }
 
-    /// What of a grid images are summed for.
+    /// The offsets of a grid for which images are summed.
     pub fn near(&self, grid: &Grid) -> Near {
         let (row, rows) = offsets(self.directions, grid);
         let mut near = Near { offsets: (row, rows), element: (grid.dx, grid.dy) };

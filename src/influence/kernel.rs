@@ -1,4 +1,4 @@
-//! What all sources of influence coefficients can be asked.
+//! The interface of all sources of influence coefficients.
 
 use std::any::Any;
 use std::fmt::Debug;

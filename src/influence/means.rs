@@ -109,7 +109,7 @@ pub fn means(
     let is_far = |ky: usize| ky as f64 * row_distance >= FAR;
     for row in 0..rows + 2 * HALO {
         let ky = row.abs_diff(HALO);
-        // What the rows around ask for, and their neighbours.
+        // The values that the rows around need, and their neighbours.
         let start = first(ky.saturating_sub(HALO));
         let from = start.saturating_sub(HALO);
         fill(ky, from, &mut points[HALO + from..]);

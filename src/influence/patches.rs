@@ -13,7 +13,7 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::collected;
 
-/// What memory is for.
+/// Names its memory in messages.
 const PATCHES: &str = "the patches";
 
 /// Patches and factors.

@@ -34,7 +34,7 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{collected, zeros};
 
-/// What memory is for.
+/// Names its memory in messages.
 const PERIODIC: &str = "the coefficients of a period";
 
 /// Panels of a period over which what is smooth on it is integrated by Gauss: the singularity is then six half-panels away.
@@ -200,7 +200,7 @@ struct Line {
 }
 
 impl Line {
-    /// What is to be added at offset k.
+    /// The term to be added at offset k.
     fn beyond(&self, k: usize) -> f64 {
         let (d, y) = (self.d, k as f64 * self.d);
         let line = match k {

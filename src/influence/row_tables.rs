@@ -29,7 +29,7 @@ use crate::error::{invalid, Error, Result};
 use crate::grid::Grid;
 use crate::memory::{blank, reserve, Held};
 
-/// What memory is for.
+/// Names its memory in messages.
 const TABLES: &str = "the tables of coefficients";
 
 /// The tables: of offsets >= 0 in x only, where all are even.

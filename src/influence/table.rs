@@ -97,7 +97,7 @@ pub(super) fn coarsen_row(row: &[f64], c: usize, even: bool, halved: bool, out: 
         let start = place(first, c, even);
         return out.copy_from_slice(&row[start..=start + last]);
     }
-    // What lies beyond the ends is not of the row itself.
+    // Values beyond the ends are not of the row itself.
     for i in [0, last] {
         let [before, at, after] = [-1, 0, 1].map(|k| row[place(2 * (first + i as i64) + k, c, even)]);
         out[i] = at + 0.5 * (before + after);

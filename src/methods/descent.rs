@@ -278,7 +278,7 @@ fn constant_for(wanted: f64, sum: impl Fn(f64) -> f64, size: f64) -> f64 {
 /// p = p + length t, u = u + length A t, and the contact area with them. Returns how many elements changed sides.
 fn take_step<S: AdmissibleSet>(state: &mut State, set: S, t: &[f64], q: &[f64], length: f64) -> u64 {
     for i in 0..t.len() {
-        // What ends the step is at its bound, whatever the rounding.
+        // The element that ends the step is put at its bound, whatever the rounding.
         let blocked = t[i] < 0.0 && state.p[i] <= -length * t[i];
         state.p[i] = if blocked { 0.0 } else { state.p[i] + length * t[i] };
         if S::LIMITED {

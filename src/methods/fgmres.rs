@@ -26,13 +26,13 @@ pub struct Direction<const K: usize = 2> {
     pub product: Vec<[f64; K]>,
 }
 
-/// What is solved: `H x = r`.
+/// The system `H x = r`.
 pub trait System<const K: usize = 2> {
     /// A preconditioned vector, its product with A, and `H` of it.
     fn direction(&mut self, v: &Bordered<K>, fields: &mut Fields<K>) -> Result<(Direction<K>, Bordered<K>)>;
 }
 
-/// What was found: `x = sum_j y_j z_j`.
+/// The solution as a combination, `x = sum_j y_j z_j`.
 #[derive(Default)]
 pub struct Combination<const K: usize = 2> {
     pub directions: Vec<Direction<K>>,

@@ -43,7 +43,7 @@ pub trait Step<S: AdmissibleSet> {
     fn policy(&self) -> Policy;
 }
 
-/// What one step did.
+/// The measures of one step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Change {
     /// rms over C of the change of p; infinite where it proves nothing.

@@ -1,10 +1,10 @@
-//! What is to be solved on one grid.
+//! A problem on one grid and its goal.
 
 use crate::contact::{AdmissibleSet, Problem, State, Survey};
 use crate::error::Result;
 use crate::progress::{Goal, Monitor};
 
-/// What is to be solved on one grid.
+/// A problem on one grid and its goal.
 pub struct Task<'a, 'm, S> {
     /// The grid and the operator.
     pub problem: &'a mut Problem,
@@ -14,7 +14,7 @@ pub struct Task<'a, 'm, S> {
     pub lowest: f64,
     /// The pressures that are admissible.
     pub set: S,
-    /// What is to be reached.
+    /// The goal.
     pub goal: Goal,
     /// Who counts and watches.
     pub monitor: &'a mut Monitor<'m>,

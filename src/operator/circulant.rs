@@ -66,7 +66,7 @@ impl<T: Real> Operator<T> {
 /// hold. Measured.
 const MEAN_WAVE: f64 = 0.45;
 
-/// What the wave of a bin displaces.
+/// The displacement by the wave of a bin.
 fn wave_of(coefficients: &Coefficients, grid: &Grid, (px, py): (usize, usize), (x, y): (usize, usize)) -> f64 {
     let number = |bin: usize, p: usize, d: f64| 2.0 * PI * bin as f64 / (p as f64 * d);
     let (mut kx, ky) = (number(x, px, grid.dx), number(y, py, grid.dy));

@@ -17,7 +17,7 @@ use crate::influence::{Coefficients, Patches};
 use crate::memory::{computed, reserve};
 use crate::threads::Threads;
 
-/// What memory is for.
+/// Names its memory in messages.
 const DIAGONAL: &str = "the operator's diagonal";
 
 /// The operator of one grid.
@@ -25,7 +25,7 @@ pub struct Operator<T: Real> {
     product: Product<T>,
     /// Products with pressures that reach farther are wrong. Only even coefficients make use of it.
     reach: Reach,
-    /// What A has on its diagonal beyond the coefficients; empty: nothing.
+    /// The diagonal of A beyond the coefficients; empty: nothing.
     diagonal: Vec<T>,
     /// Patches between which A is scaled.
     coupling: Option<Patches>,
@@ -128,7 +128,7 @@ impl<T: Real> Operator<T> {
         self.product.bytes() + size_of_val(&self.diagonal[..])
     }
 
-    /// What its products need: the workspace of one operator serves another of the same needs.
+    /// The sizes that its products need: the workspace of one operator serves another of the same needs.
     pub fn needs(&self) -> Needs {
         let masked = self.coupling.as_ref().map_or(0, |_| self.elements());
         Needs { room: self.product.room(), masked }

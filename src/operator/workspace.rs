@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::memory::{keep, zeros};
 use crate::threads::Threads;
 
-/// What memory is for.
+/// Names its memory in messages.
 const WORKSPACE: &str = "the product's workspace";
 
 /// Memory that a product needs, so that it allocates nothing.
@@ -29,7 +29,7 @@ pub struct Needs {
 }
 
 impl Needs {
-    /// What either needs.
+    /// The sizes that either needs.
     #[must_use]
     pub fn max(self, other: Needs) -> Needs {
         Needs { room: self.room.max(other.room), masked: self.masked.max(other.masked) }

@@ -1,8 +1,8 @@
-//! What a loop has to reach, and why it ended.
+//! The goal of a loop, and why it ended.
 
 use crate::contact::{AdmissibleSet, Survey};
 
-/// What has to become small.
+/// The criterion: which number has to become small.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Criterion {
     /// `||h - approach + A p||_2 <= tolerance * ||h - approach||_2`, over C.
@@ -16,10 +16,10 @@ pub enum Criterion {
 /// The relative residual up to which a small last change is believed.
 pub const UPDATE_RESIDUAL: f64 = 1e-2;
 
-/// What a loop on one grid has to reach.
+/// The goal of a loop on one grid.
 #[derive(Clone, Copy, Debug)]
 pub struct Goal {
-    /// What has to become small.
+    /// Which number has to become small.
     pub criterion: Criterion,
     /// How small.
     pub tolerance: f64,

@@ -39,7 +39,7 @@ impl Measures {
         }
     }
 
-    /// What the load does not prescribe: the force or the approach.
+    /// The one of force and approach that the load does not prescribe.
     pub fn found(&self, load: Load) -> f64 {
         match load {
             Load::Approach(_) => self.force,
@@ -102,7 +102,7 @@ pub struct LedgerRow {
     pub seconds: f64,
     /// Work units since then: products, each weighted by its elements over those of the finest grid.
     pub work_units: f64,
-    /// What was known.
+    /// The measures of that grid.
     pub measures: Measures,
     /// And how far it was off.
     pub error: DiscretisationError,

@@ -1,4 +1,4 @@
-//! What loops have to reach, why they end, what they count, and who may cancel them.
+//! Goals of loops, why they end, their counters, and who may cancel them.
 
 mod criterion;
 mod ledger;
@@ -11,7 +11,7 @@ pub use ledger::{DiscretisationError, Ledger, LedgerRow, Measures};
 use crate::contact::{Outline, State, Survey};
 use crate::grid::Grid;
 
-/// What a progress callback is told after each cycle.
+/// The measures that a progress callback gets after each cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
     /// Elements in x of the grid that the cycle was on.
@@ -51,7 +51,7 @@ impl Progress {
 /// Told the progress after each cycle; says whether to cancel.
 pub type ProgressCallback<'a> = &'a mut dyn FnMut(&Progress) -> bool;
 
-/// What is counted. All but the work units start anew on each grid.
+/// Counters. All but the work units start anew on each grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Counters {
     /// Cycles (of multigrid) or iterations (of conjugate gradients, steps of GMRES) on the current grid.
@@ -75,9 +75,9 @@ pub struct Monitor<'a> {
     began: Instant,
     callback: Option<ProgressCallback<'a>>,
     cancelled: bool,
-    /// What was counted so far.
+    /// The counters so far.
     pub count: Counters,
-    /// What was known on each grid.
+    /// The measures of each grid.
     pub ledger: Ledger,
     /// Of the state of the grid that is closed next, where it was surveyed last.
     pub survey: Option<Survey>,

@@ -1,4 +1,4 @@
-//! What presses the bodies together.
+//! The load that presses the bodies together.
 
 use crate::error::{invalid, Error, Result};
 

@@ -1,4 +1,4 @@
-//! What is simulated: two bodies, the undeformed distance between them, the load, and the effects a scene names.
+//! A scene: two bodies, the undeformed distance between them, the load, and the effects that it names.
 
 mod bodies;
 mod load;

@@ -1,4 +1,4 @@
-//! What every scene has, and every effect may look at.
+//! The part of a scene that every scene has and every effect may read.
 
 use super::{Bodies, Load};
 use crate::blocks;

@@ -80,7 +80,7 @@ impl Regrid {
         Ok(Some(pair))
     }
 
-    /// What is in the elements around the centres of the other grid.
+    /// The values in the elements around the centres of the other grid.
     fn at_centres(&self, values: &[i32]) -> Result<Vec<i32>> {
         let at = |i: usize, to: usize, m: usize| (2 * i + 1) * m / (2 * to);
         let of = |i: usize| {
@@ -106,7 +106,7 @@ fn parts(i: usize, to: usize, m: usize) -> Vec<(usize, f64)> {
     (start / to..end.div_ceil(to)).map(|x| (x, part(x))).collect()
 }
 
-/// What a scene holds one of per element, on another grid.
+/// The arrays per element of a scene, on another grid.
 pub struct Regridded {
     grid: Grid,
     undeformed_distance: Vec<f64>,

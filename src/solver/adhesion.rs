@@ -1,6 +1,7 @@
 //! Scenes with adhesion: they are solved on their own grids, by [`adhesion`](crate::adhesion); contact problems whose attraction stands still by the
 //! methods of every other scene.
 
+use super::adhesive_friction::check_alike;
 use super::methods::{self, Methods};
 use super::take_over::{is_without_contact, take_distance};
 use super::{check, Criterion, Guess, InitialGuess, Method, Options, ProgressCallback, Report, Solver};
@@ -13,7 +14,7 @@ use crate::methods::{Start, Task};
 use crate::progress::{Goal, Monitor, Outcome, Progress};
 use crate::scene::{Load, Scene};
 
-/// What solves contact problems whose attraction stands still: the methods of AUTO.
+/// The solver of contact problems whose attraction stands still: the methods of AUTO.
 struct Plain(Methods);
 
 impl Frozen for Plain {
@@ -66,9 +67,13 @@ impl Solver {
         options: &Options,
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
-        let lowest = scene.check_distance_and_load(&self.problem.threads)?;
+        scene.check_distance_and_load(&self.problem.threads)?;
         self.set_up.check(scene, options, &self.problem)?;
         check::guess(scene, options, None)?;
+        let changed = effects::surface(scene)?;
+        let h = changed.as_deref().unwrap_or(scene.undeformed_distance);
+        let scene = &Scene { undeformed_distance: h, ..scene.clone() };
+        let lowest = scene.check_distance_and_load(&self.problem.threads)?;
         let Some(adhesion) = scene.attraction() else {
             return invalid("adhesion is not given, or its work is 0: nothing holds the bodies together".into());
         };
@@ -85,13 +90,15 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
         check_options(options)?;
-        // What the mean pressure compresses is a part of the approach here, whatever the load.
+        // The compression by the mean pressure is a part of the approach here, whatever the load.
         self.suit(Load::Approach(0.0))?;
         check::range((scene, lowest), &self.problem, self.set_up.largest_influence, None)?;
         if !self.problem.symmetric {
             let message = "adhesion is given, and the influence coefficients are not symmetric; this version does not solve them together";
             return Err(Error::Unsupported(message.into()));
         }
+        check_alike(scene)?;
+        self.check_continues(scene)?;
         let goes_on = options.initial_guess == InitialGuess::Previous && self.has_result;
         self.methods.projected_cg.forget_windows();
         self.methods.projected_cg.forget_solutions();
@@ -101,10 +108,9 @@ impl Solver {
         let outcome = self.run_adhesive((scene, lowest), (adhesion, pull_off), (options, guess, goes_on), &mut monitor);
         self.ledger = std::mem::take(&mut monitor.ledger.rows);
         let (stop, found) = outcome?;
-        // There is no step before any more.
-        self.friction.iter_mut().for_each(|before| before.forget());
+        let (stop, friction) = self.rub(scene, adhesion, options, stop, &mut monitor)?;
         effects::keep(scene, &mut self.beside.histories);
-        let mut report = Report { adhesion: Some(found), ..Report::of(&monitor, options.tolerance) };
+        let mut report = Report { adhesion: Some(found), friction, ..Report::of(&monitor, options.tolerance) };
         report.measures = self.ledger.last().map(|row| row.measures).unwrap_or_default();
         report.error.untrusted = found.untrusted();
         report.solve_seconds = monitor.seconds();
@@ -150,6 +156,7 @@ impl Solver {
             start: adhesion.start,
             state: from.filter(|from| lowest.is_finite() && from.approach.is_finite()),
             stiffness: adhesion.stiffness,
+            stability: adhesion.stability,
             tolerance: options.tolerance,
             max_cycles: options.max_cycles as u64,
         };

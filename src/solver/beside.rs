@@ -1,15 +1,15 @@
-//! What a solver keeps of what is solved beside the normal problem, but for friction.
+//! The state of the problems beside the normal one, but for friction.
 
 use crate::effects::{History, COUNT};
 use crate::error::Result;
 use crate::memory::zeros;
 
-/// What a solver keeps of what is solved beside the normal problem.
+/// The state of the problems beside the normal one.
 #[derive(Default)]
 pub struct Beside {
-    /// What each effect keeps from step to step.
+    /// The histories of the effects.
     pub histories: [History; COUNT],
-    /// What coupled problems displace.
+    /// The displacements by coupled problems.
     pub distances: Distances,
 }
 

@@ -37,7 +37,7 @@ impl Best {
     /// The state becomes the best iterate, with admissible pressures, the prescribed force and a fresh u = A p. With a prescribed
     /// approach p = 0 is an iterate, too, and none worse than that is returned.
     pub fn restore<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<()> {
-        // What was known of the state is no longer true of it.
+        // The measures of the state are no longer true.
         task.monitor.survey = None;
         let (state, set) = (&mut *task.state, task.set);
         for (i, p) in state.p.iter_mut().enumerate() {

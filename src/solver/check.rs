@@ -1,4 +1,4 @@
-//! What a solver refuses before it begins: what is not as at the set-up, a guess that is none, units out of range.
+//! Refusals before a solve begins: scenes that differ from the set-up, guesses that are none, units out of range.
 
 use super::{Guess, InitialGuess, Method, Options, SetUp};
 use crate::contact::Problem;

@@ -1,4 +1,4 @@
-//! What the mean pressure compresses: coefficients with a [constant](crate::influence::Kernel::constant), as those of coatings with two periods.
+//! Compression by the mean pressure: coefficients with a [constant](crate::influence::Kernel::constant), as those of coatings with two periods.
 //!
 //! A constant changes no pressure of a given force, but it hides what they are off: residuals are relative to the approach. So a given force
 //! is solved without it, and the result gets it at the end. A given approach is solved with it.
@@ -25,6 +25,7 @@ impl Solver {
         self.methods.forget_operator();
         self.adhesion = None;
         self.state.u_is = Freshness::Stale;
+        self.set_up.largest_influence = coefficients.largest(&self.problem.grid);
         self.problem.renew(coefficients)?;
         self.methods.renew(&self.problem)?;
         if let Some(compressible) = &mut self.set_up.compressible {

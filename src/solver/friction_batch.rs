@@ -1,5 +1,6 @@
 //! Many tangential problems of one scene: its pressures once, then a [table](super::friction_table) of motions or forces.
 
+use super::adhesive_friction::bounded;
 use super::friction_table::Table;
 pub use super::friction_table::{Ended, Entry, RUN};
 use super::tangential_calls::{measures, positive};
@@ -8,6 +9,7 @@ use crate::effects::Previous;
 use crate::error::{invalid, Result};
 use crate::friction::Solution;
 use crate::grid::Grid;
+use crate::memory::collected;
 use crate::scene::{Friction, Scene};
 use crate::threads::Threads;
 
@@ -26,7 +28,7 @@ pub fn solve_friction_batch(
     mut progress: Option<ProgressCallback<'_>>,
     found: impl Fn(usize, Ended, Option<&Solution>) + Sync + Send,
 ) -> Result<(Outcome, Report)> {
-    let (solver, given);
+    let (given, contact);
     let (stop, mut report, pressure) = match pressure {
         Some(pressure) => {
             scene.check_tangential()?;
@@ -43,13 +45,19 @@ pub fn solve_friction_batch(
             let (mut new, lowest) = Solver::for_scene(&normal, options)?;
             let watch = progress.as_mut().map(|progress| &mut **progress as ProgressCallback<'_>);
             let (stop, report) = new.solve_checked((&normal, lowest), options, None, watch)?;
-            solver = new;
-            (stop, report, &solver.state().p[..])
+            let elements = 0..scene.grid.len();
+            contact = match new.adhesion() {
+                Some(split) => collected(elements.map(|i| split(i).0), "the contact pressures of a table")?,
+                None => collected(elements.map(|i| new.state().p[i]), "the pressures of a table")?,
+            };
+            (stop, report, &contact[..])
         }
     };
-    let table = Table::new(scene, friction_of_table(scene)?, pressure, entries, options);
     let threads = Threads::new(options.threads)?;
-    let (stop, seconds) = table.solve(stop, (&mut Vec::new(), &threads), progress, &found)?;
+    let (stop, seconds) = bounded(scene, friction_of_table(scene)?, pressure, |friction, pressing| {
+        let table = Table::new(scene, friction, pressing, entries, options);
+        table.solve(stop, (&mut Vec::new(), &threads), progress, &found)
+    })?;
     report.solve_seconds += seconds;
     Ok((stop, report))
 }
@@ -70,9 +78,11 @@ impl Solver {
         let scene = &*self.with_own_tables(scene, own.as_deref())?;
         self.check_tangential(scene, options)?;
         let (friction, pressure) = (friction_of_table(scene)?, &*positive(&scene.grid, pressure)?);
-        let table = Table::new(scene, friction, pressure, entries, options);
         let threads = self.problem.threads.clone();
-        let (stop, solve_seconds) = table.solve(Outcome::Converged, (&mut self.crew, &threads), progress, &found)?;
+        let (stop, solve_seconds) = bounded(scene, friction, pressure, |friction, pressing| {
+            let table = Table::new(scene, friction, pressing, entries, options);
+            table.solve(Outcome::Converged, (&mut self.crew, &threads), progress, &found)
+        })?;
         Ok((stop, Report { solve_seconds, ..of_pressures(&scene.grid, pressure, options) }))
     }
 }
@@ -88,7 +98,7 @@ fn friction_of_table<'s>(scene: &'s Scene<'_>) -> Result<&'s Friction<'s>> {
     }
 }
 
-/// What is to be said of pressures that are given.
+/// The measures of pressures that are given.
 fn of_pressures(grid: &Grid, pressure: &[f64], options: &Options) -> Report {
     Report { measures: measures(grid, pressure), tolerance: options.tolerance, ..Report::default() }
 }

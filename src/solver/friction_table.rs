@@ -28,7 +28,7 @@ const NEAR_FORCE: f64 = 0.05;
 /// steps of .01 take 10 products in the mean, of .1 they take 14, of .4 they take 18, and from nothing 16.
 const NEAR: f64 = 0.1;
 
-/// What one entry of a table prescribes.
+/// The motion or force of one entry of a table.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Entry {
     /// In x and in y: the force where the scene's friction prescribes forces, else the creepage.
@@ -38,7 +38,7 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// What a scene's friction prescribes.
+    /// The motion or force that a scene's friction prescribes.
     pub fn of(friction: &Friction<'_>) -> Entry {
         let amount = friction.prescribed.map(|prescribed| match prescribed {
             Prescribed::Creepage(amount) | Prescribed::Force(amount) => amount,
@@ -62,7 +62,7 @@ impl Entry {
 /// How the entry of a table ended, and what was found; `Outcome::Cancelled`: it was not solved.
 pub type Ended = Result<(Outcome, friction::Report)>;
 
-/// What all workers read, and where they say what is done.
+/// The inputs of all workers, and their common progress.
 pub(super) struct Table<'a> {
     scene: &'a Scene<'a>,
     friction: &'a Friction<'a>,
@@ -76,7 +76,7 @@ pub(super) struct Table<'a> {
     done: Done,
 }
 
-/// What is done so far.
+/// The progress so far.
 #[derive(Default)]
 struct Done {
     /// The next run that nobody has taken.

@@ -1,4 +1,4 @@
-//! What a handle can be asked, and how its own coefficients are exchanged.
+//! Questions to a handle, and the exchange of its own coefficients.
 
 use std::sync::Arc;
 
@@ -31,7 +31,7 @@ impl Solver {
         self.has_result
     }
 
-    /// What the last solve knew when: one row per grid, coarsest first.
+    /// The course of the last solve: one row per grid, coarsest first.
     pub fn ledger(&self) -> &[LedgerRow] {
         &self.ledger
     }
@@ -50,7 +50,7 @@ impl Solver {
         Effect::check(&table, &self.problem.grid)?;
         let coefficients = self.problem.coefficients.clone().with_kernel(Arc::new(table.clone()));
         self.set_up.largest_influence = coefficients.largest(&self.problem.grid);
-        // What was made of the table before is dropped first: then the operator is this solver's alone.
+        // Everything made of the table before is dropped first: then the operator is this solver's alone.
         self.set_up.lacks_table = true;
         self.methods.forget_operator();
         self.adhesion = None;

@@ -1,4 +1,4 @@
-//! What the operator of a solver gives beside solutions: products with pressures of the caller's, and the stiffness of a result.
+//! Products with pressures of the caller's, and the stiffness of a result.
 
 use super::tangential_calls::finite;
 use super::{ActiveSet, Guess, InitialGuess, Method, Options, Outcome, Solver};

@@ -48,7 +48,7 @@ pub enum Stage {
     Norm,
 }
 
-/// What is done with what a solve starts from.
+/// How a solve goes on from its start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Beginning {
     /// It satisfies the goal.
@@ -119,7 +119,7 @@ impl Methods {
         Ok(stop)
     }
 
-    /// What is done with what the solve starts from.
+    /// How the solve goes on from its start.
     fn take_over<S: AdmissibleSet>(
         &mut self,
         stage: Stage,

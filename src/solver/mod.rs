@@ -4,6 +4,7 @@
 //! undeformed distances and loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call.
 
 mod adhesion;
+mod adhesive_friction;
 mod batch;
 mod beside;
 mod best;
@@ -100,7 +101,7 @@ pub struct Solver {
     /// One limit per element of the scene being solved; empty if there is none.
     limits: Vec<f64>,
     ledger: Vec<LedgerRow>,
-    /// What else is solved beside the normal problem, and kept from step to step.
+    /// The problems beside the normal one, kept from step to step.
     beside: Beside,
     /// Of scenes with friction.
     friction: Option<Box<Tangent>>,
@@ -117,10 +118,10 @@ pub struct Solver {
     setup_seconds: f64,
 }
 
-/// What a solver was set up with.
+/// The set-up of a solver.
 #[derive(Clone)]
 struct SetUp {
-    /// What later scenes may not change.
+    /// The values that later scenes may not change.
     named: Named,
     /// The effect with coefficients of the caller's own, and their layout.
     own_coefficients: Option<(&'static str, Layout)>,

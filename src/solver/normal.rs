@@ -87,7 +87,7 @@ impl Solver {
         let Solver { problem, state, methods, set_up, has_result, .. } = self;
         let multigrid = set_up.without_multigrid.is_none();
         let stages = methods::stages::<S>(options.method, problem.symmetric, multigrid);
-        // What was solved before is gone from here on, unless this solve comes to an end.
+        // The last result is gone from here on, unless this solve comes to an end.
         let solved = std::mem::replace(has_result, false);
         if options.initial_guess != InitialGuess::Previous || !solved {
             methods.projected_cg.forget_windows();
@@ -105,9 +105,23 @@ impl Solver {
         } else {
             methods.solve(&mut task, (from, survey), stages, options.error_ratio)?
         };
+        let stop = match stop {
+            Outcome::Stagnated | Outcome::IterationLimit => look_at_full_limits(&mut task)?.unwrap_or(stop),
+            stop => stop,
+        };
         let stop = if task.monitor.is_cancelled() { Outcome::Cancelled } else { stop };
         *has_result = true;
         task.monitor.close_grid(task.state);
         Ok((stop, task.goal.tolerance))
     }
+}
+
+/// Where no iteration converges, the answer may be p at its limit everywhere.
+fn look_at_full_limits<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<Option<Outcome>> {
+    let found = take_over::full_at_limits(task.problem, task.state, task.set, &task.goal)?;
+    task.count_products();
+    Ok(found.map(|survey| {
+        task.monitor.survey = Some(survey);
+        Outcome::Converged
+    }))
 }

@@ -39,7 +39,7 @@ pub enum InitialGuess {
     None,
     /// The given pressures and contact area.
     Given,
-    /// What this solver found last.
+    /// The last result of this solver.
     Previous,
 }
 
@@ -56,7 +56,7 @@ pub struct Options {
     pub initial_guess: InitialGuess,
     /// See [`Criterion`]; between 0 and 1.
     pub tolerance: f64,
-    /// What has to become small.
+    /// Which number has to become small.
     pub criterion: Criterion,
     /// If positive: may stop once the residual is below this part of the estimated discretisation error (relative, of the force or
     /// approach, whichever is not prescribed), as the start from nothing suggests it by full multigrid or projected conjugate gradients.
@@ -148,7 +148,7 @@ impl Options {
         self.active_set == ActiveSet::Fixed
     }
 
-    /// What a solve has to reach.
+    /// The goal of a solve.
     pub fn goal(&self) -> Goal {
         Goal { criterion: self.criterion, tolerance: self.tolerance, max_cycles: self.max_cycles as u64 }
     }

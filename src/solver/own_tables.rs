@@ -28,7 +28,7 @@ impl Solver {
             (Some(given), Some(own)) if !own.is(given) => {
                 refused(&format!("holds other coefficients than this solver has; {SET_THEM}"))
             }
-            // What is no table is said first.
+            // Tables that are none are refused first.
             (Some(_), None) => Effect::check(friction, &self.problem.grid)
                 .and_then(|()| refused("is given, but this solver was set up without: set up another one with it")),
             _ if bodies != scene.bodies => Ok(Cow::Owned(Scene { bodies, ..scene.clone() })),
@@ -73,7 +73,7 @@ impl Solver {
         Ok(())
     }
 
-    /// What solves friction with the tables that it names.
+    /// A solver of friction with the tables that the scene names.
     fn tangent_of(&self, friction: &Friction<'_>) -> Result<Tangent> {
         let (bodies, load) = (Bodies::same(1.0, 0.0), Load::Approach(0.0));
         let scene = Scene { friction: Some(*friction), ..Scene::new(self.problem.grid, &[], bodies, load) };

@@ -28,7 +28,7 @@ use solved::Solved;
 /// Writes the undeformed distance of a grid over the rectangle of the scene; says whether to cancel.
 pub type SurfaceCallback<'a> = &'a mut dyn FnMut(&Grid, &mut [f64]) -> bool;
 
-/// What asking for an accuracy led to.
+/// The end of a search for an accuracy.
 pub struct Refinement {
     /// Converged: the target is met. IterationLimit: a limit is in the way of the next grid. Cancelled: by the surface or the
     /// progress callback. Stagnated: the target is below round-off, or no estimate is to be had.
@@ -183,7 +183,7 @@ fn on_grid(
     let mut written = None;
     if let Some(surface) = surface {
         let mut h = zeros(grid.len(), "undeformed distances")?;
-        // What the callback leaves out is refused.
+        // Elements that the callback leaves out are refused.
         h.fill(f64::NAN);
         if surface(&grid, &mut h) {
             return Ok(Err((Outcome::Cancelled, on("the surface callback cancelled"), None)));

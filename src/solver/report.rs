@@ -1,4 +1,4 @@
-//! What a solve found, what it cost, and what it knew when.
+//! The report of a solve: its results, its cost, and its course.
 
 use super::Method;
 use crate::adhesion;
@@ -6,7 +6,7 @@ use crate::friction;
 use crate::grid::Grid;
 use crate::progress::{Counters, DiscretisationError, Measures, Monitor, Outcome};
 
-/// What limits the accuracy of a solution.
+/// The limit of the accuracy of a solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Limit {
     /// Not known.
@@ -18,7 +18,7 @@ pub enum Limit {
     Tolerance,
 }
 
-/// What elements of half the size would cost and bring.
+/// Cost and error with elements of half the size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Halving {
     /// Seconds of a solve, at the growth of the time with the number of elements that was measured: n^1.13 (docs/performance.md).
@@ -33,10 +33,10 @@ impl Default for Halving {
     }
 }
 
-/// What a solve found and what it cost; grid by grid: [`Solver::ledger`](super::Solver::ledger).
+/// Results and cost of a solve; grid by grid: [`Solver::ledger`](super::Solver::ledger).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
-    /// What was counted, on the finest grid.
+    /// The counters of the finest grid.
     pub count: Counters,
     /// The result.
     pub measures: Measures,
@@ -44,9 +44,9 @@ pub struct Report {
     pub error: DiscretisationError,
     /// The tolerance that was aimed at: that of the options, or what `error_ratio` made of it.
     pub tolerance: f64,
-    /// What limits the accuracy.
+    /// The limit of the accuracy.
     pub limit: Limit,
-    /// What the next finer grid would bring; negative: not known.
+    /// Cost and error of the next finer grid; negative: not known.
     pub halving: Halving,
     /// Seconds of set-up: 0 when the solver was set up before.
     pub setup_seconds: f64,
@@ -61,7 +61,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// What a solve counted and found, its last ledger row being the finest grid's; errors are not estimated yet.
+    /// From the counters of a solve and its last ledger row, the finest grid's; errors are not estimated yet.
     pub(super) fn of(monitor: &Monitor<'_>, tolerance: f64) -> Report {
         let last = monitor.ledger.rows.last();
         let measures = last.map(|row| row.measures).unwrap_or_default();
@@ -86,7 +86,7 @@ impl Report {
         }
     }
 
-    /// What limits the answer, and what a finer grid would bring; none when it is not known.
+    /// A sentence on the limit of the answer and on a finer grid; none when they are not known.
     pub fn advice(&self) -> Option<String> {
         let what = match self.limit {
             Limit::Unknown => return None,

@@ -1,4 +1,4 @@
-//! What is solved beside the normal problem: friction, and the problems of effects that are coupled with it.
+//! The problems beside the normal one: friction, and those of effects that are coupled with it.
 
 use super::beside::Beside;
 use super::tangential::{Tangent, Turn};
@@ -26,7 +26,7 @@ impl Solver {
         Ok(())
     }
 
-    /// What a scene has beside the normal problem, which ended with `stop`. Returns a report of friction, too.
+    /// Solves the problems of a scene beside the normal one, which ended with `stop`. Returns a report of friction, too.
     pub(super) fn solve_beside(
         &mut self,
         scene: &Scene<'_>,

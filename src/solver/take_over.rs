@@ -7,7 +7,7 @@ use crate::blocks;
 use crate::contact::{AdmissibleSet, Freshness, Problem, State, Survey};
 use crate::error::Result;
 use crate::methods::Start;
-use crate::progress::Monitor;
+use crate::progress::{Goal, Monitor};
 use crate::scene::{Load, Scene};
 use crate::threads::Threads;
 
@@ -45,7 +45,7 @@ pub fn take_over<S: AdmissibleSet>(
     }
     if from == Start::Nothing {
         state.forget();
-        // What the solve before found is nothing to start from.
+        // The result of the solve before is nothing to start from.
         if let Load::Force(_) = scene.load {
             state.approach = 0.0;
         }
@@ -84,7 +84,7 @@ pub fn take_over<S: AdmissibleSet>(
 /// The pressures and the contact area to start from.
 fn take_pressures(state: &mut State, options: &Options, guess: Option<Guess<'_>>, solved: bool) -> Start {
     let fixed = options.is_fixed();
-    // What was at its limit was in contact.
+    // Elements at their limit were in contact.
     for (inside, at_limit) in state.contact.iter_mut().zip(&mut state.at_limit) {
         *inside |= std::mem::take(at_limit);
     }
@@ -177,6 +177,37 @@ pub fn fills_limits<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, 
     if !(force >= greatest * (1.0 - FULL)) {
         return Ok(false);
     }
+    put_at_limits(problem, state, set)?;
+    Ok(true)
+}
+
+/// By approach, with two periods: the survey of p at its limit everywhere, if that solves the problem; then the state has it. Such a p displaces nothing where
+/// the limit is the same, and no direction leads there: the energy is a straight line along it.
+pub fn full_at_limits<S: AdmissibleSet>(
+    problem: &mut Problem,
+    state: &mut State,
+    set: S,
+    goal: &Goal,
+) -> Result<Option<Survey>> {
+    let is_candidate = S::LIMITED
+        && matches!(state.load, Load::Approach(_))
+        && problem.coefficients.is_mean_free()
+        && (0..state.p.len()).all(|i| set.limit(i) < f64::INFINITY || state.h[i].is_infinite());
+    if !is_candidate {
+        return Ok(None);
+    }
+    let before = state.copy(&problem.threads)?;
+    put_at_limits(problem, state, set)?;
+    let survey = Survey::by(state, &problem.threads);
+    if goal.holds(&survey, 0.0, set) {
+        return Ok(Some(survey));
+    }
+    *state = before;
+    Ok(None)
+}
+
+/// All elements with a surface at their limit.
+fn put_at_limits<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -> Result<()> {
     for i in 0..state.p.len() {
         let at_limit = state.h[i].is_finite();
         (state.p[i], state.contact[i], state.at_limit[i]) =
@@ -186,7 +217,7 @@ pub fn fills_limits<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, 
     problem.displace(&state.p, &mut state.u)?;
     state.u_is = Freshness::Exact;
     state.fit_approach(&problem.threads);
-    Ok(true)
+    Ok(())
 }
 
 /// Whether nothing touches: no force, or no element penetrated by the approach, not even one of the `lowest` distance. Then p = 0 solves the problem.

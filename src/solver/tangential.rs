@@ -10,14 +10,14 @@ use crate::progress::Monitor;
 use crate::scene::{Friction, Prescribed, Scene};
 use crate::threads::Threads;
 
-/// What a solver keeps for scenes with friction.
+/// The state of a solver for scenes with friction.
 pub struct Tangent {
     solver: Solver,
     /// Of unlike bodies.
     unlike: Option<UnlikeBodies>,
 }
 
-/// What stands still while normal and tangential problem are solved in turns.
+/// The inputs that stand still while normal and tangential problem are solved in turns.
 pub struct Turn<'a> {
     /// The scene, with its own undeformed distance.
     pub scene: &'a Scene<'a>,
@@ -36,6 +36,19 @@ impl<'a> Turn<'a> {
     }
 }
 
+/// The coupling of the tractions of a scene with its pressures; none where its bodies are alike.
+fn coupling(scene: &Scene<'_>) -> Result<Option<Source>> {
+    Ok(match scene.friction.as_ref().and_then(|friction| friction.influence) {
+        Some(own) => CrossTables::new(&own)?.map(Source::Tables),
+        None => Some(Compliance::of(&scene.bodies).unlike).filter(|unlike| *unlike != 0.0).map(Source::HalfSpace),
+    })
+}
+
+/// Whether tractions change the pressures of a scene.
+pub fn is_of_unlike_bodies(scene: &Scene<'_>) -> Result<bool> {
+    Ok(coupling(scene)?.is_some())
+}
+
 impl Tangent {
     /// For a scene's grid and bodies.
     pub fn new(scene: &Scene<'_>, options: &Options, threads: &Threads) -> Result<Tangent> {
@@ -45,13 +58,8 @@ impl Tangent {
             Some(own) => Tangential::of_tables(dx, dy, own)?,
             None => Tangential::new(dx, dy, Compliance::of(&scene.bodies)),
         };
-        let compliance = tangential.compliance();
         let solver = Solver::new(scene.grid, tangential, options.precision != Precision::Double, threads);
-        let source = match &own {
-            Some(own) => CrossTables::new(own)?.map(Source::Tables),
-            None => Some(compliance.unlike).filter(|unlike| *unlike != 0.0).map(Source::HalfSpace),
-        };
-        let unlike = source.map(|source| UnlikeBodies::new(&scene.grid, source, threads));
+        let unlike = coupling(scene)?.map(|source| UnlikeBodies::new(&scene.grid, source, threads));
         Ok(Tangent { solver, unlike: unlike.transpose()? })
     }
 

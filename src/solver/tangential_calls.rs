@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use super::adhesive_friction::bounded;
 use super::tangential::{Tangent, Turn};
 use super::{InitialGuess, Measures, Options, Outcome, ProgressCallback, Report, Solver};
 use crate::error::{invalid, Error, Result};
@@ -14,7 +15,7 @@ use crate::sums::in_blocks;
 use crate::threads::Threads;
 
 impl Solver {
-    /// What solves friction, to be put back; made where there is none.
+    /// The solver of friction, to be put back; made where there is none.
     pub(super) fn take_tangent(&mut self, scene: &Scene<'_>, options: &Options) -> Result<Box<Tangent>> {
         match self.friction.take() {
             Some(tangent) => Ok(tangent),
@@ -61,7 +62,7 @@ impl Solver {
 
 /// Solves the tangential problem of a scene alone, with pressures that are given: `[my][mx]`; those that are not positive count as no
 /// contact. Its distance and its load are not looked at. Of unlike bodies the pressures displace the surfaces sideways, but the tractions do not
-/// change the pressures.
+/// change the pressures. With adhesion they are contact pressures q.
 pub fn solve_tangential(
     scene: &Scene<'_>,
     pressure: &[f64],
@@ -90,7 +91,9 @@ fn alone(
         InitialGuess::Previous if tangent.solution().is_some() => Start::Last,
         _ => turn.start(),
     };
-    let (stop, found) = tangent.solve_from(start, turn, pressure, &mut monitor)?;
+    let (stop, found) = bounded(turn.scene, turn.friction, pressure, |friction, pressing| {
+        tangent.solve_from(start, &Turn { friction, ..*turn }, pressing, &mut monitor)
+    })?;
     tangent.keep_pressures(pressure);
     let measures = measures(&turn.scene.grid, pressure);
     let (friction, tolerance, solve_seconds) = (Some(found), turn.options.tolerance, monitor.seconds());
@@ -119,7 +122,7 @@ pub(super) fn finite(grid: &Grid, pressure: &[f64]) -> Result<()> {
     Err(Error::NotFinite(format!("pressure of {element} is {p}; it must be finite")))
 }
 
-/// What is to be said of pressures that are given.
+/// The measures of pressures that are given.
 pub(super) fn measures(grid: &Grid, pressure: &[f64]) -> Measures {
     let pressing = || pressure.iter().filter(|p| **p > 0.0);
     Measures {

@@ -8,9 +8,9 @@ use crate::error::Result;
 use crate::friction::{Report, Start};
 use crate::progress::Monitor;
 
-/// What solves it, and what was found so far.
+/// Its solver, and the results so far.
 pub struct TangentialTurn<'a> {
-    /// What solves it.
+    /// Its solver.
     pub tangent: &'a mut Tangent,
     /// The step.
     pub turn: Turn<'a>,

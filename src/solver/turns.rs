@@ -14,13 +14,13 @@ use crate::scene::Scene;
 /// Turns at most: for unlike bodies each brings both problems together by 4 to 30 times.
 const MOST_TURNS: u32 = 50;
 
-/// What is coupled with a normal problem.
+/// The problems that are coupled with a normal one.
 pub struct Turns<'a> {
     /// The tangential problem.
     pub friction: Option<TangentialTurn<'a>>,
     /// Those of other effects.
     pub others: Vec<Box<dyn Coupled + 'a>>,
-    /// What they displace.
+    /// Their displacements.
     pub distances: &'a mut Distances,
 }
 
@@ -102,7 +102,7 @@ impl Solver {
         for solved in 0..=MOST_TURNS {
             let so_far = turns.solve(true, stop, &self.state, monitor)?;
             let (distance, change) = turns.distance(&self.state);
-            // What displaces nothing leaves the normal problem as it was found.
+            // Without a displacement the normal problem stays solved.
             let Some(change) = change else { return Ok(so_far) };
             if self.holds_with((distance, change), (scene, options), monitor) || so_far != Outcome::Converged {
                 return Ok(so_far);
@@ -155,7 +155,7 @@ impl Solver {
     }
 }
 
-/// What is to be said of two solves.
+/// The worse outcome of two solves.
 fn worse(one: Outcome, other: Outcome) -> Outcome {
     if one == Outcome::Converged {
         other

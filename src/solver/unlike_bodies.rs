@@ -1,4 +1,4 @@
-//! What couples the normal and the tangential problem of unlike bodies, on one grid: see [`Coupling`].
+//! The coupling of the normal and the tangential problem of unlike bodies, on one grid: see [`Coupling`].
 
 use crate::effects::{Friction, Motion, Previous};
 use crate::error::Result;
@@ -7,7 +7,7 @@ use crate::grid::Grid;
 use crate::memory::zeros;
 use crate::threads::Threads;
 
-/// What memory is for.
+/// Names its memory in messages.
 const FIELDS: &str = "the coupling of unlike bodies";
 
 /// Both products, and what they displace.
@@ -68,7 +68,7 @@ impl UnlikeBodies {
         self.source.bytes() + self.here.bytes() + there + self.along_normal.len() * fields
     }
 
-    /// What the last pressures displace sideways.
+    /// The sideways displacements by the last pressures.
     pub fn sideways(&self) -> &[Vector] {
         &self.sideways
     }

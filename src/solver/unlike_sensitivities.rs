@@ -31,7 +31,7 @@ const TOLERANCE: f64 = 1e-6;
 const NORMAL: f64 = 1e-7;
 /// Turns at most.
 const MOST_TURNS: usize = 30;
-/// What memory is for.
+/// Names its memory in messages.
 const FIELDS: &str = "the sensitivities of unlike bodies";
 
 /// Both problems, linear about the last result.

@@ -1,4 +1,4 @@
-//! What is computed at one depth.
+//! The results at one depth.
 
 use super::product::{Product, Workspace};
 use super::tensor::{principal, von_mises, Tensor};
@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::zeros;
 
-/// What is asked for, at each depth.
+/// The results wanted at each depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
     /// Components xx, yy, zz, xy, xz, yz.

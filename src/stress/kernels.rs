@@ -37,7 +37,7 @@ pub fn is_odd(load: usize, component: usize) -> (bool, bool) {
     (x != (load == 1), y != (load == 2))
 }
 
-/// What of the kernels is asked for.
+/// The kernels that are wanted.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked {
     /// The loads.

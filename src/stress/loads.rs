@@ -1,4 +1,4 @@
-//! What acts on the surface of a body.
+//! The loads on the surface of a body.
 
 use super::body::Loaded;
 use crate::effects::Effect;

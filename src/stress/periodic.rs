@@ -119,7 +119,7 @@ impl Waves {
         self.aliased.left
     }
 
-    /// What is real of a spectrum, `[bin in x][bin in y]`: that of the bins that are left.
+    /// The real parts of a spectrum, `[bin in x][bin in y]`, of the bins that are left.
     pub fn spectrum(&self, load: usize, component: usize) -> Option<&[f64]> {
         let n = self.bins.0 * self.bins.1;
         let k = self.asked.place(load, component)?;

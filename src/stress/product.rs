@@ -16,7 +16,7 @@ use crate::error::Result;
 use crate::memory::zeros;
 use crate::scene::Patches;
 
-/// What memory is for.
+/// Names its memory in messages.
 const STRESS: &str = "the stresses of a depth";
 
 /// The transform of each load, `[bin in x][bin in y]`, over its number of values; none: no such load.
@@ -26,10 +26,10 @@ type Spectra = [Option<Vec<Complex<f64>>>; 3];
 pub struct Product<'a> {
     pub body: Body,
     transforms: ParityProduct,
-    /// What stresses each part.
+    /// The loads of each part.
     parts: Vec<(Part, Spectra)>,
     patches: Option<Patches<'a>>,
-    /// What the loads were divided by.
+    /// The divisor of the loads.
     scale: f64,
     /// With a period: whether some depth is near the surface.
     near: bool,

@@ -2,11 +2,12 @@
 
 use contact_normal::adhesion::Law;
 use contact_normal::error::Error;
+use contact_normal::grid::Grid;
 use contact_normal::scene::{Coating, Friction, Layer, Load, Patches, PressureLimit, Scene};
-use contact_normal::solver::{self, Criterion, Method, Options, Outcome};
+use contact_normal::solver::{self, Criterion, Method, Options, Outcome, Solver};
 
 use super::certificate::{displacements, traction, worst};
-use super::support::{Sphere, MODULUS};
+use super::support::{adhesion, bodies, Sphere, MODULUS};
 
 fn refusal(scene: &Scene<'_>, options: &Options) -> String {
     match solver::solve(scene, options) {
@@ -20,11 +21,10 @@ fn effects_that_are_not_solved_with_it_are_refused_by_name() {
     let sphere = Sphere::by_tabor(1.0, 16, 3.0);
     let plain = sphere.scene(Load::Approach(0.5));
     let friction = Friction::new(0.3);
-    let patch = vec![0; 256];
     let refused = [
         ("pressure_limit", Scene { pressure_limit: Some(PressureLimit::Uniform(1.0)), ..plain.clone() }),
+        // One of the bodies is rigid: tractions change the pressures.
         ("friction", Scene { friction: Some(friction), ..plain.clone() }),
-        ("patches", Scene { patches: Some(Patches { count: 1, patch: &patch, factors: &[1.0] }), ..plain.clone() }),
     ];
     for (name, scene) in refused {
         let message = refusal(&scene, &Options::default());
@@ -79,4 +79,57 @@ fn a_coating_of_nearly_the_same_material_changes_little() {
     assert_eq!(outcome, Outcome::Converged);
     let change = with.measures.force - without.measures.force;
     assert!(change.abs() < 2e-3 && change != 0.0, "{change}");
+}
+
+// Two spheres side by side, one patch each, whose interaction is scaled; one element between them is in no patch.
+#[test]
+fn patches_scale_the_displacements_by_each_other() {
+    let n = 32;
+    let grid = Grid::new(2 * n, n, 0.15, 0.15).expect("a grid");
+    let centre = |i: usize| {
+        let (x, y) = (i % grid.mx, i / grid.mx);
+        ((x % n) as f64 - 15.5, y as f64 - 15.5)
+    };
+    let h: Vec<f64> =
+        (0..grid.len()).map(|i| 0.5 * 0.15f64.powi(2) * (centre(i).0.powi(2) + centre(i).1.powi(2))).collect();
+    let patch: Vec<i32> = (0..grid.len()).map(|i| if i == n { -1 } else { i32::from(i % grid.mx >= n) }).collect();
+    let patches = Patches { count: 2, patch: &patch, factors: &[1.0, 0.4, 0.4, 1.0] };
+    for load in [Load::Approach(0.3), Load::Force(-1.5)] {
+        let own = adhesion(Law::Exponential, sphere_work(), 0.6);
+        let scene =
+            Scene { adhesion: Some(own), patches: Some(patches), ..Scene::new(grid, &h, bodies(MODULUS), load) };
+        let (solver, outcome, _) = solver::solve(&scene, &Options::default()).expect("a solve");
+        assert_eq!(outcome, Outcome::Converged, "{load:?}");
+        let state = solver.state();
+        let of = |k: i32| -> Vec<f64> {
+            let part: Vec<f64> = (0..grid.len()).map(|i| if patch[i].max(0) == k { state.p[i] } else { 0.0 }).collect();
+            displacements(&grid, MODULUS, &part)
+        };
+        let parts = [of(0), of(1)];
+        let u: Vec<f64> = (0..grid.len())
+            .map(|i| {
+                let own = patch[i].max(0) as usize;
+                parts[own][i] + 0.4 * parts[1 - own][i]
+            })
+            .collect();
+        assert!(state.p[n] == 0.0);
+        let worst =
+            worst(
+                state,
+                &u,
+                |_, e| if e.is_finite() { traction(Law::Exponential, sphere_work(), 0.6, e) } else { 0.0 },
+            );
+        assert!(worst < 2e-6, "{load:?}: {worst:e}");
+        // Each sphere feels less of the other one than on one body.
+        let whole = Scene { patches: None, ..scene.clone() };
+        let (_, _, whole) = solver::solve(&whole, &Options::default()).expect("a solve");
+        assert!(
+            (whole.measures.approach - state.approach).abs() + (whole.measures.force - solver_force(&solver)).abs()
+                > 1e-3
+        );
+    }
+}
+
+fn solver_force(solver: &Solver) -> f64 {
+    solver.state().p.iter().sum::<f64>() * solver.grid().element_area()
 }

@@ -1,10 +1,12 @@
 //! Forces that pull: the stable one of two equilibria, and none below the pull-off.
 
+use contact_normal::adhesion::Law;
 use contact_normal::error::Error;
+use contact_normal::grid::Grid;
 use contact_normal::scene::{Adhesion, Load, Scene};
 use contact_normal::solver::{self, InitialGuess, Options, Outcome, Solver};
 
-use super::support::Sphere;
+use super::support::{adhesion, bodies, range_of, Sphere, MODULUS};
 
 // The prototype's path of steps has its least force of -1.6641 at about -.45; the unstable state of -1.4 is at -.9006.
 #[test]
@@ -87,5 +89,68 @@ fn a_handle_follows_a_pull_from_step_to_step() {
         println!("{force}: {} {} products", report.measures.approach, report.count.matrix_products);
         assert!(report.measures.approach < last && report.measures.approach > -0.55);
         last = report.measures.approach;
+    }
+}
+
+/// Balls side by side on a grid: radius, and how far the lowest point lies.
+fn balls(n: usize, half_width: f64, balls: [(f64, f64); 2]) -> (Grid, Vec<f64>) {
+    let d = 2.0 * half_width / n as f64;
+    let grid = Grid::new(2 * n, n, d, d).expect("a grid");
+    let at = |k: usize| (k as f64 + 0.5) * d - half_width;
+    let h = |i: usize| {
+        let ((radius, below), x, y) = (balls[(i % grid.mx) / n], at(i % grid.mx % n), at(i / grid.mx));
+        below + (x * x + y * y) / (2.0 * radius)
+    };
+    (grid, (0..grid.len()).map(h).collect())
+}
+
+// A small ball parts first, and the force rises; the large one then holds more than both did.
+#[test]
+fn the_least_force_lies_behind_a_minimum_of_less_depth() {
+    let (range, options) = (range_of(2.0), Options::default());
+    let pull_off = |below: [(f64, f64); 2]| {
+        let (grid, h) = balls(80, 2.4, below);
+        let own = adhesion(Law::Exponential, 1.0 / std::f64::consts::PI, range);
+        let scene = Scene { adhesion: Some(own), ..Scene::new(grid, &h, bodies(MODULUS), Load::Approach(2.0)) };
+        let mut solver = Solver::new(&scene, &options).expect("a solver");
+        let (outcome, report) = solver.pull_off(&scene, &options, None).expect("a pull-off");
+        assert_eq!(outcome, Outcome::Converged);
+        println!("{} at {}, {:.0} work", report.measures.force, report.measures.approach, report.count.work_units);
+        report.measures.force
+    };
+    let alone = pull_off([(1.0, 0.0), (1.0, 50.0)]);
+    let both = pull_off([(1.0, 0.0), (0.2, 1.2)]);
+    // The small ball attracts as exp(-6) of what it does in contact.
+    assert!((both - alone).abs() < 5e-3, "{both} {alone}");
+}
+
+// Seeds 6, 15, 27, 82, 192 and 291 of `campaign --adhesion`, in small: laws that end, surfaces with one high point. A force of 0 leaves such bodies
+// apart, and nothing is there to go down from.
+#[test]
+fn pulls_on_what_parts_without_a_load_are_held_or_refused() {
+    let grid = Grid::new(16, 13, 1.0, 1.0).expect("a grid");
+    let h: Vec<f64> =
+        (0..grid.len()).map(|i| if i == 90 { 0.0 } else { 3.0 + (i * 7919 % 13) as f64 / 13.0 }).collect();
+    for law in [Law::Cubic, Law::Dugdale(0.4), Law::VanDerWaals, Law::Exponential] {
+        let own = adhesion(law, 1e-2, 0.2);
+        let scene = |load| Scene { adhesion: Some(own), ..Scene::new(grid, &h, bodies(1.0), load) };
+        let options = Options::default();
+        let mut solver = Solver::new(&scene(Load::Force(0.0)), &options).expect("a solver");
+        let (outcome, report) = solver.pull_off(&scene(Load::Approach(0.1)), &options, None).expect("a pull-off");
+        assert_eq!(outcome, Outcome::Converged);
+        let least = report.measures.force;
+        assert!(least < 0.0);
+        for part in [0.1, 0.9] {
+            let (_, outcome, report) = solver::solve(&scene(Load::Force(part * least)), &options).expect("a solve");
+            assert_eq!(outcome, Outcome::Converged, "{law:?} {part}");
+            assert!(report.measures.contact_count > 0);
+        }
+        for factor in [1.1, 10.0, 1e6] {
+            let refused = solver::solve(&scene(Load::Force(factor * least)), &options);
+            assert!(matches!(refused, Err(Error::Infeasible(_))), "{law:?} {factor}");
+        }
+        let (_, outcome, report) = solver::solve(&scene(Load::Force(0.0)), &options).expect("a solve");
+        assert_eq!(outcome, Outcome::Converged);
+        assert!(report.measures.contact_count > 0, "{law:?}: they hold each other");
     }
 }

@@ -20,7 +20,8 @@ pub fn bodies(modulus: f64) -> Bodies {
 
 /// Adhesion of one work.
 pub fn adhesion(law: Law, work: f64, range: f64) -> Adhesion<'static> {
-    Adhesion { law, work: Work::Uniform(work), range, start: Start::Auto, stiffness: false }
+    let (work, start) = (Work::Uniform(work), Start::Auto);
+    Adhesion { law, work, range, start, stiffness: false, stability: false, shear_strength: 0.0 }
 }
 
 /// A sphere on a square grid.

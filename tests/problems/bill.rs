@@ -225,6 +225,8 @@ fn adhesion_is_needed_where_it_is_strong() {
             range,
             start: Start::Auto,
             stiffness: false,
+            stability: false,
+            shear_strength: 0.0,
         }),
         ..plain(&h)
     };

@@ -232,6 +232,25 @@ fn flat_on_flat_with_two_periods_ends() {
     }
 }
 
+/// A uniform p displaces nothing, so that the energy is a straight line along it, and its limit is the answer.
+#[test]
+fn flat_on_flat_within_limits_fills_them() {
+    for (mx, my) in [(1, 1), (2, 4), (3, 11), (10, 23), (64, 64)] {
+        for (height, depth, limit) in [(0.0, 1e-6, 1e-4), (-0.3, 0.01, 0.4), (0.7, 0.8, 1e-3)] {
+            let (grid, h) = (Grid::new(mx, my, 0.7, 0.7).unwrap(), vec![height; mx * my]);
+            let limits: Vec<f64> = (0..mx * my).map(|i| limit * (1.0 + 1e-9 * (i % 2) as f64)).collect();
+            for limit in [PressureLimit::Uniform(limit), PressureLimit::PerElement(&limits)] {
+                let load = Load::Approach(height + depth);
+                let scene =
+                    Scene { period: Some(BOTH), pressure_limit: Some(limit), ..Scene::new(grid, &h, bodies(), load) };
+                let (solver, report) = auto(&scene, &format!("{mx} x {my}, {depth}, {limit:?}"));
+                assert!((0..mx * my).all(|i| solver.state().p[i] == limit.at(i)));
+                assert!(report.measures.certificate.residual == 0.0);
+            }
+        }
+    }
+}
+
 /// Sums of many equal pressures: a plain one of 160000 is off by 1e-12, which is more than a force may be.
 #[test]
 fn forces_that_nearly_all_elements_carry_at_their_limit() {

@@ -1,4 +1,4 @@
-//! What a program over large arrays needs of the machine: threads, memory, and sums.
+//! Threads, memory and sums for programs over large arrays.
 //!
 //! ```
 //! use par::sums::Sums;

@@ -13,7 +13,7 @@ const WIDE: usize = 8;
 /// Terms of a block.
 const BLOCK: usize = 512;
 
-/// What is added in double precision.
+/// Terms that are added in double precision.
 pub trait Value: Copy {
     /// This value in double precision.
     fn to_double(self) -> f64;
@@ -76,7 +76,7 @@ impl<const K: usize> Sums<K> {
         self.0 = sums;
     }
 
-    /// What they are.
+    /// Their values.
     pub fn values(&self) -> [f64; K] {
         self.0.map(|lanes| lanes.iter().sum())
     }

@@ -1,4 +1,4 @@
-//! What a matrix is made of: the coefficients of its offsets.
+//! A matrix by the coefficients of its offsets.
 
 /// Coefficients `c(k)` and `c(-k)` that differ by no more than this, relative to the largest, count as equal: tables are often written in
 /// single precision.
@@ -22,11 +22,11 @@ pub struct Even<F, G> {
     pub given: (usize, usize),
     /// `fill(ky, row)` gives the coefficients at offsets `(0.., ky)`.
     pub fill: F,
-    /// What is kept of each value of the symbol, but for the normalisation.
+    /// The part of each value of the symbol that is kept, before normalisation.
     pub finish: G,
 }
 
-/// What coefficients do where an offset changes its sign, in either direction.
+/// Symmetry: whether coefficients are even or odd in the offsets of x and of y.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parity {
     /// `c(kx, ky) = c(-kx, ky) = c(kx, -ky)`.
@@ -44,6 +44,6 @@ pub struct EvenMatrix<F, G> {
     pub is_coupled: bool,
     /// `fill(component, ky, row)` gives xx (component 0), yy (1) or xy (2) at offsets `(0.., ky)`.
     pub fill: F,
-    /// What is kept of xx, yy and xy of each value of the symbol, but for the normalisation.
+    /// The parts of xx, yy and xy of each value of the symbol that are kept, before normalisation.
     pub finish: G,
 }

@@ -16,7 +16,7 @@ use par::Result;
 /// Columns that are transformed at a time: as many values side by side as two cache lines hold.
 const BLOCK: usize = 8;
 
-/// What memory is for.
+/// Names its memory in messages.
 const KERNELS: &str = "the transforms of kernels";
 
 /// Products of one period.
@@ -86,7 +86,7 @@ impl ParityProduct {
             row.iter_mut().zip(other).for_each(|(value, load)| value.im = load / scale * factor);
             self.rows.forward(&mut row, &mut scratch);
             for bin in 0..nb {
-                // What is even of its real part and odd of its imaginary one is the first row's.
+                // The first row has the even part of the real values and the odd part of the imaginary ones.
                 let (value, mirrored) = (row[bin], row[(px - bin) % px].conj());
                 let (sum, difference) = (0.5 * (value + mirrored), 0.5 * (value - mirrored));
                 spectrum[bin * py + 2 * two] = sum;
@@ -280,7 +280,7 @@ fn put_turned(
     }
 }
 
-/// What is left of a period where the first values and their mirror images stand.
+/// The rest of a period beside the first values and their mirror images.
 fn gap(values: usize, period: usize) -> std::ops::Range<usize> {
     values..values.max(period + 1 - values)
 }

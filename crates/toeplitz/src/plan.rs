@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex};
 
 use par::{threads, Result};
 
-/// What memory is for.
+/// Names its memory in messages.
 pub(crate) const PLAN: &str = "the plans of transforms";
 
 /// Bytes of plans that are kept at most, unless the caller says how many: those of periods up to 4096 x 4096 take less than 2 MiB.
@@ -17,7 +17,7 @@ const MOST_KEPT: usize = 16 << 20;
 /// As many as the caller allows.
 static ALLOWED: AtomicUsize = AtomicUsize::new(MOST_KEPT);
 
-/// What is computed once for a length.
+/// Tables of a length, computed once.
 pub(crate) trait Plan: Any + Send + Sync {
     /// Bytes held.
     fn bytes(&self) -> usize;

@@ -22,7 +22,7 @@ pub struct Product<T: Real> {
     columns: Columns<T>,
 }
 
-/// What is done in y.
+/// The transform in y.
 enum Columns<T: Real> {
     Toeplitz(Convolution<T>),
     PerRow(RowMatrices<T>),
@@ -93,7 +93,7 @@ impl<T: Real> Product<T> {
         }
     }
 
-    /// What its products need, whatever the coefficients are.
+    /// The sizes that its products need; they do not depend on the coefficients.
     pub fn room(&self) -> Room {
         match &self.columns {
             Columns::Toeplitz(columns) => {

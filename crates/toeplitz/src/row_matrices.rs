@@ -20,7 +20,7 @@ use par::memory::{blank, computed, keep, zeros};
 use par::threads::Threads;
 use par::{OutOfMemory, Result};
 
-/// What memory is for.
+/// Names its memory in messages.
 const MATRICES: &str = "the row tables' transforms";
 
 /// Coefficients of the elements of a loaded row jy on those of a row iy.
@@ -30,7 +30,7 @@ pub struct OfRows<F> {
     /// `fill(jy, iy, values)` gives, of even ones, those at offsets `(0..)`; of others those of a period: at offsets >= 0, 0 where there are none, and
     /// negative ones at its end.
     pub fill: F,
-    /// What they are multiplied by.
+    /// The vectors that they multiply.
     pub factor: f64,
 }
 
@@ -148,7 +148,7 @@ impl<T: Real> RowMatrices<T> {
         size_of_val(&self.values[..])
     }
 
-    /// What products need.
+    /// The sizes that products need.
     pub fn room(&self, rows: &Rows<T>) -> Room {
         let room = rows.room(self.my, 0);
         Room { row: room.row.max(2 * self.my), ..room }

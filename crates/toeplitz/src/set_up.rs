@@ -12,7 +12,7 @@ use par::memory::{keep, unwritten};
 use par::threads::Threads;
 use par::Result;
 
-/// What memory is for.
+/// Names its memory in messages.
 pub(crate) const COEFFICIENTS: &str = "the influence coefficients";
 
 /// Memory that a symbol is computed in. An operator whose coefficients change often keeps it.

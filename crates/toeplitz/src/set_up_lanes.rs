@@ -157,7 +157,7 @@ struct SymbolOfBlock<'a, T, G> {
     in_x: (&'a [f64], usize),
     /// Columns that mean something.
     columns: usize,
-    /// What is kept of each value of these.
+    /// The part of each value that is kept.
     value: G,
     /// `[kept row][column]`; zero in columns that mean nothing.
     out: &'a mut [T],

@@ -21,7 +21,7 @@ use par::memory::{keep, unwritten};
 use par::threads::Threads;
 use par::Result;
 
-/// What memory is for.
+/// Names its memory in messages.
 pub(crate) const SYMBOL: &str = "the operator's spectrum";
 
 /// Values that are converted at a time.

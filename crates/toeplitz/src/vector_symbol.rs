@@ -38,7 +38,7 @@ impl<T: Real> Drop for VectorSymbol<T> {
     }
 }
 
-/// What is taken of displacements.
+/// The part of the displacements that a product returns.
 #[derive(Clone, Copy)]
 pub(crate) enum Place {
     /// Those so many elements further on in x: `exp(2 pi i n kx/px)`.
@@ -47,7 +47,7 @@ pub(crate) enum Place {
     LessFurtherOn(i64),
 }
 
-/// What the symbol is multiplied by, of the bins of each block.
+/// The factors of the symbol in the bins of each block.
 pub(crate) fn factors<T: Real>(place: Place, px: usize, blocks: usize, threads: &Threads) -> Result<Vec<T>> {
     let mut factors = Vec::new();
     unwritten(&mut factors, 2 * BLOCK * blocks, T::nan(), SYMBOL, threads)?;

@@ -6,7 +6,7 @@ use par::Result;
 
 use crate::real::{Complex, Real};
 
-/// What memory is for.
+/// Names its memory in messages.
 const WORKSPACE: &str = "the product's workspace";
 
 /// Numbers of values that a product needs. Memory for one product serves all that need no more.
@@ -48,7 +48,7 @@ pub struct Memory<T: Real> {
     most: usize,
 }
 
-/// What one thread works with.
+/// The buffers of one thread.
 pub struct Piece<T: Real> {
     /// The block of columns that was worked on last.
     pub(crate) block: usize,

@@ -13,7 +13,7 @@ use crate::memory::unwritten;
 use crate::methods::fields::over;
 use crate::operator::fft::Real;
 
-/// What memory is for.
+/// Names its memory in messages.
 const MEMORY: &str = "the iteration on discs";
 
 impl<T: Real> Discs<T> {

@@ -2,7 +2,7 @@
 
 use crate::grid::Grid;
 
-/// What memory is for.
+/// Names its memory in messages.
 pub(super) const COATED: &str = "the coefficients of a coating";
 
 /// The first offset in a row that is computed: of square elements the others are those of `(ky, kx)`.

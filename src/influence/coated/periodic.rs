@@ -34,7 +34,7 @@ pub struct CoatedPeriodic {
     table: Arc<Vec<f64>>,
     mx: usize,
     my: usize,
-    /// What a uniform pressure of 1 displaces.
+    /// The displacement by a uniform pressure of 1.
     mean: f64,
     has_mean: bool,
     /// About what the longest wave displaces.

@@ -1,4 +1,4 @@
-//! What a layer adds to the half-space, by the distance: the radial functions of one pair of materials.
+//! The radial functions of one pair of materials: the difference of a layer to the half-space, by the distance.
 //!
 //! ```text
 //! F_b(rho) = integral from 0 to infinity of (B(s) - b) J0(s rho) ds,    M_b(rho) = integral from 0 to rho of F_b rho' drho'
@@ -27,7 +27,7 @@ use super::transfer::{Transfer, TERMS};
 /// Coefficients of a polynomial in w at most, of degree 13, and of its integral.
 const P: usize = 14;
 const OF_INTEGRAL: usize = P + 1;
-/// What the terms of a polynomial that are left out may add up to, in the half-space's `b/rho` there.
+/// Bound on the omitted terms of a polynomial, in the half-space's `b/rho` there.
 const LEFT_OUT: f64 = 1e-15;
 /// w at rho = 2.
 const SMOOTH: f64 = 8.0;

@@ -1,4 +1,4 @@
-//! What a coating adds to the waves of a period.
+//! The response of a coating to the waves of a period.
 //!
 //! Per wave k of the grid and its aliases `k + 2 pi (a/dx, b/dy)` that is `2 pi c (B(k t) - 1)/k sinc(kx dx/2) sinc(ky dy/2)`, which fades as
 //! `exp(-2 k t)`. Thin coatings have many aliases. The first of them, and of slender elements those along the longer side, are computed for
@@ -20,7 +20,7 @@ const FADED: f64 = 20.0;
 const NODES: usize = 24;
 /// Columns that are transformed at a time.
 const BLOCK: usize = 8;
-/// What memory is for.
+/// Names its memory in messages.
 const WAVES: &str = "the waves of a coating";
 
 /// Bins of a period that are not negative.
@@ -195,7 +195,7 @@ pub fn coefficients(waves: &[f64], grid: &Grid) -> Result<Vec<f64>> {
     let mut scratch = x.scratch()?;
     y.fit(&mut scratch)?;
     let mut in_x: Vec<f64> = zeros(row * rows, WAVES)?;
-    // What is even has a real transform: two rows, or columns, are one complex one.
+    // Even data have a real transform: two rows, or columns, are one complex one.
     let mut line: Vec<Complex<f64>> = zeros(mx, WAVES)?;
     for (waves, in_x) in waves.chunks(2 * row).zip(in_x.chunks_mut(2 * row)) {
         if waves.iter().all(|wave| *wave == 0.0) {

@@ -94,7 +94,7 @@ impl<T: Real> pulp::NullaryFnOnce for Extend<'_, T> {
     }
 }
 
-/// What the elements outside C in a row pass on to each of C that is near them.
+/// The shares that elements outside C in a row pass on to near elements of C.
 pub(super) struct Share<'a, T> {
     /// Of this row.
     pub(super) values: &'a [T],
@@ -123,7 +123,7 @@ impl<T: Real> pulp::NullaryFnOnce for Share<'_, T> {
     }
 }
 
-/// What elements of C get, from row y on.
+/// The sums for elements of C, from row y on.
 pub(super) struct Collect<'a, T> {
     pub(super) shares: &'a [T],
     pub(super) mx: usize,

@@ -1,4 +1,4 @@
-//! What boxes sum: counts, and values.
+//! The terms of box sums: counts and values.
 
 use crate::operator::fft::Real;
 

@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::methods::Task;
 use crate::scene::Load;
 
-/// What is left of a residual, relative to the terms it is a difference of, once the solution is exact: a product by FFT is
+/// The residual of the exact solution, relative to the terms of the difference that it is: a product by FFT is
 /// good to some units of round-off.
 const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 

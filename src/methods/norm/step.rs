@@ -27,14 +27,14 @@ pub struct Norm {
     aim: f64,
     /// rms over C of the last change of p.
     update: f64,
-    /// What to do with the result of the last inner solve.
+    /// How the step goes on after the last inner solve.
     next: Next,
     /// The state before a trial.
     before: Snapshot,
     u_before: Vec<f64>,
 }
 
-/// What the next step begins with.
+/// The beginning of the next step.
 #[derive(Clone, Copy, Default, PartialEq)]
 enum Next {
     /// An inner solve from the pressures there are.

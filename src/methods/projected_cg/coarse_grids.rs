@@ -56,7 +56,7 @@ pub struct CoarseGrids {
     threads: Threads,
     /// Whether the coefficients are those of the finest grid now.
     are_current: bool,
-    /// What the last start found on the finest of them.
+    /// The result of the last start on the finest of them.
     found: Survey,
 }
 

@@ -1,4 +1,4 @@
-//! What the passes over the contact area compute, element by element.
+//! The formulas of the passes over the contact area, element by element.
 
 use pulp::Simd;
 

@@ -62,7 +62,7 @@ const ROUNDINGS: f64 = 800.0;
 /// Iterations without a new least residual after which the contact area may be cycling: another method takes over. Measured: on 162
 /// scenes (ellipse, rough surface, wheel and rail, white noise) 20 and 40 are the same.
 const PATIENCE: u32 = 20;
-/// What one iteration did.
+/// The measures of one iteration.
 #[derive(Clone, Copy, Debug)]
 pub struct Cycle {
     /// Elements that left or entered C.

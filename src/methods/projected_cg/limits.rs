@@ -1,4 +1,4 @@
-//! What only a scene with limits of the pressures needs, `0 <= p <= p_max`.
+//! Limits of the pressures, `0 <= p <= p_max`.
 //!
 //! The limit is a second bound: elements are held back and truncated at both, and what was truncated at its limit enters C again where
 //! e > 0. With a prescribed force pressures at their limit cannot be scaled up. What is missing of the force,

@@ -113,7 +113,7 @@ fn towards_one(value: f64) -> f64 {
     }
 }
 
-/// What brings a value to [1, 2); 1 for one that nothing does.
+/// The power of two that brings a value to [1, 2); 1 where there is none.
 fn to_one(value: f64) -> f64 {
     // 2^1022 and beyond have an inverse that is not normal.
     if value.is_normal() && value > 0.0 && exponent(value) < 1022 {

@@ -7,7 +7,7 @@ const FORECASTS: (f64, f64) = (0.3, 1.0);
 /// A forecast that alpha is further away from than by this factor was worth nothing.
 const FAR_OFF: f64 = 3.0;
 
-/// What an iteration leaves to the next.
+/// The step lengths and slopes that an iteration leaves to the next.
 pub(super) struct Search {
     /// alpha', if there is one.
     pub(super) forecast: Option<f64>,

@@ -1,4 +1,4 @@
-//! What the iteration on one grid holds.
+//! The fields and the state of the iteration on one grid.
 
 use std::iter::once;
 use std::mem::replace;
@@ -18,10 +18,10 @@ use crate::operator::{Needs, Operator, SetUp, Workspace};
 use crate::progress::Goal;
 use crate::threads::Threads;
 
-/// What goes beyond the plain iteration.
+/// Parts beyond the plain iteration.
 #[derive(Default)]
 pub(super) struct Beyond {
-    /// What is missing of a prescribed force, as a sum of pressures.
+    /// The part of a prescribed force that is missing, as a sum of pressures.
     pub(super) missing: f64,
     /// How far the approach moves on for that.
     pub(super) shift: f64,
@@ -65,7 +65,7 @@ impl<T: Real> Operators<T> {
     }
 }
 
-/// What memory is for.
+/// Names its memory in messages.
 const DIRECTIONS: &str = "search directions";
 
 /// Operator, preconditioner and directions of one grid.
@@ -154,7 +154,7 @@ impl<T: Real> Iteration<T> {
             Some(whole) => self.operator = whole.in_precision(factor)?,
             None => self.operator.renew(influence, factor, grid, &mut SetUp::default())?,
         }
-        // What the one before held serves the next.
+        // The next iteration takes over its memory.
         self.preconditioner = None;
         self.preconditioner = preconditioner(influence, factor, grid, self.operator.threads())?;
         if self.needs() != before {

@@ -1,6 +1,6 @@
-//! What a bill is asked for.
+//! The options of a bill.
 
-/// What the bill is for.
+/// The options of a bill.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BillOptions {
     /// The accuracy asked for: changes that are smaller, relative to the quantity, are negligible.

@@ -9,7 +9,7 @@ use crate::scene::Scene;
 use crate::solver::quantities::Quantity;
 use crate::solver::{InitialGuess, Options};
 
-/// What was left out of a scene.
+/// An omission that a solve has made.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Neglected {
     /// Each of them.
@@ -22,7 +22,7 @@ pub struct Neglected {
 const KEPT: [Quantity; 3] = [Quantity::Force, Quantity::MaxPressure, Quantity::ContactArea];
 
 impl Neglected {
-    /// What may be left out of `scene` at a target, all together: each of it is negligible, and what is left of the scene is solved once
+    /// The omissions from `scene` that a target allows all together: each is negligible, and the rest of the scene is solved once
     /// more on small grids. Where that changes too much, the one with the largest change comes back. What makes the result of another kind is
     /// never left out: friction, adhesion, and a layer in the place of a coating.
     pub fn of(scene: &Scene<'_>, options: &Options, target: f64) -> Result<Neglected> {

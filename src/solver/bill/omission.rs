@@ -1,4 +1,4 @@
-//! What can be left out of a scene: the effects that it names, and the refinements that it has without naming them.
+//! Omissions: the effects that a scene names, and the refinements that it has without naming them.
 
 use crate::effects::replace_bodies;
 use crate::scene::{Bodies, Coefficient, Friction, Layer, Scene};
@@ -69,7 +69,7 @@ impl Omission {
         NAMES[self as usize]
     }
 
-    /// What a bill leaves out of a scene: each of them, then the pairs.
+    /// The omissions of a bill: each alone, then the pairs.
     pub fn left_out_of(scene: &Scene<'_>, pairs: bool) -> Vec<Vec<Omission>> {
         let all = Omission::of(scene);
         let mut left_out: Vec<Vec<Omission>> = all.iter().map(|one| vec![*one]).collect();
@@ -124,7 +124,7 @@ impl Omission {
                 left.coating = None;
             }
             Omission::Period => left.period = None,
-            // What is in no patch has no surface all the same.
+            // Elements in no patch have no surface all the same.
             Omission::Patches => left.patches = None,
             Omission::Layer => left.layer = None,
             Omission::Adhesion => left.adhesion = None,
@@ -146,7 +146,7 @@ fn has_coating(scene: &Scene<'_>) -> bool {
     scene.coating.is_some_and(|coating| (0..2).any(|body| coating.in_effect(body, &plain).is_some()))
 }
 
-/// What couples normal and tangential problem: `(1 - 2 nu1)/G1 - (1 - 2 nu2)/G2`.
+/// The coupling of normal and tangential problem: `(1 - 2 nu1)/G1 - (1 - 2 nu2)/G2`.
 fn unlike(bodies: &Bodies) -> f64 {
     let of = |b: usize| (1.0 - 2.0 * bodies.poisson_ratio[b]) / bodies.shear_modulus[b];
     of(0) - of(1)

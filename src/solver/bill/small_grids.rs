@@ -118,7 +118,7 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
             let watch = progress.as_mut().map(|progress| &mut **progress as ProgressCallback<'_>);
             let found = match OnGrid::solve(&left, &self.options, &self.wanted, watch) {
                 Ok(found) => found,
-                // What is left is no scene that can be solved: nothing is known of it.
+                // The rest is no scene that can be solved: nothing is known of it.
                 Err(Error::Infeasible(_) | Error::Unsupported(_)) if k > 0 => continue,
                 // A coarse grid alone may carry less.
                 Err(Error::Infeasible(_)) if doublings < 0 => return Ok(true),

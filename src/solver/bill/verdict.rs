@@ -3,7 +3,7 @@
 use super::omission::Omission;
 use crate::solver::quantities::{Lack, Quantity, Sequence};
 
-/// What a row says.
+/// The verdict of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// The quantity changes by less than the target, its error included.
@@ -14,18 +14,18 @@ pub enum Verdict {
     NotDecided,
 }
 
-/// What leaving out one thing, or two, does to a quantity, and what it saves.
+/// The change of a quantity by leaving out one thing, or two, and the savings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BillRow {
-    /// What is left out.
+    /// The omission.
     pub omission: Omission,
-    /// What is left out beside it.
+    /// A second omission beside it.
     pub other: Option<Omission>,
     /// Of which the change is.
     pub quantity: Quantity,
     /// The value of the scene as it is, on the last small grid; none: it has none.
     pub value: Option<f64>,
-    /// What is added to it by leaving out.
+    /// Its change by leaving out.
     pub change: Option<f64>,
     /// How far the change may be off; none: not known.
     pub error: Option<f64>,

@@ -59,7 +59,7 @@ impl Stress {
     }
 }
 
-/// What loads a surface: pressures, and tractions in x and in y, on body 1.
+/// The loads on a surface: pressures, and tractions in x and in y, on body 1.
 pub struct Surface<'a> {
     grid: Grid,
     periodic: bool,

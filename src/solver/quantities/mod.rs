@@ -1,4 +1,4 @@
-//! What can be asked of a result: the quantities, their values on one grid, and their errors from several.
+//! Quantities of a result: their values on one grid, and their errors from several.
 //!
 //! Forces, pressures and areas have estimates from one grid (module `estimates`). All other quantities are compared on grids of twice and
 //! four times the elements ([`Sequence`]).
@@ -12,7 +12,7 @@ pub use on_grids::{quantities, OnGrid, QuantityRow};
 pub use sequence::{Falling, Sequence};
 pub use values::{values, Lack};
 
-/// What an accuracy or a price is asked of.
+/// A quantity that has an accuracy and a price.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// The force, or the approach if the force is prescribed.

@@ -8,7 +8,7 @@ use crate::grid::Grid;
 use crate::scene::{scaled, Regridded, Scene};
 use crate::solver::{Options, Outcome, ProgressCallback, Report, Solver};
 
-/// What one grid gives of a quantity.
+/// One quantity on one grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuantityRow {
     /// Which.
@@ -41,7 +41,7 @@ pub struct OnGrid {
     pub lacks_estimates: bool,
     /// The relative residual.
     pub residual: f64,
-    /// What it cost.
+    /// Its cost.
     pub seconds: f64,
     /// Products, in work units.
     pub work_units: f64,

@@ -7,11 +7,11 @@
 /// An error: what falls by 4 with a doubling of the elements in both directions, what falls by 2, and what the residual hides.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Falling {
-    /// What falls by 4.
+    /// The part that falls by 4.
     pub by_four: f64,
-    /// What falls by 2.
+    /// The part that falls by 2.
     pub by_two: f64,
-    /// What stays.
+    /// The part that stays.
     pub hidden: f64,
 }
 
@@ -83,7 +83,7 @@ impl Sequence {
         if is_singular(&changes, hidden) {
             return None;
         }
-        // What the change before has promised of this grid.
+        // The change of this grid that the change before has promised.
         let promised = before.first_order() * 0.5_f64.powi(newest.doublings);
         let found = newest.first_order();
         if found <= 2.0 * SECOND_ORDER * promised {
@@ -110,7 +110,7 @@ struct Change {
 }
 
 impl Change {
-    /// What is left where errors are of first order.
+    /// The remaining error where errors are of first order.
     fn first_order(&self) -> f64 {
         self.by.abs() / (2f64.powi(self.doublings) - 1.0)
     }

@@ -37,7 +37,7 @@ impl Accuracy {
     }
 }
 
-/// What the last grid has shown.
+/// The results of the last grid.
 #[derive(Clone, Debug)]
 pub(super) struct Past {
     pub grid: Grid,
@@ -57,7 +57,7 @@ pub(super) struct Past {
     pub elapsed: f64,
 }
 
-/// What to do next.
+/// The next grid, or the end.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Next {
     /// Double the elements of both directions, so many times.
@@ -195,7 +195,7 @@ impl Accuracy {
         Ok(())
     }
 
-    /// What is asked for.
+    /// The targets.
     pub(super) fn wanted(&self) -> impl Iterator<Item = (Quantity, f64)> + '_ {
         Quantity::ALL.into_iter().zip(self.targets).filter(|(_, target)| *target > 0.0)
     }

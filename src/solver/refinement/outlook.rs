@@ -1,4 +1,4 @@
-//! What a solution says about finer grids.
+//! Forecasts for finer grids from a solution.
 
 use crate::contact::State;
 use crate::scene::Load;
@@ -76,7 +76,7 @@ impl History {
         for ((quantity, sequence), value) in self.sequences.iter_mut().zip(&values.of) {
             let Ok(value) = *value else { continue };
             sequence.add(doublings, value, values.residual * value.abs());
-            // What one grid has said stays.
+            // The values of one grid stay.
             if !quantity.has_estimate() || values.lack_estimates {
                 let falling = quantity.error_of(sequence, values.lack_estimates);
                 outlook.set(*quantity, falling.and_then(|falling| falling.over(value)));
@@ -85,7 +85,7 @@ impl History {
     }
 }
 
-/// What one grid gives, in the order of what is wanted.
+/// The values of one grid, in the order of the wanted quantities.
 pub struct Values {
     /// The values.
     pub of: Vec<Result<f64, Lack>>,

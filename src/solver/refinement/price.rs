@@ -14,7 +14,7 @@ const SETUP_GROWTH: f64 = 0.4;
 /// Elements across the contact on a sample that can be carried on.
 pub(super) const ACROSS: usize = 12;
 
-/// What keeps an accuracy from being had.
+/// The reason why an accuracy cannot be had.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Obstacle {
     /// The largest pressure is singular, or contact on single elements: no grid is known to do.
@@ -29,7 +29,7 @@ pub enum Obstacle {
     Time,
 }
 
-/// What one accuracy costs.
+/// The price of one accuracy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Price {
     /// The relative error that is wanted.
@@ -46,7 +46,7 @@ pub struct Price {
     pub seconds_one_thread: f64,
     /// Bytes held by the solver; 0: not known.
     pub bytes: u64,
-    /// What keeps it from being had.
+    /// Why it cannot be had; none where it can.
     pub obstacle: Option<Obstacle>,
 }
 

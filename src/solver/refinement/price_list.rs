@@ -1,4 +1,4 @@
-//! What accuracies cost, before they are paid for: the price list.
+//! The price list: costs of accuracies, before any is paid for.
 //!
 //! The scene is solved on small grids, the last of which takes a small part of what the dearest accuracy does. Its errors and seconds
 //! are carried on to finer grids: errors by their orders (module `estimates`), seconds by a power of the number of elements.
@@ -22,7 +22,7 @@ const PART: f64 = 0.014;
 const SECONDS: f64 = 0.035;
 /// The first sample has about so many elements in a direction.
 const FIRST: usize = 32;
-/// What a grid of four times as many elements takes at most, where samples have not shown it.
+/// Bound on the cost of a grid with four times as many elements, where samples have not shown it.
 const NEXT: f64 = 5.0;
 
 /// On more elements contact that is still on fewer across is left alone, whatever is known.

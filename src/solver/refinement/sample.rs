@@ -13,10 +13,10 @@ use crate::solver::{Options, Outcome, Progress, ProgressCallback};
 /// Samples are timed again, so often at most: the first solve of a size is slow, and machines are busy.
 const AGAIN: usize = 3;
 
-/// What a sample asks: the surface, and whether to go on.
+/// The callbacks of a sample: the surface, and whether to go on.
 pub(super) type Callbacks<'c, 's, 'p> = (&'c mut Option<SurfaceCallback<'s>>, &'c mut Option<ProgressCallback<'p>>);
 
-/// What became of a sample.
+/// The end of a sample.
 pub(super) enum Taken {
     Sample(Box<Sample>),
     /// By a callback.
@@ -24,7 +24,7 @@ pub(super) enum Taken {
     Unsolved,
 }
 
-/// What a small grid has shown.
+/// The results of a small grid.
 pub(super) struct Sample {
     pub(super) doublings: i32,
     pub(super) elements: f64,

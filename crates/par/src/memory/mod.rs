@@ -45,7 +45,7 @@ struct Kept {
     values: Box<dyn Any + Send>,
 }
 
-/// What is kept, the longest first, and its bytes.
+/// Kept memory, the longest first, and its bytes.
 struct Shelf {
     blocks: VecDeque<Kept>,
     bytes: usize,

@@ -23,7 +23,7 @@ pub(super) struct Crew {
     pub busy: Busy,
 }
 
-/// What workers share with callers.
+/// The state that workers share with callers.
 #[derive(Default)]
 struct Shared {
     regions: Mutex<Regions>,

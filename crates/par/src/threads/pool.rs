@@ -19,7 +19,7 @@ pub struct Pool {
     crew: Arc<Crew>,
 }
 
-/// What a process has: its crew, while it is kept.
+/// The crew of a process, while it is kept.
 struct Process {
     id: u32,
     crew: Mutex<Option<Arc<Crew>>>,

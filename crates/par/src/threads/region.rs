@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 /// A call of `work(seat)`.
 type Call = *const (dyn Fn(usize) + Sync);
 
-/// What workers are asked to help with.
+/// A piece of work with which workers may help.
 pub(super) struct Region {
     call: Call,
     seats: usize,
@@ -27,7 +27,7 @@ pub(super) struct Region {
 struct End {
     /// The caller sleeps until they are.
     is_awaited: bool,
-    /// What a worker panicked with.
+    /// The payload of a worker's panic.
     panic: Option<Box<dyn Any + Send>>,
 }
 
@@ -85,7 +85,7 @@ impl Region {
         }
     }
 
-    /// What a worker panicked with.
+    /// The payload of a worker's panic.
     pub fn panic(&self) -> Option<Box<dyn Any + Send>> {
         self.end.lock().unwrap_or_else(PoisonError::into_inner).panic.take()
     }

@@ -31,7 +31,7 @@ pub(crate) struct Kept {
 impl<T: Real> EvenPlan<T> {
     /// That of a length. None where it has no stages.
     pub fn shared(length: usize) -> Result<Option<Arc<EvenPlan<T>>>> {
-        // What is known is found without an allocation.
+        // A known plan is found without an allocation.
         match find(length) {
             None if !Stages::<T>::exist(length) => Ok(None),
             None => shared(length, || EvenPlan::new(length)).map(Some),

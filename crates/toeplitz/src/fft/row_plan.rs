@@ -28,7 +28,7 @@ impl<T: Real> Plan for RowPlan<T> {
 impl<T: Real> RowPlan<T> {
     /// That of a length. None where n is odd, or h has no stages.
     pub fn shared(n: usize) -> Result<Option<Arc<RowPlan<T>>>> {
-        // What is known is found without an allocation.
+        // A known plan is found without an allocation.
         match find(n) {
             None if n % 2 == 1 || !Stages::<T>::exist(n / 2) => Ok(None),
             None => shared(n, || RowPlan::new(n)).map(Some),

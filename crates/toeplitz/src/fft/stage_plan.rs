@@ -106,7 +106,7 @@ impl<T: Real> Stages<T> {
 }
 
 /// The stages in the middle that go over all rows, until what they leave are parts that the nearest cache holds, and the rows of these.
-/// What still fits by itself is one part.
+/// A length that fits by itself is one part.
 fn near_parts<T: Real>(middle: &[Stage<T>], length: usize, after_first: usize) -> (usize, usize) {
     if length * bytes_of_a_row::<T>() <= NEAREST_CACHE {
         return (0, length);

@@ -228,7 +228,7 @@ impl GaussSeidel {
     }
 }
 
-/// What one sweep works on.
+/// The fields of one sweep.
 struct Sweep<'a, S> {
     p: &'a mut [f64],
     residual: &'a mut [f64],

@@ -1,6 +1,6 @@
 //! The sequential part of Gauss-Seidel in rows of many elements.
 //!
-//! What an element does to later ones of its row is a triangular Toeplitz product, as it is between rows: within [`STRIP`] elements it is
+//! An element displaces later ones of its row by a triangular Toeplitz product, as it is between rows: within [`STRIP`] elements it is
 //! summed, and between halves of larger blocks it is a product by FFT. So a row of m elements takes O(m log^2 m) in place of m^2.
 
 use crate::error::Result;
@@ -100,7 +100,7 @@ impl LongRows {
     }
 }
 
-/// What one sweep works on.
+/// The fields of one sweep.
 struct Sweep<'a, S> {
     residual: &'a mut [f64],
     changes: &'a mut [f64],

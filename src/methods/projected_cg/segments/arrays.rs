@@ -18,7 +18,7 @@ pub(super) fn eights<A>(values: &[A]) -> &[Eight<A>] {
     pulp::as_arrays::<EIGHT, A>(values).0
 }
 
-/// What is behind them, padded to a segment.
+/// The elements behind them, padded to a segment.
 #[inline(always)]
 pub(super) fn rest<A: Copy + Default>(values: &[A]) -> Eight<A> {
     let (mut padded, rest) = ([A::default(); EIGHT], pulp::as_arrays::<EIGHT, A>(values).1);
@@ -48,7 +48,7 @@ impl<'a, T: Real, const A: usize, const B: usize> Arrays<'a, T, A, B> {
         Segment::new(a.map(|a| &eights(a)[k]), b.map(|b| &eights(b)[k]), &eights(contact)[k])
     }
 
-    /// What is behind the whole ones, of each.
+    /// The rest of each array behind the whole segments.
     #[inline(always)]
     pub(super) fn rest(&self) -> Rest<T, A, B> {
         Rest { a: self.a.map(rest), b: self.b.map(rest), contact: rest(self.contact) }

@@ -9,12 +9,12 @@ use super::vector::{Holds, Vector};
 /// Elements of a segment, one in each byte of a word.
 pub(super) const EIGHT: usize = 8;
 
-/// What a pass sums, in K sums, of A arrays in double precision and B of the iteration's.
+/// K sums of a pass over A arrays in double precision and B arrays of the iteration's precision.
 pub trait Terms<const A: usize, const B: usize, const K: usize> {
     fn of<S: Simd>(&self, a: [Vector<S>; A], b: [Vector<S>; B]) -> [Vector<S>; K];
 }
 
-/// What a value becomes, beside A arrays in double precision and B of the iteration's.
+/// A new value per element, from A arrays in double precision and B arrays of the iteration's precision.
 pub trait Becomes<const A: usize, const B: usize> {
     fn of<S: Simd>(&self, value: Vector<S>, a: [Vector<S>; A], b: [Vector<S>; B]) -> Vector<S>;
 }

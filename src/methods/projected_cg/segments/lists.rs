@@ -87,7 +87,7 @@ impl<T: Real, F: Becomes<A, B>, G: Wanted<A>, const A: usize, const B: usize> Wi
         if !behind.is_empty() {
             let mut last = rest(behind);
             everywhere(simd, (end_of_whole, &mut last), arrays.rest().segment(), (&change, &wanted), list);
-            // What pads it is no element.
+            // Padding is no element.
             let end = block.elements().end as u32;
             list.truncate(list.partition_point(|i| *i < end));
             behind.copy_from_slice(&last[..behind.len()]);

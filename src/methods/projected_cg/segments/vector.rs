@@ -11,7 +11,7 @@ pub struct Vector<S: Simd> {
     values: S::f64s,
 }
 
-/// What holds for some values side by side.
+/// A condition on values side by side.
 #[derive(Clone, Copy)]
 pub struct Holds<S: Simd> {
     simd: S,

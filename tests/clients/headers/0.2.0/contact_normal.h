@@ -1028,9 +1028,14 @@ typedef struct contact_normal_adhesion {
    */
   int32_t stiffness;
   /*
-   Must be 0.
+   1: how near the state is to a snap, in `report->adhesion.stability`, for 10 to 100 products; default 0.
    */
-  int32_t reserved;
+  int32_t stability;
+  /*
+   tau0, a traction >= 0, default 0: with friction the bound in contact is `mu q + tau0`, q being the contact pressure. Not read without
+   friction.
+   */
+  double shear_strength;
 } contact_normal_adhesion;
 
 /*
@@ -1686,6 +1691,11 @@ typedef struct contact_normal_report_adhesion {
    */
   double stiffness;
   /*
+   1 - lambda if `adhesion->stability` is 1, else 0; lambda is the largest eigenvalue of how a change of the attraction outside the
+   contact comes back to itself. Positive in a stable state (of a given approach), near 0 where a small step may snap.
+   */
+  double stability;
+  /*
    1: the bodies have snapped: the state before (initial_guess PREVIOUS or GIVEN) could not be followed, and the elements in contact
    are more, or fewer, by a quarter at least; else 0.
    */
@@ -1697,7 +1707,7 @@ typedef struct contact_normal_report_adhesion {
   /*
    Room for later versions: 0.
    */
-  double reserved[6];
+  double reserved[5];
 } contact_normal_report_adhesion;
 
 /*

@@ -1,0 +1,264 @@
+//! Adhesion: random scenes through the C ABI, each answer certified by the campaign's own product; a step of a handle; a pull that is refused
+//! must be more than the pull-off force that the library finds.
+
+use std::ptr::null_mut;
+
+use contact_normal::ffi::*;
+
+use crate::adhesion_case::{traction, Case};
+use crate::call::{bare_scene, last_error};
+use crate::effect_structs::effect_structs;
+use crate::effects::Values;
+use crate::grid::Load;
+use crate::half_space::compliance;
+use crate::init::initialised;
+use crate::operator::Operator;
+use crate::random::Random;
+use crate::verdict::Verdict;
+
+/// Of the library's tolerance of 1e-6: its measures are norms of the whole, this is the worst element's penetration among them.
+const TOLERANCE: f64 = 2e-6;
+
+/// What came of a case.
+pub struct Run {
+    pub case: Case,
+    pub statuses: Vec<i32>,
+    pub verdict: Verdict,
+    /// Of the first call, if it was OK, in products on the finest grid.
+    pub products: Option<f64>,
+}
+
+/// What a call wrote.
+#[derive(Clone)]
+struct Found {
+    status: i32,
+    message: String,
+    p: Vec<f64>,
+    q: Vec<f64>,
+    contact: Vec<i32>,
+    tractions: [Vec<f64>; 2],
+    report: contact_normal_report,
+}
+
+impl Found {
+    fn bits(&self) -> Vec<u64> {
+        let fields = self.p.iter().chain(&self.q).chain(&self.tractions[0]).map(|value| value.to_bits());
+        fields.chain([self.report.normal.approach.to_bits(), self.status as u64]).collect()
+    }
+}
+
+/// Who is asked.
+enum Asked {
+    Solve,
+    PullOff,
+    /// A handle, and whether it goes on from its last result.
+    Handle(*mut contact_normal_solver, bool),
+}
+
+/// A random case: alone and again, or twice with a handle.
+pub fn run(random: &mut Random) -> Run {
+    let case = Case::random(random);
+    let mut verdict = Verdict::default();
+    let found = ask(&case, case.load, &Asked::Solve);
+    verdict.add(judge(&case, case.load, &found));
+    let mut statuses = vec![found.status];
+    let products = (found.status == CONTACT_NORMAL_OK).then_some(found.report.statistics.work_units);
+    match case.step {
+        Some(step) => verdict.add(with_handle(&case, step, &mut statuses)),
+        None if case.grid.len() < 5000 => {
+            let same = ask(&case, case.load, &Asked::Solve).bits() == found.bits();
+            verdict.unless(same, "the same call twice has the same bits", || case.describe());
+        }
+        None => {}
+    }
+    if let (CONTACT_NORMAL_INFEASIBLE, Load::Force(force)) = (found.status, case.load) {
+        verdict.add(is_too_much(&case, force, &found.message, &mut statuses));
+    }
+    Run { case, statuses, verdict, products }
+}
+
+fn ask(case: &Case, load: Load, asked: &Asked) -> Found {
+    let n = case.grid.len();
+    let structs = effect_structs(&case.effects);
+    let mut scene = bare_scene(&case.grid, &case.h, (case.shear_modulus, case.poisson_ratio), load);
+    structs.point_from(&mut scene, &case.effects);
+    let mut adhesion = initialised(contact_normal_adhesion_init);
+    (adhesion.law, adhesion.start, adhesion.smear, adhesion.range) = (case.law, case.start, case.smear, case.range);
+    match &case.work {
+        Values::Uniform(work) => adhesion.work_of_adhesion = *work,
+        Values::PerElement(works) => adhesion.works_of_adhesion = works.as_ptr(),
+    }
+    let mut friction = initialised(contact_normal_friction_init);
+    if let Some((mu, strength, shift)) = case.friction {
+        adhesion.shear_strength = strength;
+        (friction.coefficient, friction.creepage[0]) = (mu, shift * case.range);
+        scene.friction = &friction;
+    }
+    scene.adhesion = &adhesion;
+    let mut options = initialised(contact_normal_options_init);
+    if let Asked::Handle(_, true) = asked {
+        options.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS;
+    }
+    let mut found = Found {
+        status: 0,
+        message: String::new(),
+        p: vec![0.0; n],
+        q: vec![0.0; n],
+        contact: vec![0; n],
+        tractions: [vec![0.0; n], vec![0.0; n]],
+        report: initialised(contact_normal_report_init),
+    };
+    let mut fields = initialised(contact_normal_fields_init);
+    (fields.pressure, fields.contact) = (found.p.as_mut_ptr(), found.contact.as_mut_ptr());
+    fields.contact_pressure = found.q.as_mut_ptr();
+    if case.friction.is_some() {
+        fields.traction = [found.tractions[0].as_mut_ptr(), found.tractions[1].as_mut_ptr()];
+    }
+    let report = &raw mut found.report;
+    // SAFETY: structs with the arrays that they declare, and a handle that no one else uses.
+    found.status = unsafe {
+        match *asked {
+            Asked::Solve => contact_normal_solve(&scene, &options, &mut fields, report),
+            Asked::PullOff => contact_normal_pull_off(&scene, &options, &mut fields, report),
+            Asked::Handle(handle, _) => contact_normal_solver_solve(handle, &scene, &options, &mut fields, report),
+        }
+    };
+    if found.status != CONTACT_NORMAL_OK {
+        found.message = last_error();
+    }
+    found
+}
+
+/// Two steps of a handle: the second is not far from the first.
+fn with_handle(case: &Case, step: f64, statuses: &mut Vec<i32>) -> Verdict {
+    let structs = effect_structs(&case.effects);
+    let mut scene = bare_scene(&case.grid, &case.h, (case.shear_modulus, case.poisson_ratio), case.load);
+    structs.point_from(&mut scene, &case.effects);
+    let mut adhesion = initialised(contact_normal_adhesion_init);
+    adhesion.work_of_adhesion = case.work.at(0);
+    scene.adhesion = &adhesion;
+    let mut handle = null_mut();
+    // SAFETY: a struct with the arrays that it declares.
+    let status = unsafe { contact_normal_solver_new(&scene, std::ptr::null(), &mut handle) };
+    if status == CONTACT_NORMAL_INFEASIBLE && case.effects.period == Some((true, true)) {
+        return Verdict::excused("two periods in full contact, by approach");
+    }
+    if status != CONTACT_NORMAL_OK {
+        return Verdict::failed("a handle for adhesion", format!("{}: {}", case.describe(), last_error()));
+    }
+    let first = ask(case, case.load, &Asked::Handle(handle, false));
+    let mut verdict = judge(case, case.load, &first).within("handle: ");
+    statuses.push(first.status);
+    if first.status == CONTACT_NORMAL_OK {
+        let load = Load::Approach(first.report.normal.approach + step);
+        let second = ask(case, load, &Asked::Handle(handle, true));
+        verdict.add(judge(case, load, &second).within("a step: "));
+        statuses.push(second.status);
+    }
+    // SAFETY: made above.
+    unsafe { contact_normal_solver_free(handle) };
+    verdict
+}
+
+/// A pull that is refused: the library's own pull-off force is smaller.
+fn is_too_much(case: &Case, force: f64, message: &str, statuses: &mut Vec<i32>) -> Verdict {
+    let found = ask(case, Load::Force(0.0), &Asked::PullOff);
+    statuses.push(found.status);
+    if found.status != CONTACT_NORMAL_OK {
+        return Verdict::excused("no pull-off force was found");
+    }
+    let mut verdict = judge(case, Load::Approach(found.report.normal.approach), &found).within("pull-off: ");
+    let least = found.report.normal.force;
+    verdict.unless(force < least * (1.0 - 1e-3), "a pull that is refused is more than the pull-off force", || {
+        format!("{}: {least:e}; {message}", case.describe())
+    });
+    verdict
+}
+
+/// Whether a call kept its promises.
+fn judge(case: &Case, load: Load, found: &Found) -> Verdict {
+    match found.status {
+        CONTACT_NORMAL_OK => certify(case, load, found),
+        CONTACT_NORMAL_INFEASIBLE if matches!(load, Load::Force(force) if force < 0.0) => Verdict::default(),
+        // All in contact: the mean of the distances stays where it is.
+        CONTACT_NORMAL_INFEASIBLE if case.effects.period == Some((true, true)) && matches!(load, Load::Approach(_)) => {
+            Verdict::excused("two periods in full contact, by approach")
+        }
+        CONTACT_NORMAL_ITERATION_LIMIT | CONTACT_NORMAL_STAGNATED if case.kappa > 0.5 => {
+            Verdict::excused("elements too coarse for the range: not solved")
+        }
+        status => Verdict::failed(
+            "a scene with adhesion is solved",
+            format!("{status}: {}: {}", case.describe(), found.message),
+        ),
+    }
+}
+
+/// The conditions, with a product of the campaign's own.
+fn certify(case: &Case, load: Load, found: &Found) -> Verdict {
+    let c = compliance(case.shear_modulus, case.poisson_ratio);
+    let operator = Operator::new(&case.grid, c, &case.effects);
+    let u = operator.displace(&found.p);
+    let (approach, range) = (found.report.normal.approach, found.report.adhesion.range);
+    let own = operator.diagonal();
+    let largest = found.p.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
+    let (mut inside, mut distances, mut outside, mut all, mut count, mut pressures) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    let (mut penetration, mut pulled): (f64, f64) = (0.0, 0.0);
+    for (i, p) in found.p.iter().enumerate() {
+        all += p * p;
+        if case.h[i].is_infinite() {
+            outside += p * p;
+            continue;
+        }
+        let e = case.h[i] - approach + u[i];
+        let q = p + traction(case, range, i, e);
+        if found.contact[i] == 1 {
+            (inside, distances, count) = (inside + e * e, distances + (case.h[i] - approach).powi(2), count + 1.0);
+            pressures += p * p;
+            pulled = pulled.max(-q);
+        } else {
+            outside += q * q;
+            penetration = penetration.max(-e);
+        }
+    }
+    let rounding = operator.rounding(&found.p);
+    let n = f64::max(count, 1.0);
+    let scale = (distances / n).sqrt().max(own * (pressures / n).sqrt());
+    let scale = if count > 0.0 { scale } else { scale.max(own * (all / found.p.len() as f64).sqrt()) };
+    let ratio = |value: f64, of: f64| if value == 0.0 { 0.0 } else { value / of };
+    // Attraction beyond so many ranges is none.
+    let (nothing, root) = (1e-16 * case.work.at(0) / range, (found.p.len() as f64).sqrt());
+    let mut verdict = Verdict::default();
+    for (what, value, most) in [
+        ("e in contact", (inside / n).sqrt(), TOLERANCE * scale + rounding),
+        ("-e outside", penetration, TOLERANCE * scale + rounding),
+        ("the law outside", outside.sqrt(), TOLERANCE * all.sqrt() + (rounding / own + nothing) * root),
+        ("contact pressures", pulled, 1e-4 * largest + rounding / own),
+    ] {
+        let details = || format!("{what} {:e}: {}", ratio(value, most), case.describe());
+        verdict.unless(value <= most, "the conditions of adhesion hold", details);
+    }
+    verdict.add(forces(case, load, found));
+    verdict
+}
+
+/// The force that is given, and tractions within their bound.
+fn forces(case: &Case, load: Load, found: &Found) -> Verdict {
+    let mut verdict = Verdict::default();
+    let area = case.grid.element_area();
+    let (sum, size) = found.p.iter().fold((0.0, 0.0), |(sum, size), p| (sum + p * area, size + p.abs() * area));
+    if let Load::Force(force) = load {
+        verdict.unless((sum - force).abs() <= TOLERANCE * size, "the force is carried", || {
+            format!("{sum:e} for {force:e}: {}", case.describe())
+        });
+    }
+    if let Some((mu, strength, _)) = case.friction {
+        let worst = (0..found.q.len()).find(|&i| {
+            let q = found.q[i];
+            let bound = if q > 0.0 { mu * q + strength } else { 0.0 };
+            found.tractions[0][i].hypot(found.tractions[1][i]) > bound * (1.0 + 1e-12)
+        });
+        verdict.unless(worst.is_none(), "tractions obey the bound of contact pressures", || case.describe());
+    }
+    verdict
+}

@@ -1,0 +1,122 @@
+//! How near a state is to a snap. With the contact area as it is, a change v of the attraction outside moves the surfaces there by `A~ v`,
+//! `A~ = A_OO - A_OC A_CC^-1 A_CO`, and that changes the attraction by `s A~ v`: the state is stable where the approach is given if
+//!
+//! ```text
+//! lambda = the largest eigenvalue of  sqrt(s) A~ sqrt(s)  < 1
+//! ```
+//!
+//! lambda follows from Lanczos' iteration, each step of which solves a linear system on the contact area.
+
+use super::level::Level;
+use super::newton::stiffnesses;
+use super::system::Linearised;
+use super::unknowns::One;
+use crate::error::Result;
+use crate::methods::fgmres::{self, Bordered, Until};
+use crate::methods::fields::{self, Fields};
+use crate::progress::Monitor;
+use crate::threads::Threads;
+
+/// Steps of Lanczos' iteration at most, and the change of lambda at which it ends.
+const MOST_STEPS: usize = 20;
+const ENOUGH: f64 = 1e-4;
+/// Each linear system is solved to this part of its right-hand side: lambda, a Rayleigh quotient, is off by its square.
+const INNER: f64 = 1e-3;
+const DIRECTIONS: usize = 60;
+/// Halvings of the interval in which an eigenvalue lies.
+const HALVINGS: u32 = 60;
+
+/// `1 - lambda`, at the state of now.
+pub fn stability(level: &mut Level, monitor: &mut Monitor<'_>) -> Result<f64> {
+    let (n, threads) = (level.now.u.len(), level.problem.threads.clone());
+    let mut fields = std::mem::take(&mut level.fields);
+    let mut roots = fields.take(n)?;
+    stiffnesses(level, &mut roots);
+    fields::map(&threads, &mut roots, |_, s| s.map(f64::sqrt));
+    let lambda = largest_eigenvalue(level, &roots, &threads, &mut fields)?;
+    fields.give(roots);
+    level.fields = fields;
+    level.count_products(monitor);
+    Ok(1.0 - lambda)
+}
+
+/// Lanczos' iteration.
+fn largest_eigenvalue(level: &mut Level, roots: &[One], threads: &Threads, fields: &mut Fields<1>) -> Result<f64> {
+    let n = roots.len();
+    let norm = fields::dot(threads, roots, roots).sqrt();
+    if !(norm > 0.0) {
+        return Ok(0.0);
+    }
+    let (mut v, mut before) = (fields.take(n)?, fields.take(n)?);
+    fields::fill(threads, &mut v, |i| [roots[i][0] / norm]);
+    fields::fill(threads, &mut before, |_| [0.0]);
+    let (mut diagonal, mut beside) = (Vec::with_capacity(MOST_STEPS), Vec::with_capacity(MOST_STEPS));
+    let (mut lambda, mut last) = (0.0, 0.0);
+    for _ in 0..MOST_STEPS {
+        let mut w = fields.take(n)?;
+        apply(level, roots, &v, &mut w, fields)?;
+        let along = fields::dot(threads, &w, &v);
+        fields::add_all(threads, &mut w, &[(-along, &v), (-last, &before)]);
+        diagonal.push(along);
+        let found = largest_of_tridiagonal(&diagonal, &beside);
+        last = fields::dot(threads, &w, &w).sqrt();
+        let is_last = (found - lambda).abs() <= ENOUGH || !(last > ENOUGH * found);
+        lambda = found;
+        std::mem::swap(&mut before, &mut v);
+        std::mem::swap(&mut v, &mut w);
+        fields.give(w);
+        if is_last {
+            break;
+        }
+        beside.push(last);
+        fields::scale(threads, &mut v, 1.0 / last);
+    }
+    [v, before].into_iter().for_each(|field| fields.give(field));
+    Ok(lambda)
+}
+
+/// `w = sqrt(s) A~ sqrt(s) v`.
+fn apply(level: &mut Level, roots: &[One], v: &[One], w: &mut [One], fields: &mut Fields<1>) -> Result<()> {
+    let (n, threads) = (roots.len(), level.problem.threads.clone());
+    let (mut none, mut right) = (fields.take(n)?, fields.take(n)?);
+    fields::fill(&threads, &mut none, |_| [0.0]);
+    fields::fill(&threads, &mut right, |i| [roots[i][0] * v[i][0]]);
+    let until = Until { target: INNER * fields::dot(&threads, &right, &right).sqrt(), most: DIRECTIONS };
+    // Without attraction that changes: outside dp = sqrt(s) v, in contact no change of the distance.
+    let mut system = Linearised::new(level, &none, false, fields)?;
+    let r = Bordered { field: right, border: [0.0] };
+    let found = fgmres::solve(&mut system, r, (until, 0.0), &threads, fields)?;
+    let (mut pressures, mut product) = (Bordered { field: fields.take(n)?, border: [0.0] }, fields.take(n)?);
+    fields::fill(&threads, &mut pressures.field, |_| [0.0]);
+    fields::fill(&threads, &mut product, |_| [0.0]);
+    found.add_to(&mut pressures, &mut product, &threads, fields);
+    fields::fill(&threads, w, |i| [roots[i][0] * product[i][0]]);
+    [none, pressures.field, product].into_iter().for_each(|field| fields.give(field));
+    Ok(())
+}
+
+/// The largest eigenvalue of a symmetric tridiagonal matrix, by Sturm's count of those above a number.
+fn largest_of_tridiagonal(diagonal: &[f64], beside: &[f64]) -> f64 {
+    let reach = |i: usize| {
+        let next = |k: Option<usize>| k.and_then(|k| beside.get(k)).map_or(0.0, |b| b.abs());
+        next(i.checked_sub(1)) + next(Some(i))
+    };
+    let bounds = diagonal.iter().enumerate().map(|(i, a)| (a - reach(i), a + reach(i)));
+    let (mut low, mut high) =
+        bounds.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (a, b)| (low.min(a), high.max(b)));
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        let mut pivot = 1.0;
+        let has_above = diagonal.iter().enumerate().any(|(i, a)| {
+            let b = i.checked_sub(1).map_or(0.0, |k| beside[k]);
+            pivot = a - middle - b * b / pivot;
+            pivot > 0.0
+        });
+        if has_above {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
+}

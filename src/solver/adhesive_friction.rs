@@ -1,0 +1,91 @@
+//! Friction of bodies that attract each other. Contact pressures q bound the tractions, not the total ones, which may pull (Derjaguin 1934); a
+//! shear strength tau0 of the contact adds to them:
+//!
+//! ```text
+//! |tractions| <= mu q + tau0  in C,     0 outside
+//! ```
+
+use super::tangential::{is_of_unlike_bodies, Turn};
+use super::{Options, Outcome, Solver};
+use crate::effects::{Adhesion, Coefficient};
+use crate::error::{Error, Result};
+use crate::friction::Report;
+use crate::memory::zeros;
+use crate::progress::Monitor;
+use crate::scene::{Friction, Scene};
+
+/// Pressures and coefficients of a tangential problem with that bound: 1 on C, and the bound itself.
+pub struct Bound {
+    /// 1 on C, 0 outside.
+    pub pressing: Vec<f64>,
+    bound: Vec<f64>,
+}
+
+impl Bound {
+    /// Of contact pressures q of n elements; C are those with q > 0.
+    pub fn new(friction: &Friction<'_>, strength: f64, n: usize, q: impl Fn(usize) -> f64) -> Result<Bound> {
+        let field = || zeros::<f64>(n, "the bound of friction");
+        let (mut pressing, mut bound) = (field()?, field()?);
+        for (i, (pressing, bound)) in pressing.iter_mut().zip(&mut bound).enumerate() {
+            let q = q(i);
+            if q > 0.0 {
+                (*pressing, *bound) = (1.0, friction.coefficient.at(i) * q + strength);
+            }
+        }
+        Ok(Bound { pressing, bound })
+    }
+
+    /// A friction with this bound.
+    pub fn of<'a>(&'a self, friction: &Friction<'a>) -> Friction<'a> {
+        Friction { coefficient: Coefficient::PerElement(&self.bound), ..*friction }
+    }
+}
+
+/// Hands friction and pressures of a tangential problem on, `q` being the contact pressures: with adhesion those of its [bound](Bound).
+pub fn bounded<R>(
+    scene: &Scene<'_>,
+    friction: &Friction<'_>,
+    q: &[f64],
+    solve: impl FnOnce(&Friction<'_>, &[f64]) -> Result<R>,
+) -> Result<R> {
+    let Some(adhesion) = scene.attraction() else { return solve(friction, q) };
+    check_alike(scene)?;
+    let bound = Bound::new(friction, adhesion.shear_strength, q.len(), |i| q[i])?;
+    solve(&bound.of(friction), &bound.pressing)
+}
+
+/// Refuses friction that changes the pressures.
+pub fn check_alike(scene: &Scene<'_>) -> Result<()> {
+    if scene.friction.is_none() || !is_of_unlike_bodies(scene)? {
+        return Ok(());
+    }
+    let message = "adhesion and friction are both given, and the bodies are unlike: tractions change the pressures; this version does not \
+                   solve them together";
+    Err(Error::Unsupported(message.into()))
+}
+
+impl Solver {
+    /// The tangential problem of a scene with adhesion, whose normal problem ended with `stop`.
+    pub(super) fn rub(
+        &mut self,
+        scene: &Scene<'_>,
+        adhesion: &Adhesion<'_>,
+        options: &Options,
+        stop: Outcome,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<(Outcome, Option<Report>)> {
+        let (Some(friction), Some(found)) = (&scene.friction, &self.adhesion) else {
+            // There is no step before any more.
+            self.friction.iter_mut().for_each(|before| before.forget());
+            return Ok((stop, None));
+        };
+        let bound = Bound::new(friction, adhesion.shear_strength, scene.grid.len(), |i| found.split(i).0)?;
+        let threads = self.problem.threads.clone();
+        let mut tangent = self.take_tangent(scene, options)?;
+        let turn = Turn { scene, friction: &bound.of(friction), options, threads: &threads };
+        let solved = tangent.solve_after(stop, &turn, &bound.pressing, turn.start(), monitor);
+        self.friction = Some(tangent);
+        let (ended, report) = solved?;
+        Ok((if stop == Outcome::Converged { ended } else { stop }, Some(report)))
+    }
+}

@@ -1,0 +1,90 @@
+//! How near a state is to a snap: 1 - lambda, against printed values and against a power iteration of the test's own.
+
+use contact_normal::adhesion::Law;
+use contact_normal::scene::{Adhesion, Load, Scene};
+use contact_normal::solver::{self, Options, Outcome, Solver};
+
+use super::certificate::displacements;
+use super::support::{Sphere, MODULUS};
+
+fn solved(sphere: &Sphere, approach: f64) -> (Solver, f64, u64) {
+    let adhesion = Some(Adhesion { stability: true, ..sphere.adhesion });
+    let scene = Scene { adhesion, ..sphere.scene(Load::Approach(approach)) };
+    let (solver, outcome, report) = solver::solve(&scene, &Options::default()).expect("a solve");
+    assert_eq!(outcome, Outcome::Converged);
+    let found = report.adhesion.and_then(|found| found.stability).expect("asked for");
+    (solver, found, report.count.matrix_products)
+}
+
+// Printed by the prototype (t10.py), Tabor 1 on 64 x 64, with a tolerance of its own of 1e-2.
+#[test]
+fn lambda_is_that_of_the_prototype() {
+    let sphere = Sphere::by_tabor(1.0, 64, 3.0);
+    for (approach, lambda) in [(0.4, 0.520), (-0.3, 0.541), (-0.6, 0.579), (-0.9, 0.700), (-0.95, 0.769)] {
+        let (_, found, products) = solved(&sphere, approach);
+        println!("{approach}: lambda {} for {lambda}, {products} products", 1.0 - found);
+        assert!((1.0 - found - lambda).abs() < 1e-2, "{approach}: {} {lambda}", 1.0 - found);
+    }
+}
+
+#[test]
+fn lambda_is_the_factor_of_a_power_iteration() {
+    let sphere = Sphere::by_tabor(1.5, 24, 2.4);
+    for approach in [0.5, -0.6] {
+        let (solver, found, _) = solved(&sphere, approach);
+        let own = power_iteration(&sphere, &solver);
+        assert!((1.0 - found - own).abs() < 2e-3, "{approach}: {} {own}", 1.0 - found);
+    }
+}
+
+/// The largest eigenvalue of v -> s A~ v: an attraction v outside, the pressures in C that keep e there, and how the attraction changes.
+fn power_iteration(sphere: &Sphere, solver: &Solver) -> f64 {
+    let (state, grid) = (solver.state(), &sphere.grid);
+    assert!(sphere.adhesion.law == Law::Exponential);
+    let range = sphere.adhesion.range;
+    let u = displacements(grid, MODULUS, &state.p);
+    let slope = |i: usize| {
+        let e = state.h[i] - state.approach + u[i];
+        if state.contact[i] {
+            0.0
+        } else {
+            (-e / range).exp() / (std::f64::consts::PI * range * range)
+        }
+    };
+    let s: Vec<f64> = (0..grid.len()).map(slope).collect();
+    let (mut v, mut lambda) = (s.clone(), 0.0);
+    for _ in 0..60 {
+        let moved = with_contact_held(sphere, &state.contact, &v);
+        let next: Vec<f64> = s.iter().zip(&moved).map(|(s, u)| s * u).collect();
+        let size = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
+        lambda = size(&next) / size(&v);
+        v = next.iter().map(|value| value / size(&next)).collect();
+    }
+    lambda
+}
+
+/// A (v + x) with x in C such that it is 0 there, by conjugate gradients.
+fn with_contact_held(sphere: &Sphere, contact: &[bool], v: &[f64]) -> Vec<f64> {
+    let held = |mut field: Vec<f64>| {
+        field.iter_mut().zip(contact).filter(|(_, inside)| !**inside).for_each(|(value, _)| *value = 0.0);
+        field
+    };
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let product = |field: &[f64]| displacements(&sphere.grid, MODULUS, field);
+    let own = product(v);
+    let mut x = vec![0.0; v.len()];
+    let mut r: Vec<f64> = held(own.iter().map(|u| -u).collect());
+    let mut t = r.clone();
+    let first = dot(&r, &r);
+    while dot(&r, &r) > 1e-16 * first {
+        let at = held(product(&t));
+        let (before, a) = (dot(&r, &r), dot(&r, &r) / dot(&t, &at));
+        for i in 0..x.len() {
+            x[i] += a * t[i];
+            r[i] -= a * at[i];
+        }
+        let b = dot(&r, &r) / before;
+        t = r.iter().zip(&t).map(|(r, t)| r + b * t).collect();
+    }
+    product(&x).iter().zip(own).map(|(x, own)| x + own).collect()
+}
