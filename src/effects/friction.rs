@@ -3,11 +3,11 @@
 //! See [`friction`](crate::friction) for the problem that is solved. The normal problem is the same with and without it where the bodies
 //! are alike; it is solved first.
 
-use super::effect::{check_values, Effect, Value};
+use super::effect::{Effect, Value};
 use super::friction_law::{FrictionLaw, PlasticLayer};
 use super::properties::{Continues, Properties, Stresses};
 use super::tangential_influence::TangentialInfluence;
-use crate::error::{invalid, require, Error, Result};
+use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::scene::{Bodies, Plain};
 
@@ -222,11 +222,13 @@ impl Effect for Friction<'_> {
     fn properties(&self) -> Properties<'_> {
         // Tangential coefficients of these are not known, unless they are given.
         let excludes: &[&str] = match self.influence {
-            Some(influence) if influence.cross.is_none() => &["period", "patches"],
+            Some(influence) if influence.cross.is_none() => &["adhesion", "period", "patches"],
             // What couples both problems is a table of offsets alone.
-            Some(_) => &["row_tables", "period", "patches", "coating"],
-            None => &["influence", "row_tables", "period", "patches", "coating"],
+            Some(_) => &["adhesion", "row_tables", "period", "patches", "coating"],
+            None => &["adhesion", "influence", "row_tables", "period", "patches", "coating"],
         };
+        // Laws and layers ask for pressures: with adhesion there are only bounds.
+        let excludes = if self.law.is_some() || self.layer.is_some() { excludes } else { &excludes[1..] };
         let continues = (self.previous == Previous::Kept).then_some(CONTINUES);
         let has_history = self.coefficients_before.is_some() || self.yield_limits.is_some();
         let one_grid =
@@ -247,23 +249,7 @@ impl Effect for Friction<'_> {
 
     fn check(&self, grid: &Grid) -> Result<()> {
         self.check_numbers()?;
-        let coefficient = |name: &str, mu: f64| match mu {
-            mu if !mu.is_finite() => Err(Error::NotFinite(format!("{name} is {mu}; it must be finite"))),
-            mu if mu >= LARGEST => invalid(format!("{name} is {mu}; it must be below {LARGEST:e}")),
-            mu if mu < 0.0 => invalid(format!("{name} is {mu}; a coefficient of friction must not be negative")),
-            _ => Ok(()),
-        };
-        match self.coefficient {
-            Coefficient::Uniform(mu) => coefficient("friction->coefficient", mu)?,
-            Coefficient::PerElement(mu) => check_values("friction->coefficients", mu, grid, coefficient)?,
-        }
-        let compliance = |name: &str, value: f64| {
-            require((0.0..LARGEST).contains(&value), name, value, "a compliance must be 0 or more, and below 1e140")
-        };
-        match self.compliance {
-            Coefficient::Uniform(value) => compliance("friction->compliance", value)?,
-            Coefficient::PerElement(values) => check_values("friction->compliances", values, grid, compliance)?,
-        }
+        self.check_coefficients(grid)?;
         self.check_step(grid)?;
         self.check_range(grid)?;
         self.check_influence(grid)?;

@@ -13,13 +13,12 @@ use super::solution::{Report, Solution};
 use super::sweep::Rolling;
 use super::window::{Displaced, Window};
 use super::Tangential;
-use crate::effects::{Coefficient, Friction, Motion, Prescribed, Previous};
+use crate::effects::{Coefficient, Friction, Motion, Previous};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::keep;
 use crate::methods::fields;
 use crate::progress::Outcome;
-use crate::sums::in_blocks;
 use crate::threads::Threads;
 
 /// A start that leaves more than this residual is worth less than the coarser grids.
@@ -172,8 +171,9 @@ impl Solver {
             report.sensitivities = Some(self.sensitivities(friction)?);
             report.products += self.take_products();
         }
+        let march = self.march(friction, pressure)?;
         self.write(friction, pressure, window, &mut report);
-        self.write_particles(friction, pressure)?;
+        self.write_particles(march);
         report.missing = self.missing(friction, &report);
         self.has_solution = true;
         report.seconds = began.elapsed().as_secs_f64();
@@ -279,26 +279,6 @@ impl Solver {
             is_solution: below(tolerance),
             is_worth_something: below(WORTHLESS),
             products: problem.take_products() as f64,
-        }
-    }
-
-    /// See [`Report::missing`].
-    fn missing(&self, friction: &Friction<'_>, report: &Report) -> f64 {
-        let carried = |k: usize| match friction.weights {
-            None => report.force[k],
-            Some(weights) => {
-                let terms = self.solution.traction.iter().zip(weights[k]).map(|(q, weight)| weight * q[k]);
-                in_blocks(terms) * self.grid.element_area()
-            }
-        };
-        let [x, y] = [0, 1].map(|k| match friction.prescribed[k] {
-            Prescribed::Force(force) => carried(k) - force,
-            Prescribed::Creepage(_) => 0.0,
-        });
-        if report.carried > 0.0 {
-            x.hypot(y) / report.carried
-        } else {
-            0.0
         }
     }
 }

@@ -133,24 +133,27 @@ impl Solver {
         Ok(ended.outcome)
     }
 
-    /// What particles carry after the step, and which elements the layer bounds: none without a law and a layer.
-    pub(super) fn write_particles(&mut self, friction: &Friction<'_>, pressure: &[f64]) -> Result<()> {
+    /// Room for what particles carry after the step, and what they had before; none without a law and a layer.
+    pub(super) fn march(&self, friction: &Friction<'_>, pressure: &[f64]) -> Result<Option<(March, Vec<Particle>)>> {
         if friction.law.is_none() && friction.layer.is_none() {
-            self.solution.particles.clear();
-            return Ok(());
+            return Ok(None);
         }
         let (law, scales, had) = (self.law(friction), self.scales, self.had(friction));
-        let touches = |i: usize| self.solution.stick_slip[i] != super::EXTERIOR;
         let place = |i: usize| Place {
-            pressure: if touches(i) { scales.traction(pressure[i]) } else { 0.0 },
+            pressure: scales.traction(pressure[i].max(0.0)),
             coefficient: friction.coefficient.at(i),
         };
-        let particle = |i: usize| self.scaled(had.at(i));
         let by = friction.elements_rolled(&self.grid);
-        let mut march = March::new((self.grid, law), friction.motion, by, place, particle)?;
-        let n = self.grid.len();
-        let mut particles = collected((0..n).map(|_| Particle::default()), "what particles carry")?;
-        let solution = &mut self.solution;
+        let march = March::new((self.grid, law), friction.motion, by, place, |i| self.scaled(had.at(i)))?;
+        let particles = collected((0..self.grid.len()).map(|_| Particle::default()), "what particles carry")?;
+        Ok(Some((march, particles)))
+    }
+
+    /// What particles carry after the step, and which elements the layer bounds.
+    pub(super) fn write_particles(&mut self, march: Option<(March, Vec<Particle>)>) {
+        let (solution, scales) = (&mut self.solution, self.scales);
+        let Some((mut march, mut particles)) = march else { return solution.particles.clear() };
+        let law = march.law;
         march.go(|i, place, had| {
             let slips = solution.stick_slip[i] == SLIP;
             let [x, y] = if slips { scales.displacement(solution.slip[i]) } else { [0.0; 2] };
@@ -163,6 +166,5 @@ impl Solver {
             response.particle
         });
         solution.particles = particles;
-        Ok(())
     }
 }
