@@ -15,6 +15,7 @@ NOUNS = {
     "effects_bill": ("The bill of effects", "Which effects a scene calls for.", ("effects",)),
     "adhesion": ("Adhesion", "Attraction across the gap.", ("adhesion", "pull_off")),
     "stress": ("Stresses below the surface", "From pressures and tractions.", ("stress", "subsurface")),
+    "heat": ("Flash temperature", "From the heat of friction.", ("heat", "flash")),
     "closed_forms": ("Closed forms", "Hertz, influence coefficients, coatings.", ("hertz", "influence_half_space", "coating_compliance")),
     "library": ("The library", "Versions, statuses, log, memory.", ()),
 }

@@ -5,6 +5,7 @@
 #include <contact_normal_arrays.hpp>
 
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -122,6 +123,33 @@ inline double coating_compliance(double thickness, const body &material, const b
     double compliance = 0.0;
     check(contact_normal_coating_compliance(&coating, below.shear_modulus, below.poisson_ratio, wave_number, &compliance));
     return compliance;
+}
+
+/// Flash temperatures of two bodies: see `contact_normal_flash_temperature`.
+struct flash_temperatures {
+    /// [2][my][mx]: of body 1, then of body 2.
+    std::vector<double> rise;
+    /// The largest ones, where they are, and the part of the heat that goes into body 1.
+    contact_normal_flash largest;
+};
+
+/// A flux of heat, [my][mx], through elements dx by dy; `conductivity`, `diffusivity` and `speed` of both bodies; `share` < 0: found.
+inline flash_temperatures flash_temperature(std::int32_t mx, std::int32_t my, double dx, double dy, const std::vector<double> &heat_flux,
+                                            const double (&conductivity)[2], const double (&diffusivity)[2], const double (&speed)[2],
+                                            double share = -1.0, std::int32_t threads = 1)
+{
+    const std::size_t size = detail::count(mx) * detail::count(my);
+    if (heat_flux.size() != size) throw std::invalid_argument("heat_flux must have one value per element");
+    contact_normal_heat heat;
+    contact_normal_heat_init(&heat);
+    heat.mx = mx, heat.my = my, heat.dx = dx, heat.dy = dy, heat.heat_flux = heat_flux.data();
+    for (int b = 0; b < 2; b++)
+        heat.conductivity[b] = conductivity[b], heat.diffusivity[b] = diffusivity[b], heat.speed[b] = speed[b];
+    heat.share = share, heat.threads = threads;
+    flash_temperatures found{std::vector<double>(2 * size), {}};
+    contact_normal_flash_init(&found.largest);
+    check(contact_normal_flash_temperature(&heat, found.rise.data(), &found.largest));
+    return found;
 }
 
 } // namespace contact_normal

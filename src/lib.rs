@@ -52,6 +52,7 @@
 //! | [`methods`] | NORM (section 3), V-cycles (section 4.2), projected conjugate gradients, descent, the direct solve: each a step |
 //! | [`solver`] | THE loop (section 4.1), nested iteration (section 4.3), which methods in which order, the report |
 //! | [`friction`], [`adhesion`] | the tangential problem; attraction across the gap |
+//! | [`heat`] | flash temperature, from a flux of heat |
 //! | [`stress`] | stresses below the surface, from pressures and tractions |
 //! | [`analytic`] | the Hertz solution |
 //! | `blocks`, `bounding_box` | passes over a grid, by all threads and in vectors |
@@ -72,6 +73,7 @@ pub mod error;
 pub mod ffi;
 pub mod friction;
 pub mod grid;
+pub mod heat;
 pub mod influence;
 pub mod methods;
 pub mod operator;

@@ -15,6 +15,7 @@ from ._constants import *  # noqa: F403
 from ._creep_force_table import creep_force_table
 from ._creep_forces import CreepForceTable
 from ._friction_batch import FrictionBatch, friction_batch
+from ._heat import FlashTemperature, flash_temperature
 from ._ledger import Ledger
 from ._library import VERSION, ContactNormalError
 from ._plot_lines import plot_contact_area
@@ -37,6 +38,7 @@ __all__ = [
     "BillRow",
     "ContactNormalError",
     "CreepForceTable",
+    "FlashTemperature",
     "FrictionBatch",
     "HertzSolution",
     "Ledger",
@@ -54,6 +56,7 @@ __all__ = [
     "coating_compliance",
     "cost_of_accuracy",
     "creep_force_table",
+    "flash_temperature",
     "friction_batch",
     "hertz",
     "influence_half_space",

@@ -19,8 +19,10 @@ from ._structs import (
     Cycle,
     EffectsRow,
     Fields,
+    Flash,
     Friction,
     FrictionResults,
+    Heat,
     HertzSolution,
     Influence,
     LogCallback,
@@ -91,6 +93,7 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
         c_int32,
         [c_double, c_double, POINTER(c_double), POINTER(c_double), c_int32, c_double, POINTER(HertzSolution)],
     ),
+    "flash_temperature": (c_int32, [POINTER(Heat), POINTER(c_double), POINTER(Flash)]),
     "influence_half_space": (
         c_int32,
         [c_int32, c_int32, c_double, c_double, POINTER(c_double), POINTER(c_double), POINTER(c_double)],

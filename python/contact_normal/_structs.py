@@ -512,6 +512,37 @@ class HertzSolution(ctypes.Structure):
     ]
 
 
+class Heat(ctypes.Structure):
+    """contact_normal_heat."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("mx", c_int32),
+        ("my", c_int32),
+        ("dx", c_double),
+        ("dy", c_double),
+        ("heat_flux", POINTER(c_double)),
+        ("conductivity", c_double * 2),
+        ("diffusivity", c_double * 2),
+        ("speed", c_double * 2),
+        ("share", c_double),
+        ("threads", c_int32),
+        ("reserved", c_int32),
+    ]
+
+
+class Flash(ctypes.Structure):
+    """contact_normal_flash."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("share", c_double),
+        ("largest", c_double * 2),
+        ("x", c_double * 2),
+        ("y", c_double * 2),
+    ]
+
+
 class StressMaximum(ctypes.Structure):
     """contact_normal_stress_maximum."""
 
@@ -577,4 +608,6 @@ KINDS: dict[str, tuple[int, type[ctypes.Structure]]] = {
     "quantity_row": (22, QuantityRow),
     "effects_row": (23, EffectsRow),
     "adhesion": (24, Adhesion),
+    "heat": (26, Heat),
+    "flash": (27, Flash),
 }

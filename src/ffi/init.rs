@@ -13,6 +13,7 @@ use super::fields::contact_normal_fields;
 use super::friction::contact_normal_friction;
 use super::friction_results::contact_normal_friction_results;
 use super::guard::guard;
+use super::heat::{contact_normal_flash, contact_normal_heat};
 use super::influence::{contact_normal_influence, contact_normal_row_tables};
 use super::ledger::contact_normal_ledger_row;
 use super::options::{contact_normal_cycle, contact_normal_options};
@@ -74,6 +75,10 @@ pub const CONTACT_NORMAL_KIND_QUANTITY_ROW: i32 = 22;
 pub const CONTACT_NORMAL_KIND_EFFECTS_ROW: i32 = 23;
 /// `kind`: `contact_normal_adhesion`. Since 0.2.
 pub const CONTACT_NORMAL_KIND_ADHESION: i32 = 24;
+/// `kind`: `contact_normal_heat`. Since 0.2.
+pub const CONTACT_NORMAL_KIND_HEAT: i32 = 26;
+/// `kind`: `contact_normal_flash`. Since 0.2.
+pub const CONTACT_NORMAL_KIND_FLASH: i32 = 27;
 
 /// Fills a struct of this `kind` (CONTACT_NORMAL_KIND_...), which has `size` bytes in the caller's header, with its defaults. Programs in C
 /// and C++ call the function that the header has for each struct, as `contact_normal_scene_init(&scene)`; others call this one with the
@@ -134,6 +139,8 @@ kinds! {
     CONTACT_NORMAL_KIND_QUANTITY_ROW => contact_normal_quantity_row,
     CONTACT_NORMAL_KIND_EFFECTS_ROW => contact_normal_effects_row,
     CONTACT_NORMAL_KIND_ADHESION => contact_normal_adhesion,
+    CONTACT_NORMAL_KIND_HEAT => contact_normal_heat,
+    CONTACT_NORMAL_KIND_FLASH => contact_normal_flash,
 }
 
 #[cfg(test)]

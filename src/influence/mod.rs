@@ -26,6 +26,7 @@ mod row_tables;
 pub mod special;
 mod table;
 
+pub(crate) use coated::gauss_legendre;
 pub use coated::{radial, Base, Coated, CoatedBody, CoatedPeriodic, Radial, Transfer};
 pub use coefficients::Coefficients;
 pub use diagonal::Layer;

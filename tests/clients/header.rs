@@ -41,6 +41,7 @@ fn the_committed_header_is_the_generated_one() {
         "special",
         "stress_outputs",
         "stress",
+        "heat",
         "log",
         "kept",
         "has",

@@ -14,7 +14,7 @@ use contact_normal::operator::Operator;
 use contact_normal::threads::Threads;
 
 /// The examples of effects, the same in C and Fortran; each prints what its file `.expected` holds.
-pub const EXAMPLES_OF_EFFECTS: [&str; 11] = [
+pub const EXAMPLES_OF_EFFECTS: [&str; 12] = [
     "adhesion",
     "layer",
     "pressure_limit",
@@ -23,6 +23,7 @@ pub const EXAMPLES_OF_EFFECTS: [&str; 11] = [
     "row_tables",
     "coating",
     "subsurface",
+    "flash_temperature",
     "friction",
     "creep_forces",
     "own_tables",

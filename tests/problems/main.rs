@@ -33,6 +33,7 @@ mod families;
 mod fft_smoother;
 mod fresh_products;
 mod hard_cases;
+mod heat;
 mod hertz;
 mod influence;
 mod layer;

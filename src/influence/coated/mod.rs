@@ -32,7 +32,7 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::zeros;
 use layer::Layer;
-use quadrature::gauss_legendre;
+pub(crate) use quadrature::gauss_legendre;
 
 /// One body: its coating, or none.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,0 +1,106 @@
+"""Flash temperature: how warm friction makes the surfaces."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ._arguments import doubles, integer, number, pointer
+from ._calls import called
+from ._library import check, initialised, library
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    Both = float | Sequence[float]
+
+
+class FlashTemperature(NamedTuple):
+    """Steady flash temperatures of both surfaces, above the temperature far away.
+
+    Attributes
+    ----------
+    rise : array, (2, my, mx)
+        Of body 1 and of body 2.
+    share : float
+        The part of the heat that goes into body 1.
+    largest : (float, float)
+        The largest rise of each body.
+    at : ((float, float), (float, float))
+        Where that is, (x, y) of each body, from the middle of the grid.
+    """
+
+    rise: npt.NDArray[np.float64]
+    share: float
+    largest: tuple[float, float]
+    at: tuple[tuple[float, float], tuple[float, float]]
+
+
+def _both(name: str, value: Any) -> Any:
+    """Two numbers, from one or from two."""
+    values = (value, value) if np.ndim(value) == 0 else tuple(value)
+    if len(values) != 2:
+        raise ValueError(f"{name} has {len(values)} values; it must be one number, or one of each body")
+    return (ctypes.c_double * 2)(*[number(f"{name}[{b}]", each) for b, each in enumerate(values)])
+
+
+def flash_temperature(
+    heat_flux: npt.ArrayLike,
+    dx: float,
+    dy: float,
+    *,
+    conductivity: Both,
+    diffusivity: Both,
+    speed: Both = 0.0,
+    share: float | None = None,
+    threads: int = 1,
+) -> FlashTemperature:
+    """The steady flash temperature by a flux of heat through the contact of two bodies whose surfaces move in x.
+
+    Parameters
+    ----------
+    heat_flux : array_like, (my, mx)
+        A power per area: of friction the traction times the speed of slip.
+    dx, dy : float
+        Element sizes.
+    conductivity, diffusivity : float or pair
+        lambda (power per length and temperature) and kappa = lambda/(density times heat capacity) of both bodies.
+    speed : float or pair
+        How fast each surface moves past the contact in +x; 0: it stands still. Of bodies that roll towards +x at V both are -V.
+    share : float, optional
+        The part of the heat that goes into body 1; by default that for which the largest temperatures of both are the same (Blok 1937).
+    threads : int
+        1: one, 0: all cores.
+
+    Returns
+    -------
+    FlashTemperature
+
+    Examples
+    --------
+    >>> import numpy as np, contact_normal
+    >>> flux = np.zeros((16, 16)); flux[6:10, 6:10] = 1e6
+    >>> contact_normal.flash_temperature(flux, 1e-4, 1e-4, conductivity=50.0, diffusivity=1.4e-5, speed=(1.0, 0.0)).share > 0.5
+    True
+    """
+    shape = np.shape(heat_flux)
+    if len(shape) != 2:
+        raise ValueError(f"heat_flux has {len(shape)} dimensions; it must be (my, mx)")
+    flux = doubles("heat_flux", heat_flux, shape)
+    heat, flash = initialised("heat"), initialised("flash")
+    (heat.my, heat.mx), heat.heat_flux = shape, pointer(flux)
+    heat.dx, heat.dy = number("dx", dx), number("dy", dy)
+    for name, value in (("conductivity", conductivity), ("diffusivity", diffusivity), ("speed", speed)):
+        setattr(heat, name, _both(name, value))
+    if share is not None:
+        if not share >= 0.0:
+            raise ValueError(f"share is {share}; a part must lie in [0, 1]")
+        heat.share = number("share", share)
+    heat.threads = integer("threads", threads)
+    rise = np.empty((2, *shape))
+    check(*called(library.contact_normal_flash_temperature, ctypes.byref(heat), pointer(rise), ctypes.byref(flash), keep=(flux, rise)))
+    places = ((flash.x[0], flash.y[0]), (flash.x[1], flash.y[1]))
+    return FlashTemperature(rise, flash.share, (flash.largest[0], flash.largest[1]), places)

@@ -1,0 +1,89 @@
+//! The temperature rise by a source of heat on an element of a half-space that moves.
+//!
+//! A point source of strength 1 on the surface of a body that moves past it at speed V, of conductivity lambda and diffusivity kappa, heats the
+//! surface by (Jaeger 1942; Carslaw & Jaeger, section 10.7)
+//!
+//! ```text
+//! T = 1/(2 pi lambda r) exp(-P (r - x)),    P = V/(2 kappa),    x downstream of the source
+//! ```
+//!
+//! once that is steady. Over an element, with `y = |x| sinh t`:
+//!
+//! ```text
+//! lambda T = integral of g(x) dx,    g(x) = 1/(2 pi) integral of exp(-P (|x| cosh t - x)) dt
+//! ```
+//!
+//! g has a logarithm at x = 0, and behind a fast source the root of 1/x: `x = L s^4` makes both smooth. Without motion it is Love's integral.
+
+use std::f64::consts::PI;
+
+/// Exponents beyond do not count: e^-40 is round-off.
+const FADED: f64 = 40.0;
+/// Panels in t are at most so long, and of so many nodes: exp(-a cosh t) is integrated to 1e-10.
+const PANEL: f64 = 2.0;
+
+/// Nodes and weights on [0, 1].
+pub type Rule = [(f64, f64)];
+
+/// The temperature rise at `(x, y)`, downstream of and beside the centre of an element `dx` by `dy`, by a unit flux into a half-space of unit
+/// conductivity: a length.
+pub fn of_element((x, y): (f64, f64), (dx, dy): (f64, f64), wave: f64, rule: &Rule) -> f64 {
+    if wave == 0.0 {
+        return love((x, y), (dx, dy)) / (2.0 * PI);
+    }
+    let edges = (y.abs() - 0.5 * dy, y.abs() + 0.5 * dy);
+    let (from, to) = (x - 0.5 * dx, x + 0.5 * dx);
+    let behind = |from: f64, to: f64| along((from, to), rule, |distance| strip(distance, edges, (wave, true), rule));
+    let ahead = |from: f64, to: f64| {
+        // It fades as exp(-2 P x).
+        let to = to.min(from + 0.5 * FADED / wave);
+        along((from, to), rule, |distance| strip(distance, edges, (wave, false), rule))
+    };
+    match (from < 0.0, to > 0.0) {
+        (true, true) => behind(0.0, to) + ahead(0.0, -from),
+        (false, _) => behind(from, to),
+        (true, false) => ahead(-to, -from),
+    }
+}
+
+/// Love's integral of 1/r over an element.
+fn love((x, y): (f64, f64), (dx, dy): (f64, f64)) -> f64 {
+    let term = |a: f64, b: f64| if a == 0.0 { 0.0 } else { a * (b / a.abs()).asinh() };
+    let corner = |a: f64, b: f64| term(a, b) + term(b, a);
+    let ((left, right), (low, high)) = ((x - 0.5 * dx, x + 0.5 * dx), (y - 0.5 * dy, y + 0.5 * dy));
+    corner(right, high) - corner(left, high) - corner(right, low) + corner(left, low)
+}
+
+/// The integral of a function of the distance, which at 0 may have a logarithm or the root of 1/x.
+fn along((from, to): (f64, f64), rule: &Rule, f: impl Fn(f64) -> f64) -> f64 {
+    let length = to - from;
+    if from > 0.0 {
+        return length * rule.iter().map(|(s, weight)| weight * f(from + length * s)).sum::<f64>();
+    }
+    rule.iter().map(|(s, weight)| weight * 4.0 * length * s.powi(3) * f(length * s.powi(4))).sum()
+}
+
+/// g at a distance behind the source or ahead of it, of a strip between two edges in y; the first may be negative.
+fn strip(distance: f64, (low, high): (f64, f64), (wave, behind): (f64, bool), rule: &Rule) -> f64 {
+    let a = 2.0 * wave * distance;
+    // -P (|x| cosh t - x) = -a sinh^2(t/2) behind, -a cosh^2(t/2) ahead.
+    let most = 2.0 * (FADED / a).sqrt().asinh();
+    let end = (high / distance).asinh().min(most);
+    let of = |from: f64| if from < end { panels(from, end, a, rule) } else { 0.0 };
+    let begin = (low / distance).asinh();
+    let sum = if begin < 0.0 { of(0.0) + panels(0.0, (-begin).min(most), a, rule) } else { of(begin) };
+    let ahead = if behind { 1.0 } else { (-a).exp() };
+    ahead * sum / (2.0 * PI)
+}
+
+/// The integral of `exp(-a sinh^2(t/2))`.
+fn panels(from: f64, to: f64, a: f64, rule: &Rule) -> f64 {
+    let count = ((to - from) / PANEL).ceil().max(1.0);
+    let length = (to - from) / count;
+    let of_panel = |k: usize| {
+        let start = from + k as f64 * length;
+        let at = |s: f64| (-a * (0.5 * (start + length * s)).sinh().powi(2)).exp();
+        rule.iter().map(|(s, weight)| weight * at(*s)).sum::<f64>()
+    };
+    length * (0..count as usize).map(of_panel).sum::<f64>()
+}

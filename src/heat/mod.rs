@@ -1,0 +1,131 @@
+//! Flash temperature: how much a flux of heat through the contact, that of friction, raises the temperature of both surfaces, once that is steady.
+//!
+//! Each body is a half-space whose surface moves past the contact. The heat flux is constant on elements, a part of it goes into body 1 and the
+//! rest into body 2. The part is given, or that for which the largest temperatures of both are the same (Blok 1937).
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `kernel` | the temperature by one element |
+
+mod kernel;
+
+use crate::error::{invalid, require, Error, Result};
+use crate::grid::Grid;
+use crate::influence::{gauss_legendre, Coefficients, Table};
+use crate::memory::zeros;
+use crate::operator::Operator;
+use crate::threads::Threads;
+
+/// Nodes of the rule for the temperature by one element.
+const NODES: usize = 20;
+/// Names its memory in messages.
+const FIELDS: &str = "the flash temperature";
+
+/// What flows, and through which bodies.
+#[derive(Clone, Copy, Debug)]
+pub struct Heat<'a> {
+    /// The elements.
+    pub grid: Grid,
+    /// Of each element, `[my][mx]`: a power per area.
+    pub flux: &'a [f64],
+    /// lambda of body 1 and 2: power per length and temperature.
+    pub conductivity: [f64; 2],
+    /// kappa = lambda/(rho c) of both: area per time.
+    pub diffusivity: [f64; 2],
+    /// How fast each surface moves in x, past the contact: length per time, of any sign; 0: it stands still.
+    pub speed: [f64; 2],
+    /// The part of the heat that goes into body 1; none: that for which the largest temperatures of both are the same.
+    pub share: Option<f64>,
+}
+
+/// How warm the surfaces get, above their temperature far away.
+#[derive(Clone, Debug)]
+pub struct Flash {
+    /// Of body 1 and 2, `[my][mx]` each.
+    pub rise: [Vec<f64>; 2],
+    /// The part of the heat that goes into body 1.
+    pub share: f64,
+    /// The largest of each body.
+    pub largest: [f64; 2],
+    /// Where that is: elements.
+    pub at: [usize; 2],
+}
+
+impl Heat<'_> {
+    fn check(&self) -> Result<()> {
+        self.grid.check()?;
+        if self.flux.len() != self.grid.len() {
+            let (values, elements) = (self.flux.len(), self.grid.len());
+            return invalid(format!("heat_flux has {values} values; the grid has {elements} elements"));
+        }
+        if let Some(i) = self.flux.iter().position(|flux| !flux.is_finite()) {
+            let (element, flux) = (self.grid.element(i), self.flux[i]);
+            return Err(Error::NotFinite(format!("heat_flux of {element} is {flux}; it must be finite")));
+        }
+        let names =
+            [["conductivity[0]", "conductivity[1]"], ["diffusivity[0]", "diffusivity[1]"], ["speed[0]", "speed[1]"]];
+        for b in 0..2 {
+            for (name, value) in [(names[0][b], self.conductivity[b]), (names[1][b], self.diffusivity[b])] {
+                require(value > 0.0 && value.is_finite(), name, value, "it must be positive and finite")?;
+            }
+            require(self.speed[b].is_finite(), names[2][b], self.speed[b], "it must be finite")?;
+        }
+        match self.share {
+            Some(share) => require((0.0..=1.0).contains(&share), "share", share, "a part must lie in [0, 1]"),
+            None => Ok(()),
+        }
+    }
+
+    /// lambda T of element offsets, by a unit flux, of a body that moves.
+    fn table(&self, b: usize, threads: &Threads) -> Result<Table> {
+        let Grid { mx, my, dx, dy } = self.grid;
+        let (wave, rule) = (self.speed[b].abs() / (2.0 * self.diffusivity[b]), gauss_legendre(NODES));
+        // x downstream.
+        let sign = if self.speed[b] < 0.0 { -1.0 } else { 1.0 };
+        let mut values: Vec<f64> = zeros(4 * mx * my, FIELDS)?;
+        threads.for_each_plain_row(&mut values[2 * mx * my..], 2 * mx, |ky, row| {
+            for (column, value) in row.iter_mut().enumerate() {
+                let x = sign * (column as f64 - mx as f64) * dx;
+                *value = kernel::of_element((x, ky as f64 * dy), (dx, dy), wave, &rule);
+            }
+        });
+        // Even in y; row -my is never read.
+        let (below, above) = values.split_at_mut(2 * mx * my);
+        for ky in 1..my {
+            below[(my - ky) * 2 * mx..][..2 * mx].copy_from_slice(&above[ky * 2 * mx..][..2 * mx]);
+        }
+        Table::new(mx, my, &values, &self.grid)
+    }
+
+    /// The rise of a body that takes all of the heat.
+    fn alone(&self, b: usize, threads: &Threads) -> Result<Vec<f64>> {
+        let coefficients = Coefficients::from(self.table(b, threads)?);
+        let operator = Operator::<f64>::new(&coefficients, &self.grid, threads)?;
+        let mut rise = zeros(self.grid.len(), FIELDS)?;
+        operator.apply(self.flux, &mut rise, &mut operator.workspace()?);
+        rise.iter_mut().for_each(|rise| *rise /= self.conductivity[b]);
+        Ok(rise)
+    }
+}
+
+/// The flash temperatures of both bodies.
+///
+/// # Errors
+/// `Invalid`, `NotFinite`: numbers out of their range, and a flux that has not one value per element. `OutOfMemory`.
+pub fn flash_temperature(heat: &Heat<'_>, threads: &Threads) -> Result<Flash> {
+    heat.check()?;
+    let threads = &threads.suited_to(heat.grid.len());
+    let mut rise = [heat.alone(0, threads)?, heat.alone(1, threads)?];
+    let top = |rise: &[f64]| {
+        rise.iter().enumerate().fold((0, f64::NEG_INFINITY), |top, (i, t)| if *t > top.1 { (i, *t) } else { top })
+    };
+    let tops = [top(&rise[0]), top(&rise[1])];
+    let both = tops[0].1 + tops[1].1;
+    // Without any heat both are the same whatever the part.
+    let share = heat.share.unwrap_or(if both > 0.0 { tops[1].1 / both } else { 0.5 });
+    let parts = [share, 1.0 - share];
+    for (rise, part) in rise.iter_mut().zip(parts) {
+        rise.iter_mut().for_each(|rise| *rise *= part);
+    }
+    Ok(Flash { rise, share, largest: [parts[0] * tops[0].1, parts[1] * tops[1].1], at: [tops[0].0, tops[1].0] })
+}

@@ -1,0 +1,127 @@
+//! Flash temperature against closed forms and an integral in polar coordinates.
+
+use std::f64::consts::PI;
+
+use contact_normal::error::Error;
+use contact_normal::grid::Grid;
+use contact_normal::heat::{flash_temperature, Flash, Heat};
+use contact_normal::threads::Threads;
+
+fn found(grid: Grid, flux: &[f64], speed: [f64; 2], share: Option<f64>) -> Flash {
+    let heat = Heat { grid, flux, conductivity: [50.0, 2.0], diffusivity: [1.4e-5, 1e-6], speed, share };
+    flash_temperature(&heat, &Threads::One).expect("temperatures")
+}
+
+/// At rest: T = pi q0 a/(4 lambda) below the middle of q0 sqrt(1 - r^2/a^2) (Love's integral as Hertz has it, of 1/(2 pi lambda r)).
+#[test]
+fn a_source_at_rest_is_as_warm_as_hertz_is_deep() {
+    let (a, q0, n) = (1e-3, 1e7, 129);
+    let grid = Grid::new(n, n, 2.2 * a / n as f64, 2.2 * a / n as f64).expect("a grid");
+    let at = |k: usize| (k as f64 - 64.0) * grid.dx;
+    let flux: Vec<f64> =
+        (0..n * n).map(|i| q0 * (1.0 - (at(i % n).powi(2) + at(i / n).powi(2)) / (a * a)).max(0.0).sqrt()).collect();
+    let rest = found(grid, &flux, [0.0; 2], Some(1.0));
+    let exact = PI * q0 * a / (4.0 * 50.0);
+    // Second order in the elements, of which 58 go to the radius.
+    assert!((rest.largest[0] / exact - 1.0).abs() < 1e-3, "{} {exact}", rest.largest[0]);
+    assert!(rest.at[0] == 64 * n + 64 && rest.largest[1] == 0.0 && rest.share == 1.0);
+}
+
+/// A fast band: T = 2 q/lambda sqrt(kappa x/(pi V)) at a distance x behind its leading edge, and behind it the difference of two of these
+/// (Jaeger 1942). What conduction along x changes falls as kappa/(V x).
+#[test]
+fn behind_the_edge_of_a_fast_band_the_temperature_grows_as_the_root() {
+    let (n, d, speed, q) = (64, 1e-4, 20.0, 1e8);
+    let grid = Grid::new(n, 1, d, 10.0).expect("a grid");
+    for sign in [1.0, -1.0] {
+        let inside = |k: usize| (8..40).contains(&if sign > 0.0 { k } else { n - 1 - k });
+        let flux: Vec<f64> = (0..n).map(|k| if inside(k) { q } else { 0.0 }).collect();
+        let fast = found(grid, &flux, [sign * speed, 0.0], Some(1.0));
+        let root = |x: f64| 2.0 * q / 50.0 * (1.4e-5 * x.max(0.0) / (PI * speed)).sqrt();
+        for k in 12..n {
+            let x = (k as f64 + 0.5 - 8.0) * d;
+            let exact = root(x) - root(x - 32.0 * d);
+            let rise = fast.rise[0][if sign > 0.0 { k } else { n - 1 - k }];
+            // kappa/(V x) is .0016 at 4.5 elements behind an edge, where the first test is.
+            let near = if (38..44).contains(&k) { 2e-2 } else { 4e-3 };
+            assert!((rise / exact - 1.0).abs() < near, "{k}: {rise} {exact}");
+        }
+        assert!((0..6).all(|k| fast.rise[0][if sign > 0.0 { k } else { n - 1 - k }] < 1e-6 * fast.largest[0]));
+    }
+}
+
+/// lambda T of a single element at its own centre, in polar coordinates: `1/(2 pi) integral of (1 - exp(-P R (1 - cos))) / (P (1 - cos))`.
+fn own(grid: &Grid, wave: f64) -> f64 {
+    let steps = 400_000;
+    let of = |k: usize| {
+        let angle = 2.0 * PI * (k as f64 + 0.5) / steps as f64;
+        let (sine, cosine) = angle.sin_cos();
+        let reach = (0.5 * grid.dx / cosine.abs()).min(0.5 * grid.dy / sine.abs());
+        let a = 2.0 * wave * (0.5 * angle).sin().powi(2);
+        if a * reach < 1e-12 {
+            reach
+        } else {
+            -(-a * reach).exp_m1() / a
+        }
+    };
+    (0..steps).map(of).sum::<f64>() / steps as f64
+}
+
+/// The same at an offset, by midpoints of small squares: nothing is singular there.
+fn offset(grid: &Grid, (kx, ky): (f64, f64), wave: f64) -> f64 {
+    let steps = 400;
+    let part = |k: usize, d: f64| ((k as f64 + 0.5) / steps as f64 - 0.5) * d;
+    let mut sum = 0.0;
+    for i in 0..steps * steps {
+        let (x, y) = (kx * grid.dx - part(i % steps, grid.dx), ky * grid.dy - part(i / steps, grid.dy));
+        let r = x.hypot(y);
+        sum += (-wave * (r - x)).exp() / r;
+    }
+    sum * grid.element_area() / (2.0 * PI * (steps * steps) as f64)
+}
+
+#[test]
+fn one_element_heats_as_the_integral_of_jaegers_source() {
+    let grid = Grid::new(9, 7, 2e-4, 3e-4).expect("a grid");
+    let mut flux = vec![0.0; 63];
+    flux[3 * 9 + 4] = 1.0;
+    for speed in [1e-3, 0.1, 1.0, 30.0] {
+        let wave = speed / (2.0 * 1.4e-5);
+        let found = found(grid, &flux, [speed, 0.0], Some(1.0));
+        let scale = found.largest[0] * 50.0;
+        let at = |kx: i64, ky: i64| 50.0 * found.rise[0][((3 + ky) * 9 + 4 + kx) as usize];
+        assert!((at(0, 0) - own(&grid, wave)).abs() < 1e-6 * scale, "{speed}: {} {}", at(0, 0), own(&grid, wave));
+        for (kx, ky) in [(1, 0), (4, 0), (-1, 0), (-4, 1), (0, 1), (2, 2), (1, -3)] {
+            let exact = offset(&grid, (kx as f64, ky as f64), wave);
+            // Midpoints of 1/400 of an element.
+            assert!((at(kx, ky) - exact).abs() < 2e-5 * scale, "{speed} {kx} {ky}: {} {exact}", at(kx, ky));
+        }
+    }
+}
+
+#[test]
+fn the_heat_is_shared_so_that_both_are_as_warm() {
+    let grid = Grid::new(24, 16, 1e-4, 1e-4).expect("a grid");
+    let flux: Vec<f64> = (0..grid.len()).map(|i| if (8..16).contains(&(i % 24)) { 1e6 } else { 0.0 }).collect();
+    let both = found(grid, &flux, [-2.0, 0.5], None);
+    assert!((both.largest[0] / both.largest[1] - 1.0).abs() < 1e-12 && both.share > 0.5 && both.share < 1.0);
+    let one = found(grid, &flux, [-2.0, 0.5], Some(1.0));
+    assert!((one.largest[0] * both.share / both.largest[0] - 1.0).abs() < 1e-12);
+    // Nothing flows.
+    let none = found(grid, &vec![0.0; grid.len()], [1.0, 1.0], None);
+    assert!(none.share == 0.5 && none.rise.iter().flatten().all(|t| *t == 0.0));
+}
+
+#[test]
+fn numbers_out_of_their_range_are_refused() {
+    let grid = Grid::new(2, 2, 1.0, 1.0).expect("a grid");
+    let heat =
+        Heat { grid, flux: &[1.0; 4], conductivity: [1.0; 2], diffusivity: [1.0; 2], speed: [0.0; 2], share: None };
+    let refused = |heat: &Heat<'_>| flash_temperature(heat, &Threads::One).expect_err("a refusal").to_string();
+    assert!(refused(&Heat { conductivity: [0.0, 1.0], ..heat }).contains("conductivity[0]"));
+    assert!(refused(&Heat { diffusivity: [1.0, f64::NAN], ..heat }).contains("diffusivity[1]"));
+    assert!(refused(&Heat { share: Some(1.5), ..heat }).contains("share"));
+    assert!(refused(&Heat { flux: &[1.0; 3], ..heat }).contains("heat_flux"));
+    let not_finite = flash_temperature(&Heat { flux: &[1.0, f64::INFINITY, 0.0, 0.0], ..heat }, &Threads::One);
+    assert!(matches!(not_finite, Err(Error::NotFinite(_))));
+}
