@@ -57,7 +57,8 @@ program laws
     status = contact_normal_solver_solve(solver, scene, options, fields, report)
     if (status /= CONTACT_NORMAL_OK) error stop "a step failed"
     if (mod(step, 10) == 0) print '(i4, f14.2, f12.4, 2i6, f11.4)', step, step*scene%dx, &
-      report%tangential%force(1)/(0.33_dp*report%normal%force), report%tangential%stick_count, report%tangential%slip_count, minval(mu)
+      report%tangential%force(1)/(0.33_dp*report%normal%force), report%tangential%stick_count, &
+      report%tangential%slip_count, minval(mu)
   end do
   call contact_normal_solver_free(solver)
 end program laws

@@ -220,6 +220,7 @@ impl Effect for Friction<'_> {
     }
 
     fn properties(&self) -> Properties<'_> {
+        let has_particles = self.law.is_some() || self.layer.is_some();
         // Tangential coefficients of these are not known, unless they are given.
         let excludes: &[&str] = match self.influence {
             Some(influence) if influence.cross.is_none() => &["adhesion", "period", "patches"],
@@ -228,9 +229,9 @@ impl Effect for Friction<'_> {
             None => &["adhesion", "influence", "row_tables", "period", "patches", "coating"],
         };
         // Laws and layers ask for pressures: with adhesion there are only bounds.
-        let excludes = if self.law.is_some() || self.layer.is_some() { excludes } else { &excludes[1..] };
+        let excludes = if has_particles { excludes } else { &excludes[1..] };
         let continues = (self.previous == Previous::Kept).then_some(CONTINUES);
-        let has_history = self.coefficients_before.is_some() || self.yield_limits.is_some();
+        let has_history = has_particles && (self.coefficients_before.is_some() || self.yield_limits.is_some());
         let one_grid =
             self.influence.map(|_| OWN_COEFFICIENTS).or(continues.map(|_| KEPT)).or(has_history.then_some(HISTORY));
         Properties {

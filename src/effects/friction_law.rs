@@ -71,6 +71,9 @@ impl FrictionLaw {
     pub fn at(&self, v: f64) -> (f64, f64) {
         let (mut value, mut slope) = (self.kinetic, 0.0);
         for (k, (part, h)) in self.falling.into_iter().zip(self.half_speed).enumerate() {
+            if part == 0.0 {
+                continue;
+            }
             let (f, d) = match (self.fall, k) {
                 (Fall::Linear, _) if v < 2.0 * h => (1.0 - 0.5 * v / h, -0.5 / h),
                 (Fall::Linear, _) => (0.0, 0.0),

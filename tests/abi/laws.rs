@@ -19,7 +19,7 @@ fn what_is_no_law_or_not_solved_is_refused_by_name() {
         (|f| f.kinetic = -1.0, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->kinetic is -1"),
         (|f| f.half_speed[0] = 0.0, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->half_speed[0] is 0"),
         (|f| f.time_step = 0.0, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->time_step is 0"),
-        (|f| f.memory_distance = f64::NAN, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->memory_distance is NaN"),
+        (|f| f.memory_distance = f64::NAN, CONTACT_NORMAL_NOT_FINITE, "friction->memory_distance is NaN"),
         (|f| f.yield_limit = -2.0, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->yield_limit is -2"),
         (|f| f.hardening = 5.0, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->yield_limit is 0"),
         (
