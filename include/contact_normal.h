@@ -222,6 +222,16 @@
 #define CONTACT_NORMAL_KIND_ADHESION 24
 
 /*
+ `kind`: `contact_normal_heat`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_HEAT 26
+
+/*
+ `kind`: `contact_normal_flash`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_FLASH 27
+
+/*
  `load`: that one of `approach` and `force` is given which is set; both or none is refused.
  */
 #define CONTACT_NORMAL_PRESCRIBED_UNSET 0
@@ -1853,7 +1863,7 @@ typedef struct contact_normal_report {
    */
   struct contact_normal_report_accuracy accuracy;
   /*
-   What it cost.
+   Its cost.
    */
   struct contact_normal_report_statistics statistics;
   /*
@@ -2358,6 +2368,88 @@ typedef struct contact_normal_stress_outputs {
 } contact_normal_stress_outputs;
 
 /*
+ A steady flux of heat through the contact of two bodies whose surfaces move in x. Units of power, length, temperature and time are the
+ caller's, the same everywhere.
+ */
+typedef struct contact_normal_heat {
+  /*
+   Set by `contact_normal_heat_init`.
+   */
+  int64_t struct_size;
+  /*
+   Elements in x. Default 0: to be set.
+   */
+  int32_t mx;
+  /*
+   Elements in y. Default 0: to be set.
+   */
+  int32_t my;
+  /*
+   Length of an element in x. Default 0: to be set.
+   */
+  double dx;
+  /*
+   In y. Default 0: to be set.
+   */
+  double dy;
+  /*
+   The flux, `[my][mx]`, a power per area: of friction |q| times the speed of slip. Default NULL: to be set.
+   */
+  const double *heat_flux;
+  /*
+   lambda of body 1 and 2, power per length and temperature. Default 0: to be set.
+   */
+  double conductivity[2];
+  /*
+   kappa = lambda/(density times heat capacity) of both, area per time. Default 0: to be set.
+   */
+  double diffusivity[2];
+  /*
+   How fast each surface moves past the contact in +x, length per time, of any sign; 0 (default): it stands still. Of bodies that roll towards
+   +x at V both are -V.
+   */
+  double speed[2];
+  /*
+   The part of the heat that goes into body 1, 0 to 1; < 0 (default): that for which the largest temperatures of both are the same (Blok 1937).
+   */
+  double share;
+  /*
+   Threads; 1: one (default), 0: all cores.
+   */
+  int32_t threads;
+  /*
+   Must be 0.
+   */
+  int32_t reserved;
+} contact_normal_heat;
+
+/*
+ What `contact_normal_flash_temperature` found.
+ */
+typedef struct contact_normal_flash {
+  /*
+   Set by `contact_normal_flash_init`.
+   */
+  int64_t struct_size;
+  /*
+   The part of the heat that goes into body 1.
+   */
+  double share;
+  /*
+   The largest rise of body 1 and 2, a temperature.
+   */
+  double largest[2];
+  /*
+   Where that is in x, from the middle of the grid, of body 1 and 2.
+   */
+  double x[2];
+  /*
+   And in y.
+   */
+  double y[2];
+} contact_normal_flash;
+
+/*
  Called with a level, a message (valid during the call) and the user pointer; on the thread that called the library, in its
  floating-point environment, with no lock held. A handle that is solving refuses to be used.
  */
@@ -2699,6 +2791,16 @@ contact_normal_status contact_normal_stress_at_points(const struct contact_norma
                                                       double *stress);
 
 /*
+ The steady flash temperature of both surfaces, above the temperature far away: each body is a half-space past which the sources of heat move
+ (Jaeger 1942). Without motion it is that of a source at rest. `temperature`: `[2][my][mx]`, of body 1, then of body 2; NULL: not wanted.
+ `flash` NULL: not wanted. The grid must hold all of the flux; downstream of it a rise beyond the grid is not computed. Products are FFTs; the
+ set-up takes some hundred function values an element and body. INVALID_ARGUMENT, NOT_FINITE: numbers out of their range. Since 0.2.
+ */
+contact_normal_status contact_normal_flash_temperature(const struct contact_normal_heat *heat,
+                                                       double *temperature,
+                                                       struct contact_normal_flash *flash);
+
+/*
  Sends log messages up to `level` (CONTACT_NORMAL_LOG_...) to `callback`; NULL: none, as at the start. For the whole process.
  UNSUPPORTED when a Rust host has set a logger of its own: it gets them. Since 0.1.
  */
@@ -2949,6 +3051,22 @@ static inline void contact_normal_effects_row_init(contact_normal_effects_row *e
 static inline void contact_normal_adhesion_init(contact_normal_adhesion *adhesion)
 {
   contact_normal_init(CONTACT_NORMAL_KIND_ADHESION, adhesion, (int64_t)sizeof(contact_normal_adhesion));
+}
+
+/*
+ Fills a contact_normal_heat with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_heat_init(contact_normal_heat *heat)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_HEAT, heat, (int64_t)sizeof(contact_normal_heat));
+}
+
+/*
+ Fills a contact_normal_flash with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_flash_init(contact_normal_flash *flash)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_FLASH, flash, (int64_t)sizeof(contact_normal_flash));
 }
 
 #endif  /* CONTACT_NORMAL_H */

@@ -530,37 +530,6 @@ class HertzSolution(ctypes.Structure):
     ]
 
 
-class Heat(ctypes.Structure):
-    """contact_normal_heat."""
-
-    _fields_ = [
-        ("struct_size", c_int64),
-        ("mx", c_int32),
-        ("my", c_int32),
-        ("dx", c_double),
-        ("dy", c_double),
-        ("heat_flux", POINTER(c_double)),
-        ("conductivity", c_double * 2),
-        ("diffusivity", c_double * 2),
-        ("speed", c_double * 2),
-        ("share", c_double),
-        ("threads", c_int32),
-        ("reserved", c_int32),
-    ]
-
-
-class Flash(ctypes.Structure):
-    """contact_normal_flash."""
-
-    _fields_ = [
-        ("struct_size", c_int64),
-        ("share", c_double),
-        ("largest", c_double * 2),
-        ("x", c_double * 2),
-        ("y", c_double * 2),
-    ]
-
-
 class StressMaximum(ctypes.Structure):
     """contact_normal_stress_maximum."""
 
@@ -589,6 +558,37 @@ class StressOutputs(ctypes.Structure):
         ("directions", POINTER(c_double) * 3),
         ("largest_von_mises", POINTER(StressMaximum)),
         ("largest_shear", POINTER(StressMaximum)),
+    ]
+
+
+class Heat(ctypes.Structure):
+    """contact_normal_heat."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("mx", c_int32),
+        ("my", c_int32),
+        ("dx", c_double),
+        ("dy", c_double),
+        ("heat_flux", POINTER(c_double)),
+        ("conductivity", c_double * 2),
+        ("diffusivity", c_double * 2),
+        ("speed", c_double * 2),
+        ("share", c_double),
+        ("threads", c_int32),
+        ("reserved", c_int32),
+    ]
+
+
+class Flash(ctypes.Structure):
+    """contact_normal_flash."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("share", c_double),
+        ("largest", c_double * 2),
+        ("x", c_double * 2),
+        ("y", c_double * 2),
     ]
 
 
