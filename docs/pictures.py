@@ -32,6 +32,7 @@ EXAMPLES = {
     "profiles_to_gap": Example(tuple(f"profiles_to_gap_{name}" for name in ("place", "shift", "gap", "forces")), takes_folder=True),
     "friction": Example(("friction_shifts",)),
     "rolling": Example(("friction_rolling",)),
+    "laws": Example(("friction_laws",)),
     "creep_force_table": Example(("creep_force_table",)),
     "subsurface": Example(("stress_depth", "stress_sliding", "stress_wheel_rail"), (WHEEL_RAIL,), takes_folder=True),
     "effects": Example(tuple(f"effects_{name}" for name in EFFECTS), takes_folder=True),

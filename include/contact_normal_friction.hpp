@@ -81,6 +81,49 @@ public:
         compliances_ = values;
         return *this;
     }
+    /// How the coefficient falls with the slip velocity, in one part: CONTACT_NORMAL_FRICTION_LAW_... `of_step`: the speed of rolling, or the time
+    /// that a shift takes.
+    friction &law(std::int32_t kind, double kinetic, double falling, double half_speed, double of_step)
+    {
+        friction_.law = kind;
+        friction_.kinetic = kinetic;
+        friction_.falling[0] = falling;
+        friction_.half_speed[0] = half_speed;
+        friction_.speed = friction_.time_step = of_step;
+        return *this;
+    }
+    /// A second part that falls.
+    friction &also_falling(double falling, double half_speed)
+    {
+        friction_.falling[1] = falling;
+        friction_.half_speed[1] = half_speed;
+        return *this;
+    }
+    /// The coefficient follows over this distance of slip, by this slip velocity at least.
+    friction &memory(double distance, double speed)
+    {
+        friction_.memory_distance = distance;
+        friction_.memory_speed = speed;
+        return *this;
+    }
+    /// A layer that yields.
+    friction &layer(double yield_limit, double hardening = 0.0)
+    {
+        friction_.yield_limit = yield_limit;
+        friction_.hardening = hardening;
+        return *this;
+    }
+    /// What particles of the interface had before the step.
+    friction &previous_coefficient(borrowed<double> values)
+    {
+        coefficient_before_ = values;
+        return *this;
+    }
+    friction &previous_yield_limit(borrowed<double> values)
+    {
+        yield_limit_before_ = values;
+        return *this;
+    }
     /// How much of a creepage in x, in y reaches each element.
     friction &creepage_weight(borrowed<double> x, borrowed<double> y)
     {
@@ -152,6 +195,10 @@ private:
             if (weights_) named.creepage_weight[k] = detail::sized("friction's creepage_weight", (*weights_)[k], elements);
         }
         if (compliances_) named.compliances = detail::sized("friction's compliances", *compliances_, elements);
+        if (coefficient_before_)
+            named.previous_coefficient = detail::sized("friction's previous_coefficient", *coefficient_before_, elements);
+        if (yield_limit_before_)
+            named.previous_yield_limit = detail::sized("friction's previous_yield_limit", *yield_limit_before_, elements);
         return with_tables(named);
     }
 
@@ -172,7 +219,7 @@ private:
     }
 
     contact_normal_friction friction_;
-    std::optional<borrowed<double>> coefficients_, compliances_;
+    std::optional<borrowed<double>> coefficients_, compliances_, coefficient_before_, yield_limit_before_;
     std::optional<std::array<borrowed<double>, 2>> previous_, slip_, initial_, weights_;
     // Shared by copies, and never changed.
     std::shared_ptr<const tables> tables_;

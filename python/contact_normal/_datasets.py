@@ -26,7 +26,7 @@ _FIELDS = {
 _OF_FRICTION = {
     "traction": ("traction on body 1", "pressure"),
     "slip": ("slip of body 1 over body 2 in the step", "length"),
-    "stick_slip": ("0 exterior, 1 stick, 2 slip", ""),
+    "stick_slip": ("0 exterior, 1 stick, 2 slip, 3 plastic", ""),
 }
 _STRESSES = {
     **{name: f"stress {name}" for name in ("xx", "yy", "zz", "xy", "xz", "yz")},

@@ -19,7 +19,11 @@ _NUMBERS = ("spin", "rolling_distance", "rolling_direction", "spin_offset")
 _PAIRS = ("creepage", "spin_centre")
 _FLAGS = ("continues", "sensitivities")
 _FIELDS = ("previous_traction", "rigid_slip", "initial_traction", "creepage_weight")
-_KNOWN = ("coefficient", "motion", "force", "compliance", *_PAIRS, *_FLAGS, "influence", "influence_cross", "row_tables", *_NUMBERS, *_FIELDS)
+_PARTICLES = ("previous_coefficient", "previous_yield_limit")
+_OF_LAW = ("kinetic", "speed", "time_step", "memory_distance", "memory_speed")
+_PAIRS_OF_LAW = ("falling", "half_speed")
+_OF_LAYER = ("yield_limit", "hardening")
+_KNOWN = ("coefficient", "motion", "force", "compliance", *_PAIRS, *_FLAGS, "influence", "influence_cross", "row_tables", *_NUMBERS, *_FIELDS, "law", "layer", *_PARTICLES)
 _IS_LENGTH = "the motion of friction is not given: it is a SHIFT, whose creepage is a length, and whose spin an angle"
 
 
@@ -51,6 +55,12 @@ def friction(value: Any, shape: tuple[int, int]) -> tuple[Any, list[Any], str]:
         for k, field in enumerate(both(f"friction['{name}']", given[name]) if name in given else ()):
             kept.append(doubles(f"friction['{name}'][{k}]", field, shape))
             getattr(effect, name)[k] = pointer(kept[-1])
+    for name in _PARTICLES:
+        if name in given:
+            kept.append(doubles(f"friction['{name}']", given[name], shape))
+            setattr(effect, name, pointer(kept[-1]))
+    _law(effect, given.get("law"))
+    _layer(effect, given.get("layer"))
     kept += _influence(effect, given)
     kept += _row_tables(effect, given)
     is_length = "motion" not in given and (any(effect.creepage) or effect.spin != 0.0)
@@ -65,6 +75,44 @@ def _one_or_each(effect: Any, name: str, value: Any, shape: tuple[int, int]) -> 
     values = doubles(f"friction['{name}']", value, shape)
     setattr(effect, f"{name}s", pointer(values))
     return [values]
+
+
+def _known(what: str, value: Any, names: tuple[str, ...]) -> dict[str, Any]:
+    """What a mapping has of these names; refuses others."""
+    if not isinstance(value, Mapping):
+        raise TypeError(f"{what} is {value!r}; it must be a mapping of {', '.join(names)}")
+    unknown = [str(name) for name in value if name not in names]
+    if unknown:
+        raise ValueError(f"{what} has {', '.join(sorted(unknown))}; it may have {', '.join(names)}")
+    return {name: one for name, one in value.items() if one is not None}
+
+
+def _law(effect: Any, value: Any) -> None:
+    """How the coefficient falls with the slip velocity."""
+    if value is None:
+        return
+    given = _known("friction['law']", value, ("kind", *_OF_LAW, *_PAIRS_OF_LAW))
+    if "kind" not in given:
+        raise ValueError("friction['law'] has no kind; it must be 'LINEAR', 'RATIONAL' or 'EXPONENTIAL'")
+    kind = given["kind"]
+    effect.law = value_of("friction_law", kind) if isinstance(kind, str) else integer("friction['law']['kind']", kind)
+    for name in _OF_LAW:
+        if name in given:
+            setattr(effect, name, number(f"friction['law']['{name}']", given[name]))
+    for name in _PAIRS_OF_LAW:
+        if name in given:
+            one = given[name]
+            getattr(effect, name)[:] = two(f"friction['law']['{name}']", (one, 0.0) if np.ndim(one) == 0 else one)
+
+
+def _layer(effect: Any, value: Any) -> None:
+    """A layer that yields."""
+    if value is None:
+        return
+    given = _known("friction['layer']", value, _OF_LAYER)
+    for name in _OF_LAYER:
+        if name in given:
+            setattr(effect, name, number(f"friction['layer']['{name}']", given[name]))
 
 
 def _influence(effect: Any, given: Mapping[str, Any]) -> list[Any]:

@@ -45,7 +45,9 @@ class FrictionBatch:
     traction, slip : ndarray, (n, 2, my, mx), or None
         With `fields=True`.
     stick_slip : ndarray of int, (n, my, mx), or None
-        With `fields=True`: 0 exterior, 1 stick, 2 slip.
+        With `fields=True`: 0 exterior, 1 stick, 2 slip, 3 slip in a layer that yields.
+    friction_coefficient, yield_limit : ndarray, (n, my, mx), or None
+        With `fields=True`: what particles of the interface carry, with a law of friction or a layer that yields; else zeros.
     report : dict
         Of the normal problem.
     """
@@ -53,6 +55,8 @@ class FrictionBatch:
     traction: npt.NDArray[np.float64] | None = None
     slip: npt.NDArray[np.float64] | None = None
     stick_slip: npt.NDArray[np.int32] | None = None
+    friction_coefficient: npt.NDArray[np.float64] | None = None
+    yield_limit: npt.NDArray[np.float64] | None = None
 
     def __init__(self, count: int, shape: tuple[int, int], fields: bool) -> None:
         self.message = ""
@@ -65,6 +69,7 @@ class FrictionBatch:
         if fields:
             self.traction, self.slip = np.full((count, 2, *shape), np.nan), np.full((count, 2, *shape), np.nan)
             self.stick_slip = np.zeros((count, *shape), dtype=np.int32)
+            self.friction_coefficient, self.yield_limit = np.full((count, *shape), np.nan), np.full((count, *shape), np.nan)
 
     def __repr__(self) -> str:
         solved = int((self.status == 0).sum())

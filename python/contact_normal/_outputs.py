@@ -33,6 +33,8 @@ class Outputs:
     stick_slip: npt.NDArray[np.int32] | None = None
     contact_pressure: Doubles | None = None
     attraction: Doubles | None = None
+    friction_coefficient: Doubles | None = None
+    yield_limit: Doubles | None = None
 
     def __init__(
         self, shape: tuple[int, int], pressure: Any = None, contact: Any = None, options: Any = None, has_friction: bool = False,
@@ -46,6 +48,9 @@ class Outputs:
         self.fields.contact = pointer(self.contact, c_int32)
         if has_friction:
             self._hold_friction()
+        if scene is not None and scene.has_particles:
+            self.friction_coefficient, self.yield_limit = np.zeros(shape), np.zeros(shape)
+            self.fields.friction_coefficient, self.fields.yield_limit = pointer(self.friction_coefficient), pointer(self.yield_limit)
         if has_adhesion:
             self.contact_pressure, self.attraction = np.zeros(shape), np.zeros(shape)
             self.fields.contact_pressure, self.fields.attraction = pointer(self.contact_pressure), pointer(self.attraction)

@@ -48,7 +48,9 @@ class Result(Solved):
     slip : ndarray of float, (2, my, mx)
         With friction: the slip of body 1 over body 2 in the step, in x and y; else zeros.
     stick_slip : ndarray of int, (my, mx)
-        With friction: 0 exterior, 1 stick, 2 slip.
+        With friction: 0 exterior, 1 stick, 2 slip, 3 slip in a layer that yields.
+    friction_coefficient, yield_limit : ndarray of float, (my, mx)
+        With a law of friction or a layer that yields: what particles of the interface carry after the step; else zeros.
     contact_pressure, attraction : ndarray of float, (my, mx)
         With adhesion: q >= 0 and sigma >= 0, whose difference is p; without adhesion p and zeros.
     x : ndarray of float, (mx,)

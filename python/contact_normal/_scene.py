@@ -70,6 +70,12 @@ class Scene:
         return _without_load(shape, dx, dy, self._constants, {})
 
     @property
+    def has_particles(self) -> bool:
+        """Whether particles of the interface carry something: with a law of friction or a layer that yields."""
+        effect = self.struct.friction
+        return bool(effect) and (effect.contents.law != 0 or effect.contents.yield_limit != 0.0)
+
+    @property
     def shape(self) -> tuple[int, int]:
         """(my, mx)."""
         my, mx = self.h.shape

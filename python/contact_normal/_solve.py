@@ -88,7 +88,10 @@ def solve(
         "STEADY_ROLLING"; "creepage", a pair; "force", a pair of tangential forces, None where the creepage is given; "spin",
         "spin_centre", "rolling_distance", "rolling_direction", "spin_offset"; "previous_traction", "rigid_slip", "initial_traction" and "creepage_weight", pairs of
         (my, mx); "compliance" of a thin elastic layer between the bodies (one, or (my, mx));
-        "continues": from the tractions that a `Solver` found last; "sensitivities": True for derivatives of both forces and the moment
+        "law": how the coefficient falls with the slip velocity, a mapping of "kind" ("LINEAR", "RATIONAL", "EXPONENTIAL"), "kinetic",
+        "falling", "half_speed" (one or a pair), "speed" of rolling or "time_step" of a shift, "memory_distance", "memory_speed"; "layer": a
+        layer that yields, a mapping of "yield_limit" and "hardening"; "previous_coefficient", "previous_yield_limit" (my, mx): what
+        particles had before (docs/laws.md); "continues": from the tractions that a `Solver` found last; "sensitivities": True for derivatives of both forces and the moment
         by both creepages and the spin, nine numbers row by row in `report["sensitivities"]`; "influence": own tangential
         coefficients (xx, yy, xy) or (xx, yy, xy, scale), each (2 cy, 2 cx); "influence_cross": with these, of unlike bodies, (xz, yz);
         "row_tables": own tangential coefficients that differ per loaded row, (xx, yy, xy) or (xx, yy, xy, scale), each (my, my, 2 cx).

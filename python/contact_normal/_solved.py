@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._constants import WARNING_ATTRACTION, WARNING_BORDER, WARNING_ERROR_UNKNOWN, WARNING_ONE_ELEMENT, WARNING_RANGE, WARNING_SPIKE
+from ._constants import WARNING_ATTRACTION, WARNING_BORDER, WARNING_ERROR_UNKNOWN, WARNING_LAW, WARNING_ONE_ELEMENT, WARNING_RANGE, WARNING_SPIKE
 from ._grid import centres
 from ._library import library
 from ._structs import names
@@ -33,6 +33,7 @@ _WARNINGS = {
     "ERROR_UNKNOWN": WARNING_ERROR_UNKNOWN,
     "RANGE": WARNING_RANGE,
     "ATTRACTION": WARNING_ATTRACTION,
+    "LAW": WARNING_LAW,
 }
 # Members of the tangential group that have the name of one of the normal problem.
 _ALSO_NORMAL = ("force", "moment", "residual", "gap")
@@ -64,6 +65,7 @@ class Solved(WithUnits):
         self._contact, self._report, self._scene = outputs.contact, report, scene
         self._traction, self._slip, self._stick_slip = outputs.traction, outputs.slip, outputs.stick_slip
         self._contact_pressure, self._attraction = outputs.contact_pressure, outputs.attraction
+        self._friction_coefficient, self._yield_limit = outputs.friction_coefficient, outputs.yield_limit
         self.dx: float = scene.struct.dx
         self.dy: float = scene.struct.dy
         self._centre = 0.0, 0.0
@@ -92,8 +94,18 @@ class Solved(WithUnits):
 
     @cached_property
     def stick_slip(self) -> npt.NDArray[np.int32]:
-        """0 exterior, 1 stick, 2 slip; zeros without friction."""
+        """0 exterior, 1 stick, 2 slip, 3 in a layer that yields; zeros without friction."""
         return self._stick_slip if self._stick_slip is not None else np.zeros(self.pressure.shape, dtype=np.int32)
+
+    @cached_property
+    def friction_coefficient(self) -> Doubles:
+        """With a law of friction or a layer that yields: mu that particles of the interface carry after the step; else zeros."""
+        return self._friction_coefficient if self._friction_coefficient is not None else np.zeros(self.pressure.shape)
+
+    @cached_property
+    def yield_limit(self) -> Doubles:
+        """With a layer that yields: the limits that particles carry after the step; else zeros."""
+        return self._yield_limit if self._yield_limit is not None else np.zeros(self.pressure.shape)
 
     @cached_property
     def contact_pressure(self) -> Doubles:

@@ -109,6 +109,19 @@ class Friction(ctypes.Structure):
         ("compliances", POINTER(c_double)),
         ("creepage_weight", POINTER(c_double) * 2),
         ("row_tables", POINTER(RowTables) * 3),
+        ("law", c_int32),
+        ("reserved_for_law", c_int32),
+        ("kinetic", c_double),
+        ("falling", c_double * 2),
+        ("half_speed", c_double * 2),
+        ("speed", c_double),
+        ("time_step", c_double),
+        ("memory_distance", c_double),
+        ("memory_speed", c_double),
+        ("yield_limit", c_double),
+        ("hardening", c_double),
+        ("previous_coefficient", POINTER(c_double)),
+        ("previous_yield_limit", POINTER(c_double)),
     ]
 
 
@@ -243,6 +256,8 @@ class Fields(ctypes.Structure):
         ("stick_slip", POINTER(c_int32)),
         ("contact_pressure", POINTER(c_double)),
         ("attraction", POINTER(c_double)),
+        ("friction_coefficient", POINTER(c_double)),
+        ("yield_limit", POINTER(c_double)),
     ]
 
 
@@ -307,7 +322,8 @@ class ReportTangential(ctypes.Structure):
         ("slip_count", c_int64),
         ("sensitivities", c_double * 9),
         ("update", c_double),
-        ("reserved", c_double * 7),
+        ("law_slope", c_double),
+        ("reserved", c_double * 6),
     ]
 
 
@@ -432,6 +448,8 @@ class FrictionResults(ctypes.Structure):
         ("traction", POINTER(c_double)),
         ("slip", POINTER(c_double)),
         ("stick_slip", POINTER(c_int32)),
+        ("friction_coefficient", POINTER(c_double)),
+        ("yield_limit", POINTER(c_double)),
     ]
 
 

@@ -109,6 +109,9 @@ def of_pressures(
     assert outputs.traction is not None and outputs.slip is not None and outputs.stick_slip is not None
     results.traction, results.slip = pointer(outputs.traction), pointer(outputs.slip)
     results.stick_slip = pointer(outputs.stick_slip, c_int32)
+    if scene.has_particles:
+        outputs.friction_coefficient, outputs.yield_limit = np.zeros(scene.shape), np.zeros(scene.shape)
+        results.friction_coefficient, results.yield_limit = pointer(outputs.friction_coefficient), pointer(outputs.yield_limit)
     watched = Watched(progress, struct, scene)
     no_handle = [] if handle else [None]
     status, message = watched.call(

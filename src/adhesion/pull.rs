@@ -13,10 +13,10 @@ use crate::methods::fields;
 use crate::progress::Monitor;
 
 /// The first step: this part of the length that the energy and the stiffness of the contact have together.
-const FIRST: f64 = 0.25;
+const FIRST: f64 = 0.1;
 /// Steps at most, and how small they become around the least force.
 const MOST_STEPS: u32 = 80;
-const SMALLEST: f64 = 1.0 / 256.0;
+const SMALLEST: f64 = 1.0 / 64.0;
 /// Minima of the force at most on the way.
 const MOST_MINIMA: u32 = 40;
 /// Of secants at most, between two states.

@@ -3,10 +3,11 @@
 //! See [`friction`](crate::friction) for the problem that is solved. The normal problem is the same with and without it where the bodies
 //! are alike; it is solved first.
 
-use super::effect::{check_values, Effect, Value};
+use super::effect::{Effect, Value};
+use super::friction_law::{FrictionLaw, PlasticLayer};
 use super::properties::{Continues, Properties, Stresses};
 use super::tangential_influence::TangentialInfluence;
-use crate::error::{invalid, require, Error, Result};
+use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::scene::{Bodies, Plain};
 
@@ -39,6 +40,9 @@ const ROUND_OFF: f64 = 1e-14;
 const OWN_COEFFICIENTS: &str =
     "friction->influence and friction->row_tables are those of one grid, and this asks for several";
 const KEPT: &str = "friction->continues begins with what a handle found on its own grid, and this asks for several: give previous_traction";
+
+const HISTORY: &str =
+    "friction->previous_coefficient and friction->previous_yield_limit are those of one grid, and this asks for several";
 
 const CONTINUES: Continues =
     Continues { member: "friction->continues", from: "tractions", instead: "give previous_traction" };
@@ -111,6 +115,14 @@ pub struct Friction<'a> {
     pub influence: Option<TangentialInfluence<'a>>,
     /// Whether the derivatives of the forces by the creepages and the spin are asked for.
     pub sensitivities: bool,
+    /// How the coefficient falls with the slip velocity; none: not at all.
+    pub law: Option<FrictionLaw>,
+    /// A layer that yields; none: tractions are bounded by friction alone.
+    pub layer: Option<PlasticLayer>,
+    /// Before the step, `[my][mx]`: coefficients that particles had (of a law with memory), in rolling where these were then; none: those at rest.
+    pub coefficients_before: Option<&'a [f64]>,
+    /// And yield limits; none: those of fresh material.
+    pub yield_limits: Option<&'a [f64]>,
 }
 
 impl Friction<'_> {
@@ -135,6 +147,10 @@ impl Friction<'_> {
             compliance: Coefficient::Uniform(0.0),
             influence: None,
             sensitivities: false,
+            law: None,
+            layer: None,
+            coefficients_before: None,
+            yield_limits: None,
         }
     }
 
@@ -204,15 +220,20 @@ impl Effect for Friction<'_> {
     }
 
     fn properties(&self) -> Properties<'_> {
+        let has_particles = self.law.is_some() || self.layer.is_some();
         // Tangential coefficients of these are not known, unless they are given.
         let excludes: &[&str] = match self.influence {
-            Some(influence) if influence.cross.is_none() => &["period", "patches"],
+            Some(influence) if influence.cross.is_none() => &["adhesion", "period", "patches"],
             // What couples both problems is a table of offsets alone.
-            Some(_) => &["row_tables", "period", "patches", "coating"],
-            None => &["influence", "row_tables", "period", "patches", "coating"],
+            Some(_) => &["adhesion", "row_tables", "period", "patches", "coating"],
+            None => &["adhesion", "influence", "row_tables", "period", "patches", "coating"],
         };
+        // Laws and layers ask for pressures: with adhesion there are only bounds.
+        let excludes = if has_particles { excludes } else { &excludes[1..] };
         let continues = (self.previous == Previous::Kept).then_some(CONTINUES);
-        let one_grid = self.influence.map(|_| OWN_COEFFICIENTS).or(continues.map(|_| KEPT));
+        let has_history = has_particles && (self.coefficients_before.is_some() || self.yield_limits.is_some());
+        let one_grid =
+            self.influence.map(|_| OWN_COEFFICIENTS).or(continues.map(|_| KEPT)).or(has_history.then_some(HISTORY));
         Properties {
             excludes,
             without_multigrid: None,
@@ -229,29 +250,15 @@ impl Effect for Friction<'_> {
 
     fn check(&self, grid: &Grid) -> Result<()> {
         self.check_numbers()?;
-        let coefficient = |name: &str, mu: f64| match mu {
-            mu if !mu.is_finite() => Err(Error::NotFinite(format!("{name} is {mu}; it must be finite"))),
-            mu if mu >= LARGEST => invalid(format!("{name} is {mu}; it must be below {LARGEST:e}")),
-            mu if mu < 0.0 => invalid(format!("{name} is {mu}; a coefficient of friction must not be negative")),
-            _ => Ok(()),
-        };
-        match self.coefficient {
-            Coefficient::Uniform(mu) => coefficient("friction->coefficient", mu)?,
-            Coefficient::PerElement(mu) => check_values("friction->coefficients", mu, grid, coefficient)?,
-        }
-        let compliance = |name: &str, value: f64| {
-            require((0.0..LARGEST).contains(&value), name, value, "a compliance must be 0 or more, and below 1e140")
-        };
-        match self.compliance {
-            Coefficient::Uniform(value) => compliance("friction->compliance", value)?,
-            Coefficient::PerElement(values) => check_values("friction->compliances", values, grid, compliance)?,
-        }
+        self.check_coefficients(grid)?;
         self.check_step(grid)?;
         self.check_range(grid)?;
-        self.check_influence(grid)
+        self.check_influence(grid)?;
+        self.check_law(grid)
     }
 
     fn check_load(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<()> {
+        self.check_bodies_of_law(&scene.bodies)?;
         let Bodies { shear_modulus: [g1, g2], poisson_ratio: [nu1, nu2] } = scene.bodies;
         let has_bodies = others.iter().flatten().all(|other| other.properties().own_coefficients.is_none());
         let lacks_cross = self.influence.is_some_and(|influence| influence.cross.is_none());

@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use super::effect::check_values;
-use super::friction::{Friction, Motion, Prescribed, Previous, LARGEST};
-use crate::error::{require, Error, Result};
+use super::friction::{Coefficient, Friction, Motion, Prescribed, Previous, LARGEST};
+use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
 
 /// Steps of rolling are at most so many elements long,
@@ -71,6 +71,28 @@ impl Friction<'_> {
                 Motion::SteadyRolling => check_values(name, q, grid, finite)?,
                 _ => check_values(name, q, grid, small)?,
             }
+        }
+        Ok(())
+    }
+
+    /// Refuses coefficients and compliances that are none.
+    pub(super) fn check_coefficients(&self, grid: &Grid) -> Result<()> {
+        let coefficient = |name: &str, mu: f64| match mu {
+            mu if !mu.is_finite() => Err(Error::NotFinite(format!("{name} is {mu}; it must be finite"))),
+            mu if mu >= LARGEST => invalid(format!("{name} is {mu}; it must be below {LARGEST:e}")),
+            mu if mu < 0.0 => invalid(format!("{name} is {mu}; a coefficient of friction must not be negative")),
+            _ => Ok(()),
+        };
+        match self.coefficient {
+            Coefficient::Uniform(mu) => coefficient("friction->coefficient", mu)?,
+            Coefficient::PerElement(mu) => check_values("friction->coefficients", mu, grid, coefficient)?,
+        }
+        let compliance = |name: &str, value: f64| {
+            require((0.0..LARGEST).contains(&value), name, value, "a compliance must be 0 or more, and below 1e140")
+        };
+        match self.compliance {
+            Coefficient::Uniform(value) => compliance("friction->compliance", value)?,
+            Coefficient::PerElement(values) => check_values("friction->compliances", values, grid, compliance)?,
         }
         Ok(())
     }

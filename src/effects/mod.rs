@@ -9,7 +9,7 @@
 //! | patches | period | no | those of the set-up |
 //! | layer | | a uniform one | that of the set-up |
 //! | pressure_limit | | yes | another one for each solve |
-//! | friction | period, patches; without tangential tables influence, row_tables, coating | yes | another one for each solve |
+//! | friction | period, patches; without tangential tables influence, row_tables, coating; with a law or a layer that yields adhesion | yes | another one for each solve |
 //! | adhesion | row_tables, patches, pressure_limit, friction | no | another one for each solve |
 //! | visco | layer, friction, adhesion; influence, row_tables, coating of bodies that do not relax alike | yes | its moduli and times are those of the set-up |
 //!
@@ -35,7 +35,9 @@ mod coating;
 mod coupled;
 mod effect;
 mod friction;
+mod friction_bounds;
 mod friction_checks;
+mod friction_law;
 mod layer;
 pub(crate) mod list;
 mod memory;
@@ -56,6 +58,7 @@ pub use coating::{Coating, CoatingLayer};
 pub use coupled::{Coupled, History};
 pub use effect::{Effect, Value};
 pub use friction::{Coefficient, Friction, Motion, Prescribed, Previous};
+pub use friction_law::{Fall, FrictionLaw, PlasticLayer};
 pub use layer::Layer;
 pub use memory::Memory;
 pub use named::{Named, SET_THEM};

@@ -28,6 +28,10 @@ pub struct contact_normal_fields {
     pub contact_pressure: *mut f64,
     /// With adhesion: sigma(e) >= 0; 0 without adhesion.
     pub attraction: *mut f64,
+    /// With a law of friction or a layer that yields: mu that particles carry after the step; else 0.
+    pub friction_coefficient: *mut f64,
+    /// With a layer that yields: the limits that particles carry after the step; else 0.
+    pub yield_limit: *mut f64,
 }
 
 versioned! { contact_normal_fields, contact_normal_fields_init, 80 }

@@ -4,9 +4,9 @@ use super::arguments::{optional, reserved, GivenEffect, Regions};
 use super::influence::{contact_normal_influence, contact_normal_row_tables};
 use super::status::Refusal;
 use super::structs::versioned;
-use crate::friction::{EXTERIOR, SLIP, STICK};
+use crate::friction::{EXTERIOR, PLASTIC, SLIP, STICK};
 use crate::grid::Grid;
-use crate::scene::{Coefficient, Friction, Motion, Prescribed, Previous};
+use crate::scene::{Coefficient, Fall, Friction, FrictionLaw, Motion, PlasticLayer, Prescribed, Previous};
 
 /// `motion`: sideways and about the normal, without rolling.
 pub const CONTACT_NORMAL_MOTION_SHIFT: i32 = 0;
@@ -20,6 +20,15 @@ pub const CONTACT_NORMAL_PRESCRIBED_CREEPAGE: i32 = 0;
 /// `prescribed`: the tangential force of a direction is given, its creepage is found.
 pub const CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE: i32 = 1;
 
+/// `law`: the coefficient does not depend on the slip.
+pub const CONTACT_NORMAL_FRICTION_LAW_COULOMB: i32 = 0;
+/// `law`: parts fall as `max(0, 1 - v/(2 h))`.
+pub const CONTACT_NORMAL_FRICTION_LAW_LINEAR: i32 = 1;
+/// `law`: the first part falls as `1/(1 + v/h)`, the second as `1/(1 + (v/h)^2)`.
+pub const CONTACT_NORMAL_FRICTION_LAW_RATIONAL: i32 = 2;
+/// `law`: parts fall as `2^(-v/h)`.
+pub const CONTACT_NORMAL_FRICTION_LAW_EXPONENTIAL: i32 = 3;
+
 /// `fields->stick_slip`: the element is not in contact.
 pub const CONTACT_NORMAL_STICK_SLIP_EXTERIOR: i32 = 0;
 /// `fields->stick_slip`: it sticks.
@@ -27,11 +36,15 @@ pub const CONTACT_NORMAL_STICK_SLIP_STICK: i32 = 1;
 /// `fields->stick_slip`: it slips.
 pub const CONTACT_NORMAL_STICK_SLIP_SLIP: i32 = 2;
 
+/// `fields->stick_slip`: it slips within a layer that yields, below mu p.
+pub const CONTACT_NORMAL_STICK_SLIP_PLASTIC: i32 = 3;
+
 // The core writes its own.
 const _: () = assert!(
     CONTACT_NORMAL_STICK_SLIP_EXTERIOR == EXTERIOR
         && CONTACT_NORMAL_STICK_SLIP_STICK == STICK
         && CONTACT_NORMAL_STICK_SLIP_SLIP == SLIP
+        && CONTACT_NORMAL_STICK_SLIP_PLASTIC == PLASTIC
 );
 
 /// Effect: friction, `|q| <= mu p`. Tractions q act on body 1; the slip s is that of body 1 over body 2: a length, that of the step.
@@ -102,6 +115,38 @@ pub struct contact_normal_friction {
     /// -k, and so is yy. The displacement in y by a unit traction in x is xy of the rows exchanged at -k. Rolling needs steps of whole
     /// elements along x; cx must reach across what is in contact and a step. Otherwise as `influence`; unlike bodies are refused.
     pub row_tables: [*const contact_normal_row_tables; 3],
+    /// How mu falls with the slip velocity v: CONTACT_NORMAL_FRICTION_LAW_...; default COULOMB: not at all, and what goes with it is not
+    /// read. mu(v) is the coefficient times `(kinetic + falling[0] f(v) + falling[1] f(v))/(kinetic + falling[0] + falling[1])`, so that
+    /// `coefficient` is that at rest. Creepages must be given in both directions, bodies be alike, and `sensitivities` be 0 (UNSUPPORTED
+    /// otherwise). See docs/laws.md.
+    pub law: i32,
+    /// Must be 0.
+    pub reserved_for_law: i32,
+    /// What is left of mu at high speed, >= 0; default 0. Only ratios of this and of `falling` count.
+    pub kinetic: f64,
+    /// What falls, in two parts, >= 0; default 0.
+    pub falling: [f64; 2],
+    /// The slip velocity h of each part, at which half of it is left; > 0 where the part is.
+    pub half_speed: [f64; 2],
+    /// The speed of rolling, > 0: a step takes the length rolled divided by it, and v is the slip divided by that.
+    pub speed: f64,
+    /// What a shift takes, > 0: a time.
+    pub time_step: f64,
+    /// The distance of slip over which mu follows, >= 0; default 0: at once.
+    pub memory_distance: f64,
+    /// The least slip velocity by which it follows, >= 0; default 0.
+    pub memory_speed: f64,
+    /// Of a layer between the bodies: the traction at which fresh material yields; `|q| <= min(mu p, yield_limit + hardening * slip)`. Default
+    /// 0: it does not yield.
+    pub yield_limit: f64,
+    /// What the limit gains by a length of plastic slip, a traction per length; < 0: it softens. Default 0: ideal plastic. Otherwise
+    /// creepages, bodies and `sensitivities` as with a `law`.
+    pub hardening: f64,
+    /// mu that particles of the interface had before the step, of a law with memory, `[my][mx]`; default NULL: that at rest, and with
+    /// `continues` what the handle found. In transient rolling a particle comes from its old place; steady rolling does not read it.
+    pub previous_coefficient: *const f64,
+    /// And their yield limits; default NULL: `yield_limit`.
+    pub previous_yield_limit: *const f64,
 }
 
 versioned! { contact_normal_friction, contact_normal_friction_init, 248, spin_offset: 1.0 / 6.0 }
@@ -145,7 +190,11 @@ impl contact_normal_friction {
                 return Err(Refusal::invalid(format!("friction->sensitivities is {other}; it must be 0 or 1")));
             }
         };
-        // SAFETY (both): as above.
+        reserved("friction->reserved_for_law", self.reserved_for_law)?;
+        let n = grid.len();
+        // SAFETY (all): as above.
+        let (coefficients_before, yield_limits) =
+            unsafe { (optional(self.previous_coefficient, n), optional(self.previous_yield_limit, n)) };
         let (coefficients, compliances) =
             unsafe { (optional(self.coefficients, grid.len()), optional(self.compliances, grid.len())) };
         Ok(Friction {
@@ -164,7 +213,31 @@ impl contact_normal_friction {
             compliance: compliances.map_or(Coefficient::Uniform(self.compliance), Coefficient::PerElement),
             influence: self.own_influence()?,
             sensitivities,
+            law: self.law()?,
+            layer: self.layer(),
+            coefficients_before,
+            yield_limits,
         })
+    }
+
+    fn law(&self) -> Result<Option<FrictionLaw>, Refusal> {
+        let fall = match self.law {
+            CONTACT_NORMAL_FRICTION_LAW_COULOMB => return Ok(None),
+            CONTACT_NORMAL_FRICTION_LAW_LINEAR => Fall::Linear,
+            CONTACT_NORMAL_FRICTION_LAW_RATIONAL => Fall::Rational,
+            CONTACT_NORMAL_FRICTION_LAW_EXPONENTIAL => Fall::Exponential,
+            other => {
+                let rule = "it must be FRICTION_LAW_COULOMB 0, LINEAR 1, RATIONAL 2 or EXPONENTIAL 3";
+                return Err(Refusal::invalid(format!("friction->law is {other}; {rule}")));
+            }
+        };
+        let Self { kinetic, falling, half_speed, speed, time_step, memory_distance, memory_speed, .. } = *self;
+        Ok(Some(FrictionLaw { fall, kinetic, falling, half_speed, speed, time_step, memory_distance, memory_speed }))
+    }
+
+    fn layer(&self) -> Option<PlasticLayer> {
+        let Self { yield_limit, hardening, .. } = *self;
+        (yield_limit != 0.0 || hardening != 0.0).then_some(PlasticLayer { yield_limit, hardening })
     }
 
     fn prescribed_in(&self, k: usize) -> Result<Prescribed, Refusal> {
@@ -184,6 +257,8 @@ impl GivenEffect for contact_normal_friction {
         let n = grid.len();
         regions.input("friction->coefficients", self.coefficients, n)?;
         regions.input("friction->compliances", self.compliances, n)?;
+        regions.input("friction->previous_coefficient", self.previous_coefficient, n)?;
+        regions.input("friction->previous_yield_limit", self.previous_yield_limit, n)?;
         for k in 0..2 {
             regions.input("friction->previous_traction", self.previous_traction[k], n)?;
             regions.input("friction->rigid_slip", self.rigid_slip[k], n)?;

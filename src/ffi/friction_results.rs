@@ -4,6 +4,7 @@ use super::arguments::Regions;
 use super::conclusion::Conclusion;
 use super::status::{contact_normal_status, Refusal};
 use super::structs::versioned;
+use super::warnings::advice_on_law;
 use super::watcher::why;
 use crate::friction::{Report, Solution};
 use crate::solver::{Ended, Outcome};
@@ -38,6 +39,10 @@ pub struct contact_normal_friction_results {
     pub slip: *mut f64,
     /// CONTACT_NORMAL_STICK_SLIP_... of each element, `[n][my][mx]`.
     pub stick_slip: *mut i32,
+    /// As `fields->friction_coefficient`, `[n][my][mx]`.
+    pub friction_coefficient: *mut f64,
+    /// As `fields->yield_limit`, `[n][my][mx]`.
+    pub yield_limit: *mut f64,
 }
 
 versioned! { contact_normal_friction_results, contact_normal_friction_results_init, 104 }
@@ -67,7 +72,9 @@ impl contact_normal_friction_results {
         regions.output("status", self.status, n)?;
         regions.output("traction", self.traction, fields.saturating_mul(2))?;
         regions.output("slip", self.slip, fields.saturating_mul(2))?;
-        regions.output("stick_slip", self.stick_slip, fields)
+        regions.output("stick_slip", self.stick_slip, fields)?;
+        regions.output("friction_coefficient", self.friction_coefficient, fields)?;
+        regions.output("yield_limit", self.yield_limit, fields)
     }
 
     /// Writes how entry i ended, and what was found of it.
@@ -97,6 +104,9 @@ impl contact_normal_friction_results {
                 }
                 for (element, stick_slip) in solution.stick_slip.iter().enumerate() {
                     put(self.stick_slip, i * elements + element, *stick_slip);
+                    let particle = solution.particles.get(element).copied().unwrap_or_default();
+                    put(self.friction_coefficient, i * elements + element, particle.coefficient);
+                    put(self.yield_limit, i * elements + element, particle.yield_limit);
                 }
             }
         }
@@ -116,6 +126,8 @@ unsafe fn put<T>(to: *mut T, i: usize, value: T) {
 fn said(stop: Outcome, found: &Report) -> String {
     match stop {
         Outcome::Cancelled => why(stop).into(),
-        _ => format!("{}; the residual is {:e}", why(stop), found.certificate.residual),
+        _ => {
+            format!("{}; the residual is {:e}{}", why(stop), found.certificate.residual, advice_on_law(found.law_slope))
+        }
     }
 }

@@ -5,7 +5,7 @@ use std::ffi::CStr;
 use libc::c_char;
 
 /// Effects of a scene, members of the options and the fields, and what functions do.
-const NAMES: [&str; 33] = [
+const NAMES: [&str; 36] = [
     "accuracy",
     "adhesion",
     "batch",
@@ -15,10 +15,12 @@ const NAMES: [&str; 33] = [
     "creepage_weight",
     "cycle",
     "dump",
+    "flash_temperature",
     "friction",
     "influence",
     "initial_traction",
     "keep",
+    "law",
     "layer",
     "max_seconds",
     "patches",
@@ -39,10 +41,11 @@ const NAMES: [&str; 33] = [
     "tangential_row_tables",
     "visco",
     "warnings",
+    "yield_limit",
 ];
 
 /// 1 if this library has what is called so, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop"), a member of
-/// the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables"), or what calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump",
+/// the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "yield_limit"), or what calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump",
 /// "set_option", "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_has(name: *const c_char) -> i32 {

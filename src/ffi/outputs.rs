@@ -8,7 +8,7 @@ use super::status::Refusal;
 use super::structs::{self, Rows, Versioned};
 use super::warnings;
 use crate::contact::State;
-use crate::friction::{Solution, Vector, EXTERIOR};
+use crate::friction::{Particle, Solution, Vector, EXTERIOR};
 use crate::memory::reserve;
 use crate::scene::Scene;
 use crate::solver::{ActiveSet, Guess, InitialGuess, LedgerRow, Neglected, Options, Report, Solver};
@@ -146,6 +146,8 @@ impl Outputs {
         regions.output("stick_slip", fields.stick_slip, n)?;
         regions.output("contact_pressure", fields.contact_pressure, n)?;
         regions.output("attraction", fields.attraction, n)?;
+        regions.output("friction_coefficient", fields.friction_coefficient, n)?;
+        regions.output("yield_limit", fields.yield_limit, n)?;
         if let Some(report) = &self.given_report {
             regions.output_struct(self.report, report)?;
             if let Some(rows) = &self.ledger {
@@ -203,7 +205,7 @@ impl Outputs {
         let fields = &self.fields;
         let value = |field: &[Vector], i: usize, k: usize| if found.is_some() { field[i][k] } else { 0.0 };
         let none = Solution::default();
-        let Solution { traction, slip, stick_slip } = found.unwrap_or(&none);
+        let Solution { traction, slip, stick_slip, .. } = found.unwrap_or(&none);
         for (k, (q, s)) in fields.traction.iter().zip(fields.slip).enumerate() {
             // SAFETY (both): not null: room for n values, as above.
             unsafe {
@@ -215,10 +217,25 @@ impl Outputs {
                 }
             }
         }
+        self.write_particles(found, n);
         if !fields.stick_slip.is_null() {
             let stick_slip = |i: usize| if found.is_some() { stick_slip[i] } else { EXTERIOR };
             // SAFETY: likewise.
             unsafe { (0..n).for_each(|i| fields.stick_slip.add(i).write(stick_slip(i))) };
+        }
+    }
+
+    /// Writes what particles of the interface carry.
+    fn write_particles(&self, found: Option<&Solution>, n: usize) {
+        let of = |i: usize| found.and_then(|found| found.particles.get(i)).copied().unwrap_or_default();
+        for (to, value) in [
+            (self.fields.friction_coefficient, (|particle| particle.coefficient) as fn(Particle) -> f64),
+            (self.fields.yield_limit, |particle| particle.yield_limit),
+        ] {
+            if !to.is_null() {
+                // SAFETY: not null: room for n values, as above.
+                unsafe { (0..n).for_each(|i| to.add(i).write(value(of(i)))) };
+            }
         }
     }
 

@@ -75,8 +75,11 @@ pub struct contact_normal_report_tangential {
     pub sensitivities: [f64; 9],
     /// rms over C of the last change of q; 0 where the iteration ended where it began.
     pub update: f64,
+    /// The largest slope by which bounds fall with the slip, times an element's influence on itself; 0 without a law. From .5 on the iteration
+    /// may end as STAGNATED, from 1 on a single element has several solutions.
+    pub law_slope: f64,
     /// Room for later versions: 0.
-    pub reserved: [f64; 7],
+    pub reserved: [f64; 6],
 }
 
 /// How wrong it is: a group of `contact_normal_report`. Errors are estimated after a start from nothing, and after any start if there is a
@@ -225,7 +228,7 @@ impl contact_normal_report_normal {
 
 impl contact_normal_report_tangential {
     fn set(&mut self, found: &friction::Report) {
-        copy!(found => self: force, moment, creepage, update);
+        copy!(found => self: force, moment, creepage, update, law_slope);
         copy!(found.certificate => self: residual, gap, stick_count, slip_count);
         let sensitivities = found.sensitivities.iter().flatten().flatten();
         self.sensitivities.iter_mut().zip(sensitivities).for_each(|(to, from)| *to = *from);

@@ -10,6 +10,7 @@ use super::outputs::{Buffers, Outputs};
 use super::report::contact_normal_report;
 use super::scene::{contact_normal_scene, Named};
 use super::status::{contact_normal_status, Refusal};
+use super::warnings::advice_on_law;
 use super::watcher::{watched, why, Watcher};
 use crate::contact::State;
 use crate::effects;
@@ -175,6 +176,7 @@ pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Opt
     }
     if stop == Outcome::Stagnated {
         message += &state.map_or_else(String::new, |state| stagnation(report, method, state));
+        message += &report.friction.map_or_else(String::new, |found| advice_on_law(found.law_slope));
     }
     message
 }

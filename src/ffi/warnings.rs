@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use crate::adhesion::{CONTAINED, UNSTABLE};
 use crate::contact::State;
 use crate::effects;
+use crate::friction::law::STEEP;
 use crate::scene::Scene;
 use crate::solver::{ActiveSet, Options, Report};
 
@@ -21,9 +22,11 @@ pub const CONTACT_NORMAL_WARNING_ERROR_UNKNOWN: i32 = 8;
 pub const CONTACT_NORMAL_WARNING_RANGE: i32 = 16;
 /// `warnings`: the attraction reaches the border of the grid (`adhesion.border_share` above 0.001): the grid does not contain it.
 pub const CONTACT_NORMAL_WARNING_ATTRACTION: i32 = 32;
+/// `warnings`: bounds of friction fall so steeply with the slip (`tangential.law_slope` of .5 or more) that there may be several solutions.
+pub const CONTACT_NORMAL_WARNING_LAW: i32 = 64;
 
 /// Each with what a message says of it.
-const TEXTS: [(i32, &str); 6] = [
+const TEXTS: [(i32, &str); 7] = [
     (CONTACT_NORMAL_WARNING_BORDER, "contact reaches the border of the grid: a larger grid may carry more"),
     (
         CONTACT_NORMAL_WARNING_ONE_ELEMENT,
@@ -39,6 +42,7 @@ const TEXTS: [(i32, &str); 6] = [
         "elements snap alone, for they are too large for the range of the attraction: smaller elements, or a longer range",
     ),
     (CONTACT_NORMAL_WARNING_ATTRACTION, "the attraction reaches the border of the grid: a larger grid"),
+    (CONTACT_NORMAL_WARNING_LAW, "friction falls so steeply that there may be several solutions: a larger memory distance, or a stiffer layer"),
 ];
 
 /// The warnings in words; none: nothing. Made once, because later solves with a handle allocate nothing.
@@ -55,9 +59,9 @@ pub(super) fn text(warnings: i32) -> &'static CStr {
 /// The warnings of a result.
 pub(super) fn of(scene: &Scene<'_>, options: &Options, report: &Report, state: &State) -> i32 {
     let (measures, grid) = (&report.measures, &scene.grid);
-    let attraction = of_adhesion(report);
+    let effects = of_adhesion(report) | of_law(report);
     if measures.contact_count == 0 || grid.len() == 1 {
-        return attraction;
+        return effects;
     }
     // A contact area that is given has neither a border that it may grow beyond nor an estimate.
     let is_free = options.active_set == ActiveSet::Free;
@@ -69,7 +73,7 @@ pub(super) fn of(scene: &Scene<'_>, options: &Options, report: &Report, state: &
         (CONTACT_NORMAL_WARNING_SPIKE, measures.contact_count > 1 && is_spike),
         (CONTACT_NORMAL_WARNING_ERROR_UNKNOWN, is_free && options.estimates && report.error.force < 0.0),
     ];
-    attraction | found.into_iter().filter(|(_, holds)| *holds).map(|(bit, _)| bit).sum::<i32>()
+    effects | found.into_iter().filter(|(_, holds)| *holds).map(|(bit, _)| bit).sum::<i32>()
 }
 
 /// Those of adhesion.
@@ -77,6 +81,26 @@ fn of_adhesion(report: &Report) -> i32 {
     let Some(found) = &report.adhesion else { return 0 };
     let range = if found.resolution > UNSTABLE { CONTACT_NORMAL_WARNING_RANGE } else { 0 };
     range | if found.border_share > CONTAINED { CONTACT_NORMAL_WARNING_ATTRACTION } else { 0 }
+}
+
+/// That of a law of friction.
+fn of_law(report: &Report) -> i32 {
+    let is_steep = report.friction.is_some_and(|found| found.law_slope >= STEEP);
+    if is_steep {
+        CONTACT_NORMAL_WARNING_LAW
+    } else {
+        0
+    }
+}
+
+/// What helps where bounds of friction fall steeply.
+pub(super) fn advice_on_law(slope: f64) -> String {
+    match slope >= STEEP {
+        true => format!(
+            "; bounds of friction fall by {slope:.2} of what an element's influence holds: a larger memory_distance, a longer step or a stiffer layer"
+        ),
+        false => String::new(),
+    }
 }
 
 /// Whether an element in contact lies on a row or column that has no neighbour beyond. Of a grid of one row or column, a line contact,

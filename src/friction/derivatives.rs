@@ -56,8 +56,12 @@ impl Solver {
         let n = level.state.q.len();
         let (mut slip, mut along, mut displaced) = (fields.take(n)?, fields.take(n)?, fields.take(n)?);
         for (k, i) in window.elements(&self.grid) {
+            // Where the layer yields pressures do not count.
+            let yields = friction.layer.is_some_and(|layer| {
+                self.scales.own_traction([problem.bound[k], 0.0])[0] >= friction.yield_limit_before(layer, i)
+            });
             let g = match tangent.side[k] {
-                Side::Slip => friction.coefficient.at(i) * dp[i],
+                Side::Slip if !yields => friction.coefficient.at(i) * dp[i],
                 _ => 0.0,
             };
             (slip[k], along[k]) =

@@ -4,7 +4,7 @@ use super::plane::Vector;
 use super::solution::Solution;
 use super::solver::Solver;
 use crate::error::Result;
-use crate::memory::{blank, keep};
+use crate::memory::{blank, collected, keep};
 
 /// A copy of the last result.
 pub struct Last {
@@ -14,7 +14,7 @@ pub struct Last {
 
 impl Drop for Last {
     fn drop(&mut self) {
-        let Solution { traction, slip, stick_slip } = &mut self.solution;
+        let Solution { traction, slip, stick_slip, .. } = &mut self.solution;
         keep([traction, slip]);
         keep([stick_slip]);
     }
@@ -23,7 +23,7 @@ impl Drop for Last {
 impl Solver {
     /// A copy of the last result, if there is one.
     pub fn last(&self) -> Result<Option<Last>> {
-        let Some(Solution { traction, slip, stick_slip }) = self.solution() else { return Ok(None) };
+        let Some(Solution { traction, slip, stick_slip, particles }) = self.solution() else { return Ok(None) };
         let copy = |field: &[Vector]| -> Result<Vec<Vector>> {
             let mut copy = blank(field.len(), [f64::NAN; 2], "the tractions before")?;
             copy.copy_from_slice(field);
@@ -31,7 +31,8 @@ impl Solver {
         };
         let mut sides = blank(stick_slip.len(), 0, "the tractions before")?;
         sides.copy_from_slice(stick_slip);
-        let solution = Solution { traction: copy(traction)?, slip: copy(slip)?, stick_slip: sides };
+        let particles = collected(particles.iter().copied(), "the tractions before")?;
+        let solution = Solution { traction: copy(traction)?, slip: copy(slip)?, stick_slip: sides, particles };
         Ok(Some(Last { solution, offset: self.offset }))
     }
 

@@ -14,6 +14,7 @@
 //! | `balance`, `corral`, `bracket` | creepages of forces that are given, where Newton's method stalls |
 //! | `sensitivity`, `derivatives` | derivatives of the forces by creepages and spin |
 //! | [`cross`] | unlike bodies: what couples the normal and the tangential problem |
+//! | [`law`], `with_law` | bounds that depend on the slip, and what particles of the interface carry |
 //! | `levels`, `interpolation`, `nested`, `request`, `unit`, `scales`, `take_over`, `solver`, `result`, `last` | coarser grids, nested iteration, units, the whole solve, and the way back from it |
 
 mod balance;
@@ -34,6 +35,7 @@ mod forces;
 mod interpolation;
 mod lanes;
 mod last;
+pub mod law;
 mod levels;
 mod near_element;
 mod nested;
@@ -62,13 +64,15 @@ mod tangent;
 mod toeplitz;
 mod unit;
 mod window;
+mod with_law;
 
 pub use certificate::Certificate;
 pub use coefficients::{Compliance, Tangential};
 pub use cross::{Coupling, CrossTables, Source};
 pub use last::Last;
+pub use law::Particle;
 pub use plane::Vector;
 pub use request::{Request, Start};
-pub use solution::{Report, Solution, EXTERIOR, SLIP, STICK};
+pub use solution::{Report, Solution, EXTERIOR, PLASTIC, SLIP, STICK};
 pub use solver::Solver;
 pub use toeplitz::Toeplitz;

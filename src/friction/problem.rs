@@ -254,6 +254,11 @@ impl Problem {
     /// q feasible to the last bit, and u = A q by a fresh product.
     pub fn refresh(&mut self, state: &mut State) {
         self.clip(state);
+        self.refresh_unclipped(state);
+    }
+
+    /// `u = A q` by a fresh product, of q as it is.
+    pub fn refresh_unclipped(&mut self, state: &mut State) {
         self.operators.multiply(&state.q, self.rms_bound, &mut state.u);
         state.is_exact = true;
     }

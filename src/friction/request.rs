@@ -25,9 +25,9 @@ pub struct Request<'a> {
 }
 
 impl<'a> Request<'a> {
-    /// mu p of an element.
+    /// The traction bound of an element: mu p, or less where a layer yields.
     pub fn bound(&self, i: usize) -> f64 {
-        self.friction.coefficient.at(i) * self.pressure[i].max(0.0)
+        self.friction.bound_at(i, self.pressure[i])
     }
 
     /// From the tractions before the step, for like bodies, in 1000 iterations at most, without estimates.

@@ -7,6 +7,7 @@ use super::solution::{resultant, Report, Solution, EXTERIOR, SLIP, STICK};
 use super::solver::Solver;
 use super::window::Window;
 use crate::effects::{Friction, Prescribed};
+use crate::sums::in_blocks;
 
 impl Solver {
     /// The result on the whole grid, and what is to be said of it.
@@ -17,7 +18,7 @@ impl Solver {
         window: Option<Window>,
         report: &mut Report,
     ) {
-        let Solution { traction, slip, stick_slip } = &mut self.solution;
+        let Solution { traction, slip, stick_slip, .. } = &mut self.solution;
         let (grid, scales, threads) = (self.grid, self.scales, self.threads.suited_to(self.grid.len()));
         let distance = friction.distance(&grid);
         let mut offset = [0.0; 2];
@@ -35,7 +36,7 @@ impl Solver {
                         scales.own_traction(state.q[k])
                     } else {
                         let i = iy * grid.mx + ix;
-                        against(slip[ix], friction.coefficient.at(i) * pressure[i])
+                        against(slip[ix], friction.bound_at(i, pressure[i]))
                     };
                 }
             });
@@ -62,5 +63,25 @@ impl Solver {
         }
         let tractions = |iy: usize| traction[iy * grid.mx..(iy + 1) * grid.mx].iter().copied().enumerate();
         (report.force, report.moment) = resultant(&grid, &threads, friction.spin_centre, tractions, &mut self.sums);
+    }
+
+    /// See [`Report::missing`].
+    pub(super) fn missing(&self, friction: &Friction<'_>, report: &Report) -> f64 {
+        let carried = |k: usize| match friction.weights {
+            None => report.force[k],
+            Some(weights) => {
+                let terms = self.solution.traction.iter().zip(weights[k]).map(|(q, weight)| weight * q[k]);
+                in_blocks(terms) * self.grid.element_area()
+            }
+        };
+        let [x, y] = [0, 1].map(|k| match friction.prescribed[k] {
+            Prescribed::Force(force) => carried(k) - force,
+            Prescribed::Creepage(_) => 0.0,
+        });
+        if report.carried > 0.0 {
+            x.hypot(y) / report.carried
+        } else {
+            0.0
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! What a tangential solve returns.
 
 use super::certificate::Certificate;
+use super::law::Particle;
 use super::plane::{dot, Vector};
 use crate::grid::Grid;
 use crate::threads::Threads;
@@ -11,6 +12,8 @@ pub const EXTERIOR: i32 = 0;
 pub const STICK: i32 = 1;
 /// It slips.
 pub const SLIP: i32 = 2;
+/// It slips within a layer that yields, below mu p.
+pub const PLASTIC: i32 = 3;
 
 /// Fields on the whole grid.
 #[derive(Clone, Debug, Default)]
@@ -19,8 +22,10 @@ pub struct Solution {
     pub traction: Vec<Vector>,
     /// s of the step, body 1 over body 2, a length: 0 outside C.
     pub slip: Vec<Vector>,
-    /// Of each element: exterior 0, stick 1, slip 2.
+    /// Of each element: exterior 0, stick 1, slip 2, in a layer that yields 3.
     pub stick_slip: Vec<i32>,
+    /// What particles carry after the step: empty without a law and a layer that yields.
+    pub particles: Vec<Particle>,
 }
 
 /// What a solve found and what it cost.
@@ -49,6 +54,9 @@ pub struct Report {
     pub coarser: Option<(Vector, Vector)>,
     /// Estimated errors of the force in each direction, or of the creepage where the force is prescribed; negative: not known.
     pub error: Vector,
+    /// The largest slope by which bounds fall with the slip, times an element's influence on itself; 0 without a law. From .5 on the iteration may
+    /// stagnate; from 1 on a single element has several solutions.
+    pub law_slope: f64,
     /// Products of two components on all grids, in products on the finest.
     pub products: f64,
     /// Seconds, with the set-up of operators.
@@ -69,6 +77,7 @@ impl Default for Report {
             from_rest: false,
             coarser: None,
             error: [-1.0; 2],
+            law_slope: 0.0,
             products: 0.0,
             seconds: 0.0,
         }

@@ -2,6 +2,7 @@
 
 use super::certificate::Certificate;
 use super::forces::Forces;
+use super::law::Particle;
 use super::levels::{levels, Level};
 use super::nested::{self, Work, COARSE, COUNTS};
 use super::plane::Vector;
@@ -12,13 +13,12 @@ use super::solution::{Report, Solution};
 use super::sweep::Rolling;
 use super::window::{Displaced, Window};
 use super::Tangential;
-use crate::effects::{Coefficient, Friction, Motion, Prescribed, Previous};
+use crate::effects::{Coefficient, Friction, Motion, Previous};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::keep;
 use crate::methods::fields;
 use crate::progress::Outcome;
-use crate::sums::in_blocks;
 use crate::threads::Threads;
 
 /// A start that leaves more than this residual is worth less than the coarser grids.
@@ -40,6 +40,8 @@ pub struct Solver {
     pub(super) solution: Solution,
     /// The tractions before the step, where they were kept.
     pub(super) before: Vec<Vector>,
+    /// What particles had before the step, where that was kept.
+    pub(super) particles_before: Vec<Particle>,
     /// The creepages found, times the length rolled.
     pub(super) offset: Vector,
     pub(super) has_solution: bool,
@@ -59,7 +61,7 @@ struct Near {
 
 impl Drop for Solver {
     fn drop(&mut self) {
-        let Solution { traction, slip, stick_slip } = &mut self.solution;
+        let Solution { traction, slip, stick_slip, .. } = &mut self.solution;
         keep([traction, slip, &mut self.before]);
         keep([stick_slip]);
     }
@@ -80,6 +82,7 @@ impl Solver {
             displaced: None,
             solution: Solution::default(),
             before: Vec::new(),
+            particles_before: Vec::new(),
             offset: [0.0; 2],
             has_solution: false,
             window: None,
@@ -138,6 +141,7 @@ impl Solver {
         let forces = Forces::of(friction, &self.grid, bound)?;
         if keeps && !matches!(request.start, Start::Again) {
             self.keep_tractions()?;
+            self.keep_particles();
         }
         let kept = &self.before;
         let from_rest =
@@ -167,7 +171,9 @@ impl Solver {
             report.sensitivities = Some(self.sensitivities(friction)?);
             report.products += self.take_products();
         }
+        let march = self.march(friction, pressure)?;
         self.write(friction, pressure, window, &mut report);
+        self.write_particles(march);
         report.missing = self.missing(friction, &report);
         self.has_solution = true;
         report.seconds = began.elapsed().as_secs_f64();
@@ -187,6 +193,11 @@ impl Solver {
         let from_rest = report.from_rest;
         self.set_up(window, rolling)?;
         let mut had_slip = self.begin(request, from_rest, window, bound)?;
+        if request.friction.has_law() {
+            let end = self.iterate_with_law(request, window, watch, report)?;
+            [report.update, _] = self.scales.own_traction([self.levels[0].problem.update, 0.0]);
+            return Ok(end);
+        }
         let mut is_worth_something = false;
         if request.start.is_guess() {
             let near = self.look(forces, request.tolerance);
@@ -268,26 +279,6 @@ impl Solver {
             is_solution: below(tolerance),
             is_worth_something: below(WORTHLESS),
             products: problem.take_products() as f64,
-        }
-    }
-
-    /// See [`Report::missing`].
-    fn missing(&self, friction: &Friction<'_>, report: &Report) -> f64 {
-        let carried = |k: usize| match friction.weights {
-            None => report.force[k],
-            Some(weights) => {
-                let terms = self.solution.traction.iter().zip(weights[k]).map(|(q, weight)| weight * q[k]);
-                in_blocks(terms) * self.grid.element_area()
-            }
-        };
-        let [x, y] = [0, 1].map(|k| match friction.prescribed[k] {
-            Prescribed::Force(force) => carried(k) - force,
-            Prescribed::Creepage(_) => 0.0,
-        });
-        if report.carried > 0.0 {
-            x.hypot(y) / report.carried
-        } else {
-            0.0
         }
     }
 }

@@ -49,7 +49,8 @@ impl Solver {
             let n = self.grid.len();
             let field = || blank(n, [f64::NAN; 2], FIELDS);
             self.sums = zeros(self.grid.my, FIELDS)?;
-            self.solution = Solution { traction: field()?, slip: field()?, stick_slip: blank(n, EXTERIOR, FIELDS)? };
+            let stick_slip = blank(n, EXTERIOR, FIELDS)?;
+            self.solution = Solution { traction: field()?, slip: field()?, stick_slip, particles: Vec::new() };
         }
         Ok(())
     }

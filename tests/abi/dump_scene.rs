@@ -90,6 +90,7 @@ impl Everything {
         friction.rigid_slip = [each(1e-6), each(2e-6)];
         friction.initial_traction = [each(0.2), each(0.1)];
         friction.compliances = each(1e-9);
+        (friction.previous_coefficient, friction.previous_yield_limit) = (each(0.01), each(50.0));
         friction.creepage_weight = [each(0.1), each(0.09)];
         let table = half_space();
         let rows: Vec<f64> =

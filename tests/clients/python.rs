@@ -145,6 +145,11 @@ fn the_creep_force_table_prints_what_is_expected_and_draws() {
 }
 
 #[test]
+fn the_example_of_laws_prints_what_is_expected_and_draws() {
+    prints_what_is_expected_and_draws("laws");
+}
+
+#[test]
 fn the_friction_example_prints_what_is_expected_and_draws() {
     prints_what_is_expected_and_draws("friction");
 }

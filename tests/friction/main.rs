@@ -10,9 +10,11 @@ mod estimates;
 mod forces;
 #[allow(dead_code)] // what docs/reliability_friction.md has
 mod hard;
+mod laws;
 mod layer;
 mod linear_theory;
 mod onset_of_rolling;
+mod plastic;
 mod refusals;
 mod rolling;
 mod row_tables;

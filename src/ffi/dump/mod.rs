@@ -34,6 +34,9 @@ use image::Image;
 /// The first line of a file: the format and its version.
 const FIRST_LINE: &str = "contact-normal dump 1";
 
+/// What particles of the interface carry, of a handle.
+const PARTICLES: [&str; 2] = ["handle.friction_coefficient", "handle.yield_limit"];
+
 /// What the tangential coefficients of a handle are called.
 const TANGENTIAL_TABLES: [&str; 5] = [
     "handle.tangential_xx",
@@ -207,6 +210,14 @@ impl Image {
             for (k, name) in ["handle.traction_x", "handle.traction_y"].into_iter().enumerate() {
                 let traction: Vec<f64> = solution.traction.iter().map(|q| q[k]).collect();
                 self.add_doubles(name, &traction);
+            }
+            if !solution.particles.is_empty() {
+                let coefficient: Vec<f64> = solution.particles.iter().map(|particle| particle.coefficient).collect();
+                let yield_limit: Vec<f64> = solution.particles.iter().map(|particle| particle.yield_limit).collect();
+                self.add_doubles(PARTICLES[0], &coefficient);
+                if yield_limit.iter().all(|limit| *limit > 0.0) {
+                    self.add_doubles(PARTICLES[1], &yield_limit);
+                }
             }
         }
     }

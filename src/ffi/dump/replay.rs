@@ -5,7 +5,7 @@ use std::ptr::null_mut;
 
 use libc::c_void;
 
-use super::{Dump, TANGENTIAL_ROW_TABLES, TANGENTIAL_TABLES};
+use super::{Dump, PARTICLES, TANGENTIAL_ROW_TABLES, TANGENTIAL_TABLES};
 use crate::ffi::arguments::within;
 use crate::ffi::*;
 
@@ -228,6 +228,13 @@ impl Dump {
         let traction = [self.array::<f64>("handle.traction_x")?, self.array("handle.traction_y")?];
         if let Some(friction) = friction.filter(|friction| friction.continues == 1 && !traction[0].is_null()) {
             (friction.continues, friction.previous_traction) = (0, traction.map(<*mut f64>::cast_const));
+            let [coefficient, yield_limit] = [self.array::<f64>(PARTICLES[0])?, self.array(PARTICLES[1])?];
+            if friction.previous_coefficient.is_null() {
+                friction.previous_coefficient = coefficient;
+            }
+            if friction.previous_yield_limit.is_null() {
+                friction.previous_yield_limit = yield_limit;
+            }
         }
         Ok(())
     }

@@ -277,6 +277,26 @@
 #define CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE 1
 
 /*
+ `law`: the coefficient does not depend on the slip.
+ */
+#define CONTACT_NORMAL_FRICTION_LAW_COULOMB 0
+
+/*
+ `law`: parts fall as `max(0, 1 - v/(2 h))`.
+ */
+#define CONTACT_NORMAL_FRICTION_LAW_LINEAR 1
+
+/*
+ `law`: the first part falls as `1/(1 + v/h)`, the second as `1/(1 + (v/h)^2)`.
+ */
+#define CONTACT_NORMAL_FRICTION_LAW_RATIONAL 2
+
+/*
+ `law`: parts fall as `2^(-v/h)`.
+ */
+#define CONTACT_NORMAL_FRICTION_LAW_EXPONENTIAL 3
+
+/*
  `fields->stick_slip`: the element is not in contact.
  */
 #define CONTACT_NORMAL_STICK_SLIP_EXTERIOR 0
@@ -290,6 +310,11 @@
  `fields->stick_slip`: it slips.
  */
 #define CONTACT_NORMAL_STICK_SLIP_SLIP 2
+
+/*
+ `fields->stick_slip`: it slips within a layer that yields, below mu p.
+ */
+#define CONTACT_NORMAL_STICK_SLIP_PLASTIC 3
 
 /*
  `law`: sigma = w/rho exp(-e/rho).
@@ -476,6 +501,11 @@
  `warnings`: the attraction reaches the border of the grid (`adhesion.border_share` above 0.001): the grid does not contain it.
  */
 #define CONTACT_NORMAL_WARNING_ATTRACTION 32
+
+/*
+ `warnings`: bounds of friction fall so steeply with the slip (`tangential.law_slope` of .5 or more) that there may be several solutions.
+ */
+#define CONTACT_NORMAL_WARNING_LAW 64
 
 /*
  `untrusted`: the error of the force (or the approach) cannot be estimated: contact is on single elements.
@@ -1022,6 +1052,64 @@ typedef struct contact_normal_friction {
    elements along x; cx must reach across what is in contact and a step. Otherwise as `influence`; unlike bodies are refused.
    */
   const struct contact_normal_row_tables *row_tables[3];
+  /*
+   How mu falls with the slip velocity v: CONTACT_NORMAL_FRICTION_LAW_...; default COULOMB: not at all, and what goes with it is not
+   read. mu(v) is the coefficient times `(kinetic + falling[0] f(v) + falling[1] f(v))/(kinetic + falling[0] + falling[1])`, so that
+   `coefficient` is that at rest. Creepages must be given in both directions, bodies be alike, and `sensitivities` be 0 (UNSUPPORTED
+   otherwise). See docs/laws.md.
+   */
+  int32_t law;
+  /*
+   Must be 0.
+   */
+  int32_t reserved_for_law;
+  /*
+   What is left of mu at high speed, >= 0; default 0. Only ratios of this and of `falling` count.
+   */
+  double kinetic;
+  /*
+   What falls, in two parts, >= 0; default 0.
+   */
+  double falling[2];
+  /*
+   The slip velocity h of each part, at which half of it is left; > 0 where the part is.
+   */
+  double half_speed[2];
+  /*
+   The speed of rolling, > 0: a step takes the length rolled divided by it, and v is the slip divided by that.
+   */
+  double speed;
+  /*
+   What a shift takes, > 0: a time.
+   */
+  double time_step;
+  /*
+   The distance of slip over which mu follows, >= 0; default 0: at once.
+   */
+  double memory_distance;
+  /*
+   The least slip velocity by which it follows, >= 0; default 0.
+   */
+  double memory_speed;
+  /*
+   Of a layer between the bodies: the traction at which fresh material yields; `|q| <= min(mu p, yield_limit + hardening * slip)`. Default
+   0: it does not yield.
+   */
+  double yield_limit;
+  /*
+   What the limit gains by a length of plastic slip, a traction per length; < 0: it softens. Default 0: ideal plastic. Otherwise
+   creepages, bodies and `sensitivities` as with a `law`.
+   */
+  double hardening;
+  /*
+   mu that particles of the interface had before the step, of a law with memory, `[my][mx]`; default NULL: that at rest, and with
+   `continues` what the handle found. In transient rolling a particle comes from its old place; steady rolling does not read it.
+   */
+  const double *previous_coefficient;
+  /*
+   And their yield limits; default NULL: `yield_limit`.
+   */
+  const double *previous_yield_limit;
 } contact_normal_friction;
 
 /*
@@ -1414,6 +1502,14 @@ typedef struct contact_normal_fields {
    With adhesion: sigma(e) >= 0; 0 without adhesion.
    */
   double *attraction;
+  /*
+   With a law of friction or a layer that yields: mu that particles carry after the step; else 0.
+   */
+  double *friction_coefficient;
+  /*
+   With a layer that yields: the limits that particles carry after the step; else 0.
+   */
+  double *yield_limit;
 } contact_normal_fields;
 
 /*
@@ -1611,9 +1707,14 @@ typedef struct contact_normal_report_tangential {
    */
   double update;
   /*
+   The largest slope by which bounds fall with the slip, times an element's influence on itself; 0 without a law. From .5 on the iteration
+   may end as STAGNATED, from 1 on a single element has several solutions.
+   */
+  double law_slope;
+  /*
    Room for later versions: 0.
    */
-  double reserved[7];
+  double reserved[6];
 } contact_normal_report_tangential;
 
 /*
@@ -1962,6 +2063,14 @@ typedef struct contact_normal_friction_results {
    CONTACT_NORMAL_STICK_SLIP_... of each element, `[n][my][mx]`.
    */
   int32_t *stick_slip;
+  /*
+   As `fields->friction_coefficient`, `[n][my][mx]`.
+   */
+  double *friction_coefficient;
+  /*
+   As `fields->yield_limit`, `[n][my][mx]`.
+   */
+  double *yield_limit;
 } contact_normal_friction_results;
 
 /*
@@ -2816,7 +2925,7 @@ contact_normal_status contact_normal_kept(int64_t *bytes, int32_t *threads);
 
 /*
  1 if this library has what is called so, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop"), a member of
- the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables"), or what calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump",
+ the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "yield_limit"), or what calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump",
  "set_option", "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
  */
 int32_t contact_normal_has(const char *name);

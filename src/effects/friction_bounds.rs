@@ -1,0 +1,99 @@
+//! Bounds of tractions that a law or a layer changes, and what is refused of these.
+
+use super::effect::check_values;
+use super::friction::{Friction, Motion, Prescribed};
+use super::friction_law::PlasticLayer;
+use crate::error::{require, Error, Result};
+use crate::grid::Grid;
+use crate::scene::Bodies;
+
+const NO_FORCES: &str = "creepages must be prescribed in both directions";
+const LIKE_BODIES: &str = "bodies must be alike";
+const WHOLE_STEPS: &str = "with memory a step of steady rolling must be of whole elements along x or along y";
+
+impl Friction<'_> {
+    /// Whether the bounds depend on the slip: then the tangential problem is solved by [`law`](crate::friction::law).
+    pub fn has_law(&self) -> bool {
+        self.law.is_some() || self.layer.is_some_and(|layer| layer.hardening != 0.0)
+    }
+
+    /// Whether they depend on what particles of the interface carry from step to step.
+    pub fn has_memory(&self) -> bool {
+        self.law.is_some_and(|law| law.memory_distance > 0.0) || self.layer.is_some_and(|layer| layer.hardening != 0.0)
+    }
+
+    /// What a step takes by a law's speed; 1 without a law.
+    pub fn duration(&self, grid: &Grid) -> f64 {
+        match (self.law, self.motion) {
+            (None, _) => 1.0,
+            (Some(law), Motion::Shift) => law.time_step,
+            (Some(law), _) => self.distance(grid) / law.speed,
+        }
+    }
+
+    /// The bound of element i by a pressure where it does not depend on the slip; with a law mu p.
+    pub fn bound_at(&self, i: usize, pressure: f64) -> f64 {
+        let bound = self.coefficient.at(i) * pressure.max(0.0);
+        match self.layer {
+            Some(layer) if !self.has_law() => bound.min(self.yield_limit_before(layer, i)),
+            _ => bound,
+        }
+    }
+
+    /// The yield limit of element i before the step.
+    pub fn yield_limit_before(&self, layer: PlasticLayer, i: usize) -> f64 {
+        self.yield_limits.map_or(layer.yield_limit, |limits| limits[i])
+    }
+
+    /// Refuses laws, layers and histories that are none, or that are not solved with the rest.
+    pub(super) fn check_law(&self, grid: &Grid) -> Result<()> {
+        if let Some(law) = &self.law {
+            law.check(self.motion == Motion::Shift)?;
+        }
+        let positive = |name: &str, value: f64| {
+            require(value > 0.0 && value.is_finite(), name, value, "it must be positive and finite")
+        };
+        if let Some(layer) = &self.layer {
+            positive("friction->yield_limit", layer.yield_limit)?;
+            require(layer.hardening.is_finite(), "friction->hardening", layer.hardening, "it must be finite")?;
+        }
+        let from_0 = |name: &str, value: f64| {
+            require(value >= 0.0 && value.is_finite(), name, value, "it must be 0 or more, and finite")
+        };
+        self.coefficients_before
+            .map_or(Ok(()), |values| check_values("friction->previous_coefficient", values, grid, from_0))?;
+        self.yield_limits
+            .map_or(Ok(()), |values| check_values("friction->previous_yield_limit", values, grid, positive))?;
+        if !self.has_law() {
+            return Ok(());
+        }
+        let refused = |rule: &str| {
+            let name = if self.law.is_some() { "friction->law" } else { "friction->hardening" };
+            Err(Error::Unsupported(format!("{name} is given: {rule}")))
+        };
+        if self.prescribed.iter().any(|prescribed| matches!(prescribed, Prescribed::Force(_))) {
+            return refused(NO_FORCES);
+        }
+        if self.sensitivities {
+            return refused("friction->sensitivities must be 0");
+        }
+        let (x, y) = self.elements_rolled(grid);
+        let is_whole = x.fract() == 0.0 && y.fract() == 0.0 && (x == 0.0 || y == 0.0);
+        if self.motion == Motion::SteadyRolling && self.has_memory() && !is_whole {
+            return refused(WHOLE_STEPS);
+        }
+        Ok(())
+    }
+
+    /// Refuses unlike bodies.
+    pub(super) fn check_bodies_of_law(&self, bodies: &Bodies) -> Result<()> {
+        let Bodies { shear_modulus: [g1, g2], poisson_ratio: [nu1, nu2] } = *bodies;
+        let has_cross = self.influence.is_some_and(|influence| influence.cross.is_some());
+        let is_unlike = self.influence.is_none() && (1.0 - 2.0 * nu1) / g1 != (1.0 - 2.0 * nu2) / g2;
+        if self.has_law() && (has_cross || is_unlike) {
+            let name = if self.law.is_some() { "friction->law" } else { "friction->hardening" };
+            return Err(Error::Unsupported(format!("{name} is given: {LIKE_BODIES}")));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,119 @@
+//! What friction may have beside a constant coefficient: a law by which the coefficient falls with the slip velocity, and a layer between
+//! the bodies that yields. See [`friction::law`](crate::friction::law) for what is solved.
+
+use crate::error::{require, Result};
+
+/// How a coefficient of friction falls with the slip velocity v, each of two parts with its own half speed h.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fall {
+    /// `max(0, 1 - v/(2 h))`, both parts.
+    Linear,
+    /// `1/(1 + v/h)`, and of the second part `1/(1 + (v/h)^2)`.
+    Rational,
+    /// `2^(-v/h)`, both parts.
+    Exponential,
+}
+
+/// A coefficient of friction that depends on the slip velocity:
+///
+/// ```text
+/// mu_s(v) = mu (kinetic + falling_1 f_1(v) + falling_2 f_2(v))/(kinetic + falling_1 + falling_2)       mu: the coefficient, that at rest
+/// mu      = t mu_v + (1 - t) mu_s(v),    t = c/(c + dt max(v, v0))        c: memory_distance, v0: memory_speed, mu_v: what the particle had
+/// ```
+///
+/// The kinds are those of CONTACT (L = 2, 3, 4); Polach's law is `Exponential` with kinetic A, falling 1 - A and half speed ln 2/B.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrictionLaw {
+    /// How it falls.
+    pub fall: Fall,
+    /// What is left at high speed; only ratios of this and of `falling` count.
+    pub kinetic: f64,
+    /// What falls, in two parts.
+    pub falling: [f64; 2],
+    /// The slip velocities at which half of each part is left.
+    pub half_speed: [f64; 2],
+    /// V: the speed of rolling. A step takes dq/V.
+    pub speed: f64,
+    /// What a shift takes, a time.
+    pub time_step: f64,
+    /// The distance of slip over which the coefficient follows; 0: at once.
+    pub memory_distance: f64,
+    /// The least slip velocity by which it follows.
+    pub memory_speed: f64,
+}
+
+/// A layer between the bodies that yields: `|q| <= min(mu p, yield + hardening * slip)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlasticLayer {
+    /// The yield limit of fresh material, a traction.
+    pub yield_limit: f64,
+    /// What the limit gains by a length of plastic slip, a traction per length; negative: it softens, to a thousandth of `yield_limit` at least.
+    pub hardening: f64,
+}
+
+impl FrictionLaw {
+    /// Of one part that falls, at once.
+    pub fn new(fall: Fall, (kinetic, falling): (f64, f64), half_speed: f64, speed: f64) -> FrictionLaw {
+        let (falling, half_speed) = ([falling, 0.0], [half_speed, 1.0]);
+        FrictionLaw {
+            fall,
+            kinetic,
+            falling,
+            half_speed,
+            speed,
+            time_step: 1.0,
+            memory_distance: 0.0,
+            memory_speed: 0.0,
+        }
+    }
+
+    /// `mu_s(v)` relative to that at rest, and its derivative by v.
+    pub fn at(&self, v: f64) -> (f64, f64) {
+        let (mut value, mut slope) = (self.kinetic, 0.0);
+        for (k, (part, h)) in self.falling.into_iter().zip(self.half_speed).enumerate() {
+            if part == 0.0 {
+                continue;
+            }
+            let (f, d) = match (self.fall, k) {
+                (Fall::Linear, _) if v < 2.0 * h => (1.0 - 0.5 * v / h, -0.5 / h),
+                (Fall::Linear, _) => (0.0, 0.0),
+                (Fall::Rational, 0) => (1.0 / (1.0 + v / h), -1.0 / h / (1.0 + v / h).powi(2)),
+                (Fall::Rational, _) => {
+                    let square = (v / h).powi(2);
+                    (1.0 / (1.0 + square), -2.0 * v / (h * h) / (1.0 + square).powi(2))
+                }
+                (Fall::Exponential, _) => {
+                    let f = (-v / h).exp2();
+                    (f, -std::f64::consts::LN_2 * f / h)
+                }
+            };
+            (value, slope) = (value + part * f, slope + part * d);
+        }
+        let at_rest = self.kinetic + self.falling[0] + self.falling[1];
+        (value / at_rest, slope / at_rest)
+    }
+
+    /// Refuses numbers that are none; `is_shift`: the time of a step is `time_step`.
+    pub(super) fn check(&self, is_shift: bool) -> Result<()> {
+        let from_0 = |name: &str, value: f64| {
+            require(value >= 0.0 && value.is_finite(), name, value, "it must be 0 or more, and finite")
+        };
+        let positive = |name: &str, value: f64| {
+            require(value > 0.0 && value.is_finite(), name, value, "it must be positive and finite")
+        };
+        from_0("friction->kinetic", self.kinetic)?;
+        for k in 0..2 {
+            from_0(["friction->falling[0]", "friction->falling[1]"][k], self.falling[k])?;
+            if self.falling[k] > 0.0 {
+                positive(["friction->half_speed[0]", "friction->half_speed[1]"][k], self.half_speed[k])?;
+            }
+        }
+        positive("friction->kinetic + falling", self.kinetic + self.falling[0] + self.falling[1])?;
+        match is_shift {
+            true => positive("friction->time_step", self.time_step)?,
+            false => positive("friction->speed", self.speed)?,
+        }
+        from_0("friction->memory_distance", self.memory_distance)?;
+        from_0("friction->memory_speed", self.memory_speed)
+    }
+}

@@ -1,0 +1,169 @@
+//! One element under a law: its bound as a function of its slip and of what its particle carries, and the slip that goes with a traction.
+
+use crate::effects::{FrictionLaw, PlasticLayer};
+
+/// Times the yield limit of fresh material: softening ends there.
+const SOFTEST: f64 = 1e-3;
+/// Times the coefficient at rest: it does not fall below.
+const LEAST: f64 = 1e-9;
+/// Steps of the search for a slip, which is bracketed, and its precision.
+const STEPS: u32 = 80;
+const PRECISION: f64 = 1e-14;
+
+/// What a particle of the interface carries.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Particle {
+    /// Its coefficient of friction.
+    pub coefficient: f64,
+    /// Its yield limit, a traction.
+    pub yield_limit: f64,
+}
+
+/// The law of a step in the units of the iterations.
+#[derive(Clone, Copy, Debug)]
+pub struct Law {
+    pub fall: Option<FrictionLaw>,
+    pub layer: Option<PlasticLayer>,
+    /// The slip velocity of a slip of 1, in the caller's units.
+    pub rate: f64,
+    /// What a step takes, in these.
+    pub duration: f64,
+}
+
+/// An element: its pressure, and its coefficient at rest.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    pub pressure: f64,
+    pub coefficient: f64,
+}
+
+/// Derivatives by the slip, by the coefficient and by the yield limit that the particle had.
+type Slope = [f64; 3];
+
+/// The bound, and the particle afterwards, with their derivatives.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Response {
+    pub bound: f64,
+    pub slope: Slope,
+    pub particle: Particle,
+    /// Of its coefficient and of its yield limit.
+    pub slopes: [Slope; 2],
+    /// Whether it is the layer that bounds the traction.
+    pub yields: bool,
+}
+
+/// What an element does under a traction that slip relieves.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Resolved {
+    pub slips: bool,
+    pub response: Response,
+    /// Derivatives of the bound, the coefficient and the yield limit by the traction and by what the particle had.
+    pub linear: [Slope; 3],
+}
+
+impl Law {
+    /// At a slip, of a particle.
+    pub fn at(&self, slip: f64, place: Place, had: Particle) -> Response {
+        let Place { pressure, coefficient } = place;
+        let (mut mu, mut of_mu) = (coefficient, [0.0; 3]);
+        if let Some(law) = &self.fall {
+            let v = slip * self.rate;
+            let (value, slope) = law.at(v);
+            let (steady, by_slip) = (coefficient * value, coefficient * slope * self.rate);
+            let c = law.memory_distance;
+            if c > 0.0 {
+                let whole = c + self.duration * v.max(law.memory_speed);
+                let kept = c / whole;
+                let of_kept = if v > law.memory_speed { -c * self.duration / (whole * whole) * self.rate } else { 0.0 };
+                mu = kept * had.coefficient + (1.0 - kept) * steady;
+                of_mu = [(1.0 - kept) * by_slip + of_kept * (had.coefficient - steady), kept, 0.0];
+            } else {
+                (mu, of_mu) = (steady, [by_slip, 0.0, 0.0]);
+            }
+        }
+        if mu < LEAST * coefficient {
+            (mu, of_mu) = (LEAST * coefficient, [0.0; 3]);
+        }
+        let (cap, of_cap) = (pressure * mu, of_mu.map(|slope| pressure * slope));
+        let limit = had.yield_limit;
+        let kept = [0.0, 0.0, 1.0];
+        let by_friction = |yield_limit: f64, of_limit: Slope| Response {
+            bound: cap,
+            slope: of_cap,
+            particle: Particle { coefficient: mu, yield_limit },
+            slopes: [of_mu, of_limit],
+            yields: false,
+        };
+        let Some(layer) = self.layer.filter(|_| limit < cap) else { return by_friction(limit, kept) };
+        let least = SOFTEST * layer.yield_limit;
+        let (hardened, of_hardened) = match limit + layer.hardening * slip {
+            value if value < least.min(limit) => (least.min(limit), if limit < least { kept } else { [0.0; 3] }),
+            value => (value, [layer.hardening, 0.0, 1.0]),
+        };
+        if hardened >= cap {
+            return by_friction(cap, of_cap);
+        }
+        Response {
+            bound: hardened,
+            slope: of_hardened,
+            particle: Particle { coefficient: mu, yield_limit: hardened },
+            slopes: [of_mu, of_hardened],
+            yields: true,
+        }
+    }
+
+    /// The slip by which the bound plus rho times the slip is a traction, with derivatives; none where the bound at rest carries it.
+    pub fn resolve(&self, traction: f64, rho: f64, place: Place, had: Particle) -> Resolved {
+        let at_rest = self.at(0.0, place, had);
+        let slips = traction > at_rest.bound;
+        let response = if slips { self.slipping(traction, rho, (place, had), at_rest) } else { at_rest };
+        let Response { slope, slopes, .. } = response;
+        let by = |[slip, mu, limit]: Slope| {
+            let of_slip = if slips { slip / (rho + slope[0]) } else { 0.0 };
+            [of_slip, mu - of_slip * slope[1], limit - of_slip * slope[2]]
+        };
+        Resolved { slips, response, linear: [by(slope), by(slopes[0]), by(slopes[1])] }
+    }
+
+    /// By Newton's method in a bracket.
+    fn slipping(&self, traction: f64, rho: f64, (place, had): (Place, Particle), at_rest: Response) -> Response {
+        let (mut low, mut high) = (0.0, traction / rho);
+        let (mut slip, mut found) = (0.0, at_rest);
+        for _ in 0..STEPS {
+            let excess = found.bound + rho * slip - traction;
+            if excess > 0.0 {
+                high = slip;
+            } else {
+                low = slip;
+            }
+            let by_slip = found.slope[0] + rho;
+            let mut next = if by_slip > 0.0 { slip - excess / by_slip } else { f64::NAN };
+            if !(next >= low && next <= high) {
+                next = 0.5 * (low + high);
+            }
+            let is_done = (next - slip).abs() <= PRECISION * next;
+            slip = next;
+            found = self.at(slip, place, had);
+            if is_done {
+                break;
+            }
+        }
+        found
+    }
+
+    /// The largest slope by which the bound falls with the slip, of an element of this product of coefficient and pressure.
+    pub fn steepest(&self, largest: f64) -> f64 {
+        let of_layer = self.layer.map_or(0.0, |layer| (-layer.hardening).max(0.0));
+        let Some(law) = &self.fall else { return of_layer };
+        let slope = |v: f64| {
+            let c = law.memory_distance;
+            let kept = if c > 0.0 { c / (c + self.duration * v.max(law.memory_speed)) } else { 0.0 };
+            -(1.0 - kept) * law.at(v).1 * self.rate
+        };
+        // Eight places to a factor of two of each half speed, from 2^-20 to 2^20 times it.
+        let places = |h: f64| (-160..=160).map(move |k| h * (0.125 * f64::from(k)).exp2());
+        let parts = law.falling.into_iter().zip(law.half_speed).filter(|(part, _)| *part > 0.0);
+        let steepest = parts.flat_map(|(_, h)| places(h)).chain([0.0, law.memory_speed]).map(slope).fold(0.0, f64::max);
+        of_layer.max(largest * steepest)
+    }
+}

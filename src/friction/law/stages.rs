@@ -1,0 +1,269 @@
+//! The two stages of a solve with a law.
+//!
+//! 1. lagged: before each step of Newton's method for fixed bounds these are renewed by the slips of the step before, on what slipped in it;
+//! 2. from a residual of [`SWITCH`] on Newton's method with the derivatives of the bounds ([`system`](super::system)); where it does not gain, a few
+//!    lagged steps come between.
+//!
+//! What is returned is on its circles, with a fresh product, and certified twice: the conditions with bounds `g = |q|` that stand still, and
+//! `R_g = rms(|q| - g(slip))/rms g(0)` over C of what slips, by a march with the slips of that product.
+
+use super::super::certificate::{scale, Certificate};
+use super::super::forces::Forces;
+use super::super::plane::{clip, dot, plus, square, Vector};
+use super::super::problem::{Problem, State};
+use super::super::shift::Goal;
+use super::super::step::{self, compliance, Effort};
+use super::super::tangent::{mixing, project, rho_of, Side, Tangent};
+use super::march::March;
+use super::system;
+use crate::error::Result;
+use crate::methods::fields::{self, Fields};
+use crate::progress::Outcome;
+
+/// Newton's method takes over from this residual on.
+const SWITCH: f64 = 1e-2;
+/// It is worth its steps where each leaves at most this part of the least residual so far; if not, so many lagged steps follow.
+const PROGRESS: f64 = 0.7;
+const HELD: u32 = 5;
+/// Residual of the linear solves; the last one ends at this part of the tolerance, but gains at least so much.
+const INNER: f64 = 0.2;
+const INNER_LAGGED: f64 = 0.35;
+const ENOUGH: f64 = 0.5;
+const LEAST_GAIN: f64 = 0.5;
+const DIRECTIONS: usize = 40;
+/// Of the natural map in Newton steps, times the inverse of an element's influence on itself: more than the largest slope of a bound, so that each
+/// element has one state. 2 took 15 to 36 products where 4 takes 15 to 24 (192 x 176 elements to 1e-6).
+const RHO: f64 = 4.0;
+/// Steps without a residual below this part of the least one, after which it ends.
+const PATIENCE: u32 = 30;
+const GAIN: f64 = 0.9;
+
+/// What the steps have brought so far.
+struct Course {
+    least: f64,
+    since: u32,
+    held: u32,
+    was_newton: bool,
+    hardens: bool,
+}
+
+/// How it ended: the larger of both certificates' residuals.
+pub struct Ended {
+    pub outcome: Outcome,
+    pub residual: f64,
+}
+
+/// The best tractions so far.
+struct Best {
+    q: Vec<Vector>,
+    worst: f64,
+}
+
+/// Iterates from what the state holds.
+pub fn solve(
+    problem: &mut Problem,
+    state: &mut State,
+    (tangent, fields): (&mut Tangent, &mut Fields),
+    march: &mut March,
+    goal: Goal<'_>,
+) -> Result<Ended> {
+    let n = state.q.len();
+    tangent.fit(n)?;
+    problem.continue_residuals()?;
+    let mut best = Best { q: fields.take(n)?, worst: f64::INFINITY };
+    // Nothing has slipped yet.
+    tangent.side.fill(Side::Stick);
+    let outcome = iterate(problem, state, (tangent, fields), (march, &mut best), goal)?;
+    if outcome != Outcome::Converged && best.worst.is_finite() {
+        fields::map(&problem.threads().clone(), &mut state.q, |k, _| best.q[k]);
+        problem.refresh_unclipped(state);
+        lag(problem, state, tangent, march);
+        tangent.predict(problem, state, 1.0 / compliance(problem));
+        onto_circles(problem, state, tangent);
+    }
+    fields.give(best.q);
+    let residual = freeze(problem, state, tangent, march);
+    Ok(Ended { outcome, residual })
+}
+
+fn iterate(
+    problem: &mut Problem,
+    state: &mut State,
+    (tangent, fields): (&mut Tangent, &mut Fields),
+    (march, best): (&mut March, &mut Best),
+    goal: Goal<'_>,
+) -> Result<Outcome> {
+    let Goal { tolerance, limit, watch, .. } = goal;
+    let (made, cap) = (problem.operators.products, 1.0 / compliance(problem));
+    // A bound that hardens follows the slip too steeply to lag behind it.
+    let hardens = march.law.layer.is_some_and(|layer| layer.hardening != 0.0);
+    let mut course = Course { least: f64::INFINITY, since: 0, held: 0, was_newton: false, hardens };
+    let mut is_on_circles = false;
+    loop {
+        lag(problem, state, tangent, march);
+        let rho = rho_of((problem.rms_bound(), problem.rms_slip()), cap);
+        let measures = tangent.predict(problem, state, rho);
+        let worst = worst(problem, state, tangent);
+        if !worst.is_finite() {
+            return Ok(Outcome::Stagnated);
+        }
+        if worst < best.worst {
+            fields::fill(problem.threads(), &mut best.q, |k| state.q[k]);
+            best.worst = worst;
+        }
+        if worst < tolerance {
+            if is_on_circles {
+                return Ok(Outcome::Converged);
+            }
+            onto_circles(problem, state, tangent);
+            is_on_circles = true;
+            continue;
+        }
+        is_on_circles = false;
+        let left = limit.saturating_sub(problem.operators.products - made);
+        if left == 0 {
+            return Ok(Outcome::IterationLimit);
+        }
+        let Some(is_newton) = course.next(worst) else { return Ok(Outcome::Stagnated) };
+        let inner = if is_newton { INNER } else { INNER_LAGGED };
+        let inner = inner.max((ENOUGH * tolerance / worst).min(LEAST_GAIN));
+        let most = DIRECTIONS.min(left as usize);
+        if is_newton {
+            let rho = if hardens && march.law.fall.is_none() { rho } else { RHO / problem.operators.self_influence };
+            resolve(problem, state, tangent, march, rho);
+            system::step(problem, state, (tangent, march), (rho, inner, most), fields)?;
+        } else {
+            let effort = Effort { inner, most, left: measures.residual, length: 1.0 };
+            step::step(problem, state, tangent, (Forces::NONE, effort), fields)?;
+        }
+        if !watch(worst) {
+            return Ok(Outcome::Cancelled);
+        }
+    }
+}
+
+impl Course {
+    /// Whether the next step is Newton's; none: it ends.
+    fn next(&mut self, worst: f64) -> Option<bool> {
+        let mut is_newton = self.hardens || worst < SWITCH && self.held == 0;
+        if is_newton && !self.hardens && self.was_newton && worst > PROGRESS * self.least {
+            (self.held, is_newton) = (HELD, false);
+        }
+        self.since = if worst < GAIN * self.least { 0 } else { self.since + 1 };
+        self.least = self.least.min(worst);
+        self.held = if is_newton { 0 } else { self.held.saturating_sub(1) };
+        self.was_newton = is_newton;
+        (self.since <= PATIENCE).then_some(is_newton)
+    }
+}
+
+/// Bounds by the slips of what slipped in the last step.
+fn lag(problem: &mut Problem, state: &State, tangent: &Tangent, march: &mut March) {
+    let law = march.law;
+    let mut bound = std::mem::take(&mut problem.bound);
+    march.go(|k, place, had| {
+        let slips = place.pressure > 0.0 && tangent.side[k] == Side::Slip;
+        let slip = if slips { square(problem.slip_at(k, &state.u)).sqrt() } else { 0.0 };
+        let response = law.at(slip, place, had);
+        bound[k] = response.bound;
+        response.particle
+    });
+    problem.bound = bound;
+}
+
+/// The larger of what is left of the slips and of the bounds: on slip the slip across q and `|q| - g`, on stick the slip.
+fn worst(problem: &Problem, state: &State, tangent: &Tangent) -> f64 {
+    let of = |k: usize| {
+        let (q, g) = (state.q[k], problem.bound[k]);
+        match tangent.side[k] {
+            Side::Outside => [0.0; 2],
+            Side::Stick => [square(problem.slip_at(k, &state.u)), (square(q).sqrt() - g).max(0.0).powi(2)],
+            Side::Slip => {
+                let s = problem.slip_at(k, &state.u);
+                let across = s[0] * q[1] - s[1] * q[0];
+                let is_against = dot(s, q) < 0.0;
+                let rest = if is_against { across * across / square(q) } else { square(s) };
+                [rest, (square(q).sqrt() - g).powi(2)]
+            }
+        }
+    };
+    let [slips, bounds] = fields::sum(problem.threads(), state.q.len(), of).map(|sum| problem.rms_of(sum));
+    let slips = if slips > 0.0 { slips / scale(problem, state) } else { 0.0 };
+    let bounds = if bounds > 0.0 { bounds / problem.rms_bound() } else { 0.0 };
+    if slips.is_nan() || bounds.is_nan() {
+        return f64::NAN;
+    }
+    slips.max(bounds)
+}
+
+/// What slips goes onto its circle, what sticks stays in it; a fresh product.
+fn onto_circles(problem: &mut Problem, state: &mut State, tangent: &Tangent) {
+    let (bound, threads) = (&problem.bound, problem.threads().clone());
+    fields::map(&threads, &mut state.q, |k, q| match tangent.side[k] {
+        Side::Slip => {
+            let length = square(q).sqrt();
+            let q = if length > 0.0 { q } else { tangent.normal[k] };
+            let length = if length > 0.0 { length } else { 1.0 };
+            clip(q.map(|q| q * (bound[k] / length)), bound[k])
+        }
+        Side::Stick => clip(q, bound[k]),
+        Side::Outside => [0.0; 2],
+    });
+    problem.refresh_unclipped(state);
+}
+
+/// The state by the resolvent, and its tangents.
+fn resolve(problem: &mut Problem, state: &State, tangent: &mut Tangent, march: &mut March, rho: f64) {
+    let a0 = problem.operators.self_influence;
+    let share = a0 / problem.operators.greatest();
+    let natural = |k: usize| plus(state.q[k], -rho, problem.slip_at(k, &state.u));
+    march.resolve(rho, |k| square(natural(k)).sqrt());
+    let mut slips = 0;
+    for k in 0..state.q.len() {
+        if !(problem.bound[k] > 0.0) {
+            tangent.side[k] = Side::Outside;
+            continue;
+        }
+        let resolved = march.resolved(k);
+        let bound = resolved.response.bound;
+        let (tau, s) = (natural(k), problem.slip_at(k, &state.u));
+        let against = [-s[0], -s[1]];
+        let beyond = problem.operators.excess.as_ref().map_or(0.0, |excess| share * excess.at(k));
+        let (side, normal, curvature) = if resolved.slips {
+            let length = square(tau).sqrt();
+            (Side::Slip, tau.map(|tau| tau / length), (length / bound - 1.0).max(0.0) / rho)
+        } else {
+            (Side::Stick, [0.0; 2], 0.0)
+        };
+        slips += usize::from(side == Side::Slip);
+        (tangent.side[k], tangent.normal[k], tangent.curvature[k]) = (side, normal, curvature);
+        tangent.mixing[k] = mixing(curvature + beyond, a0);
+        tangent.projected[k] = project(normal, against);
+    }
+    tangent.slip_count = slips;
+    for k in 0..state.q.len() {
+        if problem.bound[k] > 0.0 {
+            problem.bound[k] = march.resolved(k).response.bound;
+        }
+    }
+}
+
+/// Bounds of what slips become what it carries; the larger residual of both certificates.
+fn freeze(problem: &mut Problem, state: &State, tangent: &Tangent, march: &mut March) -> f64 {
+    lag(problem, state, tangent, march);
+    let of = |k: usize| match tangent.side[k] {
+        Side::Slip => [(square(state.q[k]).sqrt() - problem.bound[k]).powi(2)],
+        Side::Stick => [(square(state.q[k]).sqrt() - problem.bound[k]).max(0.0).powi(2)],
+        Side::Outside => [0.0],
+    };
+    let [left] = fields::sum(problem.threads(), state.q.len(), of).map(|sum| problem.rms_of(sum));
+    let bounds = if left > 0.0 { left / problem.rms_bound() } else { 0.0 };
+    for (k, side) in tangent.side.iter().enumerate() {
+        if *side == Side::Slip {
+            problem.bound[k] = square(state.q[k]).sqrt();
+        } else if *side == Side::Stick {
+            problem.bound[k] = problem.bound[k].max(square(state.q[k]).sqrt());
+        }
+    }
+    Certificate::of(problem, state).residual.max(bounds)
+}

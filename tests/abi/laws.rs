@@ -1,0 +1,109 @@
+//! Laws of friction and layers that yield, through the C ABI: what is refused by which name, and what particles carry from call to call.
+
+use std::ptr::null_mut;
+
+use crate::call::{Call, Through, MX, MY};
+use contact_normal::ffi::*;
+
+fn falling(friction: &mut contact_normal_friction) {
+    (friction.law, friction.kinetic, friction.falling[0]) = (CONTACT_NORMAL_FRICTION_LAW_EXPONENTIAL, 0.1, 0.2);
+    (friction.half_speed[0], friction.time_step, friction.speed) = (1e-2, 1.0, 100.0);
+}
+
+#[test]
+fn what_is_no_law_or_not_solved_is_refused_by_name() {
+    type Spoil = fn(&mut contact_normal_friction);
+    let cases: [(Spoil, i32, &str); 12] = [
+        (|f| f.law = 4, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->law is 4"),
+        (|f| f.reserved_for_law = 1, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->reserved_for_law"),
+        (|f| f.kinetic = -1.0, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->kinetic is -1"),
+        (|f| f.half_speed[0] = 0.0, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->half_speed[0] is 0"),
+        (|f| f.time_step = 0.0, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->time_step is 0"),
+        (|f| f.memory_distance = f64::NAN, CONTACT_NORMAL_NOT_FINITE, "friction->memory_distance is NaN"),
+        (|f| f.yield_limit = -2.0, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->yield_limit is -2"),
+        (|f| f.hardening = 5.0, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->yield_limit is 0"),
+        (
+            |f| f.prescribed[1] = CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE,
+            CONTACT_NORMAL_UNSUPPORTED,
+            "friction->law is given: creepages",
+        ),
+        (|f| f.sensitivities = 1, CONTACT_NORMAL_UNSUPPORTED, "friction->law is given: friction->sensitivities"),
+        (
+            |f| {
+                f.motion = CONTACT_NORMAL_MOTION_STEADY_ROLLING;
+                (f.memory_distance, f.rolling_distance) = (1e-3, 0.3);
+            },
+            CONTACT_NORMAL_UNSUPPORTED,
+            "whole elements",
+        ),
+        (
+            |f| {
+                f.motion = CONTACT_NORMAL_MOTION_STEADY_ROLLING;
+                f.speed = 0.0;
+            },
+            CONTACT_NORMAL_INVALID_ARGUMENT,
+            "friction->speed is 0",
+        ),
+    ];
+    for (spoil, status, words) in cases {
+        let mut call = Call::new();
+        falling(call.use_friction());
+        spoil(call.use_friction());
+        let before = call.outputs();
+        let (got, message) = call.run(Through::Solve, null_mut());
+        assert_eq!(got, status, "{words}: {message}");
+        assert!(message.contains(words), "\"{message}\" does not say {words}");
+        assert!(call.outputs() == before, "{words}: refused, but written");
+    }
+    let mut call = Call::new();
+    falling(call.use_friction());
+    call.scene.known.shear_modulus[1] = 41000.0;
+    let (got, message) = call.run(Through::Solve, null_mut());
+    assert!(got == CONTACT_NORMAL_UNSUPPORTED && message.contains("bodies must be alike"), "{message}");
+}
+
+/// Two shifts over a layer that hardens: by a handle that continues, and by what the caller hands on, they are the same.
+#[test]
+fn a_handle_carries_what_the_caller_would_hand_on() {
+    let n = MX * MY;
+    let mut call = Call::new();
+    let harden = |call: &mut Call| {
+        let friction = call.use_friction();
+        falling(friction);
+        (friction.memory_distance, friction.memory_speed) = (1e-4, 1e-4);
+        (friction.yield_limit, friction.hardening) = (30.0, 2e4);
+    };
+    harden(&mut call);
+    let handle = call.new_handle();
+    let found = |call: &mut Call, handle: *mut contact_normal_solver| {
+        let (mut q, mut mu, mut limit) = (vec![-1.0; 2 * n], vec![-1.0; n], vec![-1.0; n]);
+        let fields = &mut call.fields.known;
+        fields.traction = [q.as_mut_ptr(), q[n..].as_mut_ptr()];
+        (fields.friction_coefficient, fields.yield_limit) = (mu.as_mut_ptr(), limit.as_mut_ptr());
+        let through = if handle.is_null() { Through::Solve } else { Through::SolverSolve };
+        let (status, message) = call.run(through, handle);
+        assert_eq!(status, CONTACT_NORMAL_OK, "{message}");
+        (q, mu, limit)
+    };
+    let (q, mu, limit) = found(&mut call, handle);
+    assert!(mu.iter().any(|mu| *mu < 0.29) && limit.iter().any(|limit| *limit > 30.5), "{mu:?} {limit:?}");
+    call.use_friction().continues = 1;
+    let kept = found(&mut call, handle);
+    // SAFETY: a handle of ours.
+    unsafe { contact_normal_solver_free(handle) };
+    let mut alone = Call::new();
+    harden(&mut alone);
+    let friction = alone.use_friction();
+    friction.previous_traction = [q.as_ptr(), q[n..].as_ptr()];
+    (friction.previous_coefficient, friction.previous_yield_limit) = (mu.as_ptr(), limit.as_ptr());
+    assert!(found(&mut alone, null_mut()) == kept);
+    let fresh = found(
+        &mut {
+            let mut call = Call::new();
+            harden(&mut call);
+            call
+        },
+        null_mut(),
+    );
+    assert!(fresh.2 != kept.2, "the second shift does not know of the first");
+}

@@ -1,0 +1,248 @@
+//! A layer between the bodies that yields, against what CONTACT printed (its examples carter_plast, catt2d_plast and plastic_3bl;
+//! eve70a/CONTACT).
+
+use contact_normal::friction::{Report, Solution, PLASTIC, SLIP, STICK};
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Coefficient, Friction, Motion, PlasticLayer, Prescribed, Previous};
+
+use super::laws::{pressures, solver, steel};
+use super::support::run;
+
+const FORCE: f64 = 35_780.0;
+
+fn along(xi: f64) -> [Prescribed; 2] {
+    [Prescribed::Creepage(xi), Prescribed::Creepage(0.0)]
+}
+
+/// Elements that stick, that slip, and that the layer bounds.
+fn counts(solution: &Solution) -> [usize; 3] {
+    [STICK, SLIP, PLASTIC].map(|what| solution.stick_slip.iter().filter(|side| **side == what).count())
+}
+
+fn cylinder(mx: usize, dx: f64, first: f64) -> (Grid, Vec<f64>) {
+    let grid = Grid::new(mx, 1, dx, 200.0).unwrap();
+    let h: Vec<f64> = (0..mx).map(|i| 1e-3 * (first + i as f64 * dx).powi(2)).collect();
+    (grid, pressures(grid, &h, FORCE))
+}
+
+#[test]
+fn steady_rolling_over_a_layer_that_yields_is_that_of_contact() {
+    let printed = [
+        (4_018_000.0, [(0.6562, [12, 11, 3]), (0.6478, [25, 21, 5]), (0.6436, [52, 41, 8])]),
+        (123_000.0, [(0.6420, [11, 8, 7]), (0.6340, [22, 15, 14]), (0.6299, [46, 29, 26])]),
+        (0.0, [(0.5959, [9, 4, 13]), (0.5896, [19, 7, 25]), (0.5864, [39, 12, 50])]),
+        (-20_500.0, [(0.5509, [8, 3, 15]), (0.5457, [17, 4, 30]), (0.5430, [34, 5, 62])]),
+    ];
+    for (k, (mx, dx, first)) in [(30, 0.08, -1.16), (55, 0.04, -1.08), (105, 0.02, -1.04)].into_iter().enumerate() {
+        let (grid, pressure) = cylinder(mx, dx, first);
+        for (hardening, of_grids) in printed {
+            let (force, counted) = of_grids[k];
+            let layer = Some(PlasticLayer { yield_limit: 35.0, hardening });
+            let friction =
+                Friction { motion: Motion::SteadyRolling, prescribed: along(-4e-4), layer, ..Friction::new(0.5) };
+            let (report, solution) = run(&mut solver(&grid), &pressure, &friction, 1e-8);
+            let part = report.force[0] / (0.5 * FORCE);
+            println!(
+                "{dx} {hardening} {part:.5} ({force}) {:?} {counted:?} products {}",
+                counts(&solution),
+                report.products
+            );
+            assert!((part - force).abs() <= 6e-5, "{dx} {hardening}: {part} {force}");
+            assert_eq!(counts(&solution), counted, "{dx} {hardening}");
+        }
+    }
+}
+
+/// `Fx/(.5 N)`; stick, slip, plastic.
+const STEPS: [(f64, [usize; 3]); 49] = [
+    (0.6051, [17, 4, 5]),
+    (0.61, [16, 4, 6]),
+    (0.6146, [14, 4, 8]),
+    (0.6189, [13, 4, 9]),
+    (0.623, [12, 4, 10]),
+    (0.6264, [9, 5, 12]),
+    (0.6284, [7, 6, 13]),
+    (0.6303, [8, 6, 12]),
+    (0.6319, [9, 6, 11]),
+    (0.6332, [10, 7, 9]),
+    (0.6344, [10, 7, 9]),
+    (0.6349, [11, 8, 7]),
+    (0.6352, [11, 9, 6]),
+    (0.6347, [12, 9, 5]),
+    (0.6341, [12, 9, 5]),
+    (0.6338, [12, 9, 5]),
+    (0.6336, [12, 9, 5]),
+    (0.6336, [11, 9, 6]),
+    (0.6337, [11, 8, 7]),
+    (0.6338, [11, 8, 7]),
+    (0.634, [11, 8, 7]),
+    (0.6343, [11, 8, 7]),
+    (0.6345, [11, 8, 7]),
+    (0.6347, [11, 8, 7]),
+    (0.6349, [11, 8, 7]),
+    (0.6351, [11, 8, 7]),
+    (0.6353, [11, 8, 7]),
+    (0.6354, [11, 8, 7]),
+    (0.6356, [11, 8, 7]),
+    (0.6358, [11, 8, 7]),
+    (0.6359, [11, 8, 7]),
+    (0.636, [11, 8, 7]),
+    (0.6361, [11, 8, 7]),
+    (0.6363, [11, 8, 7]),
+    (0.6364, [11, 8, 7]),
+    (0.6365, [11, 8, 7]),
+    (0.6366, [11, 8, 7]),
+    (0.6367, [11, 8, 7]),
+    (0.6369, [11, 8, 7]),
+    (0.637, [11, 8, 7]),
+    (0.6371, [11, 8, 7]),
+    (0.6372, [11, 8, 7]),
+    (0.6373, [11, 8, 7]),
+    (0.6374, [11, 8, 7]),
+    (0.6375, [11, 8, 7]),
+    (0.6376, [11, 8, 7]),
+    (0.6377, [11, 8, 7]),
+    (0.6378, [11, 8, 7]),
+    (0.6379, [11, 8, 7]),
+];
+
+#[test]
+fn steps_from_a_shift_to_rolling_are_those_of_contact() {
+    let (grid, pressure) = cylinder(30, 0.08, -1.16);
+    let layer = Some(PlasticLayer { yield_limit: 35.0, hardening: 123_000.0 });
+    let shift = |xi: f64| Friction { prescribed: along(xi), layer, ..Friction::new(0.5) };
+    let part = |report: &Report| report.force[0] / (0.5 * FORCE);
+    // The shift of which the force is .6 mu N: printed as -1.976e-3.
+    let (mut low, mut high) = (-2.1e-3, -1.8e-3);
+    for _ in 0..20 {
+        let middle = 0.5 * (low + high);
+        let (report, _) = run(&mut solver(&grid), &pressure, &shift(middle), 1e-8);
+        (low, high) = if part(&report) > 0.6 { (middle, high) } else { (low, middle) };
+    }
+    assert!((low + 1.976e-3).abs() <= 6e-7, "{low}");
+    let mut solver = solver(&grid);
+    let (_, solution) = run(&mut solver, &pressure, &shift(low), 1e-8);
+    assert_eq!(counts(&solution), [14, 8, 4]);
+    let friction = Friction {
+        motion: Motion::TransientRolling,
+        prescribed: along(-4e-4),
+        layer,
+        previous: Previous::Kept,
+        ..Friction::new(0.5)
+    };
+    let mut products = 0.0;
+    for (step, (force, counted)) in STEPS.into_iter().enumerate() {
+        let (report, solution) = run(&mut solver, &pressure, &friction, 1e-8);
+        products += report.products;
+        assert!((part(&report) - force).abs() <= 1.01e-4, "{step}: {} {force}", part(&report));
+        assert_eq!(counts(&solution), counted, "{step}");
+    }
+    println!("{} products a step", products / STEPS.len() as f64);
+}
+
+/// One element of 1 mm x 1 mm under 900 N with mu = .7 and a layer of .02 mm: its shear modulus, yield limit and hardening, shifts and the
+/// tractions that CONTACT printed in four digits.
+const SHEARED: [(f64, f64, f64, &[(f64, f64)]); 4] = [
+    (176.63, 560.0, 0.0, &[(-0.035, 280.0), (-0.035, 560.0), (-0.03, 560.0), (-0.05, 560.0), (-0.05, 560.0)]),
+    (
+        106.2,
+        200.0,
+        435.0,
+        &[
+            (-0.04, 200.0),
+            (-0.04, 216.0),
+            (-0.04, 232.0),
+            (-0.04, 248.0),
+            (-0.036, 262.4),
+            (0.0, 262.4),
+            (0.036, 82.43),
+            (0.0, 82.43),
+            (-0.046, 266.4),
+            (-0.044, 284.0),
+            (-0.05, 304.0),
+            (-0.05, 324.1),
+            (-0.05, 344.1),
+            (-0.05, 364.1),
+            (-0.05, 384.1),
+            (-0.05, 404.1),
+            (-0.05, 424.1),
+        ],
+    ),
+    (
+        176.63,
+        400.0,
+        -195.0,
+        &[
+            (-0.025, 200.0),
+            (-0.025, 400.0),
+            (-0.05, 390.0),
+            (-0.05, 380.0),
+            (-0.05, 370.0),
+            (-0.05, 360.0),
+            (-0.05, 350.0),
+            (-0.05, 340.0),
+            (-0.05, 330.0),
+            (-0.05, 320.1),
+            (-0.05, 310.1),
+            (-0.05, 300.1),
+            (-0.05, 290.1),
+        ],
+    ),
+    (
+        20.238,
+        20.0,
+        20.4,
+        &[
+            (-0.02, 20.0),
+            (-0.04, 20.8),
+            (-0.04, 21.6),
+            (-0.05, 22.6),
+            (-0.05, 23.6),
+            (-0.05, 24.6),
+            (-0.05, 25.6),
+            (-0.05, 26.6),
+            (-0.05, 27.6),
+            (-0.05, 28.6),
+            (-0.05, 29.6),
+            (-0.05, 30.6),
+            (-0.05, 31.6),
+        ],
+    ),
+];
+
+#[test]
+fn one_element_on_a_layer_that_hardens_or_softens_is_that_of_contact() {
+    let grid = Grid::new(1, 1, 1.0, 1.0).unwrap();
+    let own = steel(&grid).at(0.0, 0.0)[0];
+    let mut worst = 0.0f64;
+    for (modulus, yield_limit, hardening, shifts) in SHEARED {
+        let (mut solver, compliance) = (solver(&grid), 0.02 / modulus);
+        let layer = Some(PlasticLayer { yield_limit, hardening });
+        let (mut q, mut limit) = (0.0f64, yield_limit);
+        for (step, &(xi, printed)) in shifts.iter().enumerate() {
+            let friction = Friction {
+                prescribed: along(xi),
+                layer,
+                compliance: Coefficient::Uniform(compliance),
+                previous: if step == 0 { Previous::None } else { Previous::Kept },
+                ..Friction::new(0.7)
+            };
+            let (_, solution) = run(&mut solver, &[900.0], &friction, 1e-12);
+            let found = solution.traction[0][0];
+            // By hand: q = q' - xi/(a0 + c) in stick, else what the layer carries after its slip.
+            let (stiff, elastic) = (own + compliance, q - xi / (own + compliance));
+            if elastic.abs() > limit {
+                let slip = (elastic.abs() - limit) * stiff / (1.0 + hardening * stiff);
+                limit += hardening * slip;
+                q = limit * elastic.signum();
+            } else {
+                q = elastic;
+            }
+            assert!((found - q).abs() <= 1e-9 * q.abs(), "{hardening} {step}: {found} {q}");
+            assert!((solution.particles[0].yield_limit - limit).abs() <= 1e-9 * limit);
+            worst = worst.max((found - printed).abs() / printed.abs());
+        }
+    }
+    // Four digits printed, of the shear moduli, too; the sums by hand above differ from two of the steps by 9e-4.
+    assert!(worst <= 1e-3, "{worst}");
+}
