@@ -31,7 +31,7 @@ impl Solver {
                 return Ok(ended.end);
             }
             // Bodies apart carry no force, too: what holds each other is looked for from above.
-            return match self.from_pressed(goal, make, monitor)? {
+            return match self.down_from_pressed(goal, make, monitor)? {
                 Some(Walk::Found) => Ok(Descent::By(End::Solved)),
                 Some(Walk::Interrupted) => Ok(Descent::By(End::Interrupted)),
                 _ => self.apart(ended.end, goal, make, monitor),
@@ -48,7 +48,7 @@ impl Solver {
             false => None,
         };
         if matches!(walk, None | Some(Walk::Lost)) && !goal.is_interrupted(monitor) {
-            walk = self.from_pressed(goal, make, monitor)?.or(walk);
+            walk = self.down_from_pressed(goal, make, monitor)?.or(walk);
         }
         match walk {
             Some(Walk::Found) => Ok(Descent::By(End::Solved)),
@@ -70,7 +70,12 @@ impl Solver {
 
     /// Down the stable branch from bodies that are pressed together: as strongly as they are to be pulled, or by a part of all attraction. None where no
     /// such state is found.
-    fn from_pressed(&mut self, goal: Goal, make: MakeFrozen<'_>, monitor: &mut Monitor<'_>) -> Result<Option<Walk>> {
+    fn down_from_pressed(
+        &mut self,
+        goal: Goal,
+        make: MakeFrozen<'_>,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Option<Walk>> {
         let wanted = goal.wanted.map_or(0.0, f64::abs);
         let pressing = if wanted > 0.0 { wanted } else { PRESSED * self.most_attraction() };
         let mut last = None;
