@@ -62,13 +62,17 @@ impl Heat<'_> {
             let (element, flux) = (self.grid.element(i), self.flux[i]);
             return Err(Error::NotFinite(format!("heat_flux of {element} is {flux}; it must be finite")));
         }
-        let names =
-            [["conductivity[0]", "conductivity[1]"], ["diffusivity[0]", "diffusivity[1]"], ["speed[0]", "speed[1]"]];
-        for b in 0..2 {
-            for (name, value) in [(names[0][b], self.conductivity[b]), (names[1][b], self.diffusivity[b])] {
-                require(value > 0.0 && value.is_finite(), name, value, "it must be positive and finite")?;
-            }
-            require(self.speed[b].is_finite(), names[2][b], self.speed[b], "it must be finite")?;
+        let positive = |name: &str, value: f64| {
+            require(value > 0.0 && value.is_finite(), name, value, "it must be positive and finite")
+        };
+        for (name, value) in ["conductivity[0]", "conductivity[1]"].iter().zip(self.conductivity) {
+            positive(name, value)?;
+        }
+        for (name, value) in ["diffusivity[0]", "diffusivity[1]"].iter().zip(self.diffusivity) {
+            positive(name, value)?;
+        }
+        for (name, value) in ["speed[0]", "speed[1]"].iter().zip(self.speed) {
+            require(value.is_finite(), name, value, "it must be finite")?;
         }
         match self.share {
             Some(share) => require((0.0..=1.0).contains(&share), "share", share, "a part must lie in [0, 1]"),
