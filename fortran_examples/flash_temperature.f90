@@ -43,7 +43,8 @@ program flash_temperature
     flux = mu*speeds(k)*pressure
     heat%speed(2) = speeds(k)
     call check(contact_normal_flash_temperature(heat, flux, flash=flash))
-    print '(f5.0, f19.3, f18.1, a, f5.1, a)', speeds(k), flash%share, flash%largest(1), '  x = ', 1e6_c_double*flash%x(2), ' um on the disc'
+    print '(f5.0, f20.3, f18.1, a, f5.1, a)', speeds(k), flash%share, flash%largest(1), '  x = ', 1e6_c_double*flash%x(2), &
+      ' um on the disc'
   end do
 
 contains
