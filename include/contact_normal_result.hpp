@@ -25,7 +25,9 @@ enum class fields : std::uint32_t {
     ledger = 128, // the estimated errors, too
     contact_pressure = 256,
     attraction = 512,
-    all = 1023
+    friction_coefficient = 1024,
+    yield_limit = 2048,
+    all = 4095
 };
 constexpr fields operator|(fields a, fields b) noexcept
 {
@@ -42,7 +44,7 @@ constexpr fields operator-(fields a, fields b) noexcept
 
 namespace detail {
 struct outputs;
-constexpr fields of_friction = fields::traction | fields::slip | fields::stick_slip;
+constexpr fields of_friction = fields::traction | fields::slip | fields::stick_slip | fields::friction_coefficient | fields::yield_limit;
 constexpr fields of_adhesion = fields::contact_pressure | fields::attraction;
 } // namespace detail
 
@@ -53,7 +55,8 @@ struct result {
     std::vector<double> pressure, deformed_distance, displacement;
     std::vector<std::int32_t> contact; // 0: exterior, 1: contact, 2: at the pressure limit
     std::array<std::vector<double>, 2> traction, slip; // in x and y; with friction only
-    std::vector<std::int32_t> stick_slip;                // 0: exterior, 1: stick, 2: slip; with friction only
+    std::vector<std::int32_t> stick_slip;                // 0: exterior, 1: stick, 2: slip, 3: in a layer that yields; with friction only
+    std::vector<double> friction_coefficient, yield_limit; // what particles of the interface carry; with friction only
     std::vector<double> contact_pressure, attraction; // q and sigma, whose difference is p; with adhesion only
     contact_normal_report report;
     std::vector<contact_normal_ledger_row> ledger; // coarsest grid first
@@ -120,6 +123,8 @@ struct outputs {
             written.slip[k] = room(found.slip[k], has(which, fields::slip), size);
         }
         written.stick_slip = room(found.stick_slip, has(which, fields::stick_slip), size);
+        written.friction_coefficient = room(found.friction_coefficient, has(which, fields::friction_coefficient), size);
+        written.yield_limit = room(found.yield_limit, has(which, fields::yield_limit), size);
         written.contact_pressure = room(found.contact_pressure, has(which, fields::contact_pressure), size);
         written.attraction = room(found.attraction, has(which, fields::attraction), size);
         contact_normal_report_init(&found.report);

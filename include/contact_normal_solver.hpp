@@ -57,6 +57,7 @@ inline result tangential(contact_normal_solver *handle, const scene &of, view<do
     contact_normal_friction_results results;
     contact_normal_friction_results_init(&results);
     results.traction = traction.data(), results.slip = slip.data(), results.stick_slip = to.written.stick_slip;
+    results.friction_coefficient = to.written.friction_coefficient, results.yield_limit = to.written.yield_limit;
     watched_options options(how, told);
     const contact_normal_scene scene = of.get();
     to.end(found, contact_normal_solve_tangential(handle, &scene, p, options.get(), 1, nullptr, &results, &found.report));

@@ -24,7 +24,8 @@ static void expect(bool holds, const char *what)
 }
 
 static constexpr cn::fields of_adhesion = cn::fields::contact_pressure | cn::fields::attraction;
-static constexpr cn::fields of_effects = of_adhesion | cn::fields::traction | cn::fields::slip | cn::fields::stick_slip;
+static constexpr cn::fields of_effects = of_adhesion | cn::fields::traction | cn::fields::slip | cn::fields::stick_slip
+    | cn::fields::friction_coefficient | cn::fields::yield_limit;
 static const cn::grid GRID{32, 24, 0.1, 0.1};
 static const cn::body STEEL{82000.0, 0.28}, RUBBER{1.0, 0.49};
 
