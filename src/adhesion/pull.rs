@@ -17,6 +17,8 @@ const FIRST: f64 = 0.1;
 /// Steps at most, and how small they become around the least force.
 const MOST_STEPS: u32 = 80;
 const SMALLEST: f64 = 1.0 / 64.0;
+/// Places on either side of a minimum, within a step, at which there may be less force.
+const AROUND: i32 = 4;
 /// Minima of the force at most on the way.
 const MOST_MINIMA: u32 = 40;
 /// Of secants at most, between two states.
@@ -99,9 +101,39 @@ pub fn walk(level: &mut Level, (goal, make): (Goal, MakeFrozen<'_>), monitor: &m
             Over::Ended(walk) => return Ok(walk),
         }
     }
-    let Some(least) = least else { return Ok(lost(goal, monitor)) };
+    let Some(mut least) = least else { return Ok(lost(goal, monitor)) };
+    if let Some(end) = look_around(level, &mut least, step, (goal, make), monitor)? {
+        return Ok(end);
+    }
     level.now.copy_from(&least.at)?;
     Ok(Walk::Least { sum: least.sum, approach: least.approach() })
+}
+
+/// Looks for less force around a minimum: elements that part one by one make it ragged. Returns how the walk ended, if it did.
+fn look_around(
+    level: &mut Level,
+    least: &mut Place,
+    step: f64,
+    (goal, make): (Goal, MakeFrozen<'_>),
+    monitor: &mut Monitor<'_>,
+) -> Result<Option<Walk>> {
+    let centre = least.approach();
+    for k in (1..=AROUND).flat_map(|k| [k, -k]) {
+        level.now.copy_from(&least.at)?;
+        let approach = centre + step * f64::from(k) / f64::from(AROUND);
+        let found = solve_at(level, approach, (goal, make), monitor)?;
+        if goal.is_interrupted(monitor) {
+            return Ok(Some(Walk::Interrupted));
+        }
+        match found {
+            Some(sum) if goal.wanted.is_some_and(|wanted| sum <= wanted) => {
+                return between(level, least, (sum, approach), (goal, make), monitor).map(Some);
+            }
+            Some(sum) if sum < least.sum => least.take(level, sum)?,
+            _ => {}
+        }
+    }
+    Ok(None)
 }
 
 /// Down to a minimum of the force, which `best` then has. Returns how the walk ended, if it did: at the force that is wanted, or where no cycle is left.
