@@ -118,5 +118,5 @@ print("p/E*     " + "".join(f"{f'w {part:g}':>9}" for part in PARTS))
 for k, mean in enumerate(MEANS):
     print(f"{mean:<9g}" + "".join(f"{100 * areas[k]:9.1f}" for areas in table.values()))
 if len(sys.argv) > 1:
-    draw_loop(found, closest, f"{sys.argv[1]}/adhesion_loop.svg")
-    draw_rough(table, f"{sys.argv[1]}/adhesion_rough.svg")
+    draw_loop(found, closest, f"{sys.argv[1]}/adhesion_loop")
+    draw_rough(table, f"{sys.argv[1]}/adhesion_rough")

@@ -13,6 +13,7 @@ D = 6.0 / 64
 X = (np.arange(64) - 31.5) * D
 H = (X[None, :] ** 2 + X[:, None] ** 2) / 2
 STICKY = {"work": 1 / np.pi, "range": 0.5647539}
+SHIFT = {"coefficient": 0.3, "creepage": (-1e5, 0.0), "motion": "SHIFT"}
 
 
 def solve(**given: Any) -> contact_normal.Result:
@@ -47,9 +48,16 @@ class Adhesion(unittest.TestCase):
         for wrong, named in (({}, "no work"), ({"work": 1.0, "rho": 1.0}, "rho"), ({"work": 1.0, "law": "LINEAR"}, "LINEAR")):
             with self.assertRaisesRegex(ValueError, named):
                 solve(approach=0.2, adhesion=wrong)
-        with self.assertRaisesRegex(contact_normal.ContactNormalError, "friction"):
-            solve(approach=0.2, friction={"coefficient": 0.3, "creepage": (0.1, 0.0), "motion": "SHIFT"}, e_star=None, shear_modulus=0.375,
-                  poisson_ratio=0.0)
+        # Tractions of unlike bodies change the pressures.
+        with self.assertRaisesRegex(contact_normal.ContactNormalError, "unlike"):
+            solve(approach=0.2, friction=SHIFT, e_star=None, shear_modulus=(0.375, 0.75), poisson_ratio=0.0)
+
+    def test_friction_is_bounded_by_contact_pressures_and_a_strength(self) -> None:
+        sticky = {**STICKY, "shear_strength": 0.2, "stability": True}
+        found = solve(force=-0.5, adhesion=sticky, friction=SHIFT, e_star=None, shear_modulus=0.75, poisson_ratio=0.0)
+        bound = 0.3 * found.report["repulsive_force"] + 0.2 * found.report["contact_area"]
+        self.assertAlmostEqual(found.report["tangential_force"][0], bound, places=6)
+        self.assertTrue(0.0 < found.report["stability"] < 1.0)
 
     def test_a_handle_follows_a_branch(self) -> None:
         with contact_normal.Solver(64, 64, D, D, e_star=0.75) as solver:
