@@ -17,8 +17,9 @@ const FIRST: f64 = 0.1;
 /// Steps at most, and how small they become around the least force.
 const MOST_STEPS: u32 = 80;
 const SMALLEST: f64 = 1.0 / 64.0;
-/// Places on either side of a minimum, within a step, at which there may be less force.
-const AROUND: i32 = 4;
+/// Places on either side of a minimum, half a step apart, at which there may be less force: where elements part one by one the force of a sphere
+/// of 64 x 64 elements jumps by 1e-4 of itself, and it is as flat as that over 4 steps.
+const AROUND: i32 = 6;
 /// Minima of the force at most on the way.
 const MOST_MINIMA: u32 = 40;
 /// Of secants at most, between two states.
@@ -120,7 +121,7 @@ fn look_around(
     let centre = least.approach();
     for k in (1..=AROUND).flat_map(|k| [k, -k]) {
         level.now.copy_from(&least.at)?;
-        let approach = centre + step * f64::from(k) / f64::from(AROUND);
+        let approach = centre + 0.5 * step * f64::from(k);
         let found = solve_at(level, approach, (goal, make), monitor)?;
         if goal.is_interrupted(monitor) {
             return Ok(Some(Walk::Interrupted));
