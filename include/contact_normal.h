@@ -2925,7 +2925,7 @@ contact_normal_status contact_normal_kept(int64_t *bytes, int32_t *threads);
 
 /*
  1 if this library has what is called so, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop"), a member of
- the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "yield_limit"), or what calls do ("batch", "accuracy", "price_list", "stress", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump",
+ the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "yield_limit"), or what calls do ("batch", "accuracy", "price_list", "stress", "flash_temperature", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump",
  "set_option", "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
  */
 int32_t contact_normal_has(const char *name);
