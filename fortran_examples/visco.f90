@@ -48,6 +48,7 @@ contains
     integer :: k
 
     call contact_normal_report_init(report)
+    first = 1
     do k = 0, steps
       call contact_normal_set_visco(scene, visco, modulus_2=moduli, time_2=times, &
         time_step=merge(0.25_c_double, 0.0_c_double, k > 0), continues=k > 0)
