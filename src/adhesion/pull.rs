@@ -17,9 +17,9 @@ const FIRST: f64 = 0.1;
 /// Steps at most, and how small they become around the least force.
 const MOST_STEPS: u32 = 80;
 const SMALLEST: f64 = 1.0 / 64.0;
-/// Places on either side of a minimum, half a step apart, at which there may be less force: where elements part one by one the force of a sphere
-/// of 64 x 64 elements jumps by 1e-4 of itself, and it is as flat as that over 4 steps.
-const AROUND: i32 = 6;
+/// The way to a minimum is gone once more in so many parts: where elements part one by one, the force of a sphere of 64 x 64 elements jumps by 1e-4 of
+/// itself, and what parted does not come back.
+const PARTS: i32 = 8;
 /// Minima of the force at most on the way.
 const MOST_MINIMA: u32 = 40;
 /// Of secants at most, between two states.
@@ -102,39 +102,9 @@ pub fn walk(level: &mut Level, (goal, make): (Goal, MakeFrozen<'_>), monitor: &m
             Over::Ended(walk) => return Ok(walk),
         }
     }
-    let Some(mut least) = least else { return Ok(lost(goal, monitor)) };
-    if let Some(end) = look_around(level, &mut least, step, (goal, make), monitor)? {
-        return Ok(end);
-    }
+    let Some(least) = least else { return Ok(lost(goal, monitor)) };
     level.now.copy_from(&least.at)?;
     Ok(Walk::Least { sum: least.sum, approach: least.approach() })
-}
-
-/// Looks for less force around a minimum: elements that part one by one make it ragged. Returns how the walk ended, if it did.
-fn look_around(
-    level: &mut Level,
-    least: &mut Place,
-    step: f64,
-    (goal, make): (Goal, MakeFrozen<'_>),
-    monitor: &mut Monitor<'_>,
-) -> Result<Option<Walk>> {
-    let centre = least.approach();
-    for k in (1..=AROUND).flat_map(|k| [k, -k]) {
-        level.now.copy_from(&least.at)?;
-        let approach = centre + 0.5 * step * f64::from(k);
-        let found = solve_at(level, approach, (goal, make), monitor)?;
-        if goal.is_interrupted(monitor) {
-            return Ok(Some(Walk::Interrupted));
-        }
-        match found {
-            Some(sum) if goal.wanted.is_some_and(|wanted| sum <= wanted) => {
-                return between(level, least, (sum, approach), (goal, make), monitor).map(Some);
-            }
-            Some(sum) if sum < least.sum => least.take(level, sum)?,
-            _ => {}
-        }
-    }
-    Ok(None)
 }
 
 /// Down to a minimum of the force, which `best` then has. Returns how the walk ended, if it did: at the force that is wanted, or where no cycle is left.
@@ -145,7 +115,7 @@ fn down(
     (goal, make): (Goal, MakeFrozen<'_>),
     monitor: &mut Monitor<'_>,
 ) -> Result<Option<Walk>> {
-    let (smallest, mut higher, mut beyond) = (SMALLEST * step, None, None);
+    let (smallest, mut above) = (SMALLEST * step, None::<Place>);
     for _ in 0..MOST_STEPS {
         let approach = best.approach() - step;
         let found = solve_at(level, approach, (goal, make), monitor)?;
@@ -157,11 +127,12 @@ fn down(
                 return between(level, best, (sum, approach), (goal, make), monitor).map(Some);
             }
             Some(sum) if sum < best.sum => {
-                higher = Some((best.approach(), best.sum));
+                let place = above.get_or_insert_with(|| Place { at: Unknowns::default(), sum: best.sum });
+                place.at.copy_from(&best.at)?;
+                place.sum = best.sum;
                 best.take(level, sum)?;
             }
-            other => {
-                beyond = other.map(|sum| (approach, sum));
+            _ => {
                 level.now.copy_from(&best.at)?;
                 step *= 0.5;
             }
@@ -170,18 +141,23 @@ fn down(
             break;
         }
     }
-    let here = (best.approach(), best.sum);
-    if let (Some(higher), Some(beyond)) = (higher, beyond) {
-        // The vertex of a parabola, if that is a state of less force yet.
-        let vertex = vertex([higher, here, beyond]).filter(|at| *at < higher.0 && *at > beyond.0);
-        if let Some(sum) = vertex.map(|at| solve_at(level, at, (goal, make), monitor)).transpose()?.flatten() {
-            if sum < best.sum {
-                best.take(level, sum)?;
+    if let Some(mut above) = above {
+        let (from, way) = (above.approach(), best.approach() - above.approach());
+        level.now.copy_from(&above.at)?;
+        for k in 1..PARTS {
+            let approach = from + way * f64::from(k) / f64::from(PARTS);
+            match solve_at(level, approach, (goal, make), monitor)? {
+                Some(sum) if goal.wanted.is_some_and(|wanted| sum <= wanted) => {
+                    return between(level, &mut above, (sum, approach), (goal, make), monitor).map(Some);
+                }
+                Some(sum) if sum < best.sum => best.take(level, sum)?,
+                Some(_) => {}
+                None => break,
             }
         }
     }
     level.now.copy_from(&best.at)?;
-    Ok(None)
+    Ok(if goal.is_interrupted(monitor) { Some(Walk::Interrupted) } else { None })
 }
 
 /// The continuation behind a minimum.
@@ -276,11 +252,4 @@ fn between(
         }
     }
     Ok(Walk::Lost)
-}
-
-/// Where the parabola through three points is least.
-fn vertex([(x0, y0), (x1, y1), (x2, y2)]: [(f64, f64); 3]) -> Option<f64> {
-    let (d0, d2) = ((y0 - y1) / (x0 - x1), (y2 - y1) / (x2 - x1));
-    let curvature = (d0 - d2) / (x0 - x2);
-    (curvature > 0.0).then(|| 0.5 * (x0 + x1 - d0 / curvature))
 }
