@@ -115,7 +115,8 @@ fn down(
     (goal, make): (Goal, MakeFrozen<'_>),
     monitor: &mut Monitor<'_>,
 ) -> Result<Option<Walk>> {
-    let (smallest, mut above) = (SMALLEST * step, None::<Place>);
+    // Above: where the last whole step began.
+    let (whole, mut above) = (step, None::<Place>);
     for _ in 0..MOST_STEPS {
         let approach = best.approach() - step;
         let found = solve_at(level, approach, (goal, make), monitor)?;
@@ -127,9 +128,11 @@ fn down(
                 return between(level, best, (sum, approach), (goal, make), monitor).map(Some);
             }
             Some(sum) if sum < best.sum => {
-                let place = above.get_or_insert_with(|| Place { at: Unknowns::default(), sum: best.sum });
-                place.at.copy_from(&best.at)?;
-                place.sum = best.sum;
+                if step == whole {
+                    let place = above.get_or_insert_with(|| Place { at: Unknowns::default(), sum: best.sum });
+                    place.at.copy_from(&best.at)?;
+                    place.sum = best.sum;
+                }
                 best.take(level, sum)?;
             }
             _ => {
@@ -137,7 +140,7 @@ fn down(
                 step *= 0.5;
             }
         }
-        if step < smallest {
+        if step < SMALLEST * whole {
             break;
         }
     }
