@@ -54,6 +54,8 @@ fn steady_rolling_over_a_layer_that_yields_is_that_of_contact() {
 }
 
 /// `Fx/(.5 N)`; stick, slip, plastic.
+// .6366 is what was printed, not 2/pi.
+#[allow(clippy::approx_constant)]
 const STEPS: [(f64, [usize; 3]); 49] = [
     (0.6051, [17, 4, 5]),
     (0.61, [16, 4, 6]),
@@ -140,9 +142,11 @@ fn steps_from_a_shift_to_rolling_are_those_of_contact() {
     println!("{} products a step", products / STEPS.len() as f64);
 }
 
+type Sheared = (f64, f64, f64, &'static [(f64, f64)]);
+
 /// One element of 1 mm x 1 mm under 900 N with mu = .7 and a layer of .02 mm: its shear modulus, yield limit and hardening, shifts and the
 /// tractions that CONTACT printed in four digits.
-const SHEARED: [(f64, f64, f64, &[(f64, f64)]); 4] = [
+const SHEARED: [Sheared; 4] = [
     (176.63, 560.0, 0.0, &[(-0.035, 280.0), (-0.035, 560.0), (-0.03, 560.0), (-0.05, 560.0), (-0.05, 560.0)]),
     (
         106.2,

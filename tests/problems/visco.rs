@@ -276,7 +276,7 @@ fn loading_and_unloading_are_those_of_ting() {
         let found = history(&times, |t| Load::Approach(approach(t)), form);
         let off = times.iter().zip(&found).map(|(t, (report, _))| (report.measures.force - exact(*t)).abs() / largest);
         let off = off.fold(0.0, f64::max);
-        let last = times.iter().zip(&found).filter(|(_, (report, _))| report.measures.force > 0.0).last().unwrap().0;
+        let last = times.iter().zip(&found).rfind(|(_, (report, _))| report.measures.force > 0.0).unwrap().0;
         println!("{form:?} {step}: {off:.1e} of the largest force; contact until {last}");
         assert!(off <= most, "{form:?} {step}: {off}");
         // Lift-off is at 1.5955.
