@@ -28,7 +28,7 @@ pub struct Report {
     pub border_share: f64,
     /// dF/dapproach; none: not asked for.
     pub stiffness: Option<f64>,
-    /// `1 - lambda`, see [`stability`](super::stability): positive in a stable state, 0 at a snap; none: not asked for.
+    /// `1 - lambda` (module `stability`): positive in a stable state, 0 at a snap; none: not asked for.
     pub stability: Option<f64>,
     /// Whether the bodies have snapped: the state before could not be followed, and more than a quarter of the contact is another one.
     pub jumped: bool,
