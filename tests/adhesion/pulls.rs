@@ -57,8 +57,9 @@ fn below_the_pull_off_the_message_says_what_holds() {
     assert_eq!(outcome, Outcome::Converged);
     let least = report.measures.force;
     println!("pull-off {least} at {}, {:.1} work", report.measures.approach, report.count.work_units);
-    // The least of a path of steps .1 in the prototype; the least of all lies below by a parabola of such steps.
-    assert!(least < -1.6641 + 1e-4 && least > -1.6641 - 5e-3, "{least}");
+    // The least of a path of steps .1 in the prototype; the least of all lies below by a parabola of such steps. The contact's edge rests at rings of
+    // elements, so that several states belong to one approach: paths of other steps find -1.66398 to -1.66410.
+    assert!(least < -1.6641 + 2e-4 && least > -1.6641 - 5e-3, "{least}");
     for factor in [1.05, 3.0, 1e3] {
         match solver::solve(&sphere.scene(Load::Force(factor * least)), &Options::default()) {
             Err(Error::Infeasible(message)) => {
