@@ -181,8 +181,10 @@ mod tests {
     use super::*;
 
     fn of(t: f64, mu: f64, nu: [f64; 2]) -> Coating {
-        let layer = Layer { thickness: t, shear_modulus: mu, poisson_ratio: nu[0] };
-        Coating { layers: [Some(layer), None], shear_modulus: [1.0, f64::INFINITY], poisson_ratio: [nu[1], 0.3] }
+        // A ratio of 0: on a rigid body.
+        let (modulus, below) = if mu == 0.0 { (1.0, f64::INFINITY) } else { (mu, 1.0) };
+        let layer = Layer { thickness: t, shear_modulus: modulus, poisson_ratio: nu[0] };
+        Coating { layers: [Some(layer), None], shear_modulus: [below, f64::INFINITY], poisson_ratio: [nu[1], 0.3] }
     }
 
     /// Nine elements are one that is three times as long: half as thick as those are long, and four times.
