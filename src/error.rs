@@ -50,3 +50,13 @@ pub(crate) fn require(holds: bool, name: &str, value: f64, rule: &str) -> Result
         (false, false) => Err(Error::NotFinite(message())),
     }
 }
+
+/// Refuses a value that is not positive, or not finite.
+pub(crate) fn positive(name: &str, value: f64) -> Result<()> {
+    require(value > 0.0 && value.is_finite(), name, value, "it must be positive and finite")
+}
+
+/// Refuses a value that is negative, or not finite.
+pub(crate) fn not_negative(name: &str, value: f64) -> Result<()> {
+    require(value >= 0.0 && value.is_finite(), name, value, "it must be 0 or more, and finite")
+}

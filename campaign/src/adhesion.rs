@@ -226,7 +226,7 @@ fn certify(case: &Case, load: Load, found: &Found) -> Verdict {
     let scale = (distances / n).sqrt().max(own * (pressures / n).sqrt());
     let scale = if count > 0.0 { scale } else { scale.max(own * (all / found.p.len() as f64).sqrt()) };
     let ratio = |value: f64, of: f64| if value == 0.0 { 0.0 } else { value / of };
-    // Attraction beyond so many ranges is none.
+    // The library cuts the attraction off beyond 40 ranges.
     let (nothing, root) = (1e-16 * case.work.at(0) / range, (found.p.len() as f64).sqrt());
     let mut verdict = Verdict::default();
     for (what, value, most) in [

@@ -54,7 +54,7 @@ pub fn random(
             true => longer * random.decades(0.0626, 50.0),
             false => f64::max(longer * random.decades(0.5, 50.0), 0.02 * size),
         };
-        // On a rigid body layers that are thin, too, and almost incompressible have too few elements across.
+        // The library refuses layers on a rigid body that are thin and almost incompressible.
         let is_rigid = shear_modulus[b].is_infinite();
         let below = if is_rigid { shear_modulus[0] } else { shear_modulus[b] };
         let poisson_ratio = match equal {

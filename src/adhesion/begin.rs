@@ -8,12 +8,13 @@ use super::newton::{newton, stiffness_of_contact, End, Goal};
 use super::pull::{walk, Walk};
 use super::request::Start;
 use super::solver::{pulls, Solver};
+use super::unknowns::Unknowns;
 use crate::error::{Error, Result};
 use crate::progress::Monitor;
 
 /// Bodies that no force holds are first pressed together by this part of all attraction.
 const PRESSED: f64 = 0.01;
-/// And by so many times as much where that does not lead there.
+/// Factors of the pressing force, tried one after the other.
 const MORE: [f64; 3] = [1.0, 10.0, 100.0];
 
 impl Solver {
@@ -25,16 +26,20 @@ impl Solver {
     ) -> Result<Descent> {
         if !pulls(goal) {
             let ended = nested::solve(&mut self.levels, goal, (start, make), monitor)?;
-            let is_found = ended.end == Descent::By(End::Solved) && ended.measured.count > 0;
             let attracts = self.most_attraction() > 0.0;
-            if is_found || goal.wanted != Some(0.0) || !attracts || goal.is_interrupted(monitor) {
+            if ended.is_in_contact() || goal.wanted != Some(0.0) || !attracts || goal.is_interrupted(monitor) {
                 return Ok(ended.end);
             }
+            let mut apart = Unknowns::default();
+            apart.copy_from(&self.levels[0].now)?;
             // Bodies apart carry no force, too: what holds each other is looked for from above.
             return match self.down_from_pressed(goal, make, monitor)? {
                 Some(Walk::Found) => Ok(Descent::By(End::Solved)),
                 Some(Walk::Interrupted) => Ok(Descent::By(End::Interrupted)),
-                _ => self.apart(ended.end, goal, make, monitor),
+                _ => {
+                    self.levels[0].now.copy_from(&apart)?;
+                    Ok(ended.end)
+                }
             };
         }
         if self.is_found_from_coarse(goal, (start, make), monitor)? {
@@ -43,7 +48,7 @@ impl Solver {
         // Down the stable branch of the finest grid.
         let unloaded = Goal { wanted: Some(0.0), ..goal };
         let ended = nested::solve(&mut self.levels, unloaded, (start, make), monitor)?;
-        let mut walk = match ended.end == Descent::By(End::Solved) && ended.measured.count > 0 {
+        let mut walk = match ended.is_in_contact() {
             true => Some(walk(&mut self.levels[0], (goal, make), monitor)?),
             false => None,
         };
@@ -93,16 +98,6 @@ impl Solver {
             }
         }
         Ok(last)
-    }
-
-    /// Bodies that do not hold each other, at a force of 0: as far apart as nothing attracts any more, if that is near enough to be a number.
-    fn apart(&mut self, end: Descent, goal: Goal, make: MakeFrozen<'_>, monitor: &mut Monitor<'_>) -> Result<Descent> {
-        if end == Descent::By(End::Solved) || end == Descent::Parted {
-            // It was replaced by what was looked for since.
-            let again = nested::solve(&mut self.levels, goal, (Start::Auto, make), monitor)?;
-            return Ok(again.end);
-        }
-        Ok(end)
     }
 
     /// The sum of all attraction, at a distance of 0 everywhere.

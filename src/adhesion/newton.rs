@@ -117,13 +117,15 @@ fn take_step(level: &mut Level, wanted: Option<f64>, worst: f64) -> Result<()> {
     Ok(())
 }
 
-/// s at the state of now.
-pub fn stiffnesses(level: &Level, stiffness: &mut [[f64; 1]]) {
+/// s outside the contact area of now, `place(i, e)` being the distance at which element i is linearised.
+pub fn stiffnesses(level: &Level, place: impl Fn(usize, f64) -> f64 + Sync + Send, stiffness: &mut [[f64; 1]]) {
     let (surface, now) = (&level.surface, &level.now);
     fields::fill(&level.problem.threads, stiffness, |i| {
         let e = surface.distance(i, now);
-        let is_apart = !now.contact[i] && e.is_finite();
-        [if is_apart { surface.attraction.stiffness(surface.work_at(i), e.max(0.0)) } else { 0.0 }]
+        if now.contact[i] || !e.is_finite() {
+            return [0.0];
+        }
+        [surface.attraction.stiffness(surface.work_at(i), place(i, e))]
     });
 }
 
@@ -144,13 +146,7 @@ fn linearise(level: &Level, at_mean: bool, stiffness: &mut [[f64; 1]], right: &m
             }
         }
     };
-    fields::fill(threads, stiffness, |i| {
-        let e = surface.distance(i, now);
-        if now.contact[i] || !e.is_finite() {
-            return [0.0];
-        }
-        [surface.attraction.stiffness(surface.work_at(i), place(i, e))]
-    });
+    stiffnesses(level, place, stiffness);
     let stiffness = &*stiffness;
     fields::fill(threads, right, |i| {
         let (e, p) = (surface.distance(i, now), now.p.field[i][0]);

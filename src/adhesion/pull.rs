@@ -17,8 +17,8 @@ const FIRST: f64 = 0.1;
 /// Steps at most, and how small they become around the least force.
 const MOST_STEPS: u32 = 80;
 const SMALLEST: f64 = 1.0 / 64.0;
-/// The way to a minimum is gone once more in so many parts: where elements part one by one, the force of a sphere of 64 x 64 elements jumps by 1e-4 of
-/// itself, and what parted does not come back.
+/// The last whole step before a minimum is repeated in so many parts. Elements part one by one and do not come back, so that the force of a sphere of
+/// 64 x 64 elements differs by 1e-4 of itself between long and short steps.
 const PARTS: i32 = 8;
 /// Minima of the force at most on the way.
 const MOST_MINIMA: u32 = 40;
@@ -50,6 +50,12 @@ struct Place {
 }
 
 impl Place {
+    fn of(at: &Unknowns, sum: f64) -> Result<Place> {
+        let mut place = Place { at: Unknowns::default(), sum };
+        place.at.copy_from(at)?;
+        Ok(place)
+    }
+
     fn approach(&self) -> f64 {
         self.at.approach()
     }
@@ -80,8 +86,7 @@ fn solve_at(
 pub fn walk(level: &mut Level, (goal, make): (Goal, MakeFrozen<'_>), monitor: &mut Monitor<'_>) -> Result<Walk> {
     let from = level.now.approach();
     let Some(sum) = solve_at(level, from, (goal, make), monitor)? else { return Ok(lost(goal, monitor)) };
-    let mut best = Place { at: Unknowns::default(), sum };
-    best.at.copy_from(&level.now)?;
+    let mut best = Place::of(&level.now, sum)?;
     let step = first_step(level, monitor)?;
     if !(step > 0.0) {
         return Ok(lost(goal, monitor));
@@ -92,9 +97,7 @@ pub fn walk(level: &mut Level, (goal, make): (Goal, MakeFrozen<'_>), monitor: &m
             return Ok(end);
         }
         if least.as_ref().is_none_or(|least| best.sum < least.sum) {
-            let mut place = Place { at: Unknowns::default(), sum: best.sum };
-            place.at.copy_from(&best.at)?;
-            least = Some(place);
+            least = Some(Place::of(&best.at, best.sum)?);
         }
         match over(level, &mut best, step, (goal, make), monitor)? {
             Over::Falls => {}
@@ -129,9 +132,7 @@ fn down(
             }
             Some(sum) if sum < best.sum => {
                 if step == whole {
-                    let place = above.get_or_insert_with(|| Place { at: Unknowns::default(), sum: best.sum });
-                    place.at.copy_from(&best.at)?;
-                    place.sum = best.sum;
+                    above = Some(Place::of(&best.at, best.sum)?);
                 }
                 best.take(level, sum)?;
             }
@@ -160,7 +161,7 @@ fn down(
         }
     }
     level.now.copy_from(&best.at)?;
-    Ok(if goal.is_interrupted(monitor) { Some(Walk::Interrupted) } else { None })
+    Ok(goal.is_interrupted(monitor).then_some(Walk::Interrupted))
 }
 
 /// The continuation behind a minimum.

@@ -25,6 +25,13 @@ pub struct Ended {
     pub descended: bool,
 }
 
+impl Ended {
+    /// Whether that is an equilibrium of bodies that touch.
+    pub fn is_in_contact(&self) -> bool {
+        self.end == Descent::By(End::Solved) && self.measured.count > 0
+    }
+}
+
 /// The energy that an equilibrium makes least, per area of an element: elastic energy less work of adhesion, and less that of a force that is given.
 pub fn energy(level: &Level, wanted: Option<f64>) -> f64 {
     let [elastic, adhesive] = energies(&level.surface, &level.now, &level.problem.threads);

@@ -12,7 +12,7 @@
 
 use std::f64::consts::PI;
 
-use crate::error::{invalid, require, Result};
+use crate::error::{invalid, positive, Result};
 
 /// The exact solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +36,7 @@ pub fn hertz(curvature_x: f64, curvature_y: f64, approach: f64, compliance: f64)
     let named =
         [("curvature_x", curvature_x), ("curvature_y", curvature_y), ("approach", approach), ("1/E*", compliance)];
     for (name, value) in named {
-        require(value > 0.0 && value.is_finite(), name, value, "it must be positive and finite")?;
+        positive(name, value)?;
     }
     // The long axis lies along the smaller curvature.
     let (small, large) = (curvature_x.min(curvature_y), curvature_x.max(curvature_y));
@@ -61,7 +61,7 @@ pub fn hertz(curvature_x: f64, curvature_y: f64, approach: f64, compliance: f64)
 
 /// The same with the force given: `F` grows with the approach to the power 3/2.
 pub fn hertz_by_force(curvature_x: f64, curvature_y: f64, force: f64, compliance: f64) -> Result<Hertz> {
-    require(force > 0.0 && force.is_finite(), "force", force, "it must be positive and finite")?;
+    positive("force", force)?;
     let unit = hertz(curvature_x, curvature_y, 1.0, compliance)?;
     hertz(curvature_x, curvature_y, (force / unit.force).powf(2.0 / 3.0), compliance)
 }

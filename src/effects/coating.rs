@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use super::properties::{Properties, Stresses, HALF_SPACE_ALONE};
 use super::{Effect, Value};
-use crate::error::{invalid, require, Error, Result};
+use crate::error::{invalid, positive, require, Error, Result};
 use crate::grid::Grid;
 use crate::influence::{radial, Coated, CoatedBody, CoatedPeriodic, Kernel};
 use crate::scene::{Bodies, Plain};
 
-/// The shear modulus of a coating is at most so many times that of its substrate.
+/// Bound on the shear modulus of a coating over that of its substrate.
 const STIFFEST: f64 = 1e4;
 /// Below this ratio, or on a rigid body, an incompressible layer has to be at least so many elements thick: nothing else gives way there.
 const RIGID: f64 = 1e-4;
@@ -149,7 +149,7 @@ impl Effect for Coating {
             let (thickness, modulus, ratio) = (layer.thickness, layer.shear_modulus, layer.poisson_ratio);
             let holds = thickness >= 0.0 && thickness.is_finite();
             require(holds, t, thickness, "a thickness must be finite and not negative")?;
-            require(modulus > 0.0 && modulus.is_finite(), g, modulus, "it must be positive and finite")?;
+            positive(g, modulus)?;
             require(ratio > -1.0 && ratio <= 0.5, nu, ratio, "it must lie in (-1, 0.5]")?;
         }
         Ok(())

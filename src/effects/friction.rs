@@ -9,7 +9,7 @@ use super::properties::{Continues, Properties, Stresses};
 use super::tangential_influence::TangentialInfluence;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
-use crate::scene::{Bodies, Plain};
+use crate::scene::Plain;
 
 /// mu, a number: the same everywhere or one per element, `[my][mx]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -259,10 +259,9 @@ impl Effect for Friction<'_> {
 
     fn check_load(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<()> {
         self.check_bodies_of_law(&scene.bodies)?;
-        let Bodies { shear_modulus: [g1, g2], poisson_ratio: [nu1, nu2] } = scene.bodies;
         let has_bodies = others.iter().flatten().all(|other| other.properties().own_coefficients.is_none());
         let lacks_cross = self.influence.is_some_and(|influence| influence.cross.is_none());
-        if lacks_cross && has_bodies && (1.0 - 2.0 * nu1) / g1 != (1.0 - 2.0 * nu2) / g2 {
+        if lacks_cross && has_bodies && scene.bodies.unlike() != 0.0 {
             let by_row = self.influence.is_some_and(|influence| influence.by_row);
             let (name, rule) = match by_row {
                 true => ("friction->row_tables", "those of tables per row are not solved"),

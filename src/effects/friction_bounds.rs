@@ -3,7 +3,7 @@
 use super::effect::check_values;
 use super::friction::{Friction, Motion, Prescribed};
 use super::friction_law::PlasticLayer;
-use crate::error::{require, Error, Result};
+use crate::error::{not_negative, positive, require, Error, Result};
 use crate::grid::Grid;
 use crate::scene::Bodies;
 
@@ -50,18 +50,12 @@ impl Friction<'_> {
         if let Some(law) = &self.law {
             law.check(self.motion == Motion::Shift)?;
         }
-        let positive = |name: &str, value: f64| {
-            require(value > 0.0 && value.is_finite(), name, value, "it must be positive and finite")
-        };
         if let Some(layer) = &self.layer {
             positive("friction->yield_limit", layer.yield_limit)?;
             require(layer.hardening.is_finite(), "friction->hardening", layer.hardening, "it must be finite")?;
         }
-        let from_0 = |name: &str, value: f64| {
-            require(value >= 0.0 && value.is_finite(), name, value, "it must be 0 or more, and finite")
-        };
         self.coefficients_before
-            .map_or(Ok(()), |values| check_values("friction->previous_coefficient", values, grid, from_0))?;
+            .map_or(Ok(()), |values| check_values("friction->previous_coefficient", values, grid, not_negative))?;
         self.yield_limits
             .map_or(Ok(()), |values| check_values("friction->previous_yield_limit", values, grid, positive))?;
         if !self.has_law() {
@@ -87,9 +81,8 @@ impl Friction<'_> {
 
     /// Refuses unlike bodies.
     pub(super) fn check_bodies_of_law(&self, bodies: &Bodies) -> Result<()> {
-        let Bodies { shear_modulus: [g1, g2], poisson_ratio: [nu1, nu2] } = *bodies;
         let has_cross = self.influence.is_some_and(|influence| influence.cross.is_some());
-        let is_unlike = self.influence.is_none() && (1.0 - 2.0 * nu1) / g1 != (1.0 - 2.0 * nu2) / g2;
+        let is_unlike = self.influence.is_none() && bodies.unlike() != 0.0;
         if self.has_law() && (has_cross || is_unlike) {
             let name = if self.law.is_some() { "friction->law" } else { "friction->hardening" };
             return Err(Error::Unsupported(format!("{name} is given: {LIKE_BODIES}")));

@@ -1,7 +1,7 @@
 //! What friction may have beside a constant coefficient: a law by which the coefficient falls with the slip velocity, and a layer between
 //! the bodies that yields. See [`friction::law`](crate::friction::law) for what is solved.
 
-use crate::error::{require, Result};
+use crate::error::{not_negative, positive, Result};
 
 /// How a coefficient of friction falls with the slip velocity v, each of two parts with its own half speed h.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,15 +95,9 @@ impl FrictionLaw {
 
     /// Refuses numbers that are none; `is_shift`: the time of a step is `time_step`.
     pub(super) fn check(&self, is_shift: bool) -> Result<()> {
-        let from_0 = |name: &str, value: f64| {
-            require(value >= 0.0 && value.is_finite(), name, value, "it must be 0 or more, and finite")
-        };
-        let positive = |name: &str, value: f64| {
-            require(value > 0.0 && value.is_finite(), name, value, "it must be positive and finite")
-        };
-        from_0("friction->kinetic", self.kinetic)?;
+        not_negative("friction->kinetic", self.kinetic)?;
         for k in 0..2 {
-            from_0(["friction->falling[0]", "friction->falling[1]"][k], self.falling[k])?;
+            not_negative(["friction->falling[0]", "friction->falling[1]"][k], self.falling[k])?;
             if self.falling[k] > 0.0 {
                 positive(["friction->half_speed[0]", "friction->half_speed[1]"][k], self.half_speed[k])?;
             }
@@ -113,7 +107,7 @@ impl FrictionLaw {
             true => positive("friction->time_step", self.time_step)?,
             false => positive("friction->speed", self.speed)?,
         }
-        from_0("friction->memory_distance", self.memory_distance)?;
-        from_0("friction->memory_speed", self.memory_speed)
+        not_negative("friction->memory_distance", self.memory_distance)?;
+        not_negative("friction->memory_speed", self.memory_speed)
     }
 }

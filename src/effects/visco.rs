@@ -5,7 +5,7 @@ use super::effect::{Effect, Value};
 use super::memory::Memory;
 use super::properties::{Continues, Properties, Stresses};
 use super::visco_step::{Body, Step};
-use crate::error::{invalid, require, Error, Result};
+use crate::error::{invalid, not_negative, positive, require, Error, Result};
 use crate::grid::Grid;
 use crate::scene::{Bodies, Load, Plain};
 use crate::visco::{Form, Series, MOST};
@@ -142,8 +142,8 @@ impl Effect for Visco<'_> {
                 return invalid(format!("{count} is {} and {}; {rule}", modulus.len(), time.len()));
             }
             for (modulus, time) in modulus.iter().zip(*time) {
-                require(*modulus >= 0.0 && modulus.is_finite(), g, *modulus, "it must be 0 or more, and finite")?;
-                require(*time > 0.0 && time.is_finite(), t, *time, "it must be positive and finite")?;
+                not_negative(g, *modulus)?;
+                positive(t, *time)?;
             }
         }
         let rule = "it must be 0, for a jump, or positive and finite";

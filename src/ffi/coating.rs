@@ -4,7 +4,7 @@ use super::arguments::GivenEffect;
 use super::guard::guard;
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{self, versioned};
-use crate::error::require;
+use crate::error::positive;
 use crate::grid::Grid;
 use crate::scene::{Bodies, Coating, CoatingLayer, Load, Plain};
 
@@ -42,8 +42,7 @@ pub unsafe extern "C" fn contact_normal_coating_compliance(
         if compliance.is_null() {
             return Err(Refusal::null("compliance"));
         }
-        let holds = wave_number > 0.0 && wave_number.is_finite();
-        require(holds, "wave_number", wave_number, "it must be positive and finite")?;
+        positive("wave_number", wave_number)?;
         let bodies = Bodies { shear_modulus: [shear_modulus, f64::INFINITY], poisson_ratio: [poisson_ratio, 0.0] };
         let coating = Coating { layers: [Some(given.translate()), None] };
         let grid = Grid { mx: 1, my: 1, dx: 1.0, dy: 1.0 };

@@ -154,15 +154,7 @@ versioned! { contact_normal_friction, contact_normal_friction_init, 248, spin_of
 impl contact_normal_friction {
     /// The caller's arrays must live as long as the result is used.
     pub(super) unsafe fn translate<'a>(&self, grid: &Grid) -> Result<Friction<'a>, Refusal> {
-        let motion = match self.motion {
-            CONTACT_NORMAL_MOTION_SHIFT => Motion::Shift,
-            CONTACT_NORMAL_MOTION_TRANSIENT_ROLLING => Motion::TransientRolling,
-            CONTACT_NORMAL_MOTION_STEADY_ROLLING => Motion::SteadyRolling,
-            other => {
-                let rule = "it must be SHIFT 0, TRANSIENT_ROLLING 1 or STEADY_ROLLING 2";
-                return Err(Refusal::invalid(format!("friction->motion is {other}; {rule}")));
-            }
-        };
+        let motion = self.motion()?;
         let pair = |name: &str, [x, y]: [*const f64; 2]| {
             // SAFETY (both): NULL or one value per element, by the conventions of the ABI.
             match unsafe { (optional(x, grid.len()), optional(y, grid.len())) } {
@@ -218,6 +210,18 @@ impl contact_normal_friction {
             coefficients_before,
             yield_limits,
         })
+    }
+
+    fn motion(&self) -> Result<Motion, Refusal> {
+        match self.motion {
+            CONTACT_NORMAL_MOTION_SHIFT => Ok(Motion::Shift),
+            CONTACT_NORMAL_MOTION_TRANSIENT_ROLLING => Ok(Motion::TransientRolling),
+            CONTACT_NORMAL_MOTION_STEADY_ROLLING => Ok(Motion::SteadyRolling),
+            other => {
+                let rule = "it must be SHIFT 0, TRANSIENT_ROLLING 1 or STEADY_ROLLING 2";
+                Err(Refusal::invalid(format!("friction->motion is {other}; {rule}")))
+            }
+        }
     }
 
     fn law(&self) -> Result<Option<FrictionLaw>, Refusal> {

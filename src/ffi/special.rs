@@ -7,7 +7,7 @@ use super::scene::load_of;
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{self, versioned};
 use crate::analytic::{self, Hertz};
-use crate::error::require;
+use crate::error::positive;
 use crate::grid::Grid;
 use crate::influence::{HalfSpace, Kernel};
 use crate::memory::zeros;
@@ -66,7 +66,7 @@ pub unsafe extern "C" fn contact_normal_hertz(
             Load::Approach(_) => ("amount, the approach,", analytic::hertz),
             Load::Force(_) => ("amount, the force,", analytic::hertz_by_force),
         };
-        require(amount > 0.0 && amount.is_finite(), name, amount, "it must be positive and finite")?;
+        positive(name, amount)?;
         let Hertz { semi_axis_x, semi_axis_y, max_pressure, approach, force, area } =
             exact(curvature_x, curvature_y, amount, compliance)?;
         (value.semi_axis_x, value.semi_axis_y, value.area) = (semi_axis_x, semi_axis_y, area);

@@ -9,10 +9,10 @@
 
 mod kernel;
 
-use crate::error::{invalid, require, Error, Result};
+use crate::error::{invalid, positive, require, Error, Result};
 use crate::grid::Grid;
 use crate::influence::{gauss_legendre, Coefficients, Table};
-use crate::memory::zeros;
+use crate::memory::{collected, zeros};
 use crate::operator::Operator;
 use crate::threads::Threads;
 
@@ -62,9 +62,6 @@ impl Heat<'_> {
             let (element, flux) = (self.grid.element(i), self.flux[i]);
             return Err(Error::NotFinite(format!("heat_flux of {element} is {flux}; it must be finite")));
         }
-        let positive = |name: &str, value: f64| {
-            require(value > 0.0 && value.is_finite(), name, value, "it must be positive and finite")
-        };
         for (name, value) in ["conductivity[0]", "conductivity[1]"].iter().zip(self.conductivity) {
             positive(name, value)?;
         }
@@ -101,14 +98,25 @@ impl Heat<'_> {
         Table::new(mx, my, &values, &self.grid)
     }
 
-    /// The rise of a body that takes all of the heat.
+    /// lambda times the rise of a body that takes all of the heat.
     fn alone(&self, b: usize, threads: &Threads) -> Result<Vec<f64>> {
         let coefficients = Coefficients::from(self.table(b, threads)?);
         let operator = Operator::<f64>::new(&coefficients, &self.grid, threads)?;
         let mut rise = zeros(self.grid.len(), FIELDS)?;
         operator.apply(self.flux, &mut rise, &mut operator.workspace()?);
-        rise.iter_mut().for_each(|rise| *rise /= self.conductivity[b]);
         Ok(rise)
+    }
+
+    /// The rise of each body that takes all of the heat. Where both have the same speed and diffusivity one product serves both.
+    fn each(&self, threads: &Threads) -> Result<[Vec<f64>; 2]> {
+        let first = self.alone(0, threads)?;
+        let is_same = self.speed[0] == self.speed[1] && self.diffusivity[0] == self.diffusivity[1];
+        let second = if is_same { collected(first.iter().copied(), FIELDS)? } else { self.alone(1, threads)? };
+        let mut both = [first, second];
+        for (rise, conductivity) in both.iter_mut().zip(self.conductivity) {
+            rise.iter_mut().for_each(|rise| *rise /= conductivity);
+        }
+        Ok(both)
     }
 }
 
@@ -119,7 +127,7 @@ impl Heat<'_> {
 pub fn flash_temperature(heat: &Heat<'_>, threads: &Threads) -> Result<Flash> {
     heat.check()?;
     let threads = &threads.suited_to(heat.grid.len());
-    let mut rise = [heat.alone(0, threads)?, heat.alone(1, threads)?];
+    let mut rise = heat.each(threads)?;
     let top = |rise: &[f64]| {
         rise.iter().enumerate().fold((0, f64::NEG_INFINITY), |top, (i, t)| if *t > top.1 { (i, *t) } else { top })
     };

@@ -22,6 +22,12 @@ impl Bodies {
         (0..2).map(|i| (1.0 - self.poisson_ratio[i]) / (2.0 * self.shear_modulus[i])).sum()
     }
 
+    /// What couples the normal and the tangential problem of half-spaces: `(1 - 2 nu1)/G1 - (1 - 2 nu2)/G2`; 0 where bodies are alike.
+    pub fn unlike(&self) -> f64 {
+        let of = |b: usize| (1.0 - 2.0 * self.poisson_ratio[b]) / self.shear_modulus[b];
+        of(0) - of(1)
+    }
+
     /// The first elastic constant that is another one than that of the bodies of a set-up; none if all are the same.
     pub fn differs(&self, of_set_up: &Bodies) -> Option<String> {
         let constants = |bodies: &Bodies| {

@@ -67,17 +67,15 @@ impl Solver {
         options: &Options,
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
-        scene.check_distance_and_load(&self.problem.threads)?;
+        let lowest = scene.check_distance_and_load(&self.problem.threads)?;
         self.set_up.check(scene, options, &self.problem)?;
         check::guess(scene, options, None)?;
-        let changed = effects::surface(scene)?;
-        let h = changed.as_deref().unwrap_or(scene.undeformed_distance);
-        let scene = &Scene { undeformed_distance: h, ..scene.clone() };
-        let lowest = scene.check_distance_and_load(&self.problem.threads)?;
-        let Some(adhesion) = scene.attraction() else {
-            return invalid("adhesion is not given, or its work is 0: nothing holds the bodies together".into());
-        };
-        self.solve_adhesive((scene, lowest), (adhesion, true), options, None, progress)
+        self.on_surface((scene, lowest), |solver, (scene, lowest)| {
+            let Some(adhesion) = scene.attraction() else {
+                return invalid("adhesion is not given, or its work is 0: nothing holds the bodies together".into());
+            };
+            solver.solve_adhesive((scene, lowest), (adhesion, true), options, None, progress)
+        })
     }
 
     /// Solves a scene with adhesion, which is checked. `lowest`: the least distance.

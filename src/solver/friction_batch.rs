@@ -45,11 +45,9 @@ pub fn solve_friction_batch(
             let (mut new, lowest) = Solver::for_scene(&normal, options)?;
             let watch = progress.as_mut().map(|progress| &mut **progress as ProgressCallback<'_>);
             let (stop, report) = new.solve_checked((&normal, lowest), options, None, watch)?;
-            let elements = 0..scene.grid.len();
-            contact = match new.adhesion() {
-                Some(split) => collected(elements.map(|i| split(i).0), "the contact pressures of a table")?,
-                None => collected(elements.map(|i| new.state().p[i]), "the pressures of a table")?,
-            };
+            let split = new.adhesion();
+            let q = |i: usize| split.as_ref().map_or(new.state().p[i], |split| split(i).0);
+            contact = collected((0..scene.grid.len()).map(q), "the contact pressures of a table")?;
             (stop, report, &contact[..])
         }
     };

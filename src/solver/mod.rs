@@ -238,12 +238,19 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
         self.set_up.check(scene, options, &self.problem)?;
-        if let Some(h) = effects::surface(scene)? {
-            let scene = &Scene { undeformed_distance: &h, ..scene.clone() };
-            let lowest = scene.check_distance_and_load(&self.problem.threads)?;
-            return self.solve_step_in_time((scene, lowest), options, guess, progress);
-        }
-        self.solve_step_in_time((scene, lowest), options, guess, progress)
+        self.on_surface((scene, lowest), |solver, scene| solver.solve_step_in_time(scene, options, guess, progress))
+    }
+
+    /// Solves with the undeformed distance that the effects of a scene make of its own.
+    fn on_surface<R>(
+        &mut self,
+        (scene, lowest): (&Scene<'_>, f64),
+        solve: impl FnOnce(&mut Solver, (&Scene<'_>, f64)) -> Result<R>,
+    ) -> Result<R> {
+        let Some(h) = effects::surface(scene)? else { return solve(self, (scene, lowest)) };
+        let scene = &Scene { undeformed_distance: &h, ..scene.clone() };
+        let lowest = scene.check_distance_and_load(&self.problem.threads)?;
+        solve(self, (scene, lowest))
     }
 
     /// A scene that is checked, whose bodies remember nothing, or whose distances have what they remember.

@@ -97,7 +97,7 @@ impl Omission {
             Omission::Adhesion => scene.attraction().is_some(),
             Omission::PressureLimit => scene.pressure_limit.is_some(),
             Omission::Friction => friction.is_some(),
-            Omission::Coupling => friction.is_some() && !replace_bodies(scene) && unlike(&scene.bodies) != 0.0,
+            Omission::Coupling => friction.is_some() && !replace_bodies(scene) && scene.bodies.unlike() != 0.0,
             Omission::Spin => friction.is_some_and(|friction| friction.spin != 0.0),
             Omission::FrictionCompliance => {
                 friction.is_some_and(|friction| friction.compliance != Coefficient::Uniform(0.0))
@@ -145,12 +145,6 @@ impl Omission {
 fn has_coating(scene: &Scene<'_>) -> bool {
     let plain = scene.plain();
     scene.coating.is_some_and(|coating| (0..2).any(|body| coating.in_effect(body, &plain).is_some()))
-}
-
-/// The coupling of normal and tangential problem: `(1 - 2 nu1)/G1 - (1 - 2 nu2)/G2`.
-fn unlike(bodies: &Bodies) -> f64 {
-    let of = |b: usize| (1.0 - 2.0 * bodies.poisson_ratio[b]) / bodies.shear_modulus[b];
-    of(0) - of(1)
 }
 
 /// Like bodies of the same compliance, normal and tangential: the means of 1/G and of nu/G.
