@@ -56,13 +56,13 @@ impl State {
             if missing + free > 0.0 && free > 0.0 {
                 let factor = 1.0 + missing / free;
                 self.p.iter_mut().zip(&self.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p *= factor);
+            } else if self.carries(threads) {
+                // Elements at their limit carry all of it, but for rounding.
+                break;
             } else if missing < 0.0 {
                 // Less than what is at its limit carries: that is not at its limit.
                 self.p.iter_mut().for_each(|p| *p *= pressures / all);
                 self.contact.iter_mut().zip(&mut self.at_limit).for_each(|(inside, at)| *inside |= std::mem::take(at));
-            } else if self.carries(threads) {
-                // An element at its limit carries all of it.
-                break;
             } else {
                 self.spread(missing);
             }

@@ -1,6 +1,5 @@
 //! The methods, each whole in its folder. To the solver's loop each of them is a [`Step`].
 
-pub mod descent;
 pub mod direct;
 pub mod extension;
 pub(crate) mod fgmres;
@@ -8,6 +7,7 @@ pub(crate) mod fields;
 pub mod multigrid;
 pub mod norm;
 pub mod projected_cg;
+pub mod projected_newton;
 mod task;
 
 pub use task::Task;

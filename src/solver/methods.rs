@@ -1,18 +1,17 @@
 //! Which methods solve a scene, in which order, each handing over to the next when it stalls; and how each starts from nothing.
 
 use super::best::Best;
-use super::by_approach::{Bracket, ByApproach};
 use super::estimates;
 use super::iterate::iterate;
 use super::nested::FullMultigrid;
 use super::options::{Method, Options};
 use crate::contact::{admit, AdmissibleSet, Freshness, Problem, State, Survey};
 use crate::error::{Error, Result};
-use crate::methods::descent::Descent;
 use crate::methods::direct::Direct;
 use crate::methods::multigrid::CycleShape;
 use crate::methods::norm::Norm;
 use crate::methods::projected_cg::ProjectedCg;
+use crate::methods::projected_newton::ProjectedNewton;
 use crate::methods::{Start, Step, Task};
 use crate::progress::{Outcome, UPDATE_RESIDUAL};
 
@@ -23,15 +22,17 @@ const WORTHLESS: f64 = 0.3;
 /// of 1000 for NORM, which ends on every area of contact.
 const SHARE: f64 = 0.4;
 const LEAST_SHARE: u64 = 60;
+/// The cycles of PROJECTED_CG with limits at most. Measured on 400 scenes with limits (rough, quantised, flat, gratings): of those that it
+/// solves in more, the projected Newton method solves all in fewer from there on.
+const LIMITED_SHARE: u64 = 100;
 
 /// The methods of a solver, set up when they are first asked for and kept.
 pub struct Methods {
     pub projected_cg: ProjectedCg,
     direct: Option<Direct>,
     multigrid: Option<FullMultigrid>,
-    descent: Descent,
+    projected_newton: ProjectedNewton,
     norm: Norm,
-    bracket: Bracket,
     pub best: Best,
     shape: CycleShape,
 }
@@ -43,8 +44,7 @@ pub enum Stage {
     ProjectedCg,
     VCycles,
     FullMultigrid,
-    ByApproach,
-    Descent,
+    ProjectedNewton,
     Norm,
 }
 
@@ -66,9 +66,8 @@ impl Methods {
             projected_cg: ProjectedCg::new(problem, options.precision),
             direct: Direct::new(&problem.coefficients, &problem.grid)?,
             multigrid: None,
-            descent: Descent::default(),
+            projected_newton: ProjectedNewton::default(),
             norm: Norm::default(),
-            bracket: Bracket::default(),
             best: Best::default(),
             shape: options.cycle,
         })
@@ -98,7 +97,7 @@ impl Methods {
                 }
             }
             let is_last = Some(&stage) == stages.last();
-            task.goal.max_cycles = if is_last { most } else { share(task.monitor.count.cycles, most) };
+            task.goal.max_cycles = if is_last { most } else { share::<S>(stage, task.monitor.count.cycles, most) };
             stop = self.run(stage, task)?;
             let has_more = task.monitor.count.cycles < most && !is_last;
             task.goal.max_cycles = most;
@@ -198,7 +197,7 @@ impl Methods {
     }
 
     fn run<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) -> Result<Outcome> {
-        let (mut cycles, mut by_approach) = (None, None);
+        let mut cycles = None;
         let method: &mut dyn Step<S> = match stage {
             Stage::Direct => match &mut self.direct {
                 Some(direct) => direct,
@@ -208,11 +207,7 @@ impl Methods {
             Stage::VCycles | Stage::FullMultigrid => {
                 cycles.insert(set_up_multigrid(&mut self.multigrid, task.problem, self.shape)?.cycles(0))
             }
-            Stage::ByApproach => {
-                let Methods { projected_cg, descent, bracket, .. } = self;
-                by_approach.insert(ByApproach { projected_cg, descent, bracket, last: None, twice: false })
-            }
-            Stage::Descent => &mut self.descent,
+            Stage::ProjectedNewton => &mut self.projected_newton,
             Stage::Norm => &mut self.norm,
         };
         iterate(method, task, &mut self.best)
@@ -240,16 +235,17 @@ impl Methods {
     pub fn bytes(&self) -> usize {
         let multigrid = self.multigrid.as_ref().map_or(0, FullMultigrid::bytes);
         let direct = self.direct.as_ref().map_or(0, Direct::bytes);
-        let kept = self.best.bytes() + self.bracket.bytes();
-        self.projected_cg.bytes() + direct + multigrid + self.descent.bytes() + self.norm.bytes() + kept
+        let newton = self.projected_newton.bytes();
+        self.projected_cg.bytes() + direct + multigrid + newton + self.norm.bytes() + self.best.bytes()
     }
 }
 
 /// Cycles up to which a method may go on before the next takes over, of which so many are done: a part of those that are left, so that every method of the list
 /// has its turn.
-fn share(done: u64, most: u64) -> u64 {
+fn share<S: AdmissibleSet>(stage: Stage, done: u64, most: u64) -> u64 {
     let left = most.saturating_sub(done);
-    done + left.min(LEAST_SHARE.max((SHARE * left as f64) as u64))
+    let share = left.min(LEAST_SHARE.max((SHARE * left as f64) as u64));
+    done + if S::LIMITED && stage == Stage::ProjectedCg { share.min(LIMITED_SHARE) } else { share }
 }
 
 /// Whether `p'Ap < 0`: where an iteration diverges by an indefinite A, p is all of such a direction.
@@ -272,21 +268,21 @@ fn set_up_multigrid<'a>(
 
 /// The methods that solve a scene, first to last. `multigrid`: whether V-cycles solve all its effects.
 pub fn stages<S: AdmissibleSet>(method: Method, symmetric: bool, multigrid: bool) -> &'static [Stage] {
-    use Stage::{ByApproach, Descent, Direct, FullMultigrid, Norm, ProjectedCg, VCycles};
+    use Stage::{Direct, FullMultigrid, Norm, ProjectedCg, ProjectedNewton, VCycles};
     match method {
         Method::Norm => &[Norm],
         // Around limits V-cycles may go round in circles.
-        Method::Multigrid if S::LIMITED && symmetric => &[VCycles, Descent],
-        Method::FullMultigrid if S::LIMITED && symmetric => &[FullMultigrid, Descent],
+        Method::Multigrid if S::LIMITED && symmetric => &[VCycles, ProjectedNewton],
+        Method::FullMultigrid if S::LIMITED && symmetric => &[FullMultigrid, ProjectedNewton],
         Method::Multigrid => &[VCycles],
         Method::FullMultigrid => &[FullMultigrid],
         Method::ProjectedCg if S::FIXED => &[ProjectedCg],
         Method::ProjectedCg => &[Direct, ProjectedCg],
         Method::Auto => match (symmetric, S::FIXED, multigrid) {
             (true, true, _) => &[ProjectedCg, Norm],
-            (true, false, _) if S::LIMITED => &[Direct, ProjectedCg, ByApproach, Descent, Norm],
-            (true, false, true) => &[Direct, ProjectedCg, FullMultigrid, Descent, Norm],
-            (true, false, false) => &[Direct, ProjectedCg, Descent, Norm],
+            (true, false, _) if S::LIMITED => &[Direct, ProjectedCg, ProjectedNewton, Norm],
+            (true, false, true) => &[Direct, ProjectedCg, FullMultigrid, ProjectedNewton, Norm],
+            (true, false, false) => &[Direct, ProjectedCg, ProjectedNewton, Norm],
             (false, _, true) => &[FullMultigrid, Norm],
             (false, _, false) => &[Norm],
         },

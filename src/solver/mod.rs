@@ -9,7 +9,6 @@ mod batch;
 mod beside;
 mod best;
 mod bill;
-mod by_approach;
 mod check;
 mod compressible;
 mod compression;

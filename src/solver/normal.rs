@@ -97,7 +97,9 @@ impl Solver {
         }
         let (from, survey) = take_over::take_over(problem, state, set, scene, (options, guess, solved), monitor)?;
         let mut task = Task { problem, state, lowest, set, goal: options.goal(), monitor };
-        let stop = if take_over::is_without_contact(task.state, lowest, S::FIXED) {
+        let is_unloaded = take_over::is_without_contact(task.state, lowest, S::FIXED)
+            || take_over::is_even_without_force::<S>(task.state);
+        let stop = if is_unloaded {
             Outcome::Converged
         } else if take_over::fills_limits(task.problem, task.state, set)? {
             task.count_products();

@@ -39,6 +39,7 @@ mod heat;
 mod hertz;
 mod influence;
 mod layer;
+mod limits_that_differ;
 mod line_contact;
 mod linear;
 mod long_rows;

@@ -102,3 +102,24 @@ fn a_free_contact_area_is_not_pulled() {
         "{refused}"
     );
 }
+
+/// Flat bodies without a force: p = 0, and the distances that a residual is relative to are 0, too.
+#[test]
+fn an_even_contact_area_without_force_has_no_pressures() {
+    let grid = Grid::new(31, 24, 0.5, 0.4).unwrap();
+    let (_, contact) = bonded(&grid);
+    for (height, periods) in [(0.0, 0), (0.0, 1), (-0.7, 0), (1e9, 2), (3e-127, 1)] {
+        let h: Vec<f64> = contact.iter().map(|&inside| if inside { height } else { f64::INFINITY }).collect();
+        let period = (periods > 0).then_some(Period { x: true, y: periods == 2 });
+        let scene = Scene { period, ..Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(0.0)) };
+        let options = fixed(Method::Auto);
+        let mut solver = Solver::new(&scene, &options).unwrap();
+        let pressure: Vec<f64> = (0..h.len()).map(|i| if contact[i] { 1e-127 * (i % 7) as f64 } else { 0.0 }).collect();
+        let guess = Some(Guess { pressure: &pressure, contact: &contact });
+        let (stop, report) = solver.solve(&scene, &options, guess, None).unwrap();
+        assert_eq!(stop, Outcome::Converged, "{height}, {periods} periods");
+        assert!(solver.state().p.iter().all(|p| *p == 0.0));
+        assert!(report.measures.approach == height && report.measures.certificate.residual == 0.0);
+        assert_eq!(report.measures.contact_count, contact.iter().filter(|inside| **inside).count());
+    }
+}

@@ -4,7 +4,7 @@ use super::*;
 use crate::contact::{lowest, NonNegative, Problem, State};
 use crate::grid::Grid;
 use crate::influence::{Coefficients, HalfSpace};
-use crate::methods::descent::Descent;
+use crate::methods::projected_newton::ProjectedNewton;
 use crate::progress::Criterion;
 use crate::progress::{Goal, Monitor};
 use crate::scene::Load;
@@ -27,10 +27,10 @@ fn descend(problem: &mut Problem, state: &mut State, cycles: u64) -> Outcome {
     let goal = Goal { criterion: Criterion::Residual, tolerance: 1e-9, max_cycles: cycles };
     let (mut best, mut monitor) = (Best::default(), Monitor::silent());
     best.forget();
-    let mut descent = Descent::default();
+    let mut method = ProjectedNewton::default();
     let lowest = lowest(&state.h);
     let mut task = Task { problem, state, lowest, set: NonNegative, goal, monitor: &mut monitor };
-    iterate(&mut descent, &mut task, &mut best).expect("a solve")
+    iterate(&mut method, &mut task, &mut best).expect("a solve")
 }
 
 #[test]

@@ -1,0 +1,133 @@
+//! The Newton direction: some preconditioned conjugate gradients of `A t = -e` on the free elements.
+//!
+//! By approach with two periods a uniform pressure on all elements displaces nothing, and on nearly all of them little: conjugate gradients
+//! would take many iterations for the mean of t. It comes first, and all others are conjugate to it:
+//!
+//! ```text
+//! t = a 1 on the free elements,   a = (1, r)/(1, A 1)
+//! ```
+
+use super::{dot, ProjectedNewton};
+use crate::contact::{norm_of_distance, relative, AdmissibleSet};
+use crate::error::Result;
+use crate::methods::Task;
+use crate::scene::Load;
+use crate::sums::in_blocks;
+
+/// The residual of a direction, relative to e on the free elements: its bounds change before more of it is worth its products.
+const ENOUGH: f64 = 0.25;
+/// And relative to the residual that is asked for: no more than that is needed.
+const NEEDED: f64 = 0.3;
+/// A uniform pressure displaces at least so much of what an element displaces itself: less, on all elements, is round-off.
+const LEAST: f64 = 1e-2;
+
+impl ProjectedNewton {
+    /// t, and A t.
+    pub(super) fn find_direction<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<()> {
+        let by_force = matches!(task.state.load, Load::Force(_));
+        self.t.fill(0.0);
+        self.product.fill(0.0);
+        for ((r, e), &free) in self.r.iter_mut().zip(&self.distance).zip(&self.free) {
+            *r = if free { -e } else { 0.0 };
+        }
+        let (uniform, is_free) = if by_force { (0.0, true) } else { self.begin_uniformly(task)? };
+        // The rest of t has mean zero.
+        let without_mean = by_force || is_free;
+        let scale = norm_of_distance(task.state);
+        let (mut target, mut last_rz) = (0.0, 0.0);
+        for k in 0..self.most {
+            if without_mean {
+                remove_mean(&mut self.r, &self.free);
+            }
+            let norm = dot(&self.r, &self.r).sqrt();
+            if k == 0 {
+                target = (ENOUGH * norm).max(NEEDED * task.goal.tolerance * scale);
+            }
+            if !(norm > target) || task.is_interrupted() {
+                break;
+            }
+            let rz = self.precondition(without_mean, uniform);
+            let beta = if k == 0 { 0.0 } else { rz / last_rz };
+            last_rz = rz;
+            for (along, z) in self.along.iter_mut().zip(&self.z) {
+                *along = z + if k == 0 { 0.0 } else { beta * *along };
+            }
+            task.problem.displace(&self.along, &mut self.along_product)?;
+            let curvature = dot(&self.along, &self.along_product);
+            if !(curvature > 0.0) {
+                break;
+            }
+            self.go_along(rz / curvature);
+            let size = dot(&self.along, &self.along).sqrt() * rz / curvature;
+            let update = size / (task.state.contact_count().max(1) as f64).sqrt();
+            task.count_products();
+            if !task.monitor.cycle_done(&task.state.grid, 0, update, relative(norm, scale)) {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Where it is needed: t is uniform, and A 1 is known. Returns (1, A 1), or 0, and whether a uniform pressure is as good as free.
+    fn begin_uniformly<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<(f64, bool)> {
+        let count = self.free.iter().filter(|free| **free).count();
+        if !task.problem.coefficients.is_mean_free() || 2 * count <= self.free.len() {
+            return Ok((0.0, false));
+        }
+        for (along, &free) in self.along.iter_mut().zip(&self.free) {
+            *along = f64::from(u8::from(free));
+        }
+        task.problem.displace(&self.along, &mut self.along_product)?;
+        let least = LEAST * task.problem.self_influence() * count as f64;
+        let work = dot(&self.along, &self.along_product);
+        let displaced = work.max(least);
+        self.uniform_product.copy_from_slice(&self.along_product);
+        self.go_along(in_blocks(self.r.iter().copied()) / displaced);
+        Ok((displaced, work < least))
+    }
+
+    /// z = M r on the free elements; conjugate to a uniform t that came first. Returns (r, z).
+    fn precondition(&mut self, without_mean: bool, uniform: f64) -> f64 {
+        let ProjectedNewton { preconditioner, weight, free, r, z, uniform_product, .. } = self;
+        z.copy_from_slice(r);
+        if let Some((m, workspace)) = preconditioner {
+            m.apply(z, (free, without_mean), &mut None, workspace);
+        }
+        finish(z, free, without_mean, (uniform, uniform_product));
+        let rz = dot(r, z);
+        if preconditioner.is_some() && rz > 0.0 {
+            return rz;
+        }
+        z.iter_mut().zip(&*r).zip(weight).for_each(|((z, r), weight)| *z = *weight * r);
+        finish(z, free, without_mean, (uniform, uniform_product));
+        dot(r, z)
+    }
+
+    /// t, its product and the residual, by `alpha` of the direction.
+    fn go_along(&mut self, alpha: f64) {
+        for i in 0..self.t.len() {
+            self.t[i] += alpha * self.along[i];
+            self.product[i] += alpha * self.along_product[i];
+            self.r[i] -= if self.free[i] { alpha * self.along_product[i] } else { 0.0 };
+        }
+    }
+}
+
+/// z on the free elements, of mean zero where t has none, conjugate to 1 where that came first.
+fn finish(z: &mut [f64], free: &[bool], without_mean: bool, (uniform, product): (f64, &[f64])) {
+    z.iter_mut().zip(free).filter(|(_, free)| !**free).for_each(|(z, _)| *z = 0.0);
+    if without_mean {
+        remove_mean(z, free);
+    }
+    if uniform > 0.0 {
+        let amount = dot(z, product) / uniform;
+        z.iter_mut().zip(free).filter(|(_, free)| **free).for_each(|(z, _)| *z -= amount);
+    }
+}
+
+/// Takes the mean of values on the free elements, which are 0 elsewhere, from them.
+fn remove_mean(values: &mut [f64], free: &[bool]) {
+    let count = free.iter().filter(|free| **free).count();
+    let mean = in_blocks(values.iter().copied()) / count.max(1) as f64;
+    values.iter_mut().zip(free).filter(|(_, free)| **free).for_each(|(value, _)| *value -= mean);
+}

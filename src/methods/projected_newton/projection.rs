@@ -1,0 +1,65 @@
+//! The projection of p + t on the admissible pressures, which carry a prescribed force.
+
+use super::{dot, ProjectedNewton};
+use crate::contact::{AdmissibleSet, State};
+use crate::scene::Load;
+use crate::sums::in_blocks;
+
+/// Steps to the constant at most: Newton's steps end after some, and bisections after the digits of a double.
+const STEPS: u32 = 200;
+
+impl ProjectedNewton {
+    /// d = project(p + length t) - p, and in `along` where that leads. Returns its slope (d, e).
+    pub(super) fn project<S: AdmissibleSet>(&mut self, state: &State, set: S, length: f64) -> f64 {
+        let ProjectedNewton { free, distance, t, along, change, .. } = self;
+        let moved = |i: usize| state.p[i] + length * t[i];
+        let constant = match state.load {
+            Load::Approach(_) => 0.0,
+            Load::Force(force) => {
+                let to = |i: usize, c: f64| if free[i] { set.project(i, moved(i) + c) } else { state.p[i] };
+                let sum = |c: f64| in_blocks((0..free.len()).map(|i| to(i, c)));
+                // The elements that a larger constant moves.
+                let slope = |c: f64| (0..free.len()).filter(|&i| free[i] && is_between(set, i, moved(i) + c)).count();
+                let size = (0..free.len()).filter(|&i| free[i]).map(|i| moved(i).abs()).fold(0.0, f64::max);
+                constant_for(force / state.grid.element_area(), sum, slope, size)
+            }
+        };
+        for i in 0..free.len() {
+            along[i] = if free[i] { set.project(i, moved(i) + constant) } else { state.p[i] };
+            change[i] = along[i] - state.p[i];
+        }
+        dot(change, distance)
+    }
+}
+
+fn is_between<S: AdmissibleSet>(set: S, i: usize, p: f64) -> bool {
+    p > 0.0 && p < set.limit(i)
+}
+
+/// The constant with which the sum is `wanted`. The sum grows with the constant, in pieces that are linear, whose slope is a number of elements;
+/// `size` is that of a pressure.
+fn constant_for(wanted: f64, sum: impl Fn(f64) -> f64, slope: impl Fn(f64) -> usize, size: f64) -> f64 {
+    let (mut low, mut high, mut constant) = (f64::NEG_INFINITY, f64::INFINITY, 0.0);
+    let mut reach = size.max(f64::MIN_POSITIVE);
+    for _ in 0..STEPS {
+        let missing = wanted - sum(constant);
+        if missing == 0.0 {
+            break;
+        }
+        *(if missing > 0.0 { &mut low } else { &mut high }) = constant;
+        let newton = constant + missing / slope(constant) as f64;
+        let next = if newton > low && newton < high && newton.is_finite() {
+            newton
+        } else if low.is_finite() && high.is_finite() {
+            0.5 * (low + high)
+        } else {
+            reach *= 2.0;
+            constant + if missing > 0.0 { reach } else { -reach }
+        };
+        if next == constant || !(next > low && next < high) {
+            break;
+        }
+        constant = next;
+    }
+    constant
+}
