@@ -46,7 +46,7 @@ def draw(ledger, report, exact, path):
     if report["halved_seconds"] > 0:
         finer = report["halved_error_force"] / report["force"]
         axes.loglog(report["halved_seconds"], finer, "x", color="0.5", label="advice: half the element")
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small")
+    axes.legend(frameon=False, fontsize=9, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     axes.figure.savefig(path)
 
 

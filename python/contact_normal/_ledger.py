@@ -23,7 +23,7 @@ class Ledger(list[dict[str, float]]):
         self.estimated = estimated
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """Draws the estimated error of every grid over the seconds it took.
+        """Draws the estimated relative errors of every grid against the seconds until it was solved, as the pictures of prices do.
 
         Parameters
         ----------
@@ -35,6 +35,6 @@ class Ledger(list[dict[str, float]]):
         matplotlib.axes.Axes
             The axes, to add to or to save: `axes.figure.savefig("ledger.png")`.
         """
-        from ._plot_lines import plot_ledger
+        from ._plot_accuracy import plot_ledger
 
         return plot_ledger(self, self.estimated, axes)

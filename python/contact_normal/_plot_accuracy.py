@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ._axes import SIZE, new_axes
@@ -33,8 +34,33 @@ def plot_quantities(rows: Quantities, axes: Axes | None) -> Axes:
         axes.plot(seconds, errors, "o-", color=_COLOURS[k % len(_COLOURS)], label=name.replace("_", " "), markersize=5)
     _write_elements(axes, [(row.seconds, row.shape) for row in rows])
     _error_axes(axes)
+    _write_legend(axes)
+    return axes
+
+
+def _write_legend(axes: Axes) -> None:
     if axes.get_legend_handles_labels()[0]:
         axes.legend(frameon=False, fontsize=9, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+
+
+def plot_ledger(ledger: Sequence[dict[str, float]], estimated: str, axes: Axes | None) -> Axes:
+    """See `Ledger.plot`."""
+    axes = axes or new_axes(SIZE)
+    quantities = (
+        ("pressures (rms)", "error_pressure", None),
+        (estimated, "error_force", estimated),
+        ("max pressure", "error_max_pressure", "max_pressure"),
+        ("contact area", "error_corrected_area", "corrected_area"),
+    )
+    for (name, error, of), colour in zip(quantities, _COLOURS):
+        sizes = [1.0 if of is None else abs(row[of]) for row in ledger]
+        points = [(row["seconds"], row[error] / size) for row, size in zip(ledger, sizes) if row[error] > 0 and size > 0]
+        if points:
+            axes.plot(*zip(*points), "o-", color=colour, label=name, markersize=5)
+    _write_elements(axes, [(row["seconds"], (int(row["my"]), int(row["mx"]))) for row in ledger if row["seconds"] > 0])
+    _error_axes(axes)
+    axes.set_ylabel("estimated relative error")
+    _write_legend(axes)
     return axes
 
 

@@ -1,4 +1,4 @@
-"""Pictures with curves: the ledger, sections, pressures by their size, area against load, creep forces."""
+"""Pictures with curves: sections, pressures by their size, area against load, creep forces."""
 
 from __future__ import annotations
 
@@ -16,45 +16,6 @@ if TYPE_CHECKING:
     from ._creep_forces import CreepForceTable
     from ._result import Result
     from ._solved import Solved
-
-def plot_ledger(ledger: Sequence[dict[str, float]], estimated: str, axes: Axes | None) -> Axes:
-    """See `Ledger.plot`."""
-    axes = axes or new_axes(SIZE)
-    for name, error, of in (
-        ("pressures (rms)", "error_pressure", None),
-        (estimated, "error_force", estimated),
-        ("largest pressure", "error_max_pressure", "max_pressure"),
-    ):
-        scales = [1.0 if of is None else row[of] for row in ledger]
-        points = [(row["seconds"], row[error] / scale) for row, scale in zip(ledger, scales) if row[error] > 0 and scale > 0]
-        if points:
-            axes.loglog(*zip(*points), "o-", label=name)
-    shown = 0.0
-    for row in ledger:
-        if row["seconds"] < 1.15 * shown:  # its label would lie on the one before
-            continue
-        shown = row["seconds"]
-        axes.axvline(row["seconds"], color="0.5", alpha=0.3, linewidth=1.0, zorder=0)
-        axes.annotate(
-            f"{row['mx']:.0f} × {row['my']:.0f}",
-            (row["seconds"], 0.99),
-            xycoords=("data", "axes fraction"),
-            rotation=90,
-            va="top",
-            ha="right",
-            fontsize=8,
-        )
-    if axes.has_data():
-        from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
-        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        axes.xaxis.set_major_formatter(FuncFormatter(lambda seconds, _: f"{seconds:g}"))
-        axes.xaxis.set_minor_formatter(NullFormatter())
-        axes.margins(y=0.2)
-    axes.set(xlabel="time [s]", ylabel="estimated relative error", title="What accuracy costs: the ledger of one solve")
-    if axes.get_legend_handles_labels()[0]:
-        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small")
-    return axes
 
 
 def plot_section(result: Result, x: float | None, y: float | None, axes: Axes | None) -> Axes:
