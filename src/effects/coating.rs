@@ -115,7 +115,7 @@ impl Coating {
         bodies
     }
 
-    /// What both bodies give way to a pressure wave of wave number k > 0, after a check.
+    /// The displacement of both bodies under a unit pressure wave of wave number k > 0, after a check.
     pub fn compliance(&self, scene: &Plain<'_>, k: f64) -> Result<f64> {
         self.check(&scene.grid)?;
         scene.bodies.check_each()?;

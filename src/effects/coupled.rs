@@ -1,4 +1,4 @@
-//! What is coupled with the normal problem: both are solved in turns, and a step leaves something to the next one.
+//! Problems that are coupled with the normal one: both are solved in turns, and a step leaves something to the next one.
 
 use crate::contact::State;
 use crate::error::Result;
@@ -32,14 +32,14 @@ pub trait Coupled {
     fn step_done(&mut self, state: &State);
 }
 
-/// What an effect keeps from step to step: fields of one value per element.
+/// The history of an effect from step to step: fields of one value per element.
 #[derive(Debug, Default)]
 pub struct History {
     fields: Vec<Vec<f64>>,
     has_step: bool,
     /// Of the steps so far, for effects that have a time.
     pub time: f64,
-    /// What the steps so far may be off, added up: a length.
+    /// The error of the steps so far, added up: a length.
     pub error: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What an effect is to the rest of the library.
+//! The trait of an effect.
 
 use std::sync::Arc;
 
@@ -29,7 +29,7 @@ pub trait Effect {
     /// As it is called in a scene.
     fn name(&self) -> &'static str;
 
-    /// What it goes with, and what it changes.
+    /// The effects it goes with, and the quantities it changes.
     fn properties(&self) -> Properties<'_>;
 
     /// Refuses what is none.
@@ -42,7 +42,7 @@ pub trait Effect {
     /// repeats itself in both directions. By a uniform pressure something is compressed, or pressures are held.
     fn gives_way(&self, scene: &Plain<'_>) -> bool;
 
-    /// What stresses below the surface of body 1 (`b` is 0) or 2 are with it.
+    /// The stresses below the surface of body 1 (`b` is 0) or 2 with it.
     fn stresses(&self, b: usize, scene: &Plain<'_>) -> Stresses<'_>;
 
     /// Whether a scene has to know of it.
@@ -70,7 +70,7 @@ pub trait Effect {
         Ok(None)
     }
 
-    /// What it does to the coefficients of the kernel.
+    /// Its change of the coefficients of the kernel.
     fn apply(&self, coefficients: Coefficients) -> Result<Coefficients> {
         Ok(coefficients)
     }
@@ -80,7 +80,7 @@ pub trait Effect {
         Ok(None)
     }
 
-    /// What bodies remember of the steps before, `history`, in a step of this one.
+    /// The memory of bodies that remember the steps before, `history`, in a step of this one.
     fn memory(
         &self,
         _scene: &Plain<'_>,
@@ -90,7 +90,7 @@ pub trait Effect {
         Ok(None)
     }
 
-    /// What is solved in turns with the normal problem; `history` is what the last step left.
+    /// The problem that is solved in turns with the normal one; `history` is left by the last step.
     fn coupled<'s>(&'s self, _scene: &Plain<'_>, _history: &'s mut History) -> Result<Option<Box<dyn Coupled + 's>>> {
         Ok(None)
     }

@@ -60,7 +60,7 @@ pub enum Motion {
     SteadyRolling,
 }
 
-/// What is prescribed in a direction; the other one is found.
+/// The quantity that is prescribed in a direction; the other one is found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Prescribed {
     /// The creepage: for a shift a length, for rolling a length per length rolled.
@@ -224,7 +224,7 @@ impl Effect for Friction<'_> {
         // Tangential coefficients of these are not known, unless they are given.
         let excludes: &[&str] = match self.influence {
             Some(influence) if influence.cross.is_none() => &["adhesion", "period", "patches"],
-            // What couples both problems is a table of offsets alone.
+            // The coupling of both problems is a table of offsets alone.
             Some(_) => &["adhesion", "row_tables", "period", "patches", "coating"],
             None => &["adhesion", "influence", "row_tables", "period", "patches", "coating"],
         };

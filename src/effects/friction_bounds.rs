@@ -22,7 +22,7 @@ impl Friction<'_> {
         self.law.is_some_and(|law| law.memory_distance > 0.0) || self.layer.is_some_and(|layer| layer.hardening != 0.0)
     }
 
-    /// What a step takes by a law's speed; 1 without a law.
+    /// The duration of a step for a law's speed; 1 without a law.
     pub fn duration(&self, grid: &Grid) -> f64 {
         match (self.law, self.motion) {
             (None, _) => 1.0,

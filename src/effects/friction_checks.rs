@@ -1,4 +1,4 @@
-//! What friction refuses: steps, tables and numbers that make no sense.
+//! Refusals of friction: steps, tables and numbers that make no sense.
 
 use std::f64::consts::PI;
 

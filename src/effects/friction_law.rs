@@ -1,4 +1,4 @@
-//! What friction may have beside a constant coefficient: a law by which the coefficient falls with the slip velocity, and a layer between
+//! Friction beyond a constant coefficient: a law by which the coefficient falls with the slip velocity, and a layer between
 //! the bodies that yields. See [`friction::law`](crate::friction::law) for what is solved.
 
 use crate::error::{not_negative, positive, Result};
@@ -26,15 +26,15 @@ pub enum Fall {
 pub struct FrictionLaw {
     /// How it falls.
     pub fall: Fall,
-    /// What is left at high speed; only ratios of this and of `falling` count.
+    /// The part that is left at high speed; only ratios of this and of `falling` count.
     pub kinetic: f64,
-    /// What falls, in two parts.
+    /// The part that falls, in two terms.
     pub falling: [f64; 2],
     /// The slip velocities at which half of each part is left.
     pub half_speed: [f64; 2],
     /// V: the speed of rolling. A step takes dq/V.
     pub speed: f64,
-    /// What a shift takes, a time.
+    /// The duration of a shift.
     pub time_step: f64,
     /// The distance of slip over which the coefficient follows; 0: at once.
     pub memory_distance: f64,
@@ -47,7 +47,7 @@ pub struct FrictionLaw {
 pub struct PlasticLayer {
     /// The yield limit of fresh material, a traction.
     pub yield_limit: f64,
-    /// What the limit gains by a length of plastic slip, a traction per length; negative: it softens, to a thousandth of `yield_limit` at least.
+    /// The gain of the limit by a length of plastic slip, a traction per length; negative: it softens, to a thousandth of `yield_limit` at least.
     pub hardening: f64,
 }
 

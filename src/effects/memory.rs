@@ -1,4 +1,4 @@
-//! What bodies themselves remember of the steps before: a step is a normal problem with another compliance.
+//! The memory of bodies that remember the steps before: a step is a normal problem with another compliance.
 //!
 //! ```text
 //! e = h + H - approach + s A p          s, H: known before the step

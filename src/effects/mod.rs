@@ -1,4 +1,4 @@
-//! What a scene may name beside its bodies: one file per effect, and the list of them.
+//! The effects that a scene may name beside its bodies: one file per effect, and the list of them.
 //!
 //! | effect | goes not with | MULTIGRID, FULL_MULTIGRID | on a handle |
 //! |---|---|---|---|

@@ -1,4 +1,4 @@
-//! What a set-up depends on: an owned record of the bodies and of the values of all effects, to be compared with later scenes.
+//! The bodies and the values of all effects of a set-up: an owned record, compared with later scenes.
 //!
 //! Numbers are kept. Tables are kept shared with the coefficients, so they cost nothing, and compared value by value unless they are the
 //! very same. Arrays of one value per element are kept as their length and a hash of 128 bits: each word enters by steps that are
@@ -13,11 +13,11 @@ use crate::error::{invalid, Error, Result};
 use crate::memory::Held;
 use crate::scene::{Bodies, Scene};
 
-/// What to do where coefficients are others.
+/// The consequence of other coefficients.
 pub const SET_THEM: &str =
     "leave them out, or set them first (influence and tangential tables: contact_normal_solver_set_influence)";
 
-/// What is kept of a value.
+/// The record of a value.
 #[derive(Clone, Debug, PartialEq)]
 enum Kept {
     Number(f64),
@@ -57,7 +57,7 @@ fn hash(words: impl Iterator<Item = u64>) -> [u64; 2] {
     })
 }
 
-/// What a set-up depends on, beside the grid.
+/// The scene of a set-up, beside its grid.
 #[derive(Clone, Debug)]
 pub struct Named {
     /// None where they do not matter.
@@ -97,7 +97,7 @@ impl Named {
                 _ => {}
             }
         }
-        // What is left out of this scene is there all the same.
+        // A value that this scene does not name is there all the same.
         for effect in effects(scene) {
             let name = effect.name();
             let left_out = |other: &str| self.effects.iter().flatten().any(|effect| *effect == other);

@@ -1,4 +1,4 @@
-//! What other places ask of an effect: every effect answers all of it, so one that forgets something does not compile.
+//! The questions of other places to an effect: every effect answers all of them, so one that forgets something does not compile.
 
 /// p_max, a pressure; +infinity: no limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +29,7 @@ pub enum Layout {
     Rows,
 }
 
-/// What most effects say that stresses below the surface do not know.
+/// The answer of most effects that stresses below the surface do not know.
 pub const HALF_SPACE_ALONE: &str = "is given; subsurface stresses are those of a half-space";
 
 /// How stresses below the surface of a body change.
@@ -57,18 +57,18 @@ pub enum Stresses<'a> {
 pub struct Continues {
     /// The member that says so.
     pub member: &'static str,
-    /// What the last step must have left.
+    /// The result that the last step must have left.
     pub from: &'static str,
-    /// What a batch needs instead.
+    /// The call to make instead of a batch.
     pub instead: &'static str,
 }
 
-/// What an effect is to the rest of the library.
+/// The role of an effect in the rest of the library.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Properties<'a> {
     /// The effects that it is not solved with; one of a pair says so.
     pub excludes: &'static [&'static str],
-    /// What MULTIGRID and FULL_MULTIGRID do not solve: there is no smoother, or there are no coarser grids.
+    /// The effect that MULTIGRID and FULL_MULTIGRID do not solve: there is no smoother, or there are no coarser grids.
     pub without_multigrid: Option<&'static str>,
     /// Whether it is solved on a contact area that is given.
     pub with_given_area: bool,

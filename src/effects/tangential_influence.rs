@@ -24,7 +24,7 @@ pub struct TangentialInfluence<'a> {
     pub scale: f64,
 }
 
-/// What a component is to a mirrored offset.
+/// The sign of a component at a mirrored offset.
 #[derive(Clone, Copy)]
 struct Symmetry {
     name: &'static str,
@@ -35,7 +35,7 @@ struct Symmetry {
 }
 
 const OWN: &str = "xx and yy must be even in x and in y, xy odd in both";
-/// What a number that all tables are multiplied by must be.
+/// The condition on a number that all tables are multiplied by.
 pub(super) const SCALE: &str = "coefficients are scaled by a positive, finite number";
 
 const CROSS: &str = "xz must be odd in x and even in y, yz even in x and odd in y";

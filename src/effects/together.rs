@@ -1,4 +1,4 @@
-//! What all effects of a scene say together.
+//! The answers of all effects of a scene together.
 
 use std::sync::Arc;
 
@@ -122,7 +122,7 @@ pub fn continuing<'s>(scene: &'s Scene<'_>) -> impl Iterator<Item = (usize, &'st
     named.filter_map(|(k, effect)| effect.and_then(|effect| Some((k, effect.name(), effect.properties().continues?))))
 }
 
-/// What of the effects is coupled with the normal problem, with what the last step left of each.
+/// The problems that are coupled with the normal one, each with the history that the last step left.
 pub fn coupled<'s>(scene: &'s Scene<'_>, histories: &'s mut [History; COUNT]) -> Result<Vec<Box<dyn Coupled + 's>>> {
     let (plain, mut coupled) = (scene.plain(), Vec::new());
     for (effect, history) in list(scene).into_iter().zip(histories) {
@@ -133,7 +133,7 @@ pub fn coupled<'s>(scene: &'s Scene<'_>, histories: &'s mut [History; COUNT]) ->
     Ok(coupled)
 }
 
-/// What bodies remember, and which effect of the list says so.
+/// The memory of the bodies, and the effect of the list that has it.
 pub fn memory(scene: &Scene<'_>, histories: &mut [History; COUNT]) -> Result<Option<(usize, Box<dyn Memory>)>> {
     let (plain, list) = (scene.plain(), list(scene));
     for (k, (effect, history)) in list.iter().zip(histories).enumerate() {
@@ -162,7 +162,7 @@ pub fn surface(scene: &Scene<'_>) -> Result<Option<Vec<f64>>> {
     })
 }
 
-/// What of a scene MULTIGRID and FULL_MULTIGRID do not solve.
+/// The first effect of a scene that MULTIGRID and FULL_MULTIGRID do not solve.
 pub fn excluded_method(scene: &Scene<'_>) -> Option<&'static str> {
     first(scene, |properties| properties.without_multigrid).map(|(_, what)| what)
 }

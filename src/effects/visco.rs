@@ -26,7 +26,7 @@ pub struct Visco<'a> {
     pub bodies: [Branches<'a>; 2],
     /// The time of the step, >= 0; 0: a jump.
     pub time_step: f64,
-    /// What is linear in it; none: the displacement where the approach is given, the pressures where the force is.
+    /// The quantity that is linear in it; none: the displacement where the approach is given, the pressures where the force is.
     pub form: Option<Form>,
     /// Whether the step begins where the last one ended; if not, at rest.
     pub continues: bool,

@@ -52,7 +52,7 @@ impl Step {
         bodies.iter().map(|body| body.share * body.map.compliance()).sum()
     }
 
-    /// What both forms differ by, and h - approach: rms over the elements in contact.
+    /// The difference of both forms, and h - approach: rms over the elements in contact.
     fn error(&self, fields: &[Vec<f64>], state: &State) -> (f64, f64) {
         let (s, other) = (Step::compliance_of(&self.bodies), Step::compliance_of(&self.compared));
         let (mut differences, mut distances, mut count) = (0.0, 0.0, 0usize);

@@ -163,7 +163,7 @@ impl contact_normal_accuracy {
     }
 }
 
-/// What writes the caller's surface; none where there is none.
+/// The function that writes the caller's surface; none where there is none.
 pub(super) fn surface<'r, 'a>(
     given: &contact_normal_accuracy,
     recording: &'r mut Recording<'a>,

@@ -41,14 +41,14 @@ pub(super) unsafe fn required<'a, T>(name: &str, values: *const T, n: usize) -> 
     unsafe { optional(values, n) }.ok_or_else(|| Refusal::null(name))
 }
 
-/// What an array holds.
+/// The contents of an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Element {
     Double,
     Int32,
 }
 
-/// What can stand in an array that is read.
+/// A type that can stand in an array that is read.
 pub(super) trait Plain {
     const ELEMENT: Element;
 }
@@ -74,7 +74,7 @@ pub(super) struct Region {
     /// Of a batch: counted from 0.
     problem: Option<usize>,
     is_output: bool,
-    /// What a call takes from it; not of structs, and not of outputs that are only written.
+    /// The copy for a call; not of structs, and not of outputs that are only written.
     pub is_read: bool,
     pub element: Element,
 }
@@ -112,7 +112,7 @@ impl Regions {
         self.problem = None;
     }
 
-    /// What is added from here on belongs to this problem of a batch.
+    /// All that is added from here on belongs to this problem of a batch.
     pub fn enter_problem(&mut self, problem: usize) {
         self.problem = Some(problem);
     }
@@ -138,7 +138,7 @@ impl Regions {
         }
     }
 
-    /// What begins here; of several the longest.
+    /// The argument that begins here; of several the longest.
     pub fn at(&self, start: usize) -> Option<&Region> {
         self.list.iter().filter(|region| region.start == start).max_by_key(|region| region.end)
     }

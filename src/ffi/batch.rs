@@ -185,7 +185,7 @@ impl Batch {
         let mut recording = unsafe { Recording::new("contact_normal_solver_solve", given_options, arguments) };
         if recording.is_wanted() {
             let mut regions = Regions::default();
-            // What is wrong with it the solve says.
+            // The solve says why it is wrong.
             let _ = options.add_to(&mut regions, given_options).and_then(|()| self.add_problem(i, &mut regions, n));
             if let Ok(outputs) = &self.outputs[i] {
                 outputs.add_read(&mut regions, &options.options);
@@ -228,7 +228,7 @@ impl NotOk {
         }
     }
 
-    /// What the call returns: the status of the first, and a line for each: "problem 3: ...", where `each` is a problem.
+    /// The return value of the call: the status of the first, and a line for each: "problem 3: ...", where `each` is a problem.
     pub fn outcome(self, each: &str) -> Conclusion {
         let status = self.0.first().map_or(CONTACT_NORMAL_OK, |(_, outcome)| outcome.status);
         let lines: Vec<String> = self.0.iter().map(|(i, outcome)| format!("{each} {i}: {}", outcome.message)).collect();

@@ -1,4 +1,4 @@
-//! What is found by its name: the structs of the ABI and their members, which `members.rs` lists.
+//! Structs of the ABI and their members by name; `members.rs` lists them.
 
 pub(super) use super::member::{Kind, Member, Struct};
 use super::members::STRUCTS;

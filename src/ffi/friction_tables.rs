@@ -81,7 +81,7 @@ impl contact_normal_friction {
         }
     }
 
-    /// What of the tables a call reads.
+    /// The part of the tables that a call reads.
     pub(super) fn add_tables_to(&self, regions: &mut Regions) -> Result<(), Refusal> {
         let (at, tables) = (self.influence.into_iter().chain(self.influence_cross), self.tables()?);
         let first = tables.and_then(|tables| tables[0]);

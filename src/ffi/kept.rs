@@ -1,4 +1,4 @@
-//! What the library keeps for later calls, memory and threads: how much, how much at most, and its release.
+//! Memory and threads that the library keeps for later calls: how much, how much at most, and their release.
 
 use super::guard::guard;
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};

@@ -1,4 +1,4 @@
-//! What a solver handle gives beside solutions: products, and the stiffness of its result.
+//! Products and the stiffness of a result: from a solver handle, beside solutions.
 
 use super::arguments::{required, Regions};
 use super::conclusion::Conclusion;
@@ -31,7 +31,7 @@ pub unsafe extern "C" fn contact_normal_solver_product(
         buffers.regions.check()?;
         // SAFETY: NULL or one value per element, by the conventions of the ABI.
         let pressure = unsafe { required("pressure", pressure, n)? };
-        // What is refused writes nothing.
+        // A refused call writes nothing.
         let mut found = zeros(n, "displacements")?;
         solver.product(pressure, &mut found)?;
         // SAFETY: not NULL: room for one value per element.

@@ -78,7 +78,7 @@ const PROCEDURES: [(&str, &[&str]); 20] = [
     ("set_visco", &["scene", "visco", "modulus_1", "time_1", "modulus_2", "time_2", "time_step", "continues"]),
 ];
 
-/// What a mark says, if this is one.
+/// The text of a mark, if this is one.
 pub fn read(declared: i64) -> Option<String> {
     let bits = declared.checked_neg()?;
     if bits >> 48 != MARK {

@@ -1,6 +1,6 @@
 //! A struct of the ABI and its members, by name.
 
-/// What a member is.
+/// The type of a member.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Kind {
     Int32,

@@ -1,4 +1,4 @@
-//! What the caller wants written: fields, a report, a ledger; and what is read of them, the initial guess.
+//! The outputs that the caller wants written: fields, a report, a ledger; and the initial guess, which is read.
 
 use super::arguments::Regions;
 use super::fields::contact_normal_fields;
@@ -18,11 +18,11 @@ pub(super) struct Outputs {
     fields: contact_normal_fields,
     fields_at: *const contact_normal_fields,
     report: *mut contact_normal_report,
-    /// What the caller's report held.
+    /// The contents of the caller's report before the call.
     given_report: Option<contact_normal_report>,
     /// Its ledger, if there is room for one.
     ledger: Option<Rows<contact_normal_ledger_row>>,
-    /// What was left out of the scene.
+    /// The effects that were left out of the scene.
     pub neglected: Option<Neglected>,
 }
 
@@ -239,7 +239,7 @@ impl Outputs {
         }
     }
 
-    /// What the caller should know of a result; nothing where no report is wanted.
+    /// The warnings of a result; nothing where no report is wanted.
     pub fn warnings(&self, scene: &Scene<'_>, options: &Options, report: &Report, state: &State) -> i32 {
         self.given_report.map_or(0, |_| warnings::of(scene, options, report, state))
     }

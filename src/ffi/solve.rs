@@ -181,12 +181,12 @@ pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Opt
     message
 }
 
-/// What a solve without further progress has come to, as far as its result proves it.
+/// The point that a solve without further progress has reached, as far as its result proves it.
 fn stagnation(report: &Report, method: Method, state: &State) -> String {
     let (residual, distances) = (report.measures.certificate.residual, Distances::of(state));
     // Where the normal problem is solved it is that of friction which is not.
     let is_normal = report.friction.is_none() || residual > report.tolerance;
-    // What products and distances lose together is some multiples of it.
+    // Products and distances together lose some multiples of it.
     if residual > report.tolerance && residual <= 100.0 * distances.round_off {
         return match distances.largest > FAR * distances.rms {
             true => format!(

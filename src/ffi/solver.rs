@@ -27,7 +27,7 @@ pub struct contact_normal_solver {
     held: UnsafeCell<Held>,
 }
 
-/// What a handle holds.
+/// The contents of a handle.
 pub(super) struct Held {
     pub solver: Solver,
     pub buffers: Buffers,

@@ -106,7 +106,7 @@ pub unsafe extern "C" fn contact_normal_stress_at_points(
     guard(|| unsafe { recorded("contact_normal_stress_at_points", options, arguments, compute) })
 }
 
-/// What both exports are given first.
+/// The first arguments of both exports.
 struct Load {
     scene: *const contact_normal_scene,
     body: i32,

@@ -20,7 +20,7 @@ pub unsafe trait Versioned: Copy {
     /// library for anything.
     fn defaults() -> Self;
 
-    /// What it is called in messages.
+    /// Its name in messages.
     fn short_name() -> &'static str {
         &Self::NAME["contact_normal_".len()..]
     }
@@ -187,7 +187,7 @@ pub unsafe fn init_unknown(to: *mut u8, size: i64) {
 
 unsafe fn init_bytes(to: *mut u8, defaults: &[u8], size: i64) {
     const SIZE: usize = size_of::<i64>();
-    // What is longer than any struct is refused by the calls that read it.
+    // A size beyond that of any struct is refused by the calls that read it.
     let room = usize::try_from(size).unwrap_or(0).min(LARGEST);
     if to.is_null() || room < SIZE {
         return;

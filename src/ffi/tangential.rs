@@ -108,7 +108,7 @@ pub unsafe extern "C" fn contact_normal_solve_tangential(
     guard(|| unsafe { recorded("contact_normal_solve_tangential", options, arguments, solve) })
 }
 
-/// What all entries share.
+/// The arguments that all entries share.
 struct Call<'a> {
     scene: &'a Scene<'a>,
     options: &'a Translated,

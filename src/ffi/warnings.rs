@@ -1,4 +1,4 @@
-//! What the caller should know of a result, whatever its status: `report->warnings`.
+//! Warnings of a result, whatever its status: `report->warnings`.
 
 use std::ffi::{CStr, CString};
 use std::sync::OnceLock;
@@ -93,7 +93,7 @@ fn of_law(report: &Report) -> i32 {
     }
 }
 
-/// What helps where bounds of friction fall steeply.
+/// The advice where bounds of friction fall steeply.
 pub(super) fn advice_on_law(slope: f64) -> String {
     match slope >= STEEP {
         true => format!(

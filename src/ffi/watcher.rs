@@ -1,4 +1,4 @@
-//! What is asked after each cycle: the caller's progress callback, a limit of time, and a stop from another thread.
+//! The questions after each cycle: the caller's progress callback, a limit of time, and a stop from another thread.
 
 use std::sync::atomic::{AtomicI32, Ordering};
 use std::time::{Duration, Instant};
@@ -87,7 +87,7 @@ impl Watcher {
     }
 }
 
-/// What messages say of a solve that was cancelled, where nothing else did it.
+/// The reason in messages of a solve that was cancelled, where nothing else did it.
 const CANCELLED: &str = "the progress callback cancelled";
 
 /// Why a loop ended, in words.

@@ -6,7 +6,7 @@ use crate::methods::extension::Extension;
 use crate::operator::fft::Real;
 use crate::threads::Threads;
 
-/// What continues residuals beside C, on a grid where that is worth it.
+/// The continuation of residuals beside C, on a grid where it saves time.
 pub(super) fn extension_on<T: Real>(grid: &Grid, threads: &Threads) -> Result<Option<Extension<T, 2>>> {
     let mut extension = Extension::if_worthwhile(grid, threads)?;
     extension.iter_mut().for_each(Extension::wake);

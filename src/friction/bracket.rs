@@ -164,7 +164,7 @@ fn by_creepages(problem: &mut Problem, state: &mut State, memory: &mut Memory, g
 
 impl Trials {
     fn new(problem: &Problem, forces: Forces, bounds: f64) -> Trials {
-        // What all tractions together displace at most, of both components, here and a step ahead.
+        // The largest displacement by all tractions together, of both components, here and a step ahead.
         let displaced = 8.0 * problem.operators.greatest() * bounds;
         let rigid = fields::largest(problem.threads(), problem.bound.len(), |i| {
             let inside = problem.bound[i] > 0.0;

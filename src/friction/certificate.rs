@@ -32,7 +32,7 @@ pub struct Certificate {
     pub slip_count: usize,
 }
 
-/// What residuals are compared with.
+/// The scale of residuals.
 pub fn scale(problem: &Problem, state: &State) -> f64 {
     problem.compared(problem.rms_rigid(), problem.rms(|i| state.u[i]))
 }

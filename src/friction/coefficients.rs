@@ -59,7 +59,7 @@ pub struct Tangential {
     own: Option<Tables>,
     /// One table per loaded row, of which these are the means.
     rows: Option<RowTables>,
-    /// What a layer between the bodies adds to the coefficient of an element on itself.
+    /// The compliance of a layer between the bodies, which adds to the coefficient of an element on itself.
     layer: f64,
 }
 
@@ -162,7 +162,7 @@ impl Tangential {
         (Tangential { own, rows, layer: self.layer / unit, ..scaled }, unit)
     }
 
-    /// What the materials make of tractions.
+    /// The materials' factors.
     pub fn compliance(&self) -> Compliance {
         self.compliance
     }

@@ -2,7 +2,7 @@
 
 use crate::scene::Bodies;
 
-/// What the bodies' materials make of tractions: `1/G`, `nu/G` and `K/G` of both together.
+/// The materials' part of the displacements: `1/G`, `nu/G` and `K/G` of both bodies together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Compliance {
     /// `1/G = (1/G1 + 1/G2)/2`.

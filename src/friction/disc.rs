@@ -18,7 +18,7 @@ pub struct Units {
     pub rho: f64,
 }
 
-/// What the natural map says of elements of C: see [`look`](super::tangent::look).
+/// The natural map on an element of C: see [`look`](super::tangent::look).
 pub struct Seen<S: Simd> {
     /// n; 0 where they stick.
     pub normal: Pair<S>,

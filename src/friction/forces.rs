@@ -105,7 +105,7 @@ impl Forces {
         [if self.given[0] { v[0] } else { 0.0 }, if self.given[1] { v[1] } else { 0.0 }]
     }
 
-    /// What of the forces is missing, relative to the sum of g.
+    /// The missing part of the forces, relative to the sum of g.
     pub fn missing(&self, problem: &Problem, q: &[Vector]) -> f64 {
         let sum = sum_of(problem, q);
         let missing = self.only_given([self.sum[0] - sum[0], self.sum[1] - sum[1]]);

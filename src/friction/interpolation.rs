@@ -85,7 +85,7 @@ pub fn interpolate((coarse, from_state): (&Problem, &State), (fine, state): (&mu
     Ok(())
 }
 
-/// What a fine element interpolates from coarse ones: sums with weights.
+/// The coarse elements from which a fine one interpolates, with their weights.
 struct Mean {
     /// Of q/g.
     direction: Vector,

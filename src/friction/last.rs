@@ -43,7 +43,7 @@ impl Solver {
         (self.offset, self.has_solution) = (other.offset, other.has_solution);
     }
 
-    /// What was found since is gone.
+    /// Everything found since then is dropped.
     pub fn go_back(&mut self, last: Option<Last>) {
         self.has_solution = last.is_some();
         if let Some(mut last) = last {

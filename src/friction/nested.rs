@@ -30,7 +30,7 @@ const MOSTLY_SLIP: f64 = 0.8;
 /// Products that certificates take at the end of a solve that is not done: they are kept back.
 const KEPT_BACK: u64 = 5;
 
-/// What is counted, and who is told.
+/// The counts, and the caller's callback.
 pub struct Work<'a> {
     /// On all grids, in products on the finest; and at most so many.
     pub products: f64,

@@ -68,7 +68,7 @@ pub enum Manner {
     InTurns,
 }
 
-/// What the steps have brought so far, and how the next one is made.
+/// The progress of the steps, and the kind of the next one.
 struct Course {
     /// Of rho.
     factor: f64,

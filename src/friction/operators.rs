@@ -31,7 +31,7 @@ pub struct Operators {
     pub rolling: Option<(Rolling, Sweep)>,
     /// A layer between the bodies, where it is not uniform.
     pub excess: Option<Excess>,
-    /// What a traction on one element displaces itself by, in steady rolling in a step: the larger of both directions.
+    /// The displacement of an element by a unit traction on itself, in steady rolling its change in a step: the larger of both directions.
     pub self_influence: f64,
     /// The same without rolling.
     a0: f64,
@@ -120,7 +120,7 @@ impl Operators {
         self.products += 1;
     }
 
-    /// What a layer adds that is not uniform.
+    /// The compliance of a layer beyond its uniform part.
     fn add_excess(&self, q: &[Vector], u: &mut [Vector]) {
         if let Some(excess) = &self.excess {
             excess.add(|i| q[i], self.rolling.as_ref().map(|(_, sweep)| sweep), |i, v| u[i] = add(u[i], v));

@@ -195,7 +195,7 @@ mod tests {
             let is_inside = |i: usize| i % inside == 1 % inside || i % 17 < 4 && inside == 5;
             let bound: Vec<f64> = (0..mx * my).map(|i| if is_inside(i) { 1.0 } else { 0.0 }).collect();
             let mut places = Places::new(&Grid::new(mx, my, 1.0, 1.0).unwrap()).unwrap();
-            // What C was before is forgotten.
+            // The C before this one is forgotten.
             places.contact_changed(&vec![1.0; mx * my]);
             places.contact_changed(&bound);
             let expected: Vec<usize> = (0..mx * my).filter(|&i| bound[i] > 0.0).collect();

@@ -32,7 +32,7 @@ const SINGLE: f64 = 1e-6;
 /// Elements that creepages move by less than this part of the most do not bound where creepages lie.
 const LEAST_WEIGHT: f64 = 1e-6;
 
-/// What residuals are compared with.
+/// The scale of residuals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
     /// The larger of the rigid slip and the displacements: a shift.
@@ -64,13 +64,13 @@ pub struct Problem {
     pub rigid: Vec<Vector>,
     /// w, but for `offset`: the rigid slip less u'.
     pub slip: Vec<Vector>,
-    /// What is to be added to both on C, times the weights: found where forces are given.
+    /// An amount for both on C, times the weights: found where forces are given.
     pub offset: Vector,
     /// How much of a creepage reaches each element; none: all of it.
     pub weights: Vec<Vector>,
     /// In steady rolling: what the slip by spin gains a step ahead.
     pub ahead: Vector,
-    /// What residuals are compared with.
+    /// The scale of residuals.
     pub scale: Scale,
     /// A.
     pub operators: Operators,
@@ -203,7 +203,7 @@ impl Problem {
         [w[0] + offset[0] + u[0], w[1] + offset[1] + u[1]]
     }
 
-    /// What creepages c make of the slip of element i; and what its tractions add to the forces that go with them.
+    /// The slip of element i by creepages c; and the part of its tractions in the forces that go with them.
     #[inline]
     pub fn weighted(&self, i: usize, c: Vector) -> Vector {
         match self.weights.get(i) {
@@ -224,7 +224,7 @@ impl Problem {
         }
     }
 
-    /// What residuals are compared with, of the rms of the rigid slip and of the displacements.
+    /// The scale of residuals, from the rms of the rigid slip and of the displacements.
     pub fn compared(&self, rigid: f64, displacement: f64) -> f64 {
         self.scale.of(rigid, displacement).max(ROUND_OFF * self.given)
     }

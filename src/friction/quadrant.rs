@@ -46,7 +46,7 @@ impl Quadrant {
         }
     }
 
-    /// What the coefficients are of.
+    /// The origin of the coefficients.
     pub fn tangential(&self) -> &Tangential {
         &self.tangential
     }

@@ -1,9 +1,9 @@
-//! What is asked of a tangential solve.
+//! The request to a tangential solve.
 
 use super::plane::Vector;
 use crate::effects::{Friction, Previous};
 
-/// What is asked of a solve.
+/// The request to a solve.
 #[derive(Clone, Copy)]
 pub struct Request<'a> {
     /// The pressures of the normal problem, `[my][mx]`.

@@ -1,4 +1,4 @@
-//! What a solve leaves: the result on the whole grid.
+//! The result of a solve, on the whole grid.
 
 use super::certificate::is_on_circle;
 use super::levels::Level;

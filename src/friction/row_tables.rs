@@ -26,7 +26,7 @@ pub struct RowTables {
     of_all: usize,
     /// `[jy][iy][2 cx - 1]`: a loaded row, a row, offsets from `1 - cx` on.
     values: Arc<Vec<Full>>,
-    /// What they are multiplied by: a power of two.
+    /// Their common factor: a power of two.
     factor: f64,
     first: usize,
     rows: usize,

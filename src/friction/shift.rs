@@ -42,7 +42,7 @@ pub struct Memory {
     pub fields: Fields,
 }
 
-/// What an iteration has to reach.
+/// The goal of an iteration.
 pub struct Goal<'a> {
     /// The residual.
     pub tolerance: f64,

@@ -1,4 +1,4 @@
-//! What a tangential solve returns.
+//! The result of a tangential solve.
 
 use super::certificate::Certificate;
 use super::law::Particle;
@@ -6,7 +6,7 @@ use super::plane::{dot, Vector};
 use crate::grid::Grid;
 use crate::threads::Threads;
 
-/// What an element does: see [`Solution::stick_slip`].
+/// Whether an element sticks or slips: see [`Solution::stick_slip`].
 pub const EXTERIOR: i32 = 0;
 /// It sticks.
 pub const STICK: i32 = 1;
@@ -24,11 +24,11 @@ pub struct Solution {
     pub slip: Vec<Vector>,
     /// Of each element: exterior 0, stick 1, slip 2, in a layer that yields 3.
     pub stick_slip: Vec<i32>,
-    /// What particles carry after the step: empty without a law and a layer that yields.
+    /// The state of the particles after the step: empty without a law and a layer that yields.
     pub particles: Vec<Particle>,
 }
 
-/// What a solve found and what it cost.
+/// The measures of a result, and its cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
     /// How well the conditions hold.

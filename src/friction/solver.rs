@@ -40,7 +40,7 @@ pub struct Solver {
     pub(super) solution: Solution,
     /// The tractions before the step, where they were kept.
     pub(super) before: Vec<Vector>,
-    /// What particles had before the step, where that was kept.
+    /// The state of the particles before the step, where it was kept.
     pub(super) particles_before: Vec<Particle>,
     /// The creepages found, times the length rolled.
     pub(super) offset: Vector,
@@ -51,7 +51,7 @@ pub struct Solver {
     pub(super) sums: Vec<[f64; 3]>,
 }
 
-/// What a start is worth.
+/// The quality of a start.
 struct Near {
     certificate: Certificate,
     is_solution: bool,
@@ -268,7 +268,7 @@ impl Solver {
         Ok(())
     }
 
-    /// What the start is worth, whose displacements are fresh.
+    /// The quality of the start, whose displacements are fresh.
     fn look(&mut self, forces: Forces, tolerance: f64) -> Near {
         let Level { problem, state, .. } = &mut self.levels[0];
         let certificate = Certificate::of(problem, state);

@@ -28,7 +28,7 @@ const TURNED: f64 = 0.1;
 /// residual beside the bounds.
 const SHORT: f64 = 0.1;
 
-/// What a step does.
+/// The kind of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
     /// The residual of the linear solve, relative.
@@ -41,7 +41,7 @@ pub struct Effort {
     pub length: f64,
 }
 
-/// What a step starts with.
+/// The start of a step.
 struct Start {
     /// `x0 + z1`.
     gained: Vec<Vector>,
@@ -51,7 +51,7 @@ struct Start {
     by: Vector,
 }
 
-/// What tractions on all of C displace by, and in steady rolling in a step, where near and far tractions cancel, those on one element.
+/// The displacement by tractions on all of C; in steady rolling, where near and far tractions cancel in a step, by those on one element.
 pub fn compliance(problem: &Problem) -> f64 {
     let own = problem.operators.self_influence;
     match problem.operators.rolling {

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! `d x = v` is solved from the leading edge on, where x = 0 ahead of each run of C. Between the centres x is interpolated bilinearly.
-//! What slips passes on what a layer of compliance D leaves of it (see [`disc`](super::disc)):
+//! Where a layer of compliance D lies between, each slip is solved with the part of it that the layer leaves (see [`disc`](super::disc)):
 //!
 //! ```text
 //! stick: x_i = x(ahead of i) + v_i

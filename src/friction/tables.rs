@@ -18,7 +18,7 @@ pub struct Tables {
     cx: usize,
     cy: usize,
     values: Arc<Vec<Entry>>,
-    /// What they are multiplied by: a power of two.
+    /// Their common factor: a power of two.
     factor: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What a solve takes over: bounds, rigid slip and the tractions to start from.
+//! The start of a solve: bounds, rigid slip and tractions.
 
 use super::certificate::is_on_circle;
 use super::excess::Excess;
@@ -252,7 +252,7 @@ fn in_range(q: Vector, scales: &Scales) -> Vector {
     q.map(|q| scales.traction(q).clamp(-LARGEST_BEFORE, LARGEST_BEFORE))
 }
 
-/// What the slip by spin gains a step of steady rolling ahead.
+/// The change of the slip by spin over one step of steady rolling.
 fn spin_ahead(friction: &Friction<'_>, grid: &Grid) -> Vector {
     let (distance, (sine, cosine)) = (friction.distance(grid), friction.rolling_direction.sin_cos());
     match friction.motion {

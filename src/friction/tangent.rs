@@ -27,7 +27,7 @@ pub(super) const NEAR_THE_CIRCLE: f64 = 0.2;
 /// And where the natural map turns them by less than the angle of this cosine: those against their slip are to turn round.
 pub(super) const ALIGNED: f64 = 0.9;
 
-/// What an element does.
+/// Whether an element sticks or slips.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
     /// It is not in C.
@@ -64,7 +64,7 @@ pub struct Measures {
     pub excess: f64,
 }
 
-/// What the natural map says of an element of C: see [`Tangent`]; n is 0 where it sticks.
+/// The natural map on an element of C: see [`Tangent`]; n is 0 where it sticks.
 pub(super) struct Seen {
     pub side: Side,
     pub normal: Vector,
@@ -215,7 +215,7 @@ impl Tangent {
             sweep.solve(&problem.grid, |i| self.mixing[i], project, &threads, z);
             return fields::map(&threads, z, |i, z| plus(z, own(i), r[i]));
         }
-        // What a layer displaces is rolled over, too: from element to element (a + r) x is passed on, for r differs.
+        // The displacement of a layer is rolled over, too: (a + r) x goes from element to element, for r differs.
         let a = problem.operators.greatest();
         let soft = |i: usize| (a + beyond(i)) / a;
         let of_layer = |i: usize| match self.side[i] {

@@ -194,7 +194,7 @@ impl<T: Real> Toeplitz<T> {
         self.product.apply(loaded.map(range), load, (x.zip(y), write), memory);
     }
 
-    /// What q is to be multiplied by, and u, where q is computed with in units of `unit`.
+    /// The factor of q, and of u, where q is in units of `unit`.
     pub fn scales(&self, unit: f64) -> [f64; 2] {
         [1.0 / unit, unit * self.unit]
     }

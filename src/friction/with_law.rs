@@ -18,7 +18,7 @@ use crate::progress::Outcome;
 /// Products in vain are kept back for the end of a solve.
 const KEPT_BACK: u64 = 3;
 
-/// What particles had before a step, on the whole grid, in the caller's units.
+/// The state of the particles before a step, on the whole grid, in the caller's units.
 struct Had<'a> {
     friction: &'a Friction<'a>,
     kept: &'a [Particle],
@@ -66,7 +66,7 @@ impl Had<'_> {
 }
 
 impl Solver {
-    /// What particles carried at the end of the last step becomes what they had before this one.
+    /// The state of the particles at the end of the last step becomes that before this one.
     pub(super) fn keep_particles(&mut self) {
         self.particles_before.clone_from(&self.solution.particles);
     }
@@ -91,7 +91,7 @@ impl Solver {
         Had { friction, kept, grid, sweep }
     }
 
-    /// What the particle of element i had, in the units of the iterations.
+    /// The state of the particle of element i before the step, in the units of the iterations.
     fn scaled(&self, particle: Particle) -> Particle {
         Particle { yield_limit: self.scales.traction(particle.yield_limit), ..particle }
     }
@@ -149,7 +149,7 @@ impl Solver {
         Ok(Some((march, particles)))
     }
 
-    /// What particles carry after the step, and which elements the layer bounds.
+    /// The state of the particles after the step, and the elements that the layer bounds.
     pub(super) fn write_particles(&mut self, march: Option<(March, Vec<Particle>)>) {
         let (solution, scales) = (&mut self.solution, self.scales);
         let Some((mut march, mut particles)) = march else { return solution.particles.clear() };

@@ -1,4 +1,4 @@
-//! What the arguments of a call are for a dump.
+//! The arguments of a call, for a dump.
 
 use crate::ffi::structs::Versioned;
 
@@ -12,7 +12,7 @@ pub(in crate::ffi) enum Argument {
     Integer(i64),
 }
 
-/// What can be an argument.
+/// The kinds of arguments.
 pub(in crate::ffi) trait Given {
     fn given(self) -> Argument;
 }

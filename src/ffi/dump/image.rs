@@ -1,4 +1,4 @@
-//! What a call was given, as text and bytes.
+//! The arguments of a call, as text and bytes.
 
 use std::fmt::Write;
 
@@ -7,7 +7,7 @@ use crate::ffi::arguments::{Element, Region, Regions};
 use crate::ffi::by_name::{structure, Kind, Member};
 use crate::ffi::structs::LARGEST;
 
-/// What stands for a pointer to what is not in the file.
+/// The text for a pointer to something that is not in the file.
 pub(super) const UNREAD: &str = "unread";
 
 /// Text that says what there is, and the bytes of the arrays, in order.
@@ -15,7 +15,7 @@ pub(super) const UNREAD: &str = "unread";
 pub(super) struct Image {
     pub text: String,
     pub data: Vec<u8>,
-    /// What has a number: where it stands, and the struct that it is.
+    /// Each struct or array that has a number: where it stands, and its kind.
     items: Vec<(usize, Option<&'static str>)>,
     /// So many of these are written.
     written: usize,

@@ -34,10 +34,10 @@ use image::Image;
 /// The first line of a file: the format and its version.
 const FIRST_LINE: &str = "contact-normal dump 1";
 
-/// What particles of the interface carry, of a handle.
+/// The state of the interface's particles, of a handle.
 const PARTICLES: [&str; 2] = ["handle.friction_coefficient", "handle.yield_limit"];
 
-/// What the tangential coefficients of a handle are called.
+/// The name of the tangential coefficients of a handle.
 const TANGENTIAL_TABLES: [&str; 5] = [
     "handle.tangential_xx",
     "handle.tangential_yy",
@@ -58,7 +58,7 @@ macro_rules! given {
 }
 pub(super) use given;
 
-/// What a call was given, kept until it is known how the call ends.
+/// The arguments of a call, kept until it is known how the call ends.
 pub(super) struct Recording<'a> {
     call: &'static str,
     arguments: &'a [(&'static str, Argument)],

@@ -4,7 +4,7 @@ use super::image::UNREAD;
 use super::FIRST_LINE;
 use crate::ffi::by_name::{structure, Kind, Member, Struct};
 
-/// What a pointer of a file points to.
+/// The target of a pointer of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Target {
     Null,
@@ -25,7 +25,7 @@ pub(super) enum Value {
     OfTheHost(bool),
 }
 
-/// What has a number in a file.
+/// A struct or an array that has a number in a file.
 #[derive(Debug)]
 pub(super) enum Item {
     Struct {

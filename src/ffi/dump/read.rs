@@ -12,9 +12,9 @@ use crate::ffi::structs::{Versioned, LARGEST};
 /// Bytes that the calls of a file may write at most.
 const MOST_BYTES: usize = 1 << 32;
 
-/// What a call was given, and how it ended: the file of `options->dump`.
+/// The arguments of a call, and how it ended: the file of `options->dump`.
 ///
-/// What is in a file is not trusted: a call is made with memory that is as long as the file says, and it is refused before it reads or
+/// A file is not trusted: a call is made with memory that is as long as the file says, and it is refused before it reads or
 /// writes beyond.
 pub struct Dump {
     parsed: Parsed,

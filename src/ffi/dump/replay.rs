@@ -99,7 +99,7 @@ impl Dump {
         }
     }
 
-    /// What began from the tractions of the handle begins from those of the file.
+    /// A call that began from the tractions of the handle begins from those of the file.
     unsafe fn start_friction(
         &self,
         scene: *mut contact_normal_scene,
@@ -133,7 +133,7 @@ impl Dump {
         }
     }
 
-    /// What is asked for, with the surfaces of the file.
+    /// The request, with the surfaces of the file.
     fn accuracy(&self) -> Result<*mut contact_normal_accuracy, String> {
         let accuracy = self.pointer::<contact_normal_accuracy>("accuracy")?;
         // SAFETY: NULL or a struct of ours, which no one else uses.

@@ -10,7 +10,7 @@ type Both<'a> = [&'a mut [f64]; 2];
 pub struct Fields<'a> {
     /// g.
     pub bound: &'a mut [f64],
-    /// What a layer is beyond its least compliance.
+    /// The compliance of a layer beyond its least one.
     pub excess: &'a mut [f64],
     /// D.
     pub curvature: &'a mut [f64],

@@ -1,4 +1,4 @@
-//! What passes between the fields on C and a state on the grid.
+//! Copies between the fields on C and a state on the grid.
 
 use super::super::beside::{count_near, extension_on};
 use super::super::disc::Units;

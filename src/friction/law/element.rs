@@ -10,7 +10,7 @@ const LEAST: f64 = 1e-9;
 const STEPS: u32 = 80;
 const PRECISION: f64 = 1e-14;
 
-/// What a particle of the interface carries.
+/// The state of a particle of the interface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Particle {
     /// Its coefficient of friction.
@@ -26,7 +26,7 @@ pub struct Law {
     pub layer: Option<PlasticLayer>,
     /// The slip velocity of a slip of 1, in the caller's units.
     pub rate: f64,
-    /// What a step takes, in these.
+    /// The duration of a step, in these.
     pub duration: f64,
 }
 
@@ -52,7 +52,7 @@ pub struct Response {
     pub yields: bool,
 }
 
-/// What an element does under a traction that slip relieves.
+/// The behaviour of an element under a traction that slip relieves.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Resolved {
     pub slips: bool,

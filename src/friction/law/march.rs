@@ -1,4 +1,4 @@
-//! What particles carry, from element to element: in steady rolling from the leading edge on, else from the step before.
+//! The state of the particles, from element to element: in steady rolling from the leading edge on, else from the step before.
 
 use super::element::{Law, Particle, Place, Resolved};
 use crate::effects::Motion;
@@ -11,13 +11,13 @@ pub struct March {
     pub grid: Grid,
     pub law: Law,
     places: Vec<Place>,
-    /// What the particle of each element had: before the step, or fresh.
+    /// The state of each element's particle: before the step, or fresh.
     had: Vec<Particle>,
     /// In steady rolling with memory how many elements upstream a particle was a step before.
     upstream: Option<(isize, isize)>,
     /// Of each element, by the last [`resolve`](March::resolve).
     resolved: Vec<Resolved>,
-    /// What each carries, while it goes on.
+    /// The state of each, on the way.
     carries: Vec<Particle>,
 }
 
@@ -45,7 +45,7 @@ impl March {
         })
     }
 
-    /// What the last [`resolve`](March::resolve) found of an element.
+    /// The findings of the last [`resolve`](March::resolve) on an element.
     pub fn resolved(&self, k: usize) -> &Resolved {
         &self.resolved[k]
     }

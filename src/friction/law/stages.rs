@@ -4,7 +4,7 @@
 //! 2. from a residual of [`SWITCH`] on Newton's method with the derivatives of the bounds ([`system`](super::system)); where it does not gain, a few
 //!    lagged steps come between.
 //!
-//! What is returned is on its circles, with a fresh product, and certified twice: the conditions with bounds `g = |q|` that stand still, and
+//! The result lies on its circles, with a fresh product, and is certified twice: the conditions with bounds `g = |q|` that stand still, and
 //! `R_g = rms(|q| - g(slip))/rms g(0)` over C of what slips, by a march with the slips of that product.
 
 use super::super::certificate::{scale, Certificate};
@@ -38,7 +38,7 @@ const RHO: f64 = 4.0;
 const PATIENCE: u32 = 30;
 const GAIN: f64 = 0.9;
 
-/// What the steps have brought so far.
+/// The progress of the steps.
 struct Course {
     least: f64,
     since: u32,
@@ -196,7 +196,7 @@ fn worst(problem: &Problem, state: &State, tangent: &Tangent) -> f64 {
     slips.max(bounds)
 }
 
-/// What slips goes onto its circle, what sticks stays in it; a fresh product.
+/// Elements that slip go onto their circles, those that stick stay inside; a fresh product.
 fn onto_circles(problem: &mut Problem, state: &mut State, tangent: &Tangent) {
     let (bound, threads) = (&problem.bound, problem.threads().clone());
     fields::map(&threads, &mut state.q, |k, q| match tangent.side[k] {
