@@ -40,6 +40,7 @@ EXAMPLES = {
     "price_list": Example(("price_list",)),
     "what_matters": Example(("what_matters",)),
     "visco": Example(("visco",)),
+    "wear": Example(("wear",)),
     "adhesion": Example(("adhesion_loop", "adhesion_rough"), takes_folder=True),
 }
 

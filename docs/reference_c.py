@@ -16,6 +16,7 @@ NOUNS = {
     "adhesion": ("Adhesion", "Attraction across the gap.", ("adhesion", "pull_off")),
     "stress": ("Stresses below the surface", "From pressures and tractions.", ("stress", "subsurface")),
     "heat": ("Flash temperature", "From the heat of friction.", ("heat", "flash")),
+    "wear": ("Wear", "From the work of friction.", ("wear", "worn")),
     "closed_forms": ("Closed forms", "Hertz, influence coefficients, coatings.", ("hertz", "influence_half_space", "coating_compliance")),
     "library": ("The library", "Versions, statuses, log, memory.", ()),
 }

@@ -60,7 +60,7 @@ module contact_normal
     contact_normal_set_stress_outputs, &
     contact_normal_set_ledger, contact_normal_set_progress, contact_normal_set_surface, contact_normal_set_log, &
     contact_normal_cost_of_accuracy, contact_normal_solve_to_accuracy, contact_normal_quantities, contact_normal_effects_bill, &
-    contact_normal_flash_temperature, &
+    contact_normal_flash_temperature, contact_normal_frictional_wear, &
     contact_normal_solver_fields, contact_normal_solver_new, &
     contact_normal_solver_solve, contact_normal_solver_solve_batch, contact_normal_solver_set_influence, &
     contact_normal_solve_tangential, &

@@ -106,6 +106,12 @@ public:
         friction_.memory_speed = speed;
         return *this;
     }
+    /// CONTACT_NORMAL_FRICTION_BRANCH_...: which solution of a law.
+    friction &branch(std::int32_t which)
+    {
+        friction_.branch = which;
+        return *this;
+    }
     /// A layer that yields.
     friction &layer(double yield_limit, double hardening = 0.0)
     {

@@ -3,6 +3,7 @@
 #define CONTACT_NORMAL_LIBRARY_HPP
 
 #include <contact_normal_arrays.hpp>
+#include <contact_normal_visco.hpp>
 
 #include <functional>
 #include <stdexcept>
@@ -114,6 +115,17 @@ inline std::vector<double> influence_half_space(std::int32_t cx, std::int32_t cy
     return coefficients;
 }
 
+/// The same of bodies that relax and roll towards +x at `speed`: see `contact_normal_influence_rolling`.
+inline std::vector<double> influence_rolling(std::int32_t cx, std::int32_t cy, double dx, double dy, const body &one, const body &other,
+                                             const visco &relaxing, double speed)
+{
+    const detail::pair_of_bodies both(one, other);
+    const contact_normal_visco named = relaxing.named();
+    std::vector<double> coefficients(4 * detail::count(cx) * detail::count(cy));
+    check(contact_normal_influence_rolling(cx, cy, dx, dy, both.shear_modulus, both.poisson_ratio, &named, speed, coefficients.data()));
+    return coefficients;
+}
+
 /// What a body with a coating of this thickness and material gives way to a pressure wave: see `contact_normal_coating_compliance`.
 inline double coating_compliance(double thickness, const body &material, const body &below, double wave_number)
 {
@@ -149,6 +161,44 @@ inline flash_temperatures flash_temperature(std::int32_t mx, std::int32_t my, do
     flash_temperatures found{std::vector<double>(2 * size), {}};
     contact_normal_flash_init(&found.largest);
     check(contact_normal_flash_temperature(&heat, found.rise.data(), &found.largest));
+    return found;
+}
+
+/// Frictional work and wear: see `contact_normal_frictional_wear`.
+struct frictional_work {
+    /// An energy per area and a length of each element, [my][mx].
+    std::vector<double> work, depth;
+    /// What a point loses in a passage, [my]; empty without a rolling distance.
+    std::vector<double> passage;
+    /// The sums, the largest depth and where it is.
+    contact_normal_worn total;
+};
+
+/// Tractions and slips as a solve returned them, [my][mx] each. `coefficient` is K and `hardness` H; with `coefficients` K of each element, with
+/// `pressure` the depth is K/H p |s|; of both, an empty one is not given.
+inline frictional_work frictional_wear(std::int32_t mx, std::int32_t my, double dx, double dy, const std::vector<double> (&traction)[2],
+                                       const std::vector<double> (&slip)[2], double coefficient, double hardness = 1.0, double steps = 1.0,
+                                       double rolling_distance = 0.0, const std::vector<double> &pressure = {},
+                                       const std::vector<double> &coefficients = {})
+{
+    const std::size_t size = detail::count(mx) * detail::count(my);
+    contact_normal_wear wear;
+    contact_normal_wear_init(&wear);
+    for (int k = 0; k < 2; k++) {
+        if (traction[k].size() != size || slip[k].size() != size)
+            throw std::invalid_argument("traction and slip must have one value per element");
+        wear.traction[k] = traction[k].data(), wear.slip[k] = slip[k].data();
+    }
+    for (const std::vector<double> *optional : {&pressure, &coefficients})
+        if (!optional->empty() && optional->size() != size) throw std::invalid_argument("pressure and coefficients must have one value per element");
+    wear.mx = mx, wear.my = my, wear.dx = dx, wear.dy = dy;
+    wear.pressure = pressure.empty() ? nullptr : pressure.data(), wear.coefficients = coefficients.empty() ? nullptr : coefficients.data();
+    wear.coefficient = coefficient, wear.hardness = hardness, wear.steps = steps, wear.rolling_distance = rolling_distance;
+    frictional_work found{std::vector<double>(size), std::vector<double>(size), {}, {}};
+    if (rolling_distance > 0.0) found.passage.resize(detail::count(my));
+    contact_normal_worn_init(&found.total);
+    check(contact_normal_frictional_wear(&wear, found.work.data(), found.depth.data(), found.passage.empty() ? nullptr : found.passage.data(),
+                                         &found.total));
     return found;
 }
 

@@ -53,6 +53,7 @@
 //! | [`solver`] | THE loop (section 4.1), nested iteration (section 4.3), which methods in which order, the report |
 //! | [`friction`], [`adhesion`] | the tangential problem; attraction across the gap |
 //! | [`heat`] | flash temperature, from a flux of heat |
+//! | [`wear`] | frictional work and depth of wear, from tractions and slips |
 //! | [`stress`] | stresses below the surface, from pressures and tractions |
 //! | [`visco`] | Prony series of bodies that relax, and their step in time |
 //! | [`analytic`] | the Hertz solution |
@@ -83,6 +84,7 @@ pub mod scene;
 pub mod solver;
 pub mod stress;
 pub mod visco;
+pub mod wear;
 
 pub use par::threads;
 pub(crate) use par::{memory, sums};

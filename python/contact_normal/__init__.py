@@ -25,10 +25,11 @@ from ._pull_off import pull_off
 from ._result import Result, TangentialResult
 from ._solve import AccurateResult, solve, solve_to_accuracy, to_accuracy
 from ._solver import Solver
-from ._special import HertzSolution, coating_compliance, hertz, influence_half_space
+from ._special import HertzSolution, coating_compliance, hertz, influence_half_space, influence_rolling
 from ._stress import SubsurfaceStress
 from ._subsurface import stress_at_points, subsurface_stress
 from ._tangential import solve_tangential
+from ._wear import FrictionalWear, frictional_wear
 
 __version__ = VERSION
 
@@ -40,6 +41,7 @@ __all__ = [
     "CreepForceTable",
     "FlashTemperature",
     "FrictionBatch",
+    "FrictionalWear",
     "HertzSolution",
     "Ledger",
     "Price",
@@ -58,8 +60,10 @@ __all__ = [
     "creep_force_table",
     "flash_temperature",
     "friction_batch",
+    "frictional_wear",
     "hertz",
     "influence_half_space",
+    "influence_rolling",
     "plot_contact_area",
     "pull_off",
     "quantities",

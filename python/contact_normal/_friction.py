@@ -23,7 +23,7 @@ _PARTICLES = ("previous_coefficient", "previous_yield_limit")
 _OF_LAW = ("kinetic", "speed", "time_step", "memory_distance", "memory_speed")
 _PAIRS_OF_LAW = ("falling", "half_speed")
 _OF_LAYER = ("yield_limit", "hardening")
-_KNOWN = ("coefficient", "motion", "force", "compliance", *_PAIRS, *_FLAGS, "influence", "influence_cross", "row_tables", *_NUMBERS, *_FIELDS, "law", "layer", *_PARTICLES)
+_KNOWN = ("coefficient", "motion", "force", "compliance", *_PAIRS, *_FLAGS, "influence", "influence_cross", "row_tables", *_NUMBERS, *_FIELDS, "law", "layer", "branch", *_PARTICLES)
 _IS_LENGTH = "the motion of friction is not given: it is a SHIFT, whose creepage is a length, and whose spin an angle"
 
 
@@ -59,6 +59,8 @@ def friction(value: Any, shape: tuple[int, int]) -> tuple[Any, list[Any], str]:
         if name in given:
             kept.append(doubles(f"friction['{name}']", given[name], shape))
             setattr(effect, name, pointer(kept[-1]))
+    branch = given.get("branch", 0)
+    effect.branch = value_of("friction_branch", branch) if isinstance(branch, str) else integer("friction['branch']", branch)
     _law(effect, given.get("law"))
     _layer(effect, given.get("layer"))
     kept += _influence(effect, given)

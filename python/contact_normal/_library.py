@@ -33,6 +33,9 @@ from ._structs import (
     Scene,
     SolverInfo,
     StressOutputs,
+    Visco,
+    Wear,
+    Worn,
 )
 
 # The version of this package.
@@ -94,9 +97,14 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
         [c_double, c_double, POINTER(c_double), POINTER(c_double), c_int32, c_double, POINTER(HertzSolution)],
     ),
     "flash_temperature": (c_int32, [POINTER(Heat), POINTER(c_double), POINTER(Flash)]),
+    "frictional_wear": (c_int32, [POINTER(Wear), *[POINTER(c_double)] * 3, POINTER(Worn)]),
     "influence_half_space": (
         c_int32,
         [c_int32, c_int32, c_double, c_double, POINTER(c_double), POINTER(c_double), POINTER(c_double)],
+    ),
+    "influence_rolling": (
+        c_int32,
+        [c_int32, c_int32, c_double, c_double, POINTER(c_double), POINTER(c_double), POINTER(Visco), c_double, POINTER(c_double)],
     ),
     "coating_compliance": (c_int32, [POINTER(Coating), c_double, c_double, c_double, POINTER(c_double)]),
     "subsurface_stress": (

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from typing_extensions import Unpack
 
-OBSTACLES = ("", "singular", "below round-off", "too many elements", "too much memory", "too long")
+OBSTACLES = ("", "singular", "below round-off", "too many elements", "too much memory", "too long", "too long a step")
 
 
 class Price(NamedTuple):
@@ -39,7 +39,10 @@ class Price(NamedTuple):
     bytes : int
         Held by the solver; 0: not known.
     obstacle : str
-        What keeps the accuracy from being had: "singular", "below round-off", "too many elements", "too much memory", "too long"; "": none.
+        What keeps the accuracy from being had: "singular", "below round-off", "too many elements", "too much memory", "too long", "too long a
+        step"; "": none.
+    time_error : float
+        Of bodies that relax: the relative error that the length of the step leaves on any grid, beside `error`; 0: none relaxes.
     """
 
     target: float
@@ -50,13 +53,14 @@ class Price(NamedTuple):
     seconds_one_thread: float
     bytes: int
     obstacle: str
+    time_error: float = 0.0
 
     @classmethod
     def of(cls, row: PriceStruct) -> Price:
         """The row of the library."""
         return cls(
             row.target, (row.my, row.mx), row.tolerance, row.error, row.seconds, row.seconds_one_thread, row.bytes,
-            OBSTACLES[row.obstacle],
+            OBSTACLES[row.obstacle], row.time_error,
         )
 
 
@@ -118,6 +122,7 @@ def cost_of_accuracy(
     patches: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     coating: Any = None,
     friction: Mapping[str, Any] | None = None,
+    visco: Mapping[str, Any] | None = None,
     **given: Unpack[AccuracyOptions],
 ) -> Prices:
     """Predicts what relative errors cost: grid, tolerance, seconds and bytes, from solves on small grids only.
@@ -126,6 +131,8 @@ def cost_of_accuracy(
     ----------
     h, dx, dy, shape, corner, approach, force, mean_pressure, shear_modulus, poisson_ratio, young_modulus, e_star, **given
         As for `solve_to_accuracy`, with its effects.
+    visco : mapping, optional
+        Bodies that relax, as for `solve`: a step from rest. Each price then has the `time_error` of the step.
     targets : sequence of float
         Relative errors; one row each.
     quantity : str
@@ -155,7 +162,8 @@ def cost_of_accuracy(
     """
     if quantity not in QUANTITIES:
         raise ValueError(f"quantity is {quantity!r}; it must be one of {', '.join(QUANTITIES)}")
-    effects = {"layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches, "coating": coating, "friction": friction}
+    effects = {"layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches, "coating": coating, "friction": friction,
+               "visco": visco}
     scene, surface, _ = on_any_grid(
         h, dx, dy, shape, corner, effects, approach=approach, force=force, mean_pressure=mean_pressure, shear_modulus=shear_modulus,
         poisson_ratio=poisson_ratio, young_modulus=young_modulus, e_star=e_star,

@@ -91,7 +91,7 @@ def solve(
         "law": how the coefficient falls with the slip velocity, a mapping of "kind" ("LINEAR", "RATIONAL", "EXPONENTIAL"), "kinetic",
         "falling", "half_speed" (one or a pair), "speed" of rolling or "time_step" of a shift, "memory_distance", "memory_speed"; "layer": a
         layer that yields, a mapping of "yield_limit" and "hardening"; "previous_coefficient", "previous_yield_limit" (my, mx): what
-        particles had before (docs/laws.md); "continues": from the tractions that a `Solver` found last; "sensitivities": True for derivatives of both forces and the moment
+        particles had before, "branch": "NEAR", "LOW" or "HIGH" (docs/laws.md); "continues": from the tractions that a `Solver` found last; "sensitivities": True for derivatives of both forces and the moment
         by both creepages and the spin, nine numbers row by row in `report["sensitivities"]`; "influence": own tangential
         coefficients (xx, yy, xy) or (xx, yy, xy, scale), each (2 cy, 2 cx); "influence_cross": with these, of unlike bodies, (xz, yz);
         "row_tables": own tangential coefficients that differ per loaded row, (xx, yy, xy) or (xx, yy, xy, scale), each (my, my, 2 cx).

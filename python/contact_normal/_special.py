@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -12,8 +12,11 @@ from ._bodies import bodies, load
 from ._calls import called
 from ._library import check, initialised, library
 from ._scene import coating_of
+from ._visco import visco as named_visco
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import numpy.typing as npt
 
     from ._arguments import Doubles
@@ -118,6 +121,55 @@ def influence_half_space(
     constants = bodies(shear_modulus, poisson_ratio, young_modulus, e_star)[:2]
     size = number("dx", dx), number("dy", dy)
     check(*called(library.contact_normal_influence_half_space, cx, cy, *size, *constants, pointer(table), keep=table))
+    return table
+
+
+def influence_rolling(
+    cx: int,
+    cy: int,
+    dx: float,
+    dy: float,
+    *,
+    shear_modulus: Both,
+    poisson_ratio: Both,
+    visco: Mapping[str, Any],
+    speed: float,
+) -> Doubles:
+    """The influence coefficients of bodies that relax and roll steadily, as a table that `influence` takes. It serves the normal problem.
+
+    Parameters
+    ----------
+    cx, cy : int
+        The table covers the offsets -cx..cx-1 by -cy..cy-1.
+    dx, dy : float
+        Element sizes.
+    shear_modulus, poisson_ratio
+        As for `solve`; the moduli are those at once.
+    visco : mapping
+        "modulus" and "time" of the branches, as for `solve`.
+    speed : float
+        How fast the bodies roll towards +x; < 0: towards -x.
+
+    Returns
+    -------
+    ndarray, (2 cy, 2 cx)
+        Displacements per unit pressure. They are not even in x.
+
+    Examples
+    --------
+    >>> import contact_normal
+    >>> branches = {"modulus": (4.0, 4.0), "time": (0.01, 0.01)}
+    >>> table = contact_normal.influence_rolling(8, 4, 0.1, 0.1, shear_modulus=8.0, poisson_ratio=0.4, visco=branches, speed=100.0)
+    >>> bool(table[4, 4] > table[4, 12])  # behind the element, and ahead of it
+    True
+    """
+    cx, cy = integer("cx", cx), integer("cy", cy)
+    table = np.zeros((2 * max(cy, 0), 2 * max(cx, 0)))
+    constants = bodies(shear_modulus, poisson_ratio, None, None)[:2]
+    size = number("dx", dx), number("dy", dy)
+    effect, arrays = named_visco(visco)
+    check(*called(library.contact_normal_influence_rolling, cx, cy, *size, *constants, ctypes.byref(effect), number("speed", speed),
+                  pointer(table), keep=(table, effect, arrays)))
     return table
 
 

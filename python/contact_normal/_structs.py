@@ -122,6 +122,8 @@ class Friction(ctypes.Structure):
         ("hardening", c_double),
         ("previous_coefficient", POINTER(c_double)),
         ("previous_yield_limit", POINTER(c_double)),
+        ("branch", c_int32),
+        ("reserved_for_branch", c_int32),
     ]
 
 
@@ -504,6 +506,7 @@ class Price(ctypes.Structure):
         ("dy", c_double),
         ("obstacle", c_int32),
         ("reserved", c_int32),
+        ("time_error", c_double),
     ]
 
 
@@ -620,6 +623,39 @@ class Flash(ctypes.Structure):
     ]
 
 
+class Wear(ctypes.Structure):
+    """contact_normal_wear."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("mx", c_int32),
+        ("my", c_int32),
+        ("dx", c_double),
+        ("dy", c_double),
+        ("traction", POINTER(c_double) * 2),
+        ("slip", POINTER(c_double) * 2),
+        ("pressure", POINTER(c_double)),
+        ("coefficient", c_double),
+        ("coefficients", POINTER(c_double)),
+        ("hardness", c_double),
+        ("steps", c_double),
+        ("rolling_distance", c_double),
+    ]
+
+
+class Worn(ctypes.Structure):
+    """contact_normal_worn."""
+
+    _fields_ = [
+        ("struct_size", c_int64),
+        ("work", c_double),
+        ("volume", c_double),
+        ("largest_depth", c_double),
+        ("x", c_double),
+        ("y", c_double),
+    ]
+
+
 LogCallback = CFUNCTYPE(None, c_int32, c_char_p, c_void_p)
 
 
@@ -657,4 +693,6 @@ KINDS: dict[str, tuple[int, type[ctypes.Structure]]] = {
     "visco": (25, Visco),
     "heat": (26, Heat),
     "flash": (27, Flash),
+    "wear": (28, Wear),
+    "worn": (29, Worn),
 }

@@ -1,7 +1,7 @@
 //! Problems that are coupled with the normal one: both are solved in turns, and a step leaves something to the next one.
 
 use crate::contact::State;
-use crate::error::Result;
+use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::zeros;
 use crate::progress::{Monitor, Outcome};
@@ -37,6 +37,8 @@ pub trait Coupled {
 pub struct History {
     fields: Vec<Vec<f64>>,
     has_step: bool,
+    /// It is that of another solver, which has the result that goes with it.
+    pub is_given: bool,
     /// Of the steps so far, for effects that have a time.
     pub time: f64,
     /// The error of the steps so far, added up: a length.
@@ -75,7 +77,29 @@ impl History {
     /// There is no last step.
     pub fn forget(&mut self) {
         self.fields.iter_mut().for_each(|field| field.fill(0.0));
-        (self.has_step, self.time, self.error) = (false, 0.0, 0.0);
+        (self.has_step, self.is_given, self.time, self.error) = (false, false, 0.0, 0.0);
+    }
+
+    /// All of it as numbers: the time, the error, then the fields one after the other; none before the first step, and without fields.
+    pub fn numbers(&self) -> Option<Vec<f64>> {
+        let is_there = self.has_step && !self.fields.is_empty();
+        is_there.then(|| [self.time, self.error].into_iter().chain(self.fields.iter().flatten().copied()).collect())
+    }
+
+    /// Becomes what these numbers say.
+    pub fn take(&mut self, numbers: &[f64], grid: &Grid) -> Result<()> {
+        let [time, error, values @ ..] = numbers else { return invalid("a history begins with two numbers".into()) };
+        if values.is_empty() || values.len() % grid.len() != 0 {
+            let (count, elements) = (values.len(), grid.len());
+            return invalid(format!("a history has {count} values; it must have fields of {elements}"));
+        }
+        self.fields.clear();
+        self.fields(values.len() / grid.len(), grid)?;
+        for (field, values) in self.fields.iter_mut().zip(values.chunks(grid.len())) {
+            field.copy_from_slice(values);
+        }
+        (self.has_step, self.is_given, self.time, self.error) = (true, true, *time, *error);
+        Ok(())
     }
 
     /// Bytes held.

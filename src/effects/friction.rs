@@ -4,7 +4,7 @@
 //! are alike; it is solved first.
 
 use super::effect::{Effect, Value};
-use super::friction_law::{FrictionLaw, PlasticLayer};
+use super::friction_law::{Branch, FrictionLaw, PlasticLayer};
 use super::properties::{Continues, Properties, Stresses};
 use super::tangential_influence::TangentialInfluence;
 use crate::error::{Error, Result};
@@ -123,6 +123,8 @@ pub struct Friction<'a> {
     pub coefficients_before: Option<&'a [f64]>,
     /// And yield limits; none: those of fresh material.
     pub yield_limits: Option<&'a [f64]>,
+    /// Which solution, with a law or a layer that hardens or softens.
+    pub branch: Branch,
 }
 
 impl Friction<'_> {
@@ -151,6 +153,7 @@ impl Friction<'_> {
             layer: None,
             coefficients_before: None,
             yield_limits: None,
+            branch: Branch::Near,
         }
     }
 

@@ -2,12 +2,12 @@
 
 use super::effect::check_values;
 use super::friction::{Friction, Motion, Prescribed};
-use super::friction_law::PlasticLayer;
+use super::friction_law::{Branch, PlasticLayer};
 use crate::error::{not_negative, positive, require, Error, Result};
 use crate::grid::Grid;
 use crate::scene::Bodies;
 
-const NO_FORCES: &str = "creepages must be prescribed in both directions";
+const NO_FORCES: &str = "with a branch creepages must be prescribed in both directions";
 const LIKE_BODIES: &str = "bodies must be alike";
 const WHOLE_STEPS: &str = "with memory a step of steady rolling must be of whole elements along x or along y";
 
@@ -65,7 +65,7 @@ impl Friction<'_> {
             let name = if self.law.is_some() { "friction->law" } else { "friction->hardening" };
             Err(Error::Unsupported(format!("{name} is given: {rule}")))
         };
-        if self.prescribed.iter().any(|prescribed| matches!(prescribed, Prescribed::Force(_))) {
+        if self.branch != Branch::Near && self.prescribed.iter().any(|given| matches!(given, Prescribed::Force(_))) {
             return refused(NO_FORCES);
         }
         if self.sensitivities {

@@ -14,6 +14,18 @@ pub enum Fall {
     Exponential,
 }
 
+/// Which solution is wanted where bounds that fall with the slip have several.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Branch {
+    /// That which is near the start: the fastest.
+    #[default]
+    Near,
+    /// That which comes from bounds without slip.
+    Low,
+    /// That which comes from bounds of any speed.
+    High,
+}
+
 /// A coefficient of friction that depends on the slip velocity:
 ///
 /// ```text

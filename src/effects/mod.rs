@@ -58,7 +58,7 @@ pub use coating::{Coating, CoatingLayer};
 pub use coupled::{Coupled, History};
 pub use effect::{Effect, Value};
 pub use friction::{Coefficient, Friction, Motion, Prescribed, Previous};
-pub use friction_law::{Fall, FrictionLaw, PlasticLayer};
+pub use friction_law::{Branch, Fall, FrictionLaw, PlasticLayer};
 pub use layer::Layer;
 pub use memory::Memory;
 pub use named::{Named, SET_THEM};
@@ -68,7 +68,7 @@ pub use properties::{Continues, Layout, PressureLimit, Properties, Stresses};
 pub use tangential_influence::{KeptInfluence, TangentialInfluence};
 pub use together::{
     beside, check_bodies, check_effects, check_other_grids, continuing, coupled, effects, excluded_method, keep,
-    limits, memory, own_coefficients, repeats, replace_bodies, surface, without_given_area, COUNT,
+    limits, memory, own_coefficients, place, repeats, replace_bodies, surface, without_given_area, COUNT,
 };
 pub use visco::{Branches, Visco};
 

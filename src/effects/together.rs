@@ -18,6 +18,11 @@ macro_rules! define_list {
         /// Number of effects.
         pub const COUNT: usize = [$($(#[cfg($when)])? stringify!($name)),+].len();
 
+        /// The place of an effect in the list.
+        pub fn place(name: &str) -> Option<usize> {
+            [$($(#[cfg($when)])? stringify!($name)),+].iter().position(|known| *known == name)
+        }
+
         /// The effects that a scene names and that it has to know of.
         pub(super) fn list<'s>(scene: &'s Scene<'_>) -> [Option<&'s dyn Effect>; COUNT] {
             let plain = &scene.plain();

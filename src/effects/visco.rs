@@ -41,8 +41,16 @@ const CONTINUES: Continues =
     Continues { member: "visco->continues", from: "step in time", instead: "begin each problem at rest" };
 
 impl Visco<'_> {
+    /// As it is called in a scene.
+    pub const NAME: &'static str = "visco";
+
+    /// Whether a body has branches.
+    pub fn relaxes(&self) -> bool {
+        self.bodies.iter().any(|branches| !branches.modulus.is_empty())
+    }
+
     /// The series of both bodies, with the moduli of what is at their surfaces.
-    fn series(&self, at_surface: &Bodies) -> Result<[Series; 2]> {
+    pub(crate) fn series(&self, at_surface: &Bodies) -> Result<[Series; 2]> {
         let of = |b: usize| {
             let (Branches { modulus, time }, g) = (self.bodies[b], at_surface.shear_modulus[b]);
             if g.is_infinite() && !modulus.is_empty() {
@@ -113,7 +121,7 @@ fn at_surface(scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Bodies {
 
 impl Effect for Visco<'_> {
     fn name(&self) -> &'static str {
-        "visco"
+        Visco::NAME
     }
 
     fn properties(&self) -> Properties<'_> {
@@ -121,7 +129,7 @@ impl Effect for Visco<'_> {
             excludes: &["layer", "friction", "adhesion"],
             without_multigrid: None,
             with_given_area: true,
-            one_grid: Some("what bodies remember is that of one grid"),
+            one_grid: self.continues.then_some("what bodies remember is that of one grid"),
             own_coefficients: None,
             repeats: (false, false),
             limits: None,
@@ -132,7 +140,7 @@ impl Effect for Visco<'_> {
 
     // Without branches the bodies are elastic. A scene has to know of what is wrong, too.
     fn is_one(&self, scene: &Plain<'_>) -> bool {
-        self.bodies.iter().any(|branches| !branches.modulus.is_empty()) || self.check(&scene.grid).is_err()
+        self.relaxes() || self.check(&scene.grid).is_err()
     }
 
     fn check(&self, _grid: &Grid) -> Result<()> {

@@ -6,7 +6,7 @@ use super::status::Refusal;
 use super::structs::versioned;
 use crate::friction::{EXTERIOR, PLASTIC, SLIP, STICK};
 use crate::grid::Grid;
-use crate::scene::{Coefficient, Fall, Friction, FrictionLaw, Motion, PlasticLayer, Prescribed, Previous};
+use crate::scene::{Branch, Coefficient, Fall, Friction, FrictionLaw, Motion, PlasticLayer, Prescribed, Previous};
 
 /// `motion`: sideways and about the normal, without rolling.
 pub const CONTACT_NORMAL_MOTION_SHIFT: i32 = 0;
@@ -28,6 +28,12 @@ pub const CONTACT_NORMAL_FRICTION_LAW_LINEAR: i32 = 1;
 pub const CONTACT_NORMAL_FRICTION_LAW_RATIONAL: i32 = 2;
 /// `law`: parts fall as `2^(-v/h)`.
 pub const CONTACT_NORMAL_FRICTION_LAW_EXPONENTIAL: i32 = 3;
+/// `friction->branch`: the solution near the start of the iteration.
+pub const CONTACT_NORMAL_FRICTION_BRANCH_NEAR: i32 = 0;
+/// `friction->branch`: that to which bounds without slip lead.
+pub const CONTACT_NORMAL_FRICTION_BRANCH_LOW: i32 = 1;
+/// `friction->branch`: that to which bounds of any speed lead.
+pub const CONTACT_NORMAL_FRICTION_BRANCH_HIGH: i32 = 2;
 
 /// `fields->stick_slip`: the element is not in contact.
 pub const CONTACT_NORMAL_STICK_SLIP_EXTERIOR: i32 = 0;
@@ -117,8 +123,7 @@ pub struct contact_normal_friction {
     pub row_tables: [*const contact_normal_row_tables; 3],
     /// How mu falls with the slip velocity v: CONTACT_NORMAL_FRICTION_LAW_...; default COULOMB: not at all, and what goes with it is not
     /// read. mu(v) is the coefficient times `(kinetic + falling[0] f(v) + falling[1] f(v))/(kinetic + falling[0] + falling[1])`, so that
-    /// `coefficient` is that at rest. Creepages must be given in both directions, bodies be alike, and `sensitivities` be 0 (UNSUPPORTED
-    /// otherwise). See docs/laws.md.
+    /// `coefficient` is that at rest. Bodies must be alike, and `sensitivities` be 0 (UNSUPPORTED otherwise). See docs/laws.md.
     pub law: i32,
     /// Must be 0.
     pub reserved_for_law: i32,
@@ -140,13 +145,18 @@ pub struct contact_normal_friction {
     /// 0: it does not yield.
     pub yield_limit: f64,
     /// What the limit gains by a length of plastic slip, a traction per length; < 0: it softens. Default 0: ideal plastic. Otherwise
-    /// creepages, bodies and `sensitivities` as with a `law`.
+    /// bodies and `sensitivities` as with a `law`.
     pub hardening: f64,
     /// mu that particles of the interface had before the step, of a law with memory, `[my][mx]`; default NULL: that at rest, and with
     /// `continues` what the handle found. In transient rolling a particle comes from its old place; steady rolling does not read it.
     pub previous_coefficient: *const f64,
     /// And their yield limits; default NULL: `yield_limit`.
     pub previous_yield_limit: *const f64,
+    /// Which solution, of a law or a layer that hardens or softens: CONTACT_NORMAL_FRICTION_BRANCH_...; default NEAR. Others take several times as many
+    /// products, and creepages in both directions (UNSUPPORTED otherwise).
+    pub branch: i32,
+    /// Must be 0.
+    pub reserved_for_branch: i32,
 }
 
 versioned! { contact_normal_friction, contact_normal_friction_init, 248, spin_offset: 1.0 / 6.0 }
@@ -209,6 +219,7 @@ impl contact_normal_friction {
             layer: self.layer(),
             coefficients_before,
             yield_limits,
+            branch: self.branch()?,
         })
     }
 
@@ -237,6 +248,19 @@ impl contact_normal_friction {
         };
         let Self { kinetic, falling, half_speed, speed, time_step, memory_distance, memory_speed, .. } = *self;
         Ok(Some(FrictionLaw { fall, kinetic, falling, half_speed, speed, time_step, memory_distance, memory_speed }))
+    }
+
+    fn branch(&self) -> Result<Branch, Refusal> {
+        reserved("friction->reserved_for_branch", self.reserved_for_branch)?;
+        match self.branch {
+            CONTACT_NORMAL_FRICTION_BRANCH_NEAR => Ok(Branch::Near),
+            CONTACT_NORMAL_FRICTION_BRANCH_LOW => Ok(Branch::Low),
+            CONTACT_NORMAL_FRICTION_BRANCH_HIGH => Ok(Branch::High),
+            other => {
+                let rule = "it must be FRICTION_BRANCH_NEAR 0, LOW 1 or HIGH 2";
+                Err(Refusal::invalid(format!("friction->branch is {other}; {rule}")))
+            }
+        }
     }
 
     fn layer(&self) -> Option<PlasticLayer> {

@@ -27,6 +27,7 @@ use super::status::CONTACT_NORMAL_OK;
 use super::stress_outputs::{contact_normal_stress_maximum, contact_normal_stress_outputs};
 use super::structs;
 use super::visco::contact_normal_visco;
+use super::wear::{contact_normal_wear, contact_normal_worn};
 
 /// `kind`: `contact_normal_scene`. Since 0.1.
 pub const CONTACT_NORMAL_KIND_SCENE: i32 = 1;
@@ -82,6 +83,10 @@ pub const CONTACT_NORMAL_KIND_VISCO: i32 = 25;
 pub const CONTACT_NORMAL_KIND_HEAT: i32 = 26;
 /// `kind`: `contact_normal_flash`. Since 0.2.
 pub const CONTACT_NORMAL_KIND_FLASH: i32 = 27;
+/// `kind`: `contact_normal_wear`. Since 0.2.
+pub const CONTACT_NORMAL_KIND_WEAR: i32 = 28;
+/// `kind`: `contact_normal_worn`. Since 0.2.
+pub const CONTACT_NORMAL_KIND_WORN: i32 = 29;
 
 /// Fills a struct of this `kind` (CONTACT_NORMAL_KIND_...), which has `size` bytes in the caller's header, with its defaults. Programs in C
 /// and C++ call the function that the header has for each struct, as `contact_normal_scene_init(&scene)`; others call this one with the
@@ -145,6 +150,8 @@ kinds! {
     CONTACT_NORMAL_KIND_VISCO => contact_normal_visco,
     CONTACT_NORMAL_KIND_HEAT => contact_normal_heat,
     CONTACT_NORMAL_KIND_FLASH => contact_normal_flash,
+    CONTACT_NORMAL_KIND_WEAR => contact_normal_wear,
+    CONTACT_NORMAL_KIND_WORN => contact_normal_worn,
 }
 
 #[cfg(test)]

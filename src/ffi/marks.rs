@@ -32,10 +32,27 @@ const PROCEDURES: [(&str, &[&str]); 20] = [
             "slip_y",
             "initial_x",
             "initial_y",
+            "compliances",
+            "weight_x",
+            "weight_y",
+            "previous_coefficient",
+            "previous_yield_limit",
         ],
     ),
     ("set_tangential_influence", &["friction", "tables", "xx", "yy", "xy", "scale", "xz", "yz"]),
-    ("set_friction_fields", &["fields", "traction_x", "traction_y", "slip_x", "slip_y", "stick_slip"]),
+    (
+        "set_friction_fields",
+        &[
+            "fields",
+            "traction_x",
+            "traction_y",
+            "slip_x",
+            "slip_y",
+            "stick_slip",
+            "friction_coefficient",
+            "yield_limit",
+        ],
+    ),
     (
         "set_friction_results",
         &[

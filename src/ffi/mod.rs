@@ -51,6 +51,7 @@ mod tangential;
 mod visco;
 mod warnings;
 mod watcher;
+mod wear;
 
 pub use self::log::*;
 pub use accuracy::*;
@@ -86,3 +87,4 @@ pub use stress_outputs::*;
 pub use tangential::*;
 pub use visco::*;
 pub use warnings::*;
+pub use wear::*;

@@ -53,6 +53,8 @@ pub const CONTACT_NORMAL_OBSTACLE_ELEMENTS: i32 = 3;
 pub const CONTACT_NORMAL_OBSTACLE_MEMORY: i32 = 4;
 /// `obstacle`: it takes longer than `accuracy->max_seconds`.
 pub const CONTACT_NORMAL_OBSTACLE_TIME: i32 = 5;
+/// `obstacle`: bodies relax, and the length of the step alone leaves more than `target`: `time_error` says how much.
+pub const CONTACT_NORMAL_OBSTACLE_STEP: i32 = 6;
 
 /// One row of the price list: what one accuracy costs. All of it is predicted.
 #[repr(C)]
@@ -84,6 +86,9 @@ pub struct contact_normal_price {
     pub obstacle: i32,
     /// 0.
     pub reserved: i32,
+    /// Of bodies that relax: the relative error that the length of the step leaves on any grid, beside `error`; it falls with the square of the
+    /// step. 0: none relaxes.
+    pub time_error: f64,
 }
 
 versioned! { contact_normal_price, contact_normal_price_init, 88, error: -1.0, seconds: -1.0, seconds_one_thread: -1.0 }
@@ -111,8 +116,10 @@ impl From<&Price> for contact_normal_price {
                 Some(Obstacle::Elements) => CONTACT_NORMAL_OBSTACLE_ELEMENTS,
                 Some(Obstacle::Memory) => CONTACT_NORMAL_OBSTACLE_MEMORY,
                 Some(Obstacle::Time) => CONTACT_NORMAL_OBSTACLE_TIME,
+                Some(Obstacle::Step) => CONTACT_NORMAL_OBSTACLE_STEP,
             },
             reserved: 0,
+            time_error: price.time_error,
         }
     }
 }
@@ -123,7 +130,8 @@ impl From<&Price> for contact_normal_price {
 /// the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit says which, and what it
 /// would take. With a surface the scene's undeformed distance is not read and may be NULL; without one small grids sample it,
 /// and finer ones than the scene's are refined from it, as `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface or
-/// `options->stop`; ITERATION_LIMIT: `options->max_seconds` was reached; rows hold what was known by then. UNSUPPORTED: own coefficients, or FIXED contact. Since 0.2.
+/// `options->stop`; ITERATION_LIMIT: `options->max_seconds` was reached; rows hold what was known by then. UNSUPPORTED: own coefficients, FIXED contact,
+/// or a step of bodies that relax which continues. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_cost_of_accuracy(
     scene: *const contact_normal_scene,

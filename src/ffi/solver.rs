@@ -28,7 +28,7 @@ pub struct contact_normal_solver {
 }
 
 /// The contents of a handle.
-pub(super) struct Held {
+pub(in crate::ffi) struct Held {
     pub solver: Solver,
     pub buffers: Buffers,
 }
@@ -42,7 +42,7 @@ impl contact_normal_solver {
 }
 
 /// A handle that a call uses, until it is dropped.
-pub(super) struct InUse<'a> {
+pub(in crate::ffi) struct InUse<'a> {
     handle: &'a contact_normal_solver,
 }
 

@@ -6,12 +6,15 @@ use super::influence::table_size;
 use super::scene::load_of;
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{self, versioned};
+use super::visco::contact_normal_visco;
 use crate::analytic::{self, Hertz};
+use crate::effects::Effect;
 use crate::error::positive;
 use crate::grid::Grid;
 use crate::influence::{HalfSpace, Kernel};
 use crate::memory::zeros;
 use crate::scene::{Bodies, Load};
+use crate::visco::{rolling_table, RollingBody};
 
 /// The exact Hertz solution.
 #[repr(C)]
@@ -108,5 +111,43 @@ pub unsafe extern "C" fn contact_normal_influence_half_space(
             }
         }
         Ok(CONTACT_NORMAL_OK)
+    })
+}
+
+/// The influence coefficients of bodies that relax and roll steadily, without a change in time, as a table over offsets -cx..cx-1 by -cy..cy-1:
+/// `coefficients[2 cy][2 cx]`, x fastest, as `contact_normal_influence` takes it. `shear_modulus` and `poisson_ratio`: two values each, the moduli those at
+/// once; of `visco` the branches, moduli and times are read. `speed`: how fast the bodies roll towards +x; < 0: towards -x. The table is not even in x, so
+/// it serves the normal problem. UNSUPPORTED: a body of whose modulus nothing is left in the end. Since 0.2.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_influence_rolling(
+    cx: i32,
+    cy: i32,
+    dx: f64,
+    dy: f64,
+    shear_modulus: *const f64,
+    poisson_ratio: *const f64,
+    visco: *const contact_normal_visco,
+    speed: f64,
+    coefficients: *mut f64,
+) -> contact_normal_status {
+    guard(|| {
+        // SAFETY (all): NULL, or as many values as the comment says, by the conventions of the ABI.
+        unsafe {
+            let bodies = bodies(shear_modulus, poisson_ratio)?;
+            let given = structs::read(visco, "visco")?;
+            let (cx, cy) = (count("cx", cx)?, count("cy", cy)?);
+            let size = table_size(cx, cy)?;
+            let grid = Grid::new(1, 1, dx, dy)?;
+            if coefficients.is_null() {
+                return Err(Refusal::null("coefficients"));
+            }
+            let visco = given.translate()?;
+            visco.check(&grid)?;
+            let [one, other] = visco.series(&bodies)?;
+            let body = |b: usize, series| RollingBody { compliance: bodies.compliance_of(b), series };
+            let table = rolling_table((cx, cy), (dx, dy), &[body(0, one), body(1, other)], speed)?;
+            std::ptr::copy_nonoverlapping(table.as_ptr(), coefficients, size);
+            Ok(CONTACT_NORMAL_OK)
+        }
     })
 }

@@ -194,7 +194,8 @@ impl Solver {
         self.set_up(window, rolling)?;
         let mut had_slip = self.begin(request, from_rest, window, bound)?;
         if request.friction.has_law() {
-            let end = self.iterate_with_law(request, window, watch, report)?;
+            let nested = from_rest && !matches!(request.start, Start::Again);
+            let end = self.iterate_with_law(request, (window, forces, (nested, had_slip)), watch, report)?;
             [report.update, _] = self.scales.own_traction([self.levels[0].problem.update, 0.0]);
             return Ok(end);
         }
@@ -222,7 +223,7 @@ impl Solver {
     }
 
     /// Iterates on the grids of the window, from what the finest holds. The report gets what that took and found.
-    fn iterate(
+    pub(super) fn iterate(
         &mut self,
         request: &Request<'_>,
         forces: Forces,

@@ -127,7 +127,7 @@ pub fn polish(
 }
 
 /// The square of what forces weigh beside the field of slips: as much as the slip that goes with them.
-fn border_weight(problem: &Problem, state: &State, forces: Forces) -> f64 {
+pub fn border_weight(problem: &Problem, state: &State, forces: Forces) -> f64 {
     if !forces.any() {
         return 0.0;
     }

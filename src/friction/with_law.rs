@@ -1,7 +1,8 @@
 //! A solve with a [law](super::law) or a layer that yields: in the units of the iterations, and what particles carry from step to step.
 
 use super::certificate::Certificate;
-use super::law::{stages, Law, March, Particle, Place};
+use super::forces::Forces;
+use super::law::{branch, stages, Law, March, Particle, Place};
 use super::levels::Level;
 use super::request::Request;
 use super::shift::{Goal, Memory};
@@ -9,7 +10,7 @@ use super::solution::{Report, PLASTIC, SLIP};
 use super::solver::Solver;
 use super::sweep::{Rolling, Sweep};
 use super::window::Window;
-use crate::effects::{Friction, Motion, PlasticLayer, Previous};
+use crate::effects::{Branch, Friction, Motion, PlasticLayer, Previous};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::collected;
@@ -17,6 +18,9 @@ use crate::progress::Outcome;
 
 /// Products in vain are kept back for the end of a solve.
 const KEPT_BACK: u64 = 3;
+
+/// Coulomb's law with the coefficients at rest is solved to this, where forces are given, before the iteration with the law begins.
+const FIRST: f64 = 1e-2;
 
 /// The state of the particles before a step, on the whole grid, in the caller's units.
 struct Had<'a> {
@@ -96,15 +100,25 @@ impl Solver {
         Particle { yield_limit: self.scales.traction(particle.yield_limit), ..particle }
     }
 
-    /// Iterates on the finest grid from what it holds. The report gets the certificate and what that took.
+    /// Iterates on the finest grid from what it holds, where forces are given from the solution of Coulomb's law. The report gets the certificate
+    /// and what that took.
     pub(super) fn iterate_with_law(
         &mut self,
         request: &Request<'_>,
-        window: Window,
+        (window, forces, began): (Window, Forces, (bool, bool)),
         watch: &mut dyn FnMut(&Grid, f64) -> bool,
         report: &mut Report,
     ) -> Result<Outcome> {
         let friction = request.friction;
+        if forces.any() && !request.is_cancelled {
+            let first = Request { tolerance: request.tolerance.max(FIRST), ..*request };
+            let end = self.iterate(&first, forces, began, watch, report)?;
+            if end == Outcome::Cancelled {
+                let Level { problem, state, .. } = &self.levels[0];
+                report.certificate = Certificate::of(problem, state);
+                return Ok(end);
+            }
+        }
         let (law, had, scales) = (self.law(friction), self.had(friction), self.scales);
         let problem = &self.levels[0].problem;
         let width = problem.grid.mx;
@@ -118,19 +132,56 @@ impl Solver {
         let mut march = March::new((problem.grid, law), friction.motion, by, place, particle)?;
         let largest = (0..problem.bound.len()).map(|k| problem.bound[k]).fold(0.0, f64::max);
         report.law_slope = law.steepest(largest) * problem.operators.self_influence;
+        if friction.branch != Branch::Near && !request.is_cancelled {
+            return self.in_turns((request, began), march, watch, report);
+        }
         let Level { problem, state, memory, .. } = &mut self.levels[0];
         let Memory { tangent, fields, .. } = memory;
         if request.is_cancelled {
             return Ok(Outcome::Cancelled);
         }
         let grid = scales.own_grid(&problem.grid);
-        let limit = request.limit.saturating_sub(KEPT_BACK).max(1);
+        let limit = request.limit.saturating_sub(KEPT_BACK + report.products.ceil() as u64).max(1);
         let watch = &mut |residual: f64| watch(&grid, residual);
         let goal = Goal { tolerance: request.tolerance, limit, certified: true, watch };
-        let ended = stages::solve(problem, state, (tangent, fields), &mut march, goal)?;
+        let ended = stages::solve(problem, state, (tangent, fields), (&mut march, forces), goal)?;
         report.products += problem.take_products() as f64;
         report.certificate = Certificate { residual: ended.residual, ..Certificate::of(problem, state) };
         Ok(ended.outcome)
+    }
+
+    /// The solution of a branch: Coulomb's problem with the bounds of the last slips, in turns.
+    fn in_turns(
+        &mut self,
+        (request, (nested, had_slip)): (&Request<'_>, (bool, bool)),
+        mut march: March,
+        watch: &mut dyn FnMut(&Grid, f64) -> bool,
+        report: &mut Report,
+    ) -> Result<Outcome> {
+        let mut turns = branch::Turns::new();
+        branch::begin(&mut self.levels[0].problem, &mut march, request.friction.branch == Branch::High);
+        let (outcome, residual) = loop {
+            let turn = Request { tolerance: turns.inner(request.tolerance), ..*request };
+            let begin = (nested && turns.made == 0, had_slip || turns.made > 0);
+            let end = self.iterate(&turn, Forces::NONE, begin, watch, report)?;
+            let left = branch::renew(&mut self.levels[0], &mut march)?;
+            let ended = match turns.end(left, request.tolerance) {
+                _ if end == Outcome::Cancelled => Some(end),
+                None if report.products >= request.limit as f64 => Some(Outcome::IterationLimit),
+                ended => ended,
+            };
+            if let Some(outcome) = ended {
+                let residual = branch::certify(&mut self.levels[0], &mut march);
+                // What the way to the circles leaves may be more than the tolerance: then another turn follows.
+                if outcome != Outcome::Converged || residual < request.tolerance {
+                    break (outcome, residual);
+                }
+            }
+        };
+        let Level { problem, state, .. } = &mut self.levels[0];
+        report.products += problem.take_products() as f64;
+        report.certificate = Certificate { residual, ..Certificate::of(problem, state) };
+        Ok(outcome)
     }
 
     /// Room for what particles carry after the step, and what they had before; none without a law and a layer.

@@ -237,6 +237,11 @@ impl Kernel for HalfSpace {
     }
 }
 
+/// The integral of 1/rho over an element, seen from `(kx, ky) >= 0` elements away, between offsets, too.
+pub(crate) fn integral_at((kx, ky): (f64, f64), (dx, dy): (f64, f64)) -> f64 {
+    near_integral(kx, ky, dx, dy)
+}
+
 /// The integral of 1/rho over an element at offset `(kx, ky) >= 0`.
 fn near_integral(kx: f64, ky: f64, dx: f64, dy: f64) -> f64 {
     if ky >= 2.0 {

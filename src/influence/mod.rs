@@ -31,6 +31,7 @@ pub use coated::{radial, Base, Coated, CoatedBody, CoatedPeriodic, Radial, Trans
 pub use coefficients::Coefficients;
 pub use diagonal::Layer;
 pub(crate) use gauss::{gauss, gauss_each};
+pub(crate) use half_space::integral_at;
 pub use half_space::HalfSpace;
 pub use kernel::Kernel;
 pub use patches::Patches;

@@ -19,7 +19,12 @@ impl Bodies {
 
     /// `1/E* = sum over the bodies of (1 - nu)/(2 G)`: half-spaces in series (Johnson, eq. 4.5).
     pub fn compliance(&self) -> f64 {
-        (0..2).map(|i| (1.0 - self.poisson_ratio[i]) / (2.0 * self.shear_modulus[i])).sum()
+        (0..2).map(|b| self.compliance_of(b)).sum()
+    }
+
+    /// Of body b, `(1 - nu)/(2 G)`.
+    pub fn compliance_of(&self, b: usize) -> f64 {
+        (1.0 - self.poisson_ratio[b]) / (2.0 * self.shear_modulus[b])
     }
 
     /// What couples the normal and the tangential problem of half-spaces: `(1 - 2 nu1)/G1 - (1 - 2 nu2)/G2`; 0 where bodies are alike.

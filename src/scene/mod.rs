@@ -8,8 +8,8 @@ mod regrid;
 mod with_effects;
 
 pub use crate::effects::{
-    Adhesion, Branches, Coating, CoatingLayer, Coefficient, Fall, Friction, FrictionLaw, Layer, Motion, Patches,
-    Period, PlasticLayer, Prescribed, PressureLimit, Previous, TangentialInfluence, Visco, Work,
+    Adhesion, Branch, Branches, Coating, CoatingLayer, Coefficient, Fall, Friction, FrictionLaw, Layer, Motion,
+    Patches, Period, PlasticLayer, Prescribed, PressureLimit, Previous, TangentialInfluence, Visco, Work,
 };
 pub use bodies::Bodies;
 pub use load::Load;

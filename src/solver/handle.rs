@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::tangential::Tangent;
 use super::{LedgerRow, Options, Solver};
 use crate::contact::{Freshness, State};
-use crate::effects::{Effect, Layout};
+use crate::effects::{self, Effect, Layout, Visco};
 use crate::error::{invalid, Result};
 use crate::friction;
 use crate::grid::Grid;
@@ -35,6 +35,19 @@ impl Solver {
     /// Whether there is a result: of the last solve, unless that failed.
     pub fn has_solved(&self) -> bool {
         self.has_result
+    }
+
+    /// What bodies that relax remember of the steps before, as numbers; none before the first step.
+    pub(crate) fn history(&self) -> Option<Vec<f64>> {
+        self.beside.histories[effects::place(Visco::NAME)?].numbers()
+    }
+
+    /// They remember what another solver's did.
+    pub(crate) fn take_history(&mut self, numbers: &[f64]) -> Result<()> {
+        match effects::place(Visco::NAME) {
+            Some(k) => self.beside.histories[k].take(numbers, &self.problem.grid),
+            None => Ok(()),
+        }
     }
 
     /// The course of the last solve: one row per grid, coarsest first.

@@ -17,7 +17,10 @@ impl Solver {
         for (k, name, Continues { from, .. }) in effects::continuing(scene) {
             let has_step = match name {
                 Friction::NAME => self.friction().is_some(),
-                _ => self.has_result && self.beside.histories[k].has_step(),
+                _ => {
+                    let history = &self.beside.histories[k];
+                    (self.has_result || history.is_given) && history.has_step()
+                }
             };
             if !has_step {
                 return invalid(format!("{name} continues, but this solver holds no {from} yet"));

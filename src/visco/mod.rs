@@ -18,9 +18,11 @@
 
 mod map;
 mod modes;
+mod rolling;
 mod series;
 
 pub use map::{Form, Map};
+pub use rolling::{rolling_table, RollingBody};
 pub use series::{Series, MOST};
 
 /// What was found of a step in time.

@@ -52,6 +52,48 @@ fn a_handle_goes_on_from_what_is_in_the_file() {
     }
 }
 
+/// Bodies that relax go on from what the file says that they remember: with the pressures of the call itself, in its time.
+#[test]
+fn a_step_in_time_goes_on_from_the_history_in_the_file() {
+    let path = folder("history").join("failed");
+    let path_text = text(&path);
+    let mut scene = Everything::new("visco");
+    let mut visco = contact_normal_visco::default();
+    let mut handle = null_mut();
+    // SAFETY (all): structs with the arrays that they declare, and a handle of this test.
+    unsafe {
+        visco.clone_from(&*scene.scene.visco);
+        scene.scene.visco = &visco;
+        assert_eq!(contact_normal_solver_new(&scene.scene, &scene.options, &mut handle), CONTACT_NORMAL_OK);
+        let solve = |scene: &Everything| {
+            let mut report = contact_normal_report::default();
+            (contact_normal_solver_solve(handle, &scene.scene, &scene.options, null_mut(), &mut report), report)
+        };
+        assert_eq!(solve(&scene).0, CONTACT_NORMAL_OK, "{}", last_error());
+        let later = contact_normal_visco { continues: 1, time_step: 0.3, ..visco };
+        scene.scene.visco = &later;
+        assert_eq!(solve(&scene).0, CONTACT_NORMAL_OK, "{}", last_error());
+        let last = contact_normal_visco { time_step: 0.2, ..later };
+        scene.scene.visco = &last;
+        (scene.options.max_cycles, scene.options.tolerance) = (1, 1e-18);
+        scene.options.dump = path_text.as_ptr();
+        let (status, report) = solve(&scene);
+        assert!(status > 0, "{status}: {}", last_error());
+        contact_normal_solver_free(handle);
+        let dump = Dump::read(&std::fs::read(&path).expect("a dump")).expect("a dump that can be read");
+        // A p, and a field of each branch.
+        assert_eq!(dump.doubles("handle.history").map(|history| history.len()), Some(2 + 6 * 30));
+        let again = dump.replay().expect("a call");
+        assert_eq!(again.status, status, "{}", last_error());
+        // The step from rest to 0.4, of 0.3, and of 0.2.
+        assert!((report.visco.time - 0.9).abs() <= 1e-15 && again.report.visco.time == report.visco.time);
+        assert_eq!(again.report.visco.compliance, report.visco.compliance);
+        // One iteration of each.
+        let (force, other) = (report.normal.force, again.report.normal.force);
+        assert!((other / force - 1.0).abs() <= 1e-12, "{force} {other}");
+    }
+}
+
 #[test]
 fn a_batch_leaves_the_scenes_that_fail() {
     let folder = folder("batch");

@@ -13,7 +13,7 @@ fn falling(friction: &mut contact_normal_friction) {
 #[test]
 fn what_is_no_law_or_not_solved_is_refused_by_name() {
     type Spoil = fn(&mut contact_normal_friction);
-    let cases: [(Spoil, i32, &str); 12] = [
+    let cases: [(Spoil, i32, &str); 14] = [
         (|f| f.law = 4, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->law is 4"),
         (|f| f.reserved_for_law = 1, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->reserved_for_law"),
         (|f| f.kinetic = -1.0, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->kinetic is -1"),
@@ -23,10 +23,15 @@ fn what_is_no_law_or_not_solved_is_refused_by_name() {
         (|f| f.yield_limit = -2.0, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->yield_limit is -2"),
         (|f| f.hardening = 5.0, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->yield_limit is 0"),
         (
-            |f| f.prescribed[1] = CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE,
+            |f| {
+                f.prescribed[1] = CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE;
+                f.branch = CONTACT_NORMAL_FRICTION_BRANCH_HIGH;
+            },
             CONTACT_NORMAL_UNSUPPORTED,
-            "friction->law is given: creepages",
+            "friction->law is given: with a branch creepages",
         ),
+        (|f| f.branch = 3, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->branch is 3"),
+        (|f| f.reserved_for_branch = 1, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->reserved_for_branch is 1"),
         (|f| f.sensitivities = 1, CONTACT_NORMAL_UNSUPPORTED, "friction->law is given: friction->sensitivities"),
         (
             |f| {

@@ -43,6 +43,7 @@ fn the_committed_header_is_the_generated_one() {
         "stress_outputs",
         "stress",
         "heat",
+        "wear",
         "log",
         "kept",
         "has",

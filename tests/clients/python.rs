@@ -203,6 +203,11 @@ fn the_visco_example_prints_what_is_expected_and_draws() {
 }
 
 #[test]
+fn the_wear_example_prints_what_is_expected_and_draws() {
+    prints_what_is_expected_and_draws("wear");
+}
+
+#[test]
 fn the_rolling_example_prints_what_is_expected_and_draws() {
     prints_what_is_expected_and_draws("rolling");
 }

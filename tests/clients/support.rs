@@ -14,7 +14,7 @@ use contact_normal::operator::Operator;
 use contact_normal::threads::Threads;
 
 /// The examples of effects, the same in C and Fortran; each prints what its file `.expected` holds.
-pub const EXAMPLES_OF_EFFECTS: [&str; 13] = [
+pub const EXAMPLES_OF_EFFECTS: [&str; 14] = [
     "adhesion",
     "visco",
     "layer",
@@ -25,6 +25,7 @@ pub const EXAMPLES_OF_EFFECTS: [&str; 13] = [
     "coating",
     "subsurface",
     "flash_temperature",
+    "wear",
     "friction",
     "creep_forces",
     "own_tables",

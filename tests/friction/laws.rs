@@ -32,13 +32,13 @@ pub fn solver(grid: &Grid) -> Solver {
 }
 
 /// A locomotive's wheel: a Hertzian ellipse 6.3 x 12.6 mm, friction that falls from .33 to .14 with memory.
-struct Wheel {
-    grid: Grid,
-    pressure: Vec<f64>,
+pub struct Wheel {
+    pub grid: Grid,
+    pub pressure: Vec<f64>,
 }
 
-const FORCE: f64 = 106_700.0;
-const RUNNING: FrictionLaw = FrictionLaw {
+pub const FORCE: f64 = 106_700.0;
+pub const RUNNING: FrictionLaw = FrictionLaw {
     fall: Fall::Exponential,
     kinetic: 0.14,
     falling: [0.19, 0.0],
@@ -53,7 +53,7 @@ const LAYER: f64 = 1.25 / 8200.0;
 
 impl Wheel {
     /// `times`: how often finer than in tractcurv.
-    fn new(times: usize) -> Wheel {
+    pub fn new(times: usize) -> Wheel {
         let (a, b, curvature) = (6.3036, 12.6072, [8e-4, 2.8142e-4]);
         let (mx, my) = (48 * times, 44 * times);
         let grid = Grid::new(mx, my, 2.2 * a / mx as f64, 2.2 * b / my as f64).unwrap();
@@ -64,7 +64,7 @@ impl Wheel {
         Wheel { grid, pressure: pressures(grid, &h, FORCE) }
     }
 
-    fn friction(&self, xi: f64, spin: f64, law: Option<FrictionLaw>) -> Friction<'static> {
+    pub fn friction(&self, xi: f64, spin: f64, law: Option<FrictionLaw>) -> Friction<'static> {
         Friction {
             motion: Motion::SteadyRolling,
             prescribed: [Prescribed::Creepage(xi), Prescribed::Creepage(0.0)],
@@ -75,7 +75,7 @@ impl Wheel {
         }
     }
 
-    fn ended(&self, friction: &Friction<'_>, tolerance: f64) -> (Outcome, Report, Solution) {
+    pub fn ended(&self, friction: &Friction<'_>, tolerance: f64) -> (Outcome, Report, Solution) {
         let mut solver = solver(&self.grid);
         let request = Request::new(&self.pressure, friction, tolerance);
         let (end, report) = solver.solve(&request, &mut |_, _| true).unwrap();
@@ -153,8 +153,8 @@ fn a_fine_grid_takes_few_products_and_meets_the_conditions() {
 }
 
 /// The conditions of a law in steady rolling along x by one element, by direct sums: what is left of the slip over C relative to the rigid
-/// slip, and of `|q| - g(slip)` relative to the bounds at rest.
-fn left(wheel: &Wheel, friction: &Friction<'_>, solution: &Solution) -> [f64; 2] {
+/// slip, and of `|q| - g(slip)` relative to the bounds at rest; and the displacements of the step relative to the rigid slip.
+pub fn left(wheel: &Wheel, friction: &Friction<'_>, solution: &Solution) -> [f64; 3] {
     let (grid, law) = (&wheel.grid, friction.law.unwrap());
     let Coefficient::Uniform(layer) = friction.compliance else { panic!("one layer") };
     let (q, n) = (&solution.traction, grid.len());
@@ -162,7 +162,7 @@ fn left(wheel: &Wheel, friction: &Friction<'_>, solution: &Solution) -> [f64; 2]
     dense::apply(&steel(grid), grid, (0.0, 0.0), q, &mut u);
     dense::apply(&steel(grid), grid, (1.0, 0.0), q, &mut there);
     let duration = grid.dx / law.speed;
-    let (mut slips, mut bounds, mut rigid, mut rest) = (0.0, 0.0, 0.0, 0.0);
+    let (mut slips, mut bounds, mut rigid, mut rest, mut displaced) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for row in 0..grid.my {
         let mut had = 0.33;
         for ix in (0..grid.mx).rev() {
@@ -186,6 +186,7 @@ fn left(wheel: &Wheel, friction: &Friction<'_>, solution: &Solution) -> [f64; 2]
             }
             let (g, length) = (had * wheel.pressure[i], q[i][0].hypot(q[i][1]));
             rigid += w[0] * w[0] + w[1] * w[1];
+            displaced += (s[0] - w[0]).powi(2) + (s[1] - w[1]).powi(2);
             rest += (0.33 * wheel.pressure[i]).powi(2);
             if slides {
                 let across = (s[0] * q[i][1] - s[1] * q[i][0]) / length;
@@ -199,7 +200,7 @@ fn left(wheel: &Wheel, friction: &Friction<'_>, solution: &Solution) -> [f64; 2]
             }
         }
     }
-    [(slips / rigid).sqrt(), (bounds / rest).sqrt()]
+    [(slips / rigid).sqrt(), (bounds / rest).sqrt(), (displaced / rigid).sqrt()]
 }
 
 #[test]
@@ -211,7 +212,7 @@ fn all_laws_meet_their_conditions_by_direct_sums() {
                 let law = FrictionLaw { fall, memory_distance, ..RUNNING };
                 let friction = wheel.friction(xi, spin, Some(law));
                 let (end, report, solution) = wheel.ended(&friction, 1e-7);
-                let [slip, bound] = left(&wheel, &friction, &solution);
+                let [slip, bound, _] = left(&wheel, &friction, &solution);
                 println!(
                     "{fall:?} {memory_distance} {xi} {end:?} slope {:.2} products {} left {slip:.1e} {bound:.1e}",
                     report.law_slope, report.products

@@ -1,6 +1,7 @@
 //! The tangential problem: every number is compared with a closed form, a quadrature, a direct sum, or another program's result.
 
 mod batch;
+mod branches;
 mod cancelling;
 mod cattaneo;
 mod coefficients;
@@ -11,9 +12,11 @@ mod forces;
 #[allow(dead_code)] // what docs/reliability_friction.md has
 mod hard;
 mod laws;
+mod laws_by_force;
 mod layer;
 mod linear_theory;
 mod onset_of_rolling;
+mod own_law;
 mod plastic;
 mod refusals;
 mod rolling;
@@ -34,6 +37,7 @@ mod threads;
 mod unlike;
 mod unlike_at_limit;
 mod unlike_sensitivities;
+mod wear;
 mod weights;
 mod wheel_on_rail;
 mod wheel_rail;

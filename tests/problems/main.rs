@@ -67,6 +67,8 @@ mod subsurface_stress;
 mod support;
 mod threads;
 mod visco;
+mod visco_prices;
+mod visco_rolling;
 mod visco_steps;
 mod wheel_rail;
 mod white_noise;

@@ -8,7 +8,8 @@ use contact_normal::scene::{
     Visco, Work,
 };
 use contact_normal::solver::{
-    solve, solve_to_accuracy, Accuracy, ActiveSet, Guess, Method, Options, Outcome, Problem, Solver,
+    effects_bill, solve, solve_to_accuracy, Accuracy, ActiveSet, BillOptions, Guess, Method, Options, Outcome, Problem,
+    Quantity, Solver,
 };
 use contact_normal::visco::Form;
 
@@ -264,7 +265,10 @@ fn what_is_not_solved_is_refused_by_name() {
         let refused = refusal(scene);
         assert!(matches!(&refused, Error::Unsupported(text) if text.contains(words)), "{words}: {refused}");
     }
-    let refused =
-        solve_to_accuracy(&plain, &Options::default(), &Accuracy::new(1e-2), None, None).map(drop).unwrap_err();
-    assert!(matches!(&refused, Error::Unsupported(text) if text.contains("visco")), "{refused}");
+    let bill = effects_bill(&plain, &Options::default(), &BillOptions::new(1e-2), &[Quantity::Force], None);
+    let later = Scene { visco: plain.visco.map(|visco| Visco { continues: true, ..visco }), ..plain };
+    let accuracy = solve_to_accuracy(&later, &Options::default(), &Accuracy::new(1e-2), None, None);
+    for refused in [bill.map(drop).unwrap_err(), accuracy.map(drop).unwrap_err()] {
+        assert!(matches!(&refused, Error::Unsupported(text) if text.contains("visco")), "{refused}");
+    }
 }

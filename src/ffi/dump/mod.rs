@@ -37,6 +37,9 @@ const FIRST_LINE: &str = "contact-normal dump 1";
 /// The state of the interface's particles, of a handle.
 const PARTICLES: [&str; 2] = ["handle.friction_coefficient", "handle.yield_limit"];
 
+/// The history of bodies that relax, of a handle.
+const HISTORY: &str = "handle.history";
+
 /// The name of the tangential coefficients of a handle.
 const TANGENTIAL_TABLES: [&str; 5] = [
     "handle.tangential_xx",
@@ -205,6 +208,9 @@ impl Image {
             let State { p, contact, .. } = solver.state();
             self.add_doubles("handle.pressure", p);
             self.add_integers("handle.contact", &mut contact.iter().map(|inside| i32::from(*inside)));
+        }
+        if let Some(history) = solver.history() {
+            self.add_doubles(HISTORY, &history);
         }
         if let Some(solution) = solver.tractions() {
             for (k, name) in ["handle.traction_x", "handle.traction_y"].into_iter().enumerate() {

@@ -5,8 +5,9 @@ use std::ptr::null_mut;
 
 use libc::c_void;
 
-use super::{Dump, PARTICLES, TANGENTIAL_ROW_TABLES, TANGENTIAL_TABLES};
+use super::{Dump, HISTORY, PARTICLES, TANGENTIAL_ROW_TABLES, TANGENTIAL_TABLES};
 use crate::ffi::arguments::within;
+use crate::ffi::solver::InUse;
 use crate::ffi::*;
 
 /// How a call ended that was made once more.
@@ -166,6 +167,11 @@ impl Dump {
             if options.active_set == CONTACT_NORMAL_ACTIVE_SET_FREE {
                 fields.contact = self.array("handle.contact")?;
             }
+        }
+        if let Some(history) = self.doubles(HISTORY) {
+            // SAFETY: a handle that was set up above.
+            let mut held = unsafe { InUse::begin(*handle) }.map_err(|_| "the handle is in use")?;
+            held.held().solver.take_history(&history).map_err(|error| error.to_string())?;
         }
         let mut ranges = self.ranges();
         ranges.extend([range(&fields), range(&options)]);

@@ -4,6 +4,9 @@
 //! 2. from a residual of [`SWITCH`] on Newton's method with the derivatives of the bounds ([`system`](super::system)); where it does not gain, a few
 //!    lagged steps come between.
 //!
+//! Where forces are given both steps are bordered by the creepages, and the iteration begins with the solution of Coulomb's law: the least
+//! creepage that carries them.
+//!
 //! The result lies on its circles, with a fresh product, and is certified twice: the conditions with bounds `g = |q|` that stand still, and
 //! `R_g = rms(|q| - g(slip))/rms g(0)` over C of what slips, by a march with the slips of that product.
 
@@ -56,6 +59,7 @@ pub struct Ended {
 /// The best tractions so far.
 struct Best {
     q: Vec<Vector>,
+    offset: Vector,
     worst: f64,
 }
 
@@ -64,18 +68,23 @@ pub fn solve(
     problem: &mut Problem,
     state: &mut State,
     (tangent, fields): (&mut Tangent, &mut Fields),
-    march: &mut March,
+    (march, forces): (&mut March, Forces),
     goal: Goal<'_>,
 ) -> Result<Ended> {
     let n = state.q.len();
     tangent.fit(n)?;
     problem.continue_residuals()?;
-    let mut best = Best { q: fields.take(n)?, worst: f64::INFINITY };
-    // Nothing has slipped yet.
-    tangent.side.fill(Side::Stick);
-    let outcome = iterate(problem, state, (tangent, fields), (march, &mut best), goal)?;
+    let mut best = Best { q: fields.take(n)?, offset: problem.offset, worst: f64::INFINITY };
+    if forces.any() {
+        tangent.predict(problem, state, 1.0 / compliance(problem));
+    } else {
+        // Nothing has slipped yet.
+        tangent.side.fill(Side::Stick);
+    }
+    let outcome = iterate(problem, state, (tangent, fields), (march, &mut best, forces), goal)?;
     if outcome != Outcome::Converged && best.worst.is_finite() {
         fields::map(&problem.threads().clone(), &mut state.q, |k, _| best.q[k]);
+        problem.offset = best.offset;
         problem.refresh_unclipped(state);
         lag(problem, state, tangent, march);
         tangent.predict(problem, state, 1.0 / compliance(problem));
@@ -90,7 +99,7 @@ fn iterate(
     problem: &mut Problem,
     state: &mut State,
     (tangent, fields): (&mut Tangent, &mut Fields),
-    (march, best): (&mut March, &mut Best),
+    (march, best, forces): (&mut March, &mut Best, Forces),
     goal: Goal<'_>,
 ) -> Result<Outcome> {
     let Goal { tolerance, limit, watch, .. } = goal;
@@ -103,13 +112,14 @@ fn iterate(
         lag(problem, state, tangent, march);
         let rho = rho_of((problem.rms_bound(), problem.rms_slip()), cap);
         let measures = tangent.predict(problem, state, rho);
-        let worst = worst(problem, state, tangent);
-        if !worst.is_finite() {
+        let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
+        let worst = worst(problem, state, tangent).max(missing);
+        if !worst.is_finite() || missing.is_nan() {
             return Ok(Outcome::Stagnated);
         }
         if worst < best.worst {
             fields::fill(problem.threads(), &mut best.q, |k| state.q[k]);
-            best.worst = worst;
+            (best.offset, best.worst) = (problem.offset, worst);
         }
         if worst < tolerance {
             if is_on_circles {
@@ -131,10 +141,10 @@ fn iterate(
         if is_newton {
             let rho = if hardens && march.law.fall.is_none() { rho } else { RHO / problem.operators.self_influence };
             resolve(problem, state, tangent, march, rho);
-            system::step(problem, state, (tangent, march), (rho, inner, most), fields)?;
+            system::step(problem, state, (tangent, march, forces), (rho, inner, most), fields)?;
         } else {
             let effort = Effort { inner, most, left: measures.residual, length: 1.0 };
-            step::step(problem, state, tangent, (Forces::NONE, effort), fields)?;
+            step::step(problem, state, tangent, (forces, effort), fields)?;
         }
         if !watch(worst) {
             return Ok(Outcome::Cancelled);
@@ -158,7 +168,7 @@ impl Course {
 }
 
 /// Bounds by the slips of what slipped in the last step.
-fn lag(problem: &mut Problem, state: &State, tangent: &Tangent, march: &mut March) {
+pub(super) fn lag(problem: &mut Problem, state: &State, tangent: &Tangent, march: &mut March) {
     let law = march.law;
     let mut bound = std::mem::take(&mut problem.bound);
     march.go(|k, place, had| {
@@ -172,7 +182,7 @@ fn lag(problem: &mut Problem, state: &State, tangent: &Tangent, march: &mut Marc
 }
 
 /// The larger of what is left of the slips and of the bounds: on slip the slip across q and `|q| - g`, on stick the slip.
-fn worst(problem: &Problem, state: &State, tangent: &Tangent) -> f64 {
+pub(super) fn worst(problem: &Problem, state: &State, tangent: &Tangent) -> f64 {
     let of = |k: usize| {
         let (q, g) = (state.q[k], problem.bound[k]);
         match tangent.side[k] {
@@ -197,7 +207,7 @@ fn worst(problem: &Problem, state: &State, tangent: &Tangent) -> f64 {
 }
 
 /// Elements that slip go onto their circles, those that stick stay inside; a fresh product.
-fn onto_circles(problem: &mut Problem, state: &mut State, tangent: &Tangent) {
+pub(super) fn onto_circles(problem: &mut Problem, state: &mut State, tangent: &Tangent) {
     let (bound, threads) = (&problem.bound, problem.threads().clone());
     fields::map(&threads, &mut state.q, |k, q| match tangent.side[k] {
         Side::Slip => {
@@ -249,7 +259,7 @@ fn resolve(problem: &mut Problem, state: &State, tangent: &mut Tangent, march: &
 }
 
 /// Bounds of what slips become what it carries; the larger residual of both certificates.
-fn freeze(problem: &mut Problem, state: &State, tangent: &Tangent, march: &mut March) -> f64 {
+pub(super) fn freeze(problem: &mut Problem, state: &State, tangent: &Tangent, march: &mut March) -> f64 {
     lag(problem, state, tangent, march);
     let of = |k: usize| match tangent.side[k] {
         Side::Slip => [(square(state.q[k]).sqrt() - problem.bound[k]).powi(2)],

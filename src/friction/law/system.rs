@@ -6,10 +6,16 @@
 //! slip along n: b0 (n.x - change of g by n.x - rho n.(B x)) = b0 n.x0               b0: an element's influence on itself
 //! ```
 //!
+//! where forces are given with `B x + c` in the place of B x, c the change of the creepages, and `sum x = F/(dx dy) - sum q`. The border is
+//! eliminated as without a law, by `Y_k`, the preconditioned column of c_k.
+//!
 //! Preconditioned on stick and along t as without a law, along n by `1/(b0 (1 - g_T (1 - rho b0)))`, g_T the own derivative of g by the traction.
 
-use super::super::plane::{dot, plus, Vector};
+use super::super::forces::{sum_of, Forces};
+use super::super::plane::{add, dot, plus, Vector};
 use super::super::problem::{Problem, State};
+use super::super::step::border_weight;
+use super::super::system::pseudo_inverse;
 use super::super::tangent::{project, Side, Tangent};
 use super::march::March;
 use crate::error::Result;
@@ -22,13 +28,61 @@ struct RadialSystem<'a> {
     tangent: &'a Tangent,
     march: &'a mut March,
     rho: f64,
+    forces: Forces,
+    /// Y of the forces that are given, and the inverse of their sums.
+    border: [Vec<Vector>; 2],
+    inverse: [Vector; 2],
     scratch: Vec<Vector>,
     along: Vec<Vector>,
 }
 
+/// Determinants below this part of the largest product are none.
+const SINGULAR: f64 = 1e-8;
+
+/// The inverse of what sums change by creepages. It is not symmetric where bounds are carried from element to element.
+fn inverse(matrix: [Vector; 2]) -> [Vector; 2] {
+    let [[a, b], [c, d]] = matrix;
+    let (determinant, largest) = (a * d - b * c, [a, b, c, d].into_iter().fold(0.0, |most: f64, m| most.max(m.abs())));
+    if determinant.abs() > SINGULAR * largest * largest {
+        return [[d / determinant, -b / determinant], [-c / determinant, a / determinant]];
+    }
+    pseudo_inverse(matrix)
+}
+
 impl RadialSystem<'_> {
+    /// Y and the sums of it.
+    fn set_border(&mut self, fields: &mut Fields) -> Result<()> {
+        let n = self.problem.bound.len();
+        let mut matrix = [[0.0; 2]; 2];
+        for (k, e) in [[1.0, 0.0], [0.0, 1.0]].into_iter().enumerate() {
+            if !self.forces.given[k] {
+                continue;
+            }
+            let (mut nothing, mut column, mut y) = (fields.take(n)?, fields.take(n)?, fields.take(n)?);
+            fields::fill(&self.problem.threads().clone(), &mut nothing, |_| [0.0; 2]);
+            self.apply((&nothing, e), &nothing, &mut column);
+            self.precondition(&column, &mut y);
+            [nothing, column].into_iter().for_each(|field| fields.give(field));
+            let sum = self.forces.only_given(sum_of(self.problem, &y));
+            (matrix[0][k], matrix[1][k]) = (sum[0], sum[1]);
+            self.border[k] = y;
+        }
+        self.inverse = inverse(matrix);
+        Ok(())
+    }
+
+    /// The creepages for what sums of z have too much; z without what these make.
+    fn balance(&self, too_much: Vector, z: &mut [Vector]) -> Vector {
+        let (rest, [upper, lower]) = (self.forces.only_given(too_much), self.inverse);
+        let by = self.forces.only_given([dot(upper, rest), dot(lower, rest)]);
+        let terms: Vec<(f64, &[Vector])> =
+            by.iter().zip(&self.border).filter(|(_, y)| !y.is_empty()).map(|(c, y)| (-c, &y[..])).collect();
+        fields::add_all(self.problem.threads(), z, &terms);
+        by
+    }
+
     fn precondition(&mut self, r: &[Vector], z: &mut [Vector]) {
-        let RadialSystem { problem, tangent, march, rho, scratch, along } = self;
+        let RadialSystem { problem, tangent, march, rho, scratch, along, .. } = self;
         let (b0, unit, threads) = (problem.operators.self_influence, problem.rms_bound(), problem.threads().clone());
         fields::fill(&threads, along, |k| tangent.project_inside(k, r[k]));
         tangent.precondition(problem, along, unit, scratch, z);
@@ -41,17 +95,18 @@ impl RadialSystem<'_> {
         });
     }
 
-    fn apply(&mut self, z: &[Vector], product: &[Vector], h: &mut [Vector]) {
+    fn apply(&mut self, (z, border): (&[Vector], Vector), product: &[Vector], h: &mut [Vector]) {
         let RadialSystem { problem, tangent, march, rho, .. } = self;
         let b0 = problem.operators.self_influence;
-        let traction = |k: usize| dot(tangent.normal[k], z[k]) - *rho * dot(tangent.normal[k], product[k]);
+        let moved = |k: usize| add(product[k], problem.weighted(k, border));
+        let traction = |k: usize| dot(tangent.normal[k], z[k]) - *rho * dot(tangent.normal[k], moved(k));
         march.change(traction, |k, bound| {
             h[k] = match tangent.side[k] {
                 Side::Outside => [0.0; 2],
-                Side::Stick => product[k],
+                Side::Stick => moved(k),
                 Side::Slip => {
                     let n = tangent.normal[k];
-                    let across = project(n, plus(product[k], tangent.curvature[k], z[k]));
+                    let across = project(n, plus(moved(k), tangent.curvature[k], z[k]));
                     plus(across, b0 * (dot(n, z[k]) - bound), n)
                 }
             };
@@ -64,11 +119,15 @@ impl System for RadialSystem<'_> {
         let n = v.field.len();
         let (mut z, mut product, mut h) = (fields.take(n)?, fields.take(n)?, fields.take(n)?);
         self.precondition(&v.field, &mut z);
+        let (mut creepages, mut sum) = ([0.0; 2], [0.0; 2]);
+        if self.forces.any() {
+            creepages = self.balance(plus(sum_of(self.problem, &z), -1.0, v.border), &mut z);
+            sum = self.forces.only_given(sum_of(self.problem, &z));
+        }
         let unit = self.problem.rms_bound();
         self.problem.operators.multiply_fast(&z, unit, &mut product);
-        self.apply(&z, &product, &mut h);
-        let border = [0.0; 2];
-        Ok((Direction { z: Bordered { field: z, border }, product }, Bordered { field: h, border }))
+        self.apply((&z, creepages), &product, &mut h);
+        Ok((Direction { z: Bordered { field: z, border: creepages }, product }, Bordered { field: h, border: sum }))
     }
 }
 
@@ -76,7 +135,7 @@ impl System for RadialSystem<'_> {
 pub fn step(
     problem: &mut Problem,
     state: &mut State,
-    (tangent, march): (&Tangent, &mut March),
+    (tangent, march, forces): (&Tangent, &mut March, Forces),
     (rho, inner, most): (f64, f64, usize),
     fields: &mut Fields,
 ) -> Result<()> {
@@ -96,13 +155,21 @@ pub fn step(
             }
         }
     });
-    let target = inner * fields::dot(&threads, &r, &r).sqrt();
+    let (weight, mut missing) = (border_weight(problem, state, forces), [0.0; 2]);
+    if forces.any() {
+        missing = forces.only_given(plus(forces.sum, -1.0, sum_of(problem, &state.q)));
+    }
+    let target = inner * (fields::dot(&threads, &r, &r) + weight * dot(missing, missing)).sqrt();
     let (scratch, along) = (fields.take(n)?, fields.take(n)?);
-    let mut system = RadialSystem { problem, tangent, march, rho, scratch, along };
-    let r = Bordered { field: r, border: [0.0; 2] };
-    let found = fgmres::solve(&mut system, r, (Until { target, most }, 0.0), &threads, fields)?;
-    let RadialSystem { scratch, along, .. } = system;
-    [scratch, along].into_iter().for_each(|field| fields.give(field));
+    let (border, inverse) = ([Vec::new(), Vec::new()], [[0.0; 2]; 2]);
+    let mut system = RadialSystem { problem, tangent, march, rho, forces, border, inverse, scratch, along };
+    if forces.any() {
+        system.set_border(fields)?;
+    }
+    let r = Bordered { field: r, border: missing };
+    let found = fgmres::solve(&mut system, r, (Until { target, most }, weight), &threads, fields)?;
+    let RadialSystem { scratch, along, border: [x, y], .. } = system;
+    [scratch, along, x, y].into_iter().filter(|field| !field.is_empty()).for_each(|field| fields.give(field));
     let (mut gained, mut product) = (Bordered { field: fields.take(n)?, border: [0.0; 2] }, fields.take(n)?);
     fields::fill(&threads, &mut gained.field, |_| [0.0; 2]);
     fields::fill(&threads, &mut product, |_| [0.0; 2]);
@@ -110,6 +177,7 @@ pub fn step(
     problem.update = problem.rms_of(fields::dot(&threads, &gained.field, &gained.field));
     fields::add_all(&threads, &mut state.q, &[(1.0, &gained.field)]);
     fields::add_all(&threads, &mut state.u, &[(1.0, &product)]);
+    problem.offset = add(problem.offset, forces.only_given(gained.border));
     fields.give(gained.field);
     fields.give(product);
     state.is_exact = false;

@@ -27,6 +27,8 @@ pub enum Obstacle {
     Memory,
     /// It takes longer than `max_seconds`.
     Time,
+    /// Bodies relax, and the length of the step alone leaves more than the error that is wanted.
+    Step,
 }
 
 /// The price of one accuracy.
@@ -48,6 +50,8 @@ pub struct Price {
     pub bytes: u64,
     /// Why it cannot be had; none where it can.
     pub obstacle: Option<Obstacle>,
+    /// Of bodies that relax: the relative error that the length of the step leaves on any grid, beside `error`; 0: none relaxes.
+    pub time_error: f64,
 }
 
 /// Seconds of one thread on a grid of so many elements, from the sample that promises the least: others were disturbed, or so small
@@ -107,6 +111,7 @@ pub(super) fn price(
         seconds_one_thread: -1.0,
         bytes: 0,
         obstacle: Some(Obstacle::Singular),
+        time_error: samples.last().map_or(0.0, |last| last.time_error),
     };
     if target < ROUND_OFF {
         return Price { obstacle: Some(Obstacle::RoundOff), ..nothing };
@@ -124,6 +129,7 @@ pub(super) fn price(
         (grid.len() as u64 > most, Obstacle::Elements),
         (accuracy.max_bytes > 0 && bytes > accuracy.max_bytes as f64, Obstacle::Memory),
         (accuracy.is_late(seconds / speed_up), Obstacle::Time),
+        (last.time_error > target, Obstacle::Step),
     ];
     let obstacle = obstacles.into_iter().find(|(is_in_the_way, _)| *is_in_the_way).map(|(_, obstacle)| obstacle);
     Price {

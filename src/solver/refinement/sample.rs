@@ -34,6 +34,8 @@ pub(super) struct Sample {
     outlook: Outlook,
     quantity: Quantity,
     pub(super) bytes: f64,
+    /// How far a step of bodies that relax may be off by its length, relative; 0: none relaxes.
+    pub(super) time_error: f64,
     /// Until the residual was first at most that: seconds since the start of the surface.
     pub(super) reached: Vec<(f64, f64)>,
     pub(super) seconds: f64,
@@ -100,6 +102,7 @@ impl Sample {
             outlook,
             quantity,
             bytes: report.bytes as f64,
+            time_error: report.visco.map_or(0.0, |step| step.time_error),
             reached,
             seconds,
             setup: report.setup_seconds,

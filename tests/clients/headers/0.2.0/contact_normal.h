@@ -237,6 +237,16 @@
 #define CONTACT_NORMAL_KIND_FLASH 27
 
 /*
+ `kind`: `contact_normal_wear`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_WEAR 28
+
+/*
+ `kind`: `contact_normal_worn`. Since 0.2.
+ */
+#define CONTACT_NORMAL_KIND_WORN 29
+
+/*
  `load`: that one of `approach` and `force` is given which is set; both or none is refused.
  */
 #define CONTACT_NORMAL_PRESCRIBED_UNSET 0
@@ -295,6 +305,21 @@
  `law`: parts fall as `2^(-v/h)`.
  */
 #define CONTACT_NORMAL_FRICTION_LAW_EXPONENTIAL 3
+
+/*
+ `friction->branch`: the solution near the start of the iteration.
+ */
+#define CONTACT_NORMAL_FRICTION_BRANCH_NEAR 0
+
+/*
+ `friction->branch`: that to which bounds without slip lead.
+ */
+#define CONTACT_NORMAL_FRICTION_BRANCH_LOW 1
+
+/*
+ `friction->branch`: that to which bounds of any speed lead.
+ */
+#define CONTACT_NORMAL_FRICTION_BRANCH_HIGH 2
 
 /*
  `fields->stick_slip`: the element is not in contact.
@@ -626,6 +651,11 @@
  `obstacle`: it takes longer than `accuracy->max_seconds`.
  */
 #define CONTACT_NORMAL_OBSTACLE_TIME 5
+
+/*
+ `obstacle`: bodies relax, and the length of the step alone leaves more than `target`: `time_error` says how much.
+ */
+#define CONTACT_NORMAL_OBSTACLE_STEP 6
 
 /*
  `lack`: nothing is missing.
@@ -1055,8 +1085,7 @@ typedef struct contact_normal_friction {
   /*
    How mu falls with the slip velocity v: CONTACT_NORMAL_FRICTION_LAW_...; default COULOMB: not at all, and what goes with it is not
    read. mu(v) is the coefficient times `(kinetic + falling[0] f(v) + falling[1] f(v))/(kinetic + falling[0] + falling[1])`, so that
-   `coefficient` is that at rest. Creepages must be given in both directions, bodies be alike, and `sensitivities` be 0 (UNSUPPORTED
-   otherwise). See docs/laws.md.
+   `coefficient` is that at rest. Bodies must be alike, and `sensitivities` be 0 (UNSUPPORTED otherwise). See docs/laws.md.
    */
   int32_t law;
   /*
@@ -1098,7 +1127,7 @@ typedef struct contact_normal_friction {
   double yield_limit;
   /*
    What the limit gains by a length of plastic slip, a traction per length; < 0: it softens. Default 0: ideal plastic. Otherwise
-   creepages, bodies and `sensitivities` as with a `law`.
+   bodies and `sensitivities` as with a `law`.
    */
   double hardening;
   /*
@@ -1110,6 +1139,15 @@ typedef struct contact_normal_friction {
    And their yield limits; default NULL: `yield_limit`.
    */
   const double *previous_yield_limit;
+  /*
+   Which solution, of a law or a layer that hardens or softens: CONTACT_NORMAL_FRICTION_BRANCH_...; default NEAR. Others take several times as many
+   products, and creepages in both directions (UNSUPPORTED otherwise).
+   */
+  int32_t branch;
+  /*
+   Must be 0.
+   */
+  int32_t reserved_for_branch;
 } contact_normal_friction;
 
 /*
@@ -2244,6 +2282,11 @@ typedef struct contact_normal_price {
    0.
    */
   int32_t reserved;
+  /*
+   Of bodies that relax: the relative error that the length of the step leaves on any grid, beside `error`; it falls with the square of the
+   step. 0: none relaxes.
+   */
+  double time_error;
 } contact_normal_price;
 
 /*
@@ -2547,6 +2590,95 @@ typedef struct contact_normal_flash {
 } contact_normal_flash;
 
 /*
+ Tractions and slips of a solve with friction, and how easily the surfaces wear: depth = K/H times the frictional work, or K/H p |s|.
+ */
+typedef struct contact_normal_wear {
+  /*
+   Set by `contact_normal_wear_init`.
+   */
+  int64_t struct_size;
+  /*
+   Elements in x. Default 0: to be set.
+   */
+  int32_t mx;
+  /*
+   Elements in y. Default 0: to be set.
+   */
+  int32_t my;
+  /*
+   Length of an element in x. Default 0: to be set.
+   */
+  double dx;
+  /*
+   In y. Default 0: to be set.
+   */
+  double dy;
+  /*
+   Tractions q on body 1, in x and y, `[my][mx]` each, as `fields->traction` has them. Default NULL: to be set.
+   */
+  const double *traction[2];
+  /*
+   The slip s of a step, in x and y, a length, as `fields->slip` has it. Default NULL: to be set.
+   */
+  const double *slip[2];
+  /*
+   Pressures, `[my][mx]`: the depth is K/H p |s| (Archard 1953). NULL (default): K/H times the frictional work.
+   */
+  const double *pressure;
+  /*
+   K, the wear coefficient, a number. Default 0: nothing wears, and only the work is computed.
+   */
+  double coefficient;
+  /*
+   K of each element, `[my][mx]`, in the place of `coefficient`. Default NULL: the same everywhere.
+   */
+  const double *coefficients;
+  /*
+   H, the hardness, a pressure. Default 1: the coefficient is K/H, a volume per energy.
+   */
+  double hardness;
+  /*
+   How many steps `work` and `depth` are those of, any number of 0 or more: L/dq for a length L that is rolled by steps of dq; V/dq makes the work a power.
+   Default 1.
+   */
+  double steps;
+  /*
+   dq, the length of a step that rolls along x, as `friction->rolling_distance` has it (there 0 is dx); needed for `passage` only. Default 0: not set.
+   */
+  double rolling_distance;
+} contact_normal_wear;
+
+/*
+ What `contact_normal_frictional_wear` found.
+ */
+typedef struct contact_normal_worn {
+  /*
+   Set by `contact_normal_worn_init`.
+   */
+  int64_t struct_size;
+  /*
+   The frictional work of all elements, an energy.
+   */
+  double work;
+  /*
+   The material that wears off, a volume.
+   */
+  double volume;
+  /*
+   The largest depth, a length.
+   */
+  double largest_depth;
+  /*
+   Where that is in x, from the middle of the grid.
+   */
+  double x;
+  /*
+   And in y.
+   */
+  double y;
+} contact_normal_worn;
+
+/*
  Called with a level, a message (valid during the call) and the user pointer; on the thread that called the library, in its
  floating-point environment, with no lock held. A handle that is solving refuses to be used.
  */
@@ -2782,7 +2914,8 @@ contact_normal_status contact_normal_solve_to_accuracy(const struct contact_norm
  the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit says which, and what it
  would take. With a surface the scene's undeformed distance is not read and may be NULL; without one small grids sample it,
  and finer ones than the scene's are refined from it, as `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface or
- `options->stop`; ITERATION_LIMIT: `options->max_seconds` was reached; rows hold what was known by then. UNSUPPORTED: own coefficients, or FIXED contact. Since 0.2.
+ `options->stop`; ITERATION_LIMIT: `options->max_seconds` was reached; rows hold what was known by then. UNSUPPORTED: own coefficients, FIXED contact,
+ or a step of bodies that relax which continues. Since 0.2.
  */
 contact_normal_status contact_normal_cost_of_accuracy(const struct contact_normal_scene *scene,
                                                       const struct contact_normal_options *options,
@@ -2853,6 +2986,22 @@ contact_normal_status contact_normal_influence_half_space(int32_t cx,
                                                           double *coefficients);
 
 /*
+ The influence coefficients of bodies that relax and roll steadily, without a change in time, as a table over offsets -cx..cx-1 by -cy..cy-1:
+ `coefficients[2 cy][2 cx]`, x fastest, as `contact_normal_influence` takes it. `shear_modulus` and `poisson_ratio`: two values each, the moduli those at
+ once; of `visco` the branches, moduli and times are read. `speed`: how fast the bodies roll towards +x; < 0: towards -x. The table is not even in x, so
+ it serves the normal problem. UNSUPPORTED: a body of whose modulus nothing is left in the end. Since 0.2.
+ */
+contact_normal_status contact_normal_influence_rolling(int32_t cx,
+                                                       int32_t cy,
+                                                       double dx,
+                                                       double dy,
+                                                       const double *shear_modulus,
+                                                       const double *poisson_ratio,
+                                                       const struct contact_normal_visco *visco,
+                                                       double speed,
+                                                       double *coefficients);
+
+/*
  Stresses in the half-space that is `body` 1 or 2 of a scene, at n depths below the centres of its elements: from pressures and tractions
  `[my][mx]`, constant on each element. NULL: none; one of them at least must be given. Tractions are those that act on this body, in +x
  and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, a `period` in both directions,
@@ -2898,6 +3047,19 @@ contact_normal_status contact_normal_flash_temperature(const struct contact_norm
                                                        struct contact_normal_flash *flash);
 
 /*
+ Frictional work and wear of each element, from what a solve with friction returned: a host takes `depth` off its surface, or adds it to the
+ undeformed distance. `work`, `depth`: `[my][mx]`, an energy per area and a length, of `steps` steps. `passage`: `[my]`, the depth that a point of
+ a surface which rolls along x loses while it passes through the contact once. `worn`: the sums. NULL: not wanted. The work of an element is
+ -(q . s), so that their sum is what the motion puts in less what is stored; where elements stick it is 0 to the tolerance, of either sign.
+ INVALID_ARGUMENT, NOT_FINITE: numbers out of their range. Since 0.2.
+ */
+contact_normal_status contact_normal_frictional_wear(const struct contact_normal_wear *wear,
+                                                     double *work,
+                                                     double *depth,
+                                                     double *passage,
+                                                     struct contact_normal_worn *worn);
+
+/*
  Sends log messages up to `level` (CONTACT_NORMAL_LOG_...) to `callback`; NULL: none, as at the start. For the whole process.
  UNSUPPORTED when a Rust host has set a logger of its own: it gets them. Since 0.1.
  */
@@ -2925,7 +3087,7 @@ contact_normal_status contact_normal_kept(int64_t *bytes, int32_t *threads);
 
 /*
  1 if this library has what is called so, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop"), a member of
- the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "yield_limit"), or what calls do ("batch", "accuracy", "price_list", "stress", "flash_temperature", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump",
+ the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "yield_limit"), or what calls do ("batch", "accuracy", "price_list", "stress", "flash_temperature", "frictional_wear", "influence_rolling", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump",
  "set_option", "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
  */
 int32_t contact_normal_has(const char *name);
@@ -3172,6 +3334,22 @@ static inline void contact_normal_heat_init(contact_normal_heat *heat)
 static inline void contact_normal_flash_init(contact_normal_flash *flash)
 {
   contact_normal_init(CONTACT_NORMAL_KIND_FLASH, flash, (int64_t)sizeof(contact_normal_flash));
+}
+
+/*
+ Fills a contact_normal_wear with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_wear_init(contact_normal_wear *wear)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_WEAR, wear, (int64_t)sizeof(contact_normal_wear));
+}
+
+/*
+ Fills a contact_normal_worn with its defaults, as the comments of its members say them. Since 0.2.
+ */
+static inline void contact_normal_worn_init(contact_normal_worn *worn)
+{
+  contact_normal_init(CONTACT_NORMAL_KIND_WORN, worn, (int64_t)sizeof(contact_normal_worn));
 }
 
 #endif  /* CONTACT_NORMAL_H */

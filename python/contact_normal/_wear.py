@@ -1,0 +1,120 @@
+"""Wear: frictional work and depth of wear of each element, from tractions and slips."""
+
+from __future__ import annotations
+
+import ctypes
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ._arguments import doubles, number, pointer
+from ._calls import called
+from ._library import check, initialised, library
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+
+class FrictionalWear(NamedTuple):
+    """What friction did.
+
+    Attributes
+    ----------
+    work : array, (my, mx)
+        Frictional work per area of each element, an energy per area.
+    depth : array, (my, mx)
+        The depth of wear of each element, a length.
+    passage : array, (my,), or None
+        What a point of a surface that rolls along x loses while it passes through the contact once; None without a rolling distance.
+    total_work : float
+        The work of all elements, an energy.
+    volume : float
+        The material that wears off.
+    largest_depth : float
+    at : (float, float)
+        Where the largest depth is, (x, y) from the middle of the grid.
+    """
+
+    work: npt.NDArray[np.float64]
+    depth: npt.NDArray[np.float64]
+    passage: npt.NDArray[np.float64] | None
+    total_work: float
+    volume: float
+    largest_depth: float
+    at: tuple[float, float]
+
+
+def frictional_wear(
+    traction: npt.ArrayLike,
+    slip: npt.ArrayLike,
+    dx: float,
+    dy: float,
+    *,
+    coefficient: float | npt.ArrayLike = 0.0,
+    hardness: float = 1.0,
+    pressure: npt.ArrayLike | None = None,
+    steps: float = 1.0,
+    rolling_distance: float | None = None,
+) -> FrictionalWear:
+    """Frictional work and depth of wear (Archard) of each element, from what a solve with friction returned.
+
+    The depth is K/H times the frictional work per area, which is -(q . s), or with pressures K/H p |s|.
+
+    Parameters
+    ----------
+    traction, slip : array_like, (2, my, mx)
+        Tractions on body 1, and slips of a step, as a result has them.
+    dx, dy : float
+        Element sizes.
+    coefficient : float or array_like, (my, mx)
+        K, the wear coefficient; by default nothing wears, and only the work is computed.
+    hardness : float
+        H, a pressure; with 1 (default) the coefficient is K/H, a volume per energy.
+    pressure : array_like, (my, mx), optional
+        Pressures: the depth is that of load times distance.
+    steps : float
+        How many steps `work` and `depth` are those of: L/dq for a length L that is rolled by steps of dq, V/dq for a power.
+    rolling_distance : float, optional
+        dq, the length of a step that rolls along x: then there are passages.
+
+    Returns
+    -------
+    FrictionalWear
+
+    Examples
+    --------
+    >>> import numpy as np, contact_normal
+    >>> traction, slip = np.zeros((2, 8, 8)), np.zeros((2, 8, 8))
+    >>> traction[0, 2:6, 2:6], slip[0, 2:6, 2:6] = 100.0, -0.01
+    >>> found = contact_normal.frictional_wear(traction, slip, 0.1, 0.1, coefficient=1e-4, hardness=2000.0)
+    >>> round(found.total_work, 12), round(found.largest_depth, 15)
+    (0.16, 5e-08)
+    """
+    shape = np.shape(traction)
+    if len(shape) != 3 or shape[0] != 2:
+        raise ValueError(f"traction has the shape {shape}; it must be (2, my, mx)")
+    q, s = doubles("traction", traction, shape, "(2, my, mx)"), doubles("slip", slip, shape, "(2, my, mx)")
+    wear, worn = initialised("wear"), initialised("worn")
+    (wear.my, wear.mx), elements = shape[1:], shape[1:]
+    wear.dx, wear.dy = number("dx", dx), number("dy", dy)
+    for k in range(2):
+        wear.traction[k], wear.slip[k] = pointer(q[k]), pointer(s[k])
+    keep = [q, s]
+    if np.ndim(coefficient) == 0:
+        wear.coefficient = number("coefficient", coefficient)
+    else:
+        keep.append(doubles("coefficient", coefficient, elements))
+        wear.coefficients = pointer(keep[-1])
+    if pressure is not None:
+        keep.append(doubles("pressure", pressure, elements))
+        wear.pressure = pointer(keep[-1])
+    wear.hardness, wear.steps = number("hardness", hardness), number("steps", steps)
+    passage = None
+    if rolling_distance is not None:
+        wear.rolling_distance = number("rolling_distance", rolling_distance)
+        passage = np.empty(elements[0])
+    work, depth = np.empty(elements), np.empty(elements)
+    outputs = (pointer(work), pointer(depth), None if passage is None else pointer(passage))
+    keep += [work, depth] if passage is None else [work, depth, passage]
+    check(*called(library.contact_normal_frictional_wear, ctypes.byref(wear), *outputs, ctypes.byref(worn), keep=tuple(keep)))
+    return FrictionalWear(work, depth, passage, worn.work, worn.volume, worn.largest_depth, (worn.x, worn.y))

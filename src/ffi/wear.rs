@@ -1,0 +1,154 @@
+//! `contact_normal_frictional_wear`.
+
+use super::arguments::{count, optional, required, Regions};
+use super::guard::guard;
+use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
+use super::structs::{self, versioned};
+use crate::effects::Coefficient;
+use crate::grid::Grid;
+use crate::wear::{frictional_wear, Wear, Worn};
+
+/// Tractions and slips of a solve with friction, and how easily the surfaces wear: depth = K/H times the frictional work, or K/H p |s|.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct contact_normal_wear {
+    /// Set by `contact_normal_wear_init`.
+    pub struct_size: i64,
+    /// Elements in x. Default 0: to be set.
+    pub mx: i32,
+    /// Elements in y. Default 0: to be set.
+    pub my: i32,
+    /// Length of an element in x. Default 0: to be set.
+    pub dx: f64,
+    /// In y. Default 0: to be set.
+    pub dy: f64,
+    /// Tractions q on body 1, in x and y, `[my][mx]` each, as `fields->traction` has them. Default NULL: to be set.
+    pub traction: [*const f64; 2],
+    /// The slip s of a step, in x and y, a length, as `fields->slip` has it. Default NULL: to be set.
+    pub slip: [*const f64; 2],
+    /// Pressures, `[my][mx]`: the depth is K/H p |s| (Archard 1953). NULL (default): K/H times the frictional work.
+    pub pressure: *const f64,
+    /// K, the wear coefficient, a number. Default 0: nothing wears, and only the work is computed.
+    pub coefficient: f64,
+    /// K of each element, `[my][mx]`, in the place of `coefficient`. Default NULL: the same everywhere.
+    pub coefficients: *const f64,
+    /// H, the hardness, a pressure. Default 1: the coefficient is K/H, a volume per energy.
+    pub hardness: f64,
+    /// How many steps `work` and `depth` are those of, any number of 0 or more: L/dq for a length L that is rolled by steps of dq; V/dq makes the work a power.
+    /// Default 1.
+    pub steps: f64,
+    /// dq, the length of a step that rolls along x, as `friction->rolling_distance` has it (there 0 is dx); needed for `passage` only. Default 0: not set.
+    pub rolling_distance: f64,
+}
+
+versioned! { contact_normal_wear, contact_normal_wear_init, 112, hardness: 1.0, steps: 1.0 }
+
+/// What `contact_normal_frictional_wear` found.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct contact_normal_worn {
+    /// Set by `contact_normal_worn_init`.
+    pub struct_size: i64,
+    /// The frictional work of all elements, an energy.
+    pub work: f64,
+    /// The material that wears off, a volume.
+    pub volume: f64,
+    /// The largest depth, a length.
+    pub largest_depth: f64,
+    /// Where that is in x, from the middle of the grid.
+    pub x: f64,
+    /// And in y.
+    pub y: f64,
+}
+
+versioned! { contact_normal_worn, contact_normal_worn_init, 48 }
+
+/// Where results go; NULL: not wanted.
+struct Wanted {
+    work: *mut f64,
+    depth: *mut f64,
+    passage: *mut f64,
+}
+
+impl Wanted {
+    fn regions(&self, given: &contact_normal_wear, grid: &Grid) -> Result<(), Refusal> {
+        let mut regions = Regions::default();
+        let n = grid.len();
+        regions.input("wear->traction[0]", given.traction[0], n)?;
+        regions.input("wear->traction[1]", given.traction[1], n)?;
+        regions.input("wear->slip[0]", given.slip[0], n)?;
+        regions.input("wear->slip[1]", given.slip[1], n)?;
+        regions.input("wear->pressure", given.pressure, n)?;
+        regions.input("wear->coefficients", given.coefficients, n)?;
+        regions.output("work", self.work, n)?;
+        regions.output("depth", self.depth, n)?;
+        regions.output("passage", self.passage, grid.my)?;
+        regions.check()?;
+        if !self.passage.is_null() && given.rolling_distance == 0.0 {
+            return Err(Refusal::invalid(
+                "wear->rolling_distance is 0; passages need the length of a step that rolls".to_owned(),
+            ));
+        }
+        Ok(())
+    }
+
+    unsafe fn write(&self, worn: &Worn) {
+        for (from, to) in [(&worn.work, self.work), (&worn.depth, self.depth), (&worn.passage, self.passage)] {
+            if !to.is_null() {
+                // SAFETY: one value per element, or per row, by the conventions of the ABI.
+                unsafe { std::ptr::copy_nonoverlapping(from.as_ptr(), to, from.len()) };
+            }
+        }
+    }
+}
+
+/// Frictional work and wear of each element, from what a solve with friction returned: a host takes `depth` off its surface, or adds it to the
+/// undeformed distance. `work`, `depth`: `[my][mx]`, an energy per area and a length, of `steps` steps. `passage`: `[my]`, the depth that a point of
+/// a surface which rolls along x loses while it passes through the contact once. `worn`: the sums. NULL: not wanted. The work of an element is
+/// -(q . s), so that their sum is what the motion puts in less what is stored; where elements stick it is 0 to the tolerance, of either sign.
+/// INVALID_ARGUMENT, NOT_FINITE: numbers out of their range. Since 0.2.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_frictional_wear(
+    wear: *const contact_normal_wear,
+    work: *mut f64,
+    depth: *mut f64,
+    passage: *mut f64,
+    worn: *mut contact_normal_worn,
+) -> contact_normal_status {
+    guard(|| {
+        // SAFETY (all): NULL or as the conventions of the ABI say.
+        unsafe {
+            let given = structs::read(wear, "wear")?;
+            let (mx, my) = (count("wear->mx", given.mx)?, count("wear->my", given.my)?);
+            let grid = Grid::new(mx, my, given.dx, given.dy)?;
+            let written = if worn.is_null() { None } else { Some(structs::read(worn.cast_const(), "worn")?) };
+            let wanted = Wanted { work, depth, passage };
+            wanted.regions(&given, &grid)?;
+            let n = grid.len();
+            let traction = [
+                required("wear->traction[0]", given.traction[0], n)?,
+                required("wear->traction[1]", given.traction[1], n)?,
+            ];
+            let slip = [required("wear->slip[0]", given.slip[0], n)?, required("wear->slip[1]", given.slip[1], n)?];
+            let own = optional(given.coefficients, n).map(Coefficient::PerElement);
+            let found = frictional_wear(&Wear {
+                grid,
+                traction,
+                slip,
+                pressure: optional(given.pressure, n),
+                coefficient: own.unwrap_or(Coefficient::Uniform(given.coefficient)),
+                hardness: given.hardness,
+                steps: given.steps,
+                rolling_distance: given.rolling_distance,
+            })?;
+            wanted.write(&found);
+            if let Some(mut value) = written {
+                (value.work, value.volume, value.largest_depth) = (found.total_work, found.volume, found.largest);
+                value.x = ((found.at % mx) as f64 - 0.5 * (mx as f64 - 1.0)) * grid.dx;
+                value.y = ((found.at / mx) as f64 - 0.5 * (my as f64 - 1.0)) * grid.dy;
+                structs::write(worn, &value)?;
+            }
+            Ok::<_, Refusal>(CONTACT_NORMAL_OK)
+        }
+    })
+}

@@ -1,0 +1,145 @@
+//! Several solutions of one step: those that CONTACT found from below and from above (its example veldep_fric; eve70a/CONTACT).
+
+use contact_normal::friction::{Report, Request, Solver};
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Branch, Fall, Friction, FrictionLaw, Motion, Prescribed, Previous};
+use contact_normal::solver::Outcome;
+
+use super::laws::{pressures, solver};
+
+const FORCE: f64 = 622_216.0;
+
+/// Of each case from the fourth on, all from above: `Fx/(.3 N)` and elements that stick.
+const PRINTED: [(f64, usize); 50] = [
+    (0.5702, 34),
+    (0.5739, 79),
+    (0.5774, 77),
+    (0.5806, 75),
+    (0.5835, 73),
+    (0.586, 71),
+    (0.5882, 69),
+    (0.5714, 36),
+    (0.5751, 79),
+    (0.5786, 77),
+    (0.5817, 75),
+    (0.5846, 73),
+    (0.5871, 71),
+    (0.571, 36),
+    (0.5747, 79),
+    (0.5781, 77),
+    (0.5813, 75),
+    (0.5841, 73),
+    (0.5866, 71),
+    (0.5698, 36),
+    (0.5735, 79),
+    (0.577, 77),
+    (0.5802, 75),
+    (0.583, 73),
+    (0.5855, 71),
+    (0.5691, 36),
+    (0.5729, 79),
+    (0.5763, 77),
+    (0.5795, 75),
+    (0.5823, 73),
+    (0.5848, 70),
+    (0.5673, 35),
+    (0.5711, 79),
+    (0.5745, 77),
+    (0.5777, 75),
+    (0.5805, 73),
+    (0.583, 71),
+    (0.5659, 35),
+    (0.5696, 79),
+    (0.5731, 77),
+    (0.5762, 75),
+    (0.5791, 73),
+    (0.5816, 71),
+    (0.5666, 36),
+    (0.5703, 79),
+    (0.5738, 77),
+    (0.5769, 75),
+    (0.5797, 73),
+    (0.5822, 70),
+    (0.5638, 35),
+];
+
+/// A cylinder on 92 x 1 elements, friction that falls from .3 to .18 at once.
+struct Cylinder {
+    grid: Grid,
+    pressure: Vec<f64>,
+}
+
+impl Cylinder {
+    fn new() -> Cylinder {
+        let (mx, dx) = (92, 0.1);
+        let grid = Grid::new(mx, 1, dx, 200.0).unwrap();
+        let of = |i: usize| -4.6 + i as f64 * dx;
+        let h: Vec<f64> = (0..mx).map(of).map(|x| 460.0 - (460.0f64.powi(2) - x * x).sqrt()).collect();
+        Cylinder { grid, pressure: pressures(grid, &h, FORCE) }
+    }
+
+    fn step(&self, solver: &mut Solver, (motion, xi): (Motion, f64), branch: Branch) -> Report {
+        let friction = Friction {
+            motion,
+            prescribed: [Prescribed::Creepage(xi), Prescribed::Creepage(0.0)],
+            previous: if motion == Motion::SteadyRolling { Previous::None } else { Previous::Kept },
+            law: Some(FrictionLaw::new(Fall::Exponential, (0.18, 0.12), 100.0, 45_000.0)),
+            branch,
+            ..Friction::new(0.3)
+        };
+        let request = Request::new(&self.pressure, &friction, 1e-7);
+        let (end, report) = solver.solve(&request, &mut |_, _| true).unwrap();
+        assert_eq!(end, Outcome::Converged, "{branch:?} {report:?}");
+        report
+    }
+
+    /// From steady rolling, which has one solution from wherever it starts.
+    fn rolling(&self, branch: Branch) -> Solver {
+        let mut solver = solver(&self.grid);
+        let report = self.step(&mut solver, (Motion::SteadyRolling, -0.0009999), branch);
+        assert!((part(&report) - 0.5941).abs() <= 1e-4 && report.certificate.stick_count == 45, "{report:?}");
+        solver
+    }
+}
+
+fn part(report: &Report) -> f64 {
+    report.force[0] / (0.3 * FORCE)
+}
+
+const STEP: (Motion, f64) = (Motion::TransientRolling, -0.001);
+
+#[test]
+fn a_step_has_the_solutions_from_below_and_from_above() {
+    let cylinder = Cylinder::new();
+    for (branch, force, sticks) in [(Branch::Low, 0.5977, 77), (Branch::High, 0.5702, 34)] {
+        let report = cylinder.step(&mut cylinder.rolling(branch), STEP, branch);
+        println!("{branch:?} {} {} products {}", part(&report), report.certificate.stick_count, report.products);
+        assert!((part(&report) - force).abs() <= 1.01e-4, "{report:?}");
+        assert_eq!(report.certificate.stick_count, sticks);
+    }
+}
+
+/// 50 steps from above, a sawtooth of stick and slip: as printed, but for the elements that stick in one step, where one is at its bound.
+#[test]
+fn stick_and_slip_in_turns_is_that_of_contact() {
+    let cylinder = Cylinder::new();
+    let mut solver = cylinder.rolling(Branch::Near);
+    let (mut other, mut products) = (0, 0.0);
+    for (k, (force, sticks)) in PRINTED.into_iter().enumerate() {
+        let report = cylinder.step(&mut solver, STEP, Branch::High);
+        products += report.products;
+        println!(
+            "{} {:.4} ({force}) {} ({sticks}) {}",
+            k + 4,
+            part(&report),
+            report.certificate.stick_count,
+            report.products
+        );
+        // The digits printed; CONTACT ends at changes of 1e-3.
+        assert!((part(&report) - force).abs() <= 1.01e-4, "case {}: {} {force}", k + 4, part(&report));
+        assert!(report.certificate.stick_count.abs_diff(sticks) <= 1, "case {}", k + 4);
+        other += usize::from(report.certificate.stick_count != sticks);
+    }
+    println!("products {products}");
+    assert!(other <= 1, "{other}");
+}

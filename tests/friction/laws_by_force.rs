@@ -1,0 +1,117 @@
+//! Laws of friction with tangential forces that are given: what creepages make of forces comes back.
+
+use contact_normal::friction::{Report, Request, Solution};
+use contact_normal::scene::{Coefficient, Friction, FrictionLaw, Motion, PlasticLayer, Prescribed, Previous};
+use contact_normal::solver::Outcome;
+
+use super::laws::{left, solver, Wheel, FORCE, RUNNING};
+
+const TOLERANCE: f64 = 1e-7;
+
+fn by_force(friction: &Friction<'static>, force: [f64; 2]) -> Friction<'static> {
+    Friction { prescribed: force.map(Prescribed::Force), ..*friction }
+}
+
+/// The force of a creepage, and what that force gives back.
+fn there_and_back(wheel: &Wheel, friction: &Friction<'static>) -> [(Report, Solution); 2] {
+    let (end, report, solution) = wheel.ended(friction, TOLERANCE);
+    assert_eq!(end, Outcome::Converged, "{friction:?} {report:?}");
+    let (end, back, found) = wheel.ended(&by_force(friction, report.force), TOLERANCE);
+    assert_eq!(end, Outcome::Converged, "{friction:?} {back:?}");
+    assert!(back.missing <= TOLERANCE, "{back:?}");
+    [(report, solution), (back, found)]
+}
+
+/// Creepages differ by what the tolerance leaves, of residuals relative to the rigid slip and of forces relative to mu N, times how much
+/// creepage a force takes: below 30 times `creepage/(force/(mu N))` up to 1.2 % of creepage.
+#[test]
+fn forces_below_the_maximum_give_the_creepages_back() {
+    let wheel = Wheel::new(1);
+    for law in [RUNNING, FrictionLaw { memory_distance: 0.0, ..RUNNING }] {
+        for (xi, spin) in [(0.001, 0.0), (0.004, 0.0), (0.008, 0.0), (0.011, 0.0), (0.003, 4e-4)] {
+            let friction = wheel.friction(xi, spin, Some(law));
+            let [(report, solution), (back, found)] = there_and_back(&wheel, &friction);
+            let (count, again) = (report.certificate.stick_count, back.certificate.stick_count);
+            println!("{xi} {spin} {:?} {count} {again} products {} {}", back.creepage, report.products, back.products);
+            for (creepage, exact) in back.creepage.into_iter().zip([xi, 0.0]) {
+                assert!(
+                    (creepage - exact).abs() <= 30.0 * TOLERANCE * xi.max(0.004),
+                    "{xi} {spin}: {:?}",
+                    back.creepage
+                );
+            }
+            assert_eq!(count, again);
+            let largest = solution.traction.iter().map(|q| q[0].hypot(q[1])).fold(0.0, f64::max);
+            for (q, other) in solution.traction.iter().zip(&found.traction) {
+                assert!((q[0] - other[0]).hypot(q[1] - other[1]) <= 1e-4 * largest);
+            }
+            let as_found = Friction { prescribed: back.creepage.map(Prescribed::Creepage), ..friction };
+            let [slip, bound, displaced] = left(&wheel, &as_found, &found);
+            // By forces the slip is compared with the displacements, too.
+            let tolerance = 1.01 * TOLERANCE;
+            assert!(slip <= tolerance * displaced.max(1.0) && bound <= tolerance, "{slip} {bound} {displaced}");
+            assert!(back.products <= 2.5 * report.products, "{} {}", back.products, report.products);
+        }
+    }
+}
+
+/// Of the two creepages that carry a force below the maximum the smaller one is found; a force above it is carried by none.
+#[test]
+fn the_smaller_creepage_is_found_and_a_force_above_the_maximum_is_none() {
+    let wheel = Wheel::new(1);
+    let (_, falling, _) = wheel.ended(&wheel.friction(0.05, 0.0, Some(RUNNING)), TOLERANCE);
+    let (end, report, _) = wheel.ended(&by_force(&wheel.friction(0.0, 0.0, Some(RUNNING)), falling.force), TOLERANCE);
+    assert_eq!(end, Outcome::Converged);
+    // The printed curve: .8652 at .008, .8622 at .05.
+    assert!((0.0075..0.008).contains(&report.creepage[0]), "{:?}", report.creepage);
+    // The printed maximum is .9445.
+    let above = by_force(&wheel.friction(0.0, 0.0, Some(RUNNING)), [-0.96 * 0.33 * FORCE, 0.0]);
+    let (end, ..) = wheel.ended(&above, TOLERANCE);
+    assert!(matches!(end, Outcome::Stagnated | Outcome::IterationLimit), "{end:?}");
+}
+
+/// Steps of transient rolling and shifts, and a layer that hardens.
+#[test]
+fn steps_by_force_give_the_creepages_back() {
+    let wheel = Wheel::new(1);
+    let law = FrictionLaw { memory_distance: 0.02, time_step: 0.289e-4, ..RUNNING };
+    let hard = Some(PlasticLayer { yield_limit: 120.0, hardening: 1e4 });
+    let rolls = Friction { motion: Motion::TransientRolling, ..wheel.friction(0.004, 0.0, Some(law)) };
+    let shifts = Friction { motion: Motion::Shift, ..wheel.friction(0.02, 0.0, Some(law)) };
+    let hardens = Friction { law: None, layer: hard, ..wheel.friction(0.004, 0.0, None) };
+    for (friction, steps) in [(rolls, 3), (shifts, 2), (hardens, 1)] {
+        let (mut of_creepage, mut of_force) = (solver(&wheel.grid), solver(&wheel.grid));
+        let mut creepage = friction.prescribed;
+        for step in 0..steps {
+            let previous = if step > 0 { Previous::Kept } else { Previous::None };
+            let moved = Friction { prescribed: creepage, previous, ..friction };
+            let request = Request::new(&wheel.pressure, &moved, TOLERANCE);
+            let (end, report) = of_creepage.solve(&request, &mut |_, _| true).unwrap();
+            assert_eq!(end, Outcome::Converged, "{moved:?}");
+            let given = by_force(&moved, report.force);
+            let request = Request::new(&wheel.pressure, &given, TOLERANCE);
+            let (end, back) = of_force.solve(&request, &mut |_, _| true).unwrap();
+            assert_eq!(end, Outcome::Converged, "{given:?} {back:?}");
+            let Prescribed::Creepage(exact) = creepage[0] else { panic!("creepages") };
+            println!("{step} {exact} {:?} products {} {}", back.creepage, report.products, back.products);
+            assert!((back.creepage[0] / exact - 1.0).abs() <= 1e-5, "{exact} {:?}", back.creepage);
+            assert!(back.creepage[1].abs() <= 1e-5 * exact);
+            assert_eq!(report.certificate.slip_count, back.certificate.slip_count);
+            creepage[0] = Prescribed::Creepage(0.8 * exact);
+        }
+    }
+}
+
+#[test]
+fn one_force_may_be_given_beside_a_creepage() {
+    let wheel = Wheel::new(1);
+    let friction = wheel.friction(0.003, 8e-4, Some(RUNNING));
+    let (_, report, _) = wheel.ended(&friction, TOLERANCE);
+    let mixed = Friction { prescribed: [Prescribed::Creepage(0.003), Prescribed::Force(report.force[1])], ..friction };
+    let (end, back, _) = wheel.ended(&mixed, TOLERANCE);
+    assert_eq!(end, Outcome::Converged);
+    assert!(
+        (back.force[0] / report.force[0] - 1.0).abs() <= 1e-5 && back.creepage[1].abs() <= 30.0 * TOLERANCE * 0.004
+    );
+    assert_eq!(mixed.coefficient, Coefficient::Uniform(0.33));
+}

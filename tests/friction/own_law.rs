@@ -1,0 +1,81 @@
+//! A law of the host's own: coefficients of each element that it changes between solves of one handle.
+
+use contact_normal::friction::{Request, Solution};
+use contact_normal::scene::{Coefficient, Friction, FrictionLaw, Motion, Prescribed, Previous};
+use contact_normal::solver::Outcome;
+
+use super::laws::{solver, Wheel, RUNNING};
+
+/// The law of the host: mu of the slip velocity, without memory.
+const LAW: FrictionLaw = FrictionLaw { memory_distance: 0.0, ..RUNNING };
+
+fn coefficients(wheel: &Wheel, found: &Solution) -> Vec<f64> {
+    let duration = wheel.grid.dx / LAW.speed;
+    let slips = found.slip.iter().zip(&found.stick_slip);
+    slips.map(|(s, is)| 0.33 * LAW.at(if *is == 2 { s[0].hypot(s[1]) / duration } else { 0.0 }).0).collect()
+}
+
+/// Steady rolling: solves with the coefficients of the last slips lead to what the library's own law gives, and each takes as many products as
+/// with one coefficient.
+#[test]
+fn turns_with_a_law_of_the_host_lead_to_the_librarys() {
+    let wheel = Wheel::new(1);
+    for xi in [0.004, 0.01] {
+        let (end, known, _) = wheel.ended(&wheel.friction(xi, 0.0, Some(LAW)), 1e-8);
+        assert_eq!(end, Outcome::Converged);
+        let one = wheel.ended(&wheel.friction(xi, 0.0, None), 1e-6);
+        let mut handle = solver(&wheel.grid);
+        let mut mu = vec![0.33; wheel.grid.len()];
+        let mut force = f64::NAN;
+        for turn in 0..40 {
+            let plain = wheel.friction(xi, 0.0, None);
+            let previous = if turn > 0 { Previous::Kept } else { Previous::None };
+            let friction = Friction { coefficient: Coefficient::PerElement(&mu), previous, ..plain };
+            let (end, report) =
+                handle.solve(&Request::new(&wheel.pressure, &friction, 1e-6), &mut |_, _| true).unwrap();
+            assert_eq!(end, Outcome::Converged);
+            // The first is cold; others start from the last tractions.
+            assert!(report.products <= one.1.products + 1.0, "{turn}: {} {}", report.products, one.1.products);
+            force = report.force[0];
+            mu = coefficients(&wheel, handle.solution().unwrap());
+        }
+        println!("{xi} {force} {:?}", known.force);
+        // Turns end where the tolerance of 1e-6 lets them; the factor from turn to turn is below 1/2.
+        assert!((force / known.force[0] - 1.0).abs() <= 1e-5, "{force} {:?}", known.force);
+    }
+}
+
+/// Transient rolling with other coefficients in each step: as many products as with one, and what the last step had is kept.
+#[test]
+fn steps_with_coefficients_of_each_step_take_as_many_products_as_with_one() {
+    let wheel = Wheel::new(1);
+    let products = |own: bool| {
+        let mut handle = solver(&wheel.grid);
+        let mut mu = vec![0.33; wheel.grid.len()];
+        let mut products = 0.0;
+        for step in 0..30 {
+            let friction = Friction {
+                motion: Motion::TransientRolling,
+                prescribed: [Prescribed::Creepage(0.006), Prescribed::Creepage(0.0)],
+                previous: if step > 0 { Previous::Kept } else { Previous::None },
+                coefficient: if own { Coefficient::PerElement(&mu) } else { Coefficient::Uniform(0.33) },
+                ..wheel.friction(0.006, 0.0, None)
+            };
+            let (end, report) =
+                handle.solve(&Request::new(&wheel.pressure, &friction, 1e-6), &mut |_, _| true).unwrap();
+            assert_eq!(end, Outcome::Converged);
+            products += report.products;
+            let found = handle.solution().unwrap();
+            if own {
+                for (i, q) in found.traction.iter().enumerate() {
+                    assert!(q[0].hypot(q[1]) <= mu[i] * wheel.pressure[i]);
+                }
+                mu = coefficients(&wheel, found);
+            }
+        }
+        products
+    };
+    let [own, one] = [products(true), products(false)];
+    println!("{own} {one}");
+    assert!(own <= 1.15 * one, "{own} {one}");
+}
