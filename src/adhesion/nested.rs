@@ -36,6 +36,7 @@ pub fn solve(
             end => Ok(Ended { end, measured, descended: true }),
         };
     }
+    levels[last].fields = std::mem::take(&mut levels[0].fields);
     for l in (1..=last).rev() {
         monitor.enter_grid();
         let coarse = coarse_goal(levels, l, goal);
@@ -44,7 +45,7 @@ pub fn solve(
             break;
         }
         let (fine, coarse) = levels.split_at_mut(l);
-        prolong(&coarse[0], &mut fine[l - 1])?;
+        prolong(&mut coarse[0], &mut fine[l - 1])?;
         fine[l - 1].count_products(monitor);
     }
     monitor.enter_grid();
