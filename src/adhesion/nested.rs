@@ -5,7 +5,7 @@ use super::levels::prolong;
 use super::majorise::{descend, Descent, Steps};
 use super::newton::{End, Goal};
 use super::request::Start;
-use super::robust::{self, Ended};
+use super::robust::{self, Ended, BETWEEN};
 use crate::error::Result;
 use crate::progress::Monitor;
 
@@ -79,6 +79,14 @@ fn one(
         let (end, measured) = descend(level, goal, steps, monitor)?;
         if matches!(end, Descent::By(End::Interrupted)) {
             return Ok(Ended { end, measured, descended: false });
+        }
+        if end == Descent::Parted {
+            // Without attraction nothing carries a force of 0. With it descent, from no pressures, is far cheaper than Newton's method.
+            let steps = Steps { most: BETWEEN, from_none: false, make };
+            let (end, measured) = descend(level, goal, steps, monitor)?;
+            if end != Descent::By(End::Failed) {
+                return Ok(Ended { end, measured, descended: true });
+            }
         }
     }
     robust::solve(level, goal, (false, make), monitor)

@@ -10,7 +10,7 @@ use crate::progress::Monitor;
 /// Times that Newton's method is tried.
 const ROUNDS: u32 = 12;
 /// Steps of descent between.
-const BETWEEN: u64 = 5;
+pub const BETWEEN: u64 = 5;
 /// An energy of more by this part is uphill.
 const UPHILL: f64 = 1e-6;
 
