@@ -49,13 +49,10 @@ impl Solver {
         let unloaded = Goal { wanted: Some(0.0), ..goal };
         let ended = nested::solve(&mut self.levels, unloaded, (start, make), monitor)?;
         if ended.is_in_contact() && self.is_all_in_contact() {
-            // The approach does not change with the force: there is no branch to go down.
-            let (end, measured) = newton(&mut self.levels[0], goal, true, monitor)?;
-            if end == End::Interrupted || end == End::Solved && measured.count == self.levels[0].now.u.len() {
-                return Ok(Descent::By(end));
+            if let Some(held) = self.hold_all(goal, monitor)? {
+                return Ok(held);
             }
-            let ended = nested::solve(&mut self.levels, unloaded, (start, make), monitor)?;
-            log::debug!("not in contact everywhere: {:?}", ended.end);
+            nested::solve(&mut self.levels, unloaded, (start, make), monitor)?;
         }
         let mut walk = match ended.is_in_contact() {
             true => Some(walk(&mut self.levels[0], (goal, make), monitor)?),
@@ -107,6 +104,14 @@ impl Solver {
             }
         }
         Ok(last)
+    }
+
+    /// From contact everywhere in two periods: the approach does not change with the force, and there is no branch to go down. None where that does not
+    /// last.
+    fn hold_all(&mut self, goal: Goal, monitor: &mut Monitor<'_>) -> Result<Option<Descent>> {
+        let (end, measured) = newton(&mut self.levels[0], goal, true, monitor)?;
+        let lasts = end == End::Solved && measured.count == self.levels[0].now.u.len();
+        Ok(Some(Descent::By(end)).filter(|_| lasts || end == End::Interrupted))
     }
 
     /// Whether all elements of two periods are in contact. The mean of their distances then stays where it is, whatever the force.
