@@ -2,7 +2,7 @@
 
 E* = 25 MPa, a work of adhesion of 50 mJ/m^2, the exponential law, a mean pressure of 250 kPa, 0.1 mm x 0.1 mm with two periods, Hurst exponent
 0.8, rms slope 1 with waves from 20 um down to 4 elements. The challenge's range of 2.071 nm needs elements of about 2 nm; on coarser ones the range is the
-shortest that they carry. One line per grid: range, kappa, contact area, adhesive over total force, products, seconds.
+shortest that they carry. One line per grid: range, kappa, contact area, adhesive over total force, products, bytes an element, seconds.
 """
 
 import argparse
@@ -40,8 +40,8 @@ def main():
     parser.add_argument("--largest", type=int, default=2048)
     parser.add_argument("picture", nargs="?")
     given = parser.parse_args()
-    print("| elements | element [nm] | range [nm] | kappa | kappa of 2.071 nm | contact | adhesive/total force | products | seconds |")
-    print("|---|---|---|---|---|---|---|---|---|")
+    print("| elements | element [nm] | range [nm] | kappa | kappa of 2.071 nm | contact | adhesive/total force | products | bytes/element | seconds |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
     for n in (512, 1024, 2048):
         if n > given.largest:
             break
@@ -54,7 +54,7 @@ def main():
         force = PRESSURE * SIDE**2
         print(
             f"| {n} x {n} | {1e3 * d:.0f} | {1e3 * report['range']:.0f} | {report['resolution']:.2f} | {own:.0f} | {(found.contact == 1).mean():.4f} | "
-            f"{report['adhesive_force'] / force:.3f} | {report['work_units']:.0f} | {seconds:.1f} |",
+            f"{report['adhesive_force'] / force:.3f} | {report['work_units']:.0f} | {report['bytes'] / n**2:.0f} | {seconds:.1f} |",
             flush=True,
         )
     if given.picture:

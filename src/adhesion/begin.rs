@@ -1,6 +1,6 @@
 //! Solves from nothing. A force that pulls, or none, is met on the stable branch: down from a state of more force.
 
-use super::level::MakeFrozen;
+use super::level::{Level, MakeFrozen};
 use super::levels::prolong;
 use super::majorise::Descent;
 use super::nested::{self, coarse_goal};
@@ -48,6 +48,12 @@ impl Solver {
         // Down the stable branch of the finest grid.
         let unloaded = Goal { wanted: Some(0.0), ..goal };
         let ended = nested::solve(&mut self.levels, unloaded, (start, make), monitor)?;
+        if ended.is_in_contact() && self.is_all_in_contact() {
+            if let Some(held) = self.hold_all(goal, monitor)? {
+                return Ok(held);
+            }
+            nested::solve(&mut self.levels, unloaded, (start, make), monitor)?;
+        }
         let mut walk = match ended.is_in_contact() {
             true => Some(walk(&mut self.levels[0], (goal, make), monitor)?),
             false => None,
@@ -100,6 +106,20 @@ impl Solver {
         Ok(last)
     }
 
+    /// From contact everywhere in two periods: the approach does not change with the force, and there is no branch to go down. None where that does not
+    /// last.
+    fn hold_all(&mut self, goal: Goal, monitor: &mut Monitor<'_>) -> Result<Option<Descent>> {
+        let (end, measured) = newton(&mut self.levels[0], goal, true, monitor)?;
+        let lasts = end == End::Solved && measured.count == self.levels[0].now.u.len();
+        Ok(Some(Descent::By(end)).filter(|_| lasts || end == End::Interrupted))
+    }
+
+    /// Whether all elements of two periods are in contact. The mean of their distances then stays where it is, whatever the force.
+    fn is_all_in_contact(&self) -> bool {
+        let Level { problem, now, .. } = &self.levels[0];
+        problem.coefficients.is_mean_free() && now.contact.iter().all(|&inside| inside)
+    }
+
     /// The sum of all attraction, at a distance of 0 everywhere.
     fn most_attraction(&self) -> f64 {
         let surface = &self.levels[0].surface;
@@ -133,6 +153,7 @@ impl Solver {
         }
         let coarse = coarse_goal(&self.levels, last, goal);
         let unloaded = Goal { wanted: Some(0.0), ..coarse };
+        self.levels[last].fields = std::mem::take(&mut self.levels[0].fields);
         monitor.enter_grid();
         let ended = nested::solve(&mut self.levels[last..], unloaded, (start, make), monitor)?;
         let is_found = ended.end == Descent::By(End::Solved)
@@ -142,7 +163,7 @@ impl Solver {
         }
         for l in (0..last).rev() {
             let (fine, below) = self.levels.split_at_mut(l + 1);
-            prolong(&below[0], &mut fine[l])?;
+            prolong(&mut below[0], &mut fine[l])?;
             let goal = coarse_goal(&self.levels, l, goal);
             monitor.enter_grid();
             let (end, _) = newton(&mut self.levels[l], goal, false, monitor)?;

@@ -2,12 +2,11 @@
 
 use std::sync::Arc;
 
-use super::unknowns::{measure, Measured, Surface, Unknowns, MEMORY};
+use super::unknowns::{is_small, measure, Measured, Pressures, Surface, Unknowns};
 use crate::contact::{self, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::memory::zeros;
 use crate::methods::fields::{self, Fields};
 use crate::methods::projected_cg::Preconditioner;
 use crate::operator::{Operator, Workspace};
@@ -31,15 +30,21 @@ pub trait Frozen: Send + Sync {
     fn bytes(&self) -> usize;
 }
 
+/// What solves frozen problems, and their state.
+pub type Still = (Box<dyn Frozen>, State);
+
 /// Makes what solves frozen problems on a grid.
 pub type MakeFrozen<'a> = &'a dyn Fn(&contact::Problem) -> Result<Box<dyn Frozen>>;
 
 /// M, the inverse of a circulant near A. Residuals are not continued beside C, where rows of their own tell what they are: a sphere of Tabor's
-/// parameter 3 on 256 x 256 elements takes 18 to 21 products so, and 30 to 47 with the normal problem's extension.
+/// parameter 3 on 256 x 256 elements takes 18 to 21 products so, and 30 to 47 with the normal problem's extension. In single precision: it only
+/// has to be near.
 struct Inverse {
-    m: Preconditioner<f64>,
-    workspace: Workspace<f64>,
-    field: Vec<f64>,
+    /// Of the coefficients over a power of two near a0: numbers near 1.
+    m: Preconditioner<f32>,
+    workspace: Workspace<f32>,
+    /// That power of two: `a0 M` is this over it.
+    unit: f64,
 }
 
 /// One grid.
@@ -53,14 +58,14 @@ pub struct Level {
     /// The unknowns now.
     pub now: Unknowns,
     /// The last state from which descent has to go on.
-    pub good: Unknowns,
-    /// For products of single fields.
-    pub product: Vec<f64>,
-    /// Fields of linear solves.
+    pub good: Pressures,
+    /// Fields of linear solves: of all grids, in the hands of the one that is at work.
     pub fields: Fields<1>,
     inverse: Option<Inverse>,
-    /// Of frozen problems, made when first needed.
-    pub frozen: Option<(Box<dyn Frozen>, State)>,
+    /// Of frozen problems, on small grids: made when first needed.
+    pub frozen: Option<Still>,
+    /// Bytes of all that a descent held, at most.
+    pub of_descents: usize,
 }
 
 impl Level {
@@ -74,23 +79,21 @@ impl Level {
         let threads = &threads.suited_to(grid.len());
         let problem = contact::Problem::with_operator(grid, coefficients, operator, 1.0, threads)?;
         let n = grid.len();
-        let inverse = match Preconditioner::new(&problem.coefficients, 1.0, &grid, threads)? {
+        let unit = problem.self_influence().log2().round().exp2();
+        let inverse = match Preconditioner::new(&problem.coefficients, 1.0 / unit, &grid, threads)? {
             None => None,
-            Some(m) => {
-                let workspace = m.inverse().workspace()?;
-                Some(Inverse { workspace, m, field: zeros(n, MEMORY)? })
-            }
+            Some(m) => Some(Inverse { workspace: m.inverse().workspace()?, m, unit }),
         };
         Ok(Level {
             problem,
             work,
             surface: Surface::default(),
             now: Unknowns::new(n)?,
-            good: Unknowns::default(),
-            product: zeros(n, MEMORY)?,
+            good: Pressures::default(),
             fields: Fields::default(),
             inverse,
             frozen: None,
+            of_descents: 0,
         })
     }
 
@@ -101,8 +104,8 @@ impl Level {
 
     /// Measures what is known now; C is that of the natural map unless it `is_kept`.
     pub fn measure(&mut self, is_kept: bool, wanted: Option<f64>) -> Measured {
-        let a0 = self.self_influence();
-        measure(&self.surface, &mut self.now, a0, (is_kept, wanted), &self.problem.threads)
+        let of_element = (self.self_influence(), self.problem.round_off());
+        measure(&self.surface, &mut self.now, of_element, (is_kept, wanted), &self.problem.threads)
     }
 
     /// u = A p by a fresh product.
@@ -111,21 +114,16 @@ impl Level {
         problem.displace(now.p.field.as_flattened(), now.u.as_flattened_mut())
     }
 
-    /// `z = M (a0 y)` on C.
-    pub fn precondition(&mut self, y: &[[f64; 1]], z: &mut [[f64; 1]]) {
+    /// `z = M (a0 y)` on C; outside anything.
+    pub fn precondition(&mut self, y: &[[f32; 1]], z: &mut [[f32; 1]]) {
         let a0 = self.problem.self_influence();
         let (contact, threads) = (&self.now.contact, &self.problem.threads);
-        let Some(Inverse { m, workspace, field }) = &mut self.inverse else {
-            return fields::fill(threads, z, |i| if contact[i] { y[i] } else { z_outside() });
+        let Some(Inverse { m, workspace, unit }) = &mut self.inverse else {
+            return z.copy_from_slice(y);
         };
-        threads.for_each_plain_row(&mut field[..], fields::BLOCK, |k, field| {
-            for (k, value) in (k * fields::BLOCK..).zip(field) {
-                *value = if contact[k] { a0 * y[k][0] } else { 0.0 };
-            }
-        });
-        m.apply(field, (contact, false), &mut None, workspace);
-        let field = &*field;
-        fields::fill(threads, z, |i| if contact[i] { [field[i]] } else { z_outside() });
+        let factor = (a0 / *unit) as f32;
+        fields::fill(threads, z, |i| [if contact[i] { factor * y[i][0] } else { 0.0 }]);
+        m.apply_alone(z.as_flattened_mut(), workspace);
     }
 
     /// Adds the products made here since the last call to those of the solve.
@@ -133,29 +131,30 @@ impl Level {
         monitor.count_products(self.problem.take_products(), self.work);
     }
 
-    /// The state of frozen problems, with what solves them.
-    pub fn prepare_frozen(&mut self, make: MakeFrozen<'_>) -> Result<()> {
-        if self.frozen.is_none() {
-            let state = State::new(self.problem.grid, (Load::Approach(0.0), 0.0), &self.problem.threads)?;
-            self.frozen = Some((make(&self.problem)?, state));
+    /// The state of frozen problems, with what solves them: on a large grid for one descent, in the room of linear solves.
+    pub fn take_frozen(&mut self, make: MakeFrozen<'_>) -> Result<Still> {
+        if let Some(still) = self.frozen.take() {
+            return Ok(still);
         }
-        Ok(())
+        if !is_small(self.now.u.len()) {
+            self.fields = Fields::default();
+        }
+        let state = State::new(self.problem.grid, (Load::Approach(0.0), 0.0), &self.problem.threads)?;
+        Ok((make(&self.problem)?, state))
     }
 
-    /// Bytes held.
+    /// Takes it back.
+    pub fn give_frozen(&mut self, still: Still) {
+        let bytes = self.fields.bytes() + still.0.bytes() + still.1.bytes();
+        self.of_descents = self.of_descents.max(bytes);
+        self.frozen = Some(still).filter(|_| is_small(self.now.u.len()));
+    }
+
+    /// Bytes held, or needed by a descent.
     pub fn bytes(&self) -> usize {
-        let frozen = self.frozen.as_ref().map_or(0, |(methods, state)| methods.bytes() + state.bytes());
-        let inverse = self
-            .inverse
-            .as_ref()
-            .map_or(0, |inverse| inverse.m.bytes() + inverse.workspace.bytes() + size_of_val(&inverse.field[..]));
+        let inverse = self.inverse.as_ref().map_or(0, |inverse| inverse.m.bytes() + inverse.workspace.bytes());
         let surface = size_of_val(&self.surface.h[..]) + size_of_val(&self.surface.works[..]);
-        let unknowns = self.now.bytes() + self.good.bytes() + size_of_val(&self.product[..]);
-        self.problem.bytes() + inverse + surface + unknowns + self.fields.bytes() + frozen
+        let unknowns = self.now.bytes() + self.good.bytes();
+        self.problem.bytes() + inverse + surface + unknowns + self.fields.bytes().max(self.of_descents)
     }
-}
-
-/// The value outside C, which the preconditioner leaves to its caller.
-fn z_outside() -> [f64; 1] {
-    [0.0]
 }

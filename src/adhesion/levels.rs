@@ -15,14 +15,13 @@ use crate::threads::Threads;
 
 /// The coarsest grid has at most this many elements in each direction.
 const COARSEST: usize = 31;
+const MEMORY: &str = "the surfaces of adhesion";
 /// `kappa = s a0` of the shortest range that elements carry.
 pub const CARRIED: f64 = 0.4;
 
-/// The inputs of a scene that the grids take over.
+/// The inputs of a scene that the grids take over, beside undeformed distances.
 #[derive(Clone, Copy, Debug)]
 pub struct Surfaces<'a> {
-    /// h; `+infinity` where there is no surface.
-    pub h: &'a [f64],
     /// How the attraction falls with the distance.
     pub law: Law,
     /// rho; 0: the shortest that the elements carry.
@@ -55,9 +54,9 @@ pub fn levels(
     Ok(levels)
 }
 
-/// Takes the surfaces of a scene over to all grids.
+/// Takes the surfaces of a scene over to all grids. The finest has its undeformed distances.
 pub fn take_surfaces(levels: &mut [Level], given: Surfaces<'_>) -> Result<()> {
-    let Surfaces { h, law, work, works, .. } = given;
+    let Surfaces { law, work, works, .. } = given;
     let largest = works.map_or(work, |works| works.iter().copied().fold(0.0, f64::max));
     for l in 0..levels.len() {
         let (finer, coarser) = levels.split_at_mut(l);
@@ -70,17 +69,15 @@ pub fn take_surfaces(levels: &mut [Level], given: Surfaces<'_>) -> Result<()> {
             Some(finest) => finest.surface.attraction.range.max(carried),
         };
         (surface.attraction, surface.work) = (Attraction { law, range }, largest);
-        for values in [&mut surface.h, &mut surface.works] {
-            reserve(values, n, "the surfaces of adhesion")?;
-            values.clear();
-        }
         let has_works = works.is_some();
+        if has_works {
+            reserve(&mut surface.works, n, MEMORY)?;
+        }
+        surface.works.clear();
         match finer.last() {
-            None => {
-                surface.h.extend_from_slice(h);
-                surface.works.extend_from_slice(works.unwrap_or_default());
-            }
+            None => surface.works.extend_from_slice(works.unwrap_or_default()),
             Some(Level { problem: fine, surface: from, .. }) => {
+                reserve(&mut surface.h, n, MEMORY)?;
                 surface.h.resize(n, 0.0);
                 let (from_grid, to_grid) = (&fine.grid, &problem.grid);
                 transfer::restrict_distance(from_grid, to_grid, &from.h, f64::MAX, &mut surface.h, &problem.threads);
@@ -97,8 +94,10 @@ pub fn take_surfaces(levels: &mut [Level], given: Surfaces<'_>) -> Result<()> {
     Ok(())
 }
 
-/// The pressures of the next coarser grid, piecewise constant, their displacements by a fresh product, and the approach.
-pub fn prolong(coarse: &Level, fine: &mut Level) -> Result<()> {
+/// The pressures of the next coarser grid, piecewise constant, their displacements by a fresh product, and the approach; and its fields of linear
+/// solves.
+pub fn prolong(coarse: &mut Level, fine: &mut Level) -> Result<()> {
+    fine.fields = std::mem::take(&mut coarse.fields);
     let (from, to) = (coarse.problem.grid, fine.problem.grid);
     let p = fine.now.p.field.as_flattened_mut();
     transfer::interpolate(&to, &from, coarse.now.p.field.as_flattened(), p, |to, value| *to = value);

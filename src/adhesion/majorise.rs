@@ -7,7 +7,7 @@
 //! W is convex, so that the energy with sigma_k lies above that of the law and touches it at the last state: every step goes downhill, whatever the
 //! attraction.
 
-use super::level::{Level, MakeFrozen};
+use super::level::{Level, MakeFrozen, Still};
 use super::newton::{End, Goal};
 use super::unknowns::Measured;
 use crate::contact::Freshness;
@@ -49,7 +49,19 @@ pub fn descend(
     steps: Steps<'_>,
     monitor: &mut Monitor<'_>,
 ) -> Result<(Descent, Measured)> {
-    level.prepare_frozen(steps.make)?;
+    let mut still = level.take_frozen(steps.make)?;
+    let ended = descend_with(level, &mut still, goal, steps, monitor);
+    level.give_frozen(still);
+    ended
+}
+
+fn descend_with(
+    level: &mut Level,
+    still: &mut Still,
+    goal: Goal,
+    steps: Steps<'_>,
+    monitor: &mut Monitor<'_>,
+) -> Result<(Descent, Measured)> {
     let mut measured = level.measure(false, goal.wanted);
     for step in 0..steps.most {
         if goal.is_interrupted(monitor) {
@@ -57,7 +69,7 @@ pub fn descend(
         }
         let off = if step == 0 { LEAST / PART } else { measured.law };
         let tolerance = (PART * off).min(LEAST).max(ENOUGH * goal.tolerance);
-        if !one(level, (goal, tolerance), steps.from_none && step == 0, monitor)? {
+        if !one(level, still, (goal, tolerance), steps.from_none && step == 0, monitor)? {
             return Ok((Descent::Parted, measured));
         }
         measured = level.measure(false, goal.wanted);
@@ -76,21 +88,26 @@ pub fn descend(
 }
 
 /// One step. False where no pressure carries the force.
-fn one(level: &mut Level, (goal, tolerance): (Goal, f64), from_none: bool, monitor: &mut Monitor<'_>) -> Result<bool> {
+fn one(
+    level: &mut Level,
+    (frozen, state): &mut Still,
+    (goal, tolerance): (Goal, f64),
+    from_none: bool,
+    monitor: &mut Monitor<'_>,
+) -> Result<bool> {
     let (n, threads) = (level.now.u.len(), level.problem.threads.clone());
-    let Some((mut frozen, mut state)) = level.frozen.take() else { return Ok(false) };
     let mut fields = std::mem::take(&mut level.fields);
-    let mut attraction = fields.take(n)?;
+    let (mut attraction, mut product) = (fields.take(n)?, fields.take(n)?);
     let (surface, now) = (&level.surface, &level.now);
     fields::fill(&threads, &mut attraction, |i| {
         [if from_none { 0.0 } else { surface.traction(i, surface.distance(i, now)) }]
     });
     let [held] = fields::sum(&threads, n, |i| attraction[i]);
-    let (problem, product) = (&mut level.problem, &mut level.product);
-    problem.displace(attraction.as_flattened(), product)?;
+    let problem = &mut level.problem;
+    problem.displace(attraction.as_flattened(), product.as_flattened_mut())?;
     for i in 0..n {
         let q = level.now.p.field[i][0] + attraction[i][0];
-        (state.h[i], state.p[i]) = (level.surface.h[i] - product[i], if q > 0.0 { q } else { 0.0 });
+        (state.h[i], state.p[i]) = (level.surface.h[i] - product[i][0], if q > 0.0 { q } else { 0.0 });
         state.contact[i] = state.p[i] > 0.0;
     }
     state.approach = level.now.approach();
@@ -102,17 +119,17 @@ fn one(level: &mut Level, (goal, tolerance): (Goal, f64), from_none: bool, monit
     state.u_is = Freshness::Stale;
     let carried = !matches!(state.load, Load::Force(force) if !(force > 0.0));
     if carried {
-        let outcome = frozen.solve(problem, &mut state, (tolerance, goal.most), monitor)?;
+        let outcome = frozen.solve(problem, state, (tolerance, goal.most), monitor)?;
         log::debug!("the contact problem of a still attraction: {outcome:?}");
         let _: Outcome = outcome;
         for i in 0..n {
             level.now.p.field[i] = [state.p[i] - attraction[i][0]];
-            level.now.u[i] = [state.u[i] - product[i]];
+            level.now.u[i] = [state.u[i] - product[i][0]];
         }
         level.now.p.border = [state.approach];
     }
-    fields.give(attraction);
-    (level.fields, level.frozen) = (fields, Some((frozen, state)));
+    [attraction, product].into_iter().for_each(|field| fields.give(field));
+    level.fields = fields;
     level.count_products(monitor);
     Ok(carried)
 }

@@ -5,7 +5,7 @@ use super::levels::prolong;
 use super::majorise::{descend, Descent, Steps};
 use super::newton::{End, Goal};
 use super::request::Start;
-use super::robust::{self, Ended};
+use super::robust::{self, Ended, BETWEEN};
 use crate::error::Result;
 use crate::progress::Monitor;
 
@@ -36,6 +36,7 @@ pub fn solve(
             end => Ok(Ended { end, measured, descended: true }),
         };
     }
+    levels[last].fields = std::mem::take(&mut levels[0].fields);
     for l in (1..=last).rev() {
         monitor.enter_grid();
         let coarse = coarse_goal(levels, l, goal);
@@ -44,7 +45,7 @@ pub fn solve(
             break;
         }
         let (fine, coarse) = levels.split_at_mut(l);
-        prolong(&coarse[0], &mut fine[l - 1])?;
+        prolong(&mut coarse[0], &mut fine[l - 1])?;
         fine[l - 1].count_products(monitor);
     }
     monitor.enter_grid();
@@ -78,6 +79,14 @@ fn one(
         let (end, measured) = descend(level, goal, steps, monitor)?;
         if matches!(end, Descent::By(End::Interrupted)) {
             return Ok(Ended { end, measured, descended: false });
+        }
+        if end == Descent::Parted {
+            // Without attraction nothing carries a force of 0. With it descent, from no pressures, is far cheaper than Newton's method.
+            let steps = Steps { most: BETWEEN, from_none: false, make };
+            let (end, measured) = descend(level, goal, steps, monitor)?;
+            if end != Descent::By(End::Failed) {
+                return Ok(Ended { end, measured, descended: true });
+            }
         }
     }
     robust::solve(level, goal, (false, make), monitor)

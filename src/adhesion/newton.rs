@@ -168,14 +168,14 @@ pub fn stiffness_of_contact(level: &mut Level, monitor: &mut Monitor<'_>) -> Res
     let (mut stiffness, mut right) = (fields.take(n)?, fields.take(n)?);
     linearise(level, false, &mut stiffness, &mut right);
     let mut system = Linearised::new(level, &stiffness, false, &mut fields)?;
-    system.fill_column(-1.0, &mut right);
+    fields::fill(&threads, &mut right, |i| [-system.column_at(i)]);
     let norm = fields::dot(&threads, &right, &right).sqrt();
     let until = Until { target: norm * OF_STIFFNESS, most: DIRECTIONS };
     let r = Bordered { field: right, border: [0.0] };
     let found = fgmres::solve(&mut system, r, (until, 0.0), &threads, &mut fields)?;
     let mut sum = 0.0;
     for (y, direction) in found.y.iter().zip(&found.directions) {
-        let [of_direction] = fields::sum(&threads, n, |i| direction.z.field[i]);
+        let [of_direction] = fields::sum(&threads, n, |i| direction.z.field[i].map(f64::from));
         sum += y * of_direction;
     }
     found.directions.into_iter().for_each(|direction| direction.give(&mut fields));

@@ -18,7 +18,7 @@ pub struct Report {
     pub elastic_energy: f64,
     /// The sum of -W(e) dx dy: negative.
     pub adhesive_energy: f64,
-    /// `||p + sigma(e)||` outside C, relative to `||p||`.
+    /// `||p + sigma(e)||` outside C, relative to `||p||`, or to 1e-3 of `||q||` in C if that is larger.
     pub law_residual: f64,
     /// rho as it was used.
     pub range: f64,
@@ -97,7 +97,7 @@ impl Report {
 }
 
 /// The pressures of contact q = p + sigma on C, 0 outside.
-pub fn contact_pressure(level: &Level, i: usize) -> f64 {
+fn contact_pressure(level: &Level, i: usize) -> f64 {
     let (surface, now) = (&level.surface, &level.now);
     if now.contact[i] {
         now.p.field[i][0] + surface.traction(i, surface.distance(i, now))
@@ -110,10 +110,11 @@ pub fn contact_pressure(level: &Level, i: usize) -> f64 {
 pub fn measures(level: &Level, measured: &Measured) -> Measures {
     let (surface, now, grid) = (&level.surface, &level.now, level.problem.grid);
     let threads = &level.problem.threads;
-    let [work, elastic] = fields::sum(threads, now.u.len(), |i| {
+    let a0 = level.self_influence();
+    let [work, elastic, own] = fields::sum(threads, now.u.len(), |i| {
         let e = surface.distance(i, now).abs();
         let q = contact_pressure(level, i).abs();
-        [if q > 0.0 { q * e } else { 0.0 }, (now.p.field[i][0] * now.u[i][0]).abs()]
+        [if q > 0.0 { q * e } else { 0.0 }, (now.p.field[i][0] * now.u[i][0]).abs(), a0 * q * q]
     });
     let largest = fields::largest(threads, now.u.len(), |i| now.p.field[i][0]);
     let least = -fields::largest(threads, now.u.len(), |i| -now.p.field[i][0]);
@@ -122,7 +123,7 @@ pub fn measures(level: &Level, measured: &Measured) -> Measures {
         certificate: Certificate {
             residual: measured.distance,
             violation: measured.penetration,
-            complementarity: if work == 0.0 { 0.0 } else { work / elastic },
+            complementarity: if work == 0.0 { 0.0 } else { work / elastic.max(own) },
             min_pressure: least,
         },
         approach: now.approach(),

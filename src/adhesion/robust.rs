@@ -10,7 +10,7 @@ use crate::progress::Monitor;
 /// Times that Newton's method is tried.
 const ROUNDS: u32 = 12;
 /// Steps of descent between.
-const BETWEEN: u64 = 5;
+pub const BETWEEN: u64 = 5;
 /// An energy of more by this part is uphill.
 const UPHILL: f64 = 1e-6;
 
@@ -46,7 +46,7 @@ pub fn solve(
     monitor: &mut Monitor<'_>,
 ) -> Result<Ended> {
     let mut good = std::mem::take(&mut level.good);
-    good.copy_from(&level.now)?;
+    good.take(&level.now)?;
     let mut ended = None;
     let (mut least, mut descended) = (f64::INFINITY, false);
     for round in 0..ROUNDS {
@@ -58,7 +58,9 @@ pub fn solve(
         }
         descended = true;
         log::debug!("adhesion: Newton's method {end:?} with {measured:?}; descent goes on");
-        level.now.copy_from(&good)?;
+        if !good.put(&mut level.now) {
+            level.refresh()?;
+        }
         let steps = Steps { most: BETWEEN, from_none: false, make };
         let (end, measured) = descend(level, goal, steps, monitor)?;
         if end != Descent::By(End::Failed) {
@@ -66,7 +68,7 @@ pub fn solve(
             break;
         }
         least = energy(level, goal.wanted);
-        good.copy_from(&level.now)?;
+        good.take(&level.now)?;
     }
     level.good = good;
     let (end, measured) = match ended {

@@ -7,10 +7,11 @@ use super::levels::{levels, take_surfaces};
 use super::majorise::Descent;
 use super::newton::{newton, stiffness_of_contact, End, Goal};
 use super::pull::{walk, Walk};
-use super::report::{close_grid, contact_pressure, Report};
+use super::report::{close_grid, Report};
 use super::request::{Request, Start, State};
 use super::robust;
 use super::stability::stability;
+use crate::contact;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
@@ -45,10 +46,20 @@ impl Solver {
         &self.levels[0]
     }
 
-    /// The contact pressure q of element i, and its attraction sigma.
-    pub fn split(&self, i: usize) -> (f64, f64) {
-        let level = self.finest();
-        (contact_pressure(level, i), level.surface.traction(i, level.surface.distance(i, &level.now)))
+    /// Takes the undeformed distances of the next solve.
+    pub fn lend(&mut self, h: Vec<f64>) {
+        self.levels[0].surface.h = h;
+    }
+
+    /// Gives them back.
+    pub fn give_back(&mut self) -> Vec<f64> {
+        std::mem::take(&mut self.levels[0].surface.h)
+    }
+
+    /// The contact pressure q of element i, and its attraction sigma, of a state that was found here.
+    pub fn split(&self, state: &contact::State, i: usize) -> (f64, f64) {
+        let sigma = self.finest().surface.traction(i, state.h[i] - state.approach + state.u[i]);
+        (if state.contact[i] { state.p[i] + sigma } else { 0.0 }, sigma)
     }
 
     /// Bytes held.
@@ -56,7 +67,7 @@ impl Solver {
         self.levels.iter().map(Level::bytes).sum()
     }
 
-    /// Solves. The finest grid then has what was found, with u = A p by a fresh product.
+    /// Solves, with the undeformed distances that were [lent](Solver::lend). The finest grid then has what was found, with u = A p by a fresh product.
     pub fn solve(
         &mut self,
         request: &Request<'_>,

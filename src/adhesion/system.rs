@@ -8,24 +8,29 @@
 //!
 //! preconditioned by `M (a0 y)` on C and `y/(1 - min(s a0, 1/2))` outside, bordered where the force is given:
 //! `da = (sum z - y_F)/sum Y`, `z -= Y da`, with Y the preconditioned column of da.
+//!
+//! Vectors are stored in single precision, [`Short`]: a linear solve ends at a tenth of its right-hand side.
 
 use super::level::Level;
 use super::unknowns::One;
 use crate::error::Result;
-use crate::methods::fgmres::{Bordered, Direction, System};
+use crate::methods::fgmres::{Bordered, Direction, System, Turned};
 use crate::methods::fields::{self, Fields};
 
 /// The diagonal of a row outside C is never taken for less: where elements snap alone the row tells nothing.
 const LEAST_DIAGONAL: f64 = 0.5;
+
+/// A number per element in single precision.
+pub type Short = [f32; 1];
 
 /// The system, at the contact area and the stiffness given.
 pub struct Linearised<'a> {
     pub level: &'a mut Level,
     /// s; 0 on C.
     pub stiffness: &'a [One],
-    /// Y, where the force is given.
-    column: Vec<One>,
-    /// 1/sum Y; 0 where there is none.
+    /// a0 Y, where the force is given.
+    column: Vec<Short>,
+    /// 1/sum a0 Y; 0 where there is none.
     inverse: f64,
 }
 
@@ -40,10 +45,11 @@ impl<'a> Linearised<'a> {
         let mut system = Linearised { level, stiffness, column: Vec::new(), inverse: 0.0 };
         if by_force {
             let n = stiffness.len();
-            let (mut column, mut preconditioned) = (fields.take(n)?, fields.take(n)?);
-            system.fill_column(1.0, &mut column);
+            let (mut column, mut preconditioned) = (fields.take_of(n)?, fields.take_of(n)?);
+            let a0 = system.level.self_influence();
+            fields::fill(&system.level.problem.threads, &mut column, |i| [(a0 * system.column_at(i)) as f32]);
             system.precondition_field(&column, &mut preconditioned);
-            fields.give(column);
+            fields.give_of(column);
             let sum = system.sum(&preconditioned);
             (system.column, system.inverse) =
                 (preconditioned, Some(1.0 / sum).filter(|inverse| inverse.is_finite()).unwrap_or(0.0));
@@ -51,18 +57,19 @@ impl<'a> Linearised<'a> {
         Ok(system)
     }
 
-    /// The column of the system that belongs to the approach, times a factor.
-    pub fn fill_column(&self, factor: f64, column: &mut [One]) {
-        let (contact, a0) = (&self.level.now.contact, self.level.self_influence());
-        fields::fill(&self.level.problem.threads, column, |i| {
-            [factor * if contact[i] { -1.0 / a0 } else { self.stiffness[i][0] }]
-        });
+    /// Element i of the column of the system that belongs to the approach.
+    pub fn column_at(&self, i: usize) -> f64 {
+        if self.level.now.contact[i] {
+            -1.0 / self.level.self_influence()
+        } else {
+            self.stiffness[i][0]
+        }
     }
 
     /// Gives its fields back.
     pub fn give(self, fields: &mut Fields<1>) {
         if !self.column.is_empty() {
-            fields.give(self.column);
+            fields.give_of(self.column);
         }
     }
 
@@ -70,42 +77,47 @@ impl<'a> Linearised<'a> {
         !self.column.is_empty()
     }
 
-    fn sum(&self, field: &[One]) -> f64 {
-        let [sum] = fields::sum(&self.level.problem.threads, field.len(), |i| field[i]);
+    fn sum(&self, field: &[Short]) -> f64 {
+        let [sum] = fields::sum(&self.level.problem.threads, field.len(), |i| field[i].map(f64::from));
         sum
     }
 
-    fn precondition_field(&mut self, y: &[One], z: &mut [One]) {
+    fn precondition_field(&mut self, y: &[Short], z: &mut [Short]) {
         self.level.precondition(y, z);
         let (contact, a0) = (&self.level.now.contact, self.level.self_influence());
         fields::map(&self.level.problem.threads, z, |i, z| match contact[i] {
             true => z,
-            false => [y[i][0] / (1.0 - (self.stiffness[i][0] * a0).min(LEAST_DIAGONAL))],
+            false => [(f64::from(y[i][0]) / (1.0 - (self.stiffness[i][0] * a0).min(LEAST_DIAGONAL))) as f32],
         });
     }
 
-    fn precondition(&mut self, r: &Bordered<1>, fields: &mut Fields<1>) -> Result<Bordered<1>> {
-        let mut z = fields.take(r.field.len())?;
+    fn precondition(&mut self, r: &Bordered<1, f32>, fields: &mut Fields<1>) -> Result<Bordered<1, f32>> {
+        let mut z = fields.take_of(r.field.len())?;
         self.precondition_field(&r.field, &mut z);
         if !self.by_force() {
             return Ok(Bordered { field: z, border: [0.0] });
         }
         let by = (self.sum(&z) - r.border[0]) * self.inverse;
         fields::add_all(&self.level.problem.threads, &mut z, &[(-by, &self.column)]);
-        Ok(Bordered { field: z, border: [by] })
+        Ok(Bordered { field: z, border: [by * self.level.self_influence()] })
     }
 }
 
-impl System<1> for Linearised<'_> {
-    fn direction(&mut self, v: &Bordered<1>, fields: &mut Fields<1>) -> Result<(Direction<1>, Bordered<1>)> {
+impl System<1, f32> for Linearised<'_> {
+    fn direction(&mut self, v: &Bordered<1, f32>, fields: &mut Fields<1>) -> Result<Turned<1, f32>> {
         let z = self.precondition(v, fields)?;
-        let (mut product, mut row) = (fields.take(z.field.len())?, fields.take(z.field.len())?);
-        self.level.problem.displace(z.field.as_flattened(), product.as_flattened_mut())?;
+        let (n, threads) = (z.field.len(), &self.level.problem.threads);
+        let (mut product, mut double) = (fields.take(n)?, fields.take(n)?);
+        fields::fill(threads, &mut double, |i| z.field[i].map(f64::from));
+        self.level.problem.displace(double.as_flattened(), product.as_flattened_mut())?;
+        fields.give(double);
+        let mut row = fields.take_of(n)?;
         let (contact, a0, by) = (&self.level.now.contact, self.level.self_influence(), z.border[0]);
         let (stiffness, field, displaced) = (self.stiffness, &z.field, &product);
         fields::fill(&self.level.problem.threads, &mut row, |i| {
             let change = displaced[i][0] - by;
-            [if contact[i] { change / a0 } else { field[i][0] - stiffness[i][0] * change }]
+            let value = if contact[i] { change / a0 } else { f64::from(field[i][0]) - stiffness[i][0] * change };
+            [value as f32]
         });
         let border = if self.by_force() { [self.sum(&z.field)] } else { [0.0] };
         Ok((Direction { z, product }, Bordered { field: row, border }))

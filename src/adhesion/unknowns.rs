@@ -62,6 +62,55 @@ impl Unknowns {
     }
 }
 
+/// Up to so many elements more memory is held where that saves products.
+const SMALL: usize = 1 << 16;
+
+/// Whether a grid of n elements is one on which memory counts for less than products.
+pub fn is_small(n: usize) -> bool {
+    n <= SMALL
+}
+
+/// Pressures with the approach, and the contact area; on large grids u is found from them again by a product.
+#[derive(Default)]
+pub struct Pressures {
+    p: Bordered<1>,
+    u: Vec<One>,
+    contact: Vec<bool>,
+}
+
+impl Pressures {
+    /// Takes those of unknowns.
+    pub fn take(&mut self, from: &Unknowns) -> Result<()> {
+        let n = from.u.len();
+        unwritten(&mut self.p.field, n, [f64::NAN], MEMORY, &Threads::One)?;
+        unwritten(&mut self.contact, n, false, MEMORY, &Threads::One)?;
+        self.p.field.copy_from_slice(&from.p.field);
+        self.contact.copy_from_slice(&from.contact);
+        self.p.border = from.p.border;
+        if is_small(n) {
+            unwritten(&mut self.u, n, [f64::NAN], MEMORY, &Threads::One)?;
+            self.u.copy_from_slice(&from.u);
+        }
+        Ok(())
+    }
+
+    /// Gives them to unknowns. Whether their u are theirs then, too.
+    pub fn put(&self, to: &mut Unknowns) -> bool {
+        to.p.field.copy_from_slice(&self.p.field);
+        to.contact.copy_from_slice(&self.contact);
+        to.p.border = self.p.border;
+        if !self.u.is_empty() {
+            to.u.copy_from_slice(&self.u);
+        }
+        !self.u.is_empty()
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.p.field[..]) + size_of_val(&self.u[..]) + self.contact.len()
+    }
+}
+
 /// The surfaces: h, the law and the work of adhesion of each element.
 #[derive(Default)]
 pub struct Surface {
@@ -74,6 +123,9 @@ pub struct Surface {
     /// w where it is the same everywhere, or the largest.
     pub work: f64,
 }
+
+/// Of sigma(0): pressures of this part are none, as between bodies apart of which a law that ends has left no more.
+const NOTHING: f64 = f64::EPSILON;
 
 impl Surface {
     /// w of element i.
@@ -95,18 +147,25 @@ impl Surface {
     }
 }
 
-/// How well the conditions hold, each number relative to its own scale.
+/// Contact pressures and attraction cancel where p is less than this part of them.
+pub const CANCELLED: f64 = 1e-3;
+/// Of `h - approach` where h is the approach, as in plain contact problems.
+const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
+
+/// How well the conditions hold, each number relative to its own scale. Where contact pressures and attraction cancel, as below a flat punch
+/// without a load, total pressures are round-off: the scale of pressures is p, or [`CANCELLED`] times q if that is larger.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measured {
-    /// rms over C of e, relative to that of `h - approach`, or to what one element displaces itself by, whichever is larger.
+    /// rms over C of e, relative to that of `h - approach`, or to what one element displaces itself by under p or [`CANCELLED`] q,
+    /// whichever is larger. 0 where both are the round-off of bodies that fit exactly.
     pub distance: f64,
     /// Largest -e outside C, a length.
     pub penetration: f64,
     /// The same relative to the scale of `distance`.
     pub violation: f64,
-    /// `||p + sigma(e)||` outside C, relative to `||p||`.
+    /// `||p + sigma(e)||` outside C, relative to `||p||`, if that is anything, or to that part of `||q||` in C if it is larger.
     pub law: f64,
-    /// The given force less the sum of p, relative to the sum of |p|.
+    /// The given force less the sum of p, relative to the sum of |p|, or that part of the sum of q.
     pub force: f64,
     /// Elements in contact.
     pub count: usize,
@@ -135,19 +194,20 @@ fn largest<const K: usize>(values: [f64; K]) -> f64 {
     })
 }
 
-/// Takes C from the natural map q - e/a0 > 0, unless it `is_kept`, and measures. `wanted`: the sum of p where the force is given.
+/// Takes C from the natural map q - e/a0 > 0, unless it `is_kept`, and measures. `round_off`: of displacements, per unit of pressure; `wanted`: the
+/// sum of p where the force is given.
 pub fn measure(
     surface: &Surface,
     unknowns: &mut Unknowns,
-    self_influence: f64,
+    (self_influence, round_off): (f64, f64),
     (is_kept, wanted): (bool, Option<f64>),
     threads: &Threads,
 ) -> Measured {
     let Unknowns { p, u, contact } = unknowns;
     let (p, approach, u) = (&p.field, p.border[0], &*u);
-    let [ee, dd, count, qq, pp, pc, sum, all] =
+    let [ee, dd, count, off, pp, pc, sum, all, qc, repulsion] =
         fields::over(threads, contact.chunks_mut(fields::BLOCK), |first, contact| {
-            let mut sums = [0.0; 8];
+            let mut sums = [0.0; 10];
             for (k, inside) in contact.iter_mut().enumerate() {
                 let i = first + k;
                 let ([p], e) = (p[i], surface.h[i] - approach + u[i][0]);
@@ -158,6 +218,7 @@ pub fn measure(
                     let d = surface.h[i] - approach;
                     (sums[0], sums[1], sums[2], sums[5]) =
                         (sums[0] + e * e, sums[1] + d * d, sums[2] + 1.0, sums[5] + p * p);
+                    (sums[8], sums[9]) = (sums[8] + q * q, sums[9] + q.abs());
                 } else {
                     sums[3] += q * q;
                 }
@@ -177,15 +238,19 @@ pub fn measure(
             },
         );
     let n = f64::max(count, 1.0);
-    let scale = (dd / n).sqrt().max(self_influence * (pc / n).sqrt());
+    let (part, nothing) = (CANCELLED * CANCELLED * qc, NOTHING * surface.work / surface.attraction.range);
+    let scale = (dd / n).sqrt().max(self_influence * (pc.max(part) / n).sqrt());
     let scale = if count > 0.0 { scale } else { scale.max(self_influence * (pp / u.len() as f64).sqrt()) };
     let ratio = |value: f64, of: f64| if value == 0.0 { 0.0 } else { value / of };
+    let noise = ROUND_OFF * approach.abs() + round_off * (pc.max(qc) / n).sqrt();
+    let [of_e, of_d] = [ee, dd].map(|squares| (squares / n).sqrt());
+    let fits = noise.is_finite() && of_d <= noise && of_e <= noise;
     Measured {
-        distance: ratio((ee / n).sqrt(), scale),
+        distance: if fits { 0.0 } else { ratio(of_e, scale) },
         penetration,
-        violation: ratio(penetration, scale),
-        law: ratio(qq.sqrt(), pp.sqrt()),
-        force: wanted.map_or(0.0, |wanted| ratio((sum - wanted).abs(), all)),
+        violation: if fits && penetration <= noise { 0.0 } else { ratio(penetration, scale) },
+        law: ratio(off.sqrt(), pp.max(part).sqrt().max(nothing)),
+        force: wanted.map_or(0.0, |wanted| ratio((sum - wanted).abs(), all.max(CANCELLED * repulsion).max(nothing))),
         count: count as usize,
         pressures: sum,
     }

@@ -131,7 +131,7 @@ impl Problem {
         operators.displace(MadeOf { coefficients, grid, threads }, p, u)?;
         self.products += 1;
         if self.coefficients.is_mean_free() {
-            remove_mean(u);
+            remove_mean(u, &self.threads);
         }
         Ok(())
     }
@@ -156,13 +156,16 @@ impl Problem {
     }
 }
 
+/// Values of a piece of a pass.
+const BLOCK: usize = 1024;
+
 /// Two periods: the mean of u is 0, and what a product has of one is the round-off of sums over the whole grid.
-fn remove_mean(u: &mut [f64]) {
+fn remove_mean(u: &mut [f64], threads: &Threads) {
     let mut sums = Sums::new();
     sums.add::<f64, 1, 0>([&*u], [], |[u], []| [u]);
     let [sum] = sums.values();
     let mean = sum / u.len() as f64;
     if mean.is_finite() {
-        u.iter_mut().for_each(|u| *u -= mean);
+        threads.for_a_pass(u.len()).for_each_plain_row(u, BLOCK, |_, u| u.iter_mut().for_each(|u| *u -= mean));
     }
 }

@@ -2,40 +2,45 @@
 //! K is 2 if nothing else is said: tractions and creepages.
 //!
 //! `x = sum_j y_j z_j` with `z_j` the preconditioned vectors; the products of the z_j are kept, so that the product of x costs none.
+//!
+//! Vectors are stored in the precision T, double if nothing else is said; sums, borders and products are always double. x and its product belong to
+//! each other to double precision whatever T: the product is that of the stored z_j.
 
-use super::fields::{self as passes, dot_one as dot, plus, Fields};
+use super::fields::{self as passes, dot_one as dot, plus, Fields, Stored};
 use crate::error::Result;
 use crate::threads::Threads;
 
 /// A field, and a border: of friction tractions or slips, and creepages or forces; of adhesion pressures, and the approach or the force.
-pub struct Bordered<const K: usize = 2> {
-    pub field: Vec<[f64; K]>,
+pub struct Bordered<const K: usize = 2, T = f64> {
+    pub field: Vec<[T; K]>,
     pub border: [f64; K],
 }
 
-impl<const K: usize> Default for Bordered<K> {
-    fn default() -> Bordered<K> {
+impl<const K: usize, T> Default for Bordered<K, T> {
+    fn default() -> Bordered<K, T> {
         Bordered { field: Vec::new(), border: [0.0; K] }
     }
 }
 
 /// One direction: the preconditioned vector, and the product of its field with A.
 #[derive(Default)]
-pub struct Direction<const K: usize = 2> {
-    pub z: Bordered<K>,
+pub struct Direction<const K: usize = 2, T = f64> {
+    pub z: Bordered<K, T>,
     pub product: Vec<[f64; K]>,
 }
 
+/// A direction, and `H` of it.
+pub type Turned<const K: usize, T> = (Direction<K, T>, Bordered<K, T>);
+
 /// The system `H x = r`.
-pub trait System<const K: usize = 2> {
+pub trait System<const K: usize = 2, T = f64> {
     /// A preconditioned vector, its product with A, and `H` of it.
-    fn direction(&mut self, v: &Bordered<K>, fields: &mut Fields<K>) -> Result<(Direction<K>, Bordered<K>)>;
+    fn direction(&mut self, v: &Bordered<K, T>, fields: &mut Fields<K>) -> Result<Turned<K, T>>;
 }
 
 /// The solution as a combination, `x = sum_j y_j z_j`.
-#[derive(Default)]
-pub struct Combination<const K: usize = 2> {
-    pub directions: Vec<Direction<K>>,
+pub struct Combination<const K: usize = 2, T = f64> {
+    pub directions: Vec<Direction<K, T>>,
     pub y: Vec<f64>,
     /// The norm of what is left of r, relative to that of r.
     pub left: f64,
@@ -58,27 +63,23 @@ pub struct Until {
     pub most: usize,
 }
 
-/// Of the first residual: below that is the round-off of products, and directions of it are none.
-const ROUND_OFF: f64 = 1e-10;
-
 /// Solves `H x = r`; `weight`: of borders in the inner product.
-pub fn solve<const K: usize>(
-    system: &mut dyn System<K>,
-    mut r: Bordered<K>,
+pub fn solve<const K: usize, T: Stored>(
+    system: &mut dyn System<K, T>,
+    r: Bordered<K>,
     (Until { target, most }, weight): (Until, f64),
     threads: &Threads,
     fields: &mut Fields<K>,
-) -> Result<Combination<K>> {
-    let square = |v: &Bordered<K>| passes::dot(threads, &v.field, &v.field) + weight * dot(&v.border, &v.border);
-    let first = square(&r).sqrt();
-    let (mut norm, target) = (first, target.max(ROUND_OFF * first));
-    let mut found = Combination { left: 1.0, ..Combination::default() };
+) -> Result<Combination<K, T>> {
+    let first = (passes::dot(threads, &r.field, &r.field) + weight * dot(&r.border, &r.border)).sqrt();
+    let (mut norm, target) = (first, target.max(T::ROUND_OFF * first));
+    let mut found = Combination { directions: Vec::new(), y: Vec::new(), left: 1.0 };
     if !(norm > target) {
         fields.give(r.field);
         return Ok(found);
     }
-    scale(threads, &mut r, 1.0 / norm);
-    let mut basis = vec![r];
+    let field = T::stored(threads, r.field, 1.0 / norm, fields)?;
+    let mut basis = vec![Bordered { field, border: r.border.map(|value| 1.0 / norm * value) }];
     let mut triangle = Triangle { rest: vec![norm], ..Triangle::default() };
     while found.directions.len() < most && norm > target {
         let (direction, mut w) = system.direction(&basis[basis.len() - 1], fields)?;
@@ -93,17 +94,17 @@ pub fn solve<const K: usize>(
         }
         norm = triangle.rest[found.directions.len()].abs();
     }
-    basis.into_iter().for_each(|v| fields.give(v.field));
+    basis.into_iter().for_each(|v| fields.give_of(v.field));
     found.y = triangle.solve(found.directions.len());
     found.left = norm / first;
     Ok(found)
 }
 
 /// Takes from w what lies along the basis, as modified Gram and Schmidt do; returns the coefficients, and the norm of what is left.
-fn orthogonalise<const K: usize>(
+fn orthogonalise<const K: usize, T: Stored>(
     threads: &Threads,
-    w: &mut Bordered<K>,
-    basis: &[Bordered<K>],
+    w: &mut Bordered<K, T>,
+    basis: &[Bordered<K, T>],
     weight: f64,
 ) -> (Vec<f64>, f64) {
     let mut column = Vec::with_capacity(basis.len() + 1);
@@ -120,30 +121,30 @@ fn orthogonalise<const K: usize>(
     (column, (along + weight * dot(&w.border, &w.border)).sqrt())
 }
 
-fn scale<const K: usize>(threads: &Threads, v: &mut Bordered<K>, a: f64) {
+fn scale<const K: usize, T: Stored>(threads: &Threads, v: &mut Bordered<K, T>, a: f64) {
     passes::scale(threads, &mut v.field, a);
     v.border = v.border.map(|value| a * value);
 }
 
-impl<const K: usize> Direction<K> {
+impl<const K: usize, T: Stored> Direction<K, T> {
     /// Gives its fields back.
     pub fn give(self, fields: &mut Fields<K>) {
-        fields.give(self.z.field);
+        fields.give_of(self.z.field);
         fields.give(self.product);
     }
 }
 
-impl<const K: usize> Combination<K> {
+impl<const K: usize, T: Stored> Combination<K, T> {
     /// Adds x to `to`, and the product of its field to `product`; gives the directions back.
     pub fn add_to(self, to: &mut Bordered<K>, product: &mut [[f64; K]], threads: &Threads, fields: &mut Fields<K>) {
         let Combination { directions, y, .. } = self;
-        let of = |field: fn(&Direction<K>) -> &[[f64; K]]| -> Vec<(f64, &[[f64; K]])> {
-            y.iter().zip(&directions).map(|(y, direction)| (*y, field(direction))).collect()
-        };
-        passes::add_all(threads, &mut to.field, &of(|direction| &direction.z.field));
-        passes::add_all(threads, product, &of(|direction| &direction.product));
-        for (y, direction) in y.iter().zip(&directions) {
-            to.border = plus(to.border, *y, direction.z.border);
+        let terms = || y.iter().copied().zip(&directions);
+        let of_z: Vec<(f64, &[[T; K]])> = terms().map(|(y, direction)| (y, &direction.z.field[..])).collect();
+        let of_product: Vec<(f64, &[[f64; K]])> = terms().map(|(y, direction)| (y, &direction.product[..])).collect();
+        passes::add_all(threads, &mut to.field, &of_z);
+        passes::add_all(threads, product, &of_product);
+        for (y, direction) in terms() {
+            to.border = plus(to.border, y, direction.z.border);
         }
         directions.into_iter().for_each(|direction| direction.give(fields));
     }

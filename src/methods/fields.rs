@@ -1,8 +1,9 @@
-//! Passes over fields of K numbers per element, by several threads: sums are taken in blocks of fixed length and order, so that they have the
-//! same bits for any number of threads.
+//! Passes over fields of K numbers per element, in double or single precision, by several threads: sums are taken in double precision, in
+//! blocks of fixed length and order, so that they have the same bits for any number of threads.
 
 use crate::error::Result;
 use crate::memory::unwritten;
+use crate::operator::fft::Real;
 use crate::sums::Sums;
 use crate::threads::Threads;
 
@@ -13,29 +14,99 @@ pub const BLOCK: usize = 1024;
 #[derive(Default)]
 pub struct Fields<const K: usize = 2> {
     free: Vec<Vec<[f64; K]>>,
+    single: Vec<Vec<[f32; K]>>,
+}
+
+/// The precision that fields are stored in.
+pub trait Stored: Real {
+    /// What is below this part of a field that was solved for is the round-off of products and of storage.
+    const ROUND_OFF: f64;
+
+    /// Those of a pool.
+    fn of_pool<const K: usize>(fields: &mut Fields<K>) -> &mut Vec<Vec<[Self; K]>>;
+
+    /// A field times a factor, stored so; gives the field back where it is another one.
+    fn stored<const K: usize>(
+        threads: &Threads,
+        field: Vec<[f64; K]>,
+        factor: f64,
+        fields: &mut Fields<K>,
+    ) -> Result<Vec<[Self; K]>>;
+}
+
+impl Stored for f64 {
+    const ROUND_OFF: f64 = 1e-10;
+
+    fn of_pool<const K: usize>(fields: &mut Fields<K>) -> &mut Vec<Vec<[f64; K]>> {
+        &mut fields.free
+    }
+
+    fn stored<const K: usize>(
+        threads: &Threads,
+        mut field: Vec<[f64; K]>,
+        factor: f64,
+        _: &mut Fields<K>,
+    ) -> Result<Vec<[f64; K]>> {
+        scale(threads, &mut field, factor);
+        Ok(field)
+    }
+}
+
+impl Stored for f32 {
+    const ROUND_OFF: f64 = 1e-6;
+
+    fn of_pool<const K: usize>(fields: &mut Fields<K>) -> &mut Vec<Vec<[f32; K]>> {
+        &mut fields.single
+    }
+
+    fn stored<const K: usize>(
+        threads: &Threads,
+        field: Vec<[f64; K]>,
+        factor: f64,
+        fields: &mut Fields<K>,
+    ) -> Result<Vec<[f32; K]>> {
+        let mut single = fields.take_of::<f32>(field.len())?;
+        fill(threads, &mut single, |i| field[i].map(|value| (factor * value) as f32));
+        fields.give(field);
+        Ok(single)
+    }
 }
 
 impl<const K: usize> Fields<K> {
     /// A field of n elements, which holds anything.
     pub fn take(&mut self, n: usize) -> Result<Vec<[f64; K]>> {
-        let mut field = self.free.pop().unwrap_or_default();
-        unwritten(&mut field, n, [f64::NAN; K], "the iteration of Newton's method", &Threads::One)?;
-        Ok(field)
+        self.take_of(n)
     }
 
     /// Takes a field back.
     pub fn give(&mut self, field: Vec<[f64; K]>) {
-        self.free.push(field);
+        self.give_of(field);
+    }
+
+    /// A field of some precision.
+    pub fn take_of<T: Stored>(&mut self, n: usize) -> Result<Vec<[T; K]>> {
+        let mut field = T::of_pool(self).pop().unwrap_or_default();
+        unwritten(&mut field, n, [T::nan(); K], "the iteration of Newton's method", &Threads::One)?;
+        Ok(field)
+    }
+
+    /// Takes a field of some precision back.
+    pub fn give_of<T: Stored>(&mut self, field: Vec<[T; K]>) {
+        T::of_pool(self).push(field);
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.free.iter().map(|field| field.capacity() * size_of::<[f64; K]>()).sum()
+        bytes_of(&self.free) + bytes_of(&self.single)
     }
 }
 
+fn bytes_of<T>(fields: &[Vec<T>]) -> usize {
+    fields.iter().map(|field| field.capacity() * size_of::<T>()).sum()
+}
+
 /// `v . w`.
-pub fn dot<const K: usize>(threads: &Threads, v: &[[f64; K]], w: &[[f64; K]]) -> f64 {
+pub fn dot<const K: usize, T: Real>(threads: &Threads, v: &[[T; K]], w: &[[T; K]]) -> f64 {
     let mut sums = vec![0.0; v.len().div_ceil(BLOCK)];
     threads.for_each_plain_row(&mut sums, 1, |k, sum| {
         let block = k * BLOCK..((k + 1) * BLOCK).min(v.len());
@@ -45,60 +116,60 @@ pub fn dot<const K: usize>(threads: &Threads, v: &[[f64; K]], w: &[[f64; K]]) ->
 }
 
 /// `to += a v`, and then `to . w`.
-pub fn add_and_dot<const K: usize>(
+pub fn add_and_dot<const K: usize, T: Real>(
     threads: &Threads,
-    to: &mut [[f64; K]],
+    to: &mut [[T; K]],
     a: f64,
-    v: &[[f64; K]],
-    w: &[[f64; K]],
+    v: &[[T; K]],
+    w: &[[T; K]],
 ) -> f64 {
     add_and_sum(threads, to, a, v, |start, to| dot_of_block(to, &w[start..start + to.len()]))
 }
 
 /// `to += a v`, and then `to . to`.
-pub fn add_and_square<const K: usize>(threads: &Threads, to: &mut [[f64; K]], a: f64, v: &[[f64; K]]) -> f64 {
+pub fn add_and_square<const K: usize, T: Real>(threads: &Threads, to: &mut [[T; K]], a: f64, v: &[[T; K]]) -> f64 {
     add_and_sum(threads, to, a, v, |_, to| dot_of_block(to, to))
 }
 
 /// `to += a v`, and then the sum of what `of` makes of each block of it, which starts at an element.
-fn add_and_sum<const K: usize>(
+fn add_and_sum<const K: usize, T: Real>(
     threads: &Threads,
-    to: &mut [[f64; K]],
+    to: &mut [[T; K]],
     a: f64,
-    v: &[[f64; K]],
-    of: impl Fn(usize, &[[f64; K]]) -> f64 + Sync + Send,
+    v: &[[T; K]],
+    of: impl Fn(usize, &[[T; K]]) -> f64 + Sync + Send,
 ) -> f64 {
     let mut sums = vec![0.0; v.len().div_ceil(BLOCK)];
     threads.for_each_row_pair((to, BLOCK), (&mut sums[..], 1), |k, to, sum| {
         let start = k * BLOCK;
-        to.iter_mut().zip(&v[start..]).for_each(|(to, v)| *to = plus(*to, a, *v));
+        to.iter_mut().zip(&v[start..]).for_each(|(to, v)| *to = plus_of(*to, a, *v));
         sum[0] = of(start, to);
     });
     sums.iter().sum()
 }
 
 /// `to += sum of a_j v_j`, in one pass.
-pub fn add_all<const K: usize>(threads: &Threads, to: &mut [[f64; K]], terms: &[(f64, &[[f64; K]])]) {
+pub fn add_all<const K: usize, S: Real, T: Real>(threads: &Threads, to: &mut [[S; K]], terms: &[(f64, &[[T; K]])]) {
     threads.for_each_plain_row(to, BLOCK, |k, to| {
         for (a, v) in terms {
             let v = &v[k * BLOCK..k * BLOCK + to.len()];
-            to.iter_mut().zip(v).for_each(|(to, v)| *to = plus(*to, *a, *v));
+            to.iter_mut().zip(v).for_each(|(to, v)| *to = plus_of(*to, *a, *v));
         }
     });
 }
 
 /// `to *= a`.
-pub fn scale<const K: usize>(threads: &Threads, to: &mut [[f64; K]], a: f64) {
+pub fn scale<const K: usize, T: Real>(threads: &Threads, to: &mut [[T; K]], a: f64) {
     threads.for_each_plain_row(to, BLOCK, |_, to| {
-        to.iter_mut().for_each(|to| *to = to.map(|value| a * value));
+        to.iter_mut().for_each(|to| *to = to.map(|value| T::of(a * value.to_double())));
     });
 }
 
 /// `to = f(i, to)` for each element i.
-pub fn map<const K: usize>(
+pub fn map<const K: usize, T: Real>(
     threads: &Threads,
-    to: &mut [[f64; K]],
-    f: impl Fn(usize, [f64; K]) -> [f64; K] + Sync + Send,
+    to: &mut [[T; K]],
+    f: impl Fn(usize, [T; K]) -> [T; K] + Sync + Send,
 ) {
     threads.for_each_plain_row(to, BLOCK, |k, to| {
         to.iter_mut().enumerate().for_each(|(i, to)| *to = f(k * BLOCK + i, *to));
@@ -106,7 +177,7 @@ pub fn map<const K: usize>(
 }
 
 /// `to = f(i)` for each element i.
-pub fn fill<const K: usize>(threads: &Threads, to: &mut [[f64; K]], f: impl Fn(usize) -> [f64; K] + Sync + Send) {
+pub fn fill<const K: usize, T: Real>(threads: &Threads, to: &mut [[T; K]], f: impl Fn(usize) -> [T; K] + Sync + Send) {
     threads.for_each_plain_row(to, BLOCK, |k, to| {
         to.iter_mut().enumerate().for_each(|(i, to)| *to = f(k * BLOCK + i));
     });
@@ -149,9 +220,9 @@ pub fn over<B: Send, const K: usize>(
 
 /// Four sums side by side: one would wait for each addition.
 #[inline(always)]
-fn dot_of_block<const K: usize>(v: &[[f64; K]], w: &[[f64; K]]) -> f64 {
+fn dot_of_block<const K: usize, T: Real>(v: &[[T; K]], w: &[[T; K]]) -> f64 {
     let mut sums = Sums::new();
-    sums.add::<f64, 2, 0>([v.as_flattened(), w.as_flattened()], [], |[v, w], []| [v * w]);
+    sums.add::<T, 0, 2>([], [v.as_flattened(), w.as_flattened()], |[], [v, w]| [v * w]);
     let [sum] = sums.values();
     sum
 }
@@ -166,4 +237,10 @@ pub fn dot_one<const K: usize>(v: &[f64; K], w: &[f64; K]) -> f64 {
 #[inline]
 pub fn plus<const K: usize>(v: [f64; K], a: f64, w: [f64; K]) -> [f64; K] {
     std::array::from_fn(|k| v[k] + a * w[k])
+}
+
+/// `v + a w` of one element, stored so.
+#[inline(always)]
+fn plus_of<const K: usize, S: Real, T: Real>(v: [S; K], a: f64, w: [T; K]) -> [S; K] {
+    std::array::from_fn(|k| S::of(v[k].to_double() + a * w[k].to_double()))
 }

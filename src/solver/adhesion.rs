@@ -56,7 +56,7 @@ impl Solver {
     /// Contact pressure q and attraction sigma of element i of the last result; none if its scene had no adhesion.
     pub fn adhesion(&self) -> Option<impl Fn(usize) -> (f64, f64) + '_> {
         let solver = self.adhesion.as_deref().filter(|_| self.has_result && self.is_adhesive)?;
-        Some(|i| solver.split(i))
+        Some(|i| solver.split(&self.state, i))
     }
 
     /// Looks for the least force that an equilibrium has: from the load of the scene the approach goes down until the force rises again. The result is
@@ -134,6 +134,7 @@ impl Solver {
                 Box::new(adhesion::Solver::new(*grid, coefficients, operator, threads)?)
             }
         };
+        let h = std::mem::take(&mut self.state.h);
         let state = &self.state;
         let from = match guess {
             _ if goes_on => {
@@ -146,7 +147,8 @@ impl Solver {
             Work::Uniform(work) => (work, None),
             Work::PerElement(works) => (0.0, Some(works)),
         };
-        let surfaces = Surfaces { h: &state.h, law: adhesion.law, range: adhesion.range, work, works };
+        let surfaces = Surfaces { law: adhesion.law, range: adhesion.range, work, works };
+        solver.lend(h);
         let request = Request {
             surfaces,
             load: scene.load,
@@ -162,6 +164,7 @@ impl Solver {
             Ok(Box::new(Plain(Methods::new(problem, options)?)))
         };
         let outcome = solver.solve(&request, &make, monitor);
+        self.state.h = solver.give_back();
         if outcome.is_ok() {
             let (state, found) = (&mut self.state, solver.finest());
             state.p.copy_from_slice(found.now.p.field.as_flattened());

@@ -79,7 +79,8 @@ impl Solver {
             self.friction.iter_mut().for_each(|before| before.forget());
             return Ok((stop, None));
         };
-        let bound = Bound::new(friction, adhesion.shear_strength, scene.grid.len(), |i| found.split(i).0)?;
+        let of_element = |i: usize| found.split(&self.state, i).0;
+        let bound = Bound::new(friction, adhesion.shear_strength, scene.grid.len(), of_element)?;
         let threads = self.problem.threads.clone();
         let mut tangent = self.take_tangent(scene, options)?;
         let turn = Turn { scene, friction: &bound.of(friction), options, threads: &threads };

@@ -6,6 +6,7 @@ mod hard_cases;
 mod loop_of_loading;
 mod maugis;
 mod pairs;
+mod parting;
 mod pulls;
 mod random;
 mod sphere;

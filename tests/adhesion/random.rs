@@ -11,7 +11,7 @@ use super::certificate::{displacements, traction, worst};
 use super::support::{adhesion, bodies, range_of, Sphere, MODULUS};
 
 /// Numbers in [0, 1): Knuth's multiplier.
-struct Draw(u64);
+pub struct Draw(pub u64);
 
 impl Draw {
     fn next(&mut self) -> f64 {
@@ -29,7 +29,7 @@ impl Draw {
 }
 
 /// kappa of a range on square elements: `steepness w/rho^2 a0`, a0 = 4 d asinh(1)/(pi E*).
-fn range_of_kappa(law: Law, work: f64, d: f64, modulus: f64, kappa: f64) -> f64 {
+pub fn range_of_kappa(law: Law, work: f64, d: f64, modulus: f64, kappa: f64) -> f64 {
     (law.steepness() * work * 4.0 * d * 1f64.asinh() / (PI * modulus) / kappa).sqrt()
 }
 
@@ -59,7 +59,7 @@ fn spheres_of_all_laws_are_solved_and_certified() {
 }
 
 /// Waves of random phases, their rms slope .1: heights fall as a power of the wave number.
-fn rough(n: usize, draw: &mut Draw, hurst: f64) -> (Vec<f64>, f64) {
+pub fn rough(n: usize, draw: &mut Draw, hurst: f64) -> (Vec<f64>, f64) {
     let mut waves = Vec::new();
     for kx in 0..=12i32 {
         for ky in -12..=12i32 {

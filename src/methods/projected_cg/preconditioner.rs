@@ -89,6 +89,15 @@ impl<T: Real> Preconditioner<T> {
         z.iter_mut().zip(&*unit).for_each(|(z, unit)| *z = *z - amount * *unit);
     }
 
+    /// z = M z, without residuals beside C.
+    pub fn apply_alone(&mut self, z: &mut [T], workspace: &mut Workspace<T>) {
+        let Preconditioner { parts, right, term, .. } = self;
+        match &parts[..] {
+            [Part { inverse, weights, .. }] if weights.is_empty() => inverse.apply_in_place(z, workspace),
+            _ => mix(parts, z, &mut None, workspace, (right, term)),
+        }
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let parts: usize = self.parts.iter().map(|part| part.inverse.bytes() + size_of_val(&part.weights[..])).sum();

@@ -1886,7 +1886,8 @@ typedef struct contact_normal_report_adhesion {
    */
   double adhesive_energy;
   /*
-   `||p + sigma(e)|| / ||p||`, the first outside C, 2-norms, with a fresh product: it is at most the tolerance, too.
+   `||p + sigma(e)|| / ||p||`, the first outside C, 2-norms, with a fresh product: it is at most the tolerance, too. Where
+   contact pressures and attraction cancel 1e-3 `||q||` is the scale.
    */
   double law_residual;
   /*
