@@ -65,7 +65,7 @@ STATIC_LIBS := -lkernel32 -lntdll -luserenv -lws2_32 -ldbghelp
 SHARED_LIBS := -lcontact_normal
 LOADER_PATH := PATH
 EXE := .exe
-STRIP_SHARED = $(OBJCOPY) --strip-debug
+STRIP_SHARED = $(OBJCOPY) --strip-unneeded
 STRIP_STATIC = $(OBJCOPY) --strip-debug --remove-section=.llvmbc --remove-section=.llvmcmd
 STRIP_PROGRAM = $(OBJCOPY) --strip-debug
 endif

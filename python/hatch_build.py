@@ -32,9 +32,10 @@ class Library(BuildHookInterface):
         self.folder = tempfile.TemporaryDirectory()
         stripped = Path(self.folder.name) / name
         shutil.copyfile(library, stripped)
-        # Elsewhere the debug information is not in the library.
-        if file.system == "linux":
-            subprocess.run([os.environ.get("STRIP", "strip"), "--strip-unneeded", stripped], check=True)
+        # On macOS the debug information is not in the library; on Windows strip is MinGW-w64's, if the library is.
+        strip = os.environ.get("STRIP", "strip")
+        if file.system == "linux" or file.system == "win" and shutil.which(strip):
+            subprocess.run([strip, "--strip-unneeded", stripped], check=True)
         build_data["force_include"][str(stripped)] = f"contact_normal/{name}"
         build_data["pure_python"] = False
         build_data["tag"] = f"py3-none-{file.tag()}"
