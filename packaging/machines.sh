@@ -55,7 +55,7 @@ compiler_for() {
     std=(-Zbuild-std=std,panic_unwind)
 }
 
-export CARGO_TARGET_DIR=$here/target CARGO_PROFILE_CHECKED_DEBUG=0
+export WINEPREFIX=$here/wine CARGO_TARGET_DIR=$here/target CARGO_PROFILE_CHECKED_DEBUG=0
 export CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER=aarch64-linux-gnu-gcc
 test -n "$sudo" || apt-get update -qq
 for target in "${targets[@]}"; do
