@@ -7,14 +7,14 @@ include packaging/install.mk
 
 WHEEL_RAIL := data/wheel_rail/y4_82kN.txt
 
-# Programs of Python's environments; $(call environment,folder,file of requirements) makes one, and a file "ready" in it.
+# Programs of Python's environments; $(call environment,folder,packages) makes one, and a file "ready" in it.
 SCRIPTS := $(if $(filter Windows_NT,$(OS)),Scripts,bin)
 TOOLS := build/tools/$(SCRIPTS)
-environment = @python3 -c 'import ensurepip, venv' 2>/dev/null || { $(call apt_get,python3-venv); }; \
-	python3 -m venv $(1) && $(1)/$(SCRIPTS)/python -m pip install --quiet --disable-pip-version-check -r $(2) && touch $(1)/ready
+environment = python3 -c 'import ensurepip, venv' 2>/dev/null || { $(call apt_get,python3-venv); }; \
+	python3 -m venv $(1) && $(1)/$(SCRIPTS)/python -m pip install --quiet --disable-pip-version-check $(2) && touch $(1)/ready
 
 # The first Python that has numpy and matplotlib: a python3 of the user's own may lack what /usr/bin/python3 has.
-find_python = $$(for p in "$$PYTHON" python3 /usr/bin/python3; do \
+find_python = $$(for p in "$$PYTHON" python3 /usr/bin/python3 build/demo/$(SCRIPTS)/python; do \
 	test -n "$$p" && "$$p" -c 'import numpy, matplotlib' 2>/dev/null && echo "$$p" && break; done; true)
 
 # $(call apt_get,packages): installs Debian packages, without what they only recommend, with sudo unless we are root; says so. Without
@@ -42,12 +42,16 @@ tools demo-tools:
 	need gcc gcc; need gfortran gfortran; \
 	if test $@ = tools; then need g++ g++; need valgrind valgrind; need pkg-config pkg-config; need cmake cmake; fi; \
 	echo 'int main(void) { return 0; }' | gcc -x c - -o /dev/null 2>/dev/null || missing="$$missing gcc libc6-dev"; \
-	if test -z "$(find_python)"; then missing="$$missing python3 python3-numpy python3-matplotlib"; fi; \
+	if test -n "$(find_python)"; then :; \
+	elif test $@ = tools; then missing="$$missing python3 python3-numpy python3-matplotlib"; \
+	else python3 -c 'import ensurepip, venv' 2>/dev/null || missing="$$missing python3-venv"; fi; \
 	test -z "$$missing" || { $(call apt_get,$$missing); }
 
-# Builds the shared library only, in a profile that compiles in less time and memory than that of a release.
+# Builds the shared library only, in a profile that compiles in less time and memory than that of a release. numpy and matplotlib come by pip:
+# Debian's packages of them bring twice as much.
 DEMO_BUILT := $(or $(CARGO_TARGET_DIR),target)/demo
 demo: demo-tools
+	@test -n "$(find_python)" || { $(call environment,build/demo,numpy matplotlib); }
 	$(CARGO) rustc --profile demo --locked --lib --crate-type cdylib
 	@mkdir -p build
 	@ln -sfn $(abspath $(DEMO_BUILT))/$(BUILT) build/$(SONAME)
@@ -181,7 +185,7 @@ machines:
 	packaging/machines.sh $(MACHINES)
 
 build/zig/ready: packaging/requirements_zig.txt
-	$(call environment,build/zig,$<)
+	@$(call environment,build/zig,-r $<)
 
 # All that a release hands out, for this machine or for TARGET, in build/dist: the source, the library as `make install` has it, the wheel, the
 # source for pip, the header, and their checksums.
@@ -233,7 +237,7 @@ pictures: all build/tools/ready
 
 # What builds wheels and the site: an environment of Python, apart from the user's.
 build/tools/ready: packaging/requirements.txt
-	$(call environment,build/tools,$<)
+	@$(call environment,build/tools,-r $<)
 
 # The licences of what is linked, anew: after a change of Cargo.lock.
 notices:
