@@ -194,8 +194,8 @@ PLATFORM := $(or $(TARGET),$(shell uname -m)-$(SYSTEM))
 dist: wheel
 	rm -rf build/dist build/dist_prefix
 	mkdir -p build/dist
-	git archive --format=tar.gz --prefix=$(DIST)/ -o build/dist/$(DIST).tar.gz HEAD
-	$(MAKE) --no-print-directory -s install DESTDIR= PREFIX=build/dist_prefix/$(DIST)-$(PLATFORM) LIBDIR= PC_PREFIX='$${pcfiledir}/../..' \
+	git archive --format=tar.gz --prefix=$(DIST)/ -o build/dist/$(DIST)-source.tar.gz HEAD
+	$(MAKE) --no-print-directory -s install DESTDIR= PREFIX=build/dist_prefix/$(DIST)-$(PLATFORM) LIBDIR= RELOCATABLE=yes \
 		SHARED_BUILT=$(WHEEL_LIBRARY)
 	tar -C build/dist_prefix -czf build/dist/$(DIST)-$(PLATFORM).tar.gz $(DIST)-$(PLATFORM)
 	cp build/wheel/*.whl include/contact_normal.h build/dist

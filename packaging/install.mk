@@ -12,6 +12,8 @@ OBJCOPY ?= objcopy
 # shared library there, where debuggers look for it.
 STRIPPED ?= yes
 DEBUGDIR ?=
+# RELOCATABLE=yes: pkg-config finds the files where they are, for archives that are unpacked anywhere.
+RELOCATABLE ?=
 
 VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 
@@ -97,7 +99,7 @@ LINKS := $(filter-out $(REALNAME),$(SONAME) $(if $(filter-out windows,$(SYSTEM))
 below := $(patsubst $(PREFIX)/%,%,$(filter $(PREFIX)/%,$(LIBDIR)))
 empty :=
 up := $(subst $(empty) $(empty),/,$(foreach folder,$(subst /, ,$(below)),..))
-PC_PREFIX ?= $(PREFIX)
+PC_PREFIX := $(if $(RELOCATABLE),$${pcfiledir}/../$(up),$(PREFIX))
 PC_LIBDIR := $(if $(below),$${prefix}/$(below),$(LIBDIR))
 CMAKE_PREFIX := $(if $(below),$${CMAKE_CURRENT_LIST_DIR}/../../$(up),$(PREFIX))
 

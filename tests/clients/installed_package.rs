@@ -158,6 +158,23 @@ fn a_packager_chooses_the_folders() {
     }
 }
 
+/// An installation that is meant to be moved: pkg-config names the folder where it is now.
+#[test]
+fn an_archive_is_unpacked_anywhere() {
+    let folder = scratch("moved_package");
+    let made = folder.join("made");
+    make_built("install", &[format!("PREFIX={}", made.display()), "RELOCATABLE=yes".to_owned()]);
+    let moved = folder.join("moved");
+    std::fs::rename(made, &moved).expect("moved");
+    let flags = pkg_config(&moved, &["--cflags"]);
+    let named = flags[0].strip_prefix("-I").expect("a folder of headers");
+    assert_eq!(
+        std::fs::canonicalize(named).expect("the folder"),
+        moved.join("include").canonicalize().expect("the folder")
+    );
+    cmake_finds(&moved.join("lib"), &moved);
+}
+
 /// CMake's file, where nothing was moved: it names the library in this folder and the headers in that prefix.
 fn cmake_finds(libraries: &Path, prefix: &Path) {
     let script = libraries.join("found.cmake");
