@@ -7,8 +7,14 @@ include packaging/install.mk
 
 WHEEL_RAIL := data/wheel_rail/y4_82kN.txt
 
+# Programs of Python's environments; $(call environment,folder,packages) makes one, and a file "ready" in it.
+SCRIPTS := $(if $(filter Windows_NT,$(OS)),Scripts,bin)
+TOOLS := build/tools/$(SCRIPTS)
+environment = python3 -c 'import ensurepip, venv' 2>/dev/null || { $(call apt_get,python3-venv); }; \
+	python3 -m venv $(1) && $(1)/$(SCRIPTS)/python -m pip install --quiet --disable-pip-version-check $(2) && touch $(1)/ready
+
 # The first Python that has numpy and matplotlib: a python3 of the user's own may lack what /usr/bin/python3 has.
-find_python = $$(for p in "$$PYTHON" python3 /usr/bin/python3; do \
+find_python = $$(for p in "$$PYTHON" python3 /usr/bin/python3 build/demo/$(SCRIPTS)/python; do \
 	test -n "$$p" && "$$p" -c 'import numpy, matplotlib' 2>/dev/null && echo "$$p" && break; done; true)
 
 # $(call apt_get,packages): installs Debian packages, without what they only recommend, with sudo unless we are root; says so. Without
@@ -21,11 +27,12 @@ apt_get = command -v apt-get >/dev/null || { echo "missing, and no apt-get to in
 	$$sudo apt-get update -qq && \
 	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $(1)
 
-.PHONY: pictures all demo test campaign soak bench bench-table bench-peers analysis accuracy plain-cost tools demo-tools wheel package-test docs notices clean
+.PHONY: all demo demo-tools tools test campaign soak bench bench-table bench-peers analysis accuracy plain-cost
+.PHONY: wheel wheel-library dist machines package-test docs pictures notices clean
 .DEFAULT_GOAL := all
 
 all:
-	$(CARGO) build --release --locked
+	$(CARGO) build --release --locked $(if $(TARGET),--target $(TARGET))
 
 # Installs those Debian packages whose tool is missing: for the demo fewer than for the tests. Without sudo: have them installed
 # before, then nothing is done here.
@@ -35,28 +42,35 @@ tools demo-tools:
 	need gcc gcc; need gfortran gfortran; \
 	if test $@ = tools; then need g++ g++; need valgrind valgrind; need pkg-config pkg-config; need cmake cmake; fi; \
 	echo 'int main(void) { return 0; }' | gcc -x c - -o /dev/null 2>/dev/null || missing="$$missing gcc libc6-dev"; \
-	if test -z "$(find_python)"; then missing="$$missing python3 python3-numpy python3-matplotlib"; fi; \
+	if test -n "$(find_python)"; then :; \
+	elif test $@ = tools; then missing="$$missing python3 python3-numpy python3-matplotlib"; \
+	else python3 -c 'import ensurepip, venv' 2>/dev/null || missing="$$missing python3-venv"; fi; \
 	test -z "$$missing" || { $(call apt_get,$$missing); }
 
-demo: demo-tools all
+# Builds the shared library only, in a profile that compiles in less time and memory than that of a release. numpy and matplotlib come by pip:
+# Debian's packages of them bring twice as much.
+DEMO_BUILT := $(or $(CARGO_TARGET_DIR),target)/demo
+demo: demo-tools
+	@test -n "$(find_python)" || { $(call environment,build/demo,numpy matplotlib); }
+	$(CARGO) rustc --profile demo --locked --lib --crate-type cdylib
 	@mkdir -p build
-	@ln -sfn ../target/release/libcontact_normal.so build/$(SONAME)
-	$(CC) -std=c99 -O2 -Iinclude c_examples/hertz.c -o build/hertz_c -Ltarget/release -lcontact_normal -lm
-	$(CC) -std=c99 -O2 -Iinclude c_examples/wheel_rail.c -o build/wheel_rail_c -Ltarget/release -lcontact_normal -lm
+	@ln -sfn $(abspath $(DEMO_BUILT))/$(BUILT) build/$(SONAME)
+	$(CC) -std=c99 -O2 -Iinclude c_examples/hertz.c -o build/hertz_c -L$(DEMO_BUILT) -lcontact_normal -lm
+	$(CC) -std=c99 -O2 -Iinclude c_examples/wheel_rail.c -o build/wheel_rail_c -L$(DEMO_BUILT) -lcontact_normal -lm
 	$(FC) -O2 -Jbuild include/contact_normal.f90 fortran_examples/hertz.f90 -o build/hertz_f \
-		-Ltarget/release -lcontact_normal
+		-L$(DEMO_BUILT) -lcontact_normal
 	$(FC) -O2 -Jbuild include/contact_normal.f90 fortran_examples/wheel_rail.f90 -o build/wheel_rail_f \
-		-Ltarget/release -lcontact_normal
+		-L$(DEMO_BUILT) -lcontact_normal
 	@echo; echo "== The paper's problem, from C"
-	@LD_LIBRARY_PATH=build build/hertz_c
+	@$(LOADER_PATH)=build build/hertz_c
 	@echo; echo "== The paper's problem, from Fortran"
-	@LD_LIBRARY_PATH=build build/hertz_f
+	@$(LOADER_PATH)=build build/hertz_f
 	@echo; echo "== Wheel and rail, from C"
-	@LD_LIBRARY_PATH=build build/wheel_rail_c $(WHEEL_RAIL)
+	@$(LOADER_PATH)=build build/wheel_rail_c $(WHEEL_RAIL)
 	@echo; echo "== Wheel and rail, from Fortran"
-	@LD_LIBRARY_PATH=build build/wheel_rail_f $(WHEEL_RAIL)
+	@$(LOADER_PATH)=build build/wheel_rail_f $(WHEEL_RAIL)
 	@echo; echo "== Wheel and rail, from Python"
-	@CONTACT_NORMAL_LIBRARY=target/release/libcontact_normal.so PYTHONPATH=python PYTHONDONTWRITEBYTECODE=1 \
+	@CONTACT_NORMAL_LIBRARY=$(abspath $(DEMO_BUILT))/$(BUILT) PYTHONPATH=python PYTHONDONTWRITEBYTECODE=1 \
 		"$(find_python)" python_examples/wheel_rail.py $(WHEEL_RAIL) build/wheel_rail.png
 	@echo; echo "The picture: build/wheel_rail.png"
 
@@ -102,7 +116,7 @@ $(OLD_PROGRAM):
 # hundredth of them; TABLE="--errors" compares the estimated errors with finer grids.
 TABLE ?=
 bench-table: all
-	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so PYTHONPATH=python PYTHONDONTWRITEBYTECODE=1 \
+	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/$(BUILT) PYTHONPATH=python PYTHONDONTWRITEBYTECODE=1 \
 		"$(find_python)" benches/creep_force_table.py $(TABLE)
 
 # The same problems by other solvers, at pinned versions in an environment under build/; see benches/peers. PEERS="--quick".
@@ -141,49 +155,89 @@ RECORD ?=
 plain-cost: tools all
 	"$(find_python)" benches/plain_solve/check.py $(LIBDIR_BUILT)/libcontact_normal.so include $(if $(RECORD),--record "$(RECORD)")
 
-# The wheel, in build/wheel: py3-none-<platform>, with the stripped library inside.
-wheel: all build/tools/bin/python
+# The wheel, in build/wheel: py3-none-<platform>, with the stripped library inside. TARGET, a target of Rust, makes that of another machine.
+wheel: wheel-library build/tools/ready
 	rm -rf build/wheel
-	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so \
-		build/tools/bin/python -m build --wheel --no-isolation --outdir build/wheel >build/wheel.log || { cat build/wheel.log >&2; exit 1; }
+	CONTACT_NORMAL_LIBRARY=$(abspath $(WHEEL_LIBRARY)) $(if $(filter linux,$(SYSTEM)),STRIP=true) \
+		$(TOOLS)/python -m build --wheel --no-isolation --outdir build/wheel >build/wheel.log || { cat build/wheel.log >&2; exit 1; }
+	$(TOOLS)/python packaging/check_wheel.py build/wheel/*.whl $(if $(filter linux,$(SYSTEM)),manylinux_$(subst .,_,$(GLIBC)))
+
+# The library of the wheel. On Linux the static library is linked once more, by zig, which has the symbols of each version of glibc: this
+# machine's glibc would ask for its own, newest ones. Here the tag of the wheel is true from GLIBC on.
+GLIBC := 2.28
+ifeq ($(SYSTEM),linux)
+MACHINE := $(firstword $(subst -, ,$(or $(TARGET),$(shell uname -m))))
+WHEEL_LIBRARY := build/wheel_library/$(MACHINE)/$(BUILT)
+wheel-library: all build/zig/ready
+	@mkdir -p $(dir $(WHEEL_LIBRARY))
+	@{ echo '{ global:'; sed 's/$$/;/' include/exported_symbols.txt; echo 'local: *; };'; } > build/wheel_library/exports
+	build/zig/$(SCRIPTS)/python -m ziglang cc -target $(MACHINE)-linux-gnu.$(GLIBC) -shared -s -o $(WHEEL_LIBRARY) \
+		-Wl,-soname,$(SONAME) -Wl,-z,nodelete -Wl,-z,defs -Wl,--version-script=build/wheel_library/exports -Wl,--gc-sections \
+		-Wl,--whole-archive $(LIBDIR_BUILT)/libcontact_normal.a -Wl,--no-whole-archive -lunwind -lm -lpthread -ldl
+else
+WHEEL_LIBRARY := $(LIBDIR_BUILT)/$(BUILT)
+wheel-library: all
+endif
+
+# Builds the library for other machines and tries it there: MACHINES="aarch64-unknown-linux-gnu" one of them. Some 20 minutes.
+MACHINES ?=
+machines:
+	packaging/machines.sh $(MACHINES)
+
+build/zig/ready: packaging/requirements_zig.txt
+	@$(call environment,build/zig,-r $<)
+
+# All that a release hands out, for this machine or for TARGET, in build/dist: the source, the library as `make install` has it, the wheel, the
+# source for pip, the header, and their checksums.
+DIST := contact-normal-$(VERSION)
+PLATFORM := $(or $(TARGET),$(shell uname -m)-$(SYSTEM))
+dist: wheel
+	rm -rf build/dist build/dist_prefix
+	mkdir -p build/dist
+	git archive --format=tar.gz --prefix=$(DIST)/ -o build/dist/$(DIST)-source.tar.gz HEAD
+	$(MAKE) --no-print-directory -s install DESTDIR= PREFIX=build/dist_prefix/$(DIST)-$(PLATFORM) LIBDIR= RELOCATABLE=yes \
+		SHARED_BUILT=$(WHEEL_LIBRARY)
+	tar -C build/dist_prefix -czf build/dist/$(DIST)-$(PLATFORM).tar.gz $(DIST)-$(PLATFORM)
+	cp build/wheel/*.whl include/contact_normal.h build/dist
+	$(TOOLS)/python -m build --sdist --no-isolation --outdir build/dist >build/sdist.log || { cat build/sdist.log >&2; exit 1; }
+	cd build/dist && { command -v sha256sum >/dev/null && sha256sum * || shasum -a 256 *; } > ../SHA256SUMS
+	mv build/SHA256SUMS build/dist
+	@ls -l build/dist
 
 # Installs the library into an empty prefix and the wheel into an empty environment, and uses them without Rust in PATH.
-package-test: tools wheel build/tools/bin/python
+package-test: tools wheel build/tools/ready
 	rm -rf build/prefix
 	$(MAKE) --no-print-directory -s install PREFIX=build/prefix DESTDIR=
-	@ls -l build/prefix/lib/libcontact_normal.so.*.* build/prefix/lib/libcontact_normal.a build/wheel/*.whl
-	build/tools/bin/python -m mypy
+	@ls -l build/prefix/lib/$(REALNAME) build/prefix/lib/libcontact_normal.a build/wheel/*.whl
+	$(TOOLS)/python -m mypy
 	@test $$(stat -c %s build/wheel/*.whl) -le 5000000 || { echo "the wheel is larger than 5 MB" >&2; exit 1; }
-	FPM=$(abspath build/tools/bin/fpm) packaging/test.sh build/prefix build/wheel/*.whl build/consumers
+	FPM=$(abspath $(TOOLS)/fpm) packaging/test.sh build/prefix build/wheel/*.whl build/consumers
 
 # The site, in build/docs/html. Warnings are errors; links and code blocks are checked.
-docs: tools all build/tools/bin/python
+docs: tools all build/tools/ready
 	rm -rf build/docs
 	$(MAKE) --no-print-directory -s install PREFIX=build/prefix DESTDIR=
-	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so PYTHONPATH=$(abspath python) \
-		build/tools/bin/python docs/pictures.py --dark docs/pictures/dark
+	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/$(BUILT) PYTHONPATH=$(abspath python) \
+		$(TOOLS)/python docs/pictures.py --dark docs/pictures/dark
 	for notebook in notebooks/*.ipynb; do \
-		CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so PYTHONPATH=$(abspath python) \
-			build/tools/bin/python docs/run_notebook.py $$notebook docs/notebooks || exit 1; \
+		CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/$(BUILT) PYTHONPATH=$(abspath python) \
+			$(TOOLS)/python docs/run_notebook.py $$notebook docs/notebooks || exit 1; \
 	done
-	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so \
-		build/tools/bin/python -m sphinx -W --keep-going -q docs build/docs/html
-	build/tools/bin/python docs/check_links.py
-	CONTACT_NORMAL_LIBRARY=$(abspath build/prefix/lib/libcontact_normal.so) PYTHONPATH=$(abspath python) \
-		build/tools/bin/python docs/check_code.py build/prefix build/docs/code
+	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/$(BUILT) \
+		$(TOOLS)/python -m sphinx -W --keep-going -q docs build/docs/html
+	$(TOOLS)/python docs/check_links.py
+	CONTACT_NORMAL_LIBRARY=$(abspath build/prefix/lib/$(BUILT)) PYTHONPATH=$(abspath python) \
+		$(TOOLS)/python docs/check_code.py build/prefix build/docs/code
 	@echo "The site: build/docs/html/index.html"
 
 # The pictures of the pages, anew: after a change of an example or of the style.
-pictures: all build/tools/bin/python
-	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/libcontact_normal.so PYTHONPATH=$(abspath python) \
-		build/tools/bin/python docs/pictures.py docs/pictures
+pictures: all build/tools/ready
+	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/$(BUILT) PYTHONPATH=$(abspath python) \
+		$(TOOLS)/python docs/pictures.py docs/pictures
 
 # What builds wheels and the site: an environment of Python, apart from the user's.
-build/tools/bin/python: packaging/requirements.txt
-	@python3 -c 'import ensurepip, venv' 2>/dev/null || { $(call apt_get,python3-venv); }
-	python3 -m venv build/tools
-	build/tools/bin/pip install --quiet --disable-pip-version-check -r packaging/requirements.txt
-	touch $@
+build/tools/ready: packaging/requirements.txt
+	@$(call environment,build/tools,-r $<)
 
 # The licences of what is linked, anew: after a change of Cargo.lock.
 notices:

@@ -13,7 +13,7 @@ static double *read_gap(const char *path, contact_normal_scene *scene)
     double *h = NULL;
     long start = 0;
     int mx = 0, my = 0, i = 0, ok = 0;
-    FILE *file = fopen(path, "r");
+    FILE *file = fopen(path, "rb"); /* Windows: places in the file are bytes */
 
     if (file == NULL) {
         perror(path);

@@ -4,14 +4,21 @@ The library is built by `cargo build --release --locked`, or is the one that the
 """
 
 import os
-import re
 import shutil
 import subprocess
-import sysconfig
+import sys
 import tempfile
 from pathlib import Path
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(ROOT / "packaging"), str(ROOT / "python" / "contact_normal")]
+from _names import names  # noqa: E402
+from library_file import read  # noqa: E402
+
+# What sys.platform is where a library of this kind runs.
+PLATFORMS = {"linux": "linux", "macosx": "darwin", "win": "win32"}
 
 
 class Library(BuildHookInterface):
@@ -20,13 +27,18 @@ class Library(BuildHookInterface):
     def initialize(self, version, build_data):
         root = Path(self.root)
         library = Path(os.environ.get("CONTACT_NORMAL_LIBRARY") or built_by_cargo(root))
+        file = read(library.read_bytes())
+        name = names(PLATFORMS[file.system]).built
         self.folder = tempfile.TemporaryDirectory()
-        stripped = Path(self.folder.name) / "libcontact_normal.so"
+        stripped = Path(self.folder.name) / name
         shutil.copyfile(library, stripped)
-        subprocess.run(["strip", "--strip-unneeded", stripped], check=True)
-        build_data["force_include"][str(stripped)] = "contact_normal/libcontact_normal.so"
+        # On macOS the debug information is not in the library; on Windows strip is MinGW-w64's, if the library is.
+        strip = os.environ.get("STRIP", "strip")
+        if file.system == "linux" or file.system == "win" and shutil.which(strip):
+            subprocess.run([strip, "--strip-unneeded", stripped], check=True)
+        build_data["force_include"][str(stripped)] = f"contact_normal/{name}"
         build_data["pure_python"] = False
-        build_data["tag"] = f"py3-none-{platform_of(stripped)}"
+        build_data["tag"] = f"py3-none-{file.tag()}"
 
     def finalize(self, version, build_data, artifact_path):
         self.folder.cleanup()
@@ -38,14 +50,4 @@ def built_by_cargo(root):
     if cargo is None:
         raise SystemExit("contact-normal is built from source by Rust: install it from https://rustup.rs, or install a wheel")
     subprocess.run([cargo, "build", "--release", "--locked", "--lib"], cwd=root, check=True)
-    return Path(os.environ.get("CARGO_TARGET_DIR") or root / "target") / "release" / "libcontact_normal.so"
-
-
-def platform_of(library):
-    """manylinux_2_N_<machine>, for the newest version of glibc that the library asks for: PEP 600."""
-    machine = sysconfig.get_platform()
-    if not machine.startswith("linux-"):
-        return re.sub(r"[-.]", "_", machine)
-    symbols = subprocess.run(["objdump", "-T", library], check=True, capture_output=True, text=True).stdout
-    newest = max(int(minor) for minor in re.findall(r"GLIBC_2\.(\d+)", symbols))
-    return f"manylinux_2_{newest}_{machine[len('linux-'):]}"
+    return Path(os.environ.get("CARGO_TARGET_DIR") or root / "target") / "release" / names(sys.platform).built

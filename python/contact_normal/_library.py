@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ._constants import ABI_VERSION, VERSION_MAJOR, VERSION_MINOR, VERSION_PATCH
+from ._names import names, places
 from ._structs import (
     KINDS,
     Accuracy,
@@ -123,16 +124,15 @@ def candidates() -> list[str]:
     """The libraries that are tried, the first one that exists is loaded.
 
     The one that the environment variable CONTACT_NORMAL_LIBRARY names and no other; else the one inside this package (a wheel),
-    the one built in this clone, those in `lib` of this Python's prefix and of the package's own, the system's.
+    the one built in this clone, those in `lib` (Windows: `bin`) of this Python's prefix and of the package's own, the system's.
     """
     named = os.environ.get("CONTACT_NORMAL_LIBRARY")
     if named:
         return [named]
     here = Path(__file__).resolve().parent
-    paths = [here / "libcontact_normal.so", here.parents[1] / "target" / "release" / "libcontact_normal.so"]
-    paths += [prefix / "lib" / "libcontact_normal.so.2" for prefix in [Path(sys.prefix), *here.parents[2:5]]]
-    found = [str(path) for path in paths if path.exists()]
-    return found + [ctypes.util.find_library("contact_normal") or "libcontact_normal.so.2"]
+    prefixes = [Path(sys.prefix), *list(here.parents)[2:5]]
+    found = [str(path) for path in places(here, prefixes, sys.platform) if path.exists()]
+    return found + [ctypes.util.find_library("contact_normal") or names(sys.platform).installed]
 
 
 def load() -> ctypes.CDLL:

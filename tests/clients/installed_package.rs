@@ -28,6 +28,30 @@ int main(void)
 }
 "#;
 
+/// `make` of a target with these variables, without the job server of a make that may run these tests.
+fn make(target: &str, variables: &[String]) {
+    let mut make = Command::new("make");
+    run(make.env_remove("MAKEFLAGS").arg("-C").arg(root()).arg(target).args(variables));
+}
+
+/// The same for the library that `cargo test` has built beside the test programs, not a second build.
+fn make_built(target: &str, variables: &[String]) {
+    let built = std::env::current_exe().expect("this test's path").parent().expect("its folder").to_owned();
+    let built = [
+        format!("LIBDIR_BUILT={}", built.display()),
+        concat!("REPLAY_BUILT=", env!("CARGO_BIN_EXE_contact-normal-replay")).to_owned(),
+    ];
+    make(target, &[&built, variables].concat());
+}
+
+/// The files and links below a folder, in order.
+fn files(folder: &Path) -> Vec<String> {
+    let found = run(Command::new("find").arg(".").args(["-not", "-type", "d"]).current_dir(folder));
+    let mut found: Vec<String> = found.lines().map(|line| line[2..].to_owned()).collect();
+    found.sort();
+    found
+}
+
 /// `pkg-config` on the installed package; what it says, split at blanks.
 fn pkg_config(prefix: &Path, arguments: &[&str]) -> Vec<String> {
     let mut command = Command::new("pkg-config");
@@ -39,22 +63,12 @@ fn pkg_config(prefix: &Path, arguments: &[&str]) -> Vec<String> {
 fn the_installed_package_is_what_pkg_config_says() {
     let folder = scratch("installed_package");
     let prefix = folder.join("prefix");
-    // The libraries that `cargo test` has built beside the test programs, not a second build.
-    let built = std::env::current_exe().expect("this test's path").parent().expect("its folder").to_owned();
-    let make = |target: &str, variables: &[String]| {
-        let built = format!("LIBDIR_BUILT={}", built.display());
-        // Without the job server of a make that may run these tests.
-        let mut make = Command::new("make");
-        make.arg(concat!("REPLAY_BUILT=", env!("CARGO_BIN_EXE_contact-normal-replay")));
-        make.env_remove("MAKEFLAGS").arg("-C").arg(root()).arg(target).arg(built).args(variables);
-        run(&mut make)
-    };
-    make("install", &[format!("PREFIX={}", prefix.display())]);
-
     let version = env!("CARGO_PKG_VERSION");
+    make_built("install", &[format!("PREFIX={}", prefix.display())]);
+
     assert_eq!(pkg_config(&prefix, &["--modversion"]), [version]);
     let links = [
-        ("libcontact_normal.so", "libcontact_normal.so.2".to_owned()),
+        ("libcontact_normal.so", format!("libcontact_normal.so.{version}")),
         ("libcontact_normal.so.2", format!("libcontact_normal.so.{version}")),
     ];
     for (link, target) in links {
@@ -98,10 +112,9 @@ fn the_installed_package_is_what_pkg_config_says() {
     assert!(dynamic.contains("Shared library: [libcontact_normal.so.2]"), "{dynamic}");
     assert_eq!(run(Command::new(&shared).env("LD_LIBRARY_PATH", prefix.join("lib"))), expected);
 
-    // Without debug information, which a debugger finds by the link.
+    // Without debug information.
     let sections = run(Command::new("readelf").args(["-SW"]).arg(prefix.join("lib/libcontact_normal.so")));
-    assert!(sections.contains(".gnu_debuglink") && !sections.contains(".debug_info"), "{sections}");
-    assert!(prefix.join(format!("lib/.debug/libcontact_normal.so.{version}.debug")).exists());
+    assert!(sections.contains(".dynsym") && !sections.contains(".debug_info"), "{sections}");
 
     // The flags of --static take the static library though the shared one is there; with -static everything is.
     for (name, more) in [("static", None), ("all_static", Some("-static"))] {
@@ -111,15 +124,125 @@ fn the_installed_package_is_what_pkg_config_says() {
         assert!(!dynamic.contains("contact_normal"), "{name}: {dynamic}");
         assert_eq!(run(&mut Command::new(&fixed)), expected, "{name}");
     }
+}
 
-    // A packager's staging folder takes the files, and leaves no trace in them.
-    let staged = folder.join("staged");
-    make("install", &[format!("DESTDIR={}", staged.display()), "PREFIX=/opt/contact".to_owned()]);
-    let described = std::fs::read_to_string(staged.join("opt/contact/lib/pkgconfig/contact-normal.pc")).expect("a .pc");
-    assert!(described.starts_with("prefix=/opt/contact\n") && !described.contains("staged"), "{described}");
+/// A packager's staging folder takes the files, and leaves no trace in them. Its library folder is below or beside the prefix.
+#[test]
+fn a_packager_chooses_the_folders() {
+    let version = env!("CARGO_PKG_VERSION");
+    let staged = scratch("staged_package").join("staged");
+    for (libraries, told) in
+        [("/opt/contact/lib/some-machine", "${prefix}/lib/some-machine"), ("/opt/lib64", "/opt/lib64")]
+    {
+        let variables = [
+            format!("DESTDIR={}", staged.display()),
+            "PREFIX=/opt/contact".to_owned(),
+            format!("LIBDIR={libraries}"),
+            "DEBUGDIR=/opt/debug".to_owned(),
+        ];
+        make_built("install", &variables);
+        let libraries = &libraries[1..];
+        let described = staged.join(libraries).join("pkgconfig/contact-normal.pc");
+        let described = std::fs::read_to_string(described).expect("a .pc");
+        assert!(described.starts_with("prefix=/opt/contact\n") && !described.contains("staged"), "{described}");
+        assert!(described.contains(&format!("libdir={told}\n")), "{described}");
+        // Debuggers look for the debug information of /a/b.so in DEBUGDIR/a.
+        let real = format!("{libraries}/libcontact_normal.so.{version}");
+        assert!(staged.join(format!("opt/debug/{real}.debug")).exists());
+        let sections = run(Command::new("readelf").args(["-SW"]).arg(staged.join(real)));
+        assert!(sections.contains(".gnu_debuglink") && !sections.contains(".debug_info"), "{sections}");
+        cmake_finds(&staged.join(libraries), &staged.join("opt/contact"));
+        // Nothing is left of it but empty folders.
+        make_built("uninstall", &variables);
+        assert_eq!(files(&staged), [""; 0]);
+    }
+}
 
-    // Nothing is left of it but empty folders.
-    make("uninstall", &[format!("DESTDIR={}", staged.display()), "PREFIX=/opt/contact".to_owned()]);
-    let left = run(Command::new("find").arg(&staged).args(["-not", "-type", "d"]));
-    assert!(left.is_empty(), "{left}");
+/// An installation that is meant to be moved: pkg-config names the folder where it is now.
+#[test]
+fn an_archive_is_unpacked_anywhere() {
+    let folder = scratch("moved_package");
+    let made = folder.join("made");
+    make_built("install", &[format!("PREFIX={}", made.display()), "RELOCATABLE=yes".to_owned()]);
+    let moved = folder.join("moved");
+    std::fs::rename(made, &moved).expect("moved");
+    let flags = pkg_config(&moved, &["--cflags"]);
+    let named = flags[0].strip_prefix("-I").expect("a folder of headers");
+    assert_eq!(
+        std::fs::canonicalize(named).expect("the folder"),
+        moved.join("include").canonicalize().expect("the folder")
+    );
+    cmake_finds(&moved.join("lib"), &moved);
+}
+
+/// CMake's file, where nothing was moved: it names the library in this folder and the headers in that prefix.
+fn cmake_finds(libraries: &Path, prefix: &Path) {
+    let script = libraries.join("found.cmake");
+    // A script has no targets: what they would be given is printed.
+    let text = format!(
+        "cmake_minimum_required(VERSION 3.10)\nmacro(add_library)\nendmacro()\nmacro(set_target_properties)\nmessage(\"${{ARGN}}\")\nendmacro()\n\
+         macro(get_property)\nendmacro()\ninclude({}/cmake/contact-normal/contact-normal-config.cmake)\n",
+        libraries.display()
+    );
+    std::fs::write(&script, text).expect("a script");
+    let output = Command::new("cmake").arg("-P").arg(&script).output().expect("cmake");
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    std::fs::remove_file(&script).expect("removed");
+    assert!(output.status.success(), "{told}");
+    assert!(told.contains(&format!("IMPORTED_LOCATION;{}/libcontact_normal.so", libraries.display())), "{told}");
+    // With DESTDIR an absolute prefix is that of the machine where the files are used.
+    let moved = prefix.join("include");
+    let include = if libraries.starts_with(prefix) { moved.as_path() } else { Path::new("/opt/contact/include") };
+    assert!(told.contains(&format!("INTERFACE_INCLUDE_DIRECTORIES;{}", include.display())), "{told}");
+}
+
+/// Files of other systems by their names: what cargo builds there is installed under the names that programs there look for.
+#[test]
+fn other_systems_have_their_own_names() {
+    let folder = scratch("other_systems");
+    let version = env!("CARGO_PKG_VERSION");
+    let (real, soname) = (format!("lib/libcontact_normal.{version}.dylib"), "lib/libcontact_normal.2.dylib".to_owned());
+    let systems = [
+        (
+            "aarch64-apple-darwin",
+            ["libcontact_normal.dylib", "libcontact_normal.a", "contact-normal-replay"].as_slice(),
+            vec!["bin/contact-normal-replay".to_owned(), soname, real, "lib/libcontact_normal.dylib".to_owned()],
+            "-Wl,-dead_strip_dylibs -lcontact_normal",
+        ),
+        (
+            "x86_64-pc-windows-gnu",
+            ["contact_normal.dll", "libcontact_normal.dll.a", "libcontact_normal.a", "contact-normal-replay.exe"]
+                .as_slice(),
+            vec![
+                "bin/contact-normal-replay.exe".to_owned(),
+                "bin/contact_normal.dll".to_owned(),
+                "lib/libcontact_normal.dll.a".to_owned(),
+            ],
+            "-L${libdir} -lcontact_normal",
+        ),
+    ];
+    for (target, built, expected, flags) in systems {
+        let from = folder.join(format!("{target}/release"));
+        std::fs::create_dir_all(&from).expect("folders");
+        for name in built {
+            std::fs::write(from.join(name), name).expect("a file");
+        }
+        let prefix = folder.join(target).join("prefix");
+        let variables = [
+            format!("TARGET={target}"),
+            format!("LIBDIR_BUILT={}", from.display()),
+            "STRIPPED=no".to_owned(),
+            format!("PREFIX={}", prefix.display()),
+        ];
+        make("install", &variables);
+        let installed = files(&prefix);
+        for name in expected.iter().map(String::as_str).chain(["lib/libcontact_normal.a"]) {
+            assert!(installed.iter().any(|file| file == name), "{name} of {target}: {installed:?}");
+        }
+        assert!(!installed.iter().any(|file| file.contains(".so")), "{installed:?}");
+        let described = std::fs::read_to_string(prefix.join("lib/pkgconfig/contact-normal-shared.pc")).expect("a .pc");
+        assert!(described.contains(flags), "{described}");
+        make("uninstall", &variables);
+        assert_eq!(files(&prefix), [""; 0]);
+    }
 }

@@ -32,7 +32,7 @@ fn project(folder: &Path) {
     std::fs::create_dir_all(&out).expect("folders");
     let built = std::fs::canonicalize(folder.join("libcontact_normal.so")).expect("the library");
     symlink(built, release.join("libcontact_normal.so")).expect("a link");
-    build::link(&out);
+    build::link(&out, "libcontact_normal.so", build::SONAME);
     for name in ["include", "data"] {
         symlink(root().join(name), folder.join(name)).expect("a link");
     }
@@ -74,6 +74,6 @@ fn a_build_that_is_laid_out_otherwise_has_no_link() {
     let folder = scratch("no_soname");
     let out = folder.join("elsewhere/contact-normal-0/out");
     std::fs::create_dir_all(&out).expect("folders");
-    build::link(&out);
+    build::link(&out, "libcontact_normal.so", build::SONAME);
     assert_eq!(std::fs::read_dir(folder.join("elsewhere")).expect("a folder").count(), 1);
 }
