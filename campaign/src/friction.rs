@@ -1,6 +1,6 @@
 //! Friction: a random scene with a random motion or forces, through the C ABI, each answer certified (`friction_rules`).
 
-use contact_normal::ffi::CONTACT_NORMAL_OK;
+use contact_normal::ffi::{CONTACT_NORMAL_ITERATION_LIMIT, CONTACT_NORMAL_OK};
 
 use crate::friction_call::{call, frictionless, tangential, From, Handle};
 use crate::friction_case::Case;
@@ -56,10 +56,25 @@ fn on_its_own(case: &Case, statuses: &mut Vec<i32>) -> Verdict {
     let Case { place, slide, stop, .. } = case;
     let found = call(place, slide, stop);
     statuses.push(found.status);
+    if found.status == CONTACT_NORMAL_ITERATION_LIMIT && case.is_slow_line() {
+        return with_more_cycles(case, statuses);
+    }
     let mut verdict = check(case, &found, &case.before(&found.p));
     let same = call(place, slide, stop).bits() == found.bits();
     verdict.unless(same, "the same call with friction twice has the same bits", || case.describe());
     verdict.add(leaves_pressures(case, &found));
+    verdict
+}
+
+/// docs/hard_cases.md: about 1 of 500 such lines takes more than the 1000 cycles of the default, and 3000 do.
+fn with_more_cycles(case: &Case, statuses: &mut Vec<i32>) -> Verdict {
+    let mut case = case.clone();
+    case.stop.max_cycles = 3000;
+    let found = call(&case.place, &case.slide, &case.stop);
+    statuses.push(found.status);
+    let mut verdict = check(&case, &found, &case.before(&found.p));
+    verdict.unless(found.status == CONTACT_NORMAL_OK, "lines of unlike bodies within 3000 cycles", || case.describe());
+    verdict.excuse("friction: a line of unlike bodies took more than 1000 cycles");
     verdict
 }
 

@@ -243,6 +243,13 @@ impl Case {
         format!("{}, {} bodies", self.motion(), if self.place.is_alike() { "like" } else { "unlike" })
     }
 
+    /// A line contact of unlike bodies by force, called with the cycles of the default.
+    pub fn is_slow_line(&self) -> bool {
+        let is_line = self.place.grid.mx == 1 || self.place.grid.my == 1;
+        let by_force = self.slide.prescribed.contains(&CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE);
+        is_line && by_force && !self.place.is_alike() && self.stop.is_unhindered()
+    }
+
     /// In one line.
     pub fn describe(&self) -> String {
         let Grid { mx, my, dx, dy } = self.place.grid;
