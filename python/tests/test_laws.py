@@ -45,7 +45,6 @@ class Laws(unittest.TestCase):
             (ValueError, "has colour", {"law": {**LAW, "colour": 1}}),
             (ValueError, "no kind", {"law": {"kinetic": 0.1}}),
             (TypeError, "mapping", {"layer": 3.0}),
-            (cn.ContactNormalError, "creepages", {"law": LAW, "force": (1.0, None)}),
         ):
             with self.assertRaisesRegex(error, words):
                 solved(**friction)
