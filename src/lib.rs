@@ -49,7 +49,7 @@
 //! | [`operator`] | u = A p by FFT (of the crate `toeplitz`), and by direct summation |
 //! | [`contact`] | the unknowns, steps (4.1) and (4.2) on an admissible set, the guard against cycling, the certificate |
 //! | [`progress`] | what a loop has to reach, why it ended, what was counted, the ledger |
-//! | [`methods`] | NORM (section 3), V-cycles (section 4.2), projected conjugate gradients, descent, the direct solve: each a step |
+//! | [`methods`] | NORM (section 3), V-cycles (section 4.2), projected conjugate gradients, a projected Newton method, the direct solve: each a step |
 //! | [`solver`] | THE loop (section 4.1), nested iteration (section 4.3), which methods in which order, the report |
 //! | [`friction`], [`adhesion`] | the tangential problem; attraction across the gap |
 //! | [`heat`] | flash temperature, from a flux of heat |

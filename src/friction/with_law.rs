@@ -161,7 +161,8 @@ impl Solver {
         let mut turns = branch::Turns::new();
         branch::begin(&mut self.levels[0].problem, &mut march, request.friction.branch == Branch::High);
         let (outcome, residual) = loop {
-            let turn = Request { tolerance: turns.inner(request.tolerance), ..*request };
+            let left = request.limit.saturating_sub(report.products.ceil() as u64).max(1);
+            let turn = Request { tolerance: turns.inner(request.tolerance), limit: left, ..*request };
             let begin = (nested && turns.made == 0, had_slip || turns.made > 0);
             let end = self.iterate(&turn, Forces::NONE, begin, watch, report)?;
             let left = branch::renew(&mut self.levels[0], &mut march)?;
@@ -175,6 +176,12 @@ impl Solver {
                 // What the way to the circles leaves may be more than the tolerance: then another turn follows.
                 if outcome != Outcome::Converged || residual < request.tolerance {
                     break (outcome, residual);
+                }
+                if report.products >= request.limit as f64 {
+                    break (Outcome::IterationLimit, residual);
+                }
+                if turns.are_in_vain() {
+                    break (Outcome::Stagnated, residual);
                 }
             }
         };

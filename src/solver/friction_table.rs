@@ -79,8 +79,8 @@ pub(super) struct Table<'a> {
 /// The progress so far.
 #[derive(Default)]
 struct Done {
-    /// The next run that nobody has taken.
-    next_run: AtomicUsize,
+    /// Runs that were taken, beside the first one, which is the caller's.
+    taken: AtomicUsize,
     entries: AtomicUsize,
     products: Mutex<f64>,
     cancelled: AtomicBool,
@@ -129,7 +129,11 @@ impl<'a> Table<'a> {
         };
         threads.for_each_beside(
             &mut crew[..workers],
-            |tangent| self.work(tangent, &mut told, found),
+            // On a short table others could take all runs before the caller has one: then nobody would be told, and a cancellation not be heard.
+            |tangent| {
+                self.run(0, tangent, &mut told, found);
+                self.work(tangent, &mut told, found);
+            },
             |tangent| self.work(tangent, &mut |_| (), found),
         );
         let stop = if self.is_cancelled() { Outcome::Cancelled } else { stop };
@@ -143,25 +147,33 @@ impl<'a> Table<'a> {
         told: &mut dyn FnMut(f64),
         found: &(impl Fn(usize, Ended, Option<&Solution>) + Sync + Send),
     ) {
-        loop {
-            let first = self.done.next_run.fetch_add(1, Ordering::Relaxed).saturating_mul(RUN);
-            if first >= self.entries.len() {
-                return;
+        while self.done.taken.load(Ordering::Relaxed) < self.entries.len().div_ceil(RUN) {
+            self.run(1 + self.done.taken.fetch_add(1, Ordering::Relaxed), tangent, told, found);
+        }
+    }
+
+    /// Solves the entries of a run; none beyond the table.
+    fn run(
+        &self,
+        run: usize,
+        tangent: &mut Tangent,
+        told: &mut dyn FnMut(f64),
+        found: &(impl Fn(usize, Ended, Option<&Solution>) + Sync + Send),
+    ) {
+        let first = run.saturating_mul(RUN);
+        let mut warm = false;
+        for i in first..(first.saturating_add(RUN)).min(self.entries.len()) {
+            let ended = self.entry(i, tangent, warm && self.is_near(i));
+            warm = matches!(ended, Ok((Outcome::Converged, _)));
+            let residual = ended.as_ref().map_or(-1.0, |(_, report)| report.certificate.residual);
+            let has_solution = matches!(ended, Ok((stop, _)) if stop != Outcome::Cancelled);
+            if let Ok((_, report)) = &ended {
+                *self.done.products.lock().unwrap_or_else(PoisonError::into_inner) += report.products;
             }
-            let mut warm = false;
-            for i in first..(first + RUN).min(self.entries.len()) {
-                let ended = self.entry(i, tangent, warm && self.is_near(i));
-                warm = matches!(ended, Ok((Outcome::Converged, _)));
-                let residual = ended.as_ref().map_or(-1.0, |(_, report)| report.certificate.residual);
-                let has_solution = matches!(ended, Ok((stop, _)) if stop != Outcome::Cancelled);
-                if let Ok((_, report)) = &ended {
-                    *self.done.products.lock().unwrap_or_else(PoisonError::into_inner) += report.products;
-                }
-                found(i, ended, if has_solution { tangent.solution() } else { None });
-                self.done.entries.fetch_add(1, Ordering::Relaxed);
-                if !self.is_cancelled() {
-                    told(residual);
-                }
+            found(i, ended, if has_solution { tangent.solution() } else { None });
+            self.done.entries.fetch_add(1, Ordering::Relaxed);
+            if !self.is_cancelled() {
+                told(residual);
             }
         }
     }

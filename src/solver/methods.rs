@@ -22,8 +22,8 @@ const WORTHLESS: f64 = 0.3;
 /// of 1000 for NORM, which ends on every area of contact.
 const SHARE: f64 = 0.4;
 const LEAST_SHARE: u64 = 60;
-/// The cycles of PROJECTED_CG with limits at most. Measured on 400 scenes with limits (rough, quantised, flat, gratings): of those that it
-/// solves in more, the projected Newton method solves all in fewer from there on.
+/// The cycles of PROJECTED_CG with limits at most. Most scenes with limits take fewer; where it takes more it mostly goes round in circles, and the
+/// projected Newton method goes on from its best iterate.
 const LIMITED_SHARE: u64 = 100;
 
 /// The methods of a solver, set up when they are first asked for and kept.

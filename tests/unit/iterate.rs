@@ -24,7 +24,11 @@ fn scene(load: Load, wave: f64) -> (Problem, State) {
 }
 
 fn descend(problem: &mut Problem, state: &mut State, cycles: u64) -> Outcome {
-    let goal = Goal { criterion: Criterion::Residual, tolerance: 1e-9, max_cycles: cycles };
+    descend_to(problem, state, cycles, 1e-9)
+}
+
+fn descend_to(problem: &mut Problem, state: &mut State, cycles: u64, tolerance: f64) -> Outcome {
+    let goal = Goal { criterion: Criterion::Residual, tolerance, max_cycles: cycles };
     let (mut best, mut monitor) = (Best::default(), Monitor::silent());
     best.forget();
     let mut method = ProjectedNewton::default();
@@ -67,4 +71,26 @@ fn descent_takes_over_from_any_pressures() {
         // Sums of 154 pressures.
         assert!((state.force() - 0.05).abs() <= 1e-15);
     }
+}
+
+/// The elements of C meet their conditions, and one element beside it penetrates by five times the tolerance: much less than the norm over C that
+/// the tolerance allows.
+#[test]
+fn one_element_that_penetrates_enters_a_large_contact_area() {
+    let grid = Grid::new(48, 48, 0.1, 0.1).expect("a grid");
+    let place = |k: usize| 0.1 * (k as f64 - 23.5);
+    let h: Vec<f64> = (0..grid.len()).map(|i| 0.01 * (place(i % 48).powi(2) + place(i / 48).powi(2))).collect();
+    let influence = Coefficients::from(HalfSpace::new(0.1, 0.1, 1.0));
+    let mut problem = Problem::new(grid, influence, &Threads::One).expect("a problem");
+    let mut state = State::new(grid, (Load::Approach(0.06), 0.0), &Threads::One).expect("a state");
+    state.h = h;
+    state.unload();
+    assert_eq!(descend_to(&mut problem, &mut state, 1000, 1e-12), Outcome::Converged);
+    let tolerance = 1e-9;
+    let beside = (0..grid.len()).find(|&i| !state.contact[i]).expect("an exterior element");
+    let scale = Survey::of(&state).scale;
+    state.h[beside] -= state.deformed_distance(beside) + 5.0 * tolerance * scale;
+    assert!(state.contact_count() > 600 && !Survey::of(&state).violation(NonNegative).le(&tolerance));
+    assert_eq!(descend(&mut problem, &mut state, 1000), Outcome::Converged);
+    assert!(Survey::of(&state).violation(NonNegative) <= tolerance);
 }

@@ -50,9 +50,14 @@ impl Turns {
         (self.least, self.last) = (self.least.min(left), left);
         match () {
             () if left < tolerance => Some(Outcome::Converged),
-            () if !left.is_finite() || self.since > PATIENCE || self.made >= MOST => Some(Outcome::Stagnated),
+            () if !left.is_finite() || self.are_in_vain() => Some(Outcome::Stagnated),
             () => None,
         }
+    }
+
+    /// Whether further turns are given up.
+    pub fn are_in_vain(&self) -> bool {
+        self.since > PATIENCE || self.made >= MOST
     }
 }
 

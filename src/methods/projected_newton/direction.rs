@@ -41,7 +41,9 @@ impl ProjectedNewton {
             }
             let norm = dot(&self.r, &self.r).sqrt();
             if k == 0 {
-                target = (ENOUGH * norm).max(NEEDED * task.goal.tolerance * scale);
+                // Few elements that violate their bounds are less than what C may have: they are solved for all the same.
+                let needed = NEEDED * task.goal.tolerance * scale;
+                target = if norm > needed { needed.max(ENOUGH * norm) } else { ENOUGH * norm };
             }
             if !(norm > target) || task.is_interrupted() {
                 break;
