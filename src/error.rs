@@ -51,6 +51,11 @@ pub(crate) fn require(holds: bool, name: &str, value: f64, rule: &str) -> Result
     }
 }
 
+/// Refuses a value that is not finite.
+pub(crate) fn finite(name: &str, value: f64) -> Result<()> {
+    require(value.is_finite(), name, value, "it must be finite")
+}
+
 /// Refuses a value that is not positive, or not finite.
 pub(crate) fn positive(name: &str, value: f64) -> Result<()> {
     require(value > 0.0 && value.is_finite(), name, value, "it must be positive and finite")

@@ -88,6 +88,12 @@ impl Grid {
         format!("element ({}, {})", i % self.mx, i / self.mx)
     }
 
+    /// The middle of element `i`, from the middle of the grid.
+    pub fn place(&self, i: usize) -> [f64; 2] {
+        let from_middle = |k: usize, m: usize, d: f64| (k as f64 - 0.5 * (m as f64 - 1.0)) * d;
+        [from_middle(i % self.mx, self.mx, self.dx), from_middle(i / self.mx, self.my, self.dy)]
+    }
+
     /// Index of element `(ix, iy)`.
     pub fn index(&self, ix: usize, iy: usize) -> usize {
         iy * self.mx + ix
@@ -105,4 +111,20 @@ impl Grid {
 pub fn children(fine: usize, coarse: usize, i: usize) -> Range<usize> {
     let factor = if coarse < fine { 2 } else { 1 };
     factor * i..(factor * (i + 1)).min(fine)
+}
+
+/// Checks one value per element; the message names the first one that `require` refuses.
+pub(crate) fn check_values(
+    name: &str,
+    values: &[f64],
+    grid: &Grid,
+    require: impl Fn(&str, f64) -> Result<()>,
+) -> Result<()> {
+    if values.len() != grid.len() {
+        return invalid(format!("{name} has {} values; the grid has {} elements", values.len(), grid.len()));
+    }
+    match values.iter().position(|value| require(name, *value).is_err()) {
+        Some(i) => require(&format!("{name} of {}", grid.element(i)), values[i]),
+        None => Ok(()),
+    }
 }

@@ -12,8 +12,8 @@
 //! Where bodies roll in +x a point of a surface passes through a row of elements, and spends dx/dq steps in each: what it loses is `passage`.
 
 use crate::effects::Coefficient;
-use crate::error::{invalid, not_negative, positive, Error, Result};
-use crate::grid::Grid;
+use crate::error::{finite, not_negative, positive, Result};
+use crate::grid::{check_values, Grid};
 use crate::memory::{collected, zeros};
 use crate::sums::in_blocks;
 
@@ -71,34 +71,15 @@ impl Wear<'_> {
             Coefficient::PerElement(values) => Some(("coefficients", values)),
         };
         for (name, values) in fields.into_iter().chain(self.pressure.map(|p| ("pressure", p))).chain(own) {
-            self.check_field(name, values)?;
+            check_values(name, values, &self.grid, finite)?;
         }
         match self.coefficient {
             Coefficient::Uniform(value) => not_negative("coefficient", value)?,
-            Coefficient::PerElement(values) => {
-                if let Some(i) = values.iter().position(|value| *value < 0.0) {
-                    let (element, value) = (self.grid.element(i), values[i]);
-                    return invalid(format!("coefficients of {element} is {value}; it must be 0 or more"));
-                }
-            }
+            Coefficient::PerElement(values) => check_values("coefficients", values, &self.grid, not_negative)?,
         }
         positive("hardness", self.hardness)?;
         not_negative("steps", self.steps)?;
         not_negative("rolling_distance", self.rolling_distance)
-    }
-
-    fn check_field(&self, name: &str, values: &[f64]) -> Result<()> {
-        if values.len() != self.grid.len() {
-            let (found, elements) = (values.len(), self.grid.len());
-            return invalid(format!("{name} has {found} values; the grid has {elements} elements"));
-        }
-        match values.iter().position(|value| !value.is_finite()) {
-            None => Ok(()),
-            Some(i) => {
-                let (element, value) = (self.grid.element(i), values[i]);
-                Err(Error::NotFinite(format!("{name} of {element} is {value}; it must be finite")))
-            }
-        }
     }
 
     /// Of a step at element i.

@@ -62,10 +62,10 @@ impl Unknowns {
     }
 }
 
-/// Up to so many elements more memory is held where that saves products.
+/// Grids of at most so many elements are small.
 const SMALL: usize = 1 << 16;
 
-/// Whether a grid of n elements is one on which memory counts for less than products.
+/// Whether a grid of n elements is small: more memory is held there, to save products.
 pub fn is_small(n: usize) -> bool {
     n <= SMALL
 }
@@ -94,7 +94,7 @@ impl Pressures {
         Ok(())
     }
 
-    /// Gives them to unknowns. Whether their u are theirs then, too.
+    /// Copies them to unknowns. Returns whether u was kept, and is copied, too.
     pub fn put(&self, to: &mut Unknowns) -> bool {
         to.p.field.copy_from_slice(&self.p.field);
         to.contact.copy_from_slice(&self.contact);

@@ -2,12 +2,12 @@
 //!
 //! See [`adhesion`](crate::adhesion) for the problem that is solved.
 
-use super::effect::{check_values, Effect, Value};
+use super::effect::{Effect, Value};
 use super::friction::LARGEST;
 use super::properties::{Properties, Stresses};
 use crate::adhesion::{Law, Start};
 use crate::error::{invalid, require, Error, Result};
-use crate::grid::Grid;
+use crate::grid::{check_values, Grid};
 use crate::scene::{Load, Plain};
 
 /// Work and range lie within these powers of ten: their squares, and quotients of them, are numbers.

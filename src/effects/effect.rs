@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::coupled::{Coupled, History};
 use super::memory::Memory;
 use super::properties::{Properties, Stresses};
-use crate::error::{invalid, Result};
+use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::{Coefficients, Kernel};
 use crate::memory::Held;
@@ -93,21 +93,5 @@ pub trait Effect {
     /// The problem that is solved in turns with the normal one; `history` is left by the last step.
     fn coupled<'s>(&'s self, _scene: &Plain<'_>, _history: &'s mut History) -> Result<Option<Box<dyn Coupled + 's>>> {
         Ok(None)
-    }
-}
-
-/// Checks one value per element; the message names the first one that `require` refuses.
-pub(super) fn check_values(
-    name: &str,
-    values: &[f64],
-    grid: &Grid,
-    require: impl Fn(&str, f64) -> Result<()>,
-) -> Result<()> {
-    if values.len() != grid.len() {
-        return invalid(format!("{name} has {} values; the grid has {} elements", values.len(), grid.len()));
-    }
-    match values.iter().position(|value| require(name, *value).is_err()) {
-        Some(i) => require(&format!("{name} of {}", grid.element(i)), values[i]),
-        None => Ok(()),
     }
 }

@@ -1,10 +1,9 @@
 //! Bounds of tractions that a law or a layer changes, and what is refused of these.
 
-use super::effect::check_values;
 use super::friction::{Friction, Motion, Prescribed};
 use super::friction_law::{Branch, PlasticLayer};
 use crate::error::{not_negative, positive, require, Error, Result};
-use crate::grid::Grid;
+use crate::grid::{check_values, Grid};
 use crate::scene::Bodies;
 
 const NO_FORCES: &str = "with a branch creepages must be prescribed in both directions";

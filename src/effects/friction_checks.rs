@@ -2,10 +2,9 @@
 
 use std::f64::consts::PI;
 
-use super::effect::check_values;
 use super::friction::{Coefficient, Friction, Motion, Prescribed, Previous, LARGEST};
-use crate::error::{invalid, require, Error, Result};
-use crate::grid::Grid;
+use crate::error::{finite, invalid, require, Error, Result};
+use crate::grid::{check_values, Grid};
 
 /// Steps of rolling are at most so many elements long,
 const LONGEST_STEP: f64 = 1e6;
@@ -99,7 +98,6 @@ impl Friction<'_> {
 
     /// Refuses numbers that are none.
     pub(super) fn check_numbers(&self) -> Result<()> {
-        let finite = |name: &str, value: f64| require(value.is_finite(), name, value, "it must be finite");
         for (k, prescribed) in self.prescribed.iter().enumerate() {
             match prescribed {
                 Prescribed::Creepage(creepage) => {

@@ -17,12 +17,12 @@ pub enum Fall {
 /// Which solution is wanted where bounds that fall with the slip have several.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Branch {
-    /// That which is near the start: the fastest.
+    /// The solution near the start: the fastest to find.
     #[default]
     Near,
-    /// That which comes from bounds without slip.
+    /// The solution that begins with the bounds of no slip.
     Low,
-    /// That which comes from bounds of any speed.
+    /// The solution that begins with the bounds of any speed.
     High,
 }
 

@@ -1,9 +1,9 @@
 //! Effect: a thin compliant layer between the bodies, `e = h - approach + A p + c p`: a coating, a paint, roughness that gives way.
 
-use super::effect::{check_values, Effect, Value};
+use super::effect::{Effect, Value};
 use super::properties::{Properties, Stresses};
 use crate::error::{invalid, Error, Result};
-use crate::grid::Grid;
+use crate::grid::{check_values, Grid};
 use crate::influence::{self, Coefficients};
 use crate::scene::Plain;
 

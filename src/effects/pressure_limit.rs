@@ -11,11 +11,11 @@
 
 use std::ops::Range;
 
-use super::effect::{check_values, Effect, Value};
+use super::effect::{Effect, Value};
 use super::properties::{PressureLimit, Properties, Stresses};
 use crate::blocks;
 use crate::error::{invalid, Error, Result};
-use crate::grid::Grid;
+use crate::grid::{check_values, Grid};
 use crate::scene::{Load, Plain};
 use crate::threads::Threads;
 

@@ -107,8 +107,8 @@ pub struct contact_normal_report_adhesion {
     pub elastic_energy: f64,
     /// Less the work that the attraction has done: <= 0. The change of both energies by the approach is the force.
     pub adhesive_energy: f64,
-    /// `||p + sigma(e)|| / ||p||`, the first outside C, 2-norms, with a fresh product: it is at most the tolerance, too. Where
-    /// contact pressures and attraction cancel 1e-3 `||q||` is the scale.
+    /// `||p + sigma(e)|| / ||p||`, the first outside C, 2-norms, with a fresh product. It is at most the tolerance, as the
+    /// residual is. Where contact pressures and attraction cancel, the scale is 1e-3 `||q||`.
     pub law_residual: f64,
     /// rho as it was used, a length.
     pub range: f64,

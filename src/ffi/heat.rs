@@ -95,8 +95,7 @@ pub unsafe extern "C" fn contact_normal_flash_temperature(
             if let Some(mut value) = written {
                 (value.share, value.largest) = (found.share, found.largest);
                 for (b, i) in found.at.into_iter().enumerate() {
-                    value.x[b] = ((i % mx) as f64 - 0.5 * (mx as f64 - 1.0)) * grid.dx;
-                    value.y[b] = ((i / mx) as f64 - 0.5 * (my as f64 - 1.0)) * grid.dy;
+                    [value.x[b], value.y[b]] = grid.place(i);
                 }
                 structs::write(flash, &value)?;
             }

@@ -144,8 +144,7 @@ pub unsafe extern "C" fn contact_normal_frictional_wear(
             wanted.write(&found);
             if let Some(mut value) = written {
                 (value.work, value.volume, value.largest_depth) = (found.total_work, found.volume, found.largest);
-                value.x = ((found.at % mx) as f64 - 0.5 * (mx as f64 - 1.0)) * grid.dx;
-                value.y = ((found.at / mx) as f64 - 0.5 * (my as f64 - 1.0)) * grid.dy;
+                [value.x, value.y] = grid.place(found.at);
                 structs::write(worn, &value)?;
             }
             Ok::<_, Refusal>(CONTACT_NORMAL_OK)

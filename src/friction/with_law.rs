@@ -161,8 +161,8 @@ impl Solver {
         let mut turns = branch::Turns::new();
         branch::begin(&mut self.levels[0].problem, &mut march, request.friction.branch == Branch::High);
         let (outcome, residual) = loop {
-            let left = request.limit.saturating_sub(report.products.ceil() as u64).max(1);
-            let turn = Request { tolerance: turns.inner(request.tolerance), limit: left, ..*request };
+            let limit = request.limit.saturating_sub(report.products.ceil() as u64).max(1);
+            let turn = Request { tolerance: turns.inner(request.tolerance), limit, ..*request };
             let begin = (nested && turns.made == 0, had_slip || turns.made > 0);
             let end = self.iterate(&turn, Forces::NONE, begin, watch, report)?;
             let left = branch::renew(&mut self.levels[0], &mut march)?;

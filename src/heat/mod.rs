@@ -9,8 +9,8 @@
 
 mod kernel;
 
-use crate::error::{invalid, positive, require, Error, Result};
-use crate::grid::Grid;
+use crate::error::{finite, positive, require, Result};
+use crate::grid::{check_values, Grid};
 use crate::influence::{gauss_legendre, Coefficients, Table};
 use crate::memory::{collected, zeros};
 use crate::operator::Operator;
@@ -54,14 +54,7 @@ pub struct Flash {
 impl Heat<'_> {
     fn check(&self) -> Result<()> {
         self.grid.check()?;
-        if self.flux.len() != self.grid.len() {
-            let (values, elements) = (self.flux.len(), self.grid.len());
-            return invalid(format!("heat_flux has {values} values; the grid has {elements} elements"));
-        }
-        if let Some(i) = self.flux.iter().position(|flux| !flux.is_finite()) {
-            let (element, flux) = (self.grid.element(i), self.flux[i]);
-            return Err(Error::NotFinite(format!("heat_flux of {element} is {flux}; it must be finite")));
-        }
+        check_values("heat_flux", self.flux, &self.grid, finite)?;
         for (name, value) in ["conductivity[0]", "conductivity[1]"].iter().zip(self.conductivity) {
             positive(name, value)?;
         }
@@ -69,7 +62,7 @@ impl Heat<'_> {
             positive(name, value)?;
         }
         for (name, value) in ["speed[0]", "speed[1]"].iter().zip(self.speed) {
-            require(value.is_finite(), name, value, "it must be finite")?;
+            finite(name, value)?;
         }
         match self.share {
             Some(share) => require((0.0..=1.0).contains(&share), "share", share, "a part must lie in [0, 1]"),

@@ -5,9 +5,9 @@ use std::borrow::Cow;
 use super::adhesive_friction::bounded;
 use super::tangential::{Tangent, Turn};
 use super::{InitialGuess, Measures, Options, Outcome, ProgressCallback, Report, Solver};
-use crate::error::{invalid, Error, Result};
+use crate::error::{self, invalid, Result};
 use crate::friction::{Solution, Start};
-use crate::grid::Grid;
+use crate::grid::{check_values, Grid};
 use crate::memory::zeros;
 use crate::progress::Monitor;
 use crate::scene::{Friction, Scene};
@@ -102,10 +102,6 @@ fn alone(
 
 /// The pressures of what is in contact: negative ones are 0. Refuses those that are not one finite value per element.
 pub(super) fn positive<'a>(grid: &Grid, pressure: &'a [f64]) -> Result<Cow<'a, [f64]>> {
-    if pressure.len() != grid.len() {
-        let (values, elements) = (pressure.len(), grid.len());
-        return invalid(format!("pressure has {values} values; the grid has {elements} elements"));
-    }
     finite(grid, pressure)?;
     if pressure.iter().all(|p| *p >= 0.0) {
         return Ok(Cow::Borrowed(pressure));
@@ -115,11 +111,9 @@ pub(super) fn positive<'a>(grid: &Grid, pressure: &'a [f64]) -> Result<Cow<'a, [
     Ok(Cow::Owned(positive))
 }
 
-/// Refuses pressures that are not finite.
+/// Refuses pressures that are not one finite value per element.
 pub(super) fn finite(grid: &Grid, pressure: &[f64]) -> Result<()> {
-    let Some(i) = pressure.iter().position(|p| !p.is_finite()) else { return Ok(()) };
-    let (element, p) = (grid.element(i), pressure[i]);
-    Err(Error::NotFinite(format!("pressure of {element} is {p}; it must be finite")))
+    check_values("pressure", pressure, grid, error::finite)
 }
 
 /// The measures of pressures that are given.

@@ -2,8 +2,8 @@
 
 use super::body::Loaded;
 use crate::effects::Effect;
-use crate::error::{invalid, Error, Result};
-use crate::grid::Grid;
+use crate::error::{finite, invalid, Result};
+use crate::grid::{check_values, Grid};
 use crate::memory::collected;
 use crate::scene::Patches;
 
@@ -68,16 +68,7 @@ impl<'a> Loads<'a> {
     pub(super) fn check(&self, grid: &Grid) -> Result<()> {
         for (name, load) in ["pressure", "traction_x", "traction_y"].into_iter().zip(self.list()) {
             let Some(load) = load else { continue };
-            if load.len() != grid.len() {
-                return invalid(format!("{name} has {} values; the grid has {} elements", load.len(), grid.len()));
-            }
-            if let Some(i) = load.iter().position(|value| !value.is_finite()) {
-                return Err(Error::NotFinite(format!(
-                    "{name} of {} is {}; it must be finite",
-                    grid.element(i),
-                    load[i]
-                )));
-            }
+            check_values(name, load, grid, finite)?;
         }
         if let Some(patches) = &self.patches {
             Effect::check(patches, grid)?;

@@ -4,7 +4,8 @@
 //! LOW:  the first bounds are those of no slip        HIGH: those of any speed
 //! ```
 //!
-//! Each turn solves on, and further as the bounds settle. What is found is certified as without a branch.
+//! Each turn begins from the tractions of the last one, and its tolerance falls as the bounds settle. The result has the certificate of a solve without
+//! a branch.
 
 use super::super::levels::Level;
 use super::super::problem::Problem;
@@ -25,7 +26,7 @@ const ENOUGH: f64 = 0.3;
 /// A length beyond all slips, whose square is a number.
 const ANY: f64 = 1e150;
 
-/// How far the turns are.
+/// The progress of the turns.
 pub struct Turns {
     pub made: u32,
     least: f64,
@@ -38,7 +39,7 @@ impl Turns {
         Turns { made: 0, least: f64::INFINITY, since: 0, last: f64::INFINITY }
     }
 
-    /// What the next turn is solved to.
+    /// The tolerance of the next turn.
     pub fn inner(&self, tolerance: f64) -> f64 {
         (INNER * self.last).clamp(ENOUGH * tolerance, FIRST.max(ENOUGH * tolerance))
     }
@@ -87,7 +88,7 @@ pub fn renew(level: &mut Level, march: &mut March) -> Result<f64> {
     Ok(stages::worst(problem, state, tangent))
 }
 
-/// What slips goes onto the circles of the last bounds; the larger residual of both certificates.
+/// Elements that slip go onto the circles of the last bounds. Returns the larger residual of both certificates.
 pub fn certify(level: &mut Level, march: &mut March) -> f64 {
     let Level { problem, state, memory, .. } = level;
     stages::onto_circles(problem, state, &memory.tangent);

@@ -22,11 +22,10 @@ const NEEDED: f64 = 0.3;
 const LEAST: f64 = 1e-2;
 
 impl ProjectedNewton {
-    /// t, and A t.
+    /// t.
     pub(super) fn find_direction<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<()> {
         let by_force = matches!(task.state.load, Load::Force(_));
         self.t.fill(0.0);
-        self.product.fill(0.0);
         for ((r, e), &free) in self.r.iter_mut().zip(&self.distance).zip(&self.free) {
             *r = if free { -e } else { 0.0 };
         }
@@ -92,7 +91,7 @@ impl ProjectedNewton {
     fn precondition(&mut self, without_mean: bool, uniform: f64) -> f64 {
         let ProjectedNewton { preconditioner, weight, free, r, z, uniform_product, .. } = self;
         z.copy_from_slice(r);
-        if let Some((m, workspace)) = preconditioner {
+        if let Some((workspace, m)) = preconditioner {
             m.apply(z, (free, without_mean), &mut None, workspace);
         }
         finish(z, free, without_mean, (uniform, uniform_product));
@@ -105,11 +104,10 @@ impl ProjectedNewton {
         dot(r, z)
     }
 
-    /// t, its product and the residual, by `alpha` of the direction.
+    /// t and the residual, by `alpha` of the direction.
     fn go_along(&mut self, alpha: f64) {
         for i in 0..self.t.len() {
             self.t[i] += alpha * self.along[i];
-            self.product[i] += alpha * self.along_product[i];
             self.r[i] -= if self.free[i] { alpha * self.along_product[i] } else { 0.0 };
         }
     }

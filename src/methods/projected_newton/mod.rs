@@ -5,7 +5,7 @@
 //! ```text
 //! free elements: p > 0 or e < 0; with limits also p < p_max or e > 0
 //! A t = -e on them, in part: some conjugate gradients             (module `direction`)
-//! elements whose t leads out of their bound are not free: t anew
+//! elements whose t leads out of their bound are not free: t anew   (module `bounds`)
 //! d = project(p + t) - p                                          (module `projection`)
 //! s = -(d, e)/(d, A d), at most 1;   p = p + s d
 //! ```
@@ -15,16 +15,17 @@
 //! Where bounds cut much of t off, s is small: then d is projected again from a shorter t, and the next direction has fewer conjugate gradients.
 //! Long waves of t would push many elements to a bound at which they do not stay.
 
+mod bounds;
 mod direction;
 mod projection;
 
+use self::bounds::{find_contact, find_free, keep_at_bounds, snap};
 use crate::contact::{AdmissibleSet, Freshness, Problem, State};
 use crate::error::Result;
 use crate::memory::zeros;
 use crate::methods::projected_cg::Preconditioner;
 use crate::methods::{Change, Policy, Step, Task};
 use crate::operator::Workspace;
-use crate::scene::Load;
 use crate::sums::in_blocks;
 
 const MEMORY: &str = "the workspace of the projected Newton method";
@@ -41,22 +42,16 @@ const PATIENCE: u32 = 400;
 const SHORTER: f64 = 0.25;
 /// A t that leads uphill when it is so much shorter is round-off.
 const ROUND_OFF: f64 = 1e-9;
-/// A pressure that is nearer to a bound, relative to the limit or to the mean pressure, is there. Where nearly all is at a bound, the one element that
-/// carries the rounding of the force must not rule the approach.
-const AT_BOUND: f64 = 1e-12;
-
 /// The method, and its memory, kept from one solve to the next. A must be symmetric.
 #[derive(Default)]
 pub struct ProjectedNewton {
     /// None: the circulant is not positive, and W, the inverse of A's diagonal, stands for it.
-    preconditioner: Option<(Preconditioner<f64>, Workspace<f64>)>,
+    preconditioner: Option<(Workspace<f64>, Preconditioner<f64>)>,
     weight: Vec<f64>,
     free: Vec<bool>,
     /// e on elements with a surface.
     distance: Vec<f64>,
-    /// t and A t.
     t: Vec<f64>,
-    product: Vec<f64>,
     /// Of the conjugate gradients: the residual, the preconditioned one, the direction and its product, and that of 1 on the free elements.
     r: Vec<f64>,
     z: Vec<f64>,
@@ -89,10 +84,12 @@ impl<S: AdmissibleSet> Step<S> for ProjectedNewton {
 
     fn begin(&mut self, state: &State) -> Result<()> {
         let n = state.p.len();
-        for values in self.vectors() {
-            *values = zeros(n, MEMORY)?;
+        if self.free.len() != n {
+            for values in self.vectors() {
+                *values = zeros(n, MEMORY)?;
+            }
+            self.free = zeros(n, MEMORY)?;
         }
-        self.free = zeros(n, MEMORY)?;
         (self.most, self.began) = (MOST, false);
         Ok(())
     }
@@ -105,7 +102,7 @@ impl<S: AdmissibleSet> Step<S> for ProjectedNewton {
         // The loop admits elements whose p is 0 still: they are free, but the approach is not theirs.
         find_contact(task.state, task.set);
         task.state.fit_approach(&task.problem.threads);
-        self.find_free(task.state, task.set);
+        find_free(task.state, task.set, &mut self.distance, &mut self.free);
         let slope = self.downhill(task)?;
         if !(slope < 0.0) {
             // Nothing is downhill, or round-off hides it: the loop's certificate decides.
@@ -127,14 +124,14 @@ impl<S: AdmissibleSet> Step<S> for ProjectedNewton {
 impl ProjectedNewton {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let preconditioner = self.preconditioner.as_ref().map_or(0, |(m, workspace)| m.bytes() + workspace.bytes());
-        preconditioner + 11 * self.t.len() * size_of::<f64>() + self.free.len()
+        let preconditioner = self.preconditioner.as_ref().map_or(0, |(workspace, m)| m.bytes() + workspace.bytes());
+        preconditioner + 10 * self.t.len() * size_of::<f64>() + self.free.len()
     }
 
-    fn vectors(&mut self) -> [&mut Vec<f64>; 11] {
-        let ProjectedNewton { weight, distance, t, product, r, z, along, along_product, .. } = self;
+    fn vectors(&mut self) -> [&mut Vec<f64>; 10] {
+        let ProjectedNewton { weight, distance, t, r, z, along, along_product, .. } = self;
         let ProjectedNewton { uniform_product, change, change_product, .. } = self;
-        [weight, distance, t, product, r, z, along, along_product, uniform_product, change, change_product]
+        [weight, distance, t, r, z, along, along_product, uniform_product, change, change_product]
     }
 
     /// The preconditioner, and W.
@@ -142,10 +139,7 @@ impl ProjectedNewton {
         let Problem { coefficients, grid, threads, .. } = problem;
         self.preconditioner = match Preconditioner::new(coefficients, 1.0, grid, threads)? {
             None => None,
-            Some(m) => {
-                let workspace = m.inverse().workspace()?;
-                Some((m, workspace))
-            }
+            Some(m) => Some((m.inverse().workspace()?, m)),
         };
         for (i, weight) in self.weight.iter_mut().enumerate() {
             *weight = 1.0 / coefficients.entry(grid, i, i);
@@ -153,51 +147,24 @@ impl ProjectedNewton {
         Ok(())
     }
 
-    /// e, and the free elements. With a prescribed force and C empty the approach is between those that hold the elements at their limit, and those that
-    /// the exterior ones reach: both are free where these are in the wrong order.
-    fn find_free<S: AdmissibleSet>(&mut self, state: &State, set: S) {
-        let approach = match state.load {
-            Load::Force(_) if !state.contact.contains(&true) => between(state),
-            _ => state.approach,
-        };
-        for i in 0..state.p.len() {
-            let has_surface = state.h[i].is_finite();
-            let (p, e) = (state.p[i], if has_surface { state.h[i] - approach + state.u[i] } else { 0.0 });
-            self.distance[i] = e;
-            self.free[i] = has_surface && (p > 0.0 || e < 0.0) && (p < set.limit(i) || e > 0.0);
-        }
-    }
-
     /// t, and d, that lead downhill, as d's slope says. It is not negative where there are none.
     fn downhill<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<f64> {
-        for tries in 1.. {
+        let mut tries = 0;
+        let mut slope = loop {
+            tries += 1;
             self.find_direction(task)?;
             let slope = self.project(task.state, task.set, 1.0);
-            if slope < 0.0 || !self.keep_at_bounds(task.state, task.set, tries > TRIES) {
-                break;
+            if slope < 0.0 || !keep_at_bounds((task.state, task.set), &self.t, &mut self.free, tries > TRIES) {
+                break slope;
             }
-        }
+        };
         let mut length = 1.0;
-        loop {
-            let slope = self.project(task.state, task.set, length);
-            if slope < 0.0 || length < ROUND_OFF {
-                self.t.iter_mut().chain(&mut self.product).for_each(|value| *value *= length);
-                return Ok(slope);
-            }
+        while !(slope < 0.0 || length < ROUND_OFF) {
             length *= SHORTER;
+            slope = self.project(task.state, task.set, length);
         }
-    }
-
-    /// Elements at a bound that t leads out of are not free, or `all` of those at a bound. Returns whether there are any.
-    fn keep_at_bounds<S: AdmissibleSet>(&mut self, state: &State, set: S, all: bool) -> bool {
-        let mut any = false;
-        for i in 0..state.p.len() {
-            let (p, t) = (state.p[i], self.t[i]);
-            let leads_out = p <= 0.0 && (all || t < 0.0) || S::LIMITED && p >= set.limit(i) && (all || t > 0.0);
-            any |= self.free[i] && leads_out;
-            self.free[i] &= !leads_out;
-        }
-        any
+        self.t.iter_mut().for_each(|t| *t *= length);
+        Ok(slope)
     }
 
     /// How far along d, or along a d from a shorter t where that lowers the energy more.
@@ -206,13 +173,15 @@ impl ProjectedNewton {
         let first = self.length(slope);
         let mut found = first;
         if first.part < SHORT {
-            let reach = 2.0 * first.part;
-            let slope = self.project(task.state, task.set, reach);
+            // The first d is kept where nothing else is needed now.
+            std::mem::swap(&mut self.change, &mut self.r);
+            std::mem::swap(&mut self.change_product, &mut self.z);
+            let slope = self.project(task.state, task.set, 2.0 * first.part);
             task.problem.displace(&self.change, &mut self.change_product)?;
             found = self.length(slope);
             if !(found.energy < first.energy) {
-                self.project(task.state, task.set, 1.0);
-                task.problem.displace(&self.change, &mut self.change_product)?;
+                std::mem::swap(&mut self.change, &mut self.r);
+                std::mem::swap(&mut self.change_product, &mut self.z);
                 found = first;
             }
         }
@@ -250,55 +219,6 @@ fn take_over<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<()> {
     state.carry_force(set, &task.problem.threads);
     find_contact(state, set);
     task.refresh()
-}
-
-/// With limits: pressures that are at a bound but for rounding.
-fn snap<S: AdmissibleSet>(state: &mut State, set: S) {
-    if !S::LIMITED {
-        return;
-    }
-    let least = AT_BOUND * in_blocks(state.p.iter().copied()) / state.p.len() as f64;
-    for (i, p) in state.p.iter_mut().enumerate() {
-        if *p <= least {
-            *p = 0.0;
-        } else if *p >= (1.0 - AT_BOUND) * set.limit(i) {
-            *p = set.limit(i);
-        }
-    }
-}
-
-/// C = {0 < p < limit}; returns how many elements changed sides.
-fn find_contact<S: AdmissibleSet>(state: &mut State, set: S) -> u64 {
-    let mut changes = 0;
-    for i in 0..state.p.len() {
-        let at_limit = S::LIMITED && state.p[i] >= set.limit(i);
-        if S::LIMITED {
-            state.at_limit[i] = at_limit;
-            state.reached_limit |= at_limit;
-        }
-        let inside = state.p[i] > 0.0 && !at_limit;
-        changes += u64::from(state.contact[i] != inside);
-        state.contact[i] = inside;
-    }
-    changes
-}
-
-/// The middle between the approach that holds all elements at their limit and the one at which an exterior element touches.
-fn between(state: &State) -> f64 {
-    let (mut held, mut touching) = (f64::NEG_INFINITY, f64::INFINITY);
-    for i in (0..state.p.len()).filter(|&i| state.h[i].is_finite()) {
-        let distance = state.h[i] + state.u[i];
-        if state.touches(i) {
-            held = held.max(distance);
-        } else {
-            touching = touching.min(distance);
-        }
-    }
-    match (held.is_finite(), touching.is_finite()) {
-        (true, true) => 0.5 * (held + touching),
-        (true, false) => held,
-        (false, _) => touching,
-    }
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

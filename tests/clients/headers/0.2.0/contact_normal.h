@@ -1886,8 +1886,8 @@ typedef struct contact_normal_report_adhesion {
    */
   double adhesive_energy;
   /*
-   `||p + sigma(e)|| / ||p||`, the first outside C, 2-norms, with a fresh product: it is at most the tolerance, too. Where
-   contact pressures and attraction cancel 1e-3 `||q||` is the scale.
+   `||p + sigma(e)|| / ||p||`, the first outside C, 2-norms, with a fresh product. It is at most the tolerance, as the
+   residual is. Where contact pressures and attraction cancel, the scale is 1e-3 `||q||`.
    */
   double law_residual;
   /*

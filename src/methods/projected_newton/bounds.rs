@@ -1,0 +1,90 @@
+//! Bounds: the elements that are free, those that stay where they are, and pressures that are at a bound but for rounding.
+
+use crate::contact::{AdmissibleSet, State};
+use crate::scene::Load;
+use crate::sums::in_blocks;
+
+/// A pressure that is nearer to a bound, relative to the limit or to the mean pressure, is there. Where nearly all is at a bound, the one element that
+/// carries the rounding of the force must not rule the approach.
+const AT_BOUND: f64 = 1e-12;
+
+/// e on elements with a surface, and the free elements. With a prescribed force and C empty the approach is between those that hold the elements at
+/// their limit, and those that the exterior ones reach: both are free where these are in the wrong order.
+pub(super) fn find_free<S: AdmissibleSet>(state: &State, set: S, distance: &mut [f64], free: &mut [bool]) {
+    let approach = match state.load {
+        Load::Force(_) if !state.contact.contains(&true) => between(state),
+        _ => state.approach,
+    };
+    for i in 0..state.p.len() {
+        let has_surface = state.h[i].is_finite();
+        let (p, e) = (state.p[i], if has_surface { state.h[i] - approach + state.u[i] } else { 0.0 });
+        distance[i] = e;
+        free[i] = has_surface && (p > 0.0 || e < 0.0) && (p < set.limit(i) || e > 0.0);
+    }
+}
+
+/// Elements at a bound that t leads out of are not free, or `all` of those at a bound. Returns whether there are any.
+pub(super) fn keep_at_bounds<S: AdmissibleSet>(
+    (state, set): (&State, S),
+    t: &[f64],
+    free: &mut [bool],
+    all: bool,
+) -> bool {
+    let mut any = false;
+    for i in 0..state.p.len() {
+        let (p, t) = (state.p[i], t[i]);
+        let leads_out = p <= 0.0 && (all || t < 0.0) || S::LIMITED && p >= set.limit(i) && (all || t > 0.0);
+        any |= free[i] && leads_out;
+        free[i] &= !leads_out;
+    }
+    any
+}
+
+/// With limits: pressures that are at a bound but for rounding.
+pub(super) fn snap<S: AdmissibleSet>(state: &mut State, set: S) {
+    if !S::LIMITED {
+        return;
+    }
+    let least = AT_BOUND * in_blocks(state.p.iter().copied()) / state.p.len() as f64;
+    for (i, p) in state.p.iter_mut().enumerate() {
+        if *p <= least {
+            *p = 0.0;
+        } else if *p >= (1.0 - AT_BOUND) * set.limit(i) {
+            *p = set.limit(i);
+        }
+    }
+}
+
+/// C = {0 < p < limit}; returns how many elements changed sides.
+pub(super) fn find_contact<S: AdmissibleSet>(state: &mut State, set: S) -> u64 {
+    let mut changes = 0;
+    for i in 0..state.p.len() {
+        let at_limit = S::LIMITED && state.p[i] >= set.limit(i);
+        if S::LIMITED {
+            state.at_limit[i] = at_limit;
+            state.reached_limit |= at_limit;
+        }
+        let inside = state.p[i] > 0.0 && !at_limit;
+        changes += u64::from(state.contact[i] != inside);
+        state.contact[i] = inside;
+    }
+    changes
+}
+
+/// The middle between the approach that holds all elements at their limit and the one at which an exterior element touches.
+fn between(state: &State) -> f64 {
+    let (mut held, mut touching) = (f64::NEG_INFINITY, f64::INFINITY);
+    for i in (0..state.p.len()).filter(|&i| state.h[i].is_finite()) {
+        let distance = state.h[i] + state.u[i];
+        if state.touches(i) {
+            held = held.max(distance);
+        } else {
+            touching = touching.min(distance);
+        }
+    }
+    match (held.is_finite(), touching.is_finite()) {
+        (true, true) => 0.5 * (held + touching),
+        (true, false) => held,
+        (false, _) => touching,
+    }
+}
