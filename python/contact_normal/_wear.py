@@ -58,7 +58,7 @@ def frictional_wear(
 ) -> FrictionalWear:
     """Frictional work and depth of wear (Archard) of each element, from what a solve with friction returned.
 
-    The depth is K/H times the frictional work per area, which is -(q . s), or with pressures K/H p |s|.
+    The depth is K/H times the frictional work per area, which is -(q . s), or with pressures K/H the pressure times the length of s.
 
     Parameters
     ----------
