@@ -20,7 +20,7 @@ use crate::sums::in_blocks;
 /// Names its memory in messages.
 const FIELDS: &str = "the wear";
 
-/// What slips, and how easily it wears.
+/// The tractions and slips, and how easily the surface wears.
 #[derive(Clone, Copy, Debug)]
 pub struct Wear<'a> {
     /// The elements.
@@ -41,14 +41,14 @@ pub struct Wear<'a> {
     pub rolling_distance: f64,
 }
 
-/// What friction did.
+/// Work and wear of friction.
 #[derive(Clone, Debug)]
 pub struct Worn {
     /// Frictional work per area of each element.
     pub work: Vec<f64>,
-    /// What it wears off, a length.
+    /// The depth of wear, a length.
     pub depth: Vec<f64>,
-    /// What a point of the surface loses while it passes through the contact once, of each row; empty without a rolling distance.
+    /// The depth that a point of the surface loses while it passes through the contact once, of each row; empty without a rolling distance.
     pub passage: Vec<f64>,
     /// The work of all elements, an energy.
     pub total_work: f64,

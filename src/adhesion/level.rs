@@ -30,7 +30,7 @@ pub trait Frozen: Send + Sync {
     fn bytes(&self) -> usize;
 }
 
-/// What solves frozen problems, and their state.
+/// The methods of frozen problems, and their state.
 pub type Still = (Box<dyn Frozen>, State);
 
 /// Makes what solves frozen problems on a grid.

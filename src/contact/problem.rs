@@ -12,7 +12,7 @@ use crate::operator::Operator;
 use crate::sums::Sums;
 use crate::threads::Threads;
 
-/// What is left of a displacement that should be 0, in units of round-off of what an element does to itself: a product by FFT is good
+/// The rest of a displacement that should be 0, in units of round-off of what an element does to itself: a product by FFT is good
 /// to some of them.
 const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 /// A wave of so many elements displaces about as much as an element displaces itself.

@@ -95,7 +95,7 @@ impl GivenEffect for contact_normal_adhesion {
     }
 }
 
-/// What was found of adhesion: a group of `contact_normal_report`. Without adhesion all is 0.
+/// The results of adhesion: a group of `contact_normal_report`. Without adhesion all is 0.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct contact_normal_report_adhesion {

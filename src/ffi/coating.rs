@@ -25,7 +25,7 @@ pub struct contact_normal_coating {
 
 versioned! { contact_normal_coating, contact_normal_coating_init, 32 }
 
-/// What a coated body with this `shear_modulus` (+infinity: rigid) and `poisson_ratio` below gives way to a pressure wave: the amplitude of the
+/// The displacement of a coated body with this `shear_modulus` (+infinity: rigid) and `poisson_ratio` below, by a pressure wave: the amplitude of the
 /// displacement over that of the pressure, for `wave_number` (2 pi over the wave's length) > 0. To compare a coating with a formula of
 /// one's own: `(1 - nu)/(G k)` for a body of one material. Since 0.2.
 #[no_mangle]

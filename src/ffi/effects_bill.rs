@@ -45,7 +45,7 @@ pub const CONTACT_NORMAL_VERDICT_NEGLIGIBLE: i32 = 1;
 /// `verdict`: it changes by more than the target.
 pub const CONTACT_NORMAL_VERDICT_NEEDED: i32 = 2;
 
-/// What leaving out an effect, or two, does to a quantity, and what it saves.
+/// The change of a quantity without an effect, or without two, and the cost that this saves.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_effects_row {
@@ -53,7 +53,7 @@ pub struct contact_normal_effects_row {
     pub struct_size: i64,
     /// CONTACT_NORMAL_OMIT_...: what is left out.
     pub omitted: i32,
-    /// What is left out beside it; NONE: nothing.
+    /// The second effect that is left out; NONE: only one is.
     pub also_omitted: i32,
     /// CONTACT_NORMAL_QUANTITY_...
     pub quantity: i32,
@@ -65,7 +65,7 @@ pub struct contact_normal_effects_row {
     pub reserved: i32,
     /// The value of the scene as it is, on the last of the small grids; NaN: there is none.
     pub value: f64,
-    /// What leaving out adds to it; NaN: not known.
+    /// The change of the quantity by leaving out; NaN: not known.
     pub change: f64,
     /// How far the change may be off; < 0: not known.
     pub change_error: f64,

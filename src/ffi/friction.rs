@@ -127,15 +127,15 @@ pub struct contact_normal_friction {
     pub law: i32,
     /// Must be 0.
     pub reserved_for_law: i32,
-    /// What is left of mu at high speed, >= 0; default 0. Only ratios of this and of `falling` count.
+    /// The part of mu that stays at high speed, >= 0; default 0. Only ratios of this and of `falling` count.
     pub kinetic: f64,
-    /// What falls, in two parts, >= 0; default 0.
+    /// The parts of mu that fall, two of them, >= 0; default 0.
     pub falling: [f64; 2],
     /// The slip velocity h of each part, at which half of it is left; > 0 where the part is.
     pub half_speed: [f64; 2],
     /// The speed of rolling, > 0: a step takes the length rolled divided by it, and v is the slip divided by that.
     pub speed: f64,
-    /// What a shift takes, > 0: a time.
+    /// The duration of a shift, > 0: a time.
     pub time_step: f64,
     /// The distance of slip over which mu follows, >= 0; default 0: at once.
     pub memory_distance: f64,
@@ -144,7 +144,7 @@ pub struct contact_normal_friction {
     /// Of a layer between the bodies: the traction at which fresh material yields; `|q| <= min(mu p, yield_limit + hardening * slip)`. Default
     /// 0: it does not yield.
     pub yield_limit: f64,
-    /// What the limit gains by a length of plastic slip, a traction per length; < 0: it softens. Default 0: ideal plastic. Otherwise
+    /// The change of the limit by a length of plastic slip, a traction per length; < 0: it softens. Default 0: ideal plastic. Otherwise
     /// bodies and `sensitivities` as with a `law`.
     pub hardening: f64,
     /// mu that particles of the interface had before the step, of a law with memory, `[my][mx]`; default NULL: that at rest, and with

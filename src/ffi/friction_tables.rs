@@ -29,7 +29,7 @@ fn read<T: Versioned, const N: usize>(at: [*const T; N], names: [&str; N]) -> Re
     Ok(tables.iter().any(Option::is_some).then_some(tables))
 }
 
-/// What a table says, and where its values are.
+/// The contents of a table, and the places of its values.
 type Given = ([(&'static str, f64); 3], *const f64);
 
 /// The values of table k, of so many. A table whose members differ from those of the first one is refused.

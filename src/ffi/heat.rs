@@ -42,7 +42,7 @@ pub struct contact_normal_heat {
 
 versioned! { contact_normal_heat, contact_normal_heat_init, 104, share: -1.0, threads: 1 }
 
-/// What `contact_normal_flash_temperature` found.
+/// The results of `contact_normal_flash_temperature`.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_flash {

@@ -82,7 +82,7 @@ pub struct contact_normal_price {
     pub dx: f64,
     /// Element size in y.
     pub dy: f64,
-    /// What keeps the accuracy from being had.
+    /// The obstacle to the accuracy.
     pub obstacle: i32,
     /// 0.
     pub reserved: i32,

@@ -3,7 +3,7 @@
 use super::ledger::copy;
 use crate::solver::Progress;
 
-/// What the progress callback is told after each cycle.
+/// The state of a solve after a cycle, for the progress callback.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct contact_normal_progress {

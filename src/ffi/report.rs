@@ -14,7 +14,7 @@ pub const CONTACT_NORMAL_LIMITED_BY_GRID: i32 = 1;
 /// `limited_by`: the tolerance; it allows a larger error than that of the grid.
 pub const CONTACT_NORMAL_LIMITED_BY_TOLERANCE: i32 = 2;
 
-/// What was found of the normal problem: a group of `contact_normal_report`.
+/// The results of the normal problem: a group of `contact_normal_report`.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct contact_normal_report_normal {
@@ -49,7 +49,7 @@ pub struct contact_normal_report_normal {
     pub reserved: [f64; 8],
 }
 
-/// What was found of the tangential problem: a group of `contact_normal_report`. Without friction all is 0.
+/// The results of the tangential problem: a group of `contact_normal_report`. Without friction all is 0.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct contact_normal_report_tangential {
@@ -102,13 +102,13 @@ pub struct contact_normal_report_accuracy {
     pub error_tangential: [f64; 2],
     /// CONTACT_NORMAL_UNTRUSTED_... bits.
     pub untrusted: i32,
-    /// What limits the accuracy: CONTACT_NORMAL_LIMITED_BY_...
+    /// The limit of the accuracy: CONTACT_NORMAL_LIMITED_BY_...
     pub limited_by: i32,
     /// About the seconds of a solve with elements of half the size; < 0: not known.
     pub halved_seconds: f64,
     /// And the error of the force (or the approach) that it would leave.
     pub halved_error_force: f64,
-    /// What `options->neglect_below` left out: the sum of `1 << (o - 1)` over CONTACT_NORMAL_OMIT_... o. Since 0.2.
+    /// The effects that `options->neglect_below` left out: the sum of `1 << (o - 1)` over CONTACT_NORMAL_OMIT_... o. Since 0.2.
     pub neglected: i64,
     /// By how much that may be wrong: the largest relative change of a quantity, its error included. Since 0.2.
     pub neglected_error: f64,
@@ -116,7 +116,7 @@ pub struct contact_normal_report_accuracy {
     pub reserved: [f64; 6],
 }
 
-/// What it cost: a group of `contact_normal_report`.
+/// The cost of the solve: a group of `contact_normal_report`.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct contact_normal_report_statistics {
@@ -144,7 +144,7 @@ pub struct contact_normal_report_statistics {
     pub reserved: [f64; 8],
 }
 
-/// What a solve found and what it cost, in groups. Written only when the status is >= 0. A group grows into the room at its end, which is 0
+/// The results of a solve and its cost, in groups. Written only when the status is >= 0. A group grows into the room at its end, which is 0
 /// where the library does not know what a newer header has there; later groups come at the end of the report.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -157,21 +157,21 @@ pub struct contact_normal_report {
     pub ledger_capacity: i64,
     /// In: the caller's array, or NULL (default). Its first row is filled by `contact_normal_ledger_row_init`.
     pub ledger: *mut contact_normal_ledger_row,
-    /// What to look at, even where the status is OK: CONTACT_NORMAL_WARNING_... bits. `contact_normal_last_error` says it in words.
+    /// Warnings, even where the status is OK: CONTACT_NORMAL_WARNING_... bits. `contact_normal_last_error` says it in words.
     pub warnings: i32,
     /// Always 0.
     pub reserved: i32,
-    /// What was found of the normal problem.
+    /// The results of the normal problem.
     pub normal: contact_normal_report_normal,
-    /// What was found of the tangential problem.
+    /// The results of the tangential problem.
     pub tangential: contact_normal_report_tangential,
     /// How wrong it is.
     pub accuracy: contact_normal_report_accuracy,
     /// Its cost.
     pub statistics: contact_normal_report_statistics,
-    /// What was found of adhesion.
+    /// The results of adhesion.
     pub adhesion: contact_normal_report_adhesion,
-    /// What was found of a step in time.
+    /// The results of a step in time.
     pub visco: contact_normal_report_visco,
 }
 

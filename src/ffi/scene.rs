@@ -22,7 +22,7 @@ pub const CONTACT_NORMAL_PRESCRIBED_APPROACH: i32 = 1;
 /// `load`: the normal force is given, the approach is found.
 pub const CONTACT_NORMAL_PRESCRIBED_FORCE: i32 = 2;
 
-/// What is simulated: `e = h - approach + A p`, with e = 0 and p >= 0 in contact, e > 0 and p = 0 outside. Any consistent
+/// The scene to simulate: `e = h - approach + A p`, with e = 0 and p >= 0 in contact, e > 0 and p = 0 outside. Any consistent
 /// system of units.
 #[repr(C)]
 #[derive(Clone, Copy)]

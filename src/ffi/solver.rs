@@ -200,7 +200,7 @@ pub unsafe extern "C" fn contact_normal_solver_fields(
     })
 }
 
-/// What a solver is: see `contact_normal_solver_query`.
+/// The settings of a solver: see `contact_normal_solver_query`.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_solver_info {

@@ -9,7 +9,7 @@ use libc::c_char;
 use crate::error::Error;
 use crate::solver::Outcome;
 
-/// What a call returns: 0: OK; > 0: stopped early, outputs hold the best iterate; < 0: refused, outputs untouched.
+/// The outcome of a call. 0: OK; > 0: stopped early, outputs hold the best iterate; < 0: refused, outputs untouched.
 pub type contact_normal_status = i32;
 
 /// Solved: the certificate holds to the tolerance.

@@ -16,7 +16,7 @@ pub unsafe trait Versioned: Copy {
     const NAME: &'static str;
     /// Its size in the first version that had it: never changes again.
     const FIRST_SIZE: usize;
-    /// What its `_init` writes. Members beyond the first size are 0: so a newer program that leaves them alone does not ask an older
+    /// The values that its `_init` writes. Members beyond the first size are 0: so a newer program that leaves them alone does not ask an older
     /// library for anything.
     fn defaults() -> Self;
 

@@ -98,7 +98,7 @@ impl GivenEffect for contact_normal_visco {
     }
 }
 
-/// What was found of a step in time: a group of `contact_normal_report`. Without bodies that relax all is 0.
+/// The results of a step in time: a group of `contact_normal_report`. Without bodies that relax all is 0.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct contact_normal_report_visco {

@@ -43,7 +43,7 @@ pub struct contact_normal_wear {
 
 versioned! { contact_normal_wear, contact_normal_wear_init, 112, hardness: 1.0, steps: 1.0 }
 
-/// What `contact_normal_frictional_wear` found.
+/// The results of `contact_normal_frictional_wear`.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_worn {

@@ -173,7 +173,7 @@ impl Solver {
             };
             if let Some(outcome) = ended {
                 let residual = branch::certify(&mut self.levels[0], &mut march);
-                // What the way to the circles leaves may be more than the tolerance: then another turn follows.
+                // The rest on the way to the circles may be more than the tolerance: then another turn follows.
                 if outcome != Outcome::Converged || residual < request.tolerance {
                     break (outcome, residual);
                 }

@@ -21,7 +21,7 @@ const NODES: usize = 20;
 /// Names its memory in messages.
 const FIELDS: &str = "the flash temperature";
 
-/// What flows, and through which bodies.
+/// The heat that flows, and the bodies that it flows through.
 #[derive(Clone, Copy, Debug)]
 pub struct Heat<'a> {
     /// The elements.

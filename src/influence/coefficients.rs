@@ -118,7 +118,7 @@ impl Coefficients {
         }
     }
 
-    /// What a pressure wave displaces, where that and not coefficients makes a preconditioner: with a typical layer.
+    /// The displacement of a pressure wave, where that and not coefficients makes a preconditioner: with a typical layer.
     pub fn wave(&self, grid: &Grid, kx: f64, ky: f64) -> Option<f64> {
         let layer = self.diagonal.as_ref().map_or(0.0, |layer| layer.typical);
         self.kernel.wave(grid, kx, ky).map(|value| value + layer)

@@ -13,8 +13,8 @@ use crate::memory::collected;
 /// Names its memory in messages.
 const LAYER: &str = "the layer";
 
-/// What a compliance is measured against, in self-influences: a layer of less hardly matters. The smallest eigenvalue of A is 0.3.
-/// Measured: with 2 an iteration needs up to a third fewer products than with that, and fewer levels; 1 to 4 are much alike.
+/// A layer of less compliance than this, in self-influences, hardly matters. The smallest eigenvalue of A is 0.3.
+/// Measured: with 2 an iteration needs up to a third fewer products than with 0.3, and fewer levels; 1 to 4 are much alike.
 const SHORT: f64 = 2.0;
 /// Levels of c for preconditioners: this factor apart, and so many at most.
 const FACTOR: f64 = 6.0;

@@ -53,7 +53,7 @@ pub struct HalfSpace {
     shape: Arc<Shape>,
 }
 
-/// What depends on the ratio dx/dy only: the coefficients of an element twice as long and twice as wide are twice as large. Here they
+/// The part of coefficients that depends on the ratio dx/dy only: the coefficients of an element twice as long and twice as wide are twice as large. Here they
 /// are integrals of 1/rho over an element, relative to its length in x.
 #[derive(Debug)]
 struct Shape {

@@ -54,7 +54,7 @@ pub trait Kernel: Any + Debug + Send + Sync {
         (false, false)
     }
 
-    /// What all coefficients have in common beyond those of bodies whose mean displacement is zero. It displaces by the mean pressure, so it
+    /// The part that all coefficients have in common beyond those of bodies whose mean displacement is zero. It displaces by the mean pressure, so it
     /// changes the approach of a prescribed force, and not its pressures.
     fn constant(&self) -> f64 {
         0.0

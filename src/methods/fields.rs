@@ -19,7 +19,7 @@ pub struct Fields<const K: usize = 2> {
 
 /// The precision that fields are stored in.
 pub trait Stored: Real {
-    /// What is below this part of a field that was solved for is the round-off of products and of storage.
+    /// Values below this part of the largest of a field that was solved for are the round-off of products and of storage.
     const ROUND_OFF: f64;
 
     /// Those of a pool.

@@ -27,7 +27,7 @@ impl Bodies {
         (1.0 - self.poisson_ratio[b]) / (2.0 * self.shear_modulus[b])
     }
 
-    /// What couples the normal and the tangential problem of half-spaces: `(1 - 2 nu1)/G1 - (1 - 2 nu2)/G2`; 0 where bodies are alike.
+    /// The coupling of the normal and the tangential problem of half-spaces: `(1 - 2 nu1)/G1 - (1 - 2 nu2)/G2`; 0 where bodies are alike.
     pub fn unlike(&self) -> f64 {
         let of = |b: usize| (1.0 - 2.0 * self.poisson_ratio[b]) / self.shear_modulus[b];
         of(0) - of(1)

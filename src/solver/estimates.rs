@@ -31,7 +31,7 @@ use crate::scene::Load;
 /// s: of the bend the part by which approaches are off, in the mean, and so that few are off by more.
 const PART: f64 = 0.5;
 const AT_MOST: f64 = 0.62;
-/// What is added for straight outlines, in `pressure/E*` (a Hertz contact has a bend of `(pi/32) sides d/N` of its mean pressure over
+/// The part for straight outlines, in `pressure/E*` (a Hertz contact has a bend of `(pi/32) sides d/N` of its mean pressure over
 /// E*; along straight lines it is twice as much), and for chords of few elements: `(chord/4)^-2`.
 const STRAIGHT: f64 = 0.2;
 const SHORT_CHORD: f64 = 4.0;
@@ -76,7 +76,7 @@ impl Parts {
         }
         let force = state.force();
         let stiffness = stiffness(problem, force, curvature.depth, count as f64 * state.grid.element_area());
-        // What an error of the approach makes of what is found.
+        // An error of the approach makes errors of all quantities.
         let (by, sign, found) = match state.load {
             Load::Force(_) => (1.0, -1.0, curvature.depth),
             Load::Approach(_) => (stiffness, 1.0, force),

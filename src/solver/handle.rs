@@ -37,7 +37,7 @@ impl Solver {
         self.has_result
     }
 
-    /// What bodies that relax remember of the steps before, as numbers; none before the first step.
+    /// The memory of bodies that relax, as numbers; none before the first step.
     pub(crate) fn history(&self) -> Option<Vec<f64>> {
         self.beside.histories[effects::place(Visco::NAME)?].numbers()
     }

@@ -108,7 +108,7 @@ pub struct Solver {
     adhesion: Option<Box<crate::adhesion::Solver>>,
     /// Whether the last result is one of a scene with adhesion.
     is_adhesive: bool,
-    /// What bodies remember, and the distances of their step; empty where they remember nothing.
+    /// The memory of bodies, and the distances of their step; empty where they remember nothing.
     remembered: Vec<f64>,
     /// Of the bodies in the last result, in that of the set-up: 1 where they remember nothing.
     compliance: f64,

@@ -76,7 +76,7 @@ impl Solver {
         let approach = state.approach;
         // Of a force that is given it is the approach that is off.
         let of_found = if matches!(load, Load::Force(_)) { s } else { 1.0 };
-        // What is not known is negative.
+        // A negative value says: not known.
         let lengthened = |value: f64| if value > 0.0 { value * of_found } else { value };
         for row in &mut self.ledger {
             row.measures.approach *= s;

@@ -9,7 +9,7 @@
 use super::modes::Mode;
 use super::series::Series;
 
-/// What is taken for linear in a step.
+/// The quantity that is linear in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// The displacement.

@@ -25,12 +25,12 @@ pub use map::{Form, Map};
 pub use rolling::{rolling_table, RollingBody};
 pub use series::{Series, MOST};
 
-/// What was found of a step in time.
+/// The results of a step in time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
     /// Since the bodies were at rest.
     pub time: f64,
-    /// What the form of the step and another one differ by: rms of the displacements in contact, over that of h - approach.
+    /// The difference of the form of the step and another one: rms of the displacements in contact, over that of h - approach.
     pub step_error: f64,
     /// The same of all steps since then, added up as lengths: nothing of them is taken for forgotten.
     pub time_error: f64,

@@ -3,7 +3,7 @@
 /// Branches of a body at most.
 pub const MOST: usize = 32;
 
-/// What is left of a sum of moduli by rounding.
+/// The rounding of a sum of moduli.
 const ROUNDING: f64 = 1e-14;
 /// Times that differ by less than this part are one.
 const EQUAL: f64 = 1e-9;

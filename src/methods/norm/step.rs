@@ -76,7 +76,7 @@ impl Norm {
         Ok(update)
     }
 
-    /// What is to follow an inner solve that leaves `violators`. The recursive residual certifies nothing: if the true one is not met, it
+    /// The action after an inner solve that leaves `violators`. The recursive residual certifies nothing: if the true one is not met, it
     /// goes on from there. False if nothing is left to do.
     fn judge<S: AdmissibleSet>(&mut self, state: &State, set: S, goal: &Goal, update: f64, violators: u64) -> bool {
         let residual = residual_norm(state);

@@ -183,7 +183,7 @@ impl CoarseGrids {
         Ok(())
     }
 
-    /// What the rounding of a u in single precision leaves in p on the finest grid, relative to p (rms over what presses). Errors of
+    /// The error of p on the finest grid by the rounding of a u in single precision, relative to p (rms over what presses). Errors of
     /// `EPSILON u` that change from element to element, all wave numbers k alike, take pressures of `E* |k|/2` times themselves.
     pub fn noise(&self, fine: &Problem) -> f64 {
         let Some(Coarse { state, .. }) = self.grids.first() else { return 0.0 };

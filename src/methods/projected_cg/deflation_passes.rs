@@ -30,7 +30,7 @@ impl<T: Real> pulp::NullaryFnOnce for Change<'_, T> {
     }
 }
 
-/// What is outside C goes from d to z, which loses what it held; returns whether anything does.
+/// Moves the values outside C from d to z, whose own values are lost; returns whether there are any.
 pub(super) struct Restrict<'a, T> {
     pub(super) d: &'a mut [T],
     pub(super) z: &'a mut [T],
@@ -71,7 +71,7 @@ impl<T: Real> pulp::NullaryFnOnce for Subtract<'_, T> {
     }
 }
 
-/// What an element adds to (d, w), and to the sums of d^2 and of w^2 over the elements of d. An infinite w makes (d, w) NaN where d is 0: such a
+/// The part of an element in (d, w), and in the sums of d^2 and of w^2 over the elements of d. An infinite w makes (d, w) NaN where d is 0: such a
 /// change is none.
 #[inline(always)]
 pub(super) fn measures(d: f64, w: f64) -> [f64; 3] {

@@ -20,7 +20,7 @@ pub(super) enum Inner {
     Double(Iteration<f64>, Vec<(Grid, Operators<f64>)>),
 }
 
-/// What the operators of a window are made of: the coefficients, taken times a factor, and of the whole grid the operator in double
+/// The parts of the operators of a window: the coefficients, taken times a factor, and of the whole grid the operator in double
 /// precision, if it is the window.
 #[derive(Clone, Copy)]
 pub(super) struct MadeOf<'a> {

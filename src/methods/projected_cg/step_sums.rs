@@ -1,6 +1,6 @@
 //! Sums over C of a step, and what becomes of u.
 
-/// What becomes of u: factor (u + alpha q + gamma w + A d), w of the deflation direction.
+/// The new u: factor (u + alpha q + gamma w + A d), w of the deflation direction.
 #[derive(Clone, Copy)]
 pub(super) struct Update {
     pub(super) alpha: f64,

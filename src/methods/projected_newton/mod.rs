@@ -42,6 +42,7 @@ const PATIENCE: u32 = 400;
 const SHORTER: f64 = 0.25;
 /// A t that leads uphill when it is so much shorter is round-off.
 const ROUND_OFF: f64 = 1e-9;
+
 /// The method, and its memory, kept from one solve to the next. A must be symmetric.
 #[derive(Default)]
 pub struct ProjectedNewton {
@@ -224,3 +225,7 @@ fn take_over<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<()> {
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     in_blocks(a.iter().zip(b).map(|(a, b)| a * b))
 }
+
+#[cfg(test)]
+#[path = "../../../tests/unit/projected_newton.rs"]
+mod tests;

@@ -38,7 +38,7 @@ fn is_between<S: AdmissibleSet>(set: S, i: usize, p: f64) -> bool {
 
 /// The constant with which the sum is `wanted`. The sum grows with the constant, in pieces that are linear, whose slope is a number of elements;
 /// `size` is that of a pressure.
-fn constant_for(wanted: f64, sum: impl Fn(f64) -> f64, slope: impl Fn(f64) -> usize, size: f64) -> f64 {
+pub(super) fn constant_for(wanted: f64, sum: impl Fn(f64) -> f64, slope: impl Fn(f64) -> usize, size: f64) -> f64 {
     let (mut low, mut high, mut constant) = (f64::NEG_INFINITY, f64::INFINITY, 0.0);
     let mut reach = size.max(f64::MIN_POSITIVE);
     for _ in 0..STEPS {

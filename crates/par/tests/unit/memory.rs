@@ -1,4 +1,4 @@
-//! What is kept serves again, within its bound, and holds nothing of what it held. The tests share one shelf: each uses a type of its own.
+//! Kept memory serves again, within its bound, and holds none of its old values. The tests share one shelf: each uses a type of its own.
 
 use super::*;
 

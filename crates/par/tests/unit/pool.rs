@@ -1,4 +1,4 @@
-//! What a process has, also one that was forked at the worst moment.
+//! The pool of a process, also of one that was forked at the worst moment.
 
 use super::*;
 

@@ -40,7 +40,7 @@ fn plans_beyond_the_bound_are_forgotten() {
         assert!(Arc::ptr_eq(&kept, &made(0)), "what is used stays");
         assert!(super::kept() <= most);
     }
-    // What is larger by itself is not kept, and serves who asked for it.
+    // A plan that is larger by itself is not kept, and serves its caller.
     assert_eq!(shared(99, || Ok(Own::<1>(most + 1))).unwrap().0, most + 1);
     assert!(find::<Own<1>>(99).is_none());
 }
