@@ -72,6 +72,10 @@ STRIP_STATIC = $(OBJCOPY) --strip-debug --remove-section=.llvmbc --remove-sectio
 STRIP_PROGRAM = $(OBJCOPY) --strip-debug
 endif
 
+ifneq ($(and $(DEBUGDIR),$(filter macos,$(SYSTEM))),)
+$(error DEBUGDIR: on macOS the debug information is not in the library; dsymutil makes a folder of it)
+endif
+
 ifneq ($(STRIPPED),yes)
 STRIP_SHARED = cp
 STRIP_STATIC = cp
@@ -97,6 +101,9 @@ LINKS := $(filter-out $(REALNAME),$(SONAME) $(if $(filter-out windows,$(SYSTEM))
 
 # The files for pkg-config and CMake have LIBDIR relative to the prefix if it is below it, so that an installation can be moved.
 below := $(patsubst $(PREFIX)/%,%,$(filter $(PREFIX)/%,$(LIBDIR)))
+ifneq ($(and $(RELOCATABLE),$(if $(below),,elsewhere)),)
+$(error RELOCATABLE: LIBDIR is $(LIBDIR), and only a folder below PREFIX, $(PREFIX), moves with it)
+endif
 empty :=
 up := $(subst $(empty) $(empty),/,$(foreach folder,$(subst /, ,$(below)),..))
 PC_PREFIX := $(if $(RELOCATABLE),$${pcfiledir}/../$(up),$(PREFIX))
