@@ -59,14 +59,8 @@ fn pkg_config(prefix: &Path, arguments: &[&str]) -> Vec<String> {
     run(&mut command).split_whitespace().map(str::to_owned).collect()
 }
 
-#[test]
-fn the_installed_package_is_what_pkg_config_says() {
-    let folder = scratch("installed_package");
-    let prefix = folder.join("prefix");
-    let version = env!("CARGO_PKG_VERSION");
-    make_built("install", &[format!("PREFIX={}", prefix.display())]);
-
-    assert_eq!(pkg_config(&prefix, &["--modversion"]), [version]);
+/// Every name of the shared library, and the headers as they are.
+fn has_links_and_headers(prefix: &Path, version: &str) {
     let links = [
         ("libcontact_normal.so", format!("libcontact_normal.so.{version}")),
         ("libcontact_normal.so.2", format!("libcontact_normal.so.{version}")),
@@ -80,12 +74,23 @@ fn the_installed_package_is_what_pkg_config_says() {
         let name = file.expect("a file").file_name().into_string().expect("UTF-8");
         if [".h", ".hpp", ".f90", ".inc"].iter().any(|end| name.ends_with(end)) {
             let file = Path::new("include").join(&name);
-            let [ours, installed] = [root(), &prefix].map(|from| std::fs::read(from.join(&file)).expect("a file"));
+            let [ours, installed] = [root(), prefix].map(|from| std::fs::read(from.join(&file)).expect("a file"));
             assert!(ours == installed, "{name}");
             count += 1;
         }
     }
     assert!(count >= 9, "{count} files");
+}
+
+#[test]
+fn the_installed_package_is_what_pkg_config_says() {
+    let folder = scratch("installed_package");
+    let prefix = folder.join("prefix");
+    let version = env!("CARGO_PKG_VERSION");
+    make_built("install", &[format!("PREFIX={}", prefix.display())]);
+
+    assert_eq!(pkg_config(&prefix, &["--modversion"]), [version]);
+    has_links_and_headers(&prefix, version);
 
     // It runs from there; without a file it says how it is used.
     let replay = Command::new(prefix.join("bin/contact-normal-replay")).output().expect("the program");
@@ -173,6 +178,21 @@ fn an_archive_is_unpacked_anywhere() {
         moved.join("include").canonicalize().expect("the folder")
     );
     cmake_finds(&moved.join("lib"), &moved);
+}
+
+/// Variables that do not go together are refused before anything is written.
+#[test]
+fn variables_that_do_not_go_together_are_refused() {
+    for (variables, says) in [
+        (["RELOCATABLE=yes", "PREFIX=/opt/a", "LIBDIR=/opt/b"], "LIBDIR is /opt/b"),
+        (["DEBUGDIR=/usr/lib/debug", "TARGET=aarch64-apple-darwin", "PREFIX=/opt/a"], "DEBUGDIR: on macOS"),
+    ] {
+        let mut make = Command::new("make");
+        make.env_remove("MAKEFLAGS").arg("-C").arg(root()).args(["-n", "install"]).args(variables);
+        let output = make.output().expect("make");
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success() && told.contains(says), "{variables:?}: {told}");
+    }
 }
 
 /// CMake's file, where nothing was moved: it names the library in this folder and the headers in that prefix.
