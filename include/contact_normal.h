@@ -797,7 +797,7 @@
 typedef struct contact_normal_solver contact_normal_solver;
 
 /*
- What a call returns: 0: OK; > 0: stopped early, outputs hold the best iterate; < 0: refused, outputs untouched.
+ The outcome of a call. 0: OK; > 0: stopped early, outputs hold the best iterate; < 0: refused, outputs untouched.
  */
 typedef int32_t contact_normal_status;
 
@@ -1093,11 +1093,11 @@ typedef struct contact_normal_friction {
    */
   int32_t reserved_for_law;
   /*
-   What is left of mu at high speed, >= 0; default 0. Only ratios of this and of `falling` count.
+   The part of mu that stays at high speed, >= 0; default 0. Only ratios of this and of `falling` count.
    */
   double kinetic;
   /*
-   What falls, in two parts, >= 0; default 0.
+   The parts of mu that fall, two of them, >= 0; default 0.
    */
   double falling[2];
   /*
@@ -1109,7 +1109,7 @@ typedef struct contact_normal_friction {
    */
   double speed;
   /*
-   What a shift takes, > 0: a time.
+   The duration of a shift, > 0: a time.
    */
   double time_step;
   /*
@@ -1126,7 +1126,7 @@ typedef struct contact_normal_friction {
    */
   double yield_limit;
   /*
-   What the limit gains by a length of plastic slip, a traction per length; < 0: it softens. Default 0: ideal plastic. Otherwise
+   The change of the limit by a length of plastic slip, a traction per length; < 0: it softens. Default 0: ideal plastic. Otherwise
    bodies and `sensitivities` as with a `law`.
    */
   double hardening;
@@ -1238,7 +1238,7 @@ typedef struct contact_normal_visco {
 } contact_normal_visco;
 
 /*
- What is simulated: `e = h - approach + A p`, with e = 0 and p >= 0 in contact, e > 0 and p = 0 outside. Any consistent
+ The scene to simulate: `e = h - approach + A p`, with e = 0 and p >= 0 in contact, e > 0 and p = 0 outside. Any consistent
  system of units.
  */
 typedef struct contact_normal_scene {
@@ -1333,7 +1333,7 @@ typedef struct contact_normal_scene {
 } contact_normal_scene;
 
 /*
- What the progress callback is told after each cycle.
+ The state of a solve after a cycle, for the progress callback.
  */
 typedef struct contact_normal_progress {
   /*
@@ -1638,7 +1638,7 @@ typedef struct contact_normal_ledger_row {
 } contact_normal_ledger_row;
 
 /*
- What was found of the normal problem: a group of `contact_normal_report`.
+ The results of the normal problem: a group of `contact_normal_report`.
  */
 typedef struct contact_normal_report_normal {
   /*
@@ -1701,7 +1701,7 @@ typedef struct contact_normal_report_normal {
 } contact_normal_report_normal;
 
 /*
- What was found of the tangential problem: a group of `contact_normal_report`. Without friction all is 0.
+ The results of the tangential problem: a group of `contact_normal_report`. Without friction all is 0.
  */
 typedef struct contact_normal_report_tangential {
   /*
@@ -1790,7 +1790,7 @@ typedef struct contact_normal_report_accuracy {
    */
   int32_t untrusted;
   /*
-   What limits the accuracy: CONTACT_NORMAL_LIMITED_BY_...
+   The limit of the accuracy: CONTACT_NORMAL_LIMITED_BY_...
    */
   int32_t limited_by;
   /*
@@ -1802,7 +1802,7 @@ typedef struct contact_normal_report_accuracy {
    */
   double halved_error_force;
   /*
-   What `options->neglect_below` left out: the sum of `1 << (o - 1)` over CONTACT_NORMAL_OMIT_... o. Since 0.2.
+   The effects that `options->neglect_below` left out: the sum of `1 << (o - 1)` over CONTACT_NORMAL_OMIT_... o. Since 0.2.
    */
   int64_t neglected;
   /*
@@ -1816,7 +1816,7 @@ typedef struct contact_normal_report_accuracy {
 } contact_normal_report_accuracy;
 
 /*
- What it cost: a group of `contact_normal_report`.
+ The cost of the solve: a group of `contact_normal_report`.
  */
 typedef struct contact_normal_report_statistics {
   /*
@@ -1866,7 +1866,7 @@ typedef struct contact_normal_report_statistics {
 } contact_normal_report_statistics;
 
 /*
- What was found of adhesion: a group of `contact_normal_report`. Without adhesion all is 0.
+ The results of adhesion: a group of `contact_normal_report`. Without adhesion all is 0.
  */
 typedef struct contact_normal_report_adhesion {
   /*
@@ -1928,7 +1928,7 @@ typedef struct contact_normal_report_adhesion {
 } contact_normal_report_adhesion;
 
 /*
- What was found of a step in time: a group of `contact_normal_report`. Without bodies that relax all is 0.
+ The results of a step in time: a group of `contact_normal_report`. Without bodies that relax all is 0.
  */
 typedef struct contact_normal_report_visco {
   /*
@@ -1954,7 +1954,7 @@ typedef struct contact_normal_report_visco {
 } contact_normal_report_visco;
 
 /*
- What a solve found and what it cost, in groups. Written only when the status is >= 0. A group grows into the room at its end, which is 0
+ The results of a solve and its cost, in groups. Written only when the status is >= 0. A group grows into the room at its end, which is 0
  where the library does not know what a newer header has there; later groups come at the end of the report.
  */
 typedef struct contact_normal_report {
@@ -1975,7 +1975,7 @@ typedef struct contact_normal_report {
    */
   struct contact_normal_ledger_row *ledger;
   /*
-   What to look at, even where the status is OK: CONTACT_NORMAL_WARNING_... bits. `contact_normal_last_error` says it in words.
+   Warnings, even where the status is OK: CONTACT_NORMAL_WARNING_... bits. `contact_normal_last_error` says it in words.
    */
   int32_t warnings;
   /*
@@ -1983,11 +1983,11 @@ typedef struct contact_normal_report {
    */
   int32_t reserved;
   /*
-   What was found of the normal problem.
+   The results of the normal problem.
    */
   struct contact_normal_report_normal normal;
   /*
-   What was found of the tangential problem.
+   The results of the tangential problem.
    */
   struct contact_normal_report_tangential tangential;
   /*
@@ -1999,17 +1999,17 @@ typedef struct contact_normal_report {
    */
   struct contact_normal_report_statistics statistics;
   /*
-   What was found of adhesion.
+   The results of adhesion.
    */
   struct contact_normal_report_adhesion adhesion;
   /*
-   What was found of a step in time.
+   The results of a step in time.
    */
   struct contact_normal_report_visco visco;
 } contact_normal_report;
 
 /*
- What a solver is: see `contact_normal_solver_query`.
+ The settings of a solver: see `contact_normal_solver_query`.
  */
 typedef struct contact_normal_solver_info {
   /*
@@ -2276,7 +2276,7 @@ typedef struct contact_normal_price {
    */
   double dy;
   /*
-   What keeps the accuracy from being had.
+   The obstacle to the accuracy.
    */
   int32_t obstacle;
   /*
@@ -2333,7 +2333,7 @@ typedef struct contact_normal_quantity_row {
 } contact_normal_quantity_row;
 
 /*
- What leaving out an effect, or two, does to a quantity, and what it saves.
+ The change of a quantity without an effect, or without two, and the cost that this saves.
  */
 typedef struct contact_normal_effects_row {
   /*
@@ -2345,7 +2345,7 @@ typedef struct contact_normal_effects_row {
    */
   int32_t omitted;
   /*
-   What is left out beside it; NONE: nothing.
+   The second effect that is left out; NONE: only one is.
    */
   int32_t also_omitted;
   /*
@@ -2369,7 +2369,7 @@ typedef struct contact_normal_effects_row {
    */
   double value;
   /*
-   What leaving out adds to it; NaN: not known.
+   The change of the quantity by leaving out; NaN: not known.
    */
   double change;
   /*
@@ -2565,7 +2565,7 @@ typedef struct contact_normal_heat {
 } contact_normal_heat;
 
 /*
- What `contact_normal_flash_temperature` found.
+ The results of `contact_normal_flash_temperature`.
  */
 typedef struct contact_normal_flash {
   /*
@@ -2650,7 +2650,7 @@ typedef struct contact_normal_wear {
 } contact_normal_wear;
 
 /*
- What `contact_normal_frictional_wear` found.
+ The results of `contact_normal_frictional_wear`.
  */
 typedef struct contact_normal_worn {
   /*
@@ -2721,7 +2721,7 @@ void contact_normal_init(int32_t kind,
                          int64_t size);
 
 /*
- What a coated body with this `shear_modulus` (+infinity: rigid) and `poisson_ratio` below gives way to a pressure wave: the amplitude of the
+ The displacement of a coated body with this `shear_modulus` (+infinity: rigid) and `poisson_ratio` below, by a pressure wave: the amplitude of the
  displacement over that of the pressure, for `wave_number` (2 pi over the wave's length) > 0. To compare a coating with a formula of
  one's own: `(1 - nu)/(G k)` for a body of one material. Since 0.2.
  */
