@@ -1037,7 +1037,7 @@ typedef struct contact_normal_friction {
   /*
    Own tangential influence coefficients xx, yy and xy instead of the half-space's: the displacement in x by a unit traction in x, in
    y by one in y, and in either by one in the other. All or none, default NULL; all with the same cx, cy and scale. xx and yy must be
-   even in x and in y, xy odd in both (UNSUPPORTED otherwise). Rolling needs steps of whole elements; with the step the tables must reach
+   even in x and in y, xy odd in both, in steady rolling of like bodies in y alone (UNSUPPORTED otherwise). Rolling needs steps of whole elements; with the step the tables must reach
    across what is in contact. They belong to the set-up of a solver: later scenes may leave them out; others are refused (INFLUENCE_CHANGED). With `scene->influence` or `scene->row_tables` the bodies are not read; otherwise they must be alike, or `influence_cross` given.
    */
   const struct contact_normal_influence *influence[3];
@@ -2990,7 +2990,8 @@ contact_normal_status contact_normal_influence_half_space(int32_t cx,
  The influence coefficients of bodies that relax and roll steadily, without a change in time, as a table over offsets -cx..cx-1 by -cy..cy-1:
  `coefficients[2 cy][2 cx]`, x fastest, as `contact_normal_influence` takes it. `shear_modulus` and `poisson_ratio`: two values each, the moduli those at
  once; of `visco` the branches, moduli and times are read. `speed`: how fast the bodies roll towards +x; < 0: towards -x. The table is not even in x, so
- it serves the normal problem. UNSUPPORTED: a body of whose modulus nothing is left in the end. Since 0.2.
+ it serves the normal problem. UNSUPPORTED: a body of whose modulus nothing is left in the end. NOT_FINITE, INVALID_ARGUMENT: coefficients
+ beyond the range of doubles. Since 0.2.
  */
 contact_normal_status contact_normal_influence_rolling(int32_t cx,
                                                        int32_t cy,
@@ -3052,7 +3053,7 @@ contact_normal_status contact_normal_flash_temperature(const struct contact_norm
  undeformed distance. `work`, `depth`: `[my][mx]`, an energy per area and a length, of `steps` steps. `passage`: `[my]`, the depth that a point of
  a surface which rolls along x loses while it passes through the contact once. `worn`: the sums. NULL: not wanted. The work of an element is
  -(q . s), so that their sum is what the motion puts in less what is stored; where elements stick it is 0 to the tolerance, of either sign.
- INVALID_ARGUMENT, NOT_FINITE: numbers out of their range. Since 0.2.
+ INVALID_ARGUMENT, NOT_FINITE: numbers out of their range, results out of the range of doubles. Since 0.2.
  */
 contact_normal_status contact_normal_frictional_wear(const struct contact_normal_wear *wear,
                                                      double *work,

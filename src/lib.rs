@@ -57,6 +57,7 @@
 //! | [`stress`] | stresses below the surface, from pressures and tractions |
 //! | [`visco`] | Prony series of bodies that relax, and their step in time |
 //! | [`analytic`] | the Hertz solution |
+//! | `powers` | numbers as powers of two and what is near 1, where products would leave the range of numbers |
 //! | `blocks`, `bounding_box` | passes over a grid, by all threads and in vectors |
 //! | [`threads`], and of the same crate, `par`, `memory` and `sums` | the pool, memory by the size of the grid, sums in a fixed order |
 //! | [`ffi`] | the C ABI, translation only |
@@ -79,6 +80,7 @@ pub mod heat;
 pub mod influence;
 pub mod methods;
 pub mod operator;
+mod powers;
 pub mod progress;
 pub mod scene;
 pub mod solver;

@@ -10,11 +10,14 @@
 //! has q against s.
 //!
 //! Where bodies roll in +x a point of a surface passes through a row of elements, and spends dx/dq steps in each: what it loses is `passage`.
+//!
+//! All products are made of numbers near 1 and powers of two: a result that is a number is found, whatever the factors are, and others are refused.
 
 use crate::effects::Coefficient;
-use crate::error::{finite, not_negative, positive, Result};
+use crate::error::{finite, not_negative, positive, Error, Result};
 use crate::grid::{check_values, Grid};
 use crate::memory::{collected, zeros};
+use crate::powers::{apart, largest_power, PowerOfTwo};
 use crate::sums::in_blocks;
 
 /// Names its memory in messages.
@@ -81,40 +84,119 @@ impl Wear<'_> {
         not_negative("steps", self.steps)?;
         not_negative("rolling_distance", self.rolling_distance)
     }
+}
+
+/// What is multiplied, near 1, and the powers of two that are left out.
+struct Scaled<'a> {
+    wear: &'a Wear<'a>,
+    traction: PowerOfTwo,
+    slip: PowerOfTwo,
+    pressure: PowerOfTwo,
+    coefficient: PowerOfTwo,
+    hardness: f64,
+    steps: f64,
+    /// Of the work and of the depth of a step, and of so many steps.
+    of_work: i32,
+    of_depth: i32,
+    of_steps: i32,
+}
+
+/// Near 1 and a power of two; 0 is 0.
+fn parts_of(value: f64) -> (f64, i32) {
+    if value > 0.0 {
+        apart(value)
+    } else {
+        (0.0, 0)
+    }
+}
+
+impl<'a> Scaled<'a> {
+    fn new(wear: &'a Wear<'a>) -> Scaled<'a> {
+        let of = |[x, y]: [&[f64]; 2]| largest_power(x.iter().chain(y).copied());
+        let (traction, slip) = (of(wear.traction), of(wear.slip));
+        let pressure = largest_power(wear.pressure.into_iter().flatten().copied());
+        let coefficient = match wear.coefficient {
+            Coefficient::Uniform(value) => largest_power([value].into_iter()),
+            Coefficient::PerElement(values) => largest_power(values.iter().copied()),
+        };
+        let ((hardness, of_hardness), (steps, of_steps)) = (apart(wear.hardness), parts_of(wear.steps));
+        let by = if wear.pressure.is_some() { pressure } else { traction };
+        Scaled {
+            wear,
+            traction: PowerOfTwo::new(-traction),
+            slip: PowerOfTwo::new(-slip),
+            pressure: PowerOfTwo::new(-pressure),
+            coefficient: PowerOfTwo::new(-coefficient),
+            hardness,
+            steps,
+            of_work: traction + slip,
+            of_depth: by + slip + coefficient - of_hardness,
+            of_steps,
+        }
+    }
 
     /// Of a step at element i.
     fn work_at(&self, i: usize) -> f64 {
-        -(self.traction[0][i] * self.slip[0][i] + self.traction[1][i] * self.slip[1][i])
+        let ([qx, qy], [sx, sy]) = (self.wear.traction, self.wear.slip);
+        let product = |q: f64, s: f64| self.traction.times(q) * self.slip.times(s);
+        -(product(qx[i], sx[i]) + product(qy[i], sy[i]))
     }
 
     /// Of a step at element i. An element that sticks has a work of either sign, of the size of the tolerance: nothing grows.
     fn depth_at(&self, i: usize) -> f64 {
-        let by = match self.pressure {
+        let by = match self.wear.pressure {
             None => self.work_at(i).max(0.0),
-            Some(p) => p[i].max(0.0) * self.slip[0][i].hypot(self.slip[1][i]),
+            Some(p) => {
+                let [sx, sy] = self.wear.slip.map(|s| self.slip.times(s[i]));
+                self.pressure.times(p[i]).max(0.0) * sx.hypot(sy)
+            }
         };
-        self.coefficient.at(i) * by / self.hardness
+        self.coefficient.times(self.wear.coefficient.at(i)) * by / self.hardness
+    }
+}
+
+/// Times a power of two; refuses what is no number then, by its name.
+fn unscaled(name: &str, values: &mut [f64], power: i32) -> Result<()> {
+    let power = PowerOfTwo::new(power);
+    values.iter_mut().for_each(|value| *value = power.times(*value));
+    match values.iter().find(|value| !value.is_finite()) {
+        Some(value) => {
+            Err(Error::NotFinite(format!("{name} is {value}: what is given takes it out of the range of numbers")))
+        }
+        None => Ok(()),
     }
 }
 
 /// Frictional work and depth of wear of each element.
 ///
 /// # Errors
-/// `Invalid`, `NotFinite`: numbers out of their range, and arrays that have not one value per element. `OutOfMemory`.
+/// `Invalid`, `NotFinite`: numbers out of their range, results out of the range of numbers, and arrays that have not one value per element.
+/// `OutOfMemory`.
 pub fn frictional_wear(wear: &Wear<'_>) -> Result<Worn> {
     wear.check()?;
-    let Wear { grid, steps, rolling_distance, .. } = *wear;
-    let work = collected((0..grid.len()).map(|i| steps * wear.work_at(i)), FIELDS)?;
-    let depth = collected((0..grid.len()).map(|i| steps * wear.depth_at(i)), FIELDS)?;
+    let Wear { grid, rolling_distance, .. } = *wear;
+    let scaled = Scaled::new(wear);
+    let Scaled { steps, of_work, of_depth, of_steps, .. } = scaled;
+    let mut work = collected((0..grid.len()).map(|i| steps * scaled.work_at(i)), FIELDS)?;
+    let mut depth = collected((0..grid.len()).map(|i| steps * scaled.depth_at(i)), FIELDS)?;
+    let ((dx, of_dx), (dy, of_dy)) = (apart(grid.dx), apart(grid.dy));
     let mut passage = zeros(if rolling_distance > 0.0 { grid.my } else { 0 }, FIELDS)?;
-    for (iy, passage) in passage.iter_mut().enumerate() {
-        *passage =
-            in_blocks((iy * grid.mx..(iy + 1) * grid.mx).map(|i| wear.depth_at(i))) * (grid.dx / rolling_distance);
+    if rolling_distance > 0.0 {
+        let (distance, of_distance) = apart(rolling_distance);
+        for (iy, passage) in passage.iter_mut().enumerate() {
+            let row = iy * grid.mx..(iy + 1) * grid.mx;
+            *passage = in_blocks(row.map(|i| scaled.depth_at(i))) * (dx / distance);
+        }
+        unscaled("the depth of a passage", &mut passage, of_depth + of_dx - of_distance)?;
     }
-    let (at, largest) =
+    let (at, _) =
         depth.iter().enumerate().fold((0, 0.0), |top, (i, depth)| if *depth > top.1 { (i, *depth) } else { top });
-    let area = grid.element_area();
-    let total_work = in_blocks(work.iter().copied()) * area;
-    let volume = in_blocks(depth.iter().copied()) * area;
+    let sum = |values: &[f64]| [in_blocks(values.iter().copied()) * (dx * dy)];
+    let (mut total_work, mut volume) = (sum(&work), sum(&depth));
+    unscaled("the work of an element", &mut work, of_work + of_steps)?;
+    unscaled("the depth of an element", &mut depth, of_depth + of_steps)?;
+    unscaled("the work of all elements", &mut total_work, of_work + of_steps + of_dx + of_dy)?;
+    unscaled("the volume of all elements", &mut volume, of_depth + of_steps + of_dx + of_dy)?;
+    let ([total_work], [volume], largest) = (total_work, volume, depth[at]);
     Ok(Worn { work, depth, passage, total_work, volume, largest, at })
 }

@@ -46,8 +46,12 @@ pub struct History {
 }
 
 impl History {
-    /// So many fields, which are 0 where no step was done.
+    /// So many fields, which are 0 where no step was done. Refuses a history that was [taken](History::take) and has another number of them.
     pub fn fields(&mut self, count: usize, grid: &Grid) -> Result<&mut [Vec<f64>]> {
+        if self.is_given && self.fields.len() != count {
+            let known = self.fields.len();
+            return invalid(format!("a history has {known} fields; steps of these bodies keep {count}"));
+        }
         while self.fields.len() < count {
             self.fields.push(zeros(grid.len(), "what an effect keeps from step to step")?);
         }
@@ -93,7 +97,7 @@ impl History {
             let (count, elements) = (values.len(), grid.len());
             return invalid(format!("a history has {count} values; it must have fields of {elements}"));
         }
-        self.fields.clear();
+        (self.fields, self.is_given) = (Vec::new(), false);
         self.fields(values.len() / grid.len(), grid)?;
         for (field, values) in self.fields.iter_mut().zip(values.chunks(grid.len())) {
             field.copy_from_slice(values);

@@ -142,7 +142,7 @@ impl Friction<'_> {
         if influence.by_row {
             influence.check_rows(grid)
         } else {
-            influence.check(grid)
+            influence.check(grid, self.motion == Motion::SteadyRolling)
         }
     }
 }

@@ -5,7 +5,8 @@ use crate::grid::Grid;
 use crate::memory::collected;
 
 /// Tangential influence coefficients of the caller's own: three tables over offsets `-cx..cx-1` by `-cy..cy-1`, x fastest, laid out as the
-/// table of the normal coefficients. Axx and Ayy must be even in both directions, Axy odd in both. Or `by_row`: see `tangential_rows.rs`.
+/// table of the normal coefficients. Axx and Ayy must be even in both directions, Axy odd in both; in steady rolling in y alone, for bodies that relax: they
+/// are softer behind. Or `by_row`: see `tangential_rows.rs`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TangentialInfluence<'a> {
     /// Elements of the grid that they were made for.
@@ -24,6 +25,9 @@ pub struct TangentialInfluence<'a> {
     pub scale: f64,
 }
 
+/// An offset, and the value there.
+type AtOffset = ((i64, i64), f64);
+
 /// The sign of a component at a mirrored offset.
 #[derive(Clone, Copy)]
 struct Symmetry {
@@ -35,6 +39,7 @@ struct Symmetry {
 }
 
 const OWN: &str = "xx and yy must be even in x and in y, xy odd in both";
+const IN_STEADY_ROLLING: &str = "in steady rolling xx and yy must be even in y, xy odd in y";
 /// The condition on a number that all tables are multiplied by.
 pub(super) const SCALE: &str = "coefficients are scaled by a positive, finite number";
 
@@ -74,8 +79,20 @@ impl TangentialInfluence<'_> {
         self.cross.map_or([0.0; 2], |tables| tables.map(|values| self.scale * values[k]))
     }
 
-    /// Refuses tables that do not reach the offsets of a grid, and what no coefficients of a half-space's kind are.
-    pub(super) fn check(&self, grid: &Grid) -> Result<()> {
+    /// Whether coefficients of like bodies differ by more than round-off between offsets in x and their mirrors.
+    pub fn is_uneven(&self) -> bool {
+        let largest = self.at(0, 0)[0].max(self.at(0, 0)[1]);
+        let differ = |kx: i64, ky: i64| {
+            let (right, left) = (self.at(kx, ky), self.at(-kx, ky));
+            let off = [right[0] - left[0], right[1] - left[1], right[2] + left[2]];
+            off.iter().any(|off| !(off.abs() <= SYMMETRY * largest))
+        };
+        self.cross.is_none() && (0..self.cy as i64).any(|ky| (0..self.cx as i64).any(|kx| differ(kx, ky)))
+    }
+
+    /// Refuses tables that do not reach the offsets of a grid, and what no coefficients of a half-space's kind are; `is_steady`: of steady rolling, which
+    /// has none but the change in a step, and no side of x that is like the other.
+    pub(super) fn check(&self, grid: &Grid, is_steady: bool) -> Result<()> {
         require(self.scale > 0.0 && self.scale.is_finite(), "friction->influence->scale", self.scale, SCALE)?;
         for (name, c, m) in [("cx", self.cx, grid.mx), ("cy", self.cy, grid.my)] {
             if c < m {
@@ -96,41 +113,54 @@ impl TangentialInfluence<'_> {
             return Err(Error::NotPositiveDefinite(format!("friction->influence at offset (0, 0) is {own:?}; {rule}")));
         }
         let largest = own[0].max(own[1]);
-        tables().try_for_each(|(values, symmetry)| self.check_symmetry(values, symmetry, largest))
+        let in_x_too = !is_steady || self.cross.is_some();
+        tables().try_for_each(|(values, symmetry)| self.check_symmetry(values, (symmetry, in_x_too), largest))
     }
 
-    /// Those of one component: each offset and its mirrors.
-    fn check_symmetry(&self, values: &[f64], symmetry: Symmetry, largest: f64) -> Result<()> {
-        let Symmetry { name, in_x, in_y, rule } = symmetry;
+    /// Those of one component: each offset and its mirrors, `in_x_too` or in y alone.
+    fn check_symmetry(&self, values: &[f64], (symmetry, in_x_too): (Symmetry, bool), largest: f64) -> Result<()> {
+        let Symmetry { in_x, in_y, .. } = symmetry;
         let (cx, width) = (self.cx, 2 * self.cx);
         let row = |ky: i64| &values[(ky + self.cy as i64) as usize * width..][..width];
         let allowed = SYMMETRY * largest / self.scale;
+        let is_off = |a: f64, b: f64| !((a - b).abs() <= allowed);
         for ky in 0..self.cy as i64 {
             let (below, above) = (row(ky), row(-ky));
-            for kx in 0..cx {
-                let (right, left) = (cx + kx, cx - kx);
-                let value = below[right];
-                let mirrored = [value, in_x * below[left], in_y * above[right], in_x * in_y * above[left]];
-                if mirrored.iter().all(|mirrored| (mirrored - value).abs() <= allowed) {
-                    continue;
+            for kx in 0..cx as i64 {
+                let (right, left) = (cx + kx as usize, cx - kx as usize);
+                let at = [
+                    ((kx, ky), below[right]),
+                    ((-kx, ky), below[left]),
+                    ((kx, -ky), above[right]),
+                    ((-kx, -ky), above[left]),
+                ];
+                let signs = [1.0, in_x, in_y, in_x * in_y];
+                let pair = match in_x_too {
+                    true => (1..4).find(|&k| is_off(signs[k] * at[k].1, at[0].1)).map(|k| (0, k)),
+                    false => [(0, 2), (1, 3)].into_iter().find(|&(k, other)| is_off(at[k].1, in_y * at[other].1)),
+                };
+                if let Some((k, other)) = pair {
+                    return self.uneven_at(&at, (at[k], at[other]), (symmetry, in_x_too));
                 }
-                let x = kx as i64;
-                let places = [(x, ky), (-x, ky), (x, -ky), (-x, -ky)];
-                for ((x, y), at) in places.into_iter().zip([below[right], below[left], above[right], above[left]]) {
-                    if !(self.scale * at).is_finite() {
-                        let finite = "coefficients must be finite";
-                        return Err(Error::NotFinite(format!("{name} at offset ({x}, {y}) is {at}; {finite}")));
-                    }
-                }
-                let other = (1..4).find(|&k| !((mirrored[k] - value).abs() <= allowed)).unwrap_or(1);
-                let ((x0, y0), (x, y)) = (places[0], places[other]);
-                let at = [below[right], below[left], above[right], above[left]][other];
-                return Err(Error::Unsupported(format!(
-                    "{name} is {value} at offset ({x0}, {y0}) and {at} at ({x}, {y}); {rule}"
-                )));
             }
         }
         Ok(())
+    }
+
+    /// Why these are refused: one of four values at mirrored offsets that is no number, or two that differ.
+    fn uneven_at(
+        &self,
+        all: &[AtOffset; 4],
+        (one, other): (AtOffset, AtOffset),
+        (Symmetry { name, rule, .. }, in_x_too): (Symmetry, bool),
+    ) -> Result<()> {
+        if let Some(((x, y), at)) = all.iter().find(|(_, at)| !(self.scale * at).is_finite()) {
+            let finite = "coefficients must be finite";
+            return Err(Error::NotFinite(format!("{name} at offset ({x}, {y}) is {at}; {finite}")));
+        }
+        let rule = if in_x_too { rule } else { IN_STEADY_ROLLING };
+        let (((x0, y0), value), ((x, y), at)) = (one, other);
+        Err(Error::Unsupported(format!("{name} is {value} at offset ({x0}, {y0}) and {at} at ({x}, {y}); {rule}")))
     }
 }
 

@@ -176,6 +176,8 @@ pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Opt
     }
     if stop == Outcome::Stagnated {
         message += &state.map_or_else(String::new, |state| stagnation(report, method, state));
+    }
+    if stop != Outcome::Cancelled {
         message += &report.friction.map_or_else(String::new, |found| advice_on_law(found.law_slope));
     }
     message

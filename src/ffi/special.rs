@@ -117,7 +117,8 @@ pub unsafe extern "C" fn contact_normal_influence_half_space(
 /// The influence coefficients of bodies that relax and roll steadily, without a change in time, as a table over offsets -cx..cx-1 by -cy..cy-1:
 /// `coefficients[2 cy][2 cx]`, x fastest, as `contact_normal_influence` takes it. `shear_modulus` and `poisson_ratio`: two values each, the moduli those at
 /// once; of `visco` the branches, moduli and times are read. `speed`: how fast the bodies roll towards +x; < 0: towards -x. The table is not even in x, so
-/// it serves the normal problem. UNSUPPORTED: a body of whose modulus nothing is left in the end. Since 0.2.
+/// it serves the normal problem. UNSUPPORTED: a body of whose modulus nothing is left in the end. NOT_FINITE, INVALID_ARGUMENT: coefficients
+/// beyond the range of doubles. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_influence_rolling(
     cx: i32,

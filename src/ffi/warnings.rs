@@ -97,7 +97,8 @@ fn of_law(report: &Report) -> i32 {
 pub(super) fn advice_on_law(slope: f64) -> String {
     match slope >= STEEP {
         true => format!(
-            "; bounds of friction fall by {slope:.2} of what an element's influence holds: a larger memory_distance, a longer step or a stiffer layer"
+            "; tangential.law_slope is {slope:.2}: bounds of friction fall by that part of what an element's influence holds, and from {STEEP} on there \
+             may be several solutions: a larger memory_distance, a longer step or a stiffer layer"
         ),
         false => String::new(),
     }

@@ -71,8 +71,7 @@ struct Wanted {
 }
 
 impl Wanted {
-    fn regions(&self, given: &contact_normal_wear, grid: &Grid) -> Result<(), Refusal> {
-        let mut regions = Regions::default();
+    fn regions(&self, mut regions: Regions, given: &contact_normal_wear, grid: &Grid) -> Result<(), Refusal> {
         let n = grid.len();
         regions.input("wear->traction[0]", given.traction[0], n)?;
         regions.input("wear->traction[1]", given.traction[1], n)?;
@@ -106,7 +105,7 @@ impl Wanted {
 /// undeformed distance. `work`, `depth`: `[my][mx]`, an energy per area and a length, of `steps` steps. `passage`: `[my]`, the depth that a point of
 /// a surface which rolls along x loses while it passes through the contact once. `worn`: the sums. NULL: not wanted. The work of an element is
 /// -(q . s), so that their sum is what the motion puts in less what is stored; where elements stick it is 0 to the tolerance, of either sign.
-/// INVALID_ARGUMENT, NOT_FINITE: numbers out of their range. Since 0.2.
+/// INVALID_ARGUMENT, NOT_FINITE: numbers out of their range, results out of the range of doubles. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_frictional_wear(
     wear: *const contact_normal_wear,
@@ -121,9 +120,14 @@ pub unsafe extern "C" fn contact_normal_frictional_wear(
             let given = structs::read(wear, "wear")?;
             let (mx, my) = (count("wear->mx", given.mx)?, count("wear->my", given.my)?);
             let grid = Grid::new(mx, my, given.dx, given.dy)?;
-            let written = if worn.is_null() { None } else { Some(structs::read(worn.cast_const(), "worn")?) };
+            let written = structs::read_optional(worn.cast_const(), "worn")?;
+            let mut regions = Regions::default();
+            regions.input_struct(wear, &given)?;
+            if let Some(written) = &written {
+                regions.output_struct(worn, written)?;
+            }
             let wanted = Wanted { work, depth, passage };
-            wanted.regions(&given, &grid)?;
+            wanted.regions(regions, &given, &grid)?;
             let n = grid.len();
             let traction = [
                 required("wear->traction[0]", given.traction[0], n)?,

@@ -185,6 +185,11 @@ impl Tangential {
         [xx + layer, yy + layer, xy]
     }
 
+    /// Own tables that are uneven in x: those of steady rolling.
+    pub fn uneven(&self) -> Option<&Tables> {
+        self.own.as_ref().filter(|own| own.is_uneven())
+    }
+
     /// The same without the layer.
     fn of_bodies(&self, x: f64, y: f64) -> Entry {
         if let Some(own) = &self.own {

@@ -66,7 +66,11 @@ impl Operators {
         let [xx, yy, _] = tangential.at(0.0, 0.0);
         let rolling = rolling.map(|rolling| (rolling, Sweep::new(&rolling)));
         // Between the centres as the sweep has it.
-        let there = rolling.as_ref().map_or([0.0; 2], |(_, sweep)| sweep.ahead_of(|x, y| tangential.at(x, y)));
+        let at = |x: f64, y: f64| match tangential.uneven() {
+            Some(own) if (x, y) != (0.0, 0.0) => own.whole_at(x as i64, y as i64),
+            _ => tangential.at(x, y),
+        };
+        let there = rolling.as_ref().map_or([0.0; 2], |(_, sweep)| sweep.ahead_of(at));
         Ok(Operators {
             exact: exact.map(with_workspace).transpose()?,
             fast: fast.map(with_workspace).transpose()?,

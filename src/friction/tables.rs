@@ -2,6 +2,8 @@
 //!
 //! On a grid coarsened in x the coefficient is the mean displacement of the fine elements of one coarse element by a unit traction on
 //! those of another, `c_H(K) = c(2K-1)/2 + c(2K) + c(2K+1)/2`, and likewise in y, as for the normal coefficients.
+//!
+//! In steady rolling coefficients may be uneven in x. Products know them as they are, and a preconditioner their part that is even, of Axy odd, in x.
 
 use std::sync::Arc;
 
@@ -18,6 +20,8 @@ pub struct Tables {
     cx: usize,
     cy: usize,
     values: Arc<Vec<Entry>>,
+    /// Where they are uneven in x, of which `values` are the even and odd parts: those at the offsets `1 - cx..cx` by `0..cy`.
+    uneven: Option<Arc<Vec<Entry>>>,
     /// Their common factor: a power of two.
     factor: f64,
 }
@@ -25,7 +29,46 @@ pub struct Tables {
 impl Tables {
     /// Of tables that were checked.
     pub fn new(influence: &TangentialInfluence<'_>) -> Result<Tables> {
-        Tables::of(influence.cx, influence.cy, |x, y| influence.at(x, y))
+        match influence.is_uneven() {
+            true => Tables::of_uneven(influence.cx, influence.cy, |x, y| influence.at(x, y)),
+            false => Tables::of(influence.cx, influence.cy, |x, y| influence.at(x, y)),
+        }
+    }
+
+    /// `at(x, y)` at each offset of two quadrants.
+    fn of_uneven(cx: usize, cy: usize, at: impl Fn(i64, i64) -> Entry) -> Result<Tables> {
+        let (width, last) = (2 * cx - 1, cx as i64 - 1);
+        let mut values: Vec<Entry> = zeros(width * cy, "the tangential influence coefficients")?;
+        for (k, entry) in values.iter_mut().enumerate() {
+            *entry = at((k % width) as i64 - last, (k / width) as i64);
+        }
+        let part = |x: i64, y: i64| {
+            let row = &values[y as usize * width..][..width];
+            let (right, left) = (row[(last + x) as usize], row[(last - x) as usize]);
+            [0.5 * (right[0] + left[0]), 0.5 * (right[1] + left[1]), 0.5 * (right[2] - left[2])]
+        };
+        let tables = Tables::of(cx, cy, part)?;
+        Ok(Tables { uneven: Some(Arc::new(values)), ..tables })
+    }
+
+    /// Whether they are uneven in x.
+    pub fn is_uneven(&self) -> bool {
+        self.uneven.is_some()
+    }
+
+    /// Whether Axy is 0 everywhere.
+    pub fn is_uncoupled(&self) -> bool {
+        self.uneven.as_ref().unwrap_or(&self.values).iter().all(|entry| entry[2] == 0.0)
+    }
+
+    /// The coefficients at a whole offset as they are given, not the even part; beyond the tables the outermost serve.
+    pub fn whole_at(&self, x: i64, y: i64) -> Entry {
+        let Some(values) = &self.uneven else { return self.at(x, y) };
+        let last = self.cx as i64 - 1;
+        let row = (y.unsigned_abs() as usize).min(self.cy - 1);
+        let [xx, yy, xy] =
+            values[row * (2 * self.cx - 1) + (x.clamp(-last, last) + last) as usize].map(|value| self.factor * value);
+        [xx, yy, if y < 0 { -xy } else { xy }]
     }
 
     /// `at(x, y)` at each offset of the quadrant.
@@ -34,7 +77,7 @@ impl Tables {
         for (k, entry) in values.iter_mut().enumerate() {
             *entry = at((k % cx) as i64, (k / cx) as i64);
         }
-        Ok(Tables { cx, cy, values: Arc::new(values), factor: 1.0 })
+        Ok(Tables { cx, cy, values: Arc::new(values), uneven: None, factor: 1.0 })
     }
 
     /// Offsets less than these are in them.
@@ -62,15 +105,20 @@ impl Tables {
             false => [(k, 1.0), (k, 0.0), (k, 0.0)],
         };
         let half = |c: usize, is_halved: bool| if is_halved { c.div_ceil(2) } else { c };
-        Tables::of(half(self.cx, in_x), half(self.cy, in_y), |kx, ky| {
+        let mean = |kx: i64, ky: i64| {
             let mut sum = [0.0; 3];
             for (x, in_x) in stencil(in_x, kx) {
                 for (y, in_y) in stencil(in_y, ky) {
-                    let entry = self.at(x, y);
+                    let entry = self.whole_at(x, y);
                     (0..3).for_each(|component| sum[component] += in_x * in_y * entry[component]);
                 }
             }
             sum
-        })
+        };
+        let (cx, cy) = (half(self.cx, in_x), half(self.cy, in_y));
+        match self.is_uneven() {
+            true => Tables::of_uneven(cx, cy, mean),
+            false => Tables::of(cx, cy, mean),
+        }
     }
 }

@@ -63,6 +63,16 @@ impl<T: Real> Toeplitz<T> {
 
     /// Products of steady rolling: displacements at each centre less those at `(x, y)` from it, in elements.
     pub fn rolling(quadrant: &Quadrant, grid: &Grid, by: (f64, f64), threads: &Threads) -> Result<Toeplitz<T>> {
+        if let Some(own) = quadrant.tangential().uneven() {
+            let (layer, (step_x, step_y)) = (quadrant.tangential().layer(), (by.0 as i64, by.1 as i64));
+            let between = |x: i64, y: i64| if (x, y) == (0, 0) { layer } else { 0.0 };
+            let fill = |x: i64, y: i64| {
+                let (here, there) = (own.whole_at(x, y), own.whole_at(x + step_x, y + step_y));
+                let layer = between(x, y) - between(x + step_x, y + step_y);
+                [here[0] - there[0] + layer, here[1] - there[1] + layer, here[2] - there[2]]
+            };
+            return Toeplitz::general((quadrant, by), grid, fill, threads);
+        }
         if let Some(n) = whole_step(grid, by) {
             let product = Toeplitz::even(quadrant, grid, n.unsigned_abs() as usize, threads)?;
             return Ok(Toeplitz { product: product.product.less_further_on(n)?, ..product });
@@ -125,7 +135,10 @@ impl<T: Real> Toeplitz<T> {
                 [*xx, *yy, *xy] = at(kx, ky).map(|value| value / unit);
             }
         };
-        let is_coupled = !quadrant.is_uncoupled(grid, by);
+        let is_coupled = match quadrant.tangential().uneven() {
+            Some(own) => !own.is_uncoupled(),
+            None => !quadrant.is_uncoupled(grid, by),
+        };
         Ok(Toeplitz { product: VectorProduct::uneven((grid.mx, grid.my), is_coupled, fill, threads)?, unit })
     }
 

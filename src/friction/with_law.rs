@@ -16,8 +16,9 @@ use crate::grid::Grid;
 use crate::memory::collected;
 use crate::progress::Outcome;
 
-/// Products in vain are kept back for the end of a solve.
+/// Products in vain are kept back for the end of a solve, and of one in turns.
 const KEPT_BACK: u64 = 3;
+const KEPT_BACK_OF_TURNS: u64 = 5;
 
 /// Coulomb's law with the coefficients at rest is solved to this, where forces are given, before the iteration with the law begins.
 const FIRST: f64 = 1e-2;
@@ -158,31 +159,34 @@ impl Solver {
         watch: &mut dyn FnMut(&Grid, f64) -> bool,
         report: &mut Report,
     ) -> Result<Outcome> {
-        let mut turns = branch::Turns::new();
+        let (mut turns, mut best) = (branch::Turns::new(), branch::Best::new(self.levels[0].problem.bound.len())?);
         branch::begin(&mut self.levels[0].problem, &mut march, request.friction.branch == Branch::High);
+        // The way to the best of them and onto the circles takes products, too.
+        let most = request.limit.saturating_sub(KEPT_BACK_OF_TURNS).max(1);
         let (outcome, residual) = loop {
-            let limit = request.limit.saturating_sub(report.products.ceil() as u64).max(1);
+            let limit = most.saturating_sub(report.products.ceil() as u64).max(1);
             let turn = Request { tolerance: turns.inner(request.tolerance), limit, ..*request };
             let begin = (nested && turns.made == 0, had_slip || turns.made > 0);
             let end = self.iterate(&turn, Forces::NONE, begin, watch, report)?;
-            let left = branch::renew(&mut self.levels[0], &mut march)?;
-            let ended = match turns.end(left, request.tolerance) {
+            let left = branch::renew(&mut self.levels[0], &mut march, &mut best)?;
+            let mut ended = match turns.end(left, request.tolerance) {
                 _ if end == Outcome::Cancelled => Some(end),
-                None if report.products >= request.limit as f64 => Some(Outcome::IterationLimit),
+                None if report.products >= most as f64 => Some(Outcome::IterationLimit),
                 ended => ended,
             };
-            if let Some(outcome) = ended {
+            if ended == Some(Outcome::Converged) {
                 let residual = branch::certify(&mut self.levels[0], &mut march);
-                // The rest on the way to the circles may be more than the tolerance: then another turn follows.
-                if outcome != Outcome::Converged || residual < request.tolerance {
-                    break (outcome, residual);
-                }
-                if report.products >= request.limit as f64 {
-                    break (Outcome::IterationLimit, residual);
-                }
-                if turns.are_in_vain() {
-                    break (Outcome::Stagnated, residual);
-                }
+                ended = match () {
+                    () if residual < request.tolerance => break (Outcome::Converged, residual),
+                    () if report.products >= most as f64 => Some(Outcome::IterationLimit),
+                    () if turns.are_in_vain() => Some(Outcome::Stagnated),
+                    // The rest on the way to the circles is more than the tolerance: another turn follows.
+                    () => None,
+                };
+            }
+            if let Some(outcome) = ended {
+                best.restore(&mut self.levels[0], &mut march)?;
+                break (outcome, branch::certify(&mut self.levels[0], &mut march));
             }
         };
         let Level { problem, state, .. } = &mut self.levels[0];
@@ -213,7 +217,8 @@ impl Solver {
         let Some((mut march, mut particles)) = march else { return solution.particles.clear() };
         let law = march.law;
         march.go(|i, place, had| {
-            let slips = solution.stick_slip[i] == SLIP;
+            // Elements without friction are those outside of contact for particles, as in the iteration.
+            let slips = solution.stick_slip[i] == SLIP && place.coefficient > 0.0;
             let [x, y] = if slips { scales.displacement(solution.slip[i]) } else { [0.0; 2] };
             let response = law.at(x.hypot(y), place, had);
             if slips && response.yields {

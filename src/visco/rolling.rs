@@ -8,13 +8,17 @@
 //! W(x) = 1/L integral over 0 < s < dx of exp(-s/L) a(x + s)  +  exp(-dx/L) W(x + dx)
 //! ```
 //!
-//! a is smooth but at the edges of the element, where intervals end and panels become short. Lengths are in elements.
+//! a is smooth but at the edges of the element, where intervals end and panels become short. Lengths are in elements, times those in which one passes:
+//! of such a time that is below [`SHORTEST`] W is a, and of one above [`LONGEST_TIME`] nothing, to all digits, so they are taken for these. Element
+//! sizes and compliances are taken apart into a number near 1 and a power of two, which the table is multiplied by in the end.
 
 use super::modes::Mode;
 use super::series::Series;
-use crate::error::{invalid, require, Error, Result};
+use crate::error::{invalid, not_negative, require, Error, Result};
+use crate::grid::Grid;
 use crate::influence::{gauss_legendre, integral_at};
 use crate::memory::zeros;
+use crate::powers::{apart, times_power};
 
 /// Nodes of a panel.
 const NODES: usize = 12;
@@ -26,6 +30,10 @@ const GRADED: i32 = 10;
 const SHORTER: f64 = 0.15;
 /// Far away a panel is at most this part of the distance.
 const OF_DISTANCE: f64 = 0.5;
+/// Powers of two of times: within the shorter one the slope of a changes nothing; the longer one is beyond 1e14 elements, which is how long the slowest mode
+/// is in its branch's time, times what its weight of 1e14 at most needs, times all digits.
+const SHORTEST: i32 = -100;
+const LONGEST_TIME: i32 = 200;
 const WHAT: &str = "a row of coefficients";
 
 /// A body: its compliance at once `(1 - nu)/(2 G)`, and how it relaxes.
@@ -118,23 +126,41 @@ impl Row<'_> {
     }
 }
 
-/// The parts of both bodies; refuses what creeps for ever.
-fn parts(bodies: &[RollingBody; 2], dx: f64, speed: f64) -> Result<Vec<Part>> {
+/// A series with the times in which an element passes in the place of its times.
+fn by_elements(series: &Series, dx: f64, speed: f64) -> Option<Series> {
+    let ((d, of_d), (v, of_v)) = (apart(dx), apart(speed.abs()));
+    let passing = |t: &f64| {
+        let (t, of_t) = apart(*t);
+        let power = of_t + of_v - of_d;
+        times_power(t * v / d, power.clamp(SHORTEST, LONGEST_TIME))
+    };
+    let times: Vec<f64> = series.times.iter().map(passing).collect();
+    Series::new(1.0, &series.fractions, &times)
+}
+
+/// The parts of both bodies, with compliances in units of 2 to this power; refuses what creeps for ever.
+fn parts(bodies: &[RollingBody; 2], power: i32, dx: f64, speed: f64) -> Result<Vec<Part>> {
     let mut parts = Vec::new();
     for (b, body) in bodies.iter().enumerate() {
-        parts.push(Part { weight: body.compliance, length: None });
-        if body.compliance == 0.0 {
+        let compliance = times_power(body.compliance, -power);
+        if compliance == 0.0 {
             continue;
         }
-        for mode in Mode::of(&body.series) {
-            if !(mode.rate > 0.0) {
-                return Err(Error::Unsupported(format!(
-                    "nothing is left of the modulus of body {} in the end: in steady rolling it gives way without limit",
-                    b + 1
-                )));
-            }
-            let weight = body.compliance / (mode.inertia * mode.rate);
-            parts.push(Part { weight, length: Some(speed.abs() / (mode.rate * dx)) });
+        parts.push(Part { weight: compliance, length: None });
+        if body.series.is_empty() {
+            continue;
+        }
+        if body.series.rest == 0.0 {
+            return Err(Error::Unsupported(format!(
+                "nothing is left of the modulus of body {} in the end: in steady rolling it gives way without limit",
+                b + 1
+            )));
+        }
+        let Some(series) = by_elements(&body.series, dx, speed) else {
+            return invalid(format!("the branches of body {} add up to more than its modulus", b + 1));
+        };
+        for mode in Mode::of(&Series { rest: body.series.rest, ..series }) {
+            parts.push(Part { weight: compliance / (mode.inertia * mode.rate), length: Some(1.0 / mode.rate) });
         }
     }
     Ok(parts)
@@ -144,7 +170,8 @@ fn parts(bodies: &[RollingBody; 2], dx: f64, speed: f64) -> Result<Vec<Part>> {
 /// `-cx..cx` by `-cy..cy`.
 ///
 /// # Errors
-/// `InvalidArgument`, `NotFinite`: sizes that are none, a speed of 0. `Unsupported`: a body that creeps for ever. `OutOfMemory`.
+/// `InvalidArgument`, `NotFinite`: sizes that are none, a speed of 0, coefficients beyond the range of numbers. `Unsupported`: a body that creeps for
+/// ever. `OutOfMemory`.
 pub fn rolling_table(
     (cx, cy): (usize, usize),
     (dx, dy): (f64, f64),
@@ -155,20 +182,34 @@ pub fn rolling_table(
     if cx == 0 || cy == 0 {
         return invalid(format!("cx and cy are {cx} and {cy}; they must be positive"));
     }
-    let (rule, parts) = (gauss_legendre(NODES), parts(bodies, dx, speed)?);
+    Grid::new(1, 1, dx, dy)?;
+    bodies.iter().try_for_each(|body| not_negative("compliance", body.compliance))?;
+    let most = bodies.iter().map(|body| body.compliance).fold(0.0, f64::max);
+    require(most > 0.0, "compliance", most, "a body must give way")?;
+    let ((d, of_d), (_, of_compliance)) = (apart(dx), apart(most));
+    let (rule, parts) = (gauss_legendre(NODES), parts(bodies, of_compliance, dx, speed)?);
     let mut table: Vec<f64> = zeros(4 * cx * cy, WHAT)?;
     let mut row: Vec<f64> = zeros(2 * cx + 1, WHAT)?;
     for ky in 0..=cy {
         row.fill(0.0);
-        let of = Row { ky: ky as f64, element: (dx, dy), rule: &rule };
+        let of = Row { ky: ky as f64, element: (d, times_power(dy, -of_d)), rule: &rule };
         parts.iter().filter(|part| part.weight > 0.0).for_each(|part| of.add(part, cx, &mut row));
         if speed < 0.0 {
             row.reverse();
         }
+        for value in &mut row {
+            *value = times_power(*value / std::f64::consts::PI, of_d + of_compliance);
+            let is_one = value.is_normal() && *value > 0.0;
+            require(
+                is_one,
+                "a coefficient",
+                *value,
+                "element sizes, moduli and times take it out of the range of numbers",
+            )?;
+        }
         // Even in y.
         for iy in [cy.checked_sub(ky), Some(cy + ky)].into_iter().flatten().filter(|iy| *iy < 2 * cy) {
-            let to = &mut table[iy * 2 * cx..][..2 * cx];
-            to.iter_mut().zip(&row).for_each(|(to, value)| *to = value / std::f64::consts::PI);
+            table[iy * 2 * cx..][..2 * cx].copy_from_slice(&row[..2 * cx]);
         }
     }
     Ok(table)

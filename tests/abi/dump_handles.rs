@@ -91,6 +91,14 @@ fn a_step_in_time_goes_on_from_the_history_in_the_file() {
         // One iteration of each.
         let (force, other) = (report.normal.force, again.report.normal.force);
         assert!((other / force - 1.0).abs() <= 1e-12, "{force} {other}");
+        // One branch less than its history has.
+        let mut changed = std::fs::read(&path).expect("a dump");
+        let line = b"int32 branches[0] 2\n";
+        let at = changed.windows(line.len()).rposition(|bytes| bytes == line).expect("the branches of body 1");
+        changed[at + line.len() - 2] = b'1';
+        let less = Dump::read(&changed).expect("a dump that can be read").replay().expect("a call");
+        assert_eq!(less.status, CONTACT_NORMAL_INVALID_ARGUMENT, "{}", last_error());
+        assert!(last_error().contains("a history has 6 fields; steps of these bodies keep 5"), "{}", last_error());
     }
 }
 

@@ -67,6 +67,36 @@ fn what_is_no_law_or_not_solved_is_refused_by_name() {
     assert!(got == CONTACT_NORMAL_UNSUPPORTED && message.contains("bodies must be alike"), "{message}");
 }
 
+/// Whatever ends without a certificate under a steep law says how steep it is; what is OK has the warning.
+#[test]
+fn a_steep_law_is_certified_or_named() {
+    let (mut refused, mut limited) = (0, 0);
+    for k in 0..24 {
+        for max_cycles in [9, 1000] {
+            let mut call = Call::new();
+            falling(call.use_friction());
+            let friction = call.use_friction();
+            (friction.half_speed[0], friction.branch) = (1e-2 * 0.5f64.powi(k / 2), k % 3);
+            call.options.known.max_cycles = max_cycles;
+            let (status, message) = call.run(Through::Solve, null_mut());
+            let report = &call.report.known;
+            let slope = report.tangential.law_slope;
+            assert!(
+                [CONTACT_NORMAL_OK, CONTACT_NORMAL_STAGNATED, CONTACT_NORMAL_ITERATION_LIMIT].contains(&status),
+                "{message}"
+            );
+            assert_eq!(report.warnings & CONTACT_NORMAL_WARNING_LAW != 0, slope >= 0.5, "{slope}");
+            println!("{k} {max_cycles} {slope:.3} {status} {message}");
+            if status != CONTACT_NORMAL_OK && slope >= 0.5 {
+                assert!(message.contains(&format!("tangential.law_slope is {slope:.2}")), "{message}");
+                refused += i32::from(status == CONTACT_NORMAL_STAGNATED);
+                limited += i32::from(status == CONTACT_NORMAL_ITERATION_LIMIT);
+            }
+        }
+    }
+    assert!(refused + limited > 0 && limited > 0, "{refused} {limited}");
+}
+
 /// Two shifts over a layer that hardens: by a handle that continues, and by what the caller hands on, they are the same.
 #[test]
 fn a_handle_carries_what_the_caller_would_hand_on() {

@@ -20,4 +20,5 @@ mod subsurface_stress;
 mod tangential_handle;
 mod warnings;
 mod watching;
+mod wear;
 mod what_matters;

@@ -54,8 +54,12 @@ const LAYER: f64 = 1.25 / 8200.0;
 impl Wheel {
     /// `times`: how often finer than in tractcurv.
     pub fn new(times: usize) -> Wheel {
+        Wheel::of(48 * times, 44 * times)
+    }
+
+    /// The same on so many elements.
+    pub fn of(mx: usize, my: usize) -> Wheel {
         let (a, b, curvature) = (6.3036, 12.6072, [8e-4, 2.8142e-4]);
-        let (mx, my) = (48 * times, 44 * times);
         let grid = Grid::new(mx, my, 2.2 * a / mx as f64, 2.2 * b / my as f64).unwrap();
         let at = |k: usize, m: usize, d: f64| (k as f64 - 0.5 * (m as f64 - 1.0)) * d;
         let of =
@@ -76,8 +80,13 @@ impl Wheel {
     }
 
     pub fn ended(&self, friction: &Friction<'_>, tolerance: f64) -> (Outcome, Report, Solution) {
+        self.limited(friction, tolerance, Request::new(&self.pressure, friction, tolerance).limit)
+    }
+
+    /// With so many products at most.
+    pub fn limited(&self, friction: &Friction<'_>, tolerance: f64, limit: u64) -> (Outcome, Report, Solution) {
         let mut solver = solver(&self.grid);
-        let request = Request::new(&self.pressure, friction, tolerance);
+        let request = Request { limit, ..Request::new(&self.pressure, friction, tolerance) };
         let (end, report) = solver.solve(&request, &mut |_, _| true).unwrap();
         (end, report, solver.solution().unwrap().clone())
     }
@@ -152,7 +161,7 @@ fn a_fine_grid_takes_few_products_and_meets_the_conditions() {
     }
 }
 
-/// The conditions of a law in steady rolling along x by one element, by direct sums: what is left of the slip over C relative to the rigid
+/// The conditions of a law in a shift from rest, or in steady rolling along x by one element, by direct sums: what is left of the slip over C relative to the rigid
 /// slip, and of `|q| - g(slip)` relative to the bounds at rest; and the displacements of the step relative to the rigid slip.
 pub fn left(wheel: &Wheel, friction: &Friction<'_>, solution: &Solution) -> [f64; 3] {
     let (grid, law) = (&wheel.grid, friction.law.unwrap());
@@ -160,14 +169,18 @@ pub fn left(wheel: &Wheel, friction: &Friction<'_>, solution: &Solution) -> [f64
     let (q, n) = (&solution.traction, grid.len());
     let (mut u, mut there) = (vec![[0.0; 2]; n], vec![[0.0; 2]; n]);
     dense::apply(&steel(grid), grid, (0.0, 0.0), q, &mut u);
-    dense::apply(&steel(grid), grid, (1.0, 0.0), q, &mut there);
-    let duration = grid.dx / law.speed;
+    let rolls = friction.motion == Motion::SteadyRolling;
+    if rolls {
+        dense::apply(&steel(grid), grid, (1.0, 0.0), q, &mut there);
+    }
+    let duration = if rolls { grid.dx / law.speed } else { law.time_step };
     let (mut slips, mut bounds, mut rigid, mut rest, mut displaced) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for row in 0..grid.my {
         let mut had = 0.33;
         for ix in (0..grid.mx).rev() {
             let i = row * grid.mx + ix;
-            let ahead = if ix + 1 < grid.mx { q[i + 1] } else { [0.0; 2] };
+            let ahead = if rolls && ix + 1 < grid.mx { q[i + 1] } else { [0.0; 2] };
+            had = if rolls { had } else { 0.33 };
             let w = friction.rigid_slip_at(grid, i);
             let s = [0, 1].map(|k| w[k] + u[i][k] - there[i][k] + layer * (q[i][k] - ahead[k]));
             let slides = wheel.pressure[i] > 0.0 && solution.stick_slip[i] == SLIP;

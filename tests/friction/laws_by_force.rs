@@ -22,8 +22,17 @@ fn there_and_back(wheel: &Wheel, friction: &Friction<'static>) -> [(Report, Solu
     [(report, solution), (back, found)]
 }
 
-/// Creepages differ by what the tolerance leaves, of residuals relative to the rigid slip and of forces relative to mu N, times how much
-/// creepage a force takes: below 30 times `creepage/(force/(mu N))` up to 1.2 % of creepage.
+/// Creepages differ by what the tolerance leaves, once more for the solve that made the force: of residuals relative to the rigid slip the tolerance
+/// of the creepage, and of forces relative to mu N the tolerance times the creepage that a force takes there, by the chord of the creep curve to 2 % more
+/// creepage.
+fn allowed(wheel: &Wheel, friction: &Friction<'static>, (xi, force): (f64, f64)) -> f64 {
+    let more = Friction { prescribed: [Prescribed::Creepage(1.02 * xi), friction.prescribed[1]], ..*friction };
+    let (end, report, _) = wheel.ended(&more, TOLERANCE);
+    assert_eq!(end, Outcome::Converged);
+    let chord = (report.force[0] - force).abs() / (0.33 * FORCE * 0.02 * xi);
+    2.0 * TOLERANCE * (xi + 1.0 / chord)
+}
+
 #[test]
 fn forces_below_the_maximum_give_the_creepages_back() {
     let wheel = Wheel::new(1);
@@ -33,15 +42,13 @@ fn forces_below_the_maximum_give_the_creepages_back() {
             let [(report, solution), (back, found)] = there_and_back(&wheel, &friction);
             let (count, again) = (report.certificate.stick_count, back.certificate.stick_count);
             println!("{xi} {spin} {:?} {count} {again} products {} {}", back.creepage, report.products, back.products);
+            let allowed = allowed(&wheel, &friction, (xi, report.force[0]));
             for (creepage, exact) in back.creepage.into_iter().zip([xi, 0.0]) {
-                assert!(
-                    (creepage - exact).abs() <= 30.0 * TOLERANCE * xi.max(0.004),
-                    "{xi} {spin}: {:?}",
-                    back.creepage
-                );
+                assert!((creepage - exact).abs() <= allowed, "{xi} {spin}: {:?} {allowed}", back.creepage);
             }
             assert_eq!(count, again);
             let largest = solution.traction.iter().map(|q| q[0].hypot(q[1])).fold(0.0, f64::max);
+            // Tractions follow slips by the inverse of an operator whose condition number is below 1000: that of elements, 48, by its square, over 2.
             for (q, other) in solution.traction.iter().zip(&found.traction) {
                 assert!((q[0] - other[0]).hypot(q[1] - other[1]) <= 1e-4 * largest);
             }
@@ -94,8 +101,9 @@ fn steps_by_force_give_the_creepages_back() {
             assert_eq!(end, Outcome::Converged, "{given:?} {back:?}");
             let Prescribed::Creepage(exact) = creepage[0] else { panic!("creepages") };
             println!("{step} {exact} {:?} products {} {}", back.creepage, report.products, back.products);
-            assert!((back.creepage[0] / exact - 1.0).abs() <= 1e-5, "{exact} {:?}", back.creepage);
-            assert!(back.creepage[1].abs() <= 1e-5 * exact);
+            // The tolerance of both solves, of forces over mu N: creepages follow them by a factor below 5, for `d(F/(mu N))/d(ln creepage)` is above .2.
+            assert!((back.creepage[0] / exact - 1.0).abs() <= 10.0 * TOLERANCE, "{exact} {:?}", back.creepage);
+            assert!(back.creepage[1].abs() <= 10.0 * TOLERANCE * exact);
             assert_eq!(report.certificate.slip_count, back.certificate.slip_count);
             creepage[0] = Prescribed::Creepage(0.8 * exact);
         }
@@ -110,8 +118,9 @@ fn one_force_may_be_given_beside_a_creepage() {
     let mixed = Friction { prescribed: [Prescribed::Creepage(0.003), Prescribed::Force(report.force[1])], ..friction };
     let (end, back, _) = wheel.ended(&mixed, TOLERANCE);
     assert_eq!(end, Outcome::Converged);
-    assert!(
-        (back.force[0] / report.force[0] - 1.0).abs() <= 1e-5 && back.creepage[1].abs() <= 30.0 * TOLERANCE * 0.004
-    );
+    // As above: the other force follows the creepage that is found.
+    let allowed = allowed(&wheel, &friction, (0.003, report.force[0]));
+    assert!((back.force[0] / report.force[0] - 1.0).abs() <= 10.0 * TOLERANCE, "{:?} {:?}", back.force, report.force);
+    assert!(back.creepage[1].abs() <= allowed, "{:?} {allowed}", back.creepage);
     assert_eq!(mixed.coefficient, Coefficient::Uniform(0.33));
 }

@@ -13,6 +13,7 @@ mod forces;
 mod hard;
 mod laws;
 mod laws_by_force;
+mod laws_steep;
 mod layer;
 mod linear_theory;
 mod onset_of_rolling;
@@ -20,6 +21,7 @@ mod own_law;
 mod plastic;
 mod refusals;
 mod rolling;
+mod rolling_tables;
 mod row_tables;
 mod same_bits;
 #[path = "../../examples/friction/scenes.rs"]

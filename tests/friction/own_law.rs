@@ -40,8 +40,9 @@ fn turns_with_a_law_of_the_host_lead_to_the_librarys() {
             mu = coefficients(&wheel, handle.solution().unwrap());
         }
         println!("{xi} {force} {:?}", known.force);
-        // Turns end where the tolerance of 1e-6 lets them; the factor from turn to turn is below 1/2.
-        assert!((force / known.force[0] - 1.0).abs() <= 1e-5, "{force} {:?}", known.force);
+        // Each turn is off by its tolerance of 1e-6 and by a factor below 1/2 of what the one before it was: by 2e-6 in the end. The force follows
+        // the slips by at most as much; the library's own is off by 1e-8.
+        assert!((force / known.force[0] - 1.0).abs() <= 2.1e-6, "{force} {:?}", known.force);
     }
 }
 
@@ -77,5 +78,6 @@ fn steps_with_coefficients_of_each_step_take_as_many_products_as_with_one() {
     };
     let [own, one] = [products(true), products(false)];
     println!("{own} {one}");
+    // Bounds that change from step to step may cost an iteration in some: less than one in six.
     assert!(own <= 1.15 * one, "{own} {one}");
 }

@@ -189,3 +189,68 @@ fn numbers_out_of_their_range_are_refused() {
     let along = frictional_wear(&wear).unwrap();
     assert!(along.total_work == -8.0 && along.volume == 0.0 && along.largest == 0.0);
 }
+
+/// Powers of two of what is given are those of what is found, wherever products of single factors would leave the range of numbers.
+#[test]
+fn work_and_depth_are_right_at_the_ends_of_the_range_of_numbers() {
+    let by = |value: f64, power: i32| value * 2f64.powi(power / 2) * 2f64.powi(power - power / 2);
+    let at = |k: usize| 0.3 + 0.7 * (0.37 * k as f64).sin().abs();
+    let field = |from: usize, power: i32| -> Vec<f64> { (from..from + 12).map(|k| by(at(k), power)).collect() };
+    // Powers of q, s, p, K, H, the steps, dx, dy, dq.
+    let of = |powers: [i32; 9], by_load: bool| {
+        let [of_q, of_s, of_p, of_k, of_h, of_steps, of_dx, of_dy, of_dq] = powers;
+        let q = [0, 20].map(|k| field(k, of_q));
+        let s = [40, 60].map(|k| field(k, of_s).iter().map(|s| -s).collect::<Vec<f64>>());
+        let (p, k) = (field(80, of_p), field(100, of_k));
+        let grid = Grid::new(4, 3, by(0.7, of_dx), by(0.9, of_dy)).unwrap();
+        frictional_wear(&Wear {
+            grid,
+            traction: [&q[0], &q[1]],
+            slip: [&s[0], &s[1]],
+            pressure: by_load.then_some(&p[..]),
+            coefficient: Coefficient::PerElement(&k),
+            hardness: by(3.0, of_h),
+            steps: by(5.0, of_steps),
+            rolling_distance: by(0.7, of_dq),
+        })
+    };
+    for by_load in [false, true] {
+        let plain = of([0; 9], by_load).unwrap();
+        // By hand, in the order of the formula.
+        let by_hand = 5.0 * at(100) / 3.0
+            * if by_load { at(80) * at(40).hypot(at(60)) } else { at(0) * at(40) + at(20) * at(60) };
+        assert!((plain.depth[0] / by_hand - 1.0).abs() <= 1e-15 && plain.passage.len() == 3);
+        for powers in [
+            [600, 600, 600, -900, 0, -300, 0, 0, 0],
+            [-600, -600, -600, 500, -600, 700, 0, 0, 0],
+            [0, 0, 0, -1000, -1000, 0, -1000, -10, -1000],
+            [0, 0, 0, 1000, 1010, 0, 1000, 10, 900],
+            [1000, -1000, 1000, 1000, 1000, 0, 600, -600, 600],
+            [-500, 900, -500, 100, 500, 0, -700, 700, -700],
+        ] {
+            let [of_q, of_s, of_p, of_k, of_h, of_steps, of_dx, of_dy, of_dq] = powers;
+            let found = of(powers, by_load).unwrap();
+            let (of_work, of_depth) = (of_q + of_s + of_steps, if by_load { of_p } else { of_q } + of_s + of_k - of_h);
+            for i in 0..12 {
+                assert_eq!(found.work[i], by(plain.work[i], of_work), "{powers:?}");
+                assert_eq!(found.depth[i], by(plain.depth[i], of_depth + of_steps), "{powers:?}");
+            }
+            for row in 0..3 {
+                assert_eq!(found.passage[row], by(plain.passage[row], of_depth + of_dx - of_dq), "{powers:?}");
+            }
+            assert_eq!(found.total_work, by(plain.total_work, of_work + of_dx + of_dy));
+            assert_eq!(found.volume, by(plain.volume, of_depth + of_steps + of_dx + of_dy));
+            assert_eq!((found.largest, found.at), (by(plain.largest, of_depth + of_steps), plain.at));
+        }
+        for (powers, what) in [
+            ([600, 600, 0, 0, 1000, 0, -1000, 0, 0], "the work of an element is"),
+            ([-600, 600, 600, 600, -1000, 0, 0, 0, 0], "the depth of a passage is inf"),
+            ([0, 0, 0, 0, 0, 1010, 10, 10, 0], "the work of all elements is"),
+            ([0, 0, 0, 600, -600, 0, -600, -500, 0], "the depth of an element is inf"),
+            ([0, 0, 0, 600, -400, 0, -10, 80, 0], "the volume of all elements is inf"),
+        ] {
+            let error = of(powers, by_load).expect_err(what);
+            assert!(matches!(&error, Error::NotFinite(message) if message.contains(what)), "{powers:?}: {error}");
+        }
+    }
+}

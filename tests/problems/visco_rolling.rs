@@ -76,6 +76,81 @@ fn slow_bodies_are_relaxed_and_fast_ones_elastic() {
     }
 }
 
+/// The limits of both ends of the range of numbers are those of W: a where material relaxes before it moves, nothing where it is gone before it relaxes.
+#[test]
+fn at_the_ends_of_the_range_of_numbers_bodies_are_relaxed_or_elastic() {
+    // Half the modulus in one branch: the whole compliance at once, and twice that in the end.
+    let of = |speed: f64, time: f64, (dx, dy): (f64, f64)| {
+        rolling_table((4, 4), (dx, dy), &[body(0.7, 2.0, &[1.0], &[time]), elastic(0.0)], speed).unwrap()
+    };
+    let (slow, fast) = (2.0, 1.0);
+    for (speed, time, d, times) in [
+        (5e-324, 1.0, 0.5, slow),
+        (1e-200, 1e-200, 0.5, slow),
+        (1.0, 5e-324, 0.5, slow),
+        (1e-300, 1e-300, 1e300, slow),
+        (1e-10, 1e-30, 1e-10, slow),
+        (1e308, 1e308, 0.5, fast),
+        (1.0, 1e308, 0.5, fast),
+        (1e300, 1e10, 1e-300, fast),
+        (1e200, 1e-10, 1e-200, fast),
+    ] {
+        let table = of(speed, time, (d, d));
+        for (k, value) in table.iter().enumerate() {
+            let (x, y) = ((k % 8) as f64 - 4.0, (k / 8) as f64 - 4.0);
+            let exact = times * d * love(x, y, 1.0, 1.0) * 0.7 / std::f64::consts::PI;
+            // L is below 1e-29 elements or above 1e180; Love's differences lose a digit or two.
+            assert!((value / exact - 1.0).abs() <= 1e-13, "{speed} {time} {d} {k}: {value} {exact}");
+        }
+    }
+    // Only V t/dx counts, and the coefficients are a length: whatever under- or overflows on the way.
+    let middle = of(3.0, 0.2, (0.5, 0.5));
+    for (speed, time, size) in
+        [(1000, -900, 100), (-1000, 1000, 0), (-300, -300, -600), (500, 200, 700), (-900, 0, -900)]
+    {
+        let by = |value: f64, power: i32| value * 2f64.powi(power / 2) * 2f64.powi(power - power / 2);
+        let table = of(by(3.0, speed), by(0.2, time), (by(0.5, size), by(0.5, size)));
+        for (value, exact) in table.iter().zip(&middle) {
+            assert_eq!(*value, by(*exact, size), "{speed} {time} {size}");
+        }
+    }
+}
+
+/// Of a body of whose modulus little is left the end is far, and what relaxes at once beside what does not relax is a body of less modulus.
+#[test]
+fn branches_far_apart_are_each_at_its_end() {
+    let of = |modulus: &[f64], time: &[f64]| {
+        rolling_table((3, 3), (1.0, 1.0), &[body(1.0, 1.0, modulus, time), elastic(0.0)], 1.0).unwrap()
+    };
+    let [apart, middle] = [of(&[0.5, 0.25], &[1e300, 1e-300]), of(&[0.25, 0.25], &[1e-300, 1e-310])];
+    for (k, value) in apart.iter().enumerate() {
+        let a = love((k % 6) as f64 - 3.0, (k / 6) as f64 - 3.0, 1.0, 1.0) / std::f64::consts::PI;
+        assert!((value * 0.75 / a - 1.0).abs() <= 1e-13, "{k}: {value} {a}");
+        assert!((middle[k] * 0.5 / a - 1.0).abs() <= 1e-13, "{k}: {} {a}", middle[k]);
+    }
+}
+
+/// Coefficients that are no numbers are refused, and sizes that are none.
+#[test]
+fn coefficients_beyond_the_range_of_numbers_are_refused() {
+    let refused = |compliance: f64, sizes: (f64, f64), speed: f64| {
+        let bodies = [body(compliance, 2.0, &[1.0], &[1.0]), elastic(0.0)];
+        rolling_table((2, 2), sizes, &bodies, speed).unwrap_err().to_string()
+    };
+    for (compliance, sizes, what) in [
+        (1e200, (1e200, 1e200), "a coefficient is inf"),
+        (1e-200, (1e-200, 1e-200), "a coefficient is"),
+        (1.0, (1e-300, 1e300), "a coefficient is"),
+        (1.0, (0.0, 1.0), "dx is 0"),
+        (1.0, (1.0, f64::NAN), "dy is NaN"),
+        (0.0, (1.0, 1.0), "a body must give way"),
+        (f64::NAN, (1.0, 1.0), "compliance is NaN"),
+    ] {
+        let message = refused(compliance, sizes, 1.0);
+        assert!(message.contains(what), "{compliance} {sizes:?}: {message}");
+    }
+}
+
 #[test]
 fn what_creeps_for_ever_or_stands_still_is_refused() {
     let fluid = [body(1.0, 2.0, &[2.0], &[1.0]), elastic(0.0)];

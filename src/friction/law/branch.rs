@@ -5,14 +5,16 @@
 //! ```
 //!
 //! Each turn begins from the tractions of the last one, and its tolerance falls as the bounds settle. The result has the certificate of a solve without
-//! a branch.
+//! a branch. Turns may have no end, or go around: then the result is that of the turn that left least.
 
 use super::super::levels::Level;
+use super::super::plane::Vector;
 use super::super::problem::Problem;
 use super::super::step::compliance;
 use super::march::March;
 use super::stages;
 use crate::error::Result;
+use crate::memory::zeros;
 use crate::progress::Outcome;
 
 /// Turns at most, and those without a residual below this part of the least one.
@@ -75,17 +77,54 @@ pub fn begin(problem: &mut Problem, march: &mut March, is_high: bool) {
     });
 }
 
+/// The turn that left least so far.
+pub struct Best {
+    /// Its tractions, and the bounds that they were found with.
+    q: Vec<Vector>,
+    bound: Vec<f64>,
+    left: f64,
+    /// The bounds of the last turn.
+    last: Vec<f64>,
+}
+
+impl Best {
+    /// None yet, of n elements.
+    pub fn new(n: usize) -> Result<Best> {
+        let what = "the best of turns";
+        Ok(Best { q: zeros(n, what)?, bound: zeros(n, what)?, left: f64::INFINITY, last: zeros(n, what)? })
+    }
+
+    /// Takes it for the last turn, whose bounds are renewed again.
+    pub fn restore(&mut self, level: &mut Level, march: &mut March) -> Result<()> {
+        if !self.left.is_finite() {
+            return Ok(());
+        }
+        let Level { problem, state, .. } = level;
+        state.q.copy_from_slice(&self.q);
+        problem.bound.copy_from_slice(&self.bound);
+        problem.refresh_unclipped(state);
+        renew(level, march, self).map(drop)
+    }
+}
+
 /// Bounds by the slips that a turn has found; what is left with these.
-pub fn renew(level: &mut Level, march: &mut March) -> Result<f64> {
+pub fn renew(level: &mut Level, march: &mut March, best: &mut Best) -> Result<f64> {
     let Level { problem, state, memory, .. } = level;
     let tangent = &mut memory.tangent;
     tangent.fit(state.q.len())?;
     if !state.is_exact {
         problem.refresh_unclipped(state);
     }
+    best.last.copy_from_slice(&problem.bound);
     tangent.predict(problem, state, 1.0 / compliance(problem));
     stages::lag(problem, state, tangent, march);
-    Ok(stages::worst(problem, state, tangent))
+    let left = stages::worst(problem, state, tangent);
+    if left < best.left {
+        best.q.copy_from_slice(&state.q);
+        std::mem::swap(&mut best.bound, &mut best.last);
+        best.left = left;
+    }
+    Ok(left)
 }
 
 /// Elements that slip go onto the circles of the last bounds. Returns the larger residual of both certificates.

@@ -95,7 +95,7 @@ fn in_order(grid: &Grid, upstream: Option<(isize, isize)>, mut each: impl FnMut(
             let ix = place(column, mx, x);
             let (jx, jy) = (ix.wrapping_add_signed(x), iy.wrapping_add_signed(y));
             let is_there = upstream.is_some() && jx < mx && jy < my;
-            each(iy * mx + ix, is_there.then_some(jy * mx + jx));
+            each(iy * mx + ix, is_there.then(|| jy * mx + jx));
         }
     }
 }
