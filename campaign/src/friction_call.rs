@@ -145,6 +145,28 @@ pub fn call(place: &Place, slide: &Slide, stop: &Stop) -> Found {
     })
 }
 
+/// Solves on its own or by a handle, with what `change` makes of the friction.
+pub fn call_changed(
+    handle: Option<&mut Handle>,
+    (place, slide, from): (&Place, &Slide, From),
+    stop: &Stop,
+    change: impl FnOnce(&mut contact_normal_friction),
+) -> Found {
+    let mut changed = friction(slide, from);
+    change(&mut changed);
+    run((place, None, stop), |scene, options, fields, report| {
+        // SAFETY (all): structs with the arrays that they declare, and a handle that no one else uses.
+        unsafe {
+            let mut scene = *scene;
+            scene.friction = &changed;
+            match handle {
+                Some(handle) => contact_normal_solver_solve(handle.0, &scene, options, fields, report),
+                None => contact_normal_solve(&scene, options, fields, report),
+            }
+        }
+    })
+}
+
 /// The tangential problem of pressures that are given.
 pub fn tangential(place: &Place, slide: &Slide, stop: &Stop, p: &[f64]) -> Found {
     run((place, Some((slide, From::Slide)), stop), |scene, options, fields, report| {

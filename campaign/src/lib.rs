@@ -4,7 +4,8 @@
 //! `coating` and `fft`) multiplies displacements, `rules` has the promises, `verdict` what was broken and what is excused, `sequence` what a
 //! handle promises beyond them, `run` puts this together, and `account` tells what was run. `bytes` (with `bytes_friction`) turns random
 //! bytes into calls. Some seeds are asked more beside their case: `batch`, `set_influence`, `accuracy` (a ball to an accuracy), `stress`
-//! (with `stress_waves`), `adhesion`, and `friction` with its rules, its coefficients (`tangential`) and its handles (`friction_sequence`). `replay` has the scene of
+//! (with `stress_waves`), `adhesion`, and `friction` with its rules, its coefficients (`tangential`) and its handles
+//! (`friction_sequence`); `laws` asks for laws of friction (`law_case`), layers that yield, and wear. `replay` has the scene of
 //! a dump judged. Nothing of the library is used but the C ABI's functions and its reader of dumps: a change of its core does not touch this.
 
 pub mod account;
@@ -34,6 +35,8 @@ pub mod grid;
 pub mod half_space;
 mod hankel;
 mod init;
+pub mod law_case;
+pub mod laws;
 pub mod measured;
 mod measures;
 pub mod operator;

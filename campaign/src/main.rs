@@ -7,6 +7,7 @@
 //! cargo run --release -p campaign -- --friction 5000  cases with friction alone, of seeds 0..5000
 //! cargo run --release -p campaign -- --measured --friction 5000
 //! cargo run --release -p campaign -- --adhesion 5000  cases with adhesion alone, of seeds 0..5000
+//! cargo run --release -p campaign -- --laws 5000      laws of friction, layers that yield, wear, of seeds 0..5000
 //! cargo run --release -p campaign -- --seed 17        one case again, with all that is known of it
 //! cargo run --release -p campaign -- --measured --seed 17
 //! cargo run --release -p campaign -- --replay FILE    the scene of a dump (docs/dump.md)
@@ -30,7 +31,7 @@ fn main() -> ExitCode {
         return dumped(&arguments[0]);
     }
     let (is_measured, is_friction, one) = (named("--measured"), named("--friction"), named("--seed"));
-    let is_adhesive = named("--adhesion");
+    let (is_adhesive, is_law) = (named("--adhesion"), named("--laws"));
     let number = |i: usize| arguments.get(i).and_then(|text| text.parse::<u64>().ok());
     let run = if is_measured { measured } else { ordinary };
     if one {
@@ -42,6 +43,9 @@ fn main() -> ExitCode {
     }
     if is_adhesive {
         return adhesion(count, first);
+    }
+    if is_law {
+        return laws(count, first);
     }
     let mut account = Account::default();
     for seed in first..first + count {
@@ -105,6 +109,12 @@ fn friction(count: u64, first: u64, is_measured: bool) -> ExitCode {
             println!("seed {seed}: {}: {}", failure.promise, failure.details);
         }
     }
+    print_ends(ends, excuses);
+    end(!failed)
+}
+
+/// How many calls ended how, and what was excused how often.
+fn print_ends(ends: BTreeMap<(String, i32), u64>, excuses: BTreeMap<&str, (u64, u64)>) {
     println!("| motion | status | calls |");
     println!("|---|---:|---:|");
     for ((kind, status), calls) in ends {
@@ -115,6 +125,25 @@ fn friction(count: u64, first: u64, is_measured: bool) -> ExitCode {
     for (why, (calls, seed)) in excuses {
         println!("| {why} | {calls} | {seed} |");
     }
+}
+
+/// Cases with laws of friction: how the calls ended, and what was not kept.
+fn laws(count: u64, first: u64) -> ExitCode {
+    let (mut ends, mut excuses, mut failed) = (BTreeMap::new(), BTreeMap::new(), false);
+    for seed in first..first + count {
+        let run = campaign::laws::run(&mut Random::new(seed ^ 0x001a_a5e5));
+        for (slope, status) in &run.ends {
+            *ends.entry((run.kind(*slope), *status)).or_insert(0) += 1;
+        }
+        for why in run.verdict.excuses {
+            excuses.entry(why).or_insert((0, seed)).0 += 1;
+        }
+        for failure in run.verdict.failures {
+            failed = true;
+            println!("seed {seed}: {}: {}", failure.promise, failure.details);
+        }
+    }
+    print_ends(ends, excuses);
     end(!failed)
 }
 

@@ -1,0 +1,169 @@
+//! A random law of friction and a layer that yields, and what they say of an answer: bounds by slips, and what particles carry.
+
+use contact_normal::ffi::*;
+
+use crate::friction_case::Case;
+use crate::friction_conditions::length;
+use crate::friction_found::Found;
+use crate::random::Random;
+
+/// What particles of the interface have: mu and a yield limit of each element.
+#[derive(Clone, Debug)]
+pub struct Particles {
+    pub mu: Vec<f64>,
+    pub limit: Vec<f64>,
+}
+
+/// A law, a layer, and which solution is wanted. 0: there is none.
+#[derive(Clone, Debug)]
+pub struct Law {
+    pub kind: i32,
+    pub kinetic: f64,
+    pub falling: [f64; 2],
+    pub half_speed: [f64; 2],
+    /// Of rolling; of a shift what it takes.
+    pub speed: f64,
+    pub duration: f64,
+    pub memory_distance: f64,
+    pub memory_speed: f64,
+    pub yield_limit: f64,
+    pub hardening: f64,
+    pub branch: i32,
+    /// Of the layer's elastic part.
+    pub compliance: f64,
+}
+
+impl Law {
+    /// Of a case, whose motion becomes one that is solved with it: slips of its size, tractions of its pressures.
+    pub fn random(random: &mut Random, case: &mut Case, p: &[f64]) -> Law {
+        let (grid, slide) = (case.place.grid, &mut case.slide);
+        let is_shift = slide.motion == CONTACT_NORMAL_MOTION_SHIFT;
+        // Slips that are prescribed; of forces those that displacements suggest.
+        let amounts = [0, 1].map(|k| if slide.is_force(k) { 0.0 } else { slide.amount[k] });
+        let steps = if is_shift { 1.0 } else { grid.dx };
+        let slip = length(amounts) * steps + 1e-6 * grid.dx;
+        let (duration, most) = (random.decades(1e-6, 1e3), p.iter().copied().fold(0.0, f64::max));
+        let falls = random.chance(0.8);
+        let h = [0, 1].map(|_| slip / duration * random.decades(0.01, 100.0));
+        let has_memory = falls && random.chance(0.5);
+        let yields = !falls || random.chance(0.3);
+        let mu = slide.mu.iter().copied().fold(0.0, f64::max);
+        let yield_limit = mu.min(1.0) * most * random.between(0.05, 1.1);
+        let hardens = yields && yield_limit > 0.0 && random.chance(0.6);
+        let sign = if random.chance(0.7) { 1.0 } else { -1.0 };
+        let law = Law {
+            kind: if falls { random.integer(1, 3) as i32 } else { 0 },
+            kinetic: random.between(0.0, 0.5),
+            falling: [random.between(0.1, 1.0), if random.chance(0.3) { random.between(0.1, 1.0) } else { 0.0 }],
+            half_speed: h,
+            speed: grid.dx / duration,
+            duration,
+            memory_distance: if has_memory { slip * random.decades(0.01, 10.0) } else { 0.0 },
+            memory_speed: if random.chance(0.5) { slip / duration * random.decades(1e-3, 1.0) } else { 0.0 },
+            yield_limit: if yields { yield_limit } else { 0.0 },
+            hardening: if hardens { sign * yield_limit / slip * random.decades(1e-3, 3.0) } else { 0.0 },
+            branch: if slide.has_forces() || random.chance(0.7) { 0 } else { random.integer(1, 2) as i32 },
+            compliance: if random.chance(0.4) { own_influence(case) * random.decades(0.1, 3.0) } else { 0.0 },
+        };
+        let slide = &mut case.slide;
+        slide.distance = 0.0;
+        slide.direction = [0.0, std::f64::consts::PI][usize::from(random.chance(0.3))];
+        slide.sensitivities = false;
+        law
+    }
+
+    /// Whether there is a law, or a limit that slip changes.
+    pub fn is_one(&self) -> bool {
+        self.kind > 0 || self.hardening != 0.0
+    }
+
+    /// Of fresh material.
+    pub fn fresh(&self, case: &Case) -> Particles {
+        Particles { mu: case.slide.mu.clone(), limit: vec![self.yield_limit; case.slide.mu.len()] }
+    }
+
+    /// Writes it into the struct; `before`: what particles had.
+    pub fn put(&self, friction: &mut contact_normal_friction, before: Option<&Particles>) {
+        (friction.law, friction.kinetic, friction.falling) = (self.kind, self.kinetic, self.falling);
+        (friction.half_speed, friction.speed, friction.time_step) = (self.half_speed, self.speed, self.duration);
+        (friction.memory_distance, friction.memory_speed) = (self.memory_distance, self.memory_speed);
+        (friction.yield_limit, friction.hardening, friction.branch) = (self.yield_limit, self.hardening, self.branch);
+        friction.compliance = self.compliance;
+        if let Some(before) = before {
+            (friction.previous_coefficient, friction.previous_yield_limit) =
+                (before.mu.as_ptr(), before.limit.as_ptr());
+        }
+    }
+
+    /// mu at a slip velocity over that at rest.
+    fn falls(&self, v: f64) -> f64 {
+        let f = |k: usize| {
+            let x = v / self.half_speed[k];
+            match (self.kind, k) {
+                (CONTACT_NORMAL_FRICTION_LAW_LINEAR, _) => (1.0 - 0.5 * x).max(0.0),
+                (CONTACT_NORMAL_FRICTION_LAW_RATIONAL, 0) => 1.0 / (1.0 + x),
+                (CONTACT_NORMAL_FRICTION_LAW_RATIONAL, _) => 1.0 / (1.0 + x * x),
+                _ => 0.5f64.powf(x),
+            }
+        };
+        let [a, b] = self.falling;
+        (self.kinetic + a * f(0) + if b > 0.0 { b * f(1) } else { 0.0 }) / (self.kinetic + a + b)
+    }
+
+    /// The bound of an element at a slip, and mu and the limit of its particle then.
+    fn at(&self, slip: f64, (p, mu): (f64, f64), (had_mu, had_limit): (f64, f64)) -> (f64, f64, f64) {
+        let mut now = mu;
+        if self.kind > 0 {
+            let v = slip / self.duration;
+            let kept = self.memory_distance / (self.memory_distance + self.duration * v.max(self.memory_speed));
+            let kept = if self.memory_distance > 0.0 { kept } else { 0.0 };
+            now = kept * had_mu + (1.0 - kept) * mu * self.falls(v);
+        }
+        let now = now.max(1e-9 * mu);
+        let cap = now * p;
+        if self.yield_limit == 0.0 || had_limit >= cap {
+            return (cap, now, had_limit);
+        }
+        let least = (1e-3 * self.yield_limit).min(had_limit);
+        let limit = (had_limit + self.hardening * slip).max(least).min(cap);
+        (limit, now, limit)
+    }
+
+    /// The element in which the particle of element i was a step before: in rolling the next one towards which it rolls.
+    pub fn upstream(case: &Case, i: usize) -> Option<usize> {
+        let [step, _] = case.slide.step(&case.place.grid);
+        let (x, mx) = (i % case.place.grid.mx, case.place.grid.mx);
+        match step {
+            _ if case.slide.motion == CONTACT_NORMAL_MOTION_SHIFT => Some(i),
+            step if step > 0.0 => (x + 1 < mx).then_some(i + 1),
+            _ => (x > 0).then(|| i - 1),
+        }
+    }
+
+    /// Bounds of all elements by the slips of an answer, and what particles have then.
+    pub fn bounds(&self, case: &Case, found: &Found, before: &Particles) -> (Vec<f64>, Particles) {
+        let n = found.p.len();
+        let is_steady = case.slide.motion == CONTACT_NORMAL_MOTION_STEADY_ROLLING;
+        let (fresh, mut bounds) = (self.fresh(case), vec![0.0; n]);
+        let mut after = fresh.clone();
+        let backwards = case.slide.step(&case.place.grid)[0] > 0.0;
+        for k in 0..n {
+            let i = if backwards { n - 1 - k } else { k };
+            let of = if is_steady { &after } else { before };
+            let had = Law::upstream(case, i).map_or((fresh.mu[i], fresh.limit[i]), |j| (of.mu[j], of.limit[j]));
+            // Without friction they are as outside of contact.
+            let slips =
+                found.p[i] > 0.0 && case.slide.mu[i] > 0.0 && found.stick_slip[i] >= CONTACT_NORMAL_STICK_SLIP_SLIP;
+            let slip = if slips { length(found.slip[i]) } else { 0.0 };
+            let (bound, mu, limit) = self.at(slip, (found.p[i].max(0.0), case.slide.mu[i]), had);
+            (bounds[i], after.mu[i], after.limit[i]) = (bound, mu, limit);
+        }
+        (bounds, after)
+    }
+}
+
+/// Of the size of an element's influence on itself.
+fn own_influence(case: &Case) -> f64 {
+    let grid = &case.place.grid;
+    (grid.dx * grid.dy).sqrt() / (2.0 * case.place.shear_modulus[0])
+}

@@ -1,0 +1,240 @@
+//! Laws of friction and layers that yield, in random scenes: each answer certified by the campaign's own products and its own march of particles, and the
+//! wear of each by its own sums.
+//!
+//! Two conditions: stick and slip with bounds that stand still at |q| (`friction_conditions`), and `|q|` that is the bound of the slip.
+
+use contact_normal::ffi::*;
+
+use crate::friction_call::{call_changed, frictionless, From, Handle};
+use crate::friction_case::Case;
+use crate::friction_conditions::{conditions, length};
+use crate::friction_found::{Before, Found};
+use crate::friction_place::{Place, Stop};
+use crate::init::initialised;
+use crate::law_case::{Law, Particles};
+use crate::random::Random;
+use crate::verdict::Verdict;
+
+/// From this `law_slope` on a solve may end without a certificate, by the library's documents.
+const STEEP: f64 = 0.5;
+
+/// What came of a case.
+pub struct Run {
+    pub case: Case,
+    pub law: Law,
+    /// `law_slope` and status of each call.
+    pub ends: Vec<(f64, i32)>,
+    pub verdict: Verdict,
+}
+
+impl Run {
+    /// The motion and the range of the slope.
+    pub fn kind(&self, slope: f64) -> String {
+        let range = match slope {
+            slope if slope < STEEP => "below .5",
+            slope if slope < 0.7 => ".5 to .7",
+            slope if slope < 1.0 => ".7 to 1",
+            _ => "1 and more",
+        };
+        let law = if self.law.is_one() { "law" } else { "ideal plastic" };
+        format!("{}, {law}, branch {}, law_slope {range}", self.case.motion(), self.law.branch)
+    }
+}
+
+/// A random case: from rest, and continued by the handle and by what the caller hands on.
+pub fn run(random: &mut Random) -> Run {
+    loop {
+        let mut place = Place::random(random, false);
+        place.shear_modulus[1] = place.shear_modulus[0];
+        place.poisson_ratio[1] = place.poisson_ratio[0];
+        let without = frictionless(&place, &Stop::unhindered(random));
+        if without.status != CONTACT_NORMAL_OK || without.p.iter().all(|p| !(*p > 0.0)) {
+            continue;
+        }
+        let mut case = Case::random(random, place, &without);
+        (case.stop.max_cycles, case.stop.cancel_at) = (1000, None);
+        let law = Law::random(random, &mut case, &without.p);
+        let mut run = Run { case, law, ends: Vec::new(), verdict: Verdict::default() };
+        run.steps();
+        return run;
+    }
+}
+
+impl Run {
+    fn steps(&mut self) {
+        let (case, law) = (self.case.clone(), self.law.clone());
+        let mut handle = match Handle::new(&case.place, &case.stop) {
+            Ok(handle) => handle,
+            Err((status, message)) => {
+                return self.verdict.fail("a handle for a law", format!("{status}: {message}"));
+            }
+        };
+        let first = call_changed(Some(&mut handle), (&case.place, &case.slide, From::Slide), &case.stop, |friction| {
+            law.put(friction, None);
+        });
+        let fresh = law.fresh(&case);
+        let Some(particles) = self.check(&case, &first, (&case.before(&first.p), &fresh)) else { return };
+        let kept = call_changed(Some(&mut handle), (&case.place, &case.slide, From::Handle), &case.stop, |friction| {
+            law.put(friction, None);
+        });
+        let before = Before { q: first.q.clone(), p: first.p.clone() };
+        self.check(&case, &kept, (&before, &particles));
+        // The same by what the caller hands on: from rest it starts elsewhere, and where there are several solutions it may find another one.
+        let mut handed = case.clone();
+        handed.slide.previous = Some([0, 1].map(|k: usize| first.q.iter().map(|q| q[k]).collect()));
+        let found = call_changed(None, (&handed.place, &handed.slide, From::Slide), &case.stop, |friction| {
+            law.put(friction, Some(&particles));
+        });
+        self.check(&handed, &found, (&before, &particles));
+    }
+
+    fn unless(&mut self, kept: bool, promise: &'static str, details: impl FnOnce() -> String) {
+        let (case, law) = (&self.case, &self.law);
+        self.verdict.unless(kept, promise, || format!("{}, {law:?}: {}", case.describe(), details()));
+    }
+
+    /// Of one answer; what particles have after it, if it is one.
+    fn check(&mut self, case: &Case, found: &Found, (before, had): (&Before, &Particles)) -> Option<Particles> {
+        let (status, law, slope) = (found.status, self.law.clone(), found.report.tangential.law_slope);
+        self.ends.push((if status < 0 { 0.0 } else { slope }, status));
+        if status < 0 {
+            self.unless(!found.written, "a law refused leaves outputs alone", || format!("status {status}"));
+            match (status, case.may_be_infeasible(), case.normal_reason(status)) {
+                (CONTACT_NORMAL_INFEASIBLE, Some(why), _) | (_, _, Some(why)) => self.verdict.excuse(why),
+                // mu p is no bound of what a layer carries.
+                (CONTACT_NORMAL_INFEASIBLE, ..) if law.yield_limit > 0.0 => {
+                    self.verdict.excuse("refused: a force on a layer that yields")
+                }
+                _ => self.unless(false, "a law is refused for a reason", || format!("{status}, {}", found.message)),
+            }
+            return None;
+        }
+        let numbers = found.q.iter().chain(&found.slip).flatten().chain([&slope, &found.report.tangential.residual]);
+        let all = numbers.copied().all(f64::is_finite);
+        self.unless(all, "a law returns numbers", || format!("status {status}"));
+        let is_warned = found.report.warnings & CONTACT_NORMAL_WARNING_LAW != 0;
+        self.unless(is_warned == (slope >= STEEP), "LAW warns of a law_slope of .5 and more", || format!("{slope}"));
+        self.wear(case, found);
+        if status > 0 {
+            self.stopped(case, found);
+            return None;
+        }
+        let (bounds, after) = law.bounds(case, found, had);
+        self.certify(case, found, before, &bounds);
+        Some(after)
+    }
+
+    /// Status OK: both conditions.
+    fn certify(&mut self, case: &Case, found: &Found, before: &Before, bounds: &[f64]) {
+        let (law, mut frozen) = (self.law.clone(), case.clone());
+        let is_steady = case.slide.motion == CONTACT_NORMAL_MOTION_STEADY_ROLLING;
+        let q_there = if is_steady { &found.q } else { &before.q };
+        let layer = |k: usize| -> Vec<f64> {
+            let there = |i: usize| Law::upstream(case, i).map_or(0.0, |j| q_there[j][k]);
+            let own = |i: usize| case.slide.rigid.as_ref().map_or(0.0, |own| own[k][i]);
+            (0..found.q.len()).map(|i| own(i) + law.compliance * (found.q[i][k] - there(i))).collect()
+        };
+        frozen.slide.rigid = Some([layer(0), layer(1)]);
+        let (mut left, mut rest, mut count, mut floor) = (0.0, 0.0, 0.0f64, 0.0f64);
+        let most = bounds.iter().zip(&found.p).zip(&case.slide.mu).map(|((_, p), mu)| mu * p).fold(0.0, f64::max);
+        for (i, bound) in bounds.iter().enumerate() {
+            let (q, p) = (length(found.q[i]), found.p[i]);
+            if !(p > 0.0 && case.slide.mu[i] > 0.0) {
+                continue;
+            }
+            let slips = found.stick_slip[i] >= CONTACT_NORMAL_STICK_SLIP_SLIP;
+            frozen.slide.mu[i] = if slips { q / p } else { 10.0 * case.slide.mu[i].max(q / p) };
+            let off = if slips { q - bound } else { (q - bound).max(0.0) };
+            left += (off / most).powi(2);
+            rest += (case.slide.mu[i] * p / most).powi(2);
+            count += 1.0;
+            floor = floor.max(1e-13);
+        }
+        if count == 0.0 {
+            return;
+        }
+        let [plain, with_layer] = [case, &frozen].map(|case| conditions(case, found, before));
+        // The layer displaces, too: what is not the rigid slip of all.
+        let (mut displaced, mut elements) = (0.0, 0.0);
+        for i in (0..found.q.len()).filter(|&i| found.p[i] > 0.0 && case.slide.mu[i] > 0.0) {
+            let (w, _) = case.slide.rigid_slip(&case.place.grid, i, found.report.tangential.creepage);
+            displaced += (found.slip[i][0] - w[0]).powi(2) + (found.slip[i][1] - w[1]).powi(2);
+            elements += 1.0;
+        }
+        let by_layer = if law.compliance > 0.0 { f64::sqrt(displaced / elements) } else { 0.0 };
+        let counts = case.slide.motion == CONTACT_NORMAL_MOTION_SHIFT || case.slide.has_forces();
+        let scale = plain.scale.max(with_layer.scale).max(if counts { by_layer } else { 0.0 });
+        let allowed = 1.001 * case.stop.tolerance * scale + with_layer.rounding;
+        self.unless(with_layer.slip_error <= 4.0 * with_layer.rounding, "a law's slip is w + A q - u'", || {
+            format!("{:e}, {:e}", with_layer.slip_error, with_layer.rounding)
+        });
+        self.unless(with_layer.left <= allowed, "OK with a law: the slip is within the tolerance", || {
+            format!(
+                "{:e} left of {scale:e}, rounding {:e}, reported {:e}",
+                with_layer.left, with_layer.rounding, found.report.tangential.residual
+            )
+        });
+        let off = (left / rest).sqrt();
+        self.unless(off <= 1.001 * case.stop.tolerance + floor, "OK with a law: |q| is the bound of the slip", || {
+            format!("{off:e}, reported {:e}", found.report.tangential.residual)
+        });
+    }
+
+    /// Status > 0: why that may be.
+    fn stopped(&mut self, case: &Case, found: &Found) {
+        let slope = found.report.tangential.law_slope;
+        let says = found.message.contains("tangential.law_slope is");
+        self.unless(says == (slope >= STEEP), "what is not solved says how steep its law is", || found.message.clone());
+        let why = match () {
+            () if slope >= STEEP => Some("law: law_slope of .5 and more"),
+            () if case.slide.has_forces() => Some("law: a force that may be above the maximum"),
+            () if self.law.branch > 0 => Some("law: turns of a branch that do not settle"),
+            () => None,
+        };
+        match why {
+            Some(why) => self.verdict.excuse(why),
+            None => self.unless(false, "a law is solved", || {
+                format!(
+                    "status {}, law_slope {slope}, residual {:e}: {}",
+                    found.status, found.report.tangential.residual, found.message
+                )
+            }),
+        }
+    }
+
+    /// Work and depth by sums.
+    fn wear(&mut self, case: &Case, found: &Found) {
+        let (grid, n) = (case.place.grid, found.q.len());
+        let column = |of: &[[f64; 2]], k: usize| of.iter().map(|v| v[k]).collect::<Vec<f64>>();
+        let (q, s) = ([column(&found.q, 0), column(&found.q, 1)], [column(&found.slip, 0), column(&found.slip, 1)]);
+        let mut wear = initialised(contact_normal_wear_init);
+        (wear.mx, wear.my, wear.dx, wear.dy) = (grid.mx as i32, grid.my as i32, grid.dx, grid.dy);
+        (wear.traction, wear.slip) = ([q[0].as_ptr(), q[1].as_ptr()], [s[0].as_ptr(), s[1].as_ptr()]);
+        (wear.coefficient, wear.hardness, wear.steps, wear.rolling_distance) = (1e-3, 7.0, 3.0, grid.dx);
+        let (mut work, mut depth, mut passage) = (vec![0.0; n], vec![0.0; n], vec![0.0; grid.my]);
+        let mut worn = initialised(contact_normal_worn_init);
+        let to = (work.as_mut_ptr(), depth.as_mut_ptr(), passage.as_mut_ptr());
+        // SAFETY: structs with the arrays that they declare.
+        let status = unsafe { contact_normal_frictional_wear(&wear, to.0, to.1, to.2, &mut worn) };
+        let (mut total, mut volume, mut sizes) = (0.0, 0.0, 0.0);
+        let mut rows = vec![0.0; grid.my];
+        let mut right = status == CONTACT_NORMAL_OK;
+        for i in 0..n {
+            let terms = [q[0][i] * s[0][i], q[1][i] * s[1][i]];
+            let (exact, size) = (-3.0 * (terms[0] + terms[1]), 3.0 * (terms[0].abs() + terms[1].abs()));
+            let worn_off = 1e-3 / 7.0 * exact.max(0.0);
+            right &= (work[i] - exact).abs() <= 1e-15 * size
+                && (depth[i] - worn_off).abs() <= 1e-18 * size + 1e-15 * worn_off;
+            rows[i / grid.mx] += worn_off / 3.0;
+            (total, volume, sizes) = (total + exact, volume + worn_off, sizes + size);
+        }
+        let area = grid.dx * grid.dy;
+        // Sums of up to some hundred numbers.
+        right &= (worn.work - total * area).abs() <= 1e-13 * sizes * area
+            && (worn.volume - volume * area).abs() <= 1e-13 * volume * area;
+        right &= rows.iter().zip(&passage).all(|(exact, found)| (exact - found).abs() <= 1e-13 * exact);
+        self.unless(right, "work and wear are those of tractions and slips", || {
+            format!("status {status}, {total:e}, {:e}", worn.work)
+        });
+    }
+}
