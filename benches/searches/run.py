@@ -1,6 +1,6 @@
 """Judges searches for an accuracy and their estimates, kind of surface by kind: the truth is a grid four times finer.
 
-    run.py [--seeds N] [--first S] [--kinds a,b] [--list]
+    run.py [--seeds N] [--first S] [--kinds "a;b"] [--list]
 
 Two of three searches by the number of their seed have a pressure limit that no element reaches. Prints a table in Markdown.
 """
@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -22,6 +23,8 @@ TARGETS = (1e-2, 3e-3, 1e-3)
 DOUBLING = 4
 #: Elements across the contact from which on estimates are believed: docs/accuracy.md.
 ENOUGH = {"force": 8, "max_pressure": 12, "corrected_area": 32}
+#: Products and seconds are predicted within such a factor, or not.
+PRODUCTS, SECONDS = 1.3, 1.5
 #: Elements of a grid that is solved for the truth, at most.
 FINEST = 2**22
 
@@ -36,7 +39,19 @@ class Tally:
     elements: list[float] = field(default_factory=list)
     estimates: dict[str, list[float]] = field(default_factory=lambda: {name: [] for name in ENOUGH})
     unknown: dict[str, int] = field(default_factory=lambda: dict.fromkeys(ENOUGH, 0))
+    #: Predicted over counted products, and over the least seconds of three solves.
     products: list[float] = field(default_factory=list)
+    seconds: list[float] = field(default_factory=list)
+
+    def add(self, other: Tally) -> None:
+        """Counts what another kind has shown, too."""
+        self.searches += other.searches
+        self.not_reached += other.not_reached
+        for name in ("misses", "elements", "products", "seconds"):
+            getattr(self, name).extend(getattr(other, name))
+        for name in ENOUGH:
+            self.estimates[name] += other.estimates[name]
+            self.unknown[name] += other.unknown[name]
 
 
 class Judged:
@@ -116,6 +131,27 @@ def judge(judged: Judged, tally: Tally, what: str, say: bool) -> None:
         if say and (miss > 1 or tally.elements[-1] > DOUBLING):
             print(f"  {what}, {target:g}: miss {miss:.2f}, {tally.elements[-1]:g} x the elements; {result.message}")
     judge_estimates(judged, tally, finest, what, say)
+    judge_prices(judged, tally, what, say)
+
+
+def judge_prices(judged: Judged, tally: Tally, what: str, say: bool) -> None:
+    """The rows of a price list beside what their grids and tolerances cost."""
+    surface = judged.surface
+    shape = {"shape": surface.shape} if callable(surface.h) else {}
+    rows = contact_normal.cost_of_accuracy(surface.h, **surface.element(0), **shape, **judged.scene(), targets=TARGETS, threads=1)
+    for row in rows:
+        if row.obstacle or not 1 <= row.shape[0] * row.shape[1] <= surface.most or row.shape[1] < surface.shape[1]:
+            continue
+        k, least = judged.doublings(row.shape[1]), float("inf")
+        h, element = surface.distance(k), surface.element(k)
+        for _ in range(3):
+            began = time.perf_counter()
+            result = contact_normal.solve(h, **element, **judged.scene(), tolerance=row.tolerance, threads=1)
+            least = min(least, time.perf_counter() - began)
+        tally.products.append(row.work_units / result.report["work_units"])
+        tally.seconds.append(row.seconds_one_thread / least)
+        if say and not 1 / PRODUCTS <= tally.products[-1] <= PRODUCTS:
+            print(f"  products: {what}, {row.target:g} on {row.shape}: {row.work_units:.1f} predicted, {result.report['work_units']:.1f} counted")
 
 
 def judge_estimates(judged: Judged, tally: Tally, finest: int, what: str, say: bool) -> None:
@@ -142,6 +178,12 @@ def percent(part: float, of: float) -> str:
     return f"{100 * part / of:.0f} %" if of else ""
 
 
+def within(ratios: list[float], factor: float) -> str:
+    """The part of ratios within a factor, and their median."""
+    part = percent(sum(1 / factor <= r <= factor for r in ratios), len(ratios))
+    return f"{part}, {np.median(ratios):.2f}" if ratios else ""
+
+
 def line(name: str, tally: Tally) -> str:
     beyond = sum(miss > 1 for miss in tally.misses)
     near = sum(ratio <= DOUBLING for ratio in tally.elements)
@@ -150,38 +192,34 @@ def line(name: str, tally: Tally) -> str:
     cells = [
         name, tally.searches, tally.not_reached, f"{beyond}, {max(tally.misses, default=0):.2f}",
         percent(near, len(tally.elements)), *(f"{a} / {b}" for a, b in zip(low, unknown, strict=True)),
+        within(tally.products, PRODUCTS), within(tally.seconds, SECONDS),
     ]
     return "| " + " | ".join(str(cell) for cell in cells) + " |"
 
 
 HEAD = """\
-| surface | searches | not reached | beyond the target, worst | within one doubling | force: below 0.3 / unknown | largest pressure | corrected area |
-|---|---|---|---|---|---|---|---|"""
+| surface | searches | not reached | beyond the target, worst | within one doubling | force: below 0.3 / unknown | largest pressure | corrected area \
+| products within 1.3, median | seconds within 1.5, median |
+|---|---|---|---|---|---|---|---|---|---|"""
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", type=int, default=8)
     parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--kinds", default=",".join(kind.replace(",", ";") for kind in KINDS))
+    parser.add_argument("--kinds", default=";".join(KINDS))
     parser.add_argument("--list", action="store_true", help="names what is beyond its target, or expensive")
     given = parser.parse_args()
     whole = Tally()
     print(HEAD)
-    for kind in (kind.replace(";", ",") for kind in given.kinds.split(",")):
+    for kind in given.kinds.split(";"):
         tally = Tally()
         for seed in range(given.first, given.first + given.seeds):
             for judged in cases(kind, seed):
                 judge(judged, tally, f"{kind} {seed} by {next(iter(judged.load))}, limit {judged.limit}", given.list)
         print(line(kind, tally))
         sys.stdout.flush()
-        whole.searches += tally.searches
-        whole.not_reached += tally.not_reached
-        whole.misses += tally.misses
-        whole.elements += tally.elements
-        for q in ENOUGH:
-            whole.estimates[q] += tally.estimates[q]
-            whole.unknown[q] += tally.unknown[q]
+        whole.add(tally)
     print(line("all", whole))
 
 
