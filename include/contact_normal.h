@@ -2288,6 +2288,10 @@ typedef struct contact_normal_price {
    step. 0: none relaxes.
    */
   double time_error;
+  /*
+   Products that the solve takes, in products on its grid, as `work_units` of a report; 0: not known. The same on any machine.
+   */
+  double work_units;
 } contact_normal_price;
 
 /*
@@ -2891,7 +2895,7 @@ contact_normal_status contact_normal_solver_solve_batch(struct contact_normal_so
 /*
  Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->accuracy.error_force` is at most
  `accuracy->target` times the force (or the approach, when the force is prescribed), and those of the other quantities
- at most their targets, with enough elements across the contact in both directions: 8 for forces, 12 for the largest pressure, 32 for areas, 16 for the others. With `accuracy->surface` the
+ at most their targets, with enough elements across the contact in both directions: 6 for forces, 12 for the largest pressure, 32 for areas, 16 for the others. With `accuracy->surface` the
  scene's undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, a tenth of the
  targets, and a hundredth of those of single pressures and stresses. With a target of another quantity than force, largest pressure and area up to two grids with fewer elements
  are solved first. Arrays of one value per element (compliances, limits, coefficients of friction, weights, tractions before) have their

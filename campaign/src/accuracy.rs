@@ -73,11 +73,11 @@ pub fn check(random: &mut Random) -> Vec<Failure> {
     let elements = i64::from(accuracy.mx) * i64::from(accuracy.my);
     let holds = match status {
         CONTACT_NORMAL_OK => reached >= 0.0 && reached <= target && error <= target,
-        // The next grid would have been too large. Contacts of less than 8 elements across meet no target, whatever they reach; the
+        // The next grid would have been too large. Contacts of less than 6 elements across meet no target, whatever they reach; the
         // centre lies within an element.
         CONTACT_NORMAL_ITERATION_LIMIT => {
             let across = 2.0 * a / unit * f64::from(accuracy.mx) / m;
-            4 * elements > MOST && (reached > target || across < 9.0)
+            4 * elements > MOST && (reached > target || across < 7.0)
         }
         _ => false,
     };

@@ -229,11 +229,13 @@ pub fn prices(surfaces: Surfaces, seeds: std::ops::Range<u64>, most: usize) -> V
             let (mut seconds, mut error) = (-1.0, f64::NAN);
             if price.obstacle.is_none() && columns <= most {
                 let options = Options { tolerance: price.tolerance, threads: 1, ..Options::default() };
+                // A price may name a grid that is coarser than the first one of a search.
+                let elements = if k < 0 { START >> -k } else { START << k };
                 let mut times = Vec::new();
                 // The least of five, as samples are timed: what a machine does that is not busy with something else.
                 for _ in 0..5 {
                     let began = std::time::Instant::now();
-                    let report = solved(&surface, START << k, by_force, &options);
+                    let report = solved(&surface, elements, by_force, &options);
                     times.push(began.elapsed().as_secs_f64());
                     error = (report.measures.found(surface.load(by_force)) / surface.exact(by_force) - 1.0).abs();
                 }

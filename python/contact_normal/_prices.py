@@ -43,6 +43,8 @@ class Price(NamedTuple):
         step"; "": none.
     time_error : float
         Of bodies that relax: the relative error that the length of the step leaves on any grid, beside `error`; 0: none relaxes.
+    work_units : float
+        Products that the solve takes, as "work_units" of a report; 0: not known. The same on any machine.
     """
 
     target: float
@@ -54,13 +56,14 @@ class Price(NamedTuple):
     bytes: int
     obstacle: str
     time_error: float = 0.0
+    work_units: float = 0.0
 
     @classmethod
     def of(cls, row: PriceStruct) -> Price:
         """The row of the library."""
         return cls(
             row.target, (row.my, row.mx), row.tolerance, row.error, row.seconds, row.seconds_one_thread, row.bytes,
-            OBSTACLES[row.obstacle], row.time_error,
+            OBSTACLES[row.obstacle], row.time_error, row.work_units,
         )
 
 

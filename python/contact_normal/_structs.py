@@ -507,6 +507,7 @@ class Price(ctypes.Structure):
         ("obstacle", c_int32),
         ("reserved", c_int32),
         ("time_error", c_double),
+        ("work_units", c_double),
     ]
 
 

@@ -1,6 +1,6 @@
 //! How much the undeformed distance and the pressures bend within an element: what elements cannot show.
 
-use super::{Problem, State};
+use super::{Outline, Problem, State};
 
 /// Rows of the contact area that are looked at, at least: the means over more of them are the same.
 const ROWS: usize = 32;
@@ -13,6 +13,8 @@ pub struct Curvature {
     pub bend: f64,
     /// The approach above the lowest h.
     pub depth: f64,
+    /// u = approach - h, its mean with the weights of a flat punch's pressures: the force over dF/d(approach) (Betti).
+    pub displaced: f64,
     /// rms of the second differences of p, over that of p.
     pub pressure: f64,
 }
@@ -21,8 +23,10 @@ pub struct Curvature {
 #[derive(Default)]
 struct Sums {
     bend: f64,
+    h: f64,
     count: f64,
     rim_bend: f64,
+    rim_h: f64,
     rim_count: f64,
     differences: f64,
     squares: f64,
@@ -30,9 +34,9 @@ struct Sums {
 }
 
 impl Curvature {
-    /// Of a state with `rows` rows that hold contact.
-    pub fn of(problem: &Problem, state: &State, rows: usize) -> Curvature {
-        let stride = (rows / ROWS).max(1);
+    /// Of a state with this outline.
+    pub fn of(problem: &Problem, state: &State, outline: &Outline) -> Curvature {
+        let stride = (outline.rows / ROWS).max(1);
         let (mx, my) = (state.grid.mx, state.grid.my);
         let (repeats, layered) = (problem.coefficients.repeats(&state.grid), problem.coefficients.has_layer());
         let mut sums = Sums { lowest: f64::INFINITY, ..Sums::default() };
@@ -49,7 +53,7 @@ impl Curvature {
                 }
             }
         }
-        sums.curvature(state.approach)
+        sums.curvature(state.approach, outline.scatter(state.contact_count()))
     }
 
     /// The second differences of the pressures at their peak, over it: small where elements resolve the peak. None without pressures.
@@ -106,9 +110,11 @@ impl Sums {
     #[inline]
     fn count_in(&mut self, state: &State, at: usize, (bend, difference, rim): (f64, f64, bool)) {
         self.bend += bend;
+        self.h += state.h[at];
         self.count += 1.0;
         if rim {
             self.rim_bend += bend;
+            self.rim_h += state.h[at];
             self.rim_count += 1.0;
         }
         self.differences += difference * difference;
@@ -117,13 +123,21 @@ impl Sums {
     }
 
     /// A flat punch presses most at its rim. For `h = r^n` its weights give n k, of the mean over the area 2 n and over the rim n^2 with
-    /// `k = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2)`: two thirds and one third of these are right to a tenth up to n = 10.
-    fn curvature(&self, approach: f64) -> Curvature {
-        let mean = self.bend / self.count.max(1.0);
-        let rim = if self.rim_count > 0.0 { self.rim_bend / self.rim_count } else { mean };
+    /// `k = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2)`: two thirds and one third of these are right to a tenth up to n = 10. In many
+    /// places that hardly feel each other a punch presses with forces as their sizes are, not their areas: so does the sum over their rims, and
+    /// the mean over the area has a weight that falls with the number of places, as its root.
+    fn curvature(&self, approach: f64, scatter: f64) -> Curvature {
+        let of_area = 2.0 / (3.0 * scatter);
+        let weighted = |sum: f64, rim: f64| {
+            let mean = sum / self.count.max(1.0);
+            let of_rim = if self.rim_count > 0.0 { rim / self.rim_count } else { mean };
+            of_area * mean + (1.0 - of_area) * of_rim
+        };
+        let above = |h: f64| if self.count > 0.0 { approach - h } else { 0.0 };
         Curvature {
-            bend: (2.0 * mean + rim) / 3.0,
-            depth: if self.count > 0.0 { approach - self.lowest } else { 0.0 },
+            bend: weighted(self.bend, self.rim_bend),
+            depth: above(self.lowest),
+            displaced: above(weighted(self.h, self.rim_h)),
             pressure: if self.squares > 0.0 { (self.differences / self.squares).sqrt() } else { 0.0 },
         }
     }

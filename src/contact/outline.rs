@@ -126,6 +126,12 @@ impl Outline {
         4.0 * count as f64 / sides.max(1) as f64
     }
 
+    /// The root of the number of equal circles that a contact area of `count` elements with these chords is made of, at least 1: the chord of
+    /// one circle of that area, `(pi/2) sqrt(count/pi)`, over the mean one.
+    pub fn scatter(&self, count: usize) -> f64 {
+        (0.5 * (PI * count as f64).sqrt() / self.chord(count)).max(1.0)
+    }
+
     /// A*: the area of `count` elements in contact, corrected.
     pub fn corrected_area(&self, state: &State, count: usize) -> f64 {
         (count as f64 - SHARE * self.changes as f64).max(0.0) * state.grid.element_area()

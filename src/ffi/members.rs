@@ -699,6 +699,7 @@ pub(super) const STRUCTS: &[Struct] = &[
         Member { name: "obstacle", at: offset_of!(contact_normal_price, obstacle), kind: Int32 },
         Member { name: "reserved", at: offset_of!(contact_normal_price, reserved), kind: Int32 },
         Member { name: "time_error", at: offset_of!(contact_normal_price, time_error), kind: Double },
+        Member { name: "work_units", at: offset_of!(contact_normal_price, work_units), kind: Double },
     ] },
     Struct { name: "contact_normal_quantity_row", members: &[
         Member { name: "struct_size", at: offset_of!(contact_normal_quantity_row, struct_size), kind: Int64 },

@@ -89,6 +89,8 @@ pub struct contact_normal_price {
     /// Of bodies that relax: the relative error that the length of the step leaves on any grid, beside `error`; it falls with the square of the
     /// step. 0: none relaxes.
     pub time_error: f64,
+    /// Products that the solve takes, in products on its grid, as `work_units` of a report; 0: not known. The same on any machine.
+    pub work_units: f64,
 }
 
 versioned! { contact_normal_price, contact_normal_price_init, 88, error: -1.0, seconds: -1.0, seconds_one_thread: -1.0 }
@@ -120,6 +122,7 @@ impl From<&Price> for contact_normal_price {
             },
             reserved: 0,
             time_error: price.time_error,
+            work_units: price.work_units,
         }
     }
 }

@@ -19,6 +19,7 @@ mod handle;
 mod iterate;
 mod kept;
 mod linear;
+mod machine;
 mod methods;
 mod nested;
 mod normal;
@@ -304,7 +305,7 @@ impl Solver {
         let (seconds, ledger) = (monitor.seconds(), &mut monitor.ledger);
         let (rows, outline) = (&mut ledger.rows, &ledger.outline);
         let (problem, state) = (&self.problem, &self.state);
-        let curvature = &Curvature::of(problem, state, outline.rows);
+        let curvature = &Curvature::of(problem, state, outline);
         let parts = Parts::of(problem, state, curvature, outline);
         (report.limit, report.halving) =
             estimates::estimate(rows, (problem, state, outline), (curvature, parts), seconds);

@@ -10,7 +10,6 @@ mod solved;
 use std::time::Instant;
 
 pub use next_grid::Accuracy;
-pub use price::GROWTH;
 pub use price_list::{cost_of_accuracy, Obstacle, Price};
 
 use super::quantities::{values, Quantity};

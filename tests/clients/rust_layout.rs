@@ -346,6 +346,7 @@ pub fn layout() -> Vec<(&'static str, usize)> {
         ("contact_normal_price.obstacle", offset_of!(contact_normal_price, obstacle)),
         ("contact_normal_price.reserved", offset_of!(contact_normal_price, reserved)),
         ("contact_normal_price.time_error", offset_of!(contact_normal_price, time_error)),
+        ("contact_normal_price.work_units", offset_of!(contact_normal_price, work_units)),
         ("contact_normal_quantity_row", size_of::<contact_normal_quantity_row>()),
         ("contact_normal_quantity_row.struct_size", offset_of!(contact_normal_quantity_row, struct_size)),
         ("contact_normal_quantity_row.quantity", offset_of!(contact_normal_quantity_row, quantity)),

@@ -8,7 +8,7 @@ use contact_normal::scene::{
     Scene, Work,
 };
 use contact_normal::solver::{
-    effects_bill, quantities, BillOptions, BillRow, Neglected, Omission, Options, Outcome, Quantity, Verdict,
+    effects_bill, quantities, solve, BillOptions, BillRow, Neglected, Omission, Options, Outcome, Quantity, Verdict,
 };
 
 use crate::random::Random;
@@ -197,6 +197,19 @@ fn what_is_neglected_changes_less_than_the_target() {
         }
     }
     assert!(left_out >= 6, "{left_out}");
+}
+
+/// The peak of a cone grows with the elements: small grids do not reach a limit that the whole grid does.
+#[test]
+fn a_pressure_limit_stays() {
+    let h: Vec<f64> = ball().iter().map(|h| h.sqrt()).collect();
+    let (.., report) = solve(&plain(&h), &Options::default()).expect("a solvable scene");
+    let peak = report.measures.max_pressure;
+    for limit in [0.95 * peak, 2.0 * peak] {
+        let scene = Scene { pressure_limit: Some(PressureLimit::Uniform(limit)), ..plain(&h) };
+        let neglected = Neglected::of(&scene, &Options::default(), 0.1).expect("a scene");
+        assert_eq!(neglected, Neglected::default(), "{limit} beside {peak}");
+    }
 }
 
 #[test]

@@ -30,6 +30,7 @@ mod dashpots;
 mod effects;
 mod estimates;
 mod estimates_at_edges;
+mod estimates_of_kinds;
 mod every_grid;
 mod families;
 mod fft_smoother;

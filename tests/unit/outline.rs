@@ -41,6 +41,12 @@ fn a_circle_has_eight_changes_a_radius() {
         // The first and last row or column may be missed on either side.
         assert!((outline.changes as f64 - 8.0 * r).abs() <= 8.0, "{} of {}", outline.changes, 8.0 * r);
         assert_eq!(outline.edges, 0);
+        // M is off by 8 of 400 at most, and so are chords.
+        let count = state.contact_count();
+        assert!((outline.scatter(count) - 1.0).abs() <= 0.02, "{}", outline.scatter(count));
+        // Four of them.
+        let four = Outline { changes: 4 * outline.changes, ..outline };
+        assert!((four.scatter(4 * count) - 2.0).abs() <= 0.04, "{}", four.scatter(4 * count));
     }
 }
 

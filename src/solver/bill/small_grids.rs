@@ -8,8 +8,8 @@ use super::verdict::{self, BillRow, Measured};
 use crate::effects;
 use crate::error::{require, Error, Result};
 use crate::scene::{scaled, Regridded, Scene};
+use crate::solver::machine::growth;
 use crate::solver::quantities::{Lack, OnGrid, Quantity, Sequence};
-use crate::solver::refinement::GROWTH;
 use crate::solver::{Options, Outcome, ProgressCallback};
 use crate::threads::Threads;
 
@@ -99,7 +99,7 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
                 return Ok(Outcome::Cancelled);
             }
             let next = entered.elapsed().as_secs_f64() * NEXT;
-            let whole = self.variants[0].seconds * self.ratio.powf(GROWTH);
+            let whole = self.variants[0].seconds * self.growth();
             let most = if self.asked.max_seconds > 0.0 { self.asked.max_seconds } else { SECONDS.max(PART * whole) };
             let known = doublings > first;
             if known && began.elapsed().as_secs_f64() + next > most {
@@ -145,10 +145,16 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
         Ok(true)
     }
 
+    /// Seconds of the scene's grid over those of the last grid.
+    fn growth(&self) -> f64 {
+        let elements = self.scene.grid.len() as f64;
+        growth(elements / self.ratio, elements)
+    }
+
     /// The rows.
     pub fn rows(&self) -> Vec<BillRow> {
         let Some((whole, variants)) = self.variants.split_first() else { return vec![] };
-        let scale = self.ratio.powf(GROWTH);
+        let scale = self.growth();
         let of = |variant: &Variant| -> Vec<BillRow> {
             let row = |(q, quantity): (usize, &Quantity)| {
                 let measured = Measured {

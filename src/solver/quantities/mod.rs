@@ -101,7 +101,7 @@ impl Quantity {
     /// several grids the coarsest has a quarter of these elements.
     pub fn enough_across(self) -> usize {
         match self {
-            Quantity::Force => 8,
+            Quantity::Force => 6,
             Quantity::MaxPressure => 12,
             Quantity::ContactArea | Quantity::StickArea => 32,
             _ => 16,

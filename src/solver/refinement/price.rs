@@ -5,12 +5,15 @@ use super::sample::Sample;
 use super::Accuracy;
 use crate::grid::Grid;
 use crate::scene::{scaled, Scene};
+use crate::solver::machine::growth;
 use crate::solver::quantities::Quantity;
 
-/// The power of the number of elements with which seconds of whole calls grow (docs/performance.md).
-pub const GROWTH: f64 = 1.08;
-/// That of set-ups, at least.
-const SETUP_GROWTH: f64 = 0.4;
+/// The least and the largest power of the number of elements with which seconds of set-ups grow.
+const SETUP_GROWTH: (f64, f64) = (0.4, 1.08);
+/// Samples with less than this part of the products of the last do not count for seconds.
+const SEES: f64 = 0.5;
+/// Residuals with which a grid begins fall so much with a doubling: it starts from the grid before, whose error is of this order at the rim.
+const BEGINS: f64 = 0.35;
 /// Elements across the contact on a sample that can be carried on.
 pub(super) const ACROSS: usize = 12;
 
@@ -46,6 +49,8 @@ pub struct Price {
     pub seconds: f64,
     /// Seconds with one thread; negative: not known.
     pub seconds_one_thread: f64,
+    /// Products that the solve takes, in products on its grid; 0: not known.
+    pub work_units: f64,
     /// Bytes held by the solver; 0: not known.
     pub bytes: u64,
     /// Why it cannot be had; none where it can.
@@ -55,19 +60,20 @@ pub struct Price {
 }
 
 /// Seconds of one thread on a grid of so many elements, from the sample that promises the least: others were disturbed, or so small
-/// that they are mostly overhead. The set-up grows as the last two samples say (that of a period hardly does).
+/// that they are mostly overhead. Samples with half the products of the last and fewer hardly see the contact. The set-up grows as the last two samples say (that of a period hardly does).
 pub(super) fn seconds_on(samples: &[Sample], elements: f64) -> f64 {
     let seen = match samples {
         [.., before, last] => (last.setup / before.setup).ln() / (last.elements / before.elements).ln(),
-        _ => GROWTH,
+        _ => SETUP_GROWTH.1,
     };
-    let of_setup = if seen.is_finite() { seen.clamp(SETUP_GROWTH, GROWTH) } else { GROWTH };
+    let of_setup = if seen.is_finite() { seen.clamp(SETUP_GROWTH.0, SETUP_GROWTH.1) } else { SETUP_GROWTH.1 };
     let carried = |sample: &Sample| {
         let ratio = elements / sample.elements;
-        sample.setup * ratio.powf(of_setup) + (sample.seconds - sample.setup) * ratio.powf(GROWTH)
+        sample.setup * ratio.powf(of_setup) + (sample.seconds - sample.setup) * growth(sample.elements, elements)
     };
-    let seconds =
-        samples.iter().filter(|sample| sample.elements <= elements).map(carried).fold(f64::INFINITY, f64::min);
+    let least = samples.last().map_or(0.0, |last| SEES * last.products);
+    let sees = |sample: &&Sample| sample.elements <= elements && sample.products >= least;
+    let seconds = samples.iter().filter(sees).map(carried).fold(f64::INFINITY, f64::min);
     // A grid coarser than all samples: the first of them, carried down. Infinite seconds would let the samples grow without end.
     if seconds.is_finite() {
         seconds
@@ -93,6 +99,16 @@ pub(super) fn predict(
     Some((k, seconds_on(samples, last.elements * 4f64.powi(k))))
 }
 
+/// Of the seconds of a solve the part that a tolerance takes on a grid of so many doublings, and its products: those of the finest sample that is
+/// not finer. On finer grids than that the iteration begins nearer to the end.
+fn to(samples: &[Sample], doublings: i32, tolerance: f64) -> (f64, f64) {
+    let Some(sample) = samples.iter().rev().find(|sample| sample.doublings <= doublings).or(samples.first()) else {
+        return (1.0, 0.0);
+    };
+    let (seconds, products) = sample.to(tolerance / BEGINS.powi((doublings - sample.doublings).max(0)));
+    (seconds / sample.seconds, products)
+}
+
 /// One row.
 pub(super) fn price(
     scene: &Scene<'_>,
@@ -109,6 +125,7 @@ pub(super) fn price(
         error: -1.0,
         seconds: -1.0,
         seconds_one_thread: -1.0,
+        work_units: 0.0,
         bytes: 0,
         obstacle: Some(Obstacle::Singular),
         time_error: samples.last().map_or(0.0, |last| last.time_error),
@@ -122,7 +139,8 @@ pub(super) fn price(
         return Price { obstacle: Some(Obstacle::Elements), ..nothing };
     };
     let Ok(grid) = scaled(&scene.grid, last.doublings + k) else { return nothing };
-    let seconds = seconds * last.seconds_to(tolerance) / last.seconds;
+    let (part, work_units) = to(samples, last.doublings + k, tolerance);
+    let seconds = seconds * part;
     let bytes = last.bytes * 4f64.powi(k);
     let most = if accuracy.max_elements == 0 { MOST_ELEMENTS } else { accuracy.max_elements };
     let obstacles = [
@@ -137,6 +155,7 @@ pub(super) fn price(
         error: falling.after(k) + tolerance,
         seconds: seconds / speed_up,
         seconds_one_thread: seconds,
+        work_units,
         bytes: bytes as u64,
         obstacle,
         ..nothing

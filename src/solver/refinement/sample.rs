@@ -36,8 +36,10 @@ pub(super) struct Sample {
     pub(super) bytes: f64,
     /// How far a step of bodies that relax may be off by its length, relative; 0: none relaxes.
     pub(super) time_error: f64,
-    /// Until the residual was first at most that: seconds since the start of the surface.
-    pub(super) reached: Vec<(f64, f64)>,
+    /// Of each iteration: the residual, seconds since the start of the surface, products until then.
+    reached: Vec<(f64, f64, f64)>,
+    /// Products of all.
+    pub(super) products: f64,
     pub(super) seconds: f64,
     /// Of which the set-up took so many.
     pub(super) setup: f64,
@@ -80,7 +82,7 @@ impl Sample {
         let elements = scaled(&scene.grid, doublings)?.len();
         let mut watch = |told: &Progress| {
             if told.mx * told.my == elements {
-                reached.push((told.residual, began.elapsed().as_secs_f64()));
+                reached.push((told.residual, began.elapsed().as_secs_f64(), told.work_units));
             }
             progress.as_mut().is_some_and(|progress| progress(told))
         };
@@ -104,6 +106,7 @@ impl Sample {
             bytes: report.bytes as f64,
             time_error: report.visco.map_or(0.0, |step| step.time_error),
             reached,
+            products: report.count.work_units + report.friction.map_or(0.0, |found| found.products),
             seconds,
             setup: report.setup_seconds,
         })))
@@ -120,10 +123,10 @@ impl Sample {
         self.outlook.falling(self.quantity)
     }
 
-    /// Seconds to a residual: what follows the last iteration is needed by any.
-    pub(super) fn seconds_to(&self, tolerance: f64) -> f64 {
-        let end = self.reached.last().map_or(0.0, |last| last.1);
-        let at = self.reached.iter().find(|(residual, _)| *residual <= tolerance).map_or(end, |found| found.1);
-        self.seconds - (end - at)
+    /// Seconds and products to a residual: what follows the last iteration is needed by any.
+    pub(super) fn to(&self, tolerance: f64) -> (f64, f64) {
+        let Some(&end) = self.reached.last() else { return (self.seconds, self.products) };
+        let at = self.reached.iter().find(|(residual, ..)| *residual <= tolerance).unwrap_or(&end);
+        (self.seconds - (end.1 - at.1), self.products - (end.2 - at.2))
     }
 }

@@ -1,0 +1,233 @@
+"""Surfaces by which searches for an accuracy are judged: nothing in the library was chosen by them. Sizes and places come from a seed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+Random = np.random.Generator
+
+
+@dataclass
+class Surface:
+    """A surface over the rectangle around the origin: a function of x and y, or its values on the first grid. E* is 1."""
+
+    h: Any
+    approach: float
+    size: tuple[float, float] = (1.0, 1.0)
+    #: (my, mx) of the first grid.
+    shape: tuple[int, int] = (16, 16)
+    #: Elements of the finest grid of a search.
+    most: int = 2**16
+
+    def distance(self, doublings: int) -> np.ndarray:
+        """The undeformed distance on the grid with so many doublings."""
+        if not callable(self.h):
+            return refined(self.h, 2**doublings)
+        my, mx = (m << doublings for m in self.shape)
+        x = (np.arange(mx) + 0.5 - 0.5 * mx) * (self.size[0] / mx)
+        y = (np.arange(my) + 0.5 - 0.5 * my) * (self.size[1] / my)
+        return np.broadcast_to(self.h(x[None, :], y[:, None]), (my, mx)).astype(float)
+
+    def element(self, doublings: int) -> dict[str, float]:
+        """Element sizes of that grid."""
+        return {"dx": self.size[0] / (self.shape[1] << doublings), "dy": self.size[1] / (self.shape[0] << doublings)}
+
+
+def refined(h: np.ndarray, parts: int) -> np.ndarray:
+    """As the library refines arrays: by cubics through the four nearest centres; at holes by lines."""
+    return h if parts == 1 else _along(_along(h, parts).T, parts).T
+
+
+def _along(h: np.ndarray, parts: int) -> np.ndarray:
+    """The same along rows."""
+    m, fine = h.shape[1], np.empty((h.shape[0], h.shape[1] * parts))
+    i = np.arange(m)
+    for part in range(parts):
+        t = (part + 0.5) / parts - 0.5
+        first = np.clip(i + (-2 if t < 0 else -1), 0, m - 4)
+        at, nodes = i + t - first, [h[:, first + k] for k in range(4)]
+        value = np.zeros_like(h)
+        with np.errstate(invalid="ignore"):
+            for k in range(4):
+                others = [n for n in range(4) if n != k]
+                value = value + np.prod([(at - n) / (k - n) for n in others], axis=0) * nodes[k]
+        holed = np.any([np.isinf(node) for node in nodes], axis=0)
+        fine[:, part::parts] = np.where(holed, _beside_holes(h, t), value)
+    return fine
+
+
+def _beside_holes(h: np.ndarray, t: float) -> np.ndarray:
+    """The line through an element and its neighbour with a surface, on the side of the part if there is one."""
+    none = np.full((h.shape[0], 1), np.inf)
+    left, right = np.hstack([none, h[:, :-1]]), np.hstack([h[:, 1:], none])
+    there, behind = (left, right) if t < 0 else (right, left)
+    with np.errstate(invalid="ignore"):
+        line = np.where(np.isfinite(there), h + abs(t) * (there - h), np.where(np.isfinite(behind), h + abs(t) * (h - behind), h))
+    return np.where(np.isinf(h), np.inf, line)
+
+
+def _turned(random: Random, reach: float = 0.06) -> Callable[[Any, Any], tuple[Any, Any]]:
+    """Coordinates about another centre, turned by any angle."""
+    angle, (x0, y0) = random.uniform(0, np.pi), random.uniform(-reach, reach, 2)
+    c, s = np.cos(angle), np.sin(angle)
+    return lambda x, y: (c * (x - x0) + s * (y - y0), c * (y - y0) - s * (x - x0))
+
+
+def superellipsoid(random: Random) -> Surface:
+    """A sum of powers along two axes that are turned."""
+    n, m, a, b = random.uniform(1.6, 6), random.uniform(1.6, 6), random.uniform(0.35, 0.5), random.uniform(0.2, 0.5)
+    turned = _turned(random)
+
+    def h(x: Any, y: Any) -> Any:
+        u, v = turned(x, y)
+        return abs(u / a) ** n + abs(v / b) ** m
+
+    return Surface(h, random.uniform(0.3, 0.7))
+
+
+def finite_roller(random: Random) -> Surface:
+    """A roller along y with plain, rounded or chamfered ends; its elements are up to 1:4."""
+    length, crown, kind = random.uniform(0.5, 0.8), random.uniform(0, 0.3), random.integers(3)
+    y0, aspect = random.uniform(-0.06, 0.06), [1, 2, 4][random.integers(3)]
+
+    def h(x: Any, y: Any) -> Any:
+        out = np.maximum(abs(y - y0) - 0.5 * length, 0.0)
+        end = [np.where(out > 0, np.inf, 0.0), 30 * out**2, 3 * out][kind]
+        return 2 * x**2 + crown * (y - y0) ** 2 + end
+
+    return Surface(h, random.uniform(0.05, 0.15), shape=(16, 16 * aspect) if random.integers(2) else (16 * aspect, 16), most=2**16 * aspect)
+
+
+def balls(count: int) -> Callable[[Random], Surface]:
+    """Balls of other radii and heights, touched all or all but one."""
+
+    def surface(random: Random) -> Surface:
+        places = [(random.uniform(0.12, 0.3) * np.cos(a), random.uniform(0.12, 0.3) * np.sin(a))
+                  for a in random.uniform(0, 2 * np.pi) + 2 * np.pi * np.arange(count) / count]
+        radii, heights = random.uniform(1, 4, count), random.uniform(0, 0.02, count)
+
+        def h(x: Any, y: Any) -> Any:
+            each = [r * ((x - u) ** 2 + (y - v) ** 2) + z for (u, v), r, z in zip(places, radii, heights, strict=True)]
+            return np.minimum.reduce(np.broadcast_arrays(*each))
+
+        return Surface(h, random.uniform(0.03, 0.06), most=2**18)
+
+    return surface
+
+
+def torus(random: Random) -> Surface:
+    """A ring of a round section, off the centre."""
+    r0, n, (x0, y0) = random.uniform(0.2, 0.3), random.uniform(1.8, 3), random.uniform(-0.06, 0.06, 2)
+    depth = random.uniform(0.08, 0.16) ** n * 3
+    return Surface(lambda x, y: 2 * abs(np.hypot(x - x0, y - y0) - r0) ** n, depth, most=2**18)
+
+
+def annulus(random: Random) -> Surface:
+    """A punch, flat or domed, with a hole."""
+    outer, (x0, y0), dome = random.uniform(0.3, 0.42), random.uniform(-0.06, 0.06, 2), random.uniform(0, 0.3) * random.integers(2)
+    inner = outer * random.uniform(0.3, 0.6)
+
+    def h(x: Any, y: Any) -> Any:
+        r = np.hypot(x - x0, y - y0)
+        return np.where((r < outer) & (r > inner), dome * r**2, np.inf)
+
+    return Surface(h, 0.1)
+
+
+def step(random: Random) -> Surface:
+    """A ball, half of which is lower by a step."""
+    at, turned = random.uniform(-0.1, 0.1), _turned(random) if random.integers(2) else (lambda x, y: (x, y))
+    deep, approach = random.uniform(0.1, 0.6), random.uniform(0.1, 0.25)
+
+    def h(x: Any, y: Any) -> Any:
+        u, v = turned(x, y)
+        return u**2 + v**2 + np.where(u > at, deep * approach, 0.0)
+
+    return Surface(h, approach)
+
+
+def square_punch(random: Random) -> Surface:
+    """A flat punch, its sides anywhere between the elements."""
+    (x0, y0), (a, b) = random.uniform(-0.06, 0.06, 2), random.uniform(0.2, 0.42, 2)
+    return Surface(lambda x, y: np.where((abs(x - x0) < a) & (abs(y - y0) < b), 0.0, np.inf), 0.1)
+
+
+def worn(random: Random) -> Surface:
+    """A ball or an ellipsoid with a flat, or with a groove."""
+    turned, ratio, deep = _turned(random), random.uniform(1, 3), random.uniform(0.1, 0.6)
+    approach, groove, width = random.uniform(0.08, 0.2), random.integers(2), random.uniform(0.04, 0.1)
+
+    def h(x: Any, y: Any) -> Any:
+        u, v = turned(x, y)
+        ball = u**2 + ratio * v**2
+        return ball + deep * approach * np.exp(-((u / width) ** 2)) if groove else np.maximum(ball - deep * 0.2 * approach, 0.0)
+
+    return Surface(h, approach)
+
+
+def rough(random: Random, m: int = 128, hurst: float = 0.8) -> np.ndarray:
+    """Self-affine heights, rms 1; the shortest wave has 6 elements and more."""
+    k = np.hypot(np.fft.fftfreq(m)[None, :], np.fft.fftfreq(m)[:, None]) * m
+    shortest, rolled = m / random.uniform(6, 12), random.uniform(2, 5)
+    with np.errstate(divide="ignore"):
+        amplitude = np.where((k > 0) & (k <= shortest), np.maximum(k, rolled) ** -(1 + hurst), 0.0)
+    z = np.fft.ifft2(np.fft.fft2(random.standard_normal((m, m))) * amplitude).real
+    return z / z.std()
+
+
+def measured(what: str) -> Callable[[Random], Surface]:
+    """A map as an instrument has it: with a tilt; and with holes, or with spikes of one element under a light load."""
+
+    def surface(random: Random) -> Surface:
+        m = 128
+        z = 1e-3 * rough(random, m, random.uniform(0.5, 0.9))
+        i = np.arange(m) / m - 0.5
+        z = z + random.uniform(-2e-3, 2e-3) * i[None, :] + random.uniform(-2e-3, 2e-3) * i[:, None]
+        if what == "spikes":
+            z.flat[random.integers(m * m, size=5)] += random.uniform(2e-3, 6e-3, 5)
+        h = z.max() - z
+        deep = np.quantile(h, random.uniform(0.02, 0.05) if what == "spikes" else random.uniform(0.1, 0.3))
+        if what == "holes":
+            h.flat[random.integers(m * m, size=60)] = np.inf
+            ix, iy = random.integers(m - 10, size=2)
+            h[iy:iy + 8, ix:ix + 10] = np.inf
+        return Surface(h, float(deep), shape=(m, m), most=2**18)
+
+    return surface
+
+
+def elements(random: Random) -> Surface:
+    """An ellipsoid that is as long as its elements are, or not; these are 1:1 to 20:1."""
+    aspect, stretch = random.uniform(1, 20), random.uniform(0.5, 2)
+    (x0, y0), n = random.uniform(-0.06, 0.06, 2), random.uniform(2, 3)
+    h = lambda x, y: 2 * abs(x - x0) ** n + 2 * abs((y - y0 * aspect) / aspect * stretch) ** n  # noqa: E731
+    return Surface(h, random.uniform(0.1, 0.25), size=(1.0, aspect))
+
+
+def cut(random: Random) -> Surface:
+    """An ellipsoid whose contact goes on beyond the border of the grid."""
+    a, ratio, n = random.uniform(0, 2 * np.pi), random.uniform(1, 3), random.uniform(2, 4)
+    x0, y0 = 0.4 * np.cos(a), 0.4 * np.sin(a)
+    return Surface(lambda x, y: abs(x - x0) ** n + ratio * abs(y - y0) ** n, random.uniform(0.15, 0.3) ** n * 3)
+
+
+KINDS: dict[str, Callable[[Random], Surface]] = {
+    "superellipsoid": superellipsoid,
+    "finite roller": finite_roller,
+    "two balls": balls(2),
+    "three balls": balls(3),
+    "torus": torus,
+    "annulus": annulus,
+    "step": step,
+    "square punch": square_punch,
+    "worn": worn,
+    "measured, tilt": measured("tilt"),
+    "measured, holes": measured("holes"),
+    "measured, spikes": measured("spikes"),
+    "elements to 20:1": elements,
+    "cut by the border": cut,
+}
