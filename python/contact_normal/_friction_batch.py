@@ -11,13 +11,16 @@ import numpy as np
 
 from ._arguments import Both, SolveOptions, doubles, options, pointer
 from ._callbacks import Progress, Watched
+from ._friction import IS_LENGTH
 from ._library import check, initialised, library
 from ._solved import reported
 from ._structs import names
 from ._tangential import with_pressures
+from ._units import WithUnits, checked
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+    from matplotlib.axes import Axes
     from typing_extensions import Unpack
 
     from ._arguments import Doubles
@@ -25,7 +28,7 @@ if TYPE_CHECKING:
     from ._scene import Scene
 
 
-class FrictionBatch:
+class FrictionBatch(WithUnits):
     """What `friction_batch` found: of each entry its numbers, and the fields if they were asked for.
 
     Attributes
@@ -33,7 +36,7 @@ class FrictionBatch:
     status : ndarray of int, (n,)
         Of each entry: 0 solved; > 0 stopped early, or `CANCELLED`: not solved; < 0 refused. What was not solved has NaN.
     message : str
-        A line "entry 3: ..." for each entry that is not solved.
+        A line "entry 3: ..." for each entry that is not solved, and what else you should know.
     force, creepage : ndarray, (n, 2)
         The tangential forces on body 1, and the creepages, given or found.
     moment : ndarray, (n,)
@@ -50,6 +53,8 @@ class FrictionBatch:
         With `fields=True`: what particles of the interface carry, with a law of friction or a layer that yields; else zeros.
     report : dict
         Of the normal problem.
+    units : (str, str) or None
+        Names of the units of lengths and forces. May be set.
     """
 
     traction: npt.NDArray[np.float64] | None = None
@@ -76,6 +81,25 @@ class FrictionBatch:
         message = f"; {self.message.splitlines()[0]}" if self.message else ""
         largest = f", largest residual {np.nanmax(self.residual):.1e}" if solved else ""
         return f"<FrictionBatch: {solved} of {len(self.status)} entries solved{largest}{message}>"
+
+    def plot(self, over: str | None = None, axes: Axes | None = None) -> Axes:
+        """Draws the tangential forces over the creepages: a creep curve.
+
+        Parameters
+        ----------
+        over : {"x", "y"}, optional
+            Which creepage; by default the one that changes more.
+        axes : matplotlib.axes.Axes, optional
+            Where to draw; by default the axes of a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes, to add to or to save.
+        """
+        from ._plot_lines import plot_creep_curve
+
+        return plot_creep_curve(self, over, axes)
 
     def _results(self) -> Any:
         """The struct that points to these arrays."""
@@ -106,6 +130,7 @@ def friction_batch(
     layer: npt.ArrayLike | None = None,
     pressure_limit: npt.ArrayLike | None = None,
     fields: bool = False,
+    units: tuple[str, str] | None = None,
     progress: Callable[[Progress], Any] | bool | None = None,
     **given: Unpack[SolveOptions],
 ) -> FrictionBatch:
@@ -135,7 +160,7 @@ def friction_batch(
     progress : callable or bool, optional
         Called with a `Progress` about once for each entry, whose `cycles` counts entries that are done; a true result cancels. True: draws
         a bar on stderr.
-    shear_modulus, poisson_ratio, young_modulus, influence, layer, pressure_limit, **given
+    shear_modulus, poisson_ratio, young_modulus, influence, layer, pressure_limit, units, **given
         As for `solve`. With `influence` the friction needs coefficients of its own, too.
 
     Returns
@@ -147,17 +172,18 @@ def friction_batch(
     ContactNormalError
         If the call itself is refused; an entry that is refused has a negative `status`.
     """
+    struct, units = options(given), checked(units)
     scene, pressures = with_pressures(
         h, pressure, dx, dy, {"approach": approach, "force": force, "mean_pressure": mean_pressure}, shear_modulus=shear_modulus,
         poisson_ratio=poisson_ratio, young_modulus=young_modulus,
         effects={"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "friction": friction},
     )
-    return table_of(scene, pressures, entries, options(given), progress, fields, None)
+    return table_of(scene, pressures, entries, struct, progress, fields, None, units)
 
 
 def table_of(
     scene: Scene, pressures: Doubles | None, entries: Any, struct: Any, progress: Callable[[Progress], Any] | bool | None, fields: bool,
-    handle: Handle | None,
+    handle: Handle | None, units: Any = None,
 ) -> FrictionBatch:
     """Solves a table of entries, with a handle or without."""
     table = doubles("entries", entries, dimensions="(n, 3)")
@@ -176,6 +202,8 @@ def table_of(
     )
     if not len(table) or untouched in found.status:
         check(status, message)
-    found.message = message if status else ""
+    remark = IS_LENGTH if "motion" not in scene.friction and table.any() else ""
+    found.message = "\n".join(text for text in (message if status else "", remark) if text)
+    found.units = units
     found.report = reported(report)
     return found

@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from ._grid import centres
+from ._short import Short
 from ._units import Units
 
 if TYPE_CHECKING:
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
 _HEAD = "# Undeformed distance on a grid, made by contact-normal"
 
 
-@dataclass(frozen=True, eq=False)
-class Gap:
+@dataclass(frozen=True, eq=False, repr=False)
+class Gap(Short):
     """The undeformed distance of two surfaces on a grid of rectangular elements; x and y of it are the centres of columns and rows.
 
     Attributes
@@ -46,6 +47,8 @@ class Gap:
     middle: tuple[float, float] = (0.0, 0.0)
     period: str | None = None
     units: Units = None
+
+    _INSTEAD: ClassVar[str] = "call its solve(...), or pass its h, dx and dy"
 
     @property
     def x(self) -> Doubles:

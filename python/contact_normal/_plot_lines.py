@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ._creep_forces import CreepForceTable
+    from ._friction_batch import FrictionBatch
     from ._result import Result
     from ._solved import Solved
 
@@ -47,6 +48,23 @@ def plot_histogram(result: Solved, bins: int, axes: Axes | None) -> Axes:
     axes.set(xlabel=label("pressure", "pressure", result.units), ylabel="share of the contact area [%]")
     area = with_unit(f"{result.contact_area:.4g}", "area", result.units)
     axes.set_title(f"contact area {area}, largest pressure {with_unit(f'{result.max_pressure:.4g}', 'pressure', result.units)}", fontsize=10)
+    return axes
+
+
+def plot_creep_curve(batch: FrictionBatch, over: str | None, axes: Axes | None) -> Axes:
+    """See `FrictionBatch.plot`."""
+    if over not in (None, "x", "y"):
+        raise ValueError(f'over is {over!r}; it must be "x" or "y"')
+    if not (batch.status >= 0).any():
+        raise ValueError("no entry is solved: there is nothing to draw")
+    ranges = np.nanmax(batch.creepage, axis=0) - np.nanmin(batch.creepage, axis=0)
+    k = int(ranges[1] > ranges[0]) if over is None else "xy".index(over)
+    axes = axes or new_axes(SIZE)
+    for side, name in enumerate("xy"):
+        axes.plot(batch.creepage[:, k], batch.force[:, side], "o-", markersize=4, label=f"$F_{name}$")
+    axes.axhline(0.0, color="0.5", linewidth=0.8, zorder=0)
+    axes.set(xlabel=f"creepage in {'xy'[k]}", ylabel=label("tangential force on body 1", "force", batch.units))
+    axes.legend()
     return axes
 
 

@@ -12,6 +12,7 @@ from ._library import check, initialised, library
 from ._quantities import QUANTITIES
 from ._refined import limits, on_any_grid
 from ._structs import Price as PriceStruct
+from ._units import checked
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -123,14 +124,15 @@ def cost_of_accuracy(
     coating: Any = None,
     friction: Mapping[str, Any] | None = None,
     visco: Mapping[str, Any] | None = None,
+    units: tuple[str, str] | None = None,
     **given: Unpack[AccuracyOptions],
 ) -> Prices:
     """Predicts what relative errors cost: grid, tolerance, seconds and bytes, from solves on small grids only.
 
     Parameters
     ----------
-    h, dx, dy, shape, corner, approach, force, mean_pressure, shear_modulus, poisson_ratio, young_modulus, e_star, **given
-        As for `solve_to_accuracy`, with its effects.
+    h, dx, dy, shape, corner, approach, force, mean_pressure, shear_modulus, poisson_ratio, young_modulus, e_star, units, **given
+        As for `solve_to_accuracy`, with its effects; prices have no units.
     visco : mapping, optional
         Bodies that relax, as for `solve`: a step from rest. Each price then has the `time_error` of the step.
     targets : sequence of float
@@ -164,11 +166,13 @@ def cost_of_accuracy(
         raise ValueError(f"quantity is {quantity!r}; it must be one of {', '.join(QUANTITIES)}")
     effects = {"layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches, "coating": coating, "friction": friction,
                "visco": visco}
+    struct = options(given)
+    checked(units)
     scene, surface, _ = on_any_grid(
         h, dx, dy, shape, corner, effects, approach=approach, force=force, mean_pressure=mean_pressure, shear_modulus=shear_modulus,
         poisson_ratio=poisson_ratio, young_modulus=young_modulus, e_star=e_star,
     )
-    struct, accuracy = options(given), limits(max_seconds, max_bytes, max_elements, surface)
+    accuracy = limits(max_seconds, max_bytes, max_elements, surface)
     relative = doubles("targets", targets, dimensions="n")
     n = len(relative)
     wanted, rows = (ctypes.c_double * n)(*relative), (PriceStruct * n)(*[initialised("price")][:n])

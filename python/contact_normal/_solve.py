@@ -142,9 +142,10 @@ def solve(
     """
     effects = {"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches,
                "row_tables": row_tables, "coating": coating, "friction": friction, "adhesion": adhesion, "visco": visco}
+    # Options first: a load whose name is written wrong is an unknown option, and not a load that lacks.
+    struct = options(given)
     scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects, mean_pressure=mean_pressure, young_modulus=young_modulus,
                   e_star=e_star)
-    struct = options(given)
     outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None, scene, adhesion is not None)
     watched = Watched(progress, struct, scene)
     status, message = watched.call(
@@ -261,11 +262,11 @@ def solve_to_accuracy(
     (0, True)
     """
     effects = {"layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches, "coating": coating, "friction": friction}
+    struct, units = options(given), checked(units)
     scene, surface, middle = on_any_grid(
         h, dx, dy, shape, corner, effects, approach=approach, force=force, mean_pressure=mean_pressure, shear_modulus=shear_modulus,
         poisson_ratio=poisson_ratio, young_modulus=young_modulus, e_star=e_star,
     )
-    struct, units = options(given), checked(units)
     watched = Watched(progress, struct, None)
     accuracy, handle = limits(max_seconds, max_bytes, max_elements, surface), Handle()
     accuracy.target = number("target", target)

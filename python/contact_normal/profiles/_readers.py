@@ -60,7 +60,7 @@ def read(
     end = Path(path).suffix.lower()
     kind = _KINDS.get(end) if kind is None else kind
     if kind is None:
-        raise ValueError(f'{path}: kind is not known; give "wheel" or "rail"')
+        raise ValueError(f'{path}: kind is not known; give kind="wheel" or kind="rail"')
     text = Path(path).read_text(encoding="latin-1")
     points, in_mm = _simpack(text, path) if end in (".prr", ".prw") else (_columns(text, columns, path), 1.0)
     y, z = points.T * (in_mm * number("scale", scale))

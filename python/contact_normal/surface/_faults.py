@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._arguments import number
-from ._heights import Heights, blocks
+from .._short import Short
+from ._heights import Heights, blocks, refuse_others
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -24,8 +25,8 @@ _DISTINCT = 8
 _DEVIATIONS = 1.0 / 0.6744897501960817
 
 
-@dataclass(frozen=True, eq=False)
-class Faults:
+@dataclass(frozen=True, eq=False, repr=False)
+class Faults(Short):
     """What is wrong with measured heights.
 
     Attributes
@@ -118,6 +119,7 @@ def faults(heights: Heights, spike: float = 10.0) -> Faults:
     spike : float
         How many standard deviations, by their median: 10 is far beyond what smooth or self-affine surfaces have.
     """
+    refuse_others(heights=heights)
     if not number("spike", spike) > 0.0:
         raise ValueError(f"spike is {spike}; it must be positive")
     values = _fill_values(heights.z)
