@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._axes import EDGE, edges, exterior, name_axes, new_axes
-from ._units import label, with_unit
+from ._units import label, title
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -39,7 +39,7 @@ def plot_pressure(result: Result, axes: Axes | None) -> Axes:
     _outline(axes, result.contact, x_edges, y_edges)
     axes.figure.colorbar(image, ax=axes, shrink=0.9, label=label("pressure", "pressure", result.units))
     name_axes(axes, result.units)
-    force, approach = with_unit(f"{result.force:.5g}", "force", result.units), with_unit(f"{result.approach:.5g}", "length", result.units)
+    force, approach = title(f"{result.force:.5g}", "force", result.units), title(f"{result.approach:.5g}", "length", result.units)
     axes.set_title(f"force {force}, approach {approach}, {mx} × {my} elements", fontsize=10)
     return axes
 
@@ -59,7 +59,7 @@ def plot_traction(result: Solved, axes: Axes | None) -> Axes:
     _outline(axes, result.stick_slip == 1, x_edges, y_edges)
     fx, fy = result.tangential_force
     name_axes(axes, result.units)
-    force = with_unit(f"({fx:.4g}, {fy:.4g})", "force", result.units)
+    force = title(f"({fx:.4g}, {fy:.4g})", "force", result.units)
     axes.set_title(f"tractions: force {force}; stick blue, slip orange", fontsize=10)
     return axes
 
@@ -78,7 +78,7 @@ def _arrows(result: Solved, axes: Axes) -> None:
     arrows = axes.quiver(result.x[ix], result.y[iy], qx, qy, angles="xy", scale_units="xy", scale=scale, pivot="mid", width=0.004)
     unit = 10.0 ** np.floor(np.log10(largest))
     shown = unit * max(step for step in (1.0, 2.0, 5.0) if step * unit <= largest)
-    axes.quiverkey(arrows, 0.98, 0.04, shown, with_unit(f"{shown:g}", "pressure", result.units), labelpos="W", coordinates="axes",
+    axes.quiverkey(arrows, 0.98, 0.04, shown, title(f"{shown:g}", "pressure", result.units), labelpos="W", coordinates="axes",
                    color=axes.xaxis.label.get_color())
 
 

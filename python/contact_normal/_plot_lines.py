@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._axes import EDGE, SIZE, borders, line_of, new_axes
-from ._units import label, with_unit
+from ._units import label, title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,7 +29,7 @@ def plot_section(result: Result, x: float | None, y: float | None, axes: Axes | 
     _mark_borders(axes, borders(result.contact[line], places, d))
     axes.set(xlabel=label(along, "length", result.units), ylabel=label("pressure", "pressure", result.units), xlim=(places[0], places[-1]))
     axes.set_ylim(bottom=min(0.0, float(result.pressure[line].min())))
-    axes.set_title(f"{across} = {with_unit(f'{where:.4g}', 'length', result.units)}; dotted: the contact's edge", fontsize=10)
+    axes.set_title(f"{across} = {title(f'{where:.4g}', 'length', result.units)}; dotted: the contact's edge", fontsize=10)
     return axes
 
 
@@ -46,8 +46,8 @@ def plot_histogram(result: Solved, bins: int, axes: Axes | None) -> Axes:
     share = np.full(inside.shape, 100.0 / max(1, inside.size))
     axes.hist(inside, bins=bins, weights=share)
     axes.set(xlabel=label("pressure", "pressure", result.units), ylabel="share of the contact area [%]")
-    area = with_unit(f"{result.contact_area:.4g}", "area", result.units)
-    axes.set_title(f"contact area {area}, largest pressure {with_unit(f'{result.max_pressure:.4g}', 'pressure', result.units)}", fontsize=10)
+    area = title(f"{result.contact_area:.4g}", "area", result.units)
+    axes.set_title(f"contact area {area}, largest pressure {title(f'{result.max_pressure:.4g}', 'pressure', result.units)}", fontsize=10)
     return axes
 
 

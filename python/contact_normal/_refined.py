@@ -43,10 +43,18 @@ def limits(max_seconds: Any, max_bytes: Any, max_elements: Any, surface: Surface
     return accuracy
 
 
+def relative(name: str, value: Any) -> float:
+    """A relative error that is wanted."""
+    error = number(name, value)
+    if error >= 1.0:
+        raise ValueError(f"{name} is {error:g}; it is a relative error, below 1: that of 1 % is 0.01")
+    return error
+
+
 def set_targets(accuracy: Any, targets: Mapping[str, float] | None) -> None:
     """Writes relative errors of quantities into a `contact_normal_accuracy`."""
     for name, target in (targets or {}).items():
         member = "target" if name == "force" else f"{name}_target"
         if name not in QUANTITIES:
             raise ValueError(f"targets has {name!r}; it may have {', '.join(QUANTITIES)}")
-        setattr(accuracy, member, number(f"targets[{name!r}]", target))
+        setattr(accuracy, member, relative(f"targets[{name!r}]", target))

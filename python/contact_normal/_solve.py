@@ -7,13 +7,13 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from ._arguments import AccuracyOptions, Both, SolveOptions, number, options
+from ._arguments import AccuracyOptions, Both, SolveOptions, options
 from ._callbacks import Progress, Watched
 from ._calls import called
 from ._handle import Handle
 from ._library import check, library
 from ._outputs import Outputs
-from ._refined import limits, on_any_grid, set_targets
+from ._refined import limits, on_any_grid, relative, set_targets
 from ._result import Result
 from ._scene import Scene
 from ._units import checked
@@ -269,9 +269,9 @@ def solve_to_accuracy(
     )
     watched = Watched(progress, struct, None)
     accuracy, handle = limits(max_seconds, max_bytes, max_elements, surface), Handle()
-    accuracy.target = number("target", target)
-    accuracy.max_pressure_target = number("max_pressure_target", max_pressure_target)
-    accuracy.contact_area_target = number("contact_area_target", contact_area_target)
+    accuracy.target = relative("target", target)
+    accuracy.max_pressure_target = relative("max_pressure_target", max_pressure_target)
+    accuracy.contact_area_target = relative("contact_area_target", contact_area_target)
     set_targets(accuracy, targets)
     ledger = Outputs((0, 0))
 
