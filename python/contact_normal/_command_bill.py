@@ -6,14 +6,14 @@ import argparse
 from typing import Any
 
 from ._bill import what_matters
-from ._command_scene import add_effects, add_scene, effects_of, gap_of, scene_arguments
+from ._command_scene import USAGE, add_effects, add_scene, effects_of, gap_of, scene_arguments
 from ._field_files import PICTURES, save
 from ._quantities import QUANTITIES
 
 
 def add(commands: Any) -> None:
     """The command and its options."""
-    command = commands.add_parser("bill", help="which effects the scene calls for, and what they cost",
+    command = commands.add_parser("bill", usage=USAGE, help="which effects the scene calls for, and what they cost",
                                   description="Says how much each quantity changes without an effect, and what leaving it out saves.")
     add_scene(command)
     add_effects(command)

@@ -187,7 +187,7 @@ class CreepForceTable:
             raise TypeError("this is the table of a surface: use `forces`")
         a, b = semi_axes
         for name, value in (("normal_force", normal_force), ("coefficient", coefficient)):
-            if not np.all(real(name, value) >= 0.0):
+            if np.any(real(name, value) < 0.0):
                 raise ValueError(f"{name} is {value}; it must not be negative")
         c, bound = np.sqrt(a * b), np.asarray(coefficient * normal_force, dtype=np.float64)
         if not bound.any():

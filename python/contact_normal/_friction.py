@@ -24,7 +24,7 @@ _OF_LAW = ("kinetic", "speed", "time_step", "memory_distance", "memory_speed")
 _PAIRS_OF_LAW = ("falling", "half_speed")
 _OF_LAYER = ("yield_limit", "hardening")
 _KNOWN = ("coefficient", "motion", "force", "compliance", *_PAIRS, *_FLAGS, "influence", "influence_cross", "row_tables", *_NUMBERS, *_FIELDS, "law", "layer", "branch", *_PARTICLES)
-IS_LENGTH = "the motion of friction is not given: it is a SHIFT, whose creepage is a length, and whose spin an angle"
+_IS_LENGTH = "the motion of friction is not given: it is a SHIFT, whose creepage is a length, and whose spin an angle"
 
 
 def friction(value: Any, shape: tuple[int, int]) -> tuple[Any, list[Any], str]:
@@ -69,7 +69,7 @@ def friction(value: Any, shape: tuple[int, int]) -> tuple[Any, list[Any], str]:
     kept += _influence(effect, given)
     kept += _row_tables(effect, given)
     is_length = "motion" not in given and (any(effect.creepage) or effect.spin != 0.0)
-    return effect, kept, IS_LENGTH if is_length else ""
+    return effect, kept, _IS_LENGTH if is_length else ""
 
 
 def _without_unknown(creepage: tuple[Any, Any], forces: tuple[Any, Any]) -> tuple[Any, Any]:

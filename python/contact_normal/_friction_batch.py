@@ -11,7 +11,6 @@ import numpy as np
 
 from ._arguments import Both, SolveOptions, doubles, options, pointer
 from ._callbacks import Progress, Watched
-from ._friction import IS_LENGTH
 from ._library import check, initialised, library
 from ._solved import reported
 from ._structs import names
@@ -36,7 +35,7 @@ class FrictionBatch(WithUnits):
     status : ndarray of int, (n,)
         Of each entry: 0 solved; > 0 stopped early, or `CANCELLED`: not solved; < 0 refused. What was not solved has NaN.
     message : str
-        A line "entry 3: ..." for each entry that is not solved, and what else you should know.
+        A line "entry 3: ..." for each entry that is not solved.
     force, creepage : ndarray, (n, 2)
         The tangential forces on body 1, and the creepages, given or found.
     moment : ndarray, (n,)
@@ -202,8 +201,7 @@ def table_of(
     )
     if not len(table) or untouched in found.status:
         check(status, message)
-    remark = IS_LENGTH if "motion" not in scene.friction and table.any() else ""
-    found.message = "\n".join(text for text in (message if status else "", remark) if text)
+    found.message = message if status else ""
     found.units = units
     found.report = reported(report)
     return found

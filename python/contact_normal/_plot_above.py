@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 STICK, SLIP = (0.78, 0.87, 0.96), (0.99, 0.85, 0.74)
 # Lines of more segments are drawn as pixels in files of vectors.
 _SEGMENTS = 4000
+# Negative pressures below this part of the largest are none.
+_ROUND_OFF = 1e-12
 
 
 def plot_pressure(result: Result, axes: Axes | None) -> Axes:
@@ -26,15 +28,9 @@ def plot_pressure(result: Result, axes: Axes | None) -> Axes:
     axes = axes or new_axes((6.8, 5.1))
     my, mx = result.pressure.shape
     x_edges, y_edges = edges(result.x, result.dx), edges(result.y, result.dy)
-    shown = np.ma.masked_where(~result.contact, result.pressure)
-    image = axes.imshow(
-        shown,
-        origin="lower",
-        extent=(x_edges[0], x_edges[-1], y_edges[0], y_edges[-1]),
-        cmap="viridis",
-        vmin=0.0,
-        interpolation="nearest",
-    )
+    shown, colours = _coloured(result)
+    extent = (x_edges[0], x_edges[-1], y_edges[0], y_edges[-1])
+    image = axes.imshow(shown, origin="lower", extent=extent, interpolation="nearest", **colours)
     axes.set_facecolor(exterior(axes))
     _outline(axes, result.contact, x_edges, y_edges)
     axes.figure.colorbar(image, ax=axes, shrink=0.9, label=label("pressure", "pressure", result.units))
@@ -42,6 +38,15 @@ def plot_pressure(result: Result, axes: Axes | None) -> Axes:
     force, approach = title(f"{result.force:.5g}", "force", result.units), title(f"{result.approach:.5g}", "length", result.units)
     axes.set_title(f"force {force}, approach {approach}, {mx} × {my} elements", fontsize=10)
     return axes
+
+
+def _coloured(result: Result) -> tuple[Any, dict[str, Any]]:
+    """What `plot_pressure` draws, and its colours."""
+    largest = float(np.abs(result.pressure).max(initial=0.0))
+    if result.pressure.min(initial=0.0) >= -_ROUND_OFF * largest:
+        return np.ma.masked_where(~result.contact, result.pressure), {"cmap": "viridis", "vmin": 0.0}
+    # Bodies that stick also pull outside the contact area: both signs have colours of their own, and white is 0.
+    return result.pressure, {"cmap": "RdBu_r", "vmin": -largest, "vmax": largest}
 
 
 def plot_traction(result: Solved, axes: Axes | None) -> Axes:
@@ -59,7 +64,7 @@ def plot_traction(result: Solved, axes: Axes | None) -> Axes:
     _outline(axes, result.stick_slip == 1, x_edges, y_edges)
     fx, fy = result.tangential_force
     name_axes(axes, result.units)
-    force = title(f"({fx:.4g}, {fy:.4g})", "force", result.units)
+    force = title(f"({fx:.5g}, {fy:.5g})", "force", result.units)
     axes.set_title(f"tractions: force {force}; stick blue, slip orange", fontsize=10)
     return axes
 

@@ -28,10 +28,12 @@ def plot_quantities(rows: Quantities, axes: Axes | None) -> Axes:
     axes = axes or new_axes(SIZE)
     for k, name in enumerate(dict.fromkeys(row.name for row in rows)):
         known = [row for row in rows if row.name == name and row.error > 0 and row.value]
+        called = rows.estimated if name == "force" else name.replace("_", " ")
         if not known:
+            axes.plot([], [], " ", label=f"{called}:\n{rows.last(name).lack or 'no error'}")
             continue
         seconds, errors = [row.seconds for row in known], [row.error / abs(row.value) for row in known]
-        axes.plot(seconds, errors, "o-", color=_COLOURS[k % len(_COLOURS)], label=name.replace("_", " "), markersize=5)
+        axes.plot(seconds, errors, "o-", color=_COLOURS[k % len(_COLOURS)], label=called, markersize=5)
     _write_elements(axes, [(row.seconds, row.shape) for row in rows])
     _error_axes(axes)
     _write_legend(axes)
@@ -84,8 +86,10 @@ def _write_elements(axes: Axes, grids: list[tuple[float, tuple[int, int]]]) -> N
 
 def plot_prices(prices: Prices, axes: Axes | None, measured: Any) -> Axes:
     """See `Prices.plot`."""
-    axes = axes or new_axes(SIZE)
     had = [price for price in prices if not price.obstacle and price.seconds > 0]
+    if not had and not measured:
+        raise ValueError(f"no accuracy of the list can be had: {', '.join(dict.fromkeys(price.obstacle for price in prices))}")
+    axes = axes or new_axes(SIZE)
     axes.plot([price.seconds for price in had], [price.error for price in had], "-", color=_COLOURS[0], label="predicted")
     axes.plot([price.seconds for price in had], [price.error for price in had], "o", mfc="none", mec=_COLOURS[0], label="grids of the list")
     if measured:

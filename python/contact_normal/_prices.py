@@ -78,6 +78,10 @@ class Prices(list[Price]):
         super().__init__(rows)
         self.quantity = quantity
 
+    def __str__(self) -> str:
+        head = f"{'relative error':>14} {'elements':>13} {'tolerance':>10} {'seconds':>9} {'MB':>8}"
+        return "\n".join([head, *(_line(price) for price in self)])
+
     def plot(self, axes: Axes | None = None, measured: Sequence[tuple[float, float]] = ()) -> Axes:
         """Draws error against seconds, with the elements of each grid.
 
@@ -96,6 +100,15 @@ class Prices(list[Price]):
         from ._plot_accuracy import plot_prices
 
         return plot_prices(self, axes, measured)
+
+
+def _line(price: Price) -> str:
+    """One row of the table; what is not known is a dash."""
+    my, mx = price.shape
+    elements = f"{mx} x {my}" if mx else "-"
+    seconds = f"{price.seconds:.2g}" if price.seconds >= 0.0 else "-"
+    memory = f"{price.bytes / 1e6:.3g}" if price.bytes else "-"
+    return f"{price.target:14.1e} {elements:>13} {price.tolerance:10.0e} {seconds:>9} {memory:>8}  {price.obstacle}".rstrip()
 
 
 def cost_of_accuracy(

@@ -70,11 +70,6 @@ class Scene:
         return _without_load(shape, dx, dy, self._constants, {})
 
     @property
-    def friction(self) -> Mapping[str, Any]:
-        """The effect as it was given; empty without one."""
-        return self._effects.get("friction") or {}
-
-    @property
     def has_particles(self) -> bool:
         """Whether particles of the interface carry something: with a law of friction or a layer that yields."""
         effect = self.struct.friction

@@ -65,8 +65,10 @@ class Faults(Short):
         return "\n".join(lines)
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """Draws the heights with fill values and spikes in red."""
-        return self.removed.plot(axes, marked=self.fills | self.spikes)
+        """Draws the heights with fill values and spikes in red; holes are white."""
+        axes = self.removed.plot(axes, marked=self.fills | self.spikes)
+        axes.set_title(f"red: {self.spikes.sum()} spikes, {self.fills.sum()} fill values; white: {self.holes.sum()} not measured", fontsize=10)
+        return axes
 
 
 def _fill_values(z: Doubles) -> list[float]:
