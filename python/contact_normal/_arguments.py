@@ -206,10 +206,21 @@ def _without_mask(name: str, values: Any) -> Any:
     return filled
 
 
+def refuse_x_first(name: str, values: Any) -> None:
+    """Refuses an array of xarray whose first dimension is x: rows are along y."""
+    dimensions = getattr(values, "dims", None)
+    if not isinstance(dimensions, tuple) or len(dimensions) != 2:
+        return
+    first, last = (str(dimension).lower() for dimension in dimensions)
+    if first.startswith("x") and not last.startswith("x"):
+        raise ValueError(f"{name} has the dimensions {dimensions}; x must be the last one: transpose it")
+
+
 def distances(name: str, values: Any) -> Doubles:
     """Undeformed distances: what is masked has no surface, and so a distance of +infinity."""
     if type(values) is np.ndarray:
         return real(name, values)
+    refuse_x_first(name, values)
     array: Any = np.asanyarray(values) if not isinstance(values, (list, tuple)) else values
     return real(name, _without_mask(name, array if isinstance(array, np.ma.MaskedArray) else values))
 

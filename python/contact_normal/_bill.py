@@ -110,6 +110,8 @@ class Bill(list[BillRow]):
         return self._with("negligible")
 
     def __str__(self) -> str:
+        if not self:
+            return "the scene names no effect: there is nothing to leave out"
         lines = [f"{'without':34}{'quantity':18}{'change':>10}{'+-':>10}{'seconds':>11}{'saved':>11}  verdict at {self.target:g}"]
         for row in self:
             value = abs(row.value)

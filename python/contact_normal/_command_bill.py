@@ -30,10 +30,9 @@ def run(given: argparse.Namespace) -> int:
     surface = gap_of(given)
     bill = what_matters(surface.h, surface.dx, surface.dy, target=given.target, quantities=given.quantities, pairs=given.pairs,
                         **effects_of(given), **scene_arguments(given))
-    if not bill:
-        print("the scene names no effect: there is nothing to leave out")
-        return 0
     print(bill)
+    if not bill:
+        return 0
     print(f"needed: {', '.join(bill.needed) or 'none'}; negligible: {', '.join(bill.negligible) or 'none'}")
     if given.plot:
         save(given.plot, bill.plot)

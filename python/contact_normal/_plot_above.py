@@ -51,6 +51,8 @@ def _coloured(result: Result) -> tuple[Any, dict[str, Any]]:
 
 def plot_traction(result: Solved, axes: Axes | None) -> Axes:
     """See `Result.plot_traction`."""
+    if not result.has_friction:
+        raise ValueError("the result has no tractions: its scene names no friction")
     axes = axes or new_axes((6.8, 5.1))
     my, mx = result.stick_slip.shape
     x_edges, y_edges = edges(result.x, result.dx), edges(result.y, result.dy)

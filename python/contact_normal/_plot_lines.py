@@ -83,6 +83,8 @@ def plot_contact_area(results: Sequence[Solved], axes: Axes | None = None) -> Ax
     matplotlib.axes.Axes
         The axes, to add to or to save.
     """
+    if not isinstance(results, Sequence):
+        raise TypeError(f"results is a {type(results).__name__}; it must be a sequence of results")
     if not results:
         raise ValueError("results is empty; it must have at least one result")
     axes, units = axes or new_axes(SIZE), results[0].units

@@ -46,6 +46,7 @@ class Messages(unittest.TestCase):
 
     def test_what_is_no_array(self):
         made = surface.heights(-H, D, D)
+        self.assert_says("give dy, too", lambda: surface.heights(H, D))
         self.assert_says("h is a Gap; it must be an array: call its solve", lambda: cn.solve(surface.gap(made), D, D, force=1.0, **STEEL))
         self.assert_says("h is a Heights; it must be an array: make a gap", lambda: cn.solve(made, D, D, force=1.0, **STEEL))
         for function in (surface.faults, surface.level, surface.form, surface.border_jumps):
@@ -53,6 +54,14 @@ class Messages(unittest.TestCase):
         self.assert_says("lower is a ndarray", lambda: surface.gap(H))
         self.assert_says("upper is a ndarray", lambda: surface.gap(made, H))
         self.assert_says("gap is a Heights; it must be a Gap", lambda: surface.balance(made, 1.0, **STEEL))
+
+    def test_a_labelled_array_that_is_transposed(self):
+        class Labelled(np.ndarray):
+            dims = ("x", "y")
+
+        self.assert_says(r"h has the dimensions \('x', 'y'\); x must be the last one", lambda: cn.solve(H.view(Labelled), D, D, force=1.0, **STEEL))
+        self.assert_says("values has the dimensions", lambda: surface.heights(H.view(Labelled), D, D))
+        np.testing.assert_array_equal(surface.heights(H.view(Labelled), D, D, axes="xy").z, H.T)
 
     def test_an_element_is_named_as_python_counts(self):
         h = H.copy()
@@ -155,6 +164,14 @@ class Pictures(unittest.TestCase):
         plain = cn.solve(H, D, D, force=100.0, **STEEL).plot()
         self.assertEqual(plain.images[0].get_clim()[0], 0.0)
         self.assertEqual(plain.get_aspect(), 1.0)
+
+    def test_what_cannot_be_drawn(self):
+        plain = cn.solve(H, D, D, force=100.0, **STEEL)
+        with self.assertRaisesRegex(ValueError, "names no friction"):
+            plain.plot_traction()
+        with self.assertRaisesRegex(TypeError, "results is a Result; it must be a sequence"):
+            cn.plot_contact_area(plain)
+        self.assertEqual(str(cn.what_matters(H, D, D, force=100.0, **STEEL)), "the scene names no effect: there is nothing to leave out")
 
     def test_slender_grids_are_not_drawn_to_scale(self):
         gap = rollers.gap((1.2, 14.0), (24, 28), (6.0, 25.0), drop=rollers.crown(14.0, 500.0, 8.0))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from .._arguments import flag, number, real, two
+from .._arguments import flag, number, real, refuse_x_first, two
 from .._grid import centres
 from .._short import Short
 from .._units import Units, checked
@@ -143,6 +143,8 @@ def _element_sizes(
         raise TypeError("give the size of an element in one way: dx and dy, or size, or span, or x and y")
     falls = False, False
     if ways[0]:
+        if dx is None or dy is None:
+            raise TypeError(f"give {'dx' if dx is None else 'dy'}, too: elements have a size in x and one in y")
         sizes = number("dx", dx), number("dy", dy)
     elif ways[1]:
         lx, ly = two("size", size)
@@ -204,6 +206,8 @@ def heights(
     -------
     Heights
     """
+    if axes == "yx":
+        refuse_x_first("values", values)
     z = _plain(values)
     if axes not in ("yx", "xy"):
         raise ValueError(f'axes is {axes!r}; it must be "yx" or "xy"')
