@@ -118,6 +118,14 @@ def number(name: str, value: Any) -> float:
         raise TypeError(f"{name} is {value!r}; it must be a real number") from None
 
 
+def relative(name: str, value: Any) -> float:
+    """A relative error that is wanted."""
+    error = number(name, value)
+    if error >= 1.0:
+        raise ValueError(f"{name} is {error:g}; it is a relative error, below 1: that of 1 % is 0.01")
+    return error
+
+
 def flag(name: str, value: Any) -> bool:
     """`value` as true or false: no word and no array is one of them."""
     if isinstance(value, (bool, np.bool_)) or isinstance(value, int) and value in (0, 1):

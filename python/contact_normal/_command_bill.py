@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import Any
 
 from ._bill import what_matters
 from ._command_scene import USAGE, add_effects, add_scene, effects_of, gap_of, scene_arguments
-from ._field_files import PICTURES, save
+from ._field_files import PICTURES, refuse_unless_writable, save
 from ._quantities import QUANTITIES
 
 
@@ -21,12 +22,18 @@ def add(commands: Any) -> None:
     command.add_argument("--quantities", nargs="+", choices=tuple(QUANTITIES), default=["force", "max_pressure", "contact_area"], metavar="NAME",
                          help=f"default force max_pressure contact_area; others: {', '.join(list(QUANTITIES)[3:])}")
     command.add_argument("--pairs", action=argparse.BooleanOptionalAction, default=True, help="leave out pairs, too; default yes")
-    command.add_argument("--plot", metavar="FILE", help=f"a picture as {', '.join(PICTURES)}")
+    command.add_argument("--plot", nargs="?", const="", metavar="FILE",
+                         help=f"a picture as {', '.join(PICTURES)}; by default the name of the surface with .bill.png")
     command.set_defaults(run=run)
 
 
 def run(given: argparse.Namespace) -> int:
     """Prints the rows, and what follows from them."""
+    plot = str(Path(given.file).with_suffix(".bill.png")) if given.plot == "" else given.plot
+    if plot and Path(plot).suffix not in PICTURES:
+        raise ValueError(f"{plot} must end in one of {', '.join(PICTURES)}")
+    if plot:
+        refuse_unless_writable(plot)
     surface = gap_of(given)
     bill = what_matters(surface.h, surface.dx, surface.dy, target=given.target, quantities=given.quantities, pairs=given.pairs,
                         **effects_of(given), **scene_arguments(given))
@@ -34,6 +41,6 @@ def run(given: argparse.Namespace) -> int:
     if not bill:
         return 0
     print(f"needed: {', '.join(bill.needed) or 'none'}; negligible: {', '.join(bill.negligible) or 'none'}")
-    if given.plot:
-        save(given.plot, bill.plot)
+    if plot:
+        save(plot, bill.plot)
     return 0

@@ -12,7 +12,7 @@ from ._units import checked
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-EFFECTS = ("influence", "layer", "pressure_limit", "period", "patches", "row_tables", "coating", "friction")
+EFFECTS = ("influence", "layer", "pressure_limit", "period", "patches", "row_tables", "coating", "friction", "adhesion", "visco")
 _LOADS = ("approach", "force", "mean_pressure", "shear_modulus", "poisson_ratio", "young_modulus", "e_star")
 
 
@@ -32,6 +32,8 @@ class SceneArguments(SolveOptions, total=False):
     patches: tuple[npt.ArrayLike, npt.ArrayLike] | None
     coating: Any
     friction: Mapping[str, Any] | None
+    adhesion: Mapping[str, Any] | None
+    visco: Mapping[str, Any] | None
     units: tuple[str, str] | None
 
 

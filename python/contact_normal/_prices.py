@@ -6,7 +6,7 @@ import ctypes
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ._arguments import AccuracyOptions, Both, doubles, options
+from ._arguments import AccuracyOptions, Both, doubles, options, relative
 from ._calls import called
 from ._library import check, initialised, library
 from ._quantities import QUANTITIES
@@ -136,6 +136,7 @@ def cost_of_accuracy(
     patches: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     coating: Any = None,
     friction: Mapping[str, Any] | None = None,
+    adhesion: Mapping[str, Any] | None = None,
     visco: Mapping[str, Any] | None = None,
     units: tuple[str, str] | None = None,
     **given: Unpack[AccuracyOptions],
@@ -178,7 +179,7 @@ def cost_of_accuracy(
     if quantity not in QUANTITIES:
         raise ValueError(f"quantity is {quantity!r}; it must be one of {', '.join(QUANTITIES)}")
     effects = {"layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches, "coating": coating, "friction": friction,
-               "visco": visco}
+               "adhesion": adhesion, "visco": visco}
     struct = options(given)
     checked(units)
     scene, surface, _ = on_any_grid(
@@ -186,9 +187,9 @@ def cost_of_accuracy(
         poisson_ratio=poisson_ratio, young_modulus=young_modulus, e_star=e_star,
     )
     accuracy = limits(max_seconds, max_bytes, max_elements, surface)
-    relative = doubles("targets", targets, dimensions="n")
-    n = len(relative)
-    wanted, rows = (ctypes.c_double * n)(*relative), (PriceStruct * n)(*[initialised("price")][:n])
+    errors = doubles("targets", targets, dimensions="n")
+    n = len(errors)
+    wanted, rows = (ctypes.c_double * n)(*(relative(f"targets[{k}]", error) for k, error in enumerate(errors))), (PriceStruct * n)(*[initialised("price")][:n])
     status, message = called(
         library.contact_normal_cost_of_accuracy, ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(accuracy),
         QUANTITIES[quantity], n, wanted, rows, keep=(scene, surface),

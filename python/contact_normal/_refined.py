@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ._arguments import both, integer, number, two
+from ._arguments import both, integer, number, relative, two
 from ._callbacks import Surface
 from ._library import initialised
 from ._quantities import QUANTITIES
@@ -41,14 +41,6 @@ def limits(max_seconds: Any, max_bytes: Any, max_elements: Any, surface: Surface
     if surface:
         accuracy.surface = surface.callback
     return accuracy
-
-
-def relative(name: str, value: Any) -> float:
-    """A relative error that is wanted."""
-    error = number(name, value)
-    if error >= 1.0:
-        raise ValueError(f"{name} is {error:g}; it is a relative error, below 1: that of 1 % is 0.01")
-    return error
 
 
 def set_targets(accuracy: Any, targets: Mapping[str, float] | None) -> None:

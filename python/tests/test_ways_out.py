@@ -77,6 +77,9 @@ class Messages(unittest.TestCase):
         for targets in ({"target": 1}, {"contact_area_target": 5.0}, {"targets": {"mean_gap": 2.0}}):
             self.assert_says("a relative error, below 1: that of 1 % is 0.01", lambda targets=targets: cn.to_accuracy(H, D, D, force=1.0, **targets, **STEEL))
 
+        self.assert_says(r"targets\[1\] is 5; it is a relative error", lambda: cn.cost_of_accuracy(H, D, D, force=1.0, targets=[0.1, 5.0], **STEEL))
+        self.assert_says("target is 5; it is a relative error", lambda: cn.what_matters(H, D, D, force=1.0, layer=1e-5, target=5.0, **STEEL))
+
     def test_a_creepage_that_is_looked_for(self):
         scene = {"force": 1000.0, "tolerance": 1e-8, **STEEL}
         one = cn.solve(H, D, D, friction={**ROLLING, "force": (100.0, None), "creepage": (None, 1e-4)}, **scene)
