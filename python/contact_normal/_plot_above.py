@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 STICK, SLIP = (0.78, 0.87, 0.96), (0.99, 0.85, 0.74)
 # Lines of more segments are drawn as pixels in files of vectors.
 _SEGMENTS = 4000
-# Negative pressures below this part of the largest are none.
+# Negative pressures below this part of the largest are none, nor are forces below this part of others.
 _ROUND_OFF = 1e-12
 
 
@@ -35,7 +35,9 @@ def plot_pressure(result: Result, axes: Axes | None) -> Axes:
     _outline(axes, result.contact, x_edges, y_edges)
     axes.figure.colorbar(image, ax=axes, shrink=0.9, label=label("pressure", "pressure", result.units))
     name_axes(axes, result.units)
-    force, approach = title(f"{result.force:.5g}", "force", result.units), title(f"{result.approach:.5g}", "length", result.units)
+    carried = float(np.abs(result.pressure).sum()) * result.dx * result.dy
+    total = result.force if abs(result.force) > _ROUND_OFF * carried else 0.0
+    force, approach = title(f"{total:.5g}", "force", result.units), title(f"{result.approach:.5g}", "length", result.units)
     axes.set_title(f"force {force}, approach {approach}, {mx} × {my} elements", fontsize=10)
     return axes
 
@@ -64,7 +66,9 @@ def plot_traction(result: Solved, axes: Axes | None) -> Axes:
     _arrows(result, axes)
     _outline(axes, result.stick_slip > 0, x_edges, y_edges)
     _outline(axes, result.stick_slip == 1, x_edges, y_edges)
-    fx, fy = result.tangential_force
+    # What is round-off of the other part is 0.
+    size = float(np.hypot(*result.tangential_force))
+    fx, fy = (part if abs(part) > _ROUND_OFF * size else 0.0 for part in result.tangential_force)
     name_axes(axes, result.units)
     force = title(f"({fx:.5g}, {fy:.5g})", "force", result.units)
     axes.set_title(f"tractions: force {force}; stick blue, slip orange", fontsize=10)

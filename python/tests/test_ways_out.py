@@ -189,6 +189,15 @@ class Pictures(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "no accuracy of the list can be had: too many elements"):
             prices.plot()
 
+    def test_times_have_two_numbers_or_more(self):
+        for rows in (cn.quantities(H, D, D, force=100.0, **STEEL), cn.solve(H, D, D, force=100.0, **STEEL).ledger):
+            axes = rows.plot()
+            axes.figure.canvas.draw()
+            first, last = axes.get_xlim()
+            shown = [tick for tick in axes.get_xticks() if first <= tick <= last]
+            # Neighbours of 1, 2, 3, 5, 7 are a factor of 2 apart at most.
+            self.assertGreaterEqual(len(shown), int(np.log2(last / first)))
+
     def test_a_creep_curve(self):
         entries = np.outer(np.linspace(-4e-3, 0.0, 5), (0.0, 1.0, 0.0))
         batch = cn.friction_batch(H, D, D, entries, force=1000.0, friction=ROLLING, units=("mm", "N"), **STEEL)
