@@ -61,7 +61,8 @@ class Faults(Short):
             lines.append(f"{(self.heights.z == value).sum()} elements have the value {value:g}, which seems to stand for 'not measured'")
         places = np.argwhere(self.spikes)
         first = ", ".join(str((int(iy), int(ix))) for iy, ix in places[:5])
-        lines.append(f"{len(places)} spikes" + (f", the first ones at (iy, ix) = {first}" if first else ""))
+        where = f", the first ones at (iy, ix) = {first}" if len(places) > 1 else f", at (iy, ix) = {first}" if first else ""
+        lines.append(f"{len(places)} spike{'' if len(places) == 1 else 's'}{where}")
         return "\n".join(lines)
 
     def plot(self, axes: Axes | None = None) -> Axes:
