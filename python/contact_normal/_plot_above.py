@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 STICK, SLIP = (0.78, 0.87, 0.96), (0.99, 0.85, 0.74)
 # Lines of more segments are drawn as pixels in files of vectors.
 _SEGMENTS = 4000
+# Where this percentile of the pressures is less than half of the largest, colours end with it.
+_USUAL = 99.5
 # Negative pressures below this part of the largest are none, nor are forces below this part of others.
 _ROUND_OFF = 1e-12
 
@@ -33,7 +35,9 @@ def plot_pressure(result: Result, axes: Axes | None) -> Axes:
     image = axes.imshow(shown, origin="lower", extent=extent, interpolation="nearest", **colours)
     axes.set_facecolor(exterior(axes))
     _outline(axes, result.contact, x_edges, y_edges)
-    axes.figure.colorbar(image, ax=axes, shrink=0.9, label=label("pressure", "pressure", result.units))
+    is_cut = colours.get("vmax", np.inf) < result.pressure.max(initial=0.0)
+    name = f"pressure, at most {result.pressure.max():.4g}" if is_cut else "pressure"
+    axes.figure.colorbar(image, ax=axes, shrink=0.9, extend="max" if is_cut else "neither", label=label(name, "pressure", result.units))
     name_axes(axes, result.units)
     carried = float(np.abs(result.pressure).sum()) * result.dx * result.dy
     total = result.force if abs(result.force) > _ROUND_OFF * carried else 0.0
@@ -46,7 +50,10 @@ def _coloured(result: Result) -> tuple[Any, dict[str, Any]]:
     """What `plot_pressure` draws, and its colours."""
     largest = float(np.abs(result.pressure).max(initial=0.0))
     if result.pressure.min(initial=0.0) >= -_ROUND_OFF * largest:
-        return np.ma.masked_where(~result.contact, result.pressure), {"cmap": "viridis", "vmin": 0.0}
+        colours = {"cmap": "viridis", "vmin": 0.0}
+        usual = float(np.percentile(result.pressure[result.contact], _USUAL)) if result.contact.any() else 0.0
+        # Rough surfaces have a few peaks, beside which all else would be dark.
+        return np.ma.masked_where(~result.contact, result.pressure), {**colours, "vmax": usual} if 0.0 < usual < 0.5 * largest else colours
     # Bodies that stick also pull outside the contact area: both signs have colours of their own, and white is 0.
     return result.pressure, {"cmap": "RdBu_r", "vmin": -largest, "vmax": largest}
 

@@ -176,6 +176,16 @@ class Pictures(unittest.TestCase):
             cn.plot_contact_area(plain)
         self.assertEqual(str(cn.what_matters(H, D, D, force=100.0, **STEEL)), "the scene names no effect: there is nothing to leave out")
 
+    def test_a_few_peaks_do_not_darken_the_rest(self):
+        x = np.arange(64) - 31.5
+        waves = 1e-3 * np.cos(2 * np.pi * x / 8)[None, :] * np.cos(2 * np.pi * x / 8)[:, None]
+        waves[30, 30] -= 0.02
+        axes = cn.solve(waves, D, D, force=3e3, period="xy", **STEEL).plot()
+        pressures = axes.images[0].get_array()
+        self.assertLess(axes.images[0].get_clim()[1], 0.5 * pressures.max())
+        bar = axes.figure.axes[1]
+        self.assertEqual(bar.get_ylabel(), f"pressure, at most {pressures.max():.4g}")
+
     def test_slender_grids_are_not_drawn_to_scale(self):
         gap = rollers.gap((1.2, 14.0), (24, 28), (6.0, 25.0), drop=rollers.crown(14.0, 500.0, 8.0))
         for axes in (gap.plot(), gap.solve(force=3000.0, e_star=1e5).plot()):
