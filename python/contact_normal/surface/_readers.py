@@ -99,12 +99,15 @@ def _of_numpy(path: str | os.PathLike[str], variable: str | None) -> Any:
 
 
 def _of_text(path: str | os.PathLike[str], end: str) -> Any:
-    """Columns of numbers: those of a line are separated by spaces, in .csv by commas, or by semicolons where there are any."""
+    """Columns of numbers: those of a line are separated by spaces, in .csv by commas, or by semicolons where there are any: commas are
+    then decimal points."""
     lines = [line.split("#")[0] for line in Path(path).read_text(encoding="utf-8-sig", errors="replace").splitlines()]
     lines = [line for line in lines if line.strip()]
     if not lines:
         raise ValueError(f"{path} has no numbers")
     delimiter = ";" if ";" in lines[0] else "," if end == ".csv" else None
+    if delimiter == ";":
+        lines = [line.replace(",", ".") for line in lines]
     try:
         values = np.loadtxt(lines, delimiter=delimiter, ndmin=2)
     except ValueError as error:
@@ -116,7 +119,7 @@ def _of_text(path: str | os.PathLike[str], end: str) -> Any:
     return values
 
 
-_BETWEEN = {None: "spaces", ",": "commas", ";": "semicolons, with decimal points"}
+_BETWEEN = {None: "spaces", ",": "commas", ";": "semicolons"}
 
 
 def _are_points(values: Any) -> bool:
