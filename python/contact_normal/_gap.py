@@ -99,9 +99,15 @@ class Gap(Short):
         lines = Path(path).read_text(encoding="utf-8").splitlines()
         if len(lines) < 3 or lines[0] != _HEAD:
             raise ValueError(f"{path} does not begin with {_HEAD!r}: it is no file of a gap")
-        words = lines[2].split()
-        mx, my, dx, dy = int(words[0]), int(words[1]), float(words[2]), float(words[3])
-        h = np.array([float(line) for line in lines[3:]])
+        try:
+            first, second, third, fourth = lines[2].split()
+            mx, my, dx, dy = int(first), int(second), float(third), float(fourth)
+        except ValueError:
+            raise ValueError(f"{path} has {lines[2]!r} in line 3; it must have mx my dx dy") from None
+        try:
+            h = np.array([float(line) for line in lines[3:]])
+        except ValueError as error:
+            raise ValueError(f"{path}: {error}; there must be one undeformed distance a line") from None
         if h.size != mx * my:
             raise ValueError(f"{path} has {h.size} distances; {mx} x {my} elements need {mx * my}")
         return cls(h.reshape(my, mx), dx, dy)

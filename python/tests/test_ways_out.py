@@ -266,6 +266,13 @@ class Files(unittest.TestCase):
         for line in ("mean gap", "error of the pressure", "error of the area"):
             self.assertIn(f"\n{line}", out)
         surface.gap(surface.heights(HEIGHTS, 0.06, 0.05)).write(self.folder / "gap.txt")
+        lines = (self.folder / "gap.txt").read_text().splitlines()
+        for broken, words in (([*lines[:2], "3 4"], "has '3 4' in line 3; it must have mx my dx dy"), ([*lines[:2], "a 4 1 1"], "must have mx my"),
+                              ([*lines[:3], "x"], "one undeformed distance a line"), (lines[:3], "has 0 distances; 56 x 40 elements need 2240")):
+            self.written("broken.txt", "\n".join(broken))
+            code, _, told = called("solve", self.folder / "broken.txt", *BALL[4:], "--gap")
+            self.assertEqual(code, 3)
+            self.assertIn(words, told)
         self.assertEqual(called("solve", self.folder / "gap.txt", *BALL)[0], 3)
         self.assertIn("holds a gap, and not heights: add --gap", called("solve", self.folder / "gap.txt", *BALL)[2])
 

@@ -112,7 +112,7 @@ def _of_text(path: str | os.PathLike[str], end: str) -> Any:
         values = np.loadtxt(lines, delimiter=delimiter, ndmin=2)
     except ValueError as error:
         raise ValueError(f"{path}: {error}; it must hold numbers alone, a row of the grid a line, separated by {_BETWEEN[delimiter]}; "
-                         "put # before other lines") from error
+                         "put # before other lines, and nan where nothing was measured") from error
     if _are_points(values):
         raise ValueError(f"{path} has x, y and z of {len(values)} points; it must hold a row of the grid a line: reshape the third column, "
                          "and give x and y to surface.heights")
