@@ -134,7 +134,7 @@ def draw(folder, layered, limited, periodic, patched, tabled, coated):
     curves(f"{folder}/effects_patches.{ending}", "Two balls side by side, 1000 N together", patched, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=3)
     # The differences from the plane, which is the first, are small.
     _, y, plane = tabled[0]
-    curves(f"{folder}/effects_row_tables.{ending}", f"A roller in a groove, 20 kN: change from a plane, of {plane.max():.0f} N/mm² at most",
+    curves(f"{folder}/effects_row_tables.{ending}", f"A roller in a groove, 20 kN: change from a plane's {plane.max():.0f} N/mm²",
            [(name, y, p - plane) for name, y, p in tabled[1:]], across="y along the section [mm]")
     draw_limits(f"{folder}/effects_pressure_limit.{ending}", limited)
     draw_periods(f"{folder}/effects_period.{ending}", periodic)

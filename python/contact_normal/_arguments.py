@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import difflib
 import operator
 import os
 from collections.abc import Mapping
@@ -117,6 +118,14 @@ def number(name: str, value: Any) -> float:
         raise TypeError(f"{name} is {value!r}; it must be a real number") from None
 
 
+def relative(name: str, value: Any) -> float:
+    """A relative error that is wanted."""
+    error = number(name, value)
+    if error >= 1.0:
+        raise ValueError(f"{name} is {error:g}; it is a relative error, below 1: that of 1 % is 0.01")
+    return error
+
+
 def flag(name: str, value: Any) -> bool:
     """`value` as true or false: no word and no array is one of them."""
     if isinstance(value, (bool, np.bool_)) or isinstance(value, int) and value in (0, 1):
@@ -168,6 +177,9 @@ def _plain(name: str, values: Any, kinds: str, rule: str) -> npt.NDArray[Any]:
     array: npt.NDArray[Any] = np.asanyarray(0.0 if (has_mask := _has_mask(values)) else values)
     if has_mask or isinstance(array, np.ma.MaskedArray):
         raise TypeError(f"{name} is a masked array; fill it: .filled(...)")
+    if array.dtype.kind == "O" and not array.ndim:
+        instead = getattr(values, "_INSTEAD", "")
+        raise TypeError(f"{name} is a {type(values).__name__}; it must be an array{f': {instead}' if instead else ''}")
     if array.dtype.kind not in kinds:
         raise TypeError(f"{name} has dtype {array.dtype}; it must hold {rule}")
     return np.asarray(array)
@@ -202,10 +214,21 @@ def _without_mask(name: str, values: Any) -> Any:
     return filled
 
 
+def refuse_x_first(name: str, values: Any) -> None:
+    """Refuses an array of xarray whose first dimension is x: rows are along y."""
+    dimensions = getattr(values, "dims", None)
+    if not isinstance(dimensions, tuple) or len(dimensions) != 2:
+        return
+    first, last = (str(dimension).lower() for dimension in dimensions)
+    if first.startswith("x") and not last.startswith("x"):
+        raise ValueError(f"{name} has the dimensions {dimensions}; x must be the last one: transpose it")
+
+
 def distances(name: str, values: Any) -> Doubles:
     """Undeformed distances: what is masked has no surface, and so a distance of +infinity."""
     if type(values) is np.ndarray:
         return real(name, values)
+    refuse_x_first(name, values)
     array: Any = np.asanyarray(values) if not isinstance(values, (list, tuple)) else values
     return real(name, _without_mask(name, array if isinstance(array, np.ma.MaskedArray) else values))
 
@@ -252,12 +275,25 @@ _OPTIONS = {field[0]: field[1] for kind in (Options, Cycle) for field in kind._f
 _CYCLE = frozenset(names(Cycle))
 
 
+# Arguments of `solve`, for those who write one of them wrong.
+_SCENE = (
+    "approach", "force", "mean_pressure", "shear_modulus", "poisson_ratio", "young_modulus", "e_star", "influence", "layer", "pressure_limit", "period",
+    "patches", "row_tables", "coating", "friction", "adhesion", "visco", "pressure", "contact", "units", "progress",
+)
+
+
+def _nearest(name: str) -> str:
+    """The argument or option that may be meant."""
+    near = difflib.get_close_matches(name, [*_SCENE, *_OPTIONS], 1)
+    return f" (is {near[0]} meant?)" if near and near[0] != name else ""
+
+
 def options(given: Mapping[str, Any]) -> Any:
     """The struct of options with those that are given."""
     struct = initialised("options")
     for name, value in given.items():
         if name not in _OPTIONS:
-            raise TypeError(f"no option {name}; there are: {', '.join(sorted(_OPTIONS))}")
+            raise TypeError(f"no argument and no option {name}{_nearest(name)}; options are: {', '.join(sorted(_OPTIONS))}")
         if name == "dump":
             # The struct keeps the text, which it points to.
             struct.path = None if value is None else os.fsencode(value)

@@ -16,16 +16,23 @@ if TYPE_CHECKING:
 SIZE = (6.8, 4.4)  # inches, as in contact_normal.mplstyle
 # The border of a contact area, and places that are marked: readable on light and on dark pages.
 EDGE = "crimson"
+# Grids whose sides differ by more than this factor are not drawn to scale.
+_SLENDER = 4.0
 
 
 def new_axes(size: tuple[float, float]) -> Axes:
     """The axes of a new figure of that size in inches."""
+    axes: Axes = matplotlib().subplots(figsize=size, layout="constrained")[1]
+    return axes
+
+
+def matplotlib() -> Any:
+    """matplotlib's pyplot."""
     try:
         from matplotlib import pyplot
     except ImportError as error:
-        raise ImportError("plots need matplotlib: pip install contact-normal[plot]") from error
-    axes: Axes = pyplot.subplots(figsize=size, layout="constrained")[1]
-    return axes
+        raise ImportError("plots need matplotlib: pip install 'contact-normal[plot]'") from error
+    return pyplot
 
 
 def edges(centres: Doubles, d: float) -> Doubles:
@@ -44,8 +51,10 @@ def exterior(axes: Axes) -> tuple[float, float, float]:
 
 
 def name_axes(axes: Axes, units: Units) -> None:
-    """x and y, seen from above."""
-    axes.set(xlabel=label("x", "length", units), ylabel=label("y", "length", units), aspect="equal")
+    """x and y, seen from above; to scale, unless the grid is so slender that nothing would be seen."""
+    width, height = (abs(high - low) for low, high in (axes.get_xlim(), axes.get_ylim()))
+    is_slender = not 1.0 / _SLENDER <= width / height <= _SLENDER
+    axes.set(xlabel=label("x", "length", units), ylabel=label("y", "length", units), aspect="auto" if is_slender else "equal")
 
 
 def nearest(place: float, centres: Any, d: float, name: str) -> int:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from . import _constants
-from ._arguments import flag, number
+from ._arguments import flag, relative
 from ._calls import called
 from ._given import SceneArguments, scene_and_options
 from ._library import check, initialised, library
@@ -110,6 +110,8 @@ class Bill(list[BillRow]):
         return self._with("negligible")
 
     def __str__(self) -> str:
+        if not self:
+            return "the scene names no effect: there is nothing to leave out"
         lines = [f"{'without':34}{'quantity':18}{'change':>10}{'+-':>10}{'seconds':>11}{'saved':>11}  verdict at {self.target:g}"]
         for row in self:
             value = abs(row.value)
@@ -186,7 +188,7 @@ def what_matters(
     """
     scene, struct = scene_and_options(h, dx, dy, given)
     wanted, found = numbers("quantities", quantities), ctypes.c_int32(0)
-    goal, both = number("target", target), int(flag("pairs", pairs))
+    goal, both = relative("target", target), int(flag("pairs", pairs))
 
     def ask(room: int, rows: object) -> None:
         status, message = called(

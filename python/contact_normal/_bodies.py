@@ -33,10 +33,12 @@ class Bodies(NamedTuple):
 
 def bodies(shear_modulus: Any, poisson_ratio: Any, young_modulus: Any, e_star: Any) -> Bodies:
     """Bodies of exactly one kind of modulus."""
-    if (shear_modulus is not None) + (young_modulus is not None) + (e_star is not None) != 1:
-        raise TypeError("give one of shear_modulus, young_modulus and e_star")
+    moduli = {"shear_modulus": shear_modulus, "young_modulus": young_modulus, "e_star": e_star}
+    named = [name for name, value in moduli.items() if value is not None]
+    if len(named) != 1:
+        raise TypeError(f"give one of shear_modulus, young_modulus and e_star, {'and only one' if named else 'the elastic constants of the bodies'}")
     if e_star is None and poisson_ratio is None:
-        raise TypeError("give poisson_ratio")
+        raise TypeError(f"give poisson_ratio beside {named[0]}")
     nu = pair("poisson_ratio", 0.0 if poisson_ratio is None else poisson_ratio)
     if shear_modulus is not None:
         return Bodies(pair("shear_modulus", shear_modulus), nu)

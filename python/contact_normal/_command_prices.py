@@ -5,14 +5,14 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-from ._command_scene import add_scene, scene_arguments, gap_of
-from ._prices import Price, cost_of_accuracy
+from ._command_scene import USAGE, add_scene, scene_arguments, gap_of
+from ._prices import cost_of_accuracy
 from ._quantities import QUANTITIES
 
 
 def add(commands: Any) -> None:
     """The command and its options."""
-    command = commands.add_parser("prices", help="what accuracies cost: grid, seconds, bytes",
+    command = commands.add_parser("prices", usage=USAGE, help="what accuracies cost: grid, seconds, bytes",
                                   description="Predicts which grid, time and memory relative errors of 1e-2, 1e-3, ... take.")
     add_scene(command)
     command.add_argument("--targets", type=float, nargs="+", default=[1e-2, 1e-3, 1e-4], metavar="ERROR", help="default 1e-2 1e-3 1e-4")
@@ -25,16 +25,5 @@ def run(given: argparse.Namespace) -> int:
     """Prints one line for each target."""
     surface = gap_of(given)
     rows = cost_of_accuracy(surface.h, surface.dx, surface.dy, targets=given.targets, quantity=given.quantity, **scene_arguments(given))
-    print(f"{'relative error':>14} {'elements':>13} {'tolerance':>10} {'seconds':>9} {'MB':>8}")
-    for row in rows:
-        print(line(row))
+    print(rows)
     return 0
-
-
-def line(row: Price) -> str:
-    """One row of the list; what is not known is a dash."""
-    my, mx = row.shape
-    elements = f"{mx} x {my}" if mx else "-"
-    seconds = f"{row.seconds:.2g}" if row.seconds >= 0.0 else "-"
-    memory = f"{row.bytes / 1e6:.3g}" if row.bytes else "-"
-    return f"{row.target:14.1e} {elements:>13} {row.tolerance:10.0e} {seconds:>9} {memory:>8}  {row.obstacle}".rstrip()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,8 @@ import numpy as np
 from .surface import Gap, Heights, faults, gap, level, read
 
 ELASTIC = ("young_modulus", "shear_modulus", "poisson_ratio", "e_star")
+# A list of all options would hide what is wrong with them.
+USAGE = "%(prog)s FILE [options]; %(prog)s --help lists them"
 LOADS = ("force", "approach", "mean_pressure")
 
 
@@ -62,6 +65,8 @@ def gap_of(given: argparse.Namespace) -> Gap:
     if given.gap and Gap.is_in(given.file):
         found = Gap.read(given.file)
         return dataclasses.replace(found, units=tuple(given.units) if given.units else None)
+    if not given.gap and Path(given.file).is_file() and Gap.is_in(given.file):
+        raise ValueError(f"{given.file} holds a gap, and not heights: add --gap")
     heights = _heights_of(given)
     if given.faults:
         found_faults = faults(heights)
@@ -85,7 +90,11 @@ def _heights_of(given: argparse.Namespace) -> Heights:
         said["units"] = tuple(given.units)
     try:
         heights = read(given.file, given.variable, **said)
-    except (OSError, ImportError, TypeError, ValueError):
+    except TypeError as error:
+        if given.dx is None and "size of an element" in str(error):
+            raise TypeError(f"{given.file} does not say how large its elements are: give --dx, and --dy if it differs") from error
+        raise
+    except (OSError, ImportError, ValueError):
         raise
     except Exception as error:  # of the reader of another package
         raise ValueError(f"{given.file}: {error}") from error

@@ -7,9 +7,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from ._command_scene import add_effects, add_scene, effects_of, gap_of, scene_arguments
+from ._command_scene import USAGE, add_effects, add_scene, effects_of, gap_of, scene_arguments
 from ._constants import OK
-from ._field_files import FIELDS, PICTURES, save, write_fields
+from ._field_files import FIELDS, PICTURES, refuse_unless_writable, save, write_fields
 from ._library import library
 from ._result import Result
 from ._solve import solve
@@ -18,7 +18,7 @@ from ._units import with_unit
 
 def add(commands: Any) -> None:
     """The command and its options."""
-    command = commands.add_parser("solve", help="pressures and contact area of a surface",
+    command = commands.add_parser("solve", usage=USAGE, help="pressures and contact area of a surface",
                                   description="Finds the pressures and the contact area of a surface that is pressed onto a plane.")
     add_scene(command)
     add_effects(command)
@@ -36,11 +36,12 @@ def run(given: argparse.Namespace) -> int:
     for name, endings in (*((output, FIELDS) for output in given.output), *([(plot, PICTURES)] if plot else [])):
         if Path(name).suffix not in endings:
             raise ValueError(f"{name} must end in one of {', '.join(endings)}")
+        refuse_unless_writable(name)
     surface = gap_of(given)
     progress = sys.stderr.isatty() if given.progress is None else given.progress
     result = solve(surface.h, surface.dx, surface.dy, units=surface.units, progress=progress,
                    **effects_of(given), **scene_arguments(given))
-    print("\n".join(f"{name:24}{text}" for name, text in told(result)))
+    print("\n".join(f"{name:24}{text}" for name, text in [*told(result), *_hints(given, result)]))
     for name in given.output:
         write_fields(name, result)
     if plot:
@@ -65,8 +66,23 @@ def told(result: Result) -> list[tuple[str, str]]:
         ("contact area", f"{value('contact_area', 'area')} ({share:.3g} % of the grid)"),
         ("residual", f"{report['residual']:.1e}"),
     ]
+    lines.insert(-1, ("mean gap", value("mean_gap", "length")))
     estimated, kind = ("approach", "length") if result.ledger.estimated == "approach" else ("force", "force")
-    if report["error_force"] >= 0.0:
-        lines.append((f"error of the {estimated}", with_unit(f"{report['error_force']:.1e}", kind, units) + " (an estimate)"))
+    for name, key, of in ((estimated, "error_force", kind), ("pressure", "error_max_pressure", "pressure"),
+                          ("area", "error_contact_area", "area")):
+        error = with_unit(f"{report[key]:.1e}", of, units) + " (an estimate)" if report[key] >= 0.0 else "not known"
+        lines.append((f"error of the {name}", error))
     lines += [("warning", name) for name in result.warnings]
     return [*lines, *[("message", text) for text in result.message.splitlines()]]
+
+
+def _hints(given: argparse.Namespace, result: Result) -> list[tuple[str, str]]:
+    """Options that may help where one element carries all, or where contact is at the border."""
+    if given.gap:
+        return []
+    few = {"ONE_ELEMENT", "SPIKE"} & set(result.warnings)
+    return [("hint", text) for text, helps in (
+        ("--faults finds spikes and fill values, and makes them holes", few and not given.faults),
+        ("--level plane removes a tilt", (few or "BORDER" in result.warnings) and not given.level),
+        ("--period xy for a piece of a larger surface", "BORDER" in result.warnings and not given.period),
+    ) if helps]

@@ -157,7 +157,7 @@ class CreepForceTable:
         if len(axis) == 1:
             return np.zeros(values.shape, dtype=np.int64), np.zeros(values.shape)
         if not hold and not bool(((values >= axis[0]) & (values <= axis[-1])).all()):
-            raise ValueError(f"{name} has values outside the table, which goes from {axis[0]} to {axis[-1]}")
+            raise ValueError(f"{name} has values outside the table, which goes from {axis[0]} to {axis[-1]}; hold=True takes the values at its end")
         held = np.clip(values, axis[0], axis[-1])
         if name == "axis_ratio":
             axis, held = np.log(axis), np.log(held)
@@ -177,7 +177,7 @@ class CreepForceTable:
         semi_axes : (float, float)
             In the direction of rolling, and across.
         normal_force, coefficient, shear_modulus, poisson_ratio, hold
-            Of the contact; bodies are alike.
+            Of the contact; bodies are alike. Without a load or friction all forces are 0.
 
         Returns
         -------
@@ -186,8 +186,15 @@ class CreepForceTable:
         if self.of_surface:
             raise TypeError("this is the table of a surface: use `forces`")
         a, b = semi_axes
-        c, bound = np.sqrt(a * b), coefficient * normal_force
-        unit = shear_modulus * c * c / bound
+        for name, value in (("normal_force", normal_force), ("coefficient", coefficient)):
+            if np.any(real(name, value) < 0.0):
+                raise ValueError(f"{name} is {value}; it must not be negative")
+        c, bound = np.sqrt(a * b), np.asarray(coefficient * normal_force, dtype=np.float64)
+        if not bound.any():
+            shape = np.broadcast_shapes(bound.shape, *(np.shape(one) for one in (*both("creepage", creepage), spin)))
+            return np.zeros(shape), np.zeros(shape), np.zeros(shape)
+        # Where there is no load, creepages of 0 stand for any.
+        unit = shear_modulus * c * c / np.where(bound > 0.0, bound, np.inf)
         along, across = (unit * real(f"creepage[{k}]", one) for k, one in enumerate(both("creepage", creepage)))
         x, y, moment, _ = self.forces(along, across, unit * c * real("spin", spin), axis_ratio=a / b, poisson_ratio=poisson_ratio, hold=hold)
         return bound * x, bound * y, bound * c * moment

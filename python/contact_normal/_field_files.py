@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import importlib
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from ._axes import matplotlib
+from ._netcdf import xarray
 
 if TYPE_CHECKING:
     from ._result import Result
@@ -39,12 +43,41 @@ def write_fields(path: str | Path, result: Result) -> None:
         raise ValueError(f"{path}: results are written as {', '.join(FIELDS)}, pictures as {', '.join(PICTURES)}")
 
 
-def _write_mesh(path: Path, result: Result) -> None:
-    """One quadrilateral for each element, with its numbers."""
+def refuse_unless_writable(path: str | Path) -> None:
+    """Refuses a file that cannot be written, before a long solve is spent on it.
+
+    Raises
+    ------
+    OSError
+        If its folder does not exist or may not be written.
+    ImportError
+        If its format needs a package that is not installed; the text names it.
+    """
+    path = Path(path)
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"{path}: there is no folder {path.parent}")
+    if path.is_dir():
+        raise IsADirectoryError(f"{path} is a folder; it must be a file")
+    if not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise PermissionError(f"{path} may not be written")
+    if path.suffix == ".nc":
+        xarray()
+    elif path.suffix in (".vtk", ".vtu"):
+        _meshio(path)
+    elif path.suffix in PICTURES:
+        matplotlib()
+
+
+def _meshio(path: Path) -> Any:
     try:
-        meshio = importlib.import_module("meshio")
+        return importlib.import_module("meshio")
     except ImportError as error:
         raise ImportError(f"{path}: {path.suffix} is written by meshio, which is not installed: pip install 'contact-normal[vtk]'") from error
+
+
+def _write_mesh(path: Path, result: Result) -> None:
+    """One quadrilateral for each element, with its numbers."""
+    meshio = _meshio(path)
     my, mx = result.pressure.shape
     x, y = (np.append(centres - 0.5 * d, centres[-1] + 0.5 * d) for centres, d in ((result.x, result.dx), (result.y, result.dy)))
     corners = np.stack([np.tile(x, my + 1), np.repeat(y, mx + 1), np.zeros((my + 1) * (mx + 1))], axis=1)

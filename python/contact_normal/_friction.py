@@ -42,13 +42,16 @@ def friction(value: Any, shape: tuple[int, int]) -> tuple[Any, list[Any], str]:
     effect.motion = value_of("motion", motion) if isinstance(motion, str) else integer("friction['motion']", motion)
     for name in _FLAGS:
         setattr(effect, name, flag(f"friction['{name}']", given.get(name, False)))
+    forces = both("friction['force']", given.get("force", (None, None)), "a pair, None where the creepage is given")
+    if "creepage" in given:
+        given["creepage"] = _without_unknown(both("friction['creepage']", given["creepage"], "two numbers"), forces)
     for name in _PAIRS:
         if name in given:
             getattr(effect, name)[:] = two(f"friction['{name}']", given[name])
     for name in _NUMBERS:
         if name in given:
             setattr(effect, name, number(f"friction['{name}']", given[name]))
-    for k, force in enumerate(both("friction['force']", given.get("force", (None, None)), "a pair, None where the creepage is given")):
+    for k, force in enumerate(forces):
         if force is not None:
             effect.prescribed[k], effect.force[k] = PRESCRIBED_TANGENTIAL_FORCE, number(f"friction['force'][{k}]", force)
     for name in _FIELDS:
@@ -67,6 +70,15 @@ def friction(value: Any, shape: tuple[int, int]) -> tuple[Any, list[Any], str]:
     kept += _row_tables(effect, given)
     is_length = "motion" not in given and (any(effect.creepage) or effect.spin != 0.0)
     return effect, kept, _IS_LENGTH if is_length else ""
+
+
+def _without_unknown(creepage: tuple[Any, Any], forces: tuple[Any, Any]) -> tuple[Any, Any]:
+    """Creepages with 0 in the place of None, which stands where the force is given."""
+    for k, one in enumerate(creepage):
+        if one is None and forces[k] is None:
+            raise ValueError(f"friction['creepage'][{k}] and friction['force'][{k}] are None; give one of them")
+    x, y = (0.0 if one is None else one for one in creepage)
+    return x, y
 
 
 def _one_or_each(effect: Any, name: str, value: Any, shape: tuple[int, int]) -> list[Any]:

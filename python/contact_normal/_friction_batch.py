@@ -15,9 +15,11 @@ from ._library import check, initialised, library
 from ._solved import reported
 from ._structs import names
 from ._tangential import with_pressures
+from ._units import WithUnits, checked
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+    from matplotlib.axes import Axes
     from typing_extensions import Unpack
 
     from ._arguments import Doubles
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
     from ._scene import Scene
 
 
-class FrictionBatch:
+class FrictionBatch(WithUnits):
     """What `friction_batch` found: of each entry its numbers, and the fields if they were asked for.
 
     Attributes
@@ -50,6 +52,8 @@ class FrictionBatch:
         With `fields=True`: what particles of the interface carry, with a law of friction or a layer that yields; else zeros.
     report : dict
         Of the normal problem.
+    units : (str, str) or None
+        Names of the units of lengths and forces. May be set.
     """
 
     traction: npt.NDArray[np.float64] | None = None
@@ -76,6 +80,25 @@ class FrictionBatch:
         message = f"; {self.message.splitlines()[0]}" if self.message else ""
         largest = f", largest residual {np.nanmax(self.residual):.1e}" if solved else ""
         return f"<FrictionBatch: {solved} of {len(self.status)} entries solved{largest}{message}>"
+
+    def plot(self, over: str | None = None, axes: Axes | None = None) -> Axes:
+        """Draws the tangential forces over the creepages: a creep curve.
+
+        Parameters
+        ----------
+        over : {"x", "y"}, optional
+            Which creepage; by default the one that changes more.
+        axes : matplotlib.axes.Axes, optional
+            Where to draw; by default the axes of a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes, to add to or to save.
+        """
+        from ._plot_lines import plot_creep_curve
+
+        return plot_creep_curve(self, over, axes)
 
     def _results(self) -> Any:
         """The struct that points to these arrays."""
@@ -106,6 +129,7 @@ def friction_batch(
     layer: npt.ArrayLike | None = None,
     pressure_limit: npt.ArrayLike | None = None,
     fields: bool = False,
+    units: tuple[str, str] | None = None,
     progress: Callable[[Progress], Any] | bool | None = None,
     **given: Unpack[SolveOptions],
 ) -> FrictionBatch:
@@ -135,7 +159,7 @@ def friction_batch(
     progress : callable or bool, optional
         Called with a `Progress` about once for each entry, whose `cycles` counts entries that are done; a true result cancels. True: draws
         a bar on stderr.
-    shear_modulus, poisson_ratio, young_modulus, influence, layer, pressure_limit, **given
+    shear_modulus, poisson_ratio, young_modulus, influence, layer, pressure_limit, units, **given
         As for `solve`. With `influence` the friction needs coefficients of its own, too.
 
     Returns
@@ -147,17 +171,18 @@ def friction_batch(
     ContactNormalError
         If the call itself is refused; an entry that is refused has a negative `status`.
     """
+    struct, units = options(given), checked(units)
     scene, pressures = with_pressures(
         h, pressure, dx, dy, {"approach": approach, "force": force, "mean_pressure": mean_pressure}, shear_modulus=shear_modulus,
         poisson_ratio=poisson_ratio, young_modulus=young_modulus,
         effects={"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "friction": friction},
     )
-    return table_of(scene, pressures, entries, options(given), progress, fields, None)
+    return table_of(scene, pressures, entries, struct, progress, fields, None, units)
 
 
 def table_of(
     scene: Scene, pressures: Doubles | None, entries: Any, struct: Any, progress: Callable[[Progress], Any] | bool | None, fields: bool,
-    handle: Handle | None,
+    handle: Handle | None, units: Any = None,
 ) -> FrictionBatch:
     """Solves a table of entries, with a handle or without."""
     table = doubles("entries", entries, dimensions="(n, 3)")
@@ -177,5 +202,6 @@ def table_of(
     if not len(table) or untouched in found.status:
         check(status, message)
     found.message = message if status else ""
+    found.units = units
     found.report = reported(report)
     return found

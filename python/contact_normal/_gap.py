@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from ._grid import centres
+from ._short import Short
 from ._units import Units
 
 if TYPE_CHECKING:
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
 _HEAD = "# Undeformed distance on a grid, made by contact-normal"
 
 
-@dataclass(frozen=True, eq=False)
-class Gap:
+@dataclass(frozen=True, eq=False, repr=False)
+class Gap(Short):
     """The undeformed distance of two surfaces on a grid of rectangular elements; x and y of it are the centres of columns and rows.
 
     Attributes
@@ -46,6 +47,8 @@ class Gap:
     middle: tuple[float, float] = (0.0, 0.0)
     period: str | None = None
     units: Units = None
+
+    _INSTEAD: ClassVar[str] = "call its solve(...), or pass its h, dx and dy"
 
     @property
     def x(self) -> Doubles:
@@ -96,9 +99,15 @@ class Gap:
         lines = Path(path).read_text(encoding="utf-8").splitlines()
         if len(lines) < 3 or lines[0] != _HEAD:
             raise ValueError(f"{path} does not begin with {_HEAD!r}: it is no file of a gap")
-        words = lines[2].split()
-        mx, my, dx, dy = int(words[0]), int(words[1]), float(words[2]), float(words[3])
-        h = np.array([float(line) for line in lines[3:]])
+        try:
+            first, second, third, fourth = lines[2].split()
+            mx, my, dx, dy = int(first), int(second), float(third), float(fourth)
+        except ValueError:
+            raise ValueError(f"{path} has {lines[2]!r} in line 3; it must have mx my dx dy") from None
+        try:
+            h = np.array([float(line) for line in lines[3:]])
+        except ValueError as error:
+            raise ValueError(f"{path}: {error}; there must be one undeformed distance a line") from None
         if h.size != mx * my:
             raise ValueError(f"{path} has {h.size} distances; {mx} x {my} elements need {mx * my}")
         return cls(h.reshape(my, mx), dx, dy)

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 from ._arguments import Both, SolveOptions, options
 from ._scene import Scene
+from ._units import checked
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-EFFECTS = ("influence", "layer", "pressure_limit", "period", "patches", "row_tables", "coating", "friction")
+EFFECTS = ("influence", "layer", "pressure_limit", "period", "patches", "row_tables", "coating", "friction", "adhesion", "visco")
 _LOADS = ("approach", "force", "mean_pressure", "shear_modulus", "poisson_ratio", "young_modulus", "e_star")
 
 
@@ -31,6 +32,9 @@ class SceneArguments(SolveOptions, total=False):
     patches: tuple[npt.ArrayLike, npt.ArrayLike] | None
     coating: Any
     friction: Mapping[str, Any] | None
+    adhesion: Mapping[str, Any] | None
+    visco: Mapping[str, Any] | None
+    units: tuple[str, str] | None
 
 
 def effects_in(given: dict[str, Any]) -> dict[str, Any]:
@@ -41,6 +45,9 @@ def effects_in(given: dict[str, Any]) -> dict[str, Any]:
 def scene_and_options(h: Any, dx: Any, dy: Any, given: Mapping[str, Any]) -> tuple[Scene, Any]:
     """The scene, and a `contact_normal_options`."""
     rest = dict(given)
+    checked(rest.pop("units", None))
     effects = effects_in(rest)
     loads = {name: rest.pop(name, None) for name in _LOADS}
-    return Scene(h, dx, dy, effects=effects, **loads), options(rest)
+    # First: a load whose name is written wrong is an unknown option, and not a load that lacks.
+    struct = options(rest)
+    return Scene(h, dx, dy, effects=effects, **loads), struct

@@ -11,6 +11,7 @@ import numpy as np
 from ._arguments import doubles, integer, number, pointer
 from ._calls import called
 from ._library import check, initialised, library
+from ._short import told
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -37,6 +38,9 @@ class FlashTemperature(NamedTuple):
     share: float
     largest: tuple[float, float]
     at: tuple[tuple[float, float], tuple[float, float]]
+
+    def __repr__(self) -> str:
+        return told(self, self._fields)
 
 
 def _both(name: str, value: Any) -> Any:

@@ -185,6 +185,10 @@ def initialised(name: str) -> Any:
     return kind.from_buffer_copy(_INITIALISED[name])
 
 
+# An element (ix, iy) of a message.
+_ELEMENT = re.compile(r"element \((\d+), (\d+)\)")
+
+
 class ContactNormalError(Exception):
     """A call that the library refused.
 
@@ -197,6 +201,8 @@ class ContactNormalError(Exception):
     """
 
     def __init__(self, status: int, message: str) -> None:
+        # The library counts x first; arrays of Python have x last.
+        message = _ELEMENT.sub(r"element [\2, \1]", message)
         text = library.contact_normal_status_text(status).decode()
         super().__init__(f"{message or text} (status {status}: {text})")
         self.status, self.message = status, message

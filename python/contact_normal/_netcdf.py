@@ -25,6 +25,8 @@ def write(path: str | os.PathLike[str], dataset: Any) -> None:
     """Writes NetCDF, whole or not at all."""
     xarray()
     target = Path(path)
+    if not target.parent.is_dir():
+        raise FileNotFoundError(f"{target}: there is no folder {target.parent}")
     unfinished = target.with_name(target.name + ".unfinished")
     coding = {name: {"zlib": True, "complevel": 4} for name in dataset.data_vars if dataset[name].ndim}
     dataset.assign_attrs(made_by=f"contact-normal {VERSION}").to_netcdf(unfinished, engine="netcdf4", encoding=coding)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._axes import EDGE, edges, exterior, name_axes, new_axes
-from ._units import label, with_unit
+from ._units import label, title
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -19,6 +19,10 @@ if TYPE_CHECKING:
 STICK, SLIP = (0.78, 0.87, 0.96), (0.99, 0.85, 0.74)
 # Lines of more segments are drawn as pixels in files of vectors.
 _SEGMENTS = 4000
+# Where this percentile of the pressures is less than half of the largest, colours end with it.
+_USUAL = 99.5
+# Negative pressures below this part of the largest are none, nor are forces below this part of others.
+_ROUND_OFF = 1e-12
 
 
 def plot_pressure(result: Result, axes: Axes | None) -> Axes:
@@ -26,26 +30,38 @@ def plot_pressure(result: Result, axes: Axes | None) -> Axes:
     axes = axes or new_axes((6.8, 5.1))
     my, mx = result.pressure.shape
     x_edges, y_edges = edges(result.x, result.dx), edges(result.y, result.dy)
-    shown = np.ma.masked_where(~result.contact, result.pressure)
-    image = axes.imshow(
-        shown,
-        origin="lower",
-        extent=(x_edges[0], x_edges[-1], y_edges[0], y_edges[-1]),
-        cmap="viridis",
-        vmin=0.0,
-        interpolation="nearest",
-    )
+    shown, colours = _coloured(result)
+    extent = (x_edges[0], x_edges[-1], y_edges[0], y_edges[-1])
+    image = axes.imshow(shown, origin="lower", extent=extent, interpolation="nearest", **colours)
     axes.set_facecolor(exterior(axes))
     _outline(axes, result.contact, x_edges, y_edges)
-    axes.figure.colorbar(image, ax=axes, shrink=0.9, label=label("pressure", "pressure", result.units))
+    is_cut = colours.get("vmax", np.inf) < result.pressure.max(initial=0.0)
+    name = f"pressure, at most {result.pressure.max():.4g}" if is_cut else "pressure"
+    axes.figure.colorbar(image, ax=axes, shrink=0.9, extend="max" if is_cut else "neither", label=label(name, "pressure", result.units))
     name_axes(axes, result.units)
-    force, approach = with_unit(f"{result.force:.5g}", "force", result.units), with_unit(f"{result.approach:.5g}", "length", result.units)
+    carried = float(np.abs(result.pressure).sum()) * result.dx * result.dy
+    total = result.force if abs(result.force) > _ROUND_OFF * carried else 0.0
+    force, approach = title(f"{total:.5g}", "force", result.units), title(f"{result.approach:.5g}", "length", result.units)
     axes.set_title(f"force {force}, approach {approach}, {mx} × {my} elements", fontsize=10)
     return axes
 
 
+def _coloured(result: Result) -> tuple[Any, dict[str, Any]]:
+    """What `plot_pressure` draws, and its colours."""
+    largest = float(np.abs(result.pressure).max(initial=0.0))
+    if result.pressure.min(initial=0.0) >= -_ROUND_OFF * largest:
+        colours = {"cmap": "viridis", "vmin": 0.0}
+        usual = float(np.percentile(result.pressure[result.contact], _USUAL)) if result.contact.any() else 0.0
+        # Rough surfaces have a few peaks, beside which all else would be dark.
+        return np.ma.masked_where(~result.contact, result.pressure), {**colours, "vmax": usual} if 0.0 < usual < 0.5 * largest else colours
+    # Bodies that stick also pull outside the contact area: both signs have colours of their own, and white is 0.
+    return result.pressure, {"cmap": "RdBu_r", "vmin": -largest, "vmax": largest}
+
+
 def plot_traction(result: Solved, axes: Axes | None) -> Axes:
     """See `Result.plot_traction`."""
+    if not result.has_friction:
+        raise ValueError("the result has no tractions: its scene names no friction")
     axes = axes or new_axes((6.8, 5.1))
     my, mx = result.stick_slip.shape
     x_edges, y_edges = edges(result.x, result.dx), edges(result.y, result.dy)
@@ -57,9 +73,11 @@ def plot_traction(result: Solved, axes: Axes | None) -> Axes:
     _arrows(result, axes)
     _outline(axes, result.stick_slip > 0, x_edges, y_edges)
     _outline(axes, result.stick_slip == 1, x_edges, y_edges)
-    fx, fy = result.tangential_force
+    # What is round-off of the other part is 0.
+    size = float(np.hypot(*result.tangential_force))
+    fx, fy = (part if abs(part) > _ROUND_OFF * size else 0.0 for part in result.tangential_force)
     name_axes(axes, result.units)
-    force = with_unit(f"({fx:.4g}, {fy:.4g})", "force", result.units)
+    force = title(f"({fx:.5g}, {fy:.5g})", "force", result.units)
     axes.set_title(f"tractions: force {force}; stick blue, slip orange", fontsize=10)
     return axes
 
@@ -78,7 +96,7 @@ def _arrows(result: Solved, axes: Axes) -> None:
     arrows = axes.quiver(result.x[ix], result.y[iy], qx, qy, angles="xy", scale_units="xy", scale=scale, pivot="mid", width=0.004)
     unit = 10.0 ** np.floor(np.log10(largest))
     shown = unit * max(step for step in (1.0, 2.0, 5.0) if step * unit <= largest)
-    axes.quiverkey(arrows, 0.98, 0.04, shown, with_unit(f"{shown:g}", "pressure", result.units), labelpos="W", coordinates="axes",
+    axes.quiverkey(arrows, 0.98, 0.04, shown, title(f"{shown:g}", "pressure", result.units), labelpos="W", coordinates="axes",
                    color=axes.xaxis.label.get_color())
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ._axes import SIZE, new_axes
 
 if TYPE_CHECKING:
@@ -15,10 +17,24 @@ if TYPE_CHECKING:
     from ._quantities import Quantities
 
 _COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
+# Changes below this part of the target are not drawn.
+_LEAST = 1e-4
+# Over more decades only powers of ten have numbers.
+_DECADES = 2.0
 
 
 def _error_axes(axes: Axes) -> None:
+    from matplotlib.ticker import FixedLocator, LogFormatterSciNotation, NullFormatter
+
     axes.set(xscale="log", yscale="log", xlabel="time [s]", ylabel="relative error")
+    first, last = axes.get_xlim()
+    if last < 10.0**_DECADES * first:
+        # Few powers of ten: numbers between them have room, but not all nine.
+        between = (1.0, 2.0, 5.0) if last > 10.0 * first else (1.0, 2.0, 3.0, 5.0, 7.0)
+        powers = 10.0 ** np.arange(np.floor(np.log10(first)), np.ceil(np.log10(last)))
+        axes.xaxis.set_major_locator(FixedLocator(np.outer(powers, between).ravel().tolist()))
+        axes.xaxis.set_major_formatter(LogFormatterSciNotation(minor_thresholds=(np.inf, np.inf)))
+        axes.xaxis.set_minor_formatter(NullFormatter())
     axes.grid(True, which="major", color="0.5", alpha=0.2, linewidth=0.8)
     axes.spines[["top", "right"]].set_visible(False)
 
@@ -28,10 +44,12 @@ def plot_quantities(rows: Quantities, axes: Axes | None) -> Axes:
     axes = axes or new_axes(SIZE)
     for k, name in enumerate(dict.fromkeys(row.name for row in rows)):
         known = [row for row in rows if row.name == name and row.error > 0 and row.value]
+        called = rows.estimated if name == "force" else name.replace("_", " ")
         if not known:
+            axes.plot([], [], " ", label=f"{called}:\n{rows.last(name).lack or 'no error'}")
             continue
         seconds, errors = [row.seconds for row in known], [row.error / abs(row.value) for row in known]
-        axes.plot(seconds, errors, "o-", color=_COLOURS[k % len(_COLOURS)], label=name.replace("_", " "), markersize=5)
+        axes.plot(seconds, errors, "o-", color=_COLOURS[k % len(_COLOURS)], label=called, markersize=5)
     _write_elements(axes, [(row.seconds, row.shape) for row in rows])
     _error_axes(axes)
     _write_legend(axes)
@@ -84,8 +102,10 @@ def _write_elements(axes: Axes, grids: list[tuple[float, tuple[int, int]]]) -> N
 
 def plot_prices(prices: Prices, axes: Axes | None, measured: Any) -> Axes:
     """See `Prices.plot`."""
-    axes = axes or new_axes(SIZE)
     had = [price for price in prices if not price.obstacle and price.seconds > 0]
+    if not had and not measured:
+        raise ValueError(f"no accuracy of the list can be had: {', '.join(dict.fromkeys(price.obstacle for price in prices))}")
+    axes = axes or new_axes(SIZE)
     axes.plot([price.seconds for price in had], [price.error for price in had], "-", color=_COLOURS[0], label="predicted")
     axes.plot([price.seconds for price in had], [price.error for price in had], "o", mfc="none", mec=_COLOURS[0], label="grids of the list")
     if measured:
@@ -115,7 +135,8 @@ def plot_bill(bill: Bill, axes: Axes | None) -> Axes:
                       xerr=[[min(error, 0.99 * size)], [error]], error_kw={"elinewidth": 1, "ecolor": "0.5"})
     axes.axvline(bill.target, color="0.5", linestyle="--", linewidth=1)
     axes.annotate("target", (bill.target, 0.0), xycoords=("data", "axes fraction"), xytext=(3, 3), textcoords="offset points", fontsize=8)
-    axes.set(xscale="log", xlabel="relative change without the effect", yticks=range(len(singles)))
+    # Changes far below the target are all the same.
+    axes.set(xscale="log", xlim=(max(axes.get_xlim()[0], _LEAST * bill.target), None), xlabel="relative change without the effect", yticks=range(len(singles)))
     axes.set_yticklabels([_bill_label(bill, omitted) for omitted in singles])
     axes.invert_yaxis()
     axes.grid(True, axis="x", color="0.5", alpha=0.2, linewidth=0.8)

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._axes import EDGE, SIZE, borders, line_of, new_axes
-from ._units import label, with_unit
+from ._units import label, title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ._creep_forces import CreepForceTable
+    from ._friction_batch import FrictionBatch
     from ._result import Result
     from ._solved import Solved
 
@@ -28,7 +29,7 @@ def plot_section(result: Result, x: float | None, y: float | None, axes: Axes | 
     _mark_borders(axes, borders(result.contact[line], places, d))
     axes.set(xlabel=label(along, "length", result.units), ylabel=label("pressure", "pressure", result.units), xlim=(places[0], places[-1]))
     axes.set_ylim(bottom=min(0.0, float(result.pressure[line].min())))
-    axes.set_title(f"{across} = {with_unit(f'{where:.4g}', 'length', result.units)}; dotted: the contact's edge", fontsize=10)
+    axes.set_title(f"{across} = {title(f'{where:.4g}', 'length', result.units)}; dotted: the contact's edge", fontsize=10)
     return axes
 
 
@@ -45,8 +46,25 @@ def plot_histogram(result: Solved, bins: int, axes: Axes | None) -> Axes:
     share = np.full(inside.shape, 100.0 / max(1, inside.size))
     axes.hist(inside, bins=bins, weights=share)
     axes.set(xlabel=label("pressure", "pressure", result.units), ylabel="share of the contact area [%]")
-    area = with_unit(f"{result.contact_area:.4g}", "area", result.units)
-    axes.set_title(f"contact area {area}, largest pressure {with_unit(f'{result.max_pressure:.4g}', 'pressure', result.units)}", fontsize=10)
+    area = title(f"{result.contact_area:.4g}", "area", result.units)
+    axes.set_title(f"contact area {area}, largest pressure {title(f'{result.max_pressure:.4g}', 'pressure', result.units)}", fontsize=10)
+    return axes
+
+
+def plot_creep_curve(batch: FrictionBatch, over: str | None, axes: Axes | None) -> Axes:
+    """See `FrictionBatch.plot`."""
+    if over not in (None, "x", "y"):
+        raise ValueError(f'over is {over!r}; it must be "x" or "y"')
+    if not (batch.status >= 0).any():
+        raise ValueError("no entry is solved: there is nothing to draw")
+    ranges = np.nanmax(batch.creepage, axis=0) - np.nanmin(batch.creepage, axis=0)
+    k = int(ranges[1] > ranges[0]) if over is None else "xy".index(over)
+    axes = axes or new_axes(SIZE)
+    for side, name in enumerate("xy"):
+        axes.plot(batch.creepage[:, k], batch.force[:, side], "o-", markersize=4, label=f"$F_{name}$")
+    axes.axhline(0.0, color="0.5", linewidth=0.8, zorder=0)
+    axes.set(xlabel=f"creepage in {'xy'[k]}", ylabel=label("tangential force on body 1", "force", batch.units))
+    axes.legend()
     return axes
 
 
@@ -65,6 +83,8 @@ def plot_contact_area(results: Sequence[Solved], axes: Axes | None = None) -> Ax
     matplotlib.axes.Axes
         The axes, to add to or to save.
     """
+    if not isinstance(results, Sequence):
+        raise TypeError(f"results is a {type(results).__name__}; it must be a sequence of results")
     if not results:
         raise ValueError("results is empty; it must have at least one result")
     axes, units = axes or new_axes(SIZE), results[0].units

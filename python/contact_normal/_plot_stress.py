@@ -8,7 +8,7 @@ import numpy as np
 
 from ._axes import EDGE, SIZE, borders, line_of, middle, nearest, new_axes
 from ._stress import COMPONENTS
-from ._units import label, unit, with_unit
+from ._units import label, unit, title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -53,7 +53,7 @@ def plot_stress_section(stress: SubsurfaceStress, x: float | None, y: float | No
     axes.plot(ends, np.full(len(ends), depths[0]), "v", color=EDGE, markersize=7 if len(ends) <= 12 else 2, clip_on=False, label="edge of the contact")
     axes.figure.colorbar(filled, ax=axes, label=label({"von_mises": "von Mises"}.get(of, of.replace("_", " ")), "pressure", units))
     axes.set(xlabel=label(along, "length", units), ylabel=label("depth z", "length", units), aspect="equal")
-    largest, length = with_unit(f"{shown[row, column]:.4g}", "pressure", units), f" {unit('length', units)}" if units else ""
+    largest, length = title(f"{shown[row, column]:.4g}", "pressure", units), f" {unit('length', units)}" if units else ""
     axes.set_title(f"{across} = {where:.4g}{length}: largest {largest} at {along} = {places[column]:.4g}{length}, z = {depths[row]:.4g}{length}",
                    fontsize=10)
     axes.set_ylim(depths[-1], depths[0])

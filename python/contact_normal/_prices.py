@@ -6,12 +6,13 @@ import ctypes
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ._arguments import AccuracyOptions, Both, doubles, options
+from ._arguments import AccuracyOptions, Both, doubles, options, relative
 from ._calls import called
 from ._library import check, initialised, library
 from ._quantities import QUANTITIES
 from ._refined import limits, on_any_grid
 from ._structs import Price as PriceStruct
+from ._units import checked
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -80,6 +81,10 @@ class Prices(list[Price]):
         super().__init__(rows)
         self.quantity = quantity
 
+    def __str__(self) -> str:
+        head = f"{'relative error':>14} {'elements':>13} {'tolerance':>10} {'seconds':>9} {'MB':>8}"
+        return "\n".join([head, *(_line(price) for price in self)])
+
     def plot(self, axes: Axes | None = None, measured: Sequence[tuple[float, float]] = ()) -> Axes:
         """Draws error against seconds, with the elements of each grid.
 
@@ -98,6 +103,15 @@ class Prices(list[Price]):
         from ._plot_accuracy import plot_prices
 
         return plot_prices(self, axes, measured)
+
+
+def _line(price: Price) -> str:
+    """One row of the table; what is not known is a dash."""
+    my, mx = price.shape
+    elements = f"{mx} x {my}" if mx else "-"
+    seconds = f"{price.seconds:.2g}" if price.seconds >= 0.0 else "-"
+    memory = f"{price.bytes / 1e6:.3g}" if price.bytes else "-"
+    return f"{price.target:14.1e} {elements:>13} {price.tolerance:10.0e} {seconds:>9} {memory:>8}  {price.obstacle}".rstrip()
 
 
 def cost_of_accuracy(
@@ -125,15 +139,17 @@ def cost_of_accuracy(
     patches: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     coating: Any = None,
     friction: Mapping[str, Any] | None = None,
+    adhesion: Mapping[str, Any] | None = None,
     visco: Mapping[str, Any] | None = None,
+    units: tuple[str, str] | None = None,
     **given: Unpack[AccuracyOptions],
 ) -> Prices:
     """Predicts what relative errors cost: grid, tolerance, seconds and bytes, from solves on small grids only.
 
     Parameters
     ----------
-    h, dx, dy, shape, corner, approach, force, mean_pressure, shear_modulus, poisson_ratio, young_modulus, e_star, **given
-        As for `solve_to_accuracy`, with its effects.
+    h, dx, dy, shape, corner, approach, force, mean_pressure, shear_modulus, poisson_ratio, young_modulus, e_star, units, **given
+        As for `solve_to_accuracy`, with its effects; prices have no units.
     visco : mapping, optional
         Bodies that relax, as for `solve`: a step from rest. Each price then has the `time_error` of the step.
     targets : sequence of float
@@ -166,15 +182,17 @@ def cost_of_accuracy(
     if quantity not in QUANTITIES:
         raise ValueError(f"quantity is {quantity!r}; it must be one of {', '.join(QUANTITIES)}")
     effects = {"layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches, "coating": coating, "friction": friction,
-               "visco": visco}
+               "adhesion": adhesion, "visco": visco}
+    struct = options(given)
+    checked(units)
     scene, surface, _ = on_any_grid(
         h, dx, dy, shape, corner, effects, approach=approach, force=force, mean_pressure=mean_pressure, shear_modulus=shear_modulus,
         poisson_ratio=poisson_ratio, young_modulus=young_modulus, e_star=e_star,
     )
-    struct, accuracy = options(given), limits(max_seconds, max_bytes, max_elements, surface)
-    relative = doubles("targets", targets, dimensions="n")
-    n = len(relative)
-    wanted, rows = (ctypes.c_double * n)(*relative), (PriceStruct * n)(*[initialised("price")][:n])
+    accuracy = limits(max_seconds, max_bytes, max_elements, surface)
+    errors = doubles("targets", targets, dimensions="n")
+    n = len(errors)
+    wanted, rows = (ctypes.c_double * n)(*(relative(f"targets[{k}]", error) for k, error in enumerate(errors))), (PriceStruct * n)(*[initialised("price")][:n])
     status, message = called(
         library.contact_normal_cost_of_accuracy, ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(accuracy),
         QUANTITIES[quantity], n, wanted, rows, keep=(scene, surface),

@@ -63,8 +63,8 @@ def pull_off(
     """
     effects = {"influence": influence, "layer": layer, "period": period, "coating": coating, "adhesion": adhesion}
     force = 0.0 if force is None and approach is None else force
-    scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects, young_modulus=young_modulus, e_star=e_star)
     struct = options(given)
+    scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects, young_modulus=young_modulus, e_star=e_star)
     outputs = Outputs(scene.shape, has_adhesion=True)
     watched = Watched(progress, struct, scene)
     status, message = watched.call(

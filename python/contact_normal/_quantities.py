@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from . import _constants
 from ._arguments import integer
 from ._calls import called
+from ._constants import PRESCRIBED_APPROACH
 from ._given import SceneArguments, scene_and_options
 from ._library import check, initialised, library
 from ._structs import QuantityRow
@@ -74,7 +75,15 @@ class Quantity(NamedTuple):
 
 
 class Quantities(list[Quantity]):
-    """The rows of `quantities`, coarsest grid first."""
+    """The rows of `quantities`, coarsest grid first.
+
+    Attributes
+    ----------
+    estimated : str
+        What the quantity "force" is: "force", or "approach" where the force is prescribed.
+    """
+
+    estimated: str = "force"
 
     def last(self, name: str) -> Quantity:
         """The row of a quantity on the finest grid."""
@@ -83,8 +92,11 @@ class Quantities(list[Quantity]):
     def __str__(self) -> str:
         lines = [f"{'quantity':18}{'grid':>13}{'value':>16}{'error':>12}{'seconds':>12}"]
         for row in self:
-            grid, error = f"{row.shape[1]} x {row.shape[0]}", f"{row.error:.2g}" if row.error >= 0 else row.lack
-            lines.append(f"{row.name:18}{grid:>13}{row.value:16.8g}{error:>12}{row.seconds:12.2g}")
+            grid, error = f"{row.shape[1]} x {row.shape[0]}", f"{row.error:.2g}" if row.error >= 0 else "-"
+            value = "-" if row.value != row.value else f"{row.value:.8g}"
+            lines.append(f"{row.name:18}{grid:>13}{value:>16}{error:>12}{row.seconds:12.2g}  {row.lack}".rstrip())
+        if self.estimated != "force" and any(row.name == "force" for row in self):
+            lines.append(f"force is that of the {self.estimated}: the force is prescribed")
         return "\n".join(lines)
 
     def plot(self, axes: Axes | None = None) -> Axes:
@@ -155,4 +167,6 @@ def quantities(
         ctypes.byref(written), keep=(scene,),
     )
     check(status, message)
-    return Quantities(Quantity.of(row) for row in rows[: written.value])
+    found = Quantities(Quantity.of(row) for row in rows[: written.value])
+    found.estimated = "force" if scene.struct.load == PRESCRIBED_APPROACH else "approach"
+    return found

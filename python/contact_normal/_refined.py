@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ._arguments import both, integer, number, two
+from ._arguments import both, integer, number, relative, two
 from ._callbacks import Surface
 from ._library import initialised
 from ._quantities import QUANTITIES
@@ -49,4 +49,4 @@ def set_targets(accuracy: Any, targets: Mapping[str, float] | None) -> None:
         member = "target" if name == "force" else f"{name}_target"
         if name not in QUANTITIES:
             raise ValueError(f"targets has {name!r}; it may have {', '.join(QUANTITIES)}")
-        setattr(accuracy, member, number(f"targets[{name!r}]", target))
+        setattr(accuracy, member, relative(f"targets[{name!r}]", target))

@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ._bill import omissions
 from ._constants import PRESCRIBED_APPROACH
 from ._ledger import Ledger
@@ -14,7 +16,6 @@ from ._structs import LedgerRow, names
 from ._units import with_unit
 
 if TYPE_CHECKING:
-    import numpy as np
     import numpy.typing as npt
     from matplotlib.axes import Axes
 
@@ -69,6 +70,8 @@ class Result(Solved):
         The largest pressure.
     contact_area : float
         The area of the elements in contact.
+    mean_gap : float
+        The mean of the deformed distance, over the elements that have a surface.
     warnings : tuple of str
         What to look at, even where the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN".
     tangential_force : (float, float)
@@ -112,6 +115,12 @@ class Result(Solved):
     def approach(self) -> float:
         """Approach of the bodies."""
         return float(self.report["approach"])
+
+    @property
+    def mean_gap(self) -> float:
+        """The mean of the deformed distance, over the elements that have a surface; nan without any."""
+        known = self.deformed_distance[np.isfinite(self.deformed_distance)]
+        return float(known.mean()) if known.size else float("nan")
 
     def _numbers(self) -> list[str]:
         force, *others = super()._numbers()

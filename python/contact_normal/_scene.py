@@ -126,7 +126,7 @@ class Scene:
 
     def _coat(self, value: Any) -> None:
         """Names the coatings of both bodies, None: none."""
-        for body, coating in enumerate(both("coating", value, "a pair: that of body 1 and of body 2, None where there is none")):
+        for body, coating in enumerate(both("coating", value, "a pair: that of body 1 and of body 2, each (thickness, shear_modulus, poisson_ratio) or None")):
             if coating is not None:
                 effect = coating_of(coating, f"coating[{body}]")
                 self.struct.coating[body] = ctypes.pointer(effect)

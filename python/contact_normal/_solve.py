@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from ._arguments import AccuracyOptions, Both, SolveOptions, number, options
+from ._arguments import AccuracyOptions, Both, SolveOptions, options, relative
 from ._callbacks import Progress, Watched
 from ._calls import called
 from ._handle import Handle
@@ -142,9 +142,10 @@ def solve(
     """
     effects = {"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches,
                "row_tables": row_tables, "coating": coating, "friction": friction, "adhesion": adhesion, "visco": visco}
+    # Options first: a load whose name is written wrong is an unknown option, and not a load that lacks.
+    struct = options(given)
     scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects, mean_pressure=mean_pressure, young_modulus=young_modulus,
                   e_star=e_star)
-    struct = options(given)
     outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None, scene, adhesion is not None)
     watched = Watched(progress, struct, scene)
     status, message = watched.call(
@@ -206,6 +207,8 @@ def solve_to_accuracy(
     patches: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     coating: Any = None,
     friction: Mapping[str, Any] | None = None,
+    adhesion: Mapping[str, Any] | None = None,
+    visco: Mapping[str, Any] | None = None,
     units: tuple[str, str] | None = None,
     progress: Callable[[Progress], Any] | bool | None = None,
     **given: Unpack[AccuracyOptions],
@@ -238,8 +241,8 @@ def solve_to_accuracy(
         Of the rectangle, for a callable `h`; by default the rectangle is centred on (0, 0).
     approach, force, mean_pressure, shear_modulus, poisson_ratio, young_modulus, e_star, units, progress, **given
         As for `solve`.
-    layer, pressure_limit, period, patches, coating, friction
-        As for `solve`. Arrays are those of the first grid; other grids have their means.
+    layer, pressure_limit, period, patches, coating, friction, adhesion, visco
+        As for `solve`. Arrays are those of the first grid; other grids have their means. `adhesion` needs a "range", and `visco` is a step from rest.
 
     Returns
     -------
@@ -260,17 +263,18 @@ def solve_to_accuracy(
     >>> result.status, result.reached <= 1e-3
     (0, True)
     """
-    effects = {"layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches, "coating": coating, "friction": friction}
+    effects = {"layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches, "coating": coating, "friction": friction,
+               "adhesion": adhesion, "visco": visco}
+    struct, units = options(given), checked(units)
     scene, surface, middle = on_any_grid(
         h, dx, dy, shape, corner, effects, approach=approach, force=force, mean_pressure=mean_pressure, shear_modulus=shear_modulus,
         poisson_ratio=poisson_ratio, young_modulus=young_modulus, e_star=e_star,
     )
-    struct, units = options(given), checked(units)
     watched = Watched(progress, struct, None)
     accuracy, handle = limits(max_seconds, max_bytes, max_elements, surface), Handle()
-    accuracy.target = number("target", target)
-    accuracy.max_pressure_target = number("max_pressure_target", max_pressure_target)
-    accuracy.contact_area_target = number("contact_area_target", contact_area_target)
+    accuracy.target = relative("target", target)
+    accuracy.max_pressure_target = relative("max_pressure_target", max_pressure_target)
+    accuracy.contact_area_target = relative("contact_area_target", contact_area_target)
     set_targets(accuracy, targets)
     ledger = Outputs((0, 0))
 
@@ -284,7 +288,7 @@ def solve_to_accuracy(
         if surface:
             surface.finish()
         check(status, message)
-        outputs = Outputs((accuracy.my, accuracy.mx), has_friction=friction is not None)
+        outputs = Outputs((accuracy.my, accuracy.mx), has_friction=friction is not None, has_adhesion=adhesion is not None)
         outputs.rows = ledger.rows
         if handle:
             check(*called(library.contact_normal_solver_fields, ctypes.byref(outputs.fields), handle=handle))

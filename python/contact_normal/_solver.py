@@ -152,9 +152,9 @@ class Solver:
         -------
         Result
         """
+        struct = options({**self._given, **given})
         scene = self._scene(h, {"approach": approach, "force": force, "mean_pressure": mean_pressure}, pressure_limit, friction, adhesion,
                             visco)
-        struct = options({**self._given, **given})
         outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None, scene, adhesion is not None)
         watched = Watched(progress, struct, scene)
         status, message = watched.call(
@@ -290,7 +290,7 @@ class Solver:
         """
         pressures = shaped("pressure", doubles("pressure", pressure), self._shape)
         scene = self._scene(np.zeros(self._shape), {"approach": 0.0, "force": None}, None, friction)
-        return table_of(scene, pressures, entries, options({**self._given, **given}), progress, fields, self._handle)
+        return table_of(scene, pressures, entries, options({**self._given, **given}), progress, fields, self._handle, self._units)
 
     def set_influence(self, influence: Any = None, friction: Mapping[str, Any] | None = None) -> None:
         """Gives later solves other influence coefficients; only for a solver that was set up with some.

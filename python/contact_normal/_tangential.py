@@ -91,11 +91,11 @@ def solve_tangential(
     >>> round(found.tangential_force[0], 4), bool((found.stick_slip == 1).any() and (found.stick_slip == 2).any())
     (9.6, True)
     """
-    effects = {"influence": influence, "layer": layer, "period": period, "friction": friction}
+    effects, struct = {"influence": influence, "layer": layer, "period": period, "friction": friction}, options(given)
     scene, pressures = with_pressures(None, pressure, dx, dy, {}, shear_modulus=shear_modulus, poisson_ratio=poisson_ratio,
                                       young_modulus=young_modulus, effects=effects)
     assert pressures is not None
-    return of_pressures(scene, pressures, options(given), progress, units, None)
+    return of_pressures(scene, pressures, struct, progress, units, None)
 
 
 def of_pressures(

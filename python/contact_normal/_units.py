@@ -13,7 +13,8 @@ Units = Optional[tuple[str, str]]
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 # Powers of length and of force.
 _POWERS = {"length": (1, 0), "force": (0, 1), "pressure": (-2, 1), "area": (2, 0), "moment": (1, 1)}
-_PRESSURES = {("m", "N"): "Pa", ("mm", "N"): "MPa", ("um", "N"): "TPa", ("m", "kN"): "kPa", ("mm", "kN"): "GPa"}
+_PRESSURES = {("m", "N"): "Pa", ("mm", "N"): "MPa", ("um", "N"): "TPa", ("m", "kN"): "kPa", ("mm", "kN"): "GPa",
+              ("um", "mN"): "GPa", ("um", "uN"): "MPa", ("nm", "nN"): "GPa"}
 
 
 def checked(units: Any) -> Units:
@@ -42,12 +43,17 @@ class WithUnits:
         self._units = checked(units)
 
 
+def _latin(name: str) -> str:
+    """The name of a unit with a u for both signs of micro."""
+    return name.replace("\u00b5", "u").replace("\u03bc", "u")
+
+
 def unit(kind: str, units: Units) -> str:
     """That of a "length", "force", "pressure", "area" or "moment"; "" where none are known."""
     if units is None:
         return ""
-    if kind == "pressure" and units in _PRESSURES:
-        return _PRESSURES[units]
+    if kind == "pressure" and (known := _PRESSURES.get((_latin(units[0]), _latin(units[1])))):
+        return known
     length, force = _POWERS[kind]
     return " ".join(name + (str(power) if power != 1 else "") for name, power in ((units[1], force), (units[0], length)) if power)
 
@@ -59,6 +65,13 @@ def with_unit(value: str, kind: str, units: Units) -> str:
 
 def label(name: str, kind: str, units: Units) -> str:
     """What stands at an axis, with raised exponents."""
-    if not units:
-        return name
-    return f"{name} [{re.sub('(?<=[a-z])-?[0-9]', lambda power: power[0].translate(_RAISED), unit(kind, units))}]"
+    return f"{name} [{_raised(unit(kind, units))}]" if units else name
+
+
+def _raised(text: str) -> str:
+    return re.sub("(?<=[a-z])-?[0-9]", lambda power: power[0].translate(_RAISED), text)
+
+
+def title(value: str, kind: str, units: Units) -> str:
+    """A number with its unit, as it stands above a picture: with raised exponents."""
+    return f"{value} {_raised(unit(kind, units))}" if units else value

@@ -10,6 +10,7 @@ import numpy as np
 from ._arguments import doubles, number, pointer
 from ._calls import called
 from ._library import check, initialised, library
+from ._short import told
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -42,6 +43,9 @@ class FrictionalWear(NamedTuple):
     volume: float
     largest_depth: float
     at: tuple[float, float]
+
+    def __repr__(self) -> str:
+        return told(self, self._fields)
 
 
 def frictional_wear(

@@ -40,6 +40,13 @@ def _positive(name: str, value: Any) -> float:
     return checked
 
 
+def _several(name: str, radii: Any) -> tuple[float, ...]:
+    """One radius for each body."""
+    if np.ndim(radii) != 1:
+        raise TypeError(f"{name} is {radii!r}; it must have one radius for each body: inf for a flat one")
+    return tuple(number(name, radius) for radius in radii)
+
+
 def circle(x: Any, radius: float) -> Doubles:
     """How far a circle of a radius has left its tangent at a distance x: exact, not a parabola; inf beyond the radius. A negative radius is a
     hollow."""
@@ -153,13 +160,16 @@ def gap(
         raise ValueError(f"elements are {mx} and {my}; they must be positive")
     dx, dy = lx / mx, ly / my
     x, y = centres(mx, dx), centres(my, dy)
-    curvature = sum(1.0 / number("radii", radius) for radius in radii)
+    radii, crown_radii = _several("radii", radii), _several("crown_radii", crown_radii)
+    curvature = sum(1.0 / radius if radius else np.inf for radius in radii)
     if not curvature > 0.0:
-        raise ValueError(f"radii are {tuple(radii)}: their curvatures add up to {curvature}; the sum must be positive")
+        raise ValueError(f"radii are {radii}: their curvatures add up to {curvature}; the sum must be positive")
     drops = [drop] if callable(drop) else list(drop)
+    if not all(callable(one) for one in drops):
+        raise TypeError("drop has a number; it must be a function of places y, as rollers.crown(...) returns, or one for each body")
     if drops and len(crown_radii):
         raise TypeError("give either drop or crown_radii")
-    across = sum((circle(x, number("radii", radius)) for radius in radii), np.zeros(mx))
-    along = sum([*(np.asarray(one(y)) for one in drops), *(circle(y, number("crown_radii", radius)) for radius in crown_radii)], np.zeros(my))
+    across = sum((circle(x, radius) for radius in radii), np.zeros(mx))
+    along = sum([*(np.asarray(one(y)) for one in drops), *(circle(y, radius) for radius in crown_radii)], np.zeros(my))
     h = across[None, :] + (along + number("tilt", tilt) * y)[:, None]
     return Gap(np.ascontiguousarray(h), dx, dy, units=units)

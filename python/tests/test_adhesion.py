@@ -59,6 +59,19 @@ class Adhesion(unittest.TestCase):
         self.assertAlmostEqual(found.report["tangential_force"][0], bound, places=6)
         self.assertTrue(0.0 < found.report["stability"] < 1.0)
 
+    def test_accuracies_and_quantities_take_it(self) -> None:
+        scene = {"approach": 0.2, "e_star": 0.75, "adhesion": STICKY}
+        rows = contact_normal.quantities(H, D, D, names=["force"], **scene)
+        self.assertAlmostEqual(rows.last("force").value, solve(approach=0.2).force, places=4)
+        found = contact_normal.to_accuracy(H, D, D, target=3e-3, **scene)
+        self.assertEqual(found.status, contact_normal.OK)
+        self.assertAlmostEqual(found.force / rows.last("force").value, 1.0, delta=rows.last("force").error / abs(found.force))
+        # Where the bodies touch, p = q - sigma; the residual of both is 1e-6.
+        differences = (found.contact_pressure - found.attraction - found.pressure)[found.contact]
+        self.assertLess(abs(differences).max(), 1e-5 * found.contact_pressure.max())
+        with self.assertRaisesRegex(contact_normal.ContactNormalError, "name a range"):
+            contact_normal.to_accuracy(H, D, D, **{**scene, "adhesion": {"work": 0.3}})
+
     def test_a_handle_follows_a_branch(self) -> None:
         with contact_normal.Solver(64, 64, D, D, e_star=0.75) as solver:
             solver.solve(H, approach=0.2, adhesion=STICKY)

@@ -78,7 +78,7 @@ class Arguments(unittest.TestCase):
             solve(method="FASTEST")
         with self.assertRaisesRegex(ValueError, "tolerance is '1e-3'; it must be a number"):
             solve(tolerance="1e-3")
-        with self.assertRaisesRegex(TypeError, "no option tolerence; there are: active_set, coarsest"):
+        with self.assertRaisesRegex(TypeError, r"no argument and no option tolerence \(is tolerance meant\?\); options are: active_set, coarsest"):
             solve(tolerence=1e-3)
 
 

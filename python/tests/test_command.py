@@ -153,13 +153,13 @@ class Commands(unittest.TestCase):
             (2, ("turn",), "invalid choice: 'turn'"),
             (3, ("solve", self.npy, "--dx", "-1", *BALL[2:]), "element sizes are -1.0 and 0.05; they must be positive and finite"),
             (3, ("solve", self.npy, *BALL, "--tolerance", "2"), "(status -2: an invalid argument)"),
-            (3, ("solve", self.npy, "--force", "1", *STEEL), "give the size of an element in one way"),
+            (3, ("solve", self.npy, "--force", "1", *STEEL), "give --dx, and --dy if it differs"),
             (3, ("solve", self.npy, *BALL, "-o", "p.xlsx"), "p.xlsx must end in one of .nc, .npz, .vtk, .vtu"),
             (3, ("solve", self.npy, *BALL, "--plot", "p.gif"), "p.gif must end in one of .png, .svg, .pdf"),
             (3, ("solve", self.npy, *BALL[:6], "--e-star", "1", "--poisson-ratio", "1", "2", "3"), "--poisson-ratio has 3 values"),
             (3, ("creep-table", "--xi", "0:1"), "--xi is 0:1; it must be numbers as 0,0.5,1 or first:last:count"),
             (4, ("solve", self.folder / "none.npy", *BALL), "No such file or directory"),
-            (4, ("solve", self.npy, *BALL, "-o", self.folder / "no" / "p.npz"), "No such file or directory"),
+            (4, ("solve", self.npy, *BALL, "-o", self.folder / "no" / "p.npz"), "there is no folder"),
         ):
             found, _, told = called(*arguments)
             self.assertEqual(found, code, arguments)

@@ -211,7 +211,8 @@ class Plots(unittest.TestCase):
         self.assertEqual(len(stress.plot_depth().get_lines()), 6)
 
     def test_units(self):
-        for units, pressure in ((("m", "N"), "Pa"), (("mm", "N"), "MPa"), (("in", "lbf"), "lbf in⁻²"), (["um", "mN"], "mN um⁻²")):
+        for units, pressure in ((("m", "N"), "Pa"), (("mm", "N"), "MPa"), (("in", "lbf"), "lbf in⁻²"), (["um", "mN"], "GPa"),
+                                (("\u00b5m", "mN"), "GPa"), (("\u03bcm", "\u00b5N"), "MPa"), (["um", "kN"], "kN um⁻²")):
             self.found.units = units
             self.assertEqual(self.found.plot().figure.axes[1].get_ylabel(), f"pressure [{pressure}]")
         for bad, words in (("mm", "units is 'mm'"), (("mm",), "units has 1 parts"), (("mm", 3), "units are"), (("mm", ""), "units are")):

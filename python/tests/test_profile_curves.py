@@ -157,7 +157,12 @@ class Files(unittest.TestCase):
         made = wheel()
         rows = "\n".join(f"{-y!r}, {z!r}" for y, z in zip(made.y.tolist(), made.z.tolist()))
         self.assert_same(profiles.read(self.written("mirrored.csv", rows), "wheel", mirror=True), made)
-        with self.assertRaisesRegex(ValueError, 'kind is not known; give "wheel" or "rail"'):
+        for gap in (";", " ; ", "\t"):
+            rows = "\n".join(f"{y:.9f}{gap}{z:.9f}".replace(".", ",") for y, z in zip(made.y.tolist(), made.z.tolist()))
+            continental = profiles.read(self.written("continental.txt", rows), "wheel")
+            # Nine digits behind the point.
+            np.testing.assert_allclose((continental.y, continental.z), (made.y, made.z), atol=5e-10)
+        with self.assertRaisesRegex(ValueError, 'kind is not known; give kind="wheel" or kind="rail"'):
             profiles.read(self.written("b.txt", rows))
         with self.assertRaisesRegex(ValueError, r"has 0 points in the columns \(0, 1\)"):
             profiles.read(self.written("c.whl", head))

@@ -232,8 +232,11 @@ class Limits(unittest.TestCase):
 
     def test_targets(self):
         for name in ("max_pressure_target", "contact_area_target"):
-            with self.assertRaisesRegex(cn.ContactNormalError, name):
+            # 7 % is 0.07.
+            with self.assertRaisesRegex(ValueError, f"{name} is 7; .* 1 % is 0.01"):
                 cn.solve_to_accuracy(H, DX, DY, force=100.0, **{name: 7.0}, **STEEL)
+            with self.assertRaisesRegex(cn.ContactNormalError, name):
+                cn.solve_to_accuracy(H, DX, DY, force=100.0, **{name: -7.0}, **STEEL)
 
     def test_what_was_reached_is_not_always_known(self):
         cancelled = cn.solve_to_accuracy(H, DX, DY, approach=0.05, progress=lambda told: True, **STEEL)

@@ -146,6 +146,21 @@ class Faults(unittest.TestCase):
         step[0, 0] = 0.0
         self.assertTrue(surface.faults(surface.heights(step, 1, 1)).spikes[0, 0])
 
+    def test_slopes_at_borders_and_beside_holes_are_no_spikes(self):
+        x, y = np.arange(120.0)[None, :], np.arange(100.0)[:, None]
+        z = 1.5 * np.sin(2 * np.pi * x / 60) * np.cos(2 * np.pi * y / 45) + 0.3 * x + 0.2 * y
+        z[30:50, 40:70] = np.nan
+        made = surface.heights(z, 1, 1)
+        self.assertEqual(surface.faults(made).spikes.sum(), 0)
+        # They are still found there, and inside alone. At an edge the two neighbours along it may go with them: of five neighbours one is the spike.
+        for place, most in (((20, 20), 1), ((0, 60), 3), ((99, 3), 3), ((40, 39), 3), ((50, 55), 3), ((0, 0), 3)):
+            spoiled = made.z.copy()
+            spoiled[place] += 4.0
+            found = np.argwhere(surface.faults(surface.heights(spoiled, 1, 1)).spikes)
+            self.assertIn(place, [tuple(one) for one in found])
+            self.assertLessEqual(len(found), most, place)
+            self.assertLessEqual(np.abs(found - place).max(), 1)
+
     def test_one_spike_carries_the_load(self):
         z = 1e-3 * rough()
         z[5, 7] += 0.5

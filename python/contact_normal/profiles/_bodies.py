@@ -14,6 +14,9 @@ from ._profile import Profile
 if TYPE_CHECKING:
     from .._arguments import Doubles
 
+# Rails are inclined by 1/20 or less, in rad: larger numbers are 40 for 1/40, or degrees.
+_STEEPEST = 0.5
+
 
 @dataclass(frozen=True)
 class Position:
@@ -76,10 +79,17 @@ class Track:
     gauge_height: float = 14.0
     inclination: float = 0.0
 
+    def __post_init__(self) -> None:
+        _refuse_unless("rail", self.rail)
+        width = float(np.ptp(self.rail.y))
+        if not number("gauge", self.gauge) > width:
+            raise ValueError(f"gauge is {self.gauge}; it must be larger than the rail is wide, {width:.4g} mm: lengths are in mm")
+        if not abs(number("inclination", self.inclination)) <= _STEEPEST:
+            raise ValueError(f"inclination is {self.inclination}; it is an angle in rad of at most {_STEEPEST}, as 1/40")
+        number("gauge_height", self.gauge_height)
+
     def placed(self) -> Profile:
         """The right rail in its place: its top at z = 0, its gauge point at half of the gauge."""
-        if self.rail.kind != "rail":
-            raise ValueError(f'rail is a {self.rail.kind}; it must be a profile of kind "rail"')
         rail = self.rail.rotated(self.inclination)
         curve = rail.curve()
         rail = rail.moved(z=-float(curve.at(curve.between(20))[1].min()))
@@ -113,6 +123,15 @@ class Wheelset:
     flange_back: float = 1360.0
     flange_back_at: float | None = None
 
+    def __post_init__(self) -> None:
+        _refuse_unless("wheel", self.wheel)
+        above = float(np.ptp(self.wheel.z))
+        if not number("radius", self.radius) > above:
+            raise ValueError(f"radius is {self.radius}; it must be larger than the profile is high, {above:.4g} mm: lengths are in mm")
+        width = float(np.ptp(self.wheel.y))
+        if not number("flange_back", self.flange_back) > width:
+            raise ValueError(f"flange_back is {self.flange_back}; it must be larger than the wheel is wide, {width:.4g} mm: lengths are in mm")
+
     @property
     def origin(self) -> float:
         """Distance of the profile's origin from the middle of the axle, in mm."""
@@ -121,6 +140,12 @@ class Wheelset:
 
     def tread(self) -> Curve:
         """The right wheel in its place: y from the middle of the axle, and z is the radius."""
-        if self.wheel.kind != "wheel":
-            raise ValueError(f'wheel is a {self.wheel.kind}; it must be a profile of kind "wheel"')
         return self.wheel.moved(y=self.origin, z=self.radius).curve()
+
+
+def _refuse_unless(kind: str, profile: Profile) -> None:
+    """Refuses what is not a profile of this kind."""
+    if not isinstance(profile, Profile):
+        raise TypeError(f"{kind} is a {type(profile).__name__}; it must be a Profile, as profiles.read(...) returns it")
+    if profile.kind != kind:
+        raise ValueError(f'{kind} is a {profile.kind}; it must be a profile of kind "{kind}"')

@@ -59,6 +59,11 @@ class ContactPoint:
     clearance: float
     """Vertical distance of both surfaces here, in mm. It is 0 if they touch, and negative if the position lets them overlap."""
 
+    def __repr__(self) -> str:
+        x, y, z = self.place
+        return (f"<ContactPoint of the {self._pair.side} wheel: place ({x:.4g}, {y:.6g}, {z:.4g}) mm, angle {self.angle:.4g} rad, "
+                f"rolling radius {self.rolling_radius:.6g} mm, clearance {self.clearance:.2g} mm>")
+
     @property
     def place(self) -> tuple[float, float, float]:
         """x forward, y to the right, z downwards, in mm, from the top of the rails in the middle of the track; on the rail."""

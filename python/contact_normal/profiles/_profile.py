@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._arguments import number, real
+from .._short import Short
 from ._curve import Curve, growing
 
 if TYPE_CHECKING:
@@ -23,8 +24,8 @@ STEEPEST = np.deg2rad(85.0)
 CLOSEST = 1e-3
 
 
-@dataclass(frozen=True, eq=False)
-class Profile:
+@dataclass(frozen=True, eq=False, repr=False)
+class Profile(Short):
     """Points of the cross-section of a wheel or a rail, those of the right-hand side of a track.
 
     y grows outwards, from the middle of the track to the field side, z grows downwards, and the points are in the order of growing y, as one

@@ -60,7 +60,7 @@ def read(
     end = Path(path).suffix.lower()
     kind = _KINDS.get(end) if kind is None else kind
     if kind is None:
-        raise ValueError(f'{path}: kind is not known; give "wheel" or "rail"')
+        raise ValueError(f'{path}: kind is not known; give kind="wheel" or kind="rail"')
     text = Path(path).read_text(encoding="latin-1")
     points, in_mm = _simpack(text, path) if end in (".prr", ".prw") else (_columns(text, columns, path), 1.0)
     y, z = points.T * (in_mm * number("scale", scale))
@@ -73,11 +73,22 @@ def read(
     return Profile(np.ascontiguousarray(y), np.ascontiguousarray(z), kind, Path(path).name)
 
 
+def _words(line: str) -> list[str]:
+    """The columns of a line. Commas are decimal points between semicolons, and where each of several words has one; else they part columns."""
+    line = line.strip().rstrip(";")
+    if ";" in line:
+        return [word.strip().replace(",", ".") for word in line.split(";")]
+    words = line.split()
+    if len(words) > 1 and all(re.fullmatch(r"[-+]?\d+,\d+", word) for word in words):
+        return [word.replace(",", ".") for word in words]
+    return line.replace(",", " ").split()
+
+
 def _columns(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) -> np.ndarray:
     """Two columns of the lines that begin with numbers."""
     rows = []
     for line in text.splitlines():
-        words = line.replace(";", " ").replace(",", " ").split()
+        words = _words(line)
         if len(words) <= max(columns) or not all(re.fullmatch(_NUMBER, words[column]) for column in (0, *columns)):
             continue
         rows.append([float(re.sub("[dD]", "e", words[column])) for column in columns])

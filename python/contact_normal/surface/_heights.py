@@ -5,12 +5,13 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from .._arguments import flag, number, real, two
+from .._arguments import flag, number, real, refuse_x_first, two
 from .._grid import centres
+from .._short import Short
 from .._units import Units, checked
 
 if TYPE_CHECKING:
@@ -34,8 +35,8 @@ def blocks(shape: tuple[int, ...]) -> Iterator[slice]:
         yield slice(first, min(first + rows, shape[0]))
 
 
-@dataclass(frozen=True, eq=False)
-class Heights:
+@dataclass(frozen=True, eq=False, repr=False)
+class Heights(Short):
     """Heights of a surface, positive out of the material; x and y of it are the centres of columns and rows, relative to the middle.
 
     Attributes
@@ -55,6 +56,8 @@ class Heights:
     dy: float
     period: str | None = None
     units: Units = None
+
+    _INSTEAD: ClassVar[str] = "make a gap of them by surface.gap(...), and call its solve(...)"
 
     @property
     def x(self) -> Doubles:
@@ -101,6 +104,13 @@ class Heights:
         return plot_heights(self, axes, marked)
 
 
+def refuse_others(**given: Any) -> None:
+    """Refuses what is not Heights: an array has no sizes of elements."""
+    for name, one in given.items():
+        if not isinstance(one, Heights):
+            raise TypeError(f"{name} is a {type(one).__name__}; it must be Heights: surface.heights(values, dx, dy)")
+
+
 def _spacing(name: str, places: Any, count: int) -> tuple[float, bool]:
     """The spacing of coordinates, and whether they fall."""
     values = real(name, places)
@@ -119,7 +129,7 @@ def _plain(values: Any) -> Doubles:
         values = np.ma.filled(values.astype(np.float64), np.nan)
     z = real("values", values)
     if z.ndim != 2 or not z.size:
-        raise ValueError(f"values has shape {z.shape}; heights have two indices")
+        raise ValueError(f"values has shape {z.shape}; heights have two indices{'' if z.size else ', and one element at least'}")
     return np.asarray(np.where(np.isfinite(z), z, np.nan))
 
 
@@ -133,6 +143,8 @@ def _element_sizes(
         raise TypeError("give the size of an element in one way: dx and dy, or size, or span, or x and y")
     falls = False, False
     if ways[0]:
+        if dx is None or dy is None:
+            raise TypeError(f"give {'dx' if dx is None else 'dy'}, too: elements have a size in x and one in y")
         sizes = number("dx", dx), number("dy", dy)
     elif ways[1]:
         lx, ly = two("size", size)
@@ -194,6 +206,8 @@ def heights(
     -------
     Heights
     """
+    if axes == "yx":
+        refuse_x_first("values", values)
     z = _plain(values)
     if axes not in ("yx", "xy"):
         raise ValueError(f'axes is {axes!r}; it must be "yx" or "xy"')

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ._heights import Heights, blocks
+from ._heights import Heights, blocks, refuse_others
 
 if TYPE_CHECKING:
     from .._arguments import Doubles
@@ -72,6 +72,7 @@ def form(heights: Heights, kind: str = "plane") -> Form:
     kind : {"mean", "plane", "quadric"}
         A mean height; a plane; a plane and curvatures.
     """
+    refuse_others(heights=heights)
     if kind not in FORMS:
         raise ValueError(f"kind is {kind!r}; it must be one of {', '.join(FORMS)}")
     powers = FORMS[kind]
@@ -105,6 +106,7 @@ def level(heights: Heights, kind: str = "plane") -> Heights:
     kind : {"mean", "plane", "quadric"}
         See `form`. "quadric" also removes the curvature; add the ideal form by a gap of its own where it belongs to the contact.
     """
+    refuse_others(heights=heights)
     if heights.period and kind != "mean":
         raise ValueError(f"the surface repeats itself in {heights.period}: a {kind} would break the period; level it with period None, or by its mean")
     return dataclasses.replace(heights, z=heights.z - form(heights, kind).values(heights))
@@ -115,6 +117,8 @@ def border_jumps(heights: Heights) -> tuple[float, float]:
 
     About 1 where a surface repeats itself with the grid as its period; much larger where it does not, or where a tilt is left.
     """
+
+    refuse_others(heights=heights)
 
     def ratio(z: Doubles) -> float:
         steps = np.diff(z, axis=1)

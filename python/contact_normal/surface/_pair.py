@@ -10,7 +10,7 @@ import numpy as np
 
 from .._arguments import number, two
 from .._gap import Gap
-from ._heights import Heights
+from ._heights import Heights, refuse_others
 
 if TYPE_CHECKING:
     from .._arguments import Both, Doubles
@@ -38,6 +38,7 @@ def gap(lower: Heights, upper: Heights | None = None, *, turned: str = "y") -> G
     turned : {"y", "x", ""}
         About which axis the upper body is turned over to lie on the lower one. "": its array is already laid out as it will lie.
     """
+    refuse_others(lower=lower, **({} if upper is None else {"upper": upper}))
     z, period, units = lower.z, lower.period, lower.units
     if upper is not None:
         if upper.z.shape != z.shape or not np.allclose((upper.dx, upper.dy), (lower.dx, lower.dy), rtol=1e-9, atol=0.0):
@@ -127,6 +128,8 @@ def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolera
     ValueError
         If no tilt balances the force, because `at` is not between elements that can carry it.
     """
+    if not isinstance(gap, Gap):
+        raise TypeError(f"gap is a {type(gap).__name__}; it must be a Gap: surface.gap(heights)")
     if gap.period:
         raise ValueError(f"the gap repeats itself in {gap.period}: a body with a period cannot tilt")
     aim = np.array(two("at", at))

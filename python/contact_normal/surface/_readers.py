@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import os
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -52,7 +53,7 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     Parameters
     ----------
     path : str or path
-        `.npy`; `.npz`; `.txt`, `.dat` and `.csv` as columns of numbers; `.nc` as NetCDF, by the package xarray; all others, as `.x3p`, `.sur`, `.opd` and
+        `.npy`; `.npz`; `.txt`, `.dat` and `.csv` as numbers, a row of the grid a line; `.nc` as NetCDF, by the package xarray; all others, as `.x3p`, `.sur`, `.opd` and
         `.gwy`, by the package SurfaceTopography. Heights and coordinates must be in one unit of length.
     variable : str, optional
         Which array of a file that has several.
@@ -65,13 +66,12 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         If the package is missing; the message names it and how to install it.
     """
     end = Path(path).suffix.lower()
-    if end == ".npy":
-        return heights(np.load(path), **given)
-    if end == ".npz":
-        with np.load(path) as file:
-            return heights(file[_chosen(variable, list(file), path)], **given)
+    if Path(path).is_dir():
+        raise IsADirectoryError(f"{path} is a folder; it must be a file")
+    if end in (".npy", ".npz"):
+        return heights(_of_numpy(path, variable), **given)
     if end in (".txt", ".dat", ".csv"):
-        return heights(np.loadtxt(path, delimiter="," if end == ".csv" else None, ndmin=2), **given)
+        return heights(_of_text(path, end), **given)
     if end == ".nc":
         from .._netcdf import read as netcdf
 
@@ -82,6 +82,52 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     except ImportError as error:
         raise ImportError(f"{error}; files {end or 'without an end'} need SurfaceTopography: pip install 'contact-normal[surface]'") from error
     return from_topography(read_topography(os.fspath(path)), **given)
+
+
+def _of_numpy(path: str | os.PathLike[str], variable: str | None) -> Any:
+    """The array of a file of numpy."""
+    try:
+        found = np.load(path)
+        if isinstance(found, np.ndarray):
+            return found
+        with found as file:
+            return file[_chosen(variable, list(file), path)]
+    except (ValueError, EOFError, zipfile.BadZipFile) as error:
+        if "give variable" in str(error):
+            raise
+        raise ValueError(f"{path} is no file of numbers that numpy.save or numpy.savez wrote") from error
+
+
+def _of_text(path: str | os.PathLike[str], end: str) -> Any:
+    """Columns of numbers: those of a line are separated by spaces, in .csv by commas, or by semicolons where there are any: commas are
+    then decimal points."""
+    lines = [line.split("#")[0] for line in Path(path).read_text(encoding="utf-8-sig", errors="replace").splitlines()]
+    lines = [line for line in lines if line.strip()]
+    if not lines:
+        raise ValueError(f"{path} has no numbers")
+    delimiter = ";" if ";" in lines[0] else "," if end == ".csv" else None
+    if delimiter == ";":
+        lines = [line.replace(",", ".") for line in lines]
+    try:
+        values = np.loadtxt(lines, delimiter=delimiter, ndmin=2)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}; it must hold numbers alone, a row of the grid a line, separated by {_BETWEEN[delimiter]}; "
+                         "put # before other lines, and nan where nothing was measured") from error
+    if _are_points(values):
+        raise ValueError(f"{path} has x, y and z of {len(values)} points; it must hold a row of the grid a line: reshape the third column, "
+                         "and give x and y to surface.heights")
+    return values
+
+
+_BETWEEN = {None: "spaces", ",": "commas", ";": "semicolons"}
+
+
+def _are_points(values: Any) -> bool:
+    """Whether three columns are x, y and z: the first two name each place of a grid once."""
+    if values.shape[1] != 3 or len(values) < 4 or not np.isfinite(values[:, :2]).all():
+        return False
+    counts = [len(np.unique(values[:, k])) for k in range(2)]
+    return counts[0] * counts[1] == len(values) == len(np.unique(values[:, :2], axis=0)) and min(counts) > 1
 
 
 def _chosen(name: str | None, names: list[Any], path: str | os.PathLike[str]) -> Any:

@@ -1,0 +1,36 @@
+"""What `repr` says of objects that hold arrays: their shapes and ranges, not their numbers."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+
+class Short:
+    """A dataclass whose arrays are told by shape and range. What is None is left out."""
+
+    def __repr__(self) -> str:
+        members: Any = self
+        return told(self, [field.name for field in dataclasses.fields(members)])
+
+
+def told(holder: Any, names: Any) -> str:
+    """`repr` of what has these members."""
+    values = {name: getattr(holder, name) for name in names}
+    return f"{type(holder).__name__}({', '.join(f'{name}={short(value)}' for name, value in values.items() if value is not None)})"
+
+
+def short(value: Any) -> str:
+    """`repr` of a value; of an array its shape and the range of its finite numbers."""
+    if not isinstance(value, np.ndarray):
+        return repr(value)
+    shape = " x ".join(map(str, value.shape))
+    if value.dtype == bool:
+        return f"<{shape}: {int(value.sum())} True>"
+    known = value[np.isfinite(value)]
+    if not known.size:
+        return f"<{shape}: no finite number>"
+    left_out = f", {value.size - known.size} not finite" if known.size < value.size else ""
+    return f"<{shape}: from {known.min():.6g} to {known.max():.6g}{left_out}>"
