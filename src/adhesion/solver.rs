@@ -80,7 +80,8 @@ impl Solver {
             Load::Approach(_) => None,
             Load::Force(force) => Some(force / area),
         };
-        let goal = Goal { tolerance: request.tolerance, wanted, certified: true, most: request.max_cycles };
+        let goal =
+            Goal { tolerance: request.tolerance, wanted, certified: true, most: request.max_cycles, firm: false };
         self.jumped = false;
         if let Load::Approach(approach) = request.load {
             self.levels.iter_mut().for_each(|level| level.now.p.border = [approach]);

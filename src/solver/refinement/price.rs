@@ -60,7 +60,8 @@ pub struct Price {
 }
 
 /// Seconds of one thread on a grid of so many elements, from the sample that promises the least: others were disturbed, or so small
-/// that they are mostly overhead. Samples with half the products of the last and fewer hardly see the contact. The set-up grows as the last two samples say (that of a period hardly does).
+/// that they are mostly overhead. Samples with half the products of the last and fewer hardly see the contact. The set-up grows as the last two
+/// samples say (that of a period hardly does).
 pub(super) fn seconds_on(samples: &[Sample], elements: f64) -> f64 {
     let seen = match samples {
         [.., before, last] => (last.setup / before.setup).ln() / (last.elements / before.elements).ln(),
