@@ -147,10 +147,14 @@ impl Law {
         let (fresh, mut bounds) = (self.fresh(case), vec![0.0; n]);
         let mut after = fresh.clone();
         let backwards = case.slide.step(&case.place.grid)[0] > 0.0;
+        // In steady rolling particles are fresh until they enter the contact.
+        let mut entered = vec![!is_steady; n];
         for k in 0..n {
             let i = if backwards { n - 1 - k } else { k };
             let of = if is_steady { &after } else { before };
-            let had = Law::upstream(case, i).map_or((fresh.mu[i], fresh.limit[i]), |j| (of.mu[j], of.limit[j]));
+            let from = Law::upstream(case, i).filter(|&j| entered[j]);
+            let had = from.map_or((fresh.mu[i], fresh.limit[i]), |j| (of.mu[j], of.limit[j]));
+            entered[i] = !is_steady || from.is_some() || found.p[i] > 0.0 && case.slide.mu[i] > 0.0;
             // Without friction they are as outside of contact.
             let slips =
                 found.p[i] > 0.0 && case.slide.mu[i] > 0.0 && found.stick_slip[i] >= CONTACT_NORMAL_STICK_SLIP_SLIP;

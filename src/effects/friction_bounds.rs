@@ -55,7 +55,9 @@ impl Friction<'_> {
         }
         self.coefficients_before
             .map_or(Ok(()), |values| check_values("friction->previous_coefficient", values, grid, not_negative))?;
+        // Without a layer nobody reads them.
         self.yield_limits
+            .filter(|_| self.layer.is_some())
             .map_or(Ok(()), |values| check_values("friction->previous_yield_limit", values, grid, positive))?;
         if !self.has_law() {
             return Ok(());

@@ -19,6 +19,8 @@ pub struct March {
     resolved: Vec<Resolved>,
     /// The state of each, on the way.
     carries: Vec<Particle>,
+    /// Whether the particle of each has met the contact, on the way.
+    entered: Vec<bool>,
 }
 
 const WHAT: &str = "a law of friction";
@@ -42,6 +44,7 @@ impl March {
             upstream: has_upstream.then_some((by.0 as isize, by.1 as isize)),
             resolved: collected((0..n).map(|_| Resolved::default()), WHAT)?,
             carries: collected((0..n).map(|_| Particle::default()), WHAT)?,
+            entered: collected((0..n).map(|_| false), WHAT)?,
         })
     }
 
@@ -50,12 +53,14 @@ impl March {
         &self.resolved[k]
     }
 
-    /// Calls `each(k, place, what its particle had)` in the order in which particles pass; it returns what they carry then.
+    /// Calls `each(k, place, what its particle had)` in the order in which particles pass; it returns what they carry then. In steady rolling they
+    /// are fresh until they enter the contact, wherever the grid begins.
     pub fn go(&mut self, mut each: impl FnMut(usize, Place, Particle) -> Particle) {
-        let March { places, had, carries, .. } = self;
+        let March { places, had, carries, entered, .. } = self;
         in_order(&self.grid, self.upstream, |k, upstream| {
-            let particle = upstream.map_or(had[k], |j| carries[j]);
-            carries[k] = each(k, places[k], particle);
+            let from = upstream.filter(|&j| entered[j]);
+            carries[k] = each(k, places[k], from.map_or(had[k], |j| carries[j]));
+            entered[k] = from.is_some() || places[k].pressure > 0.0 && places[k].coefficient > 0.0;
         });
     }
 

@@ -40,6 +40,9 @@ const RHO: f64 = 4.0;
 /// Steps without a residual below this part of the least one, after which it ends.
 const PATIENCE: u32 = 30;
 const GAIN: f64 = 0.9;
+/// Where the certificate of what converged is not met, the iteration goes on to this part of the tolerance, so many times in all.
+const TIGHTER: f64 = 0.1;
+const CERTIFICATES: u32 = 3;
 
 /// The progress of the steps.
 struct Course {
@@ -81,18 +84,31 @@ pub fn solve(
         // Nothing has slipped yet.
         tangent.side.fill(Side::Stick);
     }
-    let outcome = iterate(problem, state, (tangent, fields), (march, &mut best, forces), goal)?;
-    if outcome != Outcome::Converged && best.worst.is_finite() {
-        fields::map(&problem.threads().clone(), &mut state.q, |k, _| best.q[k]);
-        problem.offset = best.offset;
-        problem.refresh_unclipped(state);
-        lag(problem, state, tangent, march);
-        tangent.predict(problem, state, 1.0 / compliance(problem));
-        onto_circles(problem, state, tangent);
+    let Goal { tolerance, limit, certified, watch } = goal;
+    let made = problem.operators.products;
+    let (mut aim, mut ended) = (tolerance, Ended { outcome: Outcome::Stagnated, residual: f64::NAN });
+    for _ in 0..CERTIFICATES {
+        let limit = limit.saturating_sub(problem.operators.products - made);
+        let goal = Goal { tolerance: aim, limit, certified, watch: &mut *watch };
+        let outcome = iterate(problem, state, (tangent, fields), (march, &mut best, forces), goal)?;
+        if outcome != Outcome::Converged && best.worst.is_finite() {
+            fields::map(&problem.threads().clone(), &mut state.q, |k, _| best.q[k]);
+            problem.offset = best.offset;
+            problem.refresh_unclipped(state);
+            lag(problem, state, tangent, march);
+            tangent.predict(problem, state, 1.0 / compliance(problem));
+            onto_circles(problem, state, tangent);
+        }
+        let residual = freeze(problem, state, tangent, march);
+        let is_off = outcome == Outcome::Converged && !(residual < tolerance);
+        ended = Ended { outcome: if is_off { Outcome::Stagnated } else { outcome }, residual };
+        if !is_off {
+            break;
+        }
+        aim *= TIGHTER;
     }
     fields.give(best.q);
-    let residual = freeze(problem, state, tangent, march);
-    Ok(Ended { outcome, residual })
+    Ok(ended)
 }
 
 fn iterate(
