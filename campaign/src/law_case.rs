@@ -140,11 +140,11 @@ impl Law {
         }
     }
 
-    /// Bounds of all elements by the slips of an answer, and what particles have then.
-    pub fn bounds(&self, case: &Case, found: &Found, before: &Particles) -> (Vec<f64>, Particles) {
+    /// Bounds of all elements by the slips of an answer, each with its change where the slip is another one by `delta`, and what particles have then.
+    pub fn bounds(&self, case: &Case, found: &Found, before: &Particles, delta: f64) -> (Vec<[f64; 2]>, Particles) {
         let n = found.p.len();
         let is_steady = case.slide.motion == CONTACT_NORMAL_MOTION_STEADY_ROLLING;
-        let (fresh, mut bounds) = (self.fresh(case), vec![0.0; n]);
+        let (fresh, mut bounds) = (self.fresh(case), vec![[0.0; 2]; n]);
         let mut after = fresh.clone();
         let backwards = case.slide.step(&case.place.grid)[0] > 0.0;
         // In steady rolling particles are fresh until they enter the contact.
@@ -159,8 +159,11 @@ impl Law {
             let slips =
                 found.p[i] > 0.0 && case.slide.mu[i] > 0.0 && found.stick_slip[i] >= CONTACT_NORMAL_STICK_SLIP_SLIP;
             let slip = if slips { length(found.slip[i]) } else { 0.0 };
-            let (bound, mu, limit) = self.at(slip, (found.p[i].max(0.0), case.slide.mu[i]), had);
-            (bounds[i], after.mu[i], after.limit[i]) = (bound, mu, limit);
+            let at = |slip: f64| self.at(slip, (found.p[i].max(0.0), case.slide.mu[i]), had);
+            let (bound, mu, limit) = at(slip);
+            let change = |slip: f64| (at(slip).0 - bound).abs();
+            bounds[i] = [bound, if slips { change((slip - delta).max(0.0)).max(change(slip + delta)) } else { 0.0 }];
+            (after.mu[i], after.limit[i]) = (mu, limit);
         }
         (bounds, after)
     }

@@ -119,13 +119,14 @@ impl Run {
             self.stopped(case, found);
             return None;
         }
-        let (bounds, after) = law.bounds(case, found, had);
+        let plain = conditions(case, found, before);
+        let (bounds, after) = law.bounds(case, found, had, case.stop.tolerance * plain.scale + plain.rounding);
         self.certify(case, found, before, &bounds);
         Some(after)
     }
 
     /// Status OK: both conditions.
-    fn certify(&mut self, case: &Case, found: &Found, before: &Before, bounds: &[f64]) {
+    fn certify(&mut self, case: &Case, found: &Found, before: &Before, bounds: &[[f64; 2]]) {
         let (law, mut frozen) = (self.law.clone(), case.clone());
         let is_steady = case.slide.motion == CONTACT_NORMAL_MOTION_STEADY_ROLLING;
         let q_there = if is_steady { &found.q } else { &before.q };
@@ -136,16 +137,19 @@ impl Run {
         };
         frozen.slide.rigid = Some([layer(0), layer(1)]);
         let (mut left, mut rest, mut count, mut floor) = (0.0, 0.0, 0.0f64, 0.0f64);
+        let mut worst = (0.0, 0);
         let most = bounds.iter().zip(&found.p).zip(&case.slide.mu).map(|((_, p), mu)| mu * p).fold(0.0, f64::max);
-        for (i, bound) in bounds.iter().enumerate() {
+        for (i, [bound, change]) in bounds.iter().enumerate() {
             let (q, p) = (length(found.q[i]), found.p[i]);
             if !(p > 0.0 && case.slide.mu[i] > 0.0) {
                 continue;
             }
             let slips = found.stick_slip[i] >= CONTACT_NORMAL_STICK_SLIP_SLIP;
             frozen.slide.mu[i] = if slips { q / p } else { 10.0 * case.slide.mu[i].max(q / p) };
-            let off = if slips { q - bound } else { (q - bound).max(0.0) };
+            // The slip is right to the tolerance, and the bound as right as that makes it.
+            let off = if slips { ((q - bound).abs() - change).max(0.0) } else { (q - bound).max(0.0) };
             left += (off / most).powi(2);
+            worst = if off > worst.0 { (off, i) } else { worst };
             rest += (case.slide.mu[i] * p / most).powi(2);
             count += 1.0;
             floor = floor.max(1e-13);
@@ -162,6 +166,9 @@ impl Run {
             elements += 1.0;
         }
         let by_layer = if law.compliance > 0.0 { f64::sqrt(displaced / elements) } else { 0.0 };
+        let tractions: f64 = found.q.iter().map(|q| length(*q).powi(2)).sum();
+        // Of tractions from before, too.
+        let by_layer = by_layer.max(plain.scale + law.compliance * f64::sqrt(tractions / elements));
         let counts = case.slide.motion == CONTACT_NORMAL_MOTION_SHIFT || case.slide.has_forces();
         let scale = plain.scale.max(with_layer.scale).max(if counts { by_layer } else { 0.0 });
         let allowed = 1.001 * case.stop.tolerance * scale + with_layer.rounding;
@@ -176,7 +183,18 @@ impl Run {
         });
         let off = (left / rest).sqrt();
         self.unless(off <= 1.001 * case.stop.tolerance + floor, "OK with a law: |q| is the bound of the slip", || {
-            format!("{off:e}, reported {:e}", found.report.tangential.residual)
+            let i = worst.1;
+            format!(
+                "{off:e}, reported {:e}; {:e} at element {i}, |q| {:e}, bound {:e}, slip {:?}, state {}, p {:e}, mu {:e}",
+                found.report.tangential.residual,
+                worst.0,
+                length(found.q[i]),
+                bounds[i][0],
+                found.slip[i],
+                found.stick_slip[i],
+                found.p[i],
+                case.slide.mu[i]
+            )
         });
     }
 

@@ -22,6 +22,8 @@ const KEPT_BACK_OF_TURNS: u64 = 5;
 
 /// Coulomb's law with the coefficients at rest is solved to this, where forces are given, before the iteration with the law begins.
 const FIRST: f64 = 1e-2;
+/// Names its memory in messages.
+const KEPT: &str = "the tractions before turns";
 
 /// The state of the particles before a step, on the whole grid, in the caller's units.
 struct Had<'a> {
@@ -143,12 +145,42 @@ impl Solver {
         }
         let grid = scales.own_grid(&problem.grid);
         let limit = request.limit.saturating_sub(KEPT_BACK + report.products.ceil() as u64).max(1);
-        let watch = &mut |residual: f64| watch(&grid, residual);
-        let goal = Goal { tolerance: request.tolerance, limit, certified: true, watch };
+        let tell = &mut |residual: f64| watch(&grid, residual);
+        let goal = Goal { tolerance: request.tolerance, limit, certified: true, watch: tell };
         let ended = stages::solve(problem, state, (tangent, fields), (&mut march, forces), goal)?;
         report.products += problem.take_products() as f64;
         report.certificate = Certificate { residual: ended.residual, ..Certificate::of(problem, state) };
-        Ok(ended.outcome)
+        // Turns contract where bounds follow slips by less than those relieve tractions.
+        let rises = march.law.layer.map_or(0.0, |layer| layer.hardening) * problem.operators.self_influence;
+        let contracts = report.law_slope.max(rises) < 1.0 && !forces.any();
+        if ended.outcome != Outcome::Stagnated || !contracts || report.products >= request.limit as f64 {
+            return Ok(ended.outcome);
+        }
+        self.try_turns((request, began), march, watch, report)
+    }
+
+    /// Where the iteration for the nearest solution found none: turns, whose bounds follow the slips by as much as `law_slope` says, or the state that
+    /// there is, if it is better.
+    fn try_turns(
+        &mut self,
+        (request, began): (&Request<'_>, (bool, bool)),
+        march: March,
+        watch: &mut dyn FnMut(&Grid, f64) -> bool,
+        report: &mut Report,
+    ) -> Result<Outcome> {
+        let Level { problem, state, .. } = &self.levels[0];
+        let kept = (collected(state.q.iter().copied(), KEPT)?, collected(problem.bound.iter().copied(), KEPT)?);
+        let before = report.certificate;
+        let outcome = self.in_turns((request, (false, began.1)), march, watch, report)?;
+        if outcome != Outcome::Converged && !(report.certificate.residual < before.residual) {
+            let Level { problem, state, .. } = &mut self.levels[0];
+            state.q.copy_from_slice(&kept.0);
+            problem.bound.copy_from_slice(&kept.1);
+            problem.refresh_unclipped(state);
+            report.products += problem.take_products() as f64;
+            report.certificate = before;
+        }
+        Ok(outcome)
     }
 
     /// The solution of a branch: Coulomb's problem with the bounds of the last slips, in turns.

@@ -69,10 +69,9 @@ pub fn begin(problem: &mut Problem, march: &mut March, is_high: bool) {
     let law = march.law;
     let slip = if is_high { ANY } else { 0.0 };
     march.go(|k, place, had| {
-        let response = law.at(if place.pressure > 0.0 { slip } else { 0.0 }, place, had);
-        if problem.bound[k] > 0.0 {
-            problem.bound[k] = response.bound;
-        }
+        let is_inside = place.pressure > 0.0;
+        let response = law.at(if is_inside { slip } else { 0.0 }, place, had);
+        problem.bound[k] = if is_inside { response.bound } else { 0.0 };
         response.particle
     });
 }
