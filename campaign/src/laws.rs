@@ -207,6 +207,8 @@ impl Run {
             () if slope >= STEEP => Some("law: law_slope of .5 and more"),
             () if case.slide.has_forces() => Some("law: a force that may be above the maximum"),
             () if self.law.branch > 0 => Some("law: turns of a branch that do not settle"),
+            // One call in a thousand (docs/laws.md).
+            () if found.status == CONTACT_NORMAL_STAGNATED => Some("law: neither steps nor turns settle"),
             () => None,
         };
         match why {

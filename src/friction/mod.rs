@@ -33,6 +33,7 @@ mod discs;
 mod excess;
 mod forces;
 mod interpolation;
+mod iterate_with_law;
 mod lanes;
 mod last;
 pub mod law;

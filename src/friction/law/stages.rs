@@ -66,22 +66,21 @@ struct Best {
     worst: f64,
 }
 
-/// Iterates from what the state holds.
+/// Iterates from what the state holds. `has_slipped`: what slips is that of the state; else nothing has slipped yet.
 pub fn solve(
     problem: &mut Problem,
     state: &mut State,
     (tangent, fields): (&mut Tangent, &mut Fields),
-    (march, forces): (&mut March, Forces),
+    (march, forces, has_slipped): (&mut March, Forces, bool),
     goal: Goal<'_>,
 ) -> Result<Ended> {
     let n = state.q.len();
     tangent.fit(n)?;
     problem.continue_residuals()?;
     let mut best = Best { q: fields.take(n)?, offset: problem.offset, worst: f64::INFINITY };
-    if forces.any() {
+    if has_slipped {
         tangent.predict(problem, state, 1.0 / compliance(problem));
     } else {
-        // Nothing has slipped yet.
         tangent.side.fill(Side::Stick);
     }
     let Goal { tolerance, limit, certified, watch } = goal;
