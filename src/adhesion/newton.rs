@@ -29,10 +29,6 @@ const NEAR: f64 = 0.1;
 const WITHIN: f64 = 3.0;
 /// Directions of a linear solve at most: what takes more is a system that is nearly singular.
 const DIRECTIONS: usize = 30;
-/// Near the end of a branch, where the system is nearly singular, steps from inexact solutions lead away: then linear systems are solved to this part
-/// of their right-hand side, with as many directions as have so many elements together.
-const FIRMLY: f64 = 1e-3;
-const KEPT: usize = 1 << 18;
 /// A residual beyond that is a failure.
 const LOST: f64 = 1e12;
 /// The linear solve of the stiffness of the contact.
@@ -60,8 +56,6 @@ pub struct Goal {
     pub certified: bool,
     /// Cycles on the finest grid at most.
     pub most: u64,
-    /// Whether linear systems are solved firmly: where looser solves did not end.
-    pub firm: bool,
 }
 
 impl Goal {
@@ -94,7 +88,7 @@ pub fn newton(level: &mut Level, goal: Goal, keeps: bool, monitor: &mut Monitor<
         if !(worst < LOST) || step == MOST_STEPS {
             break;
         }
-        take_step(level, goal, measured.residual())?;
+        take_step(level, goal.wanted, measured.residual())?;
         level.count_products(monitor);
         monitor.cycle_done(&level.problem.grid, 0, 0.0, worst);
     }
@@ -102,8 +96,7 @@ pub fn newton(level: &mut Level, goal: Goal, keeps: bool, monitor: &mut Monitor<
 }
 
 /// One step.
-fn take_step(level: &mut Level, goal: Goal, worst: f64) -> Result<()> {
-    let wanted = goal.wanted;
+fn take_step(level: &mut Level, wanted: Option<f64>, worst: f64) -> Result<()> {
     let (n, threads) = (level.now.u.len(), level.problem.threads.clone());
     let mut fields = std::mem::take(&mut level.fields);
     let (mut stiffness, mut right) = (fields.take(n)?, fields.take(n)?);
@@ -114,11 +107,7 @@ fn take_step(level: &mut Level, goal: Goal, worst: f64) -> Result<()> {
     let weight = if wanted.is_some() { 1.0 / f64::max(count, 1.0) } else { 0.0 };
     let r = Bordered { field: right, border };
     let norm = (fields::dot(&threads, &r.field, &r.field) + weight * border[0] * border[0]).sqrt();
-    let (part, most) = match goal.firm {
-        true => (FIRMLY, DIRECTIONS.max(n.min(KEPT / n))),
-        false => (if worst > CLOSE { FAR } else { NEAR }, DIRECTIONS),
-    };
-    let until = Until { target: norm * part, most };
+    let until = Until { target: norm * if worst > CLOSE { FAR } else { NEAR }, most: DIRECTIONS };
     let mut system = Linearised::new(level, &stiffness, wanted.is_some(), &mut fields)?;
     let found = fgmres::solve(&mut system, r, (until, weight), &threads, &mut fields)?;
     system.give(&mut fields);

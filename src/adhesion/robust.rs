@@ -8,13 +8,9 @@ use crate::error::Result;
 use crate::progress::Monitor;
 
 /// Times that Newton's method is tried.
-const ROUNDS: u32 = 20;
-/// Steps of descent between; twice as many each time from round `LONGER` on: where elements snap alone, Newton's method needs the state that descent
-/// ends at nearly.
+const ROUNDS: u32 = 12;
+/// Steps of descent between.
 pub const BETWEEN: u64 = 5;
-const LONGER: u32 = 12;
-/// From this round on every other one solves its linear systems firmly.
-const FIRM: u32 = 3;
 /// An energy of more by this part is uphill.
 const UPHILL: f64 = 1e-6;
 
@@ -54,7 +50,6 @@ pub fn solve(
     let mut ended = None;
     let (mut least, mut descended) = (f64::INFINITY, false);
     for round in 0..ROUNDS {
-        let goal = Goal { firm: round >= FIRM && round % 2 == 1, ..goal };
         let (end, measured) = newton(level, goal, keeps && round == 0, monitor)?;
         let is_downhill = || energy(level, goal.wanted) <= least + UPHILL * least.abs();
         if end == End::Interrupted || end == End::Solved && is_downhill() {
@@ -66,8 +61,8 @@ pub fn solve(
         if !good.put(&mut level.now) {
             level.refresh()?;
         }
-        let most = BETWEEN << round.saturating_sub(LONGER);
-        let (end, measured) = descend(level, goal, Steps { most, from_none: false, make }, monitor)?;
+        let steps = Steps { most: BETWEEN, from_none: false, make };
+        let (end, measured) = descend(level, goal, steps, monitor)?;
         if end != Descent::By(End::Failed) {
             ended = Some((end, measured));
             break;

@@ -80,8 +80,7 @@ impl Solver {
             Load::Approach(_) => None,
             Load::Force(force) => Some(force / area),
         };
-        let goal =
-            Goal { tolerance: request.tolerance, wanted, certified: true, most: request.max_cycles, firm: false };
+        let goal = Goal { tolerance: request.tolerance, wanted, certified: true, most: request.max_cycles };
         self.jumped = false;
         if let Load::Approach(approach) = request.load {
             self.levels.iter_mut().for_each(|level| level.now.p.border = [approach]);
