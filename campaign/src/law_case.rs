@@ -129,6 +129,22 @@ impl Law {
         (limit, now, limit)
     }
 
+    /// The scale of slips, `plain` without the layer: the layer displaces, too, in a shift and by forces.
+    pub fn scale(&self, case: &Case, found: &Found, plain: f64) -> f64 {
+        let counts = case.slide.motion == CONTACT_NORMAL_MOTION_SHIFT || case.slide.has_forces();
+        if !(counts && self.compliance > 0.0) {
+            return plain;
+        }
+        let (mut displaced, mut tractions, mut elements) = (0.0, 0.0, 0.0);
+        for i in (0..found.q.len()).filter(|&i| found.p[i] > 0.0 && case.slide.mu[i] > 0.0) {
+            let (w, _) = case.slide.rigid_slip(&case.place.grid, i, found.report.tangential.creepage);
+            displaced += (found.slip[i][0] - w[0]).powi(2) + (found.slip[i][1] - w[1]).powi(2);
+            tractions += length(found.q[i]).powi(2);
+            elements += 1.0;
+        }
+        f64::max(plain + self.compliance * f64::sqrt(tractions / elements), f64::sqrt(displaced / elements))
+    }
+
     /// The element in which the particle of element i was a step before: in rolling the next one towards which it rolls.
     pub fn upstream(case: &Case, i: usize) -> Option<usize> {
         let [step, _] = case.slide.step(&case.place.grid);

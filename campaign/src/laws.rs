@@ -158,19 +158,7 @@ impl Run {
             return;
         }
         let [plain, with_layer] = [case, &frozen].map(|case| conditions(case, found, before));
-        // The layer displaces, too: what is not the rigid slip of all.
-        let (mut displaced, mut elements) = (0.0, 0.0);
-        for i in (0..found.q.len()).filter(|&i| found.p[i] > 0.0 && case.slide.mu[i] > 0.0) {
-            let (w, _) = case.slide.rigid_slip(&case.place.grid, i, found.report.tangential.creepage);
-            displaced += (found.slip[i][0] - w[0]).powi(2) + (found.slip[i][1] - w[1]).powi(2);
-            elements += 1.0;
-        }
-        let by_layer = if law.compliance > 0.0 { f64::sqrt(displaced / elements) } else { 0.0 };
-        let tractions: f64 = found.q.iter().map(|q| length(*q).powi(2)).sum();
-        // Of tractions from before, too.
-        let by_layer = by_layer.max(plain.scale + law.compliance * f64::sqrt(tractions / elements));
-        let counts = case.slide.motion == CONTACT_NORMAL_MOTION_SHIFT || case.slide.has_forces();
-        let scale = plain.scale.max(with_layer.scale).max(if counts { by_layer } else { 0.0 });
+        let scale = law.scale(case, found, plain.scale).max(with_layer.scale);
         let allowed = 1.001 * case.stop.tolerance * scale + with_layer.rounding;
         self.unless(with_layer.slip_error <= 4.0 * with_layer.rounding, "a law's slip is w + A q - u'", || {
             format!("{:e}, {:e}", with_layer.slip_error, with_layer.rounding)

@@ -1,7 +1,7 @@
 //! Influence coefficients of tangential tractions: the displacement difference at a point by a unit traction on one element.
 //!
-//! With both bodies' `1/G = (1/G1 + 1/G2)/2` and `nu/G = (nu1/G1 + nu2/G2)/2`, at the offset `(X, Y)` from the centre of the element
-//! (Kalker 1990, appendix B; Johnson, Contact Mechanics, section 3.6)
+//! With both bodies' `1/G = (1/G1 + 1/G2)/2` and `nu/G = (nu1/G1 + nu2/G2)/2`, at the offset `(X, Y)` from the centre of the element (Kalker 1990,
+//! appendix B; Johnson, Contact Mechanics, section 3.6)
 //!
 //! ```text
 //! Axx = ((1 - nu) a + b)/(pi G)       a = integral of y^2/r^3       over the element, x and y from there to (X, Y)
@@ -11,10 +11,9 @@
 //!
 //! `a + b` is the integral of 1/r, which the normal coefficients are made of, and as there three ways of summation share the offsets:
 //!
-//! * beyond six half-diagonals d a series in `z = (d/r)^2`, whose terms are polynomials in `t = (X/r)^2`:
-//!   `a = dx dy/r sum_k z^k a_k(t)`, from the moments of the element and the derivatives of `y^2/r^3`;
-//! * nearer, where the offset is two elements or more in one direction, the integral is exact in the other direction and by
-//!   Gauss-Legendre in this one;
+//! * beyond six half-diagonals d a series in `z = (d/r)^2`, whose terms are polynomials in `t = (X/r)^2`: `a = dx dy/r sum_k z^k a_k(t)`, from
+//!   the moments of the element and the derivatives of `y^2/r^3`;
+//! * nearer, where the offset is two elements or more in one direction, the integral is exact in the other direction, by Gauss-Legendre in this one;
 //! * next to the element `a = [X asinh(Y/|X|)]`, `b = [Y asinh(X/|Y|)]`, differences over its corners.
 //!
 //! c needs no series: as a difference of distances it is a product of positive terms, without cancellation,
@@ -22,9 +21,7 @@
 //! ```text
 //! c = (X+^2 - X-^2)(Y+^2 - Y-^2) (r++ + r-+ + r+- + r--) / ((r++ + r-+)(r+- + r--)(r++ + r+-)(r-+ + r--))
 //! ```
-//!
-//! Offsets are in elements and need not be whole: rolling asks for displacements between the centres.
-
+//! Offsets are in elements and need not be whole: rolling asks for displacements between centres.
 use std::array::from_fn;
 use std::f64::consts::PI;
 use std::sync::Arc;

@@ -12,6 +12,7 @@ mod bill;
 mod check;
 mod compressible;
 mod compression;
+mod errors;
 mod estimates;
 mod friction_batch;
 mod friction_table;
@@ -56,7 +57,7 @@ pub use refinement::{cost_of_accuracy, solve_to_accuracy, Accuracy, Obstacle, Pr
 pub use report::{Halving, Limit, Report};
 pub use tangential_calls::solve_tangential;
 
-use crate::contact::{self, Curvature, State};
+use crate::contact::{self, State};
 use crate::effects::{self, KeptInfluence, Layout, Named};
 use crate::error::Result;
 use crate::grid::Grid;
@@ -66,10 +67,8 @@ use crate::scene::{Load, Scene};
 use crate::threads::Threads;
 use beside::Beside;
 use compressible::Compressible;
-use estimates::Parts;
 use methods::Methods;
 use tangential::Tangent;
-use tangential_estimates::Solved;
 
 /// Pressures and contact area to start from.
 #[derive(Clone, Copy, Debug)]
@@ -295,27 +294,5 @@ impl Solver {
         report.bytes = self.bytes() as u64;
         report.log(options.method, &self.problem.grid, stop);
         Ok((stop, report))
-    }
-
-    /// The errors of the report and the ledger. Limits that are reached have other rims, row tables other displacements than the estimates know.
-    fn estimate(&self, scene: &Scene<'_>, options: &Options, monitor: &mut Monitor<'_>, report: &mut Report) {
-        if !self.problem.symmetric || options.is_fixed() || self.state.has_limited() {
-            return;
-        }
-        let (seconds, ledger) = (monitor.seconds(), &mut monitor.ledger);
-        let (rows, outline) = (&mut ledger.rows, &ledger.outline);
-        let (problem, state) = (&self.problem, &self.state);
-        let curvature = &Curvature::of(problem, state, outline);
-        let parts = Parts::of(problem, state, curvature, outline);
-        (report.limit, report.halving) =
-            estimates::estimate(rows, (problem, state, outline), (curvature, parts), seconds);
-        report.error = ledger.rows.last().map(|row| row.error).unwrap_or_default();
-        let Some(tangent) = self.friction.as_deref() else { return };
-        let found = (&scene.friction, &mut report.friction, tangent.solution());
-        if let (Some(friction), Some(found), Some(solution)) = found {
-            let alike = tangent.is_of_like_bodies();
-            let solved = Solved { problem, state, outline, curvature, parts, friction, solution, alike };
-            found.error = tangential_estimates::estimate(&solved, found);
-        }
     }
 }

@@ -1,0 +1,40 @@
+//! The errors of a solve: of its normal problem, and of its friction.
+
+use super::estimates::{self, Parts};
+use super::options::Options;
+use super::report::Report;
+use super::tangential_estimates::{self, Solved};
+use super::Solver;
+use crate::contact::Curvature;
+use crate::progress::Monitor;
+use crate::scene::Scene;
+
+impl Solver {
+    /// The errors of the report and the ledger. Limits that are reached have other rims, row tables other displacements than the estimates know.
+    pub(super) fn estimate(
+        &self,
+        scene: &Scene<'_>,
+        options: &Options,
+        monitor: &mut Monitor<'_>,
+        report: &mut Report,
+    ) {
+        if !self.problem.symmetric || options.is_fixed() || self.state.has_limited() {
+            return;
+        }
+        let (seconds, ledger) = (monitor.seconds(), &mut monitor.ledger);
+        let (rows, outline) = (&mut ledger.rows, &ledger.outline);
+        let (problem, state) = (&self.problem, &self.state);
+        let curvature = &Curvature::of(problem, state, outline);
+        let parts = Parts::of(problem, state, curvature, outline);
+        (report.limit, report.halving) =
+            estimates::estimate(rows, (problem, state, outline), (curvature, parts), seconds);
+        report.error = ledger.rows.last().map(|row| row.error).unwrap_or_default();
+        let Some(tangent) = self.friction.as_deref() else { return };
+        let found = (&scene.friction, &mut report.friction, tangent.solution());
+        if let (Some(friction), Some(found), Some(solution)) = found {
+            let alike = tangent.is_of_like_bodies();
+            let solved = Solved { problem, state, outline, curvature, parts, friction, solution, alike };
+            found.error = tangential_estimates::estimate(&solved, found);
+        }
+    }
+}
