@@ -1,4 +1,5 @@
-//! Powers of two: numbers are taken apart, so that nothing on the way to a result is beyond the range of numbers, and no bit changes.
+//! Powers of two: numbers are taken apart, so that nothing on the way to a result is beyond the range of numbers. A result that is a normal number
+//! has the bits that it has without powers.
 
 /// A number > 0 as one near 1 and a power of two.
 pub(crate) fn apart(value: f64) -> (f64, i32) {
@@ -11,17 +12,45 @@ pub(crate) fn times_power(value: f64, power: i32) -> f64 {
     PowerOfTwo::new(power).times(value)
 }
 
-/// The power of two of the largest of these numbers; 0 where all are 0.
-pub(crate) fn largest_power(values: impl Iterator<Item = f64>) -> i32 {
-    let most = values.map(f64::abs).fold(0.0, f64::max);
-    if most > 0.0 {
-        apart(most).1
-    } else {
-        0
+/// A number, and the power of two that it is multiplied by: products are of any size.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Scaled(pub f64, pub i32);
+
+impl Scaled {
+    pub(crate) fn of(value: f64) -> Scaled {
+        if value == 0.0 {
+            return Scaled(0.0, 0);
+        }
+        let (near_one, power) = apart(value.abs());
+        Scaled(near_one.copysign(value), power)
+    }
+
+    pub(crate) fn times(self, other: Scaled) -> Scaled {
+        Scaled(self.0 * other.0, self.1 + other.1)
+    }
+
+    pub(crate) fn over(self, other: Scaled) -> Scaled {
+        Scaled(self.0 / other.0, self.1 - other.1)
+    }
+
+    /// f of two of them, which is as large as they are: their sum, or the root of their squares.
+    pub(crate) fn with(self, other: Scaled, f: impl Fn(f64, f64) -> f64) -> Scaled {
+        let power = [self, other].into_iter().filter(|one| one.0 != 0.0).map(|one| one.1).max().unwrap_or(0);
+        Scaled(f(self.at(power), other.at(power)), power)
+    }
+
+    /// As a multiple of a power of two.
+    pub(crate) fn at(self, power: i32) -> f64 {
+        times_power(self.0, self.1 - power)
+    }
+
+    /// As a number, if it is one.
+    pub(crate) fn value(self) -> f64 {
+        self.at(0)
     }
 }
 
-/// What numbers are multiplied by, in three parts: each of them is a number.
+/// A power of two as a product of three, each of which is a number.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PowerOfTwo([f64; 3]);
 

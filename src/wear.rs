@@ -17,7 +17,7 @@ use crate::effects::Coefficient;
 use crate::error::{finite, not_negative, positive, Error, Result};
 use crate::grid::{check_values, Grid};
 use crate::memory::{collected, zeros};
-use crate::powers::{apart, largest_power, PowerOfTwo};
+use crate::powers::Scaled;
 use crate::sums::in_blocks;
 
 /// Names its memory in messages.
@@ -84,82 +84,36 @@ impl Wear<'_> {
         not_negative("steps", self.steps)?;
         not_negative("rolling_distance", self.rolling_distance)
     }
-}
-
-/// What is multiplied, near 1, and the powers of two that are left out.
-struct Scaled<'a> {
-    wear: &'a Wear<'a>,
-    traction: PowerOfTwo,
-    slip: PowerOfTwo,
-    pressure: PowerOfTwo,
-    coefficient: PowerOfTwo,
-    hardness: f64,
-    steps: f64,
-    /// Of the work and of the depth of a step, and of so many steps.
-    of_work: i32,
-    of_depth: i32,
-    of_steps: i32,
-}
-
-/// Near 1 and a power of two; 0 is 0.
-fn parts_of(value: f64) -> (f64, i32) {
-    if value > 0.0 {
-        apart(value)
-    } else {
-        (0.0, 0)
-    }
-}
-
-impl<'a> Scaled<'a> {
-    fn new(wear: &'a Wear<'a>) -> Scaled<'a> {
-        let of = |[x, y]: [&[f64]; 2]| largest_power(x.iter().chain(y).copied());
-        let (traction, slip) = (of(wear.traction), of(wear.slip));
-        let pressure = largest_power(wear.pressure.into_iter().flatten().copied());
-        let coefficient = match wear.coefficient {
-            Coefficient::Uniform(value) => largest_power([value].into_iter()),
-            Coefficient::PerElement(values) => largest_power(values.iter().copied()),
-        };
-        let ((hardness, of_hardness), (steps, of_steps)) = (apart(wear.hardness), parts_of(wear.steps));
-        let by = if wear.pressure.is_some() { pressure } else { traction };
-        Scaled {
-            wear,
-            traction: PowerOfTwo::new(-traction),
-            slip: PowerOfTwo::new(-slip),
-            pressure: PowerOfTwo::new(-pressure),
-            coefficient: PowerOfTwo::new(-coefficient),
-            hardness,
-            steps,
-            of_work: traction + slip,
-            of_depth: by + slip + coefficient - of_hardness,
-            of_steps,
-        }
-    }
 
     /// Of a step at element i.
-    fn work_at(&self, i: usize) -> f64 {
-        let ([qx, qy], [sx, sy]) = (self.wear.traction, self.wear.slip);
-        let product = |q: f64, s: f64| self.traction.times(q) * self.slip.times(s);
-        -(product(qx[i], sx[i]) + product(qy[i], sy[i]))
+    fn work_at(&self, i: usize) -> Scaled {
+        let [x, y] = [0, 1].map(|k| Scaled::of(self.traction[k][i]).times(Scaled::of(self.slip[k][i])));
+        x.with(y, |x, y| -(x + y))
     }
 
     /// Of a step at element i. An element that sticks has a work of either sign, of the size of the tolerance: nothing grows.
-    fn depth_at(&self, i: usize) -> f64 {
-        let by = match self.wear.pressure {
-            None => self.work_at(i).max(0.0),
+    fn depth_at(&self, i: usize) -> Scaled {
+        let by = match self.pressure {
+            None => self.work_at(i),
             Some(p) => {
-                let [sx, sy] = self.wear.slip.map(|s| self.slip.times(s[i]));
-                self.pressure.times(p[i]).max(0.0) * sx.hypot(sy)
+                let [x, y] = self.slip.map(|s| Scaled::of(s[i]));
+                Scaled::of(p[i]).times(x.with(y, f64::hypot))
             }
         };
-        self.coefficient.times(self.wear.coefficient.at(i)) * by / self.hardness
+        let by = Scaled(by.0.max(0.0), by.1);
+        Scaled::of(self.coefficient.at(i)).times(by).over(Scaled::of(self.hardness))
     }
 }
 
-/// Times a power of two; refuses what is no number then, by its name.
-fn unscaled(name: &str, values: &mut [f64], power: i32) -> Result<()> {
-    let power = PowerOfTwo::new(power);
-    values.iter_mut().for_each(|value| *value = power.times(*value));
-    match values.iter().find(|value| !value.is_finite()) {
+/// The sum, relative to the largest term.
+fn sum(terms: impl Iterator<Item = Scaled> + Clone) -> Scaled {
+    let power = terms.clone().filter(|term| term.0 != 0.0).map(|term| term.1).max().unwrap_or(0);
+    Scaled(in_blocks(terms.map(|term| term.at(power))), power)
+}
+
+/// Refuses what is no number, by its name.
+fn numbers<'a>(name: &str, values: impl IntoIterator<Item = &'a f64>) -> Result<()> {
+    match values.into_iter().find(|value| !value.is_finite()) {
         Some(value) => {
             Err(Error::NotFinite(format!("{name} is {value}: what is given takes it out of the range of numbers")))
         }
@@ -175,28 +129,24 @@ fn unscaled(name: &str, values: &mut [f64], power: i32) -> Result<()> {
 pub fn frictional_wear(wear: &Wear<'_>) -> Result<Worn> {
     wear.check()?;
     let Wear { grid, rolling_distance, .. } = *wear;
-    let scaled = Scaled::new(wear);
-    let Scaled { steps, of_work, of_depth, of_steps, .. } = scaled;
-    let mut work = collected((0..grid.len()).map(|i| steps * scaled.work_at(i)), FIELDS)?;
-    let mut depth = collected((0..grid.len()).map(|i| steps * scaled.depth_at(i)), FIELDS)?;
-    let ((dx, of_dx), (dy, of_dy)) = (apart(grid.dx), apart(grid.dy));
+    let [dx, dy, steps] = [grid.dx, grid.dy, wear.steps].map(Scaled::of);
+    let all = 0..grid.len();
+    let work = collected(all.clone().map(|i| steps.times(wear.work_at(i)).value()), FIELDS)?;
+    numbers("the work of an element", &work)?;
+    let depth = collected(all.clone().map(|i| steps.times(wear.depth_at(i)).value()), FIELDS)?;
     let mut passage = zeros(if rolling_distance > 0.0 { grid.my } else { 0 }, FIELDS)?;
-    if rolling_distance > 0.0 {
-        let (distance, of_distance) = apart(rolling_distance);
-        for (iy, passage) in passage.iter_mut().enumerate() {
-            let row = iy * grid.mx..(iy + 1) * grid.mx;
-            *passage = in_blocks(row.map(|i| scaled.depth_at(i))) * (dx / distance);
-        }
-        unscaled("the depth of a passage", &mut passage, of_depth + of_dx - of_distance)?;
+    for (iy, passage) in passage.iter_mut().enumerate() {
+        let row = iy * grid.mx..(iy + 1) * grid.mx;
+        *passage = sum(row.map(|i| wear.depth_at(i))).times(dx).over(Scaled::of(rolling_distance)).value();
     }
-    let (at, _) =
+    numbers("the depth of a passage", &passage)?;
+    numbers("the depth of an element", &depth)?;
+    let whole = |of_step: Scaled| of_step.times(steps).times(dx).times(dy).value();
+    let total_work = whole(sum(all.clone().map(|i| wear.work_at(i))));
+    let volume = whole(sum(all.map(|i| wear.depth_at(i))));
+    numbers("the work of all elements", [&total_work])?;
+    numbers("the volume of all elements", [&volume])?;
+    let (at, largest) =
         depth.iter().enumerate().fold((0, 0.0), |top, (i, depth)| if *depth > top.1 { (i, *depth) } else { top });
-    let sum = |values: &[f64]| [in_blocks(values.iter().copied()) * (dx * dy)];
-    let (mut total_work, mut volume) = (sum(&work), sum(&depth));
-    unscaled("the work of an element", &mut work, of_work + of_steps)?;
-    unscaled("the depth of an element", &mut depth, of_depth + of_steps)?;
-    unscaled("the work of all elements", &mut total_work, of_work + of_steps + of_dx + of_dy)?;
-    unscaled("the volume of all elements", &mut volume, of_depth + of_steps + of_dx + of_dy)?;
-    let ([total_work], [volume], largest) = (total_work, volume, depth[at]);
     Ok(Worn { work, depth, passage, total_work, volume, largest, at })
 }

@@ -71,14 +71,14 @@ pub fn check(random: &mut Random) -> Vec<Failure> {
         accuracy.mx, accuracy.my, last_error()
     );
     let elements = i64::from(accuracy.mx) * i64::from(accuracy.my);
+    let across = 2.0 * a / unit * f64::from(accuracy.mx) / m;
+    // On 6 and 7 elements across one estimate in forty is less than the error, and none by half (docs/notes/2026-11-accuracy.md).
+    let allowed = if across < 8.0 { 1.5 * target } else { target };
     let holds = match status {
-        CONTACT_NORMAL_OK => reached >= 0.0 && reached <= target && error <= target,
+        CONTACT_NORMAL_OK => reached >= 0.0 && reached <= target && error <= allowed,
         // The next grid would have been too large. Contacts of less than 6 elements across meet no target, whatever they reach; the
         // centre lies within an element.
-        CONTACT_NORMAL_ITERATION_LIMIT => {
-            let across = 2.0 * a / unit * f64::from(accuracy.mx) / m;
-            4 * elements > MOST && (reached > target || across < 7.0)
-        }
+        CONTACT_NORMAL_ITERATION_LIMIT => 4 * elements > MOST && (reached > target || across < 7.0),
         _ => false,
     };
     if holds && elements <= MOST {

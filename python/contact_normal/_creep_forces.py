@@ -191,12 +191,15 @@ class CreepForceTable:
                 raise ValueError(f"{name} is {value}; it must not be negative")
         c, bound = np.sqrt(a * b), np.asarray(coefficient * normal_force, dtype=np.float64)
         if not bound.any():
-            shape = np.broadcast_shapes(bound.shape, *(np.shape(one) for one in (*both("creepage", creepage), spin)))
+            shape = np.broadcast_shapes(bound.shape, *(np.shape(one) for one in (*both("creepage", creepage), spin, a, b)))
             return np.zeros(shape), np.zeros(shape), np.zeros(shape)
-        # Where there is no load, creepages of 0 stand for any.
-        unit = shear_modulus * c * c / np.where(bound > 0.0, bound, np.inf)
+        # Where there is no load, creepages of 0 and a circle stand for any.
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            unit = shear_modulus * c * c / np.where(bound > 0.0, bound, np.inf)
+            empty = (bound == 0.0) | np.isinf(unit)
+            unit, ratio, bound = np.where(empty, 0.0, unit), np.where(empty, 1.0, np.divide(a, b)), np.where(empty, 0.0, bound)
         along, across = (unit * real(f"creepage[{k}]", one) for k, one in enumerate(both("creepage", creepage)))
-        x, y, moment, _ = self.forces(along, across, unit * c * real("spin", spin), axis_ratio=a / b, poisson_ratio=poisson_ratio, hold=hold)
+        x, y, moment, _ = self.forces(along, across, unit * c * real("spin", spin), axis_ratio=ratio, poisson_ratio=poisson_ratio, hold=hold)
         return bound * x, bound * y, bound * c * moment
 
 

@@ -45,7 +45,7 @@ class Price(NamedTuple):
     time_error : float
         Of bodies that relax: the relative error that the length of the step leaves on any grid, beside `error`; 0: none relaxes.
     work_units : float
-        Products that the solve takes, as "work_units" of a report; 0: not known. The same on any machine.
+        Products that the solve takes, as "work_units" of a report; 0: not known. They depend little on the machine.
     """
 
     target: float

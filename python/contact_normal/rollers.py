@@ -44,7 +44,10 @@ def _several(name: str, radii: Any) -> tuple[float, ...]:
     """One radius for each body."""
     if np.ndim(radii) != 1:
         raise TypeError(f"{name} is {radii!r}; it must have one radius for each body: inf for a flat one")
-    return tuple(number(name, radius) for radius in radii)
+    found = tuple(number(name, radius) for radius in radii)
+    if not all(found):
+        raise ValueError(f"{name} are {found}; none may be 0: inf is a flat body")
+    return found
 
 
 def circle(x: Any, radius: float) -> Doubles:
@@ -161,7 +164,7 @@ def gap(
     dx, dy = lx / mx, ly / my
     x, y = centres(mx, dx), centres(my, dy)
     radii, crown_radii = _several("radii", radii), _several("crown_radii", crown_radii)
-    curvature = sum(1.0 / radius if radius else np.inf for radius in radii)
+    curvature = sum(1.0 / radius for radius in radii)
     if not curvature > 0.0:
         raise ValueError(f"radii are {radii}: their curvatures add up to {curvature}; the sum must be positive")
     drops = [drop] if callable(drop) else list(drop)

@@ -52,6 +52,11 @@ class Gaps(unittest.TestCase):
         with self.assertRaisesRegex(TypeError, "give either drop or crown_radii"):
             rollers.gap((1, 1), (4, 4), (6.0,), drop=rollers.no_drop(1.0), crown_radii=(5.0,))
 
+    def test_a_radius_of_zero_is_refused(self):
+        for name, radii, crown in (("radii", (0.0, 1.0), ()), ("radii", (np.inf, -0.0), ()), ("crown_radii", (6.0, 5.0), (1.0, 0.0))):
+            with self.assertRaisesRegex(ValueError, f"{name} are .*none may be 0"):
+                rollers.gap((1.0, 1.0), (4, 4), radii, crown_radii=crown)
+
 
 class Pressures(unittest.TestCase):
     FORCE = 9000.0

@@ -217,6 +217,13 @@ class Tables(unittest.TestCase):
             self.assertTrue(np.isnan(one.wheel_rail(creepage, spin, **rail)).all())
         for name in ("normal_force", "coefficient", "shear_modulus"):
             self.assertTrue(np.isnan(one.wheel_rail((0.1, 0.0), 0.0, **{**rail, name: np.nan})).all())
+        # A wheel that is lifted, or nearly, has no force; its neighbour has that of a single one.
+        lifted = {**rail, "semi_axes": (np.array([1.0, 1.0, 1.0]), np.array([0.0, 1.0, 1.0])), "normal_force": np.array([0.0, 1.0, 1e-320])}
+        for hold in (True, False):
+            forces = np.array(one.wheel_rail((1e-4, 0.0), 0.0, **{**lifted, "hold": hold}))
+            np.testing.assert_array_equal(forces[:, [0, 2]], 0.0)
+            np.testing.assert_array_equal(forces[:, 1], one.wheel_rail((1e-4, 0.0), 0.0, **rail))
+        self.assertEqual(one.wheel_rail((0.0, 0.0), 0.0, **{**rail, "semi_axes": (np.ones(3), 1.0), "normal_force": 0.0})[0].shape, (3,))
 
 
 if __name__ == "__main__":

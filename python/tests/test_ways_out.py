@@ -22,6 +22,26 @@ H = (X[None, :] ** 2 + X[:, None] ** 2) / (2 * 50.0)
 ROLLING = {"coefficient": 0.3, "motion": "STEADY_ROLLING"}
 
 
+class DecimalCommas(unittest.TestCase):
+    """The same profile, however its numbers are written."""
+
+    def test_columns_of_a_profile(self):
+        y = np.arange(-40.0, 41.0, 5.0)
+        z = 0.004 * y**2
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "rail.txt"
+            # Whole numbers beside others, exponents, remarks: -35 4,9
+            for form in ("%g %g", "%.3f;%.4f", "%g\t%g", "%.4e %.4e", "%g %g ; remark", "%g %g;"):
+                for commas in (False, True):
+                    text = "\n".join(form % point for point in zip(y, z))
+                    path.write_text(text.replace(".", ",") if commas else text)
+                    found = profiles.read(path, kind="rail")
+                    np.testing.assert_allclose(found.y, y, atol=1e-3, err_msg=form)
+                    np.testing.assert_allclose(found.z, z, atol=1e-3, err_msg=form)
+            path.write_text("\n".join("%g,%g" % point for point in zip(y, z)))
+            np.testing.assert_allclose(profiles.read(path, kind="rail").z, z, atol=1e-3)
+
+
 class Messages(unittest.TestCase):
     def assert_says(self, words, call):
         with self.assertRaisesRegex((TypeError, ValueError, cn.ContactNormalError), words):

@@ -123,9 +123,9 @@ impl Sums {
     }
 
     /// A flat punch presses most at its rim. For `h = r^n` its weights give n k, of the mean over the area 2 n and over the rim n^2 with
-    /// `k = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2)`: two thirds and one third of these are right to a tenth up to n = 10. In many
-    /// places that hardly feel each other a punch presses with forces as their sizes are, not their areas: so does the sum over their rims, and
-    /// the mean over the area has a weight that falls with the number of places, as its root.
+    /// `k = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2)`: two thirds and one third of these are right to a tenth up to n = 10. Many
+    /// places hardly feel each other. The force of a flat punch on each is in proportion to its width, not its area. The mean over the rims has
+    /// these weights; that over the area is divided by the root of the number of places.
     fn curvature(&self, approach: f64, scatter: f64) -> Curvature {
         let of_area = 2.0 / (3.0 * scatter);
         let weighted = |sum: f64, rim: f64| {

@@ -237,7 +237,8 @@ impl State {
         None
     }
 
-    /// The largest distance of coarser grids, in place of larger ones: far above what any approach closes, and no number that rules a mean. `lowest`: the least of h.
+    /// The largest distance of coarser grids, in place of larger ones: far above what any approach closes, and no number that rules a mean.
+    /// `lowest`: the least of h.
     pub fn out_of_reach(&self, lowest: f64, self_influence: f64) -> f64 {
         let lowest = Some(lowest).filter(|h| h.is_finite()).unwrap_or(0.0);
         let depth = match self.load {

@@ -89,7 +89,7 @@ pub struct contact_normal_price {
     /// Of bodies that relax: the relative error that the length of the step leaves on any grid, beside `error`; it falls with the square of the
     /// step. 0: none relaxes.
     pub time_error: f64,
-    /// Products that the solve takes, in products on its grid, as `work_units` of a report; 0: not known. The same on any machine.
+    /// Products that the solve takes, in products on its grid, as `work_units` of a report; 0: not known. They depend little on the machine.
     pub work_units: f64,
 }
 

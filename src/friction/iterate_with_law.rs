@@ -112,7 +112,8 @@ impl Solver {
         let kept = (collected(state.q.iter().copied(), KEPT)?, collected(problem.bound.iter().copied(), KEPT)?);
         let before = report.certificate;
         let outcome = self.in_turns((request, (false, began.1)), march, watch, report)?;
-        if outcome != Outcome::Converged && !(report.certificate.residual < before.residual) {
+        let is_worse = !(report.certificate.residual < before.residual) && before.residual.is_finite();
+        if outcome != Outcome::Converged && is_worse {
             let Level { problem, state, .. } = &mut self.levels[0];
             state.q.copy_from_slice(&kept.0);
             problem.bound.copy_from_slice(&kept.1);

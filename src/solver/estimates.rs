@@ -102,7 +102,7 @@ impl Parts {
         let jumps = JUMPS * by * jumps(problem, state) / count as f64;
         let likely = sign * PART * by * curvature.bend;
         let parts = Parts { smooth, ends, jumps, stiffness, by, highest_at_ends, likely };
-        parts.error().is_finite().then_some(parts)
+        (parts.error().is_finite() && stiffness.is_finite()).then_some(parts)
     }
 
     /// Together.
@@ -150,13 +150,15 @@ fn jumps(problem: &Problem, state: &State) -> f64 {
 
 /// dF/d(approach): the force over the displacement, in the mean with the weights of a flat punch's pressures; where the bodies are half-spaces
 /// without a layer, at least that of a circle of the same area, which the mean pressure compresses in series.
+/// No number where a layer, or the images of a period, leave no mean displacement.
 fn stiffness(problem: &Problem, force: f64, displaced: f64, area: f64) -> f64 {
-    let found = force / displaced;
+    let found = if displaced > 0.0 { force / displaced } else { f64::NAN };
     if problem.coefficients.has_layer() {
         return found;
     }
     let compressed = problem.coefficients.kernel().constant() / problem.grid.element_area();
     let of_circle = 2.0 * problem.modulus() * (area / std::f64::consts::PI).sqrt();
+    // The larger one, whichever is a number.
     found.max(1.0 / (1.0 / of_circle + compressed).max(0.0))
 }
 
@@ -199,7 +201,8 @@ pub fn estimate(
     let straight = (outline.straight.0 + outline.straight.1) as f64;
     let lines = STRAIGHT_OFF * straight + edges_off(problem, outline) + curved.sqrt();
     // Where forces are off, the area that carries them is off as well.
-    let carried = parts.map_or(0.0, |parts| parts.smooth / parts.by * parts.stiffness / measures.force);
+    let carried = parts.filter(|parts| parts.smooth > 0.0);
+    let carried = carried.map_or(0.0, |parts| parts.smooth / parts.by * parts.stiffness / measures.force);
     let lines = lines * finest.grid.element_area() + carried * measures.contact_area;
     let count = ledger.len();
     for (i, row) in ledger.iter_mut().enumerate() {

@@ -1,9 +1,9 @@
 //! How the seconds of a product grow with the number of elements on this machine.
 //!
 //! A product of n elements takes `n log n` operations, but its arrays leave one cache after the other, at other sizes on each machine. So a
-//! few products of half-spaces are timed, once in a process, when seconds are first predicted: 32 x 32 to 256 x 256 elements, the least of some
+//! few products of half-spaces are timed, in a process once (by each of the threads that ask first), when seconds are first predicted: 32 x 32 to 256 x 256 elements, the least of some
 //! times each, together some milliseconds on one thread. Between these sizes growth is that of a power, beyond them that of the last two. A machine
-//! that is busy at the time cannot spoil much: powers are kept between bounds. Nothing but a predicted time depends on it.
+//! that is busy at the time cannot spoil much: powers are kept between bounds. No solve depends on it.
 
 use std::sync::OnceLock;
 use std::time::Instant;
@@ -31,7 +31,10 @@ pub fn growth(from: f64, to: f64) -> f64 {
     static MACHINE: OnceLock<Vec<Timed>> = OnceLock::new();
     if MACHINE.get().is_none() {
         // Nobody waits for the thread that measures: a child that is forked meanwhile would wait for ever. The first one to end counts.
-        let _ = MACHINE.set(SIZES.into_iter().map_while(|m| time(m).ok()).collect());
+        let timed: Result<Vec<Timed>> = SIZES.into_iter().map(time).collect();
+        if let Ok(timed) = timed {
+            let _ = MACHINE.set(timed);
+        }
     }
     growth_by(MACHINE.get().map_or(&[], Vec::as_slice), from, to)
 }

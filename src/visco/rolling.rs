@@ -30,8 +30,8 @@ const GRADED: i32 = 10;
 const SHORTER: f64 = 0.15;
 /// Far away a panel is at most this part of the distance.
 const OF_DISTANCE: f64 = 0.5;
-/// Powers of two of times: within the shorter one the slope of a changes nothing; the longer one is beyond 1e14 elements, which is how long the slowest mode
-/// is in its branch's time, times what its weight of 1e14 at most needs, times all digits.
+/// Powers of two of times, in passages of an element. Within the shorter one the slope of `a` changes nothing. The longer one exceeds 1e14 (the slowest
+/// mode over its branch's time), times 1e14 (the largest weight of a mode), times 1e16 (all digits).
 const SHORTEST: i32 = -100;
 const LONGEST_TIME: i32 = 200;
 const WHAT: &str = "a row of coefficients";

@@ -254,3 +254,27 @@ fn work_and_depth_are_right_at_the_ends_of_the_range_of_numbers() {
         }
     }
 }
+
+/// Factors of elements that differ by more than the range of numbers.
+#[test]
+fn elements_of_any_size_have_their_work() {
+    let grid = Grid::new(2, 1, 1.0, 1.0).unwrap();
+    let (q, s, none) = ([1e200, 1e-200], [-1e-150, -1e200], [0.0; 2]);
+    let wear = Wear {
+        grid,
+        traction: [&q, &none],
+        slip: [&s, &none],
+        pressure: None,
+        coefficient: Coefficient::Uniform(1.0),
+        hardness: 1.0,
+        steps: 1.0,
+        rolling_distance: 0.0,
+    };
+    let found = frictional_wear(&wear).unwrap();
+    // One rounding of each product, as in the plain one.
+    assert_eq!((found.work[0], found.work[1]), (1e200 * 1e-150, 1e-200 * 1e200));
+    assert_eq!(found.total_work, found.work[0] + found.work[1]);
+    let wide = Wear { slip: [&[-1e100, -1e-50], &none], ..wear };
+    let found = frictional_wear(&wide).unwrap();
+    assert_eq!((found.depth[0], found.depth[1]), (1e200 * 1e100, 1e-200 * 1e-50));
+}

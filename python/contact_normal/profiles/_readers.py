@@ -73,22 +73,28 @@ def read(
     return Profile(np.ascontiguousarray(y), np.ascontiguousarray(z), kind, Path(path).name)
 
 
-def _words(line: str) -> list[str]:
-    """The columns of a line. Commas are decimal points between semicolons, and where each of several words has one; else they part columns."""
-    line = line.strip().rstrip(";")
-    if ";" in line:
-        return [word.strip().replace(",", ".") for word in line.split(";")]
-    words = line.split()
-    if len(words) > 1 and all(re.fullmatch(r"[-+]?\d+,\d+", word) for word in words):
-        return [word.replace(",", ".") for word in words]
-    return line.replace(",", " ").split()
+def _has_decimal_commas(lines: list[str]) -> bool:
+    """Whether commas are decimal points: no line has a point, and of those with commas each has at least two words, none with several commas."""
+    words = [re.findall(r"(?<!\S)[-+.,\d]\S*", line.replace(";", " ")) for line in lines if "," in line]
+    return bool(words) and not any("." in line for line in lines) and all(len(one) > 1 and max(map(_commas, one)) == 1 for one in words)
+
+
+def _commas(word: str) -> int:
+    """Commas of a word, 2 for those that are not between digits: such commas part columns."""
+    return word.count(",") if re.fullmatch(r"[-+]?\d*(,\d+)?([eEdD][-+]?\d+)?", word) else 2
+
+
+def _words(line: str, commas: bool) -> list[str]:
+    """The columns of a line, parted by blanks, semicolons and, where they are no decimal points, commas."""
+    return (line.replace(",", ".") if commas else line.replace(",", " ")).replace(";", " ").split()
 
 
 def _columns(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) -> np.ndarray:
     """Two columns of the lines that begin with numbers."""
-    rows = []
-    for line in text.splitlines():
-        words = _words(line)
+    lines = [line for line in text.splitlines() if re.match(r"\s*[-+]?[.,]?\d", line)]
+    commas, rows = _has_decimal_commas(lines), []
+    for line in lines:
+        words = _words(line, commas)
         if len(words) <= max(columns) or not all(re.fullmatch(_NUMBER, words[column]) for column in (0, *columns)):
             continue
         rows.append([float(re.sub("[dD]", "e", words[column])) for column in columns])

@@ -77,9 +77,9 @@ impl March {
 
     /// How bounds change, by the last resolved, with tractions on slip by `traction(k)`: calls `each(k, that)`.
     pub fn change(&mut self, traction: impl Fn(usize) -> f64, mut each: impl FnMut(usize, f64)) {
-        let March { resolved, carries, .. } = self;
+        let March { resolved, carries, entered, .. } = self;
         in_order(&self.grid, self.upstream, |k, upstream| {
-            let had = upstream.map_or(Particle::default(), |j| carries[j]);
+            let had = upstream.filter(|&j| entered[j]).map_or(Particle::default(), |j| carries[j]);
             let Resolved { slips, linear, .. } = &resolved[k];
             let gains = [if *slips { traction(k) } else { 0.0 }, had.coefficient, had.yield_limit];
             let [bound, coefficient, yield_limit] = linear.map(|by| (0..3).map(|m| by[m] * gains[m]).sum());

@@ -2289,7 +2289,7 @@ typedef struct contact_normal_price {
    */
   double time_error;
   /*
-   Products that the solve takes, in products on its grid, as `work_units` of a report; 0: not known. The same on any machine.
+   Products that the solve takes, in products on its grid, as `work_units` of a report; 0: not known. They depend little on the machine.
    */
   double work_units;
 } contact_normal_price;
