@@ -2,7 +2,7 @@
 //! force and by approach, a contact that the border of the grid cuts.
 
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Load, Patches, Scene};
+use contact_normal::scene::{Bodies, Layer, Load, Patches, Period, Scene};
 use contact_normal::solver::{solve, Options, Report};
 
 /// E* = 1.
@@ -104,5 +104,32 @@ fn a_peak_beside_a_cut_contact_is_not_trusted() {
         let h = at_centres(&grid, |x, y| 0.5 * ((x - off) * (x - off) + y * y));
         let error = report(&Scene::new(grid, &h, UNIT, Load::Approach(0.08))).error;
         assert_eq!(error.max_pressure >= 0.0, is_known, "{off}: {error:?}");
+    }
+}
+
+/// With two periods the mean of all displacements is 0: near full contact it tells no stiffness, with a layer not even its sign. An error is known then,
+/// or it is said not to be, by -1.
+#[test]
+fn errors_near_full_contact_of_two_periods_are_numbers_or_unknown() {
+    let grid = grid(1.0);
+    let wave = at_centres(&grid, |x, y| {
+        let [x, y] = [x, y].map(|place| (2.0 * std::f64::consts::PI * place).cos());
+        0.01 * (1.0 - x * y)
+    });
+    let flat = vec![0.0; M * M];
+    for (h, layer, loads) in [
+        (&wave, 1e-4, [Load::Force(0.018), Load::Approach(0.01)]),
+        (&wave, 0.0, [Load::Force(0.018), Load::Approach(0.01)]),
+        (&flat, 0.0, [Load::Force(1.0), Load::Force(1e-6)]),
+        (&flat, 1e-4, [Load::Force(1.0), Load::Force(1e-6)]),
+    ] {
+        for load in loads {
+            let plain = Scene::new(grid, h, UNIT, load);
+            let layer = (layer > 0.0).then_some(Layer::Uniform(layer));
+            let error = report(&Scene { period: Some(Period { x: true, y: true }), layer, ..plain }).error;
+            for value in [error.force, error.max_pressure, error.contact_area, error.corrected_area, error.pressure] {
+                assert!(value >= 0.0 || value == -1.0, "{load:?}, layer {layer:?}: {error:?}");
+            }
+        }
     }
 }
