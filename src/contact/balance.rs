@@ -15,6 +15,9 @@ const ROUNDS: u32 = 50;
 /// Round-off of the force, relative to the sum of all that pushes and pulls: that of a sum of 2^31 pressures in any order.
 const ROUND_OFF: f64 = 1e-12;
 
+/// Of the sum of |p|: forces of a smaller part are carried by adding, not by scaling p.
+const CANCELLED: f64 = 1e-3;
+
 /// Distances whose squares have no sum are never closed.
 const OUT_OF_REACH: f64 = 1e140;
 
@@ -30,8 +33,8 @@ impl State {
     /// Projects p on the set, and with a prescribed force raises it to carry that: [`State::balance_force`] where no limit is reached.
     /// Call before u is recomputed.
     pub fn carry_force<S: AdmissibleSet>(&mut self, set: S, threads: &Threads) -> Option<f64> {
-        if S::FIXED && self.load == Load::Force(0.0) {
-            self.remove_mean(threads);
+        if S::FIXED && self.is_cancelled(threads) {
+            self.shift_mean(threads);
             return None;
         }
         if !S::LIMITED {
@@ -82,11 +85,19 @@ impl State {
         self.p.iter_mut().zip(&self.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p += uniform);
     }
 
-    /// On a given contact area no force is a sum of pressures that push and pull.
-    fn remove_mean(&mut self, threads: &Threads) {
+    /// Whether a prescribed force is next to nothing beside what pushes and pulls: the sum of p is then round-off, and no measure of p.
+    fn is_cancelled(&self, threads: &Threads) -> bool {
+        let Load::Force(force) = self.load else { return false };
+        let [all] = self.sum_pressures(threads, |p| [p.abs()]);
+        force == 0.0 || force.abs() <= CANCELLED * all * self.grid.element_area()
+    }
+
+    /// On a given contact area such a force is carried by one pressure that is added everywhere.
+    fn shift_mean(&mut self, threads: &Threads) {
+        let Load::Force(force) = self.load else { return };
         let [all, _, count] = self.sum_on_contact(threads);
-        let mean = all / count.max(1.0);
-        self.p.iter_mut().zip(&self.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p -= mean);
+        let missing = (force / self.grid.element_area() - all) / count.max(1.0);
+        self.p.iter_mut().zip(&self.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p += missing);
     }
 
     /// The sums of p, of p on C, and the elements of C: by blocks, for a plain sum of many equal pressures is off by more than a force may be.

@@ -118,8 +118,8 @@ fn errors_near_full_contact_of_two_periods_are_numbers_or_unknown() {
     });
     let flat = vec![0.0; M * M];
     for (h, layer, loads) in [
-        (&wave, 1e-4, [Load::Force(0.018), Load::Approach(0.01)]),
-        (&wave, 0.0, [Load::Force(0.018), Load::Approach(0.01)]),
+        (&wave, 1e-4, [Load::Force(0.018), Load::Approach(0.0099)]),
+        (&wave, 0.0, [Load::Force(0.018), Load::Approach(0.0099)]),
         (&flat, 0.0, [Load::Force(1.0), Load::Force(1e-6)]),
         (&flat, 1e-4, [Load::Force(1.0), Load::Force(1e-6)]),
     ] {
