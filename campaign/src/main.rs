@@ -19,6 +19,7 @@ use std::process::ExitCode;
 use campaign::account::Account;
 use campaign::random::Random;
 use campaign::run::{measured, ordinary, Run};
+use campaign::verdict::Verdict;
 use contact_normal::ffi::dump::Dump;
 
 fn main() -> ExitCode {
@@ -95,56 +96,60 @@ fn replay(run: &Run) -> ExitCode {
 
 /// Cases with friction: how the calls of each motion ended, and what was not kept.
 fn friction(count: u64, first: u64, is_measured: bool) -> ExitCode {
-    let (mut ends, mut excuses, mut failed) = (BTreeMap::new(), BTreeMap::new(), false);
+    let mut calls = Calls::default();
     for seed in first..first + count {
         let run = campaign::friction::run(&mut Random::new(seed ^ 0x00f1_c710), is_measured);
-        for status in run.statuses {
-            *ends.entry((run.case.kind(), status)).or_insert(0) += 1;
+        calls.add(seed, run.statuses.into_iter().map(|status| (run.case.kind(), status)), run.verdict);
+    }
+    calls.print()
+}
+
+/// Ends of the calls of many cases: how many ended how, and how often each excuse was taken, first by which seed.
+#[derive(Default)]
+struct Calls {
+    ends: BTreeMap<(String, i32), u64>,
+    excuses: BTreeMap<&'static str, (u64, u64)>,
+    failed: bool,
+}
+
+impl Calls {
+    /// Adds the calls of a case, by kind and status; prints its failures.
+    fn add(&mut self, seed: u64, ends: impl Iterator<Item = (String, i32)>, verdict: Verdict) {
+        for end in ends {
+            *self.ends.entry(end).or_insert(0) += 1;
         }
-        for why in run.verdict.excuses {
-            excuses.entry(why).or_insert((0, seed)).0 += 1;
+        for why in verdict.excuses {
+            self.excuses.entry(why).or_insert((0, seed)).0 += 1;
         }
-        for failure in run.verdict.failures {
-            failed = true;
+        for failure in verdict.failures {
+            self.failed = true;
             println!("seed {seed}: {}: {}", failure.promise, failure.details);
         }
     }
-    print_ends(ends, excuses);
-    end(!failed)
-}
 
-/// How many calls ended how, and what was excused how often.
-fn print_ends(ends: BTreeMap<(String, i32), u64>, excuses: BTreeMap<&str, (u64, u64)>) {
-    println!("| motion | status | calls |");
-    println!("|---|---:|---:|");
-    for ((kind, status), calls) in ends {
-        println!("| {kind} | {status} | {calls} |");
-    }
-    println!("\n| excused | calls | first seed |");
-    println!("|---|---:|---:|");
-    for (why, (calls, seed)) in excuses {
-        println!("| {why} | {calls} | {seed} |");
+    fn print(self) -> ExitCode {
+        println!("| motion | status | calls |");
+        println!("|---|---:|---:|");
+        for ((kind, status), calls) in self.ends {
+            println!("| {kind} | {status} | {calls} |");
+        }
+        println!("\n| excused | calls | first seed |");
+        println!("|---|---:|---:|");
+        for (why, (calls, seed)) in self.excuses {
+            println!("| {why} | {calls} | {seed} |");
+        }
+        end(!self.failed)
     }
 }
 
 /// Cases with laws of friction: how the calls ended, and what was not kept.
 fn laws(count: u64, first: u64) -> ExitCode {
-    let (mut ends, mut excuses, mut failed) = (BTreeMap::new(), BTreeMap::new(), false);
+    let mut calls = Calls::default();
     for seed in first..first + count {
         let run = campaign::laws::run(&mut Random::new(seed ^ 0x001a_a5e5));
-        for (slope, status) in &run.ends {
-            *ends.entry((run.kind(*slope), *status)).or_insert(0) += 1;
-        }
-        for why in run.verdict.excuses {
-            excuses.entry(why).or_insert((0, seed)).0 += 1;
-        }
-        for failure in run.verdict.failures {
-            failed = true;
-            println!("seed {seed}: {}: {}", failure.promise, failure.details);
-        }
+        calls.add(seed, run.ends.iter().map(|(slope, status)| (run.kind(*slope), *status)), run.verdict.clone());
     }
-    print_ends(ends, excuses);
-    end(!failed)
+    calls.print()
 }
 
 /// Cases with adhesion: how the calls ended, their products, and what was not kept.
