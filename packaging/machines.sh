@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the library for other machines and tries it there: Linux on aarch64 by qemu-user, Windows by MinGW-w64 and wine. For macOS it is
-# only compiled. For Debian 12, as root or with sudo. Usage: packaging/machines.sh [TARGET...]
+# Builds the library for other machines and tries it there: Linux on aarch64 by qemu-user, Windows by MinGW-w64 and wine. Runs the examples in C,
+# and the Python package with its tests. For macOS it is only compiled. For Debian 12, as root or with sudo. Usage: packaging/machines.sh [TARGET...]
 #
 # The standard library of a target is rustup's (`rustup target add TARGET`), if it is installed. Otherwise the compiler of Debian's packages is
 # unpacked into build/machines/rust, beside Rust itself: it has aarch64's standard library, and the source, from which cargo builds others.
@@ -62,9 +62,18 @@ for target in "${targets[@]}"; do
     compiler_for "$target"
     case $target in
         *-apple-*) cargo check --locked "${std[@]}" --target "$target" && echo "$target: compiled, not run" && continue ;;
-        *-windows-gnu) need x86_64-w64-mingw32-gcc gcc-mingw-w64-x86-64 && need wine wine wine64 ;;
-        aarch64-*) need aarch64-linux-gnu-gcc gcc-aarch64-linux-gnu libc6-dev-arm64-cross && need qemu-aarch64 qemu-user ;;
+        *-windows-gnu)
+            need x86_64-w64-mingw32-gcc gcc-mingw-w64-x86-64 && need wine wine wine64
+            library=contact_normal.dll strip=x86_64-w64-mingw32-strip ;;
+        aarch64-*)
+            need aarch64-linux-gnu-gcc gcc-aarch64-linux-gnu libc6-dev-arm64-cross && need qemu-aarch64 qemu-user
+            library=libcontact_normal.so strip=aarch64-linux-gnu-strip ;;
     esac
     cargo build --locked "${std[@]}" --profile checked --lib --bins --target "$target"
     python3 packaging/try_machine.py "$target" "$CARGO_TARGET_DIR/$target/checked" "$here/$target"
+    make -s build/tools/ready
+    rm -rf "$here/wheel"
+    CONTACT_NORMAL_LIBRARY=$CARGO_TARGET_DIR/$target/checked/$library STRIP=$strip \
+        build/tools/bin/python -m build --wheel --no-isolation --outdir "$here/wheel" > "$here/wheel.log"
+    build/tools/bin/python packaging/try_foreign_wheel.py "$here"/wheel/*.whl "$here/python-$target"
 done

