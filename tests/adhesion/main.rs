@@ -7,6 +7,7 @@ mod loop_of_loading;
 mod maugis;
 mod pairs;
 mod parting;
+mod prices;
 mod pulls;
 mod random;
 mod sphere;
