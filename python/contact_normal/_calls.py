@@ -10,6 +10,7 @@ from __future__ import annotations
 import atexit
 import math
 import os
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -284,4 +285,5 @@ def _wait_for_given_up() -> None:
 
 
 atexit.register(_wait_for_given_up)
-os.register_at_fork(before=_end_workers, after_in_child=_forget_workers)
+if sys.platform != "win32":  # Windows has no fork.
+    os.register_at_fork(before=_end_workers, after_in_child=_forget_workers)
