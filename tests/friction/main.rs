@@ -38,6 +38,7 @@ mod tables;
 mod threads;
 mod unlike;
 mod unlike_at_limit;
+mod unlike_forces;
 mod unlike_sensitivities;
 mod wear;
 mod weights;
