@@ -250,3 +250,32 @@ fn memory_of_coefficients_that_differ_is_solved() {
     println!("{solved} scenes, {rising} of coefficients that grow");
     assert!(solved > 200 && rising > 100, "{solved} {rising}");
 }
+
+/// The law falls faster than the layer hardens, so that some forces below mu N have no creepage: the creepages end where they are no numbers any more.
+#[test]
+fn creepages_do_not_run_away_from_a_force_that_none_meets() {
+    let pressure: Vec<f64> = (0..24).map(|k| 1.0 + 0.9 * (f64::from(k) * std::f64::consts::PI / 12.0).cos()).collect();
+    let law = FrictionLaw {
+        falling: [0.2, 0.64],
+        half_speed: [0.3, 100.0],
+        memory_distance: 0.24,
+        memory_speed: 0.1,
+        ..FrictionLaw::new(Fall::Linear, (0.25, 0.2), 0.3, 1.0)
+    };
+    let mut unmet = 0;
+    for part in [0.1, 0.3, 0.5, 0.7, 0.9] {
+        let friction = Friction {
+            prescribed: [Prescribed::Force(part * 24e9), Prescribed::Creepage(0.01)],
+            law: Some(law),
+            layer: Some(PlasticLayer { yield_limit: 0.15, hardening: 0.1 }),
+            ..Friction::new(1e9)
+        };
+        let scene = Scene { grid: Grid::new(24, 1, 1.0, 1.0).unwrap(), pressure: &pressure, friction };
+        let (end, report, found) = scene.solve(1e-5);
+        println!("{part} {end:?} {:?}", report.creepage);
+        // 1e30 times what mu p displaces.
+        assert!(found.slip.iter().flatten().all(|s| s.abs() < 1e41), "{part} {end:?} {:?}", report.creepage);
+        unmet += usize::from(end != Outcome::Converged);
+    }
+    assert!(unmet > 0);
+}

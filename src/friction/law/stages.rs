@@ -17,6 +17,7 @@ use super::super::plane::{plus, square, Vector};
 use super::super::problem::{Problem, State};
 use super::super::shift::Goal;
 use super::super::step::{self, compliance, Effort};
+use super::super::take_over::LARGEST_RATIO;
 use super::super::tangent::{mixing, project, rho_of, Side, Tangent};
 use super::bounds::{freeze, lag, settle, worst};
 use super::march::March;
@@ -133,7 +134,7 @@ fn iterate(
         let measures = tangent.predict(problem, state, rho);
         let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
         let worst = worst(problem, state, tangent).max(missing);
-        if !worst.is_finite() || missing.is_nan() {
+        if !worst.is_finite() || missing.is_nan() || forces.any() && is_far(problem) {
             return Ok(Outcome::Stagnated);
         }
         if worst < best.worst {
@@ -169,6 +170,12 @@ fn iterate(
             return Ok(Outcome::Cancelled);
         }
     }
+}
+
+/// Whether creepages run away from a force that no creepage meets.
+fn is_far(problem: &Problem) -> bool {
+    let displaced = problem.operators.self_influence * problem.rms_bound();
+    !(problem.rms_rigid() / displaced < LARGEST_RATIO)
 }
 
 /// rho of a Newton step, from that of a step for bounds that stand still.
