@@ -55,8 +55,8 @@ pub(super) fn worst(problem: &Problem, state: &State, tangent: &Tangent) -> f64 
     slips.max(bounds)
 }
 
-/// A fresh product for a certificate, of tractions on their circles. Where bounds rise these stay as they are: the way to the circles changes slips, and
-/// bounds by more than the way.
+/// A fresh product for a certificate, of tractions on their circles. Where bounds rise these stay as they are: the way to the circles
+/// changes slips, and bounds by more than the way.
 pub(super) fn settle(problem: &mut Problem, state: &mut State, tangent: &Tangent, march: &March) {
     match march.rises > STEEP {
         true => problem.refresh_unclipped(state),

@@ -138,8 +138,8 @@ pub fn renew(level: &mut Level, march: &mut March, best: &mut Best) -> Result<f6
     Ok(left)
 }
 
-/// The bounds of the next turn where this one left too much. Those that rise with the slip go no farther than slips follow, and by a part of that: their
-/// changes and those of slips chase each other otherwise.
+/// The bounds of the next turn where this one left too much. Those that rise with the slip go no farther than slips follow, and by a part
+/// of that: their changes and those of slips chase each other otherwise.
 pub fn go_on(level: &mut Level, march: &mut March, (turns, best): (&Turns, &Best)) {
     let Level { problem, state, memory, .. } = level;
     if march.rises > STEEP {

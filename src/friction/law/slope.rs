@@ -6,8 +6,8 @@
 //! -dg/dv = p mu [(1 - t) (-f') + (-t') (1 - f)] + p (m - mu) (-t')        f: mu_s(v)/mu
 //! ```
 //!
-//! Both parts in v are not negative, so that the largest is that of an element on the hull of the pairs `(p mu, p (m - mu))`. In steady rolling m is at
-//! most the largest coefficient that the particle has met.
+//! Both parts in v are not negative, so that the largest is that of an element on the hull of the pairs `(p mu, p (m - mu))`. In steady
+//! rolling m is at most the largest coefficient that the particle has met.
 
 use super::element::{Law, Particle};
 use super::march::March;
