@@ -11,9 +11,11 @@ mod estimates;
 mod forces;
 #[allow(dead_code)] // what docs/reliability_friction.md has
 mod hard;
+mod law_slopes;
 mod laws;
 mod laws_by_force;
 mod laws_steep;
+mod laws_that_rise;
 mod layer;
 mod linear_theory;
 mod onset_of_rolling;
