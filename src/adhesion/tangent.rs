@@ -8,7 +8,7 @@
 //!
 //! Where the approach is given, it is stable if `lambda < 1` (module [`stability`](super::stability)). With `g0 > 0`, how the gap closes
 //! while the attraction stands still, `g = g0 + A~ s g`. Attraction moves the surfaces towards each other: no element of A~ is negative, at least in
-//! half-spaces. So `g > 0` everywhere means `lambda < 1` (Collatz 1942), and otherwise lambda itself is computed.
+//! half-spaces. So `g > 0` everywhere means `lambda < 1` (Collatz 1942). Where g is clearly negative somewhere lambda itself is computed.
 
 use super::level::Level;
 use super::newton::stiffnesses;
