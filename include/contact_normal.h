@@ -1163,8 +1163,9 @@ typedef struct contact_normal_friction {
 /*
  Effect: attraction across the gap, `p = q - sigma(e)` with contact pressures q >= 0. The scene's force may then be negative. Pressures
  are total ones, negative where the bodies pull at each other; `contact` is 1 where e = 0. A work of 0 is no adhesion. Several states may
- belong to one approach: `start` says which one is looked for, and initial_guess PREVIOUS follows the one before. A force has one stable
- state, with dF/dapproach > 0; below the pull-off force there is none (INFEASIBLE). See docs/adhesion.md.
+ belong to one approach: `start` says which one is looked for, and initial_guess PREVIOUS follows the one before. To a force belong unstable
+ states as well, which are refused, and maybe several stable ones, with dF/dapproach > 0; below the pull-off force none is found
+ (INFEASIBLE). See docs/adhesion.md.
  */
 typedef struct contact_normal_adhesion {
   /*
@@ -1914,7 +1915,7 @@ typedef struct contact_normal_report_adhesion {
    */
   double border_share;
   /*
-   dF/dapproach if `adhesion->stiffness` is 1, else 0.
+   dF/dapproach if `adhesion->stiffness` is 1, else 0. Infinite where all elements of two periods are in contact.
    */
   double stiffness;
   /*
@@ -2755,9 +2756,10 @@ contact_normal_status contact_normal_solve(const struct contact_normal_scene *sc
                                            struct contact_normal_report *report);
 
 /*
- Finds the pull-off: from the load of the scene, which has adhesion, the approach goes down until the force rises again. The result is the
- state there, its force the least that an equilibrium has (`report->normal.force`). A load to begin with that is safe is a force of 0.
- `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.2.
+ Finds the pull-off: from the load of the scene, which has adhesion, the approach goes down until nothing is in contact, and so it does from
+ bodies that are pressed together. The result is the state of the least force on these ways (`report->normal.force`). A load to begin with that
+ is safe is a force of 0. The way from the load may take three times
+ `max_cycles`. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.2.
  */
 contact_normal_status contact_normal_pull_off(const struct contact_normal_scene *scene,
                                               const struct contact_normal_options *options,
