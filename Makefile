@@ -82,12 +82,13 @@ test: tools
 
 # N random scenes over all effects, methods, guesses and handles, each certified by an oracle of the campaign's own; prints what
 # was run, what was excused, and every failure. SURFACES=measured: scenes of what people bring, measured maps with their faults, line
-# scans, strips, punches. One case again: cargo run --release -p campaign -- --seed S, or -- --measured --seed S
+# scans, strips, punches. SURFACES=adhesion: bodies that attract each other. One case again: cargo run --release -p campaign -- --seed S,
+# or -- --measured --seed S; of adhesion the one of seed S: -- --adhesion 1 S
 N ?= 20000
 FIRST ?= 0
 SURFACES ?= ordinary
 campaign:
-	$(CARGO) run --release --locked -p campaign -- $(if $(filter measured,$(SURFACES)),--measured) $(N) $(FIRST)
+	$(CARGO) run --release --locked -p campaign -- $(if $(filter measured adhesion,$(SURFACES)),--$(SURFACES)) $(N) $(FIRST)
 
 # 10^5 solves of a rolling sequence: no drift, no growth, the same bits when repeated. Some minutes.
 SOAK ?= 100000
@@ -119,11 +120,12 @@ bench-table: all
 	CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/$(BUILT) PYTHONPATH=python PYTHONDONTWRITEBYTECODE=1 \
 		"$(find_python)" benches/creep_force_table.py $(TABLE)
 
-# The same problems by other solvers, at pinned versions in an environment under build/; see benches/peers. PEERS="--quick".
+# The same problems by other solvers, at pinned versions in an environment under build/; see benches/peers. PEERS="--quick". Then adhesion beside tamaas.
 PEERS ?=
 PEERS_PYTHON := build/peers/bin/python
 bench-peers: all $(PEERS_PYTHON)
 	$(PEERS_PYTHON) benches/peers/run.py $(PEERS)
+	$(PEERS_PYTHON) benches/peers/adhesion.py --largest 256
 
 # aspher is built here, for this machine: C++, CMake and Eigen's headers.
 $(PEERS_PYTHON): benches/peers/requirements.txt

@@ -307,7 +307,7 @@
 #define CONTACT_NORMAL_FRICTION_LAW_EXPONENTIAL 3
 
 /*
- `friction->branch`: the solution near the start of the iteration.
+ `friction->branch`: the solution near the start of the iteration; where that finds none, LOW.
  */
 #define CONTACT_NORMAL_FRICTION_BRANCH_NEAR 0
 
@@ -760,6 +760,16 @@
 #define CONTACT_NORMAL_OMIT_ADHESION 11
 
 /*
+ `omitted`: the law of friction; the coefficient is that at rest everywhere.
+ */
+#define CONTACT_NORMAL_OMIT_FRICTION_LAW 12
+
+/*
+ `omitted`: the yield of a third body, not its compliance.
+ */
+#define CONTACT_NORMAL_OMIT_FRICTION_LAYER 13
+
+/*
  `verdict`: the change is too near to the target, or its error is not known; more time decides.
  */
 #define CONTACT_NORMAL_VERDICT_NOT_DECIDED 0
@@ -1153,8 +1163,9 @@ typedef struct contact_normal_friction {
 /*
  Effect: attraction across the gap, `p = q - sigma(e)` with contact pressures q >= 0. The scene's force may then be negative. Pressures
  are total ones, negative where the bodies pull at each other; `contact` is 1 where e = 0. A work of 0 is no adhesion. Several states may
- belong to one approach: `start` says which one is looked for, and initial_guess PREVIOUS follows the one before. A force has one stable
- state, with dF/dapproach > 0; below the pull-off force there is none (INFEASIBLE). See docs/adhesion.md.
+ belong to one approach: `start` says which one is looked for, and initial_guess PREVIOUS follows the one before. To a force belong unstable
+ states as well, which are refused, and maybe several stable ones, with dF/dapproach > 0; below the pull-off force none is found
+ (INFEASIBLE). See docs/adhesion.md.
  */
 typedef struct contact_normal_adhesion {
   /*
@@ -1745,7 +1756,7 @@ typedef struct contact_normal_report_tangential {
    */
   double update;
   /*
-   The largest slope by which bounds fall with the slip, times an element's influence on itself; 0 without a law. From .5 on the iteration
+   The largest slope by which bounds fall with the slip, memory included, times an element's influence on itself; 0 without a law. From .5 on the iteration
    may end as STAGNATED, from 1 on a single element has several solutions.
    */
   double law_slope;
@@ -1904,7 +1915,7 @@ typedef struct contact_normal_report_adhesion {
    */
   double border_share;
   /*
-   dF/dapproach if `adhesion->stiffness` is 1, else 0.
+   dF/dapproach if `adhesion->stiffness` is 1, else 0. Infinite where all elements of two periods are in contact.
    */
   double stiffness;
   /*
@@ -2538,7 +2549,7 @@ typedef struct contact_normal_heat {
    */
   double dy;
   /*
-   The flux, `[my][mx]`, a power per area: of friction |q| times the speed of slip. Default NULL: to be set.
+   The flux, `[my][mx]`, a power per area: of friction |q| times the speed of slip; below 0 it cools. Default NULL: to be set.
    */
   const double *heat_flux;
   /*
@@ -2555,7 +2566,8 @@ typedef struct contact_normal_heat {
    */
   double speed[2];
   /*
-   The part of the heat that goes into body 1, 0 to 1; < 0 (default): that for which the largest temperatures of both are the same (Blok 1937).
+   The part of the heat that goes into body 1, 0 to 1; < 0 (default): that for which the largest temperatures of both are the same (Blok 1937),
+   and one half where no heat makes one of both warmer.
    */
   double share;
   /*
@@ -2744,9 +2756,10 @@ contact_normal_status contact_normal_solve(const struct contact_normal_scene *sc
                                            struct contact_normal_report *report);
 
 /*
- Finds the pull-off: from the load of the scene, which has adhesion, the approach goes down until the force rises again. The result is the
- state there, its force the least that an equilibrium has (`report->normal.force`). A load to begin with that is safe is a force of 0.
- `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.2.
+ Finds the pull-off: from the load of the scene, which has adhesion, the approach goes down until nothing is in contact, and so it does from
+ bodies that are pressed together. The result is the state of the least force on these ways (`report->normal.force`). A load to begin with that
+ is safe is a force of 0. The way from the load may take three times
+ `max_cycles`. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.2.
  */
 contact_normal_status contact_normal_pull_off(const struct contact_normal_scene *scene,
                                               const struct contact_normal_options *options,
@@ -2844,7 +2857,8 @@ contact_normal_status contact_normal_solver_stiffness(struct contact_normal_solv
  and the spin. NULL, with n = 1: those of `scene->friction`. With pressures that are given this is one problem: all threads work on
  it, `progress` is called for each iteration, and where the call is refused `results` stays as it is.
 
- `report` (NULL: not wanted) has the measures of the pressures and, of one problem, those of friction.
+ `report` (NULL: not wanted) has the measures of the pressures and, of one problem, those of friction. Its `warnings` has LAW where that holds of
+ the problem, or of an entry.
 
  Of entries as many are solved at a time as `options->threads` says. Neighbours in the table should be neighbours in the motion: 16 in
  a row are solved one after the other, each from the tractions of the one before if it differs little, and all meet the tolerance. Results
@@ -3046,7 +3060,8 @@ contact_normal_status contact_normal_stress_at_points(const struct contact_norma
  The steady flash temperature of both surfaces, above the temperature far away: each body is a half-space past which the sources of heat move
  (Jaeger 1942). Without motion it is that of a source at rest. `temperature`: `[2][my][mx]`, of body 1, then of body 2; NULL: not wanted.
  `flash` NULL: not wanted. The grid must hold all of the flux; downstream of it a rise beyond the grid is not computed. Products are FFTs; the
- set-up takes some hundred function values an element and body. INVALID_ARGUMENT, NOT_FINITE: numbers out of their range. Since 0.2.
+ set-up takes some hundred function values an element and body. INVALID_ARGUMENT, NOT_FINITE: numbers out of their range; NOT_FINITE: temperatures
+ beyond the range of numbers. Since 0.2.
  */
 contact_normal_status contact_normal_flash_temperature(const struct contact_normal_heat *heat,
                                                        double *temperature,

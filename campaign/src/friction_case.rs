@@ -208,8 +208,8 @@ impl Case {
             _ if size == 0.0 => None,
             _ if size >= self.carried * (1.0 - 1e-9) => Some("refused: a force of mu N or more"),
             _ if size >= self.carried * (1.0 - 1e-4) => Some("refused: a force of 0.9999 mu N or more"),
-            _ if !self.place.is_alike() && !sum_is_given && (size >= 0.5 * self.carried || much) => {
-                Some("refused: a force on unlike bodies whose mu N the tractions change, of half of it or with mu > 1")
+            _ if !self.place.is_alike() && !sum_is_given && (size >= 0.8 * self.carried || much) => {
+                Some("refused: a force on unlike bodies whose mu N the tractions change, of 0.8 of it or with mu > 1")
             }
             _ => None,
         }

@@ -46,11 +46,20 @@ impl Law {
         let falls = random.chance(0.8);
         let h = [0, 1].map(|_| slip / duration * random.decades(0.01, 100.0));
         let has_memory = falls && random.chance(0.5);
-        let yields = !falls || random.chance(0.3);
+        // Bounds that rise beside a law that falls, in two ways; more often than by chance.
+        let (rises, differs) = (random.chance(0.25), random.chance(0.25) && !slide.has_forces());
+        if differs {
+            slide.uniform = false;
+            let most = slide.mu.iter().copied().fold(0.0, f64::max);
+            slide.mu.iter_mut().for_each(|mu| *mu = most * random.between(0.1, 1.0));
+        }
+        let (falls, has_memory) = (falls || rises || differs, has_memory || differs);
+        let yields = !falls || rises || random.chance(0.3);
         let mu = slide.mu.iter().copied().fold(0.0, f64::max);
         let yield_limit = mu.min(1.0) * most * random.between(0.05, 1.1);
-        let hardens = yields && yield_limit > 0.0 && random.chance(0.6);
-        let sign = if random.chance(0.7) { 1.0 } else { -1.0 };
+        let hardens = yields && yield_limit > 0.0 && (rises || random.chance(0.6));
+        let sign = if rises || random.chance(0.7) { 1.0 } else { -1.0 };
+        let steepness = if rises { random.decades(0.1, 10.0) } else { random.decades(1e-3, 3.0) };
         let law = Law {
             kind: if falls { random.integer(1, 3) as i32 } else { 0 },
             kinetic: random.between(0.0, 0.5),
@@ -61,7 +70,7 @@ impl Law {
             memory_distance: if has_memory { slip * random.decades(0.01, 10.0) } else { 0.0 },
             memory_speed: if random.chance(0.5) { slip / duration * random.decades(1e-3, 1.0) } else { 0.0 },
             yield_limit: if yields { yield_limit } else { 0.0 },
-            hardening: if hardens { sign * yield_limit / slip * random.decades(1e-3, 3.0) } else { 0.0 },
+            hardening: if hardens { sign * yield_limit / slip * steepness } else { 0.0 },
             branch: if slide.has_forces() || random.chance(0.7) { 0 } else { random.integer(1, 2) as i32 },
             compliance: if random.chance(0.4) { own_influence(case) * random.decades(0.1, 3.0) } else { 0.0 },
         };

@@ -195,7 +195,7 @@ impl Run {
             () if slope >= STEEP => "law: law_slope of .5 and more",
             () if case.slide.has_forces() => "law: a force that may be above the maximum",
             () if self.law.branch > 0 => "law: turns of a branch that do not settle",
-            // One call in a thousand (docs/laws.md).
+            // One call in three thousand (docs/laws.md).
             () => "law: neither steps nor turns settle",
         };
         self.verdict.excuse(why);

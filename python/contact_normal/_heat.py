@@ -67,7 +67,7 @@ def flash_temperature(
     Parameters
     ----------
     heat_flux : array_like, (my, mx)
-        A power per area: of friction the traction times the speed of slip.
+        A power per area: of friction the traction times the speed of slip. Below 0 it cools.
     dx, dy : float
         Element sizes.
     conductivity, diffusivity : float or pair
@@ -75,7 +75,8 @@ def flash_temperature(
     speed : float or pair
         How fast each surface moves past the contact in +x; 0: it stands still. Of bodies that roll towards +x at V both are -V.
     share : float, optional
-        The part of the heat that goes into body 1; by default that for which the largest temperatures of both are the same (Blok 1937).
+        The part of the heat that goes into body 1; by default that for which the largest temperatures of both are the same (Blok 1937),
+        and one half where no heat makes one of both warmer.
     threads : int
         1: one, 0: all cores.
 

@@ -59,6 +59,16 @@ class Adhesion(unittest.TestCase):
         self.assertAlmostEqual(found.report["tangential_force"][0], bound, places=6)
         self.assertTrue(0.0 < found.report["stability"] < 1.0)
 
+    def test_a_table_of_friction_is_bounded_as_one_solve(self) -> None:
+        sticky, steel = {**STICKY, "shear_strength": 0.2}, {"shear_modulus": 0.75, "poisson_ratio": 0.0}
+        found = contact_normal.friction_batch(H, D, D, [(-1e5, 0.0, 0.0), (-0.05, 0.02, 0.0)], force=-0.5, friction=SHIFT, adhesion=sticky, **steel)
+        self.assertTrue((found.status == 0).all(), found.message)
+        bound = 0.3 * found.report["repulsive_force"] + 0.2 * found.report["contact_area"]
+        self.assertAlmostEqual(found.force[0, 0], bound, places=6)
+        alone = solve(force=-0.5, adhesion=sticky, friction={**SHIFT, "creepage": (-0.05, 0.02)}, e_star=None, **steel)
+        np.testing.assert_allclose(found.force[1], alone.report["tangential_force"][:2], rtol=1e-4, atol=1e-6 * bound)
+
+
     def test_accuracies_and_quantities_take_it(self) -> None:
         scene = {"approach": 0.2, "e_star": 0.75, "adhesion": STICKY}
         rows = contact_normal.quantities(H, D, D, names=["force"], **scene)

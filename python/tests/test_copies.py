@@ -4,6 +4,7 @@ import concurrent.futures
 import copy
 import gc
 import multiprocessing
+import os
 import pickle
 import threading
 import unittest
@@ -86,6 +87,7 @@ class Copies(unittest.TestCase):
             self.assertEqual((type(again), again.status, again.message, str(again), again.place),
                              (type(error), error.status, error.message, str(error), "here"))
 
+    @unittest.skipUnless(hasattr(os, "fork"), "its workers are forked")
     def test_workers_send_results_and_errors_back(self):
         with concurrent.futures.ProcessPoolExecutor(1, multiprocessing.get_context("fork")) as pool:
             np.testing.assert_array_equal(pool.submit(solve, 100.0).result().pressure, solve(100.0).pressure)

@@ -176,6 +176,7 @@ class Threads(unittest.TestCase):
         for pressure in found:
             np.testing.assert_array_equal(pressure, alone)
 
+    @unittest.skipUnless(hasattr(os, "fork"), "there is no fork")
     def test_a_fork_has_no_threads_of_ours(self):
         cn.solve(H, D, D, force=1000.0, **STEEL)
         with warnings.catch_warnings():

@@ -1,6 +1,7 @@
 """Processes that are forked after a solve with threads solve, too; threads of Python solve at once while Python goes on."""
 
 import multiprocessing
+import os
 import threading
 import time
 import unittest
@@ -38,6 +39,7 @@ def forked(work):
     return found
 
 
+@unittest.skipUnless(hasattr(os, "fork"), "there is no fork")
 class Forks(unittest.TestCase):
     # So many elements that threads share the work.
     M = 281

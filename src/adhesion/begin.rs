@@ -1,21 +1,32 @@
-//! Solves from nothing. A force that pulls, or none, is met on the stable branch: down from a state of more force.
+//! Solves from nothing. A force that pulls, or none, is met on a stable branch: down from a state of more force.
 
-use super::level::{Level, MakeFrozen};
+use super::level::MakeFrozen;
 use super::levels::prolong;
 use super::majorise::Descent;
 use super::nested::{self, coarse_goal};
-use super::newton::{newton, stiffness_of_contact, End, Goal};
-use super::pull::{walk, Walk};
+use super::newton::{newton, End, Goal};
+use super::place::{Met, Place, Walk};
+use super::pull::Walker;
 use super::request::Start;
 use super::solver::{pulls, Solver};
+use super::tangent::is_stable;
 use super::unknowns::Unknowns;
 use crate::error::{Error, Result};
 use crate::progress::Monitor;
 
 /// Bodies that no force holds are first pressed together by this part of all attraction.
 const PRESSED: f64 = 0.01;
-/// Factors of the pressing force, tried one after the other.
-const MORE: [f64; 3] = [1.0, 10.0, 100.0];
+/// The pressing force: so many times the least force that is known, or the last pressing force; so often at most.
+const MORE: f64 = 10.0;
+const WAYS: u32 = 4;
+/// A way finds less force if it is so many times the least.
+const LESS: f64 = 1.0 + 1e-6;
+/// The way of a pull-off: so many times the cycles of a solve, of which each state takes at most such a part.
+const PULL_OFF: u64 = 3;
+const STATES: u64 = 4;
+/// Cycles of each further way: so many times those of the first, and some.
+const TIMES: u64 = 4;
+const AT_LEAST: u64 = 500;
 
 impl Solver {
     pub(super) fn begin_anew(
@@ -25,22 +36,7 @@ impl Solver {
         monitor: &mut Monitor<'_>,
     ) -> Result<Descent> {
         if !pulls(goal) {
-            let ended = nested::solve(&mut self.levels, goal, (start, make), monitor)?;
-            let attracts = self.most_attraction() > 0.0;
-            if ended.is_in_contact() || goal.wanted != Some(0.0) || !attracts || goal.is_interrupted(monitor) {
-                return Ok(ended.end);
-            }
-            let mut apart = Unknowns::default();
-            apart.copy_from(&self.levels[0].now)?;
-            // Bodies apart carry no force, too: what holds each other is looked for from above.
-            return match self.down_from_pressed(goal, make, monitor)? {
-                Some(Walk::Found) => Ok(Descent::By(End::Solved)),
-                Some(Walk::Interrupted) => Ok(Descent::By(End::Interrupted)),
-                _ => {
-                    self.levels[0].now.copy_from(&apart)?;
-                    Ok(ended.end)
-                }
-            };
+            return self.begin_pressed(goal, (start, make), monitor);
         }
         if self.is_found_from_coarse(goal, (start, make), monitor)? {
             return Ok(Descent::By(End::Solved));
@@ -48,76 +44,150 @@ impl Solver {
         // Down the stable branch of the finest grid.
         let unloaded = Goal { wanted: Some(0.0), ..goal };
         let ended = nested::solve(&mut self.levels, unloaded, (start, make), monitor)?;
-        if ended.is_in_contact() && self.is_all_in_contact() {
-            if let Some(held) = self.hold_all(goal, monitor)? {
-                return Ok(held);
-            }
-            nested::solve(&mut self.levels, unloaded, (start, make), monitor)?;
-        }
-        let mut walk = match ended.is_in_contact() {
-            true => Some(walk(&mut self.levels[0], (goal, make), monitor)?),
-            false => None,
-        };
-        if matches!(walk, None | Some(Walk::Lost)) && !goal.is_interrupted(monitor) {
-            walk = self.down_from_pressed(goal, make, monitor)?.or(walk);
-        }
-        match walk {
-            Some(Walk::Found) => Ok(Descent::By(End::Solved)),
-            Some(Walk::Interrupted) => Ok(Descent::By(End::Interrupted)),
-            Some(Walk::Least { sum, approach }) => {
+        match self.down_all_ways(goal, (ended.is_in_contact(), make), monitor)? {
+            Walk::Found => Ok(Descent::By(End::Solved)),
+            Walk::Interrupted => Ok(Descent::By(End::Interrupted)),
+            Walk::Least { sum, approach } => {
                 let area = self.levels[0].problem.grid.element_area();
                 let force = goal.wanted.unwrap_or(0.0) * area;
                 Err(Error::Infeasible(format!(
-                    "force is {force:e}; the attraction holds a pull of {:e} at most (the pull-off force), at an approach of {approach:e}",
+                    "force is {force:e}; the strongest state that was found, on the ways down from no load and from bodies pressed together, holds \
+                     a pull of {:e} (the pull-off force), at an approach of {approach:e}",
                     sum * area
                 )))
             }
-            Some(Walk::Lost) | None => {
+            Walk::Lost | Walk::Met => {
                 let end = if goal.is_interrupted(monitor) { End::Interrupted } else { End::Failed };
                 self.beyond_all_attraction(goal).map_or(Ok(Descent::By(end)), Err)
             }
         }
     }
 
-    /// Down the stable branch from bodies that are pressed together: as strongly as they are to be pulled, or by a part of all attraction. None where no
-    /// such state is found.
-    fn down_from_pressed(
+    /// From nothing, by an approach, or a force that does not pull.
+    fn begin_pressed(
         &mut self,
         goal: Goal,
-        make: MakeFrozen<'_>,
+        (start, make): (Start, MakeFrozen<'_>),
         monitor: &mut Monitor<'_>,
-    ) -> Result<Option<Walk>> {
-        let wanted = goal.wanted.map_or(0.0, f64::abs);
-        let pressing = if wanted > 0.0 { wanted } else { PRESSED * self.most_attraction() };
-        let mut last = None;
-        for times in MORE {
-            let pressed = Goal { wanted: Some(times * pressing), ..goal };
+    ) -> Result<Descent> {
+        let ended = nested::solve(&mut self.levels, goal, (start, make), monitor)?;
+        if goal.is_interrupted(monitor) && ended.end != Descent::By(End::Solved) {
+            return Ok(ended.end);
+        }
+        if ended.is_in_contact() && goal.wanted.is_some() {
+            let settled = self.walker(goal, make, monitor).settle()?;
+            if settled == Walk::Found {
+                return Ok(ended.end);
+            }
+        } else if ended.is_in_contact() || goal.wanted != Some(0.0) || !(self.most_attraction() > 0.0) {
+            return Ok(ended.end);
+        }
+        let mut found = Unknowns::default();
+        found.copy_from(&self.levels[0].now)?;
+        // Bodies apart carry no force, too: what holds each other is looked for from above.
+        let walk = self.down_all_ways(goal, (false, make), monitor)?;
+        if walk == Walk::Found {
+            return Ok(Descent::By(End::Solved));
+        }
+        self.levels[0].now.copy_from(&found)?;
+        Ok(match walk {
+            Walk::Interrupted => Descent::By(End::Interrupted),
+            _ if ended.is_in_contact() => Descent::By(End::Failed),
+            _ => ended.end,
+        })
+    }
+
+    pub(super) fn walker<'a, 'm, 'c>(
+        &'a mut self,
+        goal: Goal,
+        make: MakeFrozen<'a>,
+        monitor: &'m mut Monitor<'c>,
+    ) -> Walker<'a, 'm, 'c> {
+        Walker { level: &mut self.levels[0], goal, make, monitor, each: u64::MAX }
+    }
+
+    /// Of the first way of a pull-off, which has many states: each may take a part of the cycles, and all together some times as many.
+    fn first_walker<'a, 'm, 'c>(
+        &'a mut self,
+        goal: Goal,
+        make: MakeFrozen<'a>,
+        monitor: &'m mut Monitor<'c>,
+    ) -> Walker<'a, 'm, 'c> {
+        if goal.wanted.is_some() {
+            return self.walker(goal, make, monitor);
+        }
+        let most = monitor.count.cycles.saturating_add(goal.most.saturating_mul(PULL_OFF));
+        let each = goal.most / STATES + 1;
+        Walker { each, ..self.walker(Goal { most, ..goal }, make, monitor) }
+    }
+
+    /// Down the stable branch: from what the finest grid holds, if it is a state to go down from, and from bodies that are pressed together. The
+    /// second is for bodies of which one asperity alone holds without a load, and for those that nothing holds then. More and more pressed, until no less
+    /// force is found. The finest grid then has the state of the least.
+    pub(super) fn down_all_ways(
+        &mut self,
+        goal: Goal,
+        (is_state, make): (bool, MakeFrozen<'_>),
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Walk> {
+        let (mut least, mut met, mut most) = (None::<Place>, None, goal.most);
+        // What is known of a way that is lost; how it ends without a least force.
+        let (mut before_lost, mut without) = (None, Walk::Lost);
+        if is_state {
+            let before = monitor.count.cycles;
+            met = Some(Met::of(&self.levels[0]));
+            match self.first_walker(goal, make, monitor).walk(None)? {
+                Walk::Least { sum, .. } => least = Some(Place::of(&self.levels[0], sum)?),
+                Walk::Lost | Walk::Met => {
+                    met = None;
+                    before_lost = Some(Place::of(&self.levels[0], 0.0)?);
+                }
+                ended => return Ok(ended),
+            }
+            // Each further way takes at most some times as long.
+            let times = TIMES * (monitor.count.cycles - before) + AT_LEAST;
+            most = if goal.wanted.is_none() { times } else { most.min(times) };
+        }
+        let mut pressing = match (&least, goal.wanted.unwrap_or(0.0)) {
+            (Some(least), _) => MORE * least.sum.abs(),
+            (None, wanted) if wanted > 0.0 => MORE * wanted,
+            (None, wanted) if wanted < 0.0 => wanted.abs().min(self.most_attraction()),
+            _ => PRESSED * self.most_attraction(),
+        };
+        for _ in 0..WAYS {
+            let pressed = Goal { wanted: Some(pressing), most, ..goal };
             let ended = nested::solve(&mut self.levels, pressed, (Start::Auto, make), monitor)?;
-            if goal.is_interrupted(monitor) {
-                return Ok(Some(Walk::Interrupted));
-            }
-            if ended.end == Descent::By(End::Solved) {
-                last = Some(walk(&mut self.levels[0], (goal, make), monitor)?);
-            }
-            if !matches!(last, None | Some(Walk::Lost)) {
+            let walk = match ended.end == Descent::By(End::Solved) {
+                true => self.walker(Goal { most, ..goal }, make, monitor).walk(met)?,
+                false => Walk::Lost,
+            };
+            if monitor.is_cancelled() || walk == Walk::Interrupted && least.is_none() {
+                without = Walk::Interrupted;
                 break;
             }
+            pressing *= MORE;
+            match walk {
+                Walk::Found => return Ok(Walk::Found),
+                Walk::Least { sum, .. } if least.as_ref().is_none_or(|least| sum < LESS * least.sum) => {
+                    met = Some(Met::of(&self.levels[0]));
+                    pressing = MORE * sum.abs();
+                    least = Some(Place::of(&self.levels[0], sum)?);
+                }
+                Walk::Lost if least.is_none() => {}
+                _ => break,
+            }
         }
-        Ok(last)
-    }
-
-    /// From contact everywhere in two periods: the approach does not change with the force, and there is no branch to go down. None where that does not
-    /// last.
-    fn hold_all(&mut self, goal: Goal, monitor: &mut Monitor<'_>) -> Result<Option<Descent>> {
-        let (end, measured) = newton(&mut self.levels[0], goal, true, monitor)?;
-        let lasts = end == End::Solved && measured.count == self.levels[0].now.u.len();
-        Ok(Some(Descent::By(end)).filter(|_| lasts || end == End::Interrupted))
-    }
-
-    /// Whether all elements of two periods are in contact. The mean of their distances then stays where it is, whatever the force.
-    fn is_all_in_contact(&self) -> bool {
-        let Level { problem, now, .. } = &self.levels[0];
-        problem.coefficients.is_mean_free() && now.contact.iter().all(|&inside| inside)
+        let Some(least) = least else {
+            if let Some(place) = before_lost {
+                self.levels[0].now.copy_from(&place.at)?;
+            }
+            return Ok(without);
+        };
+        self.levels[0].now.copy_from(&least.at)?;
+        if without == Walk::Interrupted {
+            return Ok(without);
+        }
+        Ok(Walk::Least { sum: least.sum, approach: least.approach() })
     }
 
     /// The sum of all attraction, at a distance of 0 everywhere.
@@ -157,7 +227,8 @@ impl Solver {
         monitor.enter_grid();
         let ended = nested::solve(&mut self.levels[last..], unloaded, (start, make), monitor)?;
         let is_found = ended.end == Descent::By(End::Solved)
-            && walk(&mut self.levels[last], (coarse, make), monitor)? == Walk::Found;
+            && Walker { level: &mut self.levels[last], goal: coarse, make, monitor, each: u64::MAX }.walk(None)?
+                == Walk::Found;
         if !is_found {
             return Ok(false);
         }
@@ -171,6 +242,6 @@ impl Solver {
                 return Ok(false);
             }
         }
-        Ok(stiffness_of_contact(&mut self.levels[0], monitor)? > 0.0)
+        is_stable(&mut self.levels[0], true, monitor)
     }
 }

@@ -14,18 +14,20 @@
 //! | `newton`, `system` | semismooth Newton with flexible GMRES, bordered where the force is given |
 //! | `majorise`, `robust` | descent by contact problems whose attraction stands still, and Newton's method with that behind it |
 //! | `nested` | nested iteration; the starts from contact and from apart |
-//! | `pull` | forces that pull, and the pull-off |
-//! | `stability` | how near a state is to a snap |
+//! | `pull`, `place`, `held` | the way down to the pull-off, and states on it; the stable state of a force |
+//! | `stability`, `tangent` | how near a state is to a snap; how its force changes with the approach, and whether it is stable |
 //! | `begin` | the starts from nothing |
 //! | `request`, `solver`, `report` | the whole solve |
 
 mod begin;
+mod held;
 mod law;
 mod level;
 mod levels;
 mod majorise;
 mod nested;
 mod newton;
+mod place;
 mod pull;
 mod report;
 mod request;
@@ -33,6 +35,7 @@ mod robust;
 mod solver;
 mod stability;
 mod system;
+mod tangent;
 mod unknowns;
 
 pub use law::{Attraction, Law};

@@ -31,8 +31,6 @@ const WITHIN: f64 = 3.0;
 const DIRECTIONS: usize = 30;
 /// A residual beyond that is a failure.
 const LOST: f64 = 1e12;
-/// The linear solve of the stiffness of the contact.
-const OF_STIFFNESS: f64 = 1e-3;
 
 /// How a loop ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -159,28 +157,4 @@ fn linearise(level: &Level, at_mean: bool, stiffness: &mut [[f64; 1]], right: &m
         let at = place(i, e);
         [-(p + surface.traction(i, at) - stiffness[i][0] * (e - at))]
     });
-}
-
-/// dF/dapproach per area of an element, at the state of now: the force that holds an equilibrium grows with the approach where it is stable.
-pub fn stiffness_of_contact(level: &mut Level, monitor: &mut Monitor<'_>) -> Result<f64> {
-    let (n, threads) = (level.now.u.len(), level.problem.threads.clone());
-    let mut fields = std::mem::take(&mut level.fields);
-    let (mut stiffness, mut right) = (fields.take(n)?, fields.take(n)?);
-    linearise(level, false, &mut stiffness, &mut right);
-    let mut system = Linearised::new(level, &stiffness, false, &mut fields)?;
-    fields::fill(&threads, &mut right, |i| [-system.column_at(i)]);
-    let norm = fields::dot(&threads, &right, &right).sqrt();
-    let until = Until { target: norm * OF_STIFFNESS, most: DIRECTIONS };
-    let r = Bordered { field: right, border: [0.0] };
-    let found = fgmres::solve(&mut system, r, (until, 0.0), &threads, &mut fields)?;
-    let mut sum = 0.0;
-    for (y, direction) in found.y.iter().zip(&found.directions) {
-        let [of_direction] = fields::sum(&threads, n, |i| direction.z.field[i].map(f64::from));
-        sum += y * of_direction;
-    }
-    found.directions.into_iter().for_each(|direction| direction.give(&mut fields));
-    fields.give(stiffness);
-    level.fields = fields;
-    level.count_products(monitor);
-    Ok(sum)
 }

@@ -49,7 +49,7 @@ impl Report {
         let (in_x, in_y) = level.problem.coefficients.repeats(&grid);
         let is_border = |i: usize| {
             let (x, y) = (i % grid.mx, i / grid.mx);
-            !in_x && (x == 0 || x + 1 == grid.mx) || !in_y && grid.my > 1 && (y == 0 || y + 1 == grid.my)
+            !in_x && grid.mx > 1 && (x == 0 || x + 1 == grid.mx) || !in_y && grid.my > 1 && (y == 0 || y + 1 == grid.my)
         };
         let [q, sigma, at_border] = fields::sum(threads, now.u.len(), |i| {
             let sigma = surface.traction(i, surface.distance(i, now));

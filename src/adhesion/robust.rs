@@ -1,8 +1,9 @@
-//! One grid: Newton's method, and where it fails or ends uphill, some steps of descent from the last good state, and Newton's method again.
+//! One grid: Newton's method, and where it fails, ends uphill or on a saddle, some steps of descent from the last good state, and Newton's method again.
 
 use super::level::{Level, MakeFrozen};
 use super::majorise::{descend, Descent, Steps};
 use super::newton::{newton, End, Goal};
+use super::tangent::is_stable;
 use super::unknowns::{energies, Measured};
 use crate::error::Result;
 use crate::progress::Monitor;
@@ -13,6 +14,10 @@ const ROUNDS: u32 = 12;
 pub const BETWEEN: u64 = 5;
 /// An energy of more by this part is uphill.
 const UPHILL: f64 = 1e-6;
+/// Grids of so many elements are asked whether their equilibrium is stable: it costs little there. Larger ones are if Newton's method takes more steps
+/// than this: they begin near the equilibrium of a coarser grid, or of the last load, and a short way from a stable one ends at a stable one.
+const ASKED: usize = 1024;
+const SHORT: u64 = 6;
 
 /// How a grid ended.
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +43,12 @@ pub fn energy(level: &Level, wanted: Option<f64>) -> f64 {
     elastic - adhesive - wanted.map_or(0.0, |wanted| wanted * level.now.approach())
 }
 
+/// Whether Newton's method ended at an equilibrium of no least energy, the approach being given. What a force has is asked at the end of a whole solve.
+fn is_saddle(level: &mut Level, goal: Goal, is_long: bool, monitor: &mut Monitor<'_>) -> Result<bool> {
+    let is_asked = level.now.u.len() <= ASKED || goal.certified && is_long;
+    Ok(goal.wanted.is_none() && is_asked && !is_stable(level, false, monitor)?)
+}
+
 /// Solves a grid from what it holds. `keeps`: the first step of Newton's method keeps the contact area.
 pub fn solve(
     level: &mut Level,
@@ -50,9 +61,12 @@ pub fn solve(
     let mut ended = None;
     let (mut least, mut descended) = (f64::INFINITY, false);
     for round in 0..ROUNDS {
+        let before = monitor.count.cycles;
         let (end, measured) = newton(level, goal, keeps && round == 0, monitor)?;
+        let is_long = monitor.count.cycles - before > SHORT;
         let is_downhill = || energy(level, goal.wanted) <= least + UPHILL * least.abs();
-        if end == End::Interrupted || end == End::Solved && is_downhill() {
+        if end == End::Interrupted || end == End::Solved && is_downhill() && !is_saddle(level, goal, is_long, monitor)?
+        {
             ended = Some((Descent::By(end), measured));
             break;
         }

@@ -5,12 +5,13 @@ use std::sync::Arc;
 use super::level::{Level, MakeFrozen};
 use super::levels::{levels, take_surfaces};
 use super::majorise::Descent;
-use super::newton::{newton, stiffness_of_contact, End, Goal};
-use super::pull::{walk, Walk};
+use super::newton::{newton, End, Goal};
+use super::place::Walk;
 use super::report::{close_grid, Report};
 use super::request::{Request, Start, State};
 use super::robust;
 use super::stability::stability;
+use super::tangent::stiffness_of_contact;
 use crate::contact;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -117,11 +118,19 @@ impl Solver {
             let ended = robust::solve(level, goal, (true, make), monitor)?;
             let change = before.abs_diff(ended.measured.count) as f64;
             self.jumped = ended.descended && change > SNAPPED * before.max(ended.measured.count) as f64;
-            return Ok(ended.end);
-        }
-        let (end, _) = newton(level, goal, true, monitor)?;
-        if end == End::Interrupted || end == End::Solved && stiffness_of_contact(level, monitor)? > 0.0 {
-            return Ok(Descent::By(end));
+            let is_settled = goal.wanted.is_none()
+                || !ended.is_in_contact()
+                || self.walker(goal, make, monitor).settle()? == Walk::Found;
+            if is_settled || goal.is_interrupted(monitor) {
+                return Ok(ended.end);
+            }
+        } else {
+            let (end, _) = newton(level, goal, true, monitor)?;
+            if end == End::Interrupted
+                || end == End::Solved && self.walker(goal, make, monitor).settle()? == Walk::Found
+            {
+                return Ok(Descent::By(end));
+            }
         }
         self.jumped = true;
         self.begin_anew(goal, (start, make), monitor)
@@ -130,10 +139,10 @@ impl Solver {
     /// From the state of now to that of the least force.
     fn pull_off(&mut self, goal: Goal, make: MakeFrozen<'_>, monitor: &mut Monitor<'_>) -> Result<Descent> {
         let goal = Goal { wanted: None, ..goal };
-        Ok(match walk(&mut self.levels[0], (goal, make), monitor)? {
+        Ok(match self.down_all_ways(goal, (true, make), monitor)? {
             Walk::Least { .. } | Walk::Found => Descent::By(End::Solved),
             Walk::Interrupted => Descent::By(End::Interrupted),
-            Walk::Lost => Descent::By(End::Failed),
+            Walk::Lost | Walk::Met => Descent::By(End::Failed),
         })
     }
 

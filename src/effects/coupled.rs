@@ -28,6 +28,11 @@ pub trait Coupled {
     /// Whether the options leave it work for another turn.
     fn has_work_left(&self) -> bool;
 
+    /// The turns have come to their end: refuses what the last pressures do not allow.
+    fn refuse(&mut self) -> Result<()> {
+        Ok(())
+    }
+
     /// The step is done: keeps what the next one continues from.
     fn step_done(&mut self, state: &State);
 }

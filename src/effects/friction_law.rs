@@ -17,7 +17,7 @@ pub enum Fall {
 /// Which solution is wanted where bounds that fall with the slip have several.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Branch {
-    /// The solution near the start: the fastest to find.
+    /// The solution near the start: the fastest to find. Where none is found so, that of `Low`.
     #[default]
     Near,
     /// The solution that begins with the bounds of no slip.

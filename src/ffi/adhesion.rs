@@ -26,8 +26,9 @@ pub const CONTACT_NORMAL_START_FROM_APART: i32 = 2;
 
 /// Effect: attraction across the gap, `p = q - sigma(e)` with contact pressures q >= 0. The scene's force may then be negative. Pressures
 /// are total ones, negative where the bodies pull at each other; `contact` is 1 where e = 0. A work of 0 is no adhesion. Several states may
-/// belong to one approach: `start` says which one is looked for, and initial_guess PREVIOUS follows the one before. A force has one stable
-/// state, with dF/dapproach > 0; below the pull-off force there is none (INFEASIBLE). See docs/adhesion.md.
+/// belong to one approach: `start` says which one is looked for, and initial_guess PREVIOUS follows the one before. To a force belong unstable
+/// states as well, which are refused, and maybe several stable ones, with dF/dapproach > 0; below the pull-off force none is found
+/// (INFEASIBLE). See docs/adhesion.md.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_adhesion {
@@ -117,7 +118,7 @@ pub struct contact_normal_report_adhesion {
     pub resolution: f64,
     /// The part of the attraction that acts on the border of the grid: the grid does not contain it where that is more than 0.001.
     pub border_share: f64,
-    /// dF/dapproach if `adhesion->stiffness` is 1, else 0.
+    /// dF/dapproach if `adhesion->stiffness` is 1, else 0. Infinite where all elements of two periods are in contact.
     pub stiffness: f64,
     /// 1 - lambda if `adhesion->stability` is 1, else 0; lambda is the largest eigenvalue of how a change of the attraction outside the
     /// contact comes back to itself. Positive in a stable state (of a given approach), near 0 where a small step may snap.

@@ -37,6 +37,10 @@ pub const CONTACT_NORMAL_OMIT_FRICTION_COMPLIANCE: i32 = 9;
 pub const CONTACT_NORMAL_OMIT_COATING_AS_LAYER: i32 = 10;
 /// `omitted`: adhesion; nothing attracts.
 pub const CONTACT_NORMAL_OMIT_ADHESION: i32 = 11;
+/// `omitted`: the law of friction; the coefficient is that at rest everywhere.
+pub const CONTACT_NORMAL_OMIT_FRICTION_LAW: i32 = 12;
+/// `omitted`: the yield of a third body, not its compliance.
+pub const CONTACT_NORMAL_OMIT_FRICTION_LAYER: i32 = 13;
 
 /// `verdict`: the change is too near to the target, or its error is not known; more time decides.
 pub const CONTACT_NORMAL_VERDICT_NOT_DECIDED: i32 = 0;

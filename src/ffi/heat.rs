@@ -23,7 +23,7 @@ pub struct contact_normal_heat {
     pub dx: f64,
     /// In y. Default 0: to be set.
     pub dy: f64,
-    /// The flux, `[my][mx]`, a power per area: of friction |q| times the speed of slip. Default NULL: to be set.
+    /// The flux, `[my][mx]`, a power per area: of friction |q| times the speed of slip; below 0 it cools. Default NULL: to be set.
     pub heat_flux: *const f64,
     /// lambda of body 1 and 2, power per length and temperature. Default 0: to be set.
     pub conductivity: [f64; 2],
@@ -32,7 +32,8 @@ pub struct contact_normal_heat {
     /// How fast each surface moves past the contact in +x, length per time, of any sign; 0 (default): it stands still. Of bodies that roll towards
     /// +x at V both are -V.
     pub speed: [f64; 2],
-    /// The part of the heat that goes into body 1, 0 to 1; < 0 (default): that for which the largest temperatures of both are the same (Blok 1937).
+    /// The part of the heat that goes into body 1, 0 to 1; < 0 (default): that for which the largest temperatures of both are the same (Blok 1937),
+    /// and one half where no heat makes one of both warmer.
     pub share: f64,
     /// Threads; 1: one (default), 0: all cores.
     pub threads: i32,
@@ -63,7 +64,8 @@ versioned! { contact_normal_flash, contact_normal_flash_init, 64 }
 /// The steady flash temperature of both surfaces, above the temperature far away: each body is a half-space past which the sources of heat move
 /// (Jaeger 1942). Without motion it is that of a source at rest. `temperature`: `[2][my][mx]`, of body 1, then of body 2; NULL: not wanted.
 /// `flash` NULL: not wanted. The grid must hold all of the flux; downstream of it a rise beyond the grid is not computed. Products are FFTs; the
-/// set-up takes some hundred function values an element and body. INVALID_ARGUMENT, NOT_FINITE: numbers out of their range. Since 0.2.
+/// set-up takes some hundred function values an element and body. INVALID_ARGUMENT, NOT_FINITE: numbers out of their range; NOT_FINITE: temperatures
+/// beyond the range of numbers. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_flash_temperature(
     heat: *const contact_normal_heat,

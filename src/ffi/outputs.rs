@@ -239,6 +239,11 @@ impl Outputs {
         }
     }
 
+    /// That of laws of friction; likewise.
+    pub fn warnings_of_law(&self, slope: Option<f64>) -> i32 {
+        self.given_report.map_or(0, |_| warnings::of_law(slope))
+    }
+
     /// The warnings of a result; nothing where no report is wanted.
     pub fn warnings(&self, scene: &Scene<'_>, options: &Options, report: &Report, state: &State) -> i32 {
         self.given_report.map_or(0, |_| warnings::of(scene, options, report, state))

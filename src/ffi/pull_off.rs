@@ -13,9 +13,10 @@ use super::status::contact_normal_status;
 use super::watcher::{watched, Watcher};
 use crate::solver::{ProgressCallback, Solver};
 
-/// Finds the pull-off: from the load of the scene, which has adhesion, the approach goes down until the force rises again. The result is the
-/// state there, its force the least that an equilibrium has (`report->normal.force`). A load to begin with that is safe is a force of 0.
-/// `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.2.
+/// Finds the pull-off: from the load of the scene, which has adhesion, the approach goes down until nothing is in contact, and so it does from
+/// bodies that are pressed together. The result is the state of the least force on these ways (`report->normal.force`). A load to begin with that
+/// is safe is a force of 0. The way from the load may take three times
+/// `max_cycles`. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_pull_off(
     scene: *const contact_normal_scene,

@@ -75,7 +75,7 @@ pub struct contact_normal_report_tangential {
     pub sensitivities: [f64; 9],
     /// rms over C of the last change of q; 0 where the iteration ended where it began.
     pub update: f64,
-    /// The largest slope by which bounds fall with the slip, times an element's influence on itself; 0 without a law. From .5 on the iteration
+    /// The largest slope by which bounds fall with the slip, memory included, times an element's influence on itself; 0 without a law. From .5 on the iteration
     /// may end as STAGNATED, from 1 on a single element has several solutions.
     pub law_slope: f64,
     /// Room for later versions: 0.

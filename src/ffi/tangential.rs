@@ -36,7 +36,8 @@ use crate::solver::{solve_friction_batch, solve_tangential, Ended, Entry, Outcom
 /// and the spin. NULL, with n = 1: those of `scene->friction`. With pressures that are given this is one problem: all threads work on
 /// it, `progress` is called for each iteration, and where the call is refused `results` stays as it is.
 ///
-/// `report` (NULL: not wanted) has the measures of the pressures and, of one problem, those of friction.
+/// `report` (NULL: not wanted) has the measures of the pressures and, of one problem, those of friction. Its `warnings` has LAW where that holds of
+/// the problem, or of an entry.
 ///
 /// Of entries as many are solved at a time as `options->threads` says. Neighbours in the table should be neighbours in the motion: 16 in
 /// a row are solved one after the other, each from the tractions of the one before if it differs little, and all meet the tolerance. Results
@@ -151,8 +152,9 @@ impl Call<'_> {
                 // SAFETY: the caller's arrays were checked; there is one entry.
                 unsafe { self.wanted.write(0, Ok((stop, found)), Some(solution)) };
             }
-            self.outputs.write_report(&report, &[], 0)?;
-            Ok(Conclusion::of(stop, || explain(stop, &report, options.method, None)))
+            let warnings = self.outputs.warnings_of_law(report.friction.map(|found| found.law_slope));
+            self.outputs.write_report(&report, &[], warnings)?;
+            Ok(Conclusion { warnings, ..Conclusion::of(stop, || explain(stop, &report, options.method, None)) })
         });
         found?.conclude()
     }
@@ -166,8 +168,12 @@ impl Call<'_> {
     ) -> Result<contact_normal_status, Refusal> {
         let options = &self.options.options;
         let concluded = watched(Watcher::of(self.options), |progress| {
-            let not_ok = Mutex::new(NotOk::default());
+            let (not_ok, steepest) = (Mutex::new(NotOk::default()), Mutex::new(0.0f64));
             let found = |i: usize, ended: Ended, solution: Option<&Solution>| {
+                if let Ok((_, report)) = &ended {
+                    let mut most = steepest.lock().unwrap_or_else(PoisonError::into_inner);
+                    *most = most.max(report.law_slope);
+                }
                 // SAFETY: each entry is solved by one thread; the caller's arrays were checked.
                 let outcome = unsafe { self.wanted.write(i, ended, solution) };
                 not_ok.lock().unwrap_or_else(PoisonError::into_inner).note(i, outcome);
@@ -178,13 +184,15 @@ impl Call<'_> {
                 }
                 _ => solve_friction_batch(self.scene, pressure, table, options, progress, found)?,
             };
-            self.outputs.write_report(&normal, &[], 0)?;
+            let steepest = steepest.into_inner().unwrap_or_else(PoisonError::into_inner);
+            let warnings = self.outputs.warnings_of_law(Some(steepest));
+            self.outputs.write_report(&normal, &[], warnings)?;
             let entries = not_ok.into_inner().unwrap_or_else(PoisonError::into_inner).outcome("entry");
             if entries.status != CONTACT_NORMAL_OK || stop == Outcome::Converged {
-                return Ok(entries);
+                return Ok(Conclusion { warnings, ..entries });
             }
             let message = || format!("the normal problem: {}", explain(stop, &normal, options.method, None));
-            Ok(Conclusion::of(stop, message))
+            Ok(Conclusion { warnings, ..Conclusion::of(stop, message) })
         });
         concluded?.conclude()
     }

@@ -59,7 +59,7 @@ pub(super) fn text(warnings: i32) -> &'static CStr {
 /// The warnings of a result.
 pub(super) fn of(scene: &Scene<'_>, options: &Options, report: &Report, state: &State) -> i32 {
     let (measures, grid) = (&report.measures, &scene.grid);
-    let effects = of_adhesion(report) | of_law(report);
+    let effects = of_adhesion(report) | of_law(report.friction.map(|found| found.law_slope));
     if measures.contact_count == 0 || grid.len() == 1 {
         return effects;
     }
@@ -83,10 +83,9 @@ fn of_adhesion(report: &Report) -> i32 {
     range | if found.border_share > CONTAINED { CONTACT_NORMAL_WARNING_ATTRACTION } else { 0 }
 }
 
-/// That of a law of friction.
-fn of_law(report: &Report) -> i32 {
-    let is_steep = report.friction.is_some_and(|found| found.law_slope >= STEEP);
-    if is_steep {
+/// That of a law of friction, by `law_slope`.
+pub(super) fn of_law(slope: Option<f64>) -> i32 {
+    if slope.is_some_and(|slope| slope >= STEEP) {
         CONTACT_NORMAL_WARNING_LAW
     } else {
         0

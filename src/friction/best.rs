@@ -7,6 +7,9 @@ use super::problem::{Problem, State};
 use crate::error::Result;
 use crate::methods::fields::{self, Fields};
 
+/// Of a residual with displacements that are not fresh, the part that they hide: round-off of single precision.
+const HIDDEN: f64 = f32::EPSILON as f64;
+
 /// Tractions, the creepages found with them, and how far they are from the conditions.
 pub struct Best {
     q: Vec<Vector>,
@@ -21,8 +24,9 @@ impl Best {
         Best { q: Vec::new(), offset: [0.0; 2], worst: f64::INFINITY }
     }
 
-    /// Keeps these if they are better.
+    /// Keeps these if they are better, as far as displacements that may be of products in single precision tell.
     pub fn see(&mut self, problem: &Problem, state: &State, worst: f64, fields: &mut Fields) -> Result<()> {
+        let worst = if state.is_exact { worst } else { worst.max(HIDDEN) };
         if !(worst < self.worst) {
             return Ok(());
         }

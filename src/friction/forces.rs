@@ -19,6 +19,25 @@ pub struct Forces {
     pub sum: Vector,
 }
 
+/// A force, as a sum of tractions, and the greatest that can be carried.
+struct Reach {
+    direction: &'static str,
+    by: &'static str,
+    wanted: f64,
+    greatest: f64,
+}
+
+impl Reach {
+    fn refusal(&self, area: f64) -> String {
+        let Reach { direction, by, wanted, greatest } = self;
+        format!(
+            "the tangential force{direction} is {}; with {by} it must be less than {}",
+            wanted * area,
+            greatest * area
+        )
+    }
+}
+
 /// Round-off of the sum of all bounds, relative to it: that of 2^31 of them in any order.
 const ROUND_OFF: f64 = 1e-12;
 
@@ -37,6 +56,29 @@ impl Forces {
     /// Those of a scene whose elements carry at most `bound(i)` each; refuses forces that no tractions within these carry. Where nothing can be carried
     /// a force of 0 is met as it is, and its creepage stays 0.
     pub fn of(friction: &Friction<'_>, grid: &Grid, bound: impl Fn(usize) -> f64) -> Result<Forces> {
+        let mut refused = None;
+        let forces = Forces::within(friction, grid, bound, |reach| {
+            if refused.is_none() && !(reach.wanted < reach.greatest * (1.0 - ROUND_OFF)) {
+                refused = Some(reach.refusal(grid.element_area()));
+            }
+        })?;
+        refused.map_or(Ok(forces), |message| Err(Error::Infeasible(message)))
+    }
+
+    /// The part of the forces, all together, up to which tractions within these bounds carry them; more than 1 where they carry them.
+    pub fn part(friction: &Friction<'_>, grid: &Grid, bound: impl Fn(usize) -> f64) -> Result<f64> {
+        let mut part = f64::INFINITY;
+        Forces::within(friction, grid, bound, |reach| part = part.min(reach.greatest / reach.wanted))?;
+        Ok(part)
+    }
+
+    /// The same as [`Forces::of`], which are compared with what can be carried by `compare`: in each direction that has weights, then together.
+    fn within(
+        friction: &Friction<'_>,
+        grid: &Grid,
+        bound: impl Fn(usize) -> f64,
+        mut compare: impl FnMut(Reach),
+    ) -> Result<Forces> {
         let area = grid.element_area();
         let mut forces = Forces::NONE;
         for (k, prescribed) in friction.prescribed.iter().enumerate() {
@@ -54,12 +96,9 @@ impl Forces {
             let greatest = in_blocks((0..grid.len()).map(|i| weights[i].abs() * bound(i)));
             if greatest == 0.0 && forces.sum[k] == 0.0 {
                 forces.given[k] = false;
-            } else if !(forces.sum[k].abs() < greatest * (1.0 - ROUND_OFF)) {
-                let (name, wanted) = (["x", "y"][k], forces.sum[k].abs() * area);
-                return Err(Error::Infeasible(format!(
-                    "the tangential force in {name} is {wanted}; with this friction and these weights it must be less than {}",
-                    greatest * area
-                )));
+            } else {
+                let (direction, by) = ([" in x", " in y"][k], "this friction and these weights");
+                compare(Reach { direction, by, wanted: forces.sum[k].abs(), greatest });
             }
         }
         let wanted = forces.sum[0].hypot(forces.sum[1]);
@@ -74,14 +113,8 @@ impl Forces {
         if greatest == 0.0 && forces.sum == [0.0; 2] {
             return Ok(Forces::NONE);
         }
-        if !(wanted < greatest * (1.0 - ROUND_OFF)) {
-            let these = if friction.weights.is_some() { "these weights and this direction" } else { "this friction" };
-            return Err(Error::Infeasible(format!(
-                "the tangential force is {}; with {these} it must be less than {}",
-                wanted * area,
-                greatest * area
-            )));
-        }
+        let by = if friction.weights.is_some() { "these weights and this direction" } else { "this friction" };
+        compare(Reach { direction: "", by, wanted, greatest });
         Ok(forces)
     }
 

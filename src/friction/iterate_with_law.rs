@@ -3,8 +3,9 @@
 
 use super::certificate::Certificate;
 use super::forces::Forces;
-use super::law::{branch, stages, March, Place};
+use super::law::{branch, slope, stages, March, Place};
 use super::levels::Level;
+use super::plane::Vector;
 use super::request::Request;
 use super::shift::{Goal, Memory};
 use super::solution::Report;
@@ -21,8 +22,25 @@ const KEPT_BACK: u64 = 3;
 const KEPT_BACK_OF_TURNS: u64 = 5;
 /// Coulomb's law with the coefficients at rest is solved to this, where forces are given, before the iteration with the law begins.
 const FIRST: f64 = 1e-2;
+
+/// The first residual to which turns go before Newton's method is tried again, and the part of it for the next ones.
+const NEARER: f64 = 1e-2;
+const FURTHER: f64 = 0.1;
 /// Names its memory in messages.
 const KEPT: &str = "the tractions before turns";
+
+/// A state of the finest grid.
+struct Kept {
+    q: Vec<Vector>,
+    bound: Vec<f64>,
+    certificate: Certificate,
+}
+
+impl Kept {
+    fn is_better(&self, other: &Kept) -> bool {
+        self.certificate.residual < other.certificate.residual || !other.certificate.residual.is_finite()
+    }
+}
 
 impl Solver {
     /// Iterates on the finest grid from what it holds, where forces are given from the solution of Coulomb's law. The report gets the certificate
@@ -55,27 +73,74 @@ impl Solver {
         let particle = |k: usize| self.scaled(had.at(element(k)));
         let by = friction.elements_rolled(&self.grid);
         let mut march = March::new((problem.grid, law), friction.motion, by, place, particle)?;
-        let largest = (0..problem.bound.len()).map(|k| problem.bound[k]).fold(0.0, f64::max);
-        report.law_slope = law.steepest(largest) * problem.operators.self_influence;
+        slope::measure(&mut march, |k| problem.operators.own_influence(k))?;
+        report.law_slope = march.falls;
         if request.is_cancelled {
             return Ok(Outcome::Cancelled);
         }
         if friction.branch != Branch::Near {
-            return self.in_turns((request, began), &mut march, watch, report);
+            return self.in_turns((request, began), (&mut march, true), watch, report);
         }
         let outcome = self.nearest(request, (&mut march, forces, forces.any()), watch, report)?;
-        // Turns contract where bounds follow slips by less than those relieve tractions.
-        let rises =
-            march.law.layer.map_or(0.0, |layer| layer.hardening) * self.levels[0].problem.operators.self_influence;
-        let contracts = report.law_slope.max(rises) < 1.0 && !forces.any();
-        if outcome != Outcome::Stagnated || !contracts || report.products >= request.limit as f64 {
+        if outcome != Outcome::Stagnated || forces.any() || report.products >= request.limit as f64 {
             return Ok(outcome);
         }
-        let outcome = self.try_turns((request, began), &mut march, watch, report)?;
-        if outcome != Outcome::Stagnated || report.products >= request.limit as f64 {
-            return Ok(outcome);
+        self.alternate((request, began.1), &mut march, watch, report)
+    }
+
+    /// Where Newton's method has found no solution: the turns of the branch LOW as far as [`NEARER`] and Newton's method from there, if that finds none the
+    /// next turns, ten times as far, and so on. The best state of all where none of them ends.
+    fn alternate(
+        &mut self,
+        (request, had_slip): (&Request<'_>, bool),
+        march: &mut March,
+        watch: &mut dyn FnMut(&Grid, f64) -> bool,
+        report: &mut Report,
+    ) -> Result<Outcome> {
+        let (mut best, mut aim, mut begins) = (self.keep(report)?, NEARER.max(request.tolerance), true);
+        loop {
+            let turns = Request { tolerance: aim, ..*request };
+            let turned = self.in_turns((&turns, (false, had_slip)), (march, begins), watch, report)?;
+            let kept = self.keep(report)?;
+            let is_open = |end: Outcome, report: &Report| match end {
+                Outcome::Converged => !(report.certificate.residual < request.tolerance),
+                Outcome::Stagnated => report.products < request.limit as f64,
+                _ => false,
+            };
+            let mut end = turned;
+            if is_open(turned, report) {
+                end = self.nearest(request, (march, Forces::NONE, true), watch, report)?;
+            }
+            let is_over = turned == Outcome::Stagnated || aim <= request.tolerance;
+            if is_over || !is_open(end, report) {
+                best = if kept.is_better(&best) { kept } else { best };
+                if end != Outcome::Converged && best.certificate.residual < report.certificate.residual {
+                    self.put_back(&best, report);
+                }
+                return Ok(end);
+            }
+            let last = self.keep(report)?;
+            best = if last.is_better(&best) { last } else { best };
+            self.put_back(&kept, report);
+            best = if kept.is_better(&best) { kept } else { best };
+            (aim, begins) = ((FURTHER * aim).max(request.tolerance), false);
         }
-        self.nearest(request, (&mut march, forces, true), watch, report)
+    }
+
+    /// What the finest grid holds.
+    fn keep(&self, report: &Report) -> Result<Kept> {
+        let Level { problem, state, .. } = &self.levels[0];
+        let (q, bound) = (collected(state.q.iter().copied(), KEPT)?, collected(problem.bound.iter().copied(), KEPT)?);
+        Ok(Kept { q, bound, certificate: report.certificate })
+    }
+
+    fn put_back(&mut self, kept: &Kept, report: &mut Report) {
+        let Level { problem, state, .. } = &mut self.levels[0];
+        state.q.copy_from_slice(&kept.q);
+        problem.bound.copy_from_slice(&kept.bound);
+        problem.refresh_unclipped(state);
+        report.products += problem.take_products() as f64;
+        report.certificate = kept.certificate;
     }
 
     /// The nearest solution, by the stages of Newton's method. `has_slipped`: what slips is that of the state.
@@ -99,41 +164,19 @@ impl Solver {
         Ok(ended.outcome)
     }
 
-    /// Where the iteration for the nearest solution found none: turns, whose bounds follow the slips by as much as `law_slope` says, or the state that
-    /// there is, if it is better.
-    fn try_turns(
-        &mut self,
-        (request, began): (&Request<'_>, (bool, bool)),
-        march: &mut March,
-        watch: &mut dyn FnMut(&Grid, f64) -> bool,
-        report: &mut Report,
-    ) -> Result<Outcome> {
-        let Level { problem, state, .. } = &self.levels[0];
-        let kept = (collected(state.q.iter().copied(), KEPT)?, collected(problem.bound.iter().copied(), KEPT)?);
-        let before = report.certificate;
-        let outcome = self.in_turns((request, (false, began.1)), march, watch, report)?;
-        let is_worse = !(report.certificate.residual < before.residual) && before.residual.is_finite();
-        if outcome != Outcome::Converged && is_worse {
-            let Level { problem, state, .. } = &mut self.levels[0];
-            state.q.copy_from_slice(&kept.0);
-            problem.bound.copy_from_slice(&kept.1);
-            problem.refresh_unclipped(state);
-            report.products += problem.take_products() as f64;
-            report.certificate = before;
-        }
-        Ok(outcome)
-    }
-
-    /// The solution of a branch: Coulomb's problem with the bounds of the last slips, in turns.
+    /// The solution of a branch: Coulomb's problem with the bounds of the last slips, in turns. `begins`: with the bounds of the branch, else with those
+    /// that there are.
     fn in_turns(
         &mut self,
         (request, (nested, had_slip)): (&Request<'_>, (bool, bool)),
-        march: &mut March,
+        (march, begins): (&mut March, bool),
         watch: &mut dyn FnMut(&Grid, f64) -> bool,
         report: &mut Report,
     ) -> Result<Outcome> {
         let (mut turns, mut best) = (branch::Turns::new(), branch::Best::new(self.levels[0].problem.bound.len())?);
-        branch::begin(&mut self.levels[0].problem, march, request.friction.branch == Branch::High);
+        if begins {
+            branch::begin(&mut self.levels[0].problem, march, request.friction.branch == Branch::High);
+        }
         // The way to the best of them and onto the circles takes products, too.
         let most = request.limit.saturating_sub(KEPT_BACK_OF_TURNS).max(1);
         let (outcome, residual) = loop {
@@ -161,6 +204,7 @@ impl Solver {
                 best.restore(&mut self.levels[0], march)?;
                 break (outcome, branch::certify(&mut self.levels[0], march));
             }
+            branch::go_on(&mut self.levels[0], march, (&turns, &best));
         };
         let Level { problem, state, .. } = &mut self.levels[0];
         report.products += problem.take_products() as f64;

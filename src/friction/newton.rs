@@ -34,6 +34,8 @@ const ENOUGH: f64 = 0.9;
 const NEAR: f64 = 1.5;
 /// But always to this part.
 const LEAST_GAIN: f64 = 0.5;
+/// Below this residual fresh displacements are round-off: the certificate is tried from here on, whatever the tolerance, for what is not fresh hides more.
+const ROUND_OFF: f64 = 1e-15;
 /// It and rho are cut by this when steps bring nothing, down to the least.
 const CUT: f64 = 0.3;
 const LEAST_INNER: f64 = 0.01;
@@ -154,7 +156,7 @@ pub fn solve(
             return Ok(Outcome::Converged);
         }
         best.see(problem, state, worst, fields)?;
-        if certified && !state.is_exact && is_near(measures, missing, tolerance) {
+        if certified && !state.is_exact && is_near(measures, missing, tolerance.max(ROUND_OFF)) {
             polish(problem, state, tangent, of_step, fields)?;
             continue;
         }

@@ -102,6 +102,12 @@ impl Operators {
         self.a0
     }
 
+    /// The influence of element k on itself, in steady rolling in a step, with all of its layer.
+    pub fn own_influence(&self, k: usize) -> f64 {
+        let stays = self.rolling.as_ref().map_or(0.0, |(_, sweep)| sweep.own());
+        self.self_influence + self.excess.as_ref().map_or(0.0, |excess| (1.0 - stays) * excess.at(k))
+    }
+
     /// An element's influence on itself, relative to that without a layer.
     pub fn relative_compliance(&self) -> f64 {
         self.a0 / (self.a0 - self.tangential.layer())

@@ -180,6 +180,11 @@ impl Solver {
         Ok((end, report))
     }
 
+    /// The part of the forces of a request up to which its pressures carry them; more than 1 where they do.
+    pub fn part_in_reach(&self, request: &Request<'_>) -> Result<f64> {
+        Forces::part(request.friction, &self.grid, |i| request.bound(i))
+    }
+
     /// Solves in a window, in the solver's units. The report gets the certificate, and what that took.
     fn solve_in(
         &mut self,

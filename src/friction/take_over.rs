@@ -21,7 +21,7 @@ use crate::methods::fields;
 const MOSTLY_SLIP: f64 = 0.8;
 
 /// Rigid slips may be so many times what tractions displace: single precision ends at 1e38.
-const LARGEST_RATIO: f64 = 1e30;
+pub(super) const LARGEST_RATIO: f64 = 1e30;
 /// And this part of it: the round-off of what pressures displace sideways is a slip, too.
 const LEAST_RATIO: f64 = 1e-60;
 

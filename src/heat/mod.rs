@@ -1,7 +1,8 @@
 //! Flash temperature: how much a flux of heat through the contact, that of friction, raises the temperature of both surfaces, once that is steady.
 //!
 //! Each body is a half-space whose surface moves past the contact. The heat flux is constant on elements, a part of it goes into body 1 and the
-//! rest into body 2. The part is given, or that for which the largest temperatures of both are the same (Blok 1937).
+//! rest into body 2. The part is given, or that for which the largest temperatures of both are the same (Blok 1937): where each of both gets warmer than
+//! 0 somewhere, else it is one half. A flux below 0 cools.
 //!
 //! | module | what it holds |
 //! |---|---|
@@ -9,7 +10,7 @@
 
 mod kernel;
 
-use crate::error::{finite, positive, require, Result};
+use crate::error::{finite, positive, require, Error, Result};
 use crate::grid::{check_values, Grid};
 use crate::influence::{gauss_legendre, Coefficients, Table};
 use crate::memory::{collected, zeros};
@@ -26,7 +27,7 @@ const FIELDS: &str = "the flash temperature";
 pub struct Heat<'a> {
     /// The elements.
     pub grid: Grid,
-    /// Of each element, `[my][mx]`: a power per area.
+    /// Of each element, `[my][mx]`: a power per area, below 0 where it cools.
     pub flux: &'a [f64],
     /// lambda of body 1 and 2: power per length and temperature.
     pub conductivity: [f64; 2],
@@ -88,6 +89,11 @@ impl Heat<'_> {
         for ky in 1..my {
             below[(my - ky) * 2 * mx..][..2 * mx].copy_from_slice(&above[ky * 2 * mx..][..2 * mx]);
         }
+        let own = values[2 * mx * my + mx];
+        // All of a row's are sums of the same kind: those that are none are so for the speed.
+        let is_within = own > 0.0 && values.iter().all(|value| value.is_finite());
+        let (speed, diffusivity) = (self.speed[b], self.diffusivity[b]);
+        require_range(is_within, || format!("speed[{b}] is {speed:e} with diffusivity[{b}] of {diffusivity:e}"))?;
         Table::new(mx, my, &values, &self.grid)
     }
 
@@ -106,17 +112,30 @@ impl Heat<'_> {
         let is_same = self.speed[0] == self.speed[1] && self.diffusivity[0] == self.diffusivity[1];
         let second = if is_same { collected(first.iter().copied(), FIELDS)? } else { self.alone(1, threads)? };
         let mut both = [first, second];
-        for (rise, conductivity) in both.iter_mut().zip(self.conductivity) {
+        for (b, (rise, conductivity)) in both.iter_mut().zip(self.conductivity).enumerate() {
             rise.iter_mut().for_each(|rise| *rise /= conductivity);
+            require_range(rise.iter().all(|rise| rise.is_finite()), || {
+                let largest = self.flux.iter().fold(0.0f64, |most, flux| most.max(flux.abs()));
+                format!("heat_flux reaches {largest:e} with conductivity[{b}] of {conductivity:e}")
+            })?;
         }
         Ok(both)
+    }
+}
+
+/// Refuses temperatures that are no numbers; what makes them so.
+fn require_range(is_within: bool, reason: impl FnOnce() -> String) -> Result<()> {
+    match is_within {
+        true => Ok(()),
+        false => Err(Error::NotFinite(format!("{}: temperatures are beyond the range of numbers", reason()))),
     }
 }
 
 /// The flash temperatures of both bodies.
 ///
 /// # Errors
-/// `Invalid`, `NotFinite`: numbers out of their range, and a flux that has not one value per element. `OutOfMemory`.
+/// `InvalidArgument`, `NotFinite`: numbers out of their range, a flux that has not one value per element, temperatures beyond the range of numbers.
+/// `OutOfMemory`.
 pub fn flash_temperature(heat: &Heat<'_>, threads: &Threads) -> Result<Flash> {
     heat.check()?;
     let threads = &threads.suited_to(heat.grid.len());
@@ -125,9 +144,10 @@ pub fn flash_temperature(heat: &Heat<'_>, threads: &Threads) -> Result<Flash> {
         rise.iter().enumerate().fold((0, f64::NEG_INFINITY), |top, (i, t)| if *t > top.1 { (i, *t) } else { top })
     };
     let tops = [top(&rise[0]), top(&rise[1])];
-    let both = tops[0].1 + tops[1].1;
+    let [first, second] = tops.map(|(_, top)| top);
     // Without any heat both are the same whatever the part.
-    let share = heat.share.unwrap_or(if both > 0.0 { tops[1].1 / both } else { 0.5 });
+    let equal = if first > 0.0 && second > 0.0 { 1.0 / (1.0 + first / second) } else { 0.5 };
+    let share = heat.share.unwrap_or(equal);
     let parts = [share, 1.0 - share];
     for (rise, part) in rise.iter_mut().zip(parts) {
         rise.iter_mut().for_each(|rise| *rise *= part);

@@ -59,8 +59,8 @@ impl Solver {
         Some(|i| solver.split(&self.state, i))
     }
 
-    /// Looks for the least force that an equilibrium has: from the load of the scene the approach goes down until the force rises again. The result is
-    /// the state there.
+    /// Looks for the least force that an equilibrium has: from the load of the scene, and from bodies that are pressed together, the approach goes down
+    /// until nothing is in contact. The result is the state of the least force on these ways.
     pub fn pull_off(
         &mut self,
         scene: &Scene<'_>,

@@ -86,7 +86,7 @@ impl Solver {
         let turn = Turn { scene, friction: &bound.of(friction), options, threads: &threads };
         let solved = tangent.solve_after(stop, &turn, &bound.pressing, turn.start(), monitor);
         self.friction = Some(tangent);
-        let (ended, report) = solved?;
+        let (ended, report, _) = solved?;
         Ok((if stop == Outcome::Converged { ended } else { stop }, Some(report)))
     }
 }

@@ -14,6 +14,7 @@ mod compressible;
 mod compression;
 mod errors;
 mod estimates;
+mod extrapolation;
 mod friction_batch;
 mod friction_table;
 mod handle;

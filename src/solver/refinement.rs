@@ -159,7 +159,7 @@ fn check(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<()> 
     scene.grid.check()?;
     effects::check_effects(scene)?;
     effects::check_other_grids(scene)?;
-    scene.load.check_sign(false)?;
+    scene.load.check_sign(scene.attraction().is_some())?;
     if has_surface {
         effects::check_bodies(scene)?;
         return scene.load.check();

@@ -100,7 +100,7 @@ impl Solver {
 
     /// The derivatives of the tangential forces of unlike bodies, if they are asked for.
     fn add_derivatives(&mut self, turns: &mut Turns<'_>, scene: &Scene<'_>, monitor: &mut Monitor<'_>) -> Result<()> {
-        let Some(TangentialTurn { tangent, turn, found: Some(found) }) = &mut turns.friction else { return Ok(()) };
+        let Some(TangentialTurn { tangent, turn, found: Some(found), .. }) = &mut turns.friction else { return Ok(()) };
         let wanted = scene.friction.as_ref().filter(|friction| friction.sensitivities && !tangent.is_of_like_bodies());
         match wanted {
             Some(friction) if !monitor.is_cancelled() => {

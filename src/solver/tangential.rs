@@ -10,6 +10,10 @@ use crate::progress::Monitor;
 use crate::scene::{Friction, Prescribed, Scene};
 use crate::threads::Threads;
 
+/// Of the greatest force that pressures carry, where they carry less than is given: nearly all elements slip then. Unlike bodies change their pressures
+/// by a fifth of the tractions at most, so forces that are less than the last pressures carry by this part are found.
+const IN_REACH: f64 = 1.0 - 1e-7;
+
 /// The state of a solver for scenes with friction.
 pub struct Tangent {
     solver: Solver,
@@ -115,8 +119,7 @@ impl Tangent {
         pressure: &[f64],
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, Report)> {
-        let Tangent { solver, unlike } = self;
-        if let Some(unlike) = unlike {
+        if let Some(unlike) = &mut self.unlike {
             unlike.displace_sideways(&turn.scene.grid, turn.friction, pressure, turn.threads)?;
         }
         let request = Request {
@@ -124,16 +127,16 @@ impl Tangent {
             friction: turn.friction,
             tolerance: turn.options.tolerance,
             limit: turn.options.max_cycles as u64,
-            sideways: unlike.as_ref().map(UnlikeBodies::sideways),
+            sideways: self.unlike.as_ref().map(UnlikeBodies::sideways),
             start,
             is_cancelled: monitor.is_cancelled(),
             estimates: turn.options.estimates,
         };
-        solver.solve(&request, &mut |grid, residual| monitor.tangential_done(grid, residual))
+        self.solver.solve(&request, &mut |grid, residual| monitor.tangential_done(grid, residual))
     }
 
-    /// The same with the pressures of a normal problem that ended with `stop`. Those of one that did not converge may be too small for
-    /// the force: then nothing moves in the directions in which it is given.
+    /// The same with the pressures of a normal problem that ended with `stop`. Those of one that did not converge, or that is solved once more for unlike
+    /// bodies, may be too small for the forces. Then the forces are [a little less](IN_REACH) than they carry, and the refusal is returned, too.
     pub fn solve_after(
         &mut self,
         stop: Outcome,
@@ -141,18 +144,21 @@ impl Tangent {
         pressure: &[f64],
         start: Start<'_>,
         monitor: &mut Monitor<'_>,
-    ) -> Result<(Outcome, Report)> {
+    ) -> Result<(Outcome, Report, Option<Error>)> {
         match self.solve_from(start, turn, pressure, monitor) {
-            Err(Error::Infeasible(message)) if stop != Outcome::Converged => {
-                log::info!("the normal problem is not solved: {message}");
-                let stays = |prescribed: Prescribed| match prescribed {
-                    Prescribed::Force(_) => Prescribed::Creepage(0.0),
+            Err(refusal @ Error::Infeasible(_)) if stop != Outcome::Converged || self.unlike.is_some() => {
+                let request = Request { start, ..Request::new(pressure, turn.friction, turn.options.tolerance) };
+                let part = IN_REACH * self.solver.part_in_reach(&request)?;
+                let in_reach = |prescribed: Prescribed| match prescribed {
+                    Prescribed::Force(force) => Prescribed::Force(part * force),
                     given => given,
                 };
-                let friction = Friction { prescribed: turn.friction.prescribed.map(stays), ..*turn.friction };
-                self.solve_from(start, &Turn { friction: &friction, ..*turn }, pressure, monitor)
+                let friction = Friction { prescribed: turn.friction.prescribed.map(in_reach), ..*turn.friction };
+                let turn = Turn { friction: &friction, ..*turn };
+                let (outcome, report) = self.solve_from(start, &turn, pressure, monitor)?;
+                Ok((outcome, report, Some(refusal)))
             }
-            found => found,
+            found => found.map(|(outcome, report)| (outcome, report, None)),
         }
     }
 

@@ -4,7 +4,7 @@ use super::tangential::{Tangent, Turn};
 use super::{Options, Outcome};
 use crate::contact::State;
 use crate::effects::Coupled;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::friction::{Report, Start};
 use crate::progress::Monitor;
 
@@ -16,12 +16,14 @@ pub struct TangentialTurn<'a> {
     pub turn: Turn<'a>,
     /// Of the last solve, with the products and the seconds of all.
     pub found: Option<Report>,
+    /// Why the last pressures do not carry the forces that are given.
+    refusal: Option<Error>,
 }
 
 impl<'a> TangentialTurn<'a> {
     /// Of which nothing is solved yet.
     pub fn new(tangent: &'a mut Tangent, turn: Turn<'a>) -> TangentialTurn<'a> {
-        TangentialTurn { tangent, turn, found: None }
+        TangentialTurn { tangent, turn, found: None, refusal: None }
     }
 
     /// Iterations that the options leave.
@@ -36,12 +38,15 @@ impl Coupled for TangentialTurn<'_> {
         let rest = Options { max_cycles: self.left(), ..*self.turn.options };
         let turn = Turn { options: &rest, ..self.turn };
         let start = if self.found.is_some() { Start::Again } else { turn.start() };
-        let (outcome, mut found) = self.tangent.solve_after(stop, &turn, &state.p, start, monitor)?;
+        let (outcome, mut found, refusal) = self.tangent.solve_after(stop, &turn, &state.p, start, monitor)?;
+        // Those of a normal problem that is not solved refuse nothing.
+        self.refusal = refusal.filter(|_| stop == Outcome::Converged);
         if let Some(before) = &self.found {
             (found.products, found.seconds) = (found.products + before.products, found.seconds + before.seconds);
         }
         self.found = Some(found);
-        Ok(outcome)
+        // Tractions that only lead to the next pressures need no more than that.
+        Ok(if self.refusal.is_some() && outcome != Outcome::Cancelled { Outcome::Converged } else { outcome })
     }
 
     // Tractions of like bodies displace nothing along the normal.
@@ -55,6 +60,10 @@ impl Coupled for TangentialTurn<'_> {
 
     fn has_work_left(&self) -> bool {
         self.left() > 0
+    }
+
+    fn refuse(&mut self) -> Result<()> {
+        self.refusal.take().map_or(Ok(()), Err)
     }
 
     fn step_done(&mut self, state: &State) {

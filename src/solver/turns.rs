@@ -2,6 +2,7 @@
 //! with its pressures.
 
 use super::beside::Distances;
+use super::extrapolation::Extrapolation;
 use super::take_over::take_distance;
 use super::tangential_turn::TangentialTurn;
 use super::{InitialGuess, Options, Solver};
@@ -85,7 +86,9 @@ impl Solver {
             true => self.meet(turns, (scene, options), stop, monitor)?,
             false => stop,
         };
-        turns.solve(false, stop, &self.state, monitor)
+        let stop = turns.solve(false, stop, &self.state, monitor)?;
+        turns.all().try_for_each(|coupled| coupled.refuse())?;
+        Ok(stop)
     }
 
     /// The turns with what displaces.
@@ -98,12 +101,13 @@ impl Solver {
     ) -> Result<Outcome> {
         turns.distances.take(&self.state.h)?;
         let again = Options { initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*options };
-        let mut cycles = 0;
+        let (mut cycles, mut extrapolation) = (0, Extrapolation::new());
         for solved in 0..=MOST_TURNS {
             let so_far = turns.solve(true, stop, &self.state, monitor)?;
             let (distance, change) = turns.distance(&self.state);
             // Without a displacement the normal problem stays solved.
             let Some(change) = change else { return Ok(so_far) };
+            extrapolation.turn(&self.state.h, distance, change)?;
             if self.holds_with((distance, change), (scene, options), monitor) || so_far != Outcome::Converged {
                 return Ok(so_far);
             }
@@ -117,6 +121,7 @@ impl Solver {
             }
             monitor.ledger.rows.pop();
             monitor.enter_grid();
+            extrapolation.extrapolate(&mut turns.distances.displaced);
             let distance = &turns.distances.displaced[..];
             let displaced = (&Scene { undeformed_distance: distance, ..scene.clone() }, lowest(distance));
             let again = Options { max_cycles: left, ..again };

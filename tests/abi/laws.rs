@@ -1,6 +1,7 @@
 //! Laws of friction and layers that yield, through the C ABI: what is refused by which name, and what particles carry from call to call.
 
-use std::ptr::null_mut;
+use std::ffi::CStr;
+use std::ptr::{null, null_mut};
 
 use crate::call::{Call, Through, MX, MY};
 use contact_normal::ffi::*;
@@ -141,4 +142,39 @@ fn a_handle_carries_what_the_caller_would_hand_on() {
         null_mut(),
     );
     assert!(fresh.2 != kept.2, "the second shift does not know of the first");
+}
+
+/// Of pressures that are given LAW is said as of a solve: with a handle and without one, of one problem and of a table.
+#[test]
+fn a_steep_law_warns_of_pressures_that_are_given() {
+    let mut said = [0; 2];
+    for (half_speed, is_steep) in [(1.0, false), (1e-5, true)] {
+        let mut call = Call::new();
+        falling(call.use_friction());
+        call.use_friction().half_speed[0] = half_speed;
+        let handle = call.new_handle();
+        let pressure: Vec<f64> = (0..MX * MY).map(|i| 50.0 + i as f64).collect();
+        let entries = [1e-3, 0.0, 0.0, 2e-3, 0.0, 0.0];
+        for (solver, n) in [(null_mut(), 1), (handle, 1), (null_mut(), 2), (handle, 2)] {
+            call.report.known.warnings = -1;
+            let (scene, report) = (&raw const call.scene.known, &raw mut call.report.known);
+            let (given, table) = (pressure.as_ptr(), if n > 1 { entries.as_ptr() } else { null() });
+            // SAFETY: structs with their arrays; a handle or NULL.
+            let (status, message) = unsafe {
+                let options = &raw const call.options.known;
+                let status =
+                    contact_normal_solve_tangential(solver, scene, given, options, n, table, null_mut(), report);
+                (status, CStr::from_ptr(contact_normal_last_error()).to_string_lossy())
+            };
+            assert!(status >= CONTACT_NORMAL_OK, "{message}");
+            let report = &call.report.known;
+            assert!(n > 1 || (report.tangential.law_slope >= 0.5) == is_steep, "{}", report.tangential.law_slope);
+            assert_eq!(report.warnings, if is_steep { CONTACT_NORMAL_WARNING_LAW } else { 0 }, "{n} {half_speed}");
+            assert_eq!(message.contains("several solutions"), is_steep, "{message}");
+            said[usize::from(is_steep)] += 1;
+        }
+        // SAFETY: a handle of ours.
+        unsafe { contact_normal_solver_free(handle) };
+    }
+    assert_eq!(said, [4; 2]);
 }

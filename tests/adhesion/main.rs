@@ -1,12 +1,14 @@
 //! Adhesion: every number is compared with a closed form, a printed result, or a certificate of the test's own product.
 
 mod certificate;
+mod dense;
 mod friction;
 mod hard_cases;
 mod loop_of_loading;
 mod maugis;
 mod pairs;
 mod parting;
+mod prices;
 mod pulls;
 mod random;
 mod sphere;

@@ -4,7 +4,7 @@ use contact_normal::adhesion::Law;
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Coating, Friction, Layer, Load, Patches, PressureLimit, Scene};
-use contact_normal::solver::{self, Criterion, Method, Options, Outcome, Solver};
+use contact_normal::solver::{self, solve_to_accuracy, Accuracy, Criterion, Method, Options, Outcome, Solver};
 
 use super::certificate::{displacements, traction, worst};
 use super::support::{adhesion, bodies, Sphere, MODULUS};
@@ -132,4 +132,40 @@ fn patches_scale_the_displacements_by_each_other() {
 
 fn solver_force(solver: &Solver) -> f64 {
     solver.state().p.iter().sum::<f64>() * solver.grid().element_area()
+}
+
+// A grid is wide or tall; what it holds is the same.
+#[test]
+fn a_row_and_a_column_have_the_same_share_on_their_border() {
+    let (n, d, work, range) = (64, 0.1, 0.3, 0.3);
+    let h: Vec<f64> = (0..n).map(|i| 0.5 * ((i as f64 - 31.5) * d).powi(2)).collect();
+    let shares = [(n, 1), (1, n)].map(|(mx, my)| {
+        let grid = Grid::new(mx, my, d, d).expect("a grid");
+        let own = Some(adhesion(Law::Exponential, work, range));
+        let scene = Scene { adhesion: own, ..Scene::new(grid, &h, bodies(MODULUS), Load::Approach(0.2)) };
+        let (solver, outcome, report) = solver::solve(&scene, &Options::default()).expect("a solve");
+        assert_eq!(outcome, Outcome::Converged);
+        let u = displacements(&grid, MODULUS, &solver.state().p);
+        let sigma = |i: usize| traction(Law::Exponential, work, range, solver.state().h[i] - 0.2 + u[i]);
+        let own = (sigma(0) + sigma(n - 1)) / (0..n).map(sigma).sum::<f64>();
+        let found = report.adhesion.expect("adhesion").border_share;
+        // Total pressures are those of a residual of 1e-6.
+        assert!((found - own).abs() < 1e-5 * own + 1e-12 && own < 1e-3, "{mx} x {my}: {found:e} {own:e}");
+        found
+    });
+    assert!((shares[0] - shares[1]).abs() < 1e-5 * shares[0] + 1e-12, "{shares:?}");
+}
+
+// At a force that pulls: errors come from three grids, as at one that presses.
+#[test]
+fn a_pull_is_solved_to_an_accuracy() {
+    let n = 32;
+    let sphere = Sphere::by_tabor(1.0, n, 3.0);
+    let scene = sphere.scene(Load::Force(-1.0));
+    let accuracy = Accuracy { max_elements: (256 * 256) as u64, ..Accuracy::new(3e-3) };
+    let found = solve_to_accuracy(&scene, &Options::default(), &accuracy, None, None).expect("a solvable scene");
+    println!("{:?}: {} {:?}", found.stop, found.reason, found.reached);
+    assert!((found.report.measures.force + 1.0).abs() < 1e-5);
+    let found = found.report.adhesion.expect("adhesion");
+    assert!((found.range - sphere.adhesion.range).abs() < 1e-12);
 }

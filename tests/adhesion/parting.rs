@@ -171,3 +171,48 @@ fn elements_that_snap_alone_have_a_certified_state() {
         assert!(worst < 2e-6, "{load:?}: {worst:e}");
     }
 }
+
+// With two periods the approach stays where it is while all elements are in contact, and the force falls: the pressures of full contact are those of a
+// wave, A q^-1 h with A = 2/(E* q) (Johnson 1985, section 13.2), and each keeps a pull of w/range.
+#[test]
+fn full_contact_of_two_periods_has_a_pull_off() {
+    let (n, options) = (32, Options::default());
+    let grid = Grid::new(n, n, 1.0 / n as f64, 1.0 / n as f64).expect("a grid");
+    let wave = |k: usize| (2.0 * std::f64::consts::PI * k as f64 / n as f64).cos();
+    for (depth, work, range) in [(0.003, 1e-2, 0.1), (0.0, 1e-3, 0.1)] {
+        let h: Vec<f64> = (0..n * n).map(|i| depth * (2.0 - wave(i % n) - wave(i / n))).collect();
+        let own = adhesion(Law::Exponential, work, range);
+        let period = Some(Period { x: true, y: true });
+        let scene = |load| Scene { adhesion: Some(own), period, ..Scene::new(grid, &h, bodies(1.0), load) };
+        // In the valley of both waves the pressure is least: pi E* depth less than the mean, twice.
+        let opens = work / range - 2.0 * std::f64::consts::PI * depth;
+        let mut solver = Solver::new(&scene(Load::Force(0.0)), &options).expect("a solver");
+        let (outcome, report) = solver.pull_off(&scene(Load::Force(0.0)), &options, None).expect("a pull-off");
+        let (least, approach) = (report.measures.force, report.measures.approach);
+        println!("pull-off {least} at {approach}, full contact ends at {opens}");
+        assert_eq!(outcome, Outcome::Converged);
+        // Elements average the wave, to (pi/n)^2/6 of itself, and nothing holds more than all attraction.
+        assert!(
+            approach.is_finite() && least <= -opens * (1.0 - 1e-3) + 1e-6 && least >= -1.000001 * work / range,
+            "{least} {opens}"
+        );
+        assert!((approach - 2.0 * depth).abs() < range, "{approach}");
+        for part in [0.5, 0.98] {
+            let (solver, report) = solved(&scene(Load::Force(-part * opens)));
+            assert_eq!(report.measures.contact_count, n * n);
+            let mean = solver.state().p.iter().sum::<f64>() / (n * n) as f64;
+            assert!((mean + part * opens).abs() < 1e-6 * opens && report.measures.approach.is_finite());
+        }
+        match solver::solve(&scene(Load::Force(1.05 * least)), &options) {
+            Err(Error::Infeasible(message)) => {
+                let named = |after: &str| {
+                    let rest = message.split(after).nth(1).expect("a number");
+                    rest.split([' ', ',']).next().and_then(|number| number.parse::<f64>().ok()).expect("a number")
+                };
+                assert!((named("a pull of ") - least).abs() < 1e-3 * least.abs(), "{message}");
+                assert!(named("an approach of ").is_finite(), "{message}");
+            }
+            other => panic!("{:?}", other.map(|(_, outcome, report)| (outcome, report.measures))),
+        }
+    }
+}

@@ -6,6 +6,9 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Adhesion, Load, Scene};
 use contact_normal::solver::{self, InitialGuess, Options, Outcome, Solver};
 
+use super::certificate::{displacements, traction, worst};
+use super::dense::{matrix, tangent};
+use super::random::range_of_kappa;
 use super::support::{adhesion, bodies, range_of, Sphere, MODULUS};
 
 // The prototype's path of steps has its least force of -1.6641 at about -.45; the unstable state of -1.4 is at -.9006.
@@ -153,5 +156,125 @@ fn pulls_on_what_parts_without_a_load_are_held_or_refused() {
         let (_, outcome, report) = solver::solve(&scene(Load::Force(0.0)), &options).expect("a solve");
         assert_eq!(outcome, Outcome::Converged);
         assert!(report.measures.contact_count > 0, "{law:?}: they hold each other");
+    }
+}
+
+/// A sphere of radius 1 on n x n elements within 1 x 1, E* = 1, and the range of a kappa.
+fn small_sphere(n: usize, radius: f64, (law, work, kappa): (Law, f64, f64)) -> (Grid, Vec<f64>, f64) {
+    let d = 1.0 / n as f64;
+    let grid = Grid::new(n, n, d, d).expect("a grid");
+    let at = |k: usize| (k as f64 - 0.5 * (n as f64 - 1.0)) * d;
+    let h = (0..n * n).map(|i| 0.5 * (at(i % n).powi(2) + at(i / n).powi(2)) / radius).collect();
+    (grid, h, range_of_kappa(law, work, d, 1.0, kappa))
+}
+
+// Next to the pull-off the unstable equilibrium of a force lies next to the stable one.
+#[test]
+fn just_above_the_pull_off_the_stable_state_is_found() {
+    let options = Options::default();
+    let scenes = [
+        (Law::Exponential, 0.002, 0.3),
+        (Law::Cubic, 0.005, 0.2),
+        (Law::Dugdale(0.3), 0.001, 0.4),
+        (Law::VanDerWaals, 1e-3, 0.3),
+    ];
+    for (k, (law, work, kappa)) in scenes.into_iter().enumerate() {
+        let (grid, h, range) = small_sphere(17 - 2 * k, 1.0, (law, work, kappa));
+        let own = Adhesion { stiffness: true, ..adhesion(law, work, range) };
+        let scene = |load| Scene { adhesion: Some(own), ..Scene::new(grid, &h, bodies(1.0), load) };
+        let mut solver = Solver::new(&scene(Load::Force(0.0)), &options).expect("a solver");
+        let (outcome, report) = solver.pull_off(&scene(Load::Force(0.0)), &options, None).expect("a pull-off");
+        assert_eq!(outcome, Outcome::Converged);
+        let (least, a) = (report.measures, matrix(&grid, 1.0));
+        for part in [0.9, 0.98, 0.99, 0.999] {
+            let (solver, outcome, report) =
+                solver::solve(&scene(Load::Force(part * least.force)), &options).expect("a solve");
+            assert_eq!(outcome, Outcome::Converged, "{law:?} {part}");
+            let found = tangent(&grid, &a, solver.state(), (law, work, range));
+            let told = report.adhesion.and_then(|found| found.stiffness).expect("a stiffness");
+            println!("{law:?} {part}: approach {} of {}, {found:?} {told}", report.measures.approach, least.approach);
+            assert!(found.stiffness > 0.0 && found.is_least, "{law:?} {part}: {found:?}");
+            // A tangent to 1e-3, and pressures to 1e-6; near the pull-off both are parts of what cancels.
+            assert!((told - found.stiffness).abs() < 5e-3 * found.stiffness + 1e-3, "{law:?} {part}: {told} {found:?}");
+            assert!(report.measures.approach > least.approach, "{law:?} {part}");
+            let u = displacements(&grid, 1.0, &solver.state().p);
+            let worst = worst(solver.state(), &u, |_, e| traction(law, work, range, e));
+            assert!(worst < 2e-6, "{law:?} {part}: {worst:e}");
+        }
+    }
+}
+
+// A small ball stands out beyond a large one. Without a load the small one alone is in contact; the large one holds more, once it is.
+#[test]
+fn a_pull_that_only_pressed_bodies_hold_is_held() {
+    let (n, options) = (64, Options::default());
+    let d = 6.0 / n as f64;
+    let grid = Grid::new(n, n, d, d).expect("a grid");
+    let at = |k: usize| (k as f64 - 31.5) * d;
+    let ball = |i: usize, x: f64, radius: f64, below: f64| {
+        below + 0.5 * ((at(i % n) - x).powi(2) + at(i / n).powi(2)) / radius
+    };
+    let h: Vec<f64> = (0..n * n).map(|i| ball(i, -1.0, 1.0, 2.0).min(ball(i, 2.0, 0.1, 0.0))).collect();
+    let (work, range) = (1.0 / std::f64::consts::PI, 0.45);
+    let scene = |load| Scene {
+        adhesion: Some(adhesion(Law::Cubic, work, range)),
+        ..Scene::new(grid, &h, bodies(MODULUS), load)
+    };
+    let certified = |solver: &Solver| {
+        let u = displacements(&grid, MODULUS, &solver.state().p);
+        let worst = worst(solver.state(), &u, |_, e| traction(Law::Cubic, work, range, e));
+        assert!(worst < 2e-6, "{worst:e}");
+    };
+    let mut solver = Solver::new(&scene(Load::Force(0.0)), &options).expect("a solver");
+    let (outcome, report) = solver.pull_off(&scene(Load::Force(0.0)), &options, None).expect("a pull-off");
+    let least = report.measures.force;
+    println!("pull-off {least}, {:.0} work", report.count.work_units);
+    certified(&solver);
+    // Both balls hold some 1.5 to 2 pi w R: 1.5 to 2 for the large one.
+    assert!(outcome == Outcome::Converged && least < -1.0, "{least}");
+    let (solver, outcome, held) = solver::solve(&scene(Load::Approach(1.6)), &options).expect("a solve");
+    assert!(outcome == Outcome::Converged && held.measures.force < -0.9, "{}", held.measures.force);
+    certified(&solver);
+    let (solver, outcome, again) = solver::solve(&scene(Load::Force(held.measures.force)), &options).expect("a solve");
+    assert!(outcome == Outcome::Converged && (again.measures.force - held.measures.force).abs() < 1e-5);
+    certified(&solver);
+    match solver::solve(&scene(Load::Force(1.05 * least)), &options) {
+        Err(Error::Infeasible(message)) => assert!(message.contains("was found"), "{message}"),
+        other => panic!("{:?}", other.map(|(_, outcome, report)| (outcome, report.measures))),
+    }
+}
+
+// A handle goes on from a state by approach to a force that presses: the equilibrium next to it is an unstable one.
+#[test]
+fn a_force_that_presses_finds_a_stable_state_too() {
+    let n = 9;
+    let d = 1.0 / n as f64;
+    let grid = Grid::new(n, n, d, d).expect("a grid");
+    let (law, work, range) = (Law::Dugdale(0.3), 0.001579, 0.02891);
+    let balls =
+        [(-0.2826, -0.03212, 3.364, 0.1353), (0.0131, 0.1257, 0.2282, 0.0729), (0.1516, 0.1178, 0.1058, 0.1394)];
+    let at = |k: usize| (k as f64 - 4.0) * d;
+    let h: Vec<f64> = (0..n * n)
+        .map(|i| {
+            let ball = |(x, y, radius, below)| {
+                let from: [f64; 2] = [at(i % n) - x, at(i / n) - y];
+                below + 0.5 * (from[0].powi(2) + from[1].powi(2)) / radius
+            };
+            balls.into_iter().map(ball).fold(f64::INFINITY, f64::min)
+        })
+        .collect();
+    let scene = |load| Scene { adhesion: Some(adhesion(law, work, range)), ..Scene::new(grid, &h, bodies(1.0), load) };
+    let mut solver = Solver::new(&scene(Load::Approach(0.0)), &Options::default()).expect("a solver");
+    let loads = [Load::Approach(0.0636), Load::Force(0.0004135)];
+    for (load, initial_guess) in loads.into_iter().zip([InitialGuess::None, InitialGuess::Previous]) {
+        let options = Options { initial_guess, ..Options::default() };
+        let (outcome, report) = solver.solve(&scene(load), &options, None, None).expect("a step");
+        assert_eq!(outcome, Outcome::Converged);
+        let found = tangent(&grid, &matrix(&grid, 1.0), solver.state(), (law, work, range));
+        println!("{load:?}: approach {} force {}, {found:?}", report.measures.approach, report.measures.force);
+        assert!(found.is_least && (found.stiffness > 0.0 || matches!(load, Load::Approach(_))), "{load:?}: {found:?}");
+        let u = displacements(&grid, 1.0, &solver.state().p);
+        let worst = worst(solver.state(), &u, |_, e| traction(law, work, range, e));
+        assert!(worst < 2e-6, "{load:?}: {worst:e}");
     }
 }

@@ -1,11 +1,14 @@
 //! How near a state is to a snap: 1 - lambda, against printed values and against a power iteration of the test's own.
 
-use contact_normal::adhesion::Law;
+use contact_normal::adhesion::{Law, Start};
+use contact_normal::grid::Grid;
 use contact_normal::scene::{Adhesion, Load, Scene};
 use contact_normal::solver::{self, Options, Outcome, Solver};
 
-use super::certificate::displacements;
-use super::support::{Sphere, MODULUS};
+use super::certificate::{displacements, traction, worst};
+use super::dense::{matrix, tangent};
+use super::random::range_of_kappa;
+use super::support::{adhesion, bodies, Sphere, MODULUS};
 
 fn solved(sphere: &Sphere, approach: f64) -> (Solver, f64, u64) {
     let adhesion = Some(Adhesion { stability: true, ..sphere.adhesion });
@@ -87,4 +90,30 @@ fn with_contact_held(sphere: &Sphere, contact: &[bool], v: &[f64]) -> Vec<f64> {
         t = r.iter().zip(&t).map(|(r, t)| r + b * t).collect();
     }
     product(&x).iter().zip(own).map(|(x, own)| x + own).collect()
+}
+
+// Newton's method, which begins in contact or on no coarser grid, ends at a saddle of the energy here, above the one of bodies apart.
+#[test]
+fn an_approach_finds_a_least_energy() {
+    for (n, half, radius, law, work, kappa, part, start) in [
+        (10, 0.5, 5.0, Law::Cubic, 1e-3, 0.45, -2.2, Start::Contact),
+        (11, 0.5, 0.5, Law::Dugdale(0.3), 5e-3, 0.45, -1.1, Start::Auto),
+    ] {
+        let d = 2.0 * half / n as f64;
+        let grid = Grid::new(n, n, d, d).expect("a grid");
+        let at = |k: usize| (k as f64 - 0.5 * (n as f64 - 1.0)) * d;
+        let h: Vec<f64> = (0..n * n).map(|i| 0.5 * (at(i % n).powi(2) + at(i / n).powi(2)) / radius).collect();
+        let range = range_of_kappa(law, work, d, 1.0, kappa);
+        let own = Adhesion { start, stability: true, ..adhesion(law, work, range) };
+        let scene = Scene { adhesion: Some(own), ..Scene::new(grid, &h, bodies(1.0), Load::Approach(part * range)) };
+        let (solver, outcome, report) = solver::solve(&scene, &Options::default()).expect("a solve");
+        assert_eq!(outcome, Outcome::Converged);
+        let found = tangent(&grid, &matrix(&grid, 1.0), solver.state(), (law, work, range));
+        let told = report.adhesion.and_then(|found| found.stability).expect("asked for");
+        println!("{law:?}: force {:e}, {found:?}, {told}", report.measures.force);
+        assert!(found.is_least && told > 0.0, "{law:?}: {found:?} {told}");
+        let u = displacements(&grid, 1.0, &solver.state().p);
+        let worst = worst(solver.state(), &u, |_, e| traction(law, work, range, e));
+        assert!(worst < 2e-6, "{law:?}: {worst:e}");
+    }
 }

@@ -26,7 +26,7 @@ fn contact_width(pressure: f64) -> f64 {
     0.5 * (low + high) / PI
 }
 
-// Printed by the prototype: .0820, .1836, .2988 on 1024 elements with kappa .2; the limit is approached to the first order of the range.
+// The limit is approached to the first order of the range.
 #[test]
 fn contact_widths_approach_those_of_the_closed_form_with_the_range() {
     for (pressure, limit) in [(0.0, 0.0925), (0.2, 0.1931), (0.5, 0.3091)] {
@@ -34,15 +34,26 @@ fn contact_widths_approach_those_of_the_closed_form_with_the_range() {
     }
     for pressure in [0.0, 0.2, 0.5] {
         let wanted = contact_width(pressure);
-        let off: Vec<f64> = [512, 2048].into_iter().map(|n| wanted - width(n, pressure)).collect();
+        let off: Vec<f64> = [512, 2048].into_iter().map(|n| wanted - width(n, pressure, 0.0)).collect();
         println!("{pressure}: off by {off:?}");
         // Ranges are as 2 to 1, and half an element of 512 is .002.
         assert!(off[0] > 0.0 && off[0] < 0.03 && off[1] < 0.7 * off[0] + 1e-3, "{pressure}: {off:?}");
     }
 }
 
-/// The half-width of the contact, with a range of the shortest that the elements carry.
-fn width(n: usize, pressure: f64) -> f64 {
+// The half-widths are halves of elements, printed to four digits.
+#[test]
+fn contact_widths_are_those_that_the_prototype_printed() {
+    for (n, range, printed) in [(1024, 0.0485, [0.0820, 0.1836, 0.2988]), (4096, 0.0266, [0.0881, 0.1890, 0.3044])] {
+        for (pressure, printed) in [0.0, 0.2, 0.5].into_iter().zip(printed) {
+            let found = width(n, pressure, range * DEPTH);
+            assert!((found - printed).abs() < 5e-5 + 1e-12, "{n} {pressure}: {found} {printed}");
+        }
+    }
+}
+
+/// The half-width of the contact; a range of 0 is the shortest that the elements carry.
+fn width(n: usize, pressure: f64, range: f64) -> f64 {
     let d = 1.0 / n as f64;
     let grid = Grid::new(n, 1, d, d).expect("a grid");
     let h: Vec<f64> = (0..n).map(|i| DEPTH * (1.0 - (2.0 * PI * ((i as f64 + 0.5) * d - 0.5)).cos())).collect();
@@ -50,7 +61,7 @@ fn width(n: usize, pressure: f64) -> f64 {
     let work = 0.5 * (ALPHA * largest).powi(2);
     let scene = Scene {
         period: Some(Period { x: true, y: true }),
-        adhesion: Some(adhesion(Law::Exponential, work, 0.0)),
+        adhesion: Some(adhesion(Law::Exponential, work, range)),
         ..Scene::new(grid, &h, bodies(1.0), Load::Force(pressure * largest * d))
     };
     let (_, outcome, report) = solver::solve(&scene, &Options::default()).expect("a solve");

@@ -149,6 +149,14 @@ fn the_example_of_laws_prints_what_is_expected_and_draws() {
     prints_what_is_expected_and_draws("laws");
 }
 
+/// A law of the program's own, by turns.
+#[test]
+fn the_example_of_hot_friction_prints_what_is_expected() {
+    let example = root().join("python_examples/hot_friction.py");
+    let printed = run(python_in(&scratch("python_hot_friction")).arg(&example));
+    assert_eq!(printed, std::fs::read_to_string(example.with_extension("expected")).expect("what is expected"));
+}
+
 #[test]
 fn the_friction_example_prints_what_is_expected_and_draws() {
     prints_what_is_expected_and_draws("friction");

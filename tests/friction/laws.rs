@@ -138,7 +138,8 @@ fn a_creep_curve_with_falling_friction_is_that_of_contact() {
         // The digits printed; CONTACT ends at changes of 1e-3.
         assert!((part - force).abs() <= 1.01e-4, "{xi}: {part} {force}");
         assert_eq!(report.certificate.stick_count, sticks, "{xi}");
-        assert!((report.law_slope - 0.23).abs() < 0.01, "{}", report.law_slope);
+        // By differences of the bound of the element of most pressure, of fresh material.
+        assert!((report.law_slope - 0.294).abs() < 0.001, "{}", report.law_slope);
         most = most.max(report.products);
     }
     println!("most {most}");

@@ -4,8 +4,8 @@ use contact_normal::adhesion::{Law, Start};
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{
-    Adhesion, Bodies, Coating, Coefficient, Friction, Layer, Load, Motion, Patches, Period, Prescribed, PressureLimit,
-    Scene, Work,
+    Adhesion, Bodies, Coating, Coefficient, Fall, Friction, FrictionLaw, Layer, Load, Motion, Patches, Period,
+    PlasticLayer, Prescribed, PressureLimit, Scene, Work,
 };
 use contact_normal::solver::{
     effects_bill, quantities, solve, BillOptions, BillRow, Neglected, Omission, Options, Outcome, Quantity, Verdict,
@@ -225,6 +225,46 @@ fn a_period_that_does_not_matter_is_negligible() {
     let (stop, rows) =
         effects_bill(&scene, &Options::default(), &BillOptions::new(1e-2), &[Quantity::Force], None).expect("a bill");
     assert_eq!((stop, rows[0].verdict), (Outcome::Converged, Verdict::Needed), "{rows:?}");
+}
+
+/// A law and a third body that yields are rows of their own: needed where slips are fast and where tractions pass the yield limit, and their changes are those
+/// of the whole grid.
+#[test]
+fn laws_of_friction_and_layers_that_yield_are_in_the_bill() {
+    let h = ball();
+    let scene = |half_speed: f64, yield_limit: f64| {
+        let law = FrictionLaw::new(Fall::Rational, (0.5, 0.5), half_speed, 1.0);
+        let friction = Friction {
+            motion: Motion::SteadyRolling,
+            prescribed: [Prescribed::Creepage(-1e-2), Prescribed::Creepage(0.0)],
+            law: Some(law),
+            layer: Some(PlasticLayer { yield_limit, hardening: 0.0 }),
+            ..Friction::new(0.3)
+        };
+        let bodies = Bodies::same(8e4, 0.28);
+        Scene { friction: Some(friction), bodies, ..plain(&h) }
+    };
+    let wanted = [Quantity::TangentialForce];
+    let of = |rows: &[BillRow], omission: Omission| {
+        *rows.iter().find(|row| row.omission == omission && row.other.is_none()).expect("a row")
+    };
+    // Slip velocities are about 1e-2, pressures about 1000.
+    for (half_speed, yield_limit, verdicts) in
+        [(1e-2, 1e9, [Verdict::Needed, Verdict::Negligible]), (1e5, 100.0, [Verdict::Negligible, Verdict::Needed])]
+    {
+        let scene = scene(half_speed, yield_limit);
+        let (rows, before) = (bill(&scene, 1e-2, &wanted), solved(&scene, &wanted)[0]);
+        for (omission, verdict) in [Omission::FrictionLaw, Omission::FrictionLayer].into_iter().zip(verdicts) {
+            let row = of(&rows, omission);
+            assert_eq!(row.verdict, verdict, "{row:?}");
+            let change = solved(&omission.leave_out(&scene), &wanted)[0] - before;
+            // The tolerance is a hundredth of the target.
+            assert!((row.change.expect("a change") - change).abs() <= 2e-4 * before.abs(), "{row:?} {change:e}");
+        }
+        let pair = |row: &&BillRow| (row.omission, row.other) == (Omission::FrictionLaw, Some(Omission::FrictionLayer));
+        assert!(rows.iter().any(|row| pair(&row)), "both are a pair");
+        assert!(rows.iter().all(|row| row.omission != Omission::Friction || row.other != Some(Omission::FrictionLaw)));
+    }
 }
 
 /// E* is 65000: a work of 1 carries a pull of 1.5 pi w R = 236 beside a load of 1100, a work of 1e-7 nothing that 1 % shows.

@@ -125,3 +125,41 @@ fn numbers_out_of_their_range_are_refused() {
     let not_finite = flash_temperature(&Heat { flux: &[1.0, f64::INFINITY, 0.0, 0.0], ..heat }, &Threads::One);
     assert!(matches!(not_finite, Err(Error::NotFinite(_))));
 }
+
+/// Temperatures beyond the range of numbers are refused, by what the caller gave.
+#[test]
+fn what_is_beyond_the_range_is_refused_by_its_name() {
+    let grid = Grid::new(3, 3, 1.0, 1.0).expect("a grid");
+    let of = |flux: f64, conductivity: f64, speed: f64| {
+        let flux = [flux; 9];
+        let (conductivity, speed) = ([conductivity, 1.0], [0.5 * speed, speed]);
+        let heat = Heat { grid, flux: &flux, conductivity, diffusivity: [1.0; 2], speed, share: None };
+        flash_temperature(&heat, &Threads::One).map(|found| found.largest)
+    };
+    let cases = [
+        (of(1e308, 1.0, 1.0), "heat_flux reaches 1e308 with conductivity[0] of 1e0"),
+        (of(1e200, 1e-200, 1.0), "heat_flux reaches 1e200 with conductivity[0] of 1e-200"),
+        (of(1.0, 1.0, -1e308), "speed[1] is -1e308 with diffusivity[1] of 1e0"),
+    ];
+    for (found, words) in cases {
+        let Err(Error::NotFinite(message)) = found else { panic!("{words}: {found:?}") };
+        assert!(message.starts_with(words), "{message}");
+    }
+    // Within the range they are of the size of the flux.
+    assert!(of(1e300, 1.0, 1.0).is_ok_and(|largest| largest.iter().all(|top| *top > 1e299 && *top < 1e301)));
+}
+
+/// Without a part that is given, largest temperatures are the same where both bodies get warmer; a flux below 0 cools.
+#[test]
+fn a_flux_that_cools_too_leaves_both_as_warm() {
+    let (n, d) = (12, 1e-4);
+    let grid = Grid::new(n, n, d, d).expect("a grid");
+    let mut flux = vec![0.0; n * n];
+    (flux[5 * n + 3], flux[5 * n + 4], flux[5 * n + 8]) = (2e8, 1e8, -1.5e8);
+    let both = found(grid, &flux, [1.0, 0.0], None);
+    assert!((both.largest[0] / both.largest[1] - 1.0).abs() <= 1e-12, "{:?}", both.largest);
+    assert!(both.share > 0.0 && both.share < 1.0 && both.rise[0].iter().any(|rise| *rise < 0.0));
+    let cold: Vec<f64> = flux.iter().map(|flux| -flux.abs()).collect();
+    let cold = found(grid, &cold, [1.0, 0.0], None);
+    assert!(cold.share == 0.5 && cold.rise.iter().flatten().all(|rise| *rise <= 0.0), "{}", cold.share);
+}

@@ -4,6 +4,8 @@
 //! LOW:  the first bounds are those of no slip        HIGH: those of any speed
 //! ```
 //!
+//! Bounds that rise with the slip, on a layer that hardens or by a memory of less, are damped.
+//!
 //! Each turn begins from the tractions of the last one, and its tolerance falls as the bounds settle. The result has the certificate of a solve without
 //! a branch. Turns may have no end, or go around: then the result is that of the turn that left least.
 
@@ -12,7 +14,7 @@ use super::super::plane::Vector;
 use super::super::problem::Problem;
 use super::super::step::compliance;
 use super::march::March;
-use super::stages;
+use super::{bounds, STEEP};
 use crate::error::Result;
 use crate::memory::zeros;
 use crate::progress::Outcome;
@@ -25,12 +27,19 @@ const GAIN: f64 = 0.95;
 const INNER: f64 = 0.05;
 const FIRST: f64 = 1e-3;
 const ENOUGH: f64 = 0.3;
+/// Where a turn leaves more than the one before, bounds that rise go from then on by this part of the way that they went, but by so much at least.
+const DAMPED: f64 = 0.7;
+const LEAST_DAMPING: f64 = 0.01;
+/// From this residual on tractions go onto the circles before a turn: it takes those that are near a circle as on it.
+const NEAR: f64 = 1e-6;
 /// A length beyond all slips, whose square is a number.
 const ANY: f64 = 1e150;
 
 /// The progress of the turns.
 pub struct Turns {
     pub made: u32,
+    /// The part of their change by which bounds that rise go.
+    pub damping: f64,
     least: f64,
     since: u32,
     last: f64,
@@ -38,7 +47,7 @@ pub struct Turns {
 
 impl Turns {
     pub fn new() -> Turns {
-        Turns { made: 0, least: f64::INFINITY, since: 0, last: f64::INFINITY }
+        Turns { made: 0, damping: 1.0, least: f64::INFINITY, since: 0, last: f64::INFINITY }
     }
 
     /// The tolerance of the next turn.
@@ -49,6 +58,9 @@ impl Turns {
     /// Takes what is left after a turn; how it ends, if it does.
     pub fn end(&mut self, left: f64, tolerance: f64) -> Option<Outcome> {
         self.made += 1;
+        if !(left < self.last) {
+            self.damping = (DAMPED * self.damping).max(LEAST_DAMPING);
+        }
         self.since = if left < GAIN * self.least { 0 } else { self.since + 1 };
         (self.least, self.last) = (self.least.min(left), left);
         match () {
@@ -116,19 +128,33 @@ pub fn renew(level: &mut Level, march: &mut March, best: &mut Best) -> Result<f6
     }
     best.last.copy_from_slice(&problem.bound);
     tangent.predict(problem, state, 1.0 / compliance(problem));
-    stages::lag(problem, state, tangent, march);
-    let left = stages::worst(problem, state, tangent);
+    bounds::lag(problem, state, tangent, march);
+    let left = bounds::worst(problem, state, tangent);
     if left < best.left {
         best.q.copy_from_slice(&state.q);
-        std::mem::swap(&mut best.bound, &mut best.last);
+        best.bound.copy_from_slice(&best.last);
         best.left = left;
     }
     Ok(left)
 }
 
-/// Elements that slip go onto the circles of the last bounds. Returns the larger residual of both certificates.
+/// The bounds of the next turn where this one left too much. Those that rise with the slip go no farther than slips follow, and by a part
+/// of that: their changes and those of slips chase each other otherwise.
+pub fn go_on(level: &mut Level, march: &mut March, (turns, best): (&Turns, &Best)) {
+    let Level { problem, state, memory, .. } = level;
+    if march.rises > STEEP {
+        let (rho, part) = (1.0 / compliance(problem), turns.damping);
+        bounds::follow(problem, state, &memory.tangent, march, Some(rho));
+        problem.bound.iter_mut().zip(&best.last).for_each(|(bound, last)| *bound = last + part * (*bound - last));
+    }
+    if turns.last < NEAR {
+        bounds::onto_circles(problem, state, &memory.tangent);
+    }
+}
+
+/// A fresh state. Returns the larger residual of both certificates.
 pub fn certify(level: &mut Level, march: &mut March) -> f64 {
     let Level { problem, state, memory, .. } = level;
-    stages::onto_circles(problem, state, &memory.tangent);
-    stages::freeze(problem, state, &memory.tangent, march)
+    bounds::settle(problem, state, &memory.tangent, march);
+    bounds::freeze(problem, state, &memory.tangent, march)
 }

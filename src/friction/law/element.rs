@@ -150,20 +150,4 @@ impl Law {
         }
         found
     }
-
-    /// The largest slope by which the bound falls with the slip, of an element of this product of coefficient and pressure.
-    pub fn steepest(&self, largest: f64) -> f64 {
-        let of_layer = self.layer.map_or(0.0, |layer| (-layer.hardening).max(0.0));
-        let Some(law) = &self.fall else { return of_layer };
-        let slope = |v: f64| {
-            let c = law.memory_distance;
-            let kept = if c > 0.0 { c / (c + self.duration * v.max(law.memory_speed)) } else { 0.0 };
-            -(1.0 - kept) * law.at(v).1 * self.rate
-        };
-        // Eight places to a factor of two of each half speed, from 2^-20 to 2^20 times it.
-        let places = |h: f64| (-160..=160).map(move |k| h * (0.125 * f64::from(k)).exp2());
-        let parts = law.falling.into_iter().zip(law.half_speed).filter(|(part, _)| *part > 0.0);
-        let steepest = parts.flat_map(|(_, h)| places(h)).chain([0.0, law.memory_speed]).map(slope).fold(0.0, f64::max);
-        of_layer.max(largest * steepest)
-    }
 }

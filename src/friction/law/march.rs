@@ -15,6 +15,9 @@ pub struct March {
     had: Vec<Particle>,
     /// In steady rolling with memory how many elements upstream a particle was a step before.
     upstream: Option<(isize, isize)>,
+    /// How steeply bounds fall and rise with the slip, each times an element's influence on itself.
+    pub falls: f64,
+    pub rises: f64,
     /// Of each element, by the last [`resolve`](March::resolve).
     resolved: Vec<Resolved>,
     /// The state of each, on the way.
@@ -42,6 +45,8 @@ impl March {
             places: collected((0..n).map(place), WHAT)?,
             had: collected((0..n).map(had), WHAT)?,
             upstream: has_upstream.then_some((by.0 as isize, by.1 as isize)),
+            falls: 0.0,
+            rises: 0.0,
             resolved: collected((0..n).map(|_| Resolved::default()), WHAT)?,
             carries: collected((0..n).map(|_| Particle::default()), WHAT)?,
             entered: collected((0..n).map(|_| false), WHAT)?,

@@ -14,16 +14,20 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `element` | bounds, particles, and the slip that goes with a traction |
+//! | `bounds` | bounds by slips, and what they leave |
 //! | `march` | what particles carry from element to element |
+//! | `slope` | how steeply bounds fall |
 //! | `system`, `stages` | Newton steps with the derivatives of bounds; the solve |
 //! | `branch` | solutions by name, where there are several |
 
 /// From this `law_slope` on the iteration may end without its certificate.
 pub const STEEP: f64 = 0.5;
 
+mod bounds;
 pub(super) mod branch;
 mod element;
 mod march;
+pub(super) mod slope;
 pub(super) mod stages;
 mod system;
 

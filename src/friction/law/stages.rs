@@ -7,18 +7,21 @@
 //! Where forces are given both steps are bordered by the creepages, and the iteration begins with the solution of Coulomb's law: the least
 //! creepage that carries them.
 //!
-//! The result lies on its circles, with a fresh product, and is certified twice: the conditions with bounds `g = |q|` that stand still, and
+//! Where bounds rise steeply with the slip, on a layer that hardens or by a memory of less, they cannot lag behind it: all steps are Newton's.
+//!
+//! The result lies on its circles (but where bounds rise steeply), with a fresh product, and is certified twice: the conditions with bounds `g = |q|` that stand still, and
 //! `R_g = rms(|q| - g(slip))/rms g(0)` over C of what slips, by a march with the slips of that product.
 
-use super::super::certificate::{scale, Certificate};
 use super::super::forces::Forces;
-use super::super::plane::{clip, dot, plus, square, Vector};
+use super::super::plane::{plus, square, Vector};
 use super::super::problem::{Problem, State};
 use super::super::shift::Goal;
 use super::super::step::{self, compliance, Effort};
+use super::super::take_over::LARGEST_RATIO;
 use super::super::tangent::{mixing, project, rho_of, Side, Tangent};
+use super::bounds::{freeze, lag, settle, worst};
 use super::march::March;
-use super::system;
+use super::{system, STEEP};
 use crate::error::Result;
 use crate::methods::fields::{self, Fields};
 use crate::progress::Outcome;
@@ -37,8 +40,10 @@ const DIRECTIONS: usize = 40;
 /// Of the natural map in Newton steps, times the inverse of an element's influence on itself: more than the largest slope of a bound, so that each
 /// element has one state. 2 took 15 to 36 products where 4 takes 15 to 24 (192 x 176 elements to 1e-6).
 const RHO: f64 = 4.0;
+/// Farther than [`SWITCH`] it is so many times the largest slope downwards, at least, and not more.
+const ABOVE: f64 = 2.0;
 /// Steps without a residual below this part of the least one, after which it ends.
-const PATIENCE: u32 = 30;
+const PATIENCE: u32 = 15;
 const GAIN: f64 = 0.9;
 /// Where the certificate of what converged is not met, the iteration goes on to this part of the tolerance, so many times in all.
 const TIGHTER: f64 = 0.1;
@@ -96,7 +101,7 @@ pub fn solve(
             problem.refresh_unclipped(state);
             lag(problem, state, tangent, march);
             tangent.predict(problem, state, 1.0 / compliance(problem));
-            onto_circles(problem, state, tangent);
+            settle(problem, state, tangent, march);
         }
         let residual = freeze(problem, state, tangent, march);
         let is_off = outcome == Outcome::Converged && !(residual < tolerance);
@@ -119,17 +124,17 @@ fn iterate(
 ) -> Result<Outcome> {
     let Goal { tolerance, limit, watch, .. } = goal;
     let (made, cap) = (problem.operators.products, 1.0 / compliance(problem));
-    // A bound that hardens follows the slip too steeply to lag behind it.
-    let hardens = march.law.layer.is_some_and(|layer| layer.hardening != 0.0);
+    // A bound that hardens, or rises steeply by its memory, follows the slip too steeply to lag behind it.
+    let hardens = march.law.layer.is_some_and(|layer| layer.hardening != 0.0) || march.rises > STEEP;
     let mut course = Course { least: f64::INFINITY, since: 0, held: 0, was_newton: false, hardens };
-    let mut is_on_circles = false;
+    let mut is_fresh = false;
     loop {
         lag(problem, state, tangent, march);
         let rho = rho_of((problem.rms_bound(), problem.rms_slip()), cap);
         let measures = tangent.predict(problem, state, rho);
         let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
         let worst = worst(problem, state, tangent).max(missing);
-        if !worst.is_finite() || missing.is_nan() {
+        if !worst.is_finite() || missing.is_nan() || forces.any() && is_far(problem) {
             return Ok(Outcome::Stagnated);
         }
         if worst < best.worst {
@@ -137,14 +142,14 @@ fn iterate(
             (best.offset, best.worst) = (problem.offset, worst);
         }
         if worst < tolerance {
-            if is_on_circles {
+            if is_fresh {
                 return Ok(Outcome::Converged);
             }
-            onto_circles(problem, state, tangent);
-            is_on_circles = true;
+            settle(problem, state, tangent, march);
+            is_fresh = true;
             continue;
         }
-        is_on_circles = false;
+        is_fresh = false;
         let left = limit.saturating_sub(problem.operators.products - made);
         if left == 0 {
             return Ok(Outcome::IterationLimit);
@@ -154,7 +159,7 @@ fn iterate(
         let inner = inner.max((ENOUGH * tolerance / worst).min(LEAST_GAIN));
         let most = DIRECTIONS.min(left as usize);
         if is_newton {
-            let rho = if hardens && march.law.fall.is_none() { rho } else { RHO / problem.operators.self_influence };
+            let rho = rho_of_newton(problem, march, worst, rho);
             resolve(problem, state, tangent, march, rho);
             system::step(problem, state, (tangent, march, forces), (rho, inner, most), fields)?;
         } else {
@@ -164,6 +169,23 @@ fn iterate(
         if !watch(worst) {
             return Ok(Outcome::Cancelled);
         }
+    }
+}
+
+/// Whether creepages run away from a force that no creepage meets.
+fn is_far(problem: &Problem) -> bool {
+    let displaced = problem.operators.self_influence * problem.rms_bound();
+    !(problem.rms_rigid() / displaced < LARGEST_RATIO)
+}
+
+/// rho of a Newton step, from that of a step for bounds that stand still.
+fn rho_of_newton(problem: &Problem, march: &March, worst: f64, rho: f64) -> f64 {
+    let near = RHO / problem.operators.self_influence;
+    match march.law.fall {
+        None => rho,
+        Some(_) if worst < SWITCH => near,
+        // Far from a solution slips would turn tractions around by it.
+        Some(_) => rho.max(ABOVE * march.falls / problem.operators.self_influence).min(near),
     }
 }
 
@@ -180,61 +202,6 @@ impl Course {
         self.was_newton = is_newton;
         (self.since <= PATIENCE).then_some(is_newton)
     }
-}
-
-/// Bounds by the slips of what slipped in the last step.
-pub(super) fn lag(problem: &mut Problem, state: &State, tangent: &Tangent, march: &mut March) {
-    let law = march.law;
-    let mut bound = std::mem::take(&mut problem.bound);
-    march.go(|k, place, had| {
-        let slips = place.pressure > 0.0 && tangent.side[k] == Side::Slip;
-        let slip = if slips { square(problem.slip_at(k, &state.u)).sqrt() } else { 0.0 };
-        let response = law.at(slip, place, had);
-        bound[k] = response.bound;
-        response.particle
-    });
-    problem.bound = bound;
-}
-
-/// The larger of what is left of the slips and of the bounds: on slip the slip across q and `|q| - g`, on stick the slip.
-pub(super) fn worst(problem: &Problem, state: &State, tangent: &Tangent) -> f64 {
-    let of = |k: usize| {
-        let (q, g) = (state.q[k], problem.bound[k]);
-        match tangent.side[k] {
-            Side::Outside => [0.0; 2],
-            Side::Stick => [square(problem.slip_at(k, &state.u)), (square(q).sqrt() - g).max(0.0).powi(2)],
-            Side::Slip => {
-                let s = problem.slip_at(k, &state.u);
-                let across = s[0] * q[1] - s[1] * q[0];
-                let is_against = dot(s, q) < 0.0;
-                let rest = if is_against { across * across / square(q) } else { square(s) };
-                [rest, (square(q).sqrt() - g).powi(2)]
-            }
-        }
-    };
-    let [slips, bounds] = fields::sum(problem.threads(), state.q.len(), of).map(|sum| problem.rms_of(sum));
-    let slips = if slips > 0.0 { slips / scale(problem, state) } else { 0.0 };
-    let bounds = if bounds > 0.0 { bounds / problem.rms_bound() } else { 0.0 };
-    if slips.is_nan() || bounds.is_nan() {
-        return f64::NAN;
-    }
-    slips.max(bounds)
-}
-
-/// Elements that slip go onto their circles, those that stick stay inside; a fresh product.
-pub(super) fn onto_circles(problem: &mut Problem, state: &mut State, tangent: &Tangent) {
-    let (bound, threads) = (&problem.bound, problem.threads().clone());
-    fields::map(&threads, &mut state.q, |k, q| match tangent.side[k] {
-        Side::Slip => {
-            let length = square(q).sqrt();
-            let q = if length > 0.0 { q } else { tangent.normal[k] };
-            let length = if length > 0.0 { length } else { 1.0 };
-            clip(q.map(|q| q * (bound[k] / length)), bound[k])
-        }
-        Side::Stick => clip(q, bound[k]),
-        Side::Outside => [0.0; 2],
-    });
-    problem.refresh_unclipped(state);
 }
 
 /// The state by the resolvent, and its tangents.
@@ -271,24 +238,4 @@ fn resolve(problem: &mut Problem, state: &State, tangent: &mut Tangent, march: &
             problem.bound[k] = march.resolved(k).response.bound;
         }
     }
-}
-
-/// Bounds of what slips become what it carries; the larger residual of both certificates.
-pub(super) fn freeze(problem: &mut Problem, state: &State, tangent: &Tangent, march: &mut March) -> f64 {
-    lag(problem, state, tangent, march);
-    let of = |k: usize| match tangent.side[k] {
-        Side::Slip => [(square(state.q[k]).sqrt() - problem.bound[k]).powi(2)],
-        Side::Stick => [(square(state.q[k]).sqrt() - problem.bound[k]).max(0.0).powi(2)],
-        Side::Outside => [0.0],
-    };
-    let [left] = fields::sum(problem.threads(), state.q.len(), of).map(|sum| problem.rms_of(sum));
-    let bounds = if left > 0.0 { left / problem.rms_bound() } else { 0.0 };
-    for (k, side) in tangent.side.iter().enumerate() {
-        if *side == Side::Slip {
-            problem.bound[k] = square(state.q[k]).sqrt();
-        } else if *side == Side::Stick {
-            problem.bound[k] = problem.bound[k].max(square(state.q[k]).sqrt());
-        }
-    }
-    Certificate::of(problem, state).residual.max(bounds)
 }

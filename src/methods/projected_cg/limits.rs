@@ -89,9 +89,13 @@ impl<T: Real> Iteration<T> {
         Some(1.0)
     }
 
-    /// Scales p, and the deferred corrections with it, to carry the prescribed force; returns the factor, with which u is to be scaled.
+    /// Scales p, and the deferred corrections with it, to carry the prescribed force; returns the factor, with which u is to be scaled. On a given
+    /// area a force that is next to nothing is no measure of p: directions keep it, but for round-off, which the next certificate finds.
     pub(super) fn carry_force<S: AdmissibleSet>(&mut self, state: &mut State) -> f64 {
         let Load::Force(force) = state.load else { return 1.0 };
+        if S::FIXED && state.is_cancelled(&self.threads) {
+            return 1.0;
+        }
         self.segments.find(&state.contact);
         if S::LIMITED {
             if let Some(factor) = self.carry_beside_limits(state) {

@@ -18,8 +18,11 @@ use crate::sums::in_blocks;
 const ENOUGH: f64 = 0.25;
 /// And relative to the residual that is asked for: no more than that is needed.
 const NEEDED: f64 = 0.3;
-/// A uniform pressure displaces at least so much of what an element displaces itself: less, on all elements, is round-off.
-const LEAST: f64 = 1e-2;
+/// A uniform pressure on all elements displaces nothing but round-off, which is less than this part of the displacement of each element by itself. On all
+/// but one it displaces as much as that one does.
+const ROUND_OFF: f64 = 1e-10;
+/// Where it displaces nothing, t goes to the nearest bound at least, and as if it displaced so much of that.
+const TAKEN: f64 = 1e-2;
 
 impl ProjectedNewton {
     /// t.
@@ -79,12 +82,25 @@ impl ProjectedNewton {
             *along = f64::from(u8::from(free));
         }
         task.problem.displace(&self.along, &mut self.along_product)?;
-        let least = LEAST * task.problem.self_influence() * count as f64;
+        let alone = task.problem.self_influence() * count as f64;
         let work = dot(&self.along, &self.along_product);
-        let displaced = work.max(least);
+        let is_free = work < ROUND_OFF * alone;
+        let displaced = if is_free { TAKEN * alone } else { work };
         self.uniform_product.copy_from_slice(&self.along_product);
-        self.go_along(in_blocks(self.r.iter().copied()) / displaced);
-        Ok((displaced, work < least))
+        let mut amount = in_blocks(self.r.iter().copied()) / displaced;
+        if is_free && amount != 0.0 {
+            let room = self.room(&task.state.p, task.set, amount > 0.0);
+            amount = amount.abs().max(room).copysign(amount);
+        }
+        self.go_along(amount);
+        Ok((displaced, is_free))
+    }
+
+    /// How far the free elements can go `up`, or down, until the first is at a bound; 0 if none ever is.
+    fn room<S: AdmissibleSet>(&self, p: &[f64], set: S, up: bool) -> f64 {
+        let of = |(i, p): (usize, &f64)| if up { set.limit(i) - p } else { *p };
+        let rooms = p.iter().enumerate().filter(|(i, _)| self.free[*i]).map(of).filter(|room| *room > 0.0);
+        Some(rooms.fold(f64::INFINITY, f64::min)).filter(|room| room.is_finite()).unwrap_or(0.0)
     }
 
     /// z = M r on the free elements; conjugate to a uniform t that came first. Returns (r, z).

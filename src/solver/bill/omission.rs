@@ -28,11 +28,15 @@ pub enum Omission {
     CoatingAsLayer,
     /// The attraction between the bodies.
     Adhesion,
+    /// The law of friction: the coefficient is that at rest everywhere.
+    FrictionLaw,
+    /// The yield of a third body: it carries whatever friction does.
+    FrictionLayer,
 }
 
 impl Omission {
     /// All, in the order of their numbers in the C ABI, which begin at 1.
-    pub const ALL: [Omission; 11] = [
+    pub const ALL: [Omission; 13] = [
         Omission::Coating,
         Omission::Period,
         Omission::Patches,
@@ -44,6 +48,8 @@ impl Omission {
         Omission::FrictionCompliance,
         Omission::CoatingAsLayer,
         Omission::Adhesion,
+        Omission::FrictionLaw,
+        Omission::FrictionLayer,
     ];
 
     /// Its number, from 1 on.
@@ -53,7 +59,7 @@ impl Omission {
 
     /// Its name.
     pub fn name(self) -> &'static str {
-        const NAMES: [&str; 11] = [
+        const NAMES: [&str; 13] = [
             "coating",
             "period",
             "patches",
@@ -65,6 +71,8 @@ impl Omission {
             "friction_compliance",
             "coating_as_layer",
             "adhesion",
+            "friction_law",
+            "friction_layer",
         ];
         NAMES[self as usize]
     }
@@ -102,15 +110,19 @@ impl Omission {
             Omission::FrictionCompliance => {
                 friction.is_some_and(|friction| friction.compliance != Coefficient::Uniform(0.0))
             }
+            Omission::FrictionLaw => friction.is_some_and(|friction| friction.law.is_some()),
+            Omission::FrictionLayer => friction.is_some_and(|friction| friction.layer.is_some()),
         }
     }
 
     /// Whether leaving out both is another scene than leaving out one of them.
     pub fn goes_with(self, other: Omission) -> bool {
-        use Omission::{Coating, CoatingAsLayer, Coupling, Friction, FrictionCompliance, Layer, Spin};
+        use Omission::{
+            Coating, CoatingAsLayer, Coupling, Friction, FrictionCompliance, FrictionLaw, FrictionLayer, Layer, Spin,
+        };
         let same = |a: Omission, b: Omission| {
             matches!((a, b), (Coating, CoatingAsLayer) | (Layer, CoatingAsLayer))
-                || a == Friction && [Coupling, Spin, FrictionCompliance].contains(&b)
+                || a == Friction && [Coupling, Spin, FrictionCompliance, FrictionLaw, FrictionLayer].contains(&b)
         };
         self != other && !same(self, other) && !same(other, self)
     }
@@ -136,6 +148,10 @@ impl Omission {
             Omission::FrictionCompliance => {
                 let without = |friction| Friction { compliance: Coefficient::Uniform(0.0), ..friction };
                 left.friction = scene.friction.map(without);
+            }
+            Omission::FrictionLaw => left.friction = scene.friction.map(|friction| Friction { law: None, ..friction }),
+            Omission::FrictionLayer => {
+                left.friction = scene.friction.map(|friction| Friction { layer: None, ..friction });
             }
         }
         left

@@ -75,7 +75,10 @@ pub fn cost_of_accuracy(
         doublings += 1;
         let had = list(&samples, 1.0).into_iter().filter(|price| price.obstacle.is_none());
         let dearest = had.map(|price| price.seconds).fold(0.0, f64::max);
-        let known = samples.last().is_some_and(|last| last.across >= ACROSS || last.elements > UNRESOLVED);
+        // Where one grid has no estimate the error follows from three, and from four if two changes happen to be alike.
+        let has_error = |last: &Sample| last.falling().is_some() || samples.len() > 3;
+        let is_known = |last: &Sample| last.across >= ACROSS && has_error(last) || last.elements > UNRESOLVED;
+        let known = samples.last().is_some_and(is_known);
         let over = began.elapsed().as_secs_f64() + next > SECONDS.max(PART * dearest);
         if known && over || scaled(&scene.grid, doublings).is_err() {
             break;

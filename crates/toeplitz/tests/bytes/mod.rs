@@ -1,0 +1,128 @@
+//! What random bytes do to a product: they become a grid, coefficients and values, and the product is that term by term. Also the cargo-fuzz
+//! target `product` in fuzz/.
+
+use par::threads::Threads;
+use toeplitz::coefficients::SYMMETRY;
+use toeplitz::{dense, Coefficients, Product, Real};
+
+/// Elements in one direction at most.
+const LONGEST: u64 = 40;
+/// Powers of two of the values, and of the coefficients, on either side of 1: single precision keeps their products.
+const POWERS: u64 = 20;
+
+/// Bytes one after another, then zeros.
+struct Bytes<'a>(&'a [u8]);
+
+impl Bytes<'_> {
+    fn next(&mut self) -> u64 {
+        let Some((first, rest)) = self.0.split_first() else { return 0 };
+        self.0 = rest;
+        u64::from(*first)
+    }
+
+    /// Up to `most`.
+    fn up_to(&mut self, most: u64) -> u64 {
+        (self.next() | self.next() << 8) % (most + 1)
+    }
+
+    /// Of both signs, over some orders of magnitude; one of eight is zero.
+    fn value(&mut self) -> f64 {
+        let (digits, sign) = (self.next(), self.next());
+        if sign % 8 == 0 {
+            return 0.0;
+        }
+        let size = (1.0 + digits as f64 / 256.0) * 2f64.powi(self.up_to(2 * POWERS) as i32 - POWERS as i32);
+        if sign % 2 == 0 {
+            -size
+        } else {
+            size
+        }
+    }
+}
+
+/// A table of the coefficients of all offsets.
+struct Table {
+    grid: (i64, i64),
+    values: Vec<f64>,
+}
+
+impl Table {
+    /// The kind says which symmetry it has: 0 even in both directions, 1 the same at k and -k, 2 none.
+    fn read(bytes: &mut Bytes<'_>, grid: (usize, usize), kind: u64) -> Table {
+        let (mx, my) = (grid.0 as i64, grid.1 as i64);
+        // Few bytes make many coefficients: a value for each distance along a diagonal, which differ by place where they may.
+        let drawn: Vec<f64> = (0..16).map(|_| bytes.value()).collect();
+        let mixed = |a: i64, b: i64| drawn[(a * 5 + b * 3).rem_euclid(16) as usize];
+        let of = |kx: i64, ky: i64| match kind {
+            0 => mixed(kx.abs(), ky.abs()),
+            1 if (ky, kx) < (0, 0) => mixed(-kx, -ky),
+            _ => mixed(kx, ky),
+        };
+        let values =
+            (1 - my..my).flat_map(|ky| (1 - mx..mx).map(move |kx| (kx, ky))).map(|(kx, ky)| of(kx, ky)).collect();
+        Table { grid: (mx, my), values }
+    }
+
+    /// Beyond the grid there are none.
+    fn at(&self, kx: i64, ky: i64) -> f64 {
+        let (mx, my) = self.grid;
+        if kx.abs() >= mx || ky.abs() >= my {
+            return 0.0;
+        }
+        self.values[((ky + my - 1) * (2 * mx - 1) + kx + mx - 1) as usize]
+    }
+}
+
+impl Coefficients for Table {
+    fn fill_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
+        out.iter_mut().zip(kx..).for_each(|(value, kx)| *value = self.at(kx, ky));
+    }
+
+    fn fill_symmetric_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
+        out.iter_mut().zip(kx..).for_each(|(value, kx)| *value = 0.5 * (self.at(kx, ky) + self.at(-kx, -ky)));
+    }
+
+    fn are_symmetric(&self) -> bool {
+        let largest = self.values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+        self.values.iter().zip(self.values.iter().rev()).all(|(one, other)| (one - other).abs() <= SYMMETRY * largest)
+    }
+}
+
+/// A product from bytes, in double or single precision, by one to three threads.
+///
+/// # Panics
+/// If it is not the sum term by term.
+pub fn product(data: &[u8]) {
+    let mut bytes = Bytes(data);
+    let grid = (1 + bytes.up_to(LONGEST - 1) as usize, 1 + bytes.up_to(LONGEST - 1) as usize);
+    let (kind, is_single) = (bytes.up_to(2), bytes.next() % 2 == 1);
+    let threads = Threads::new(1 + bytes.up_to(2) as usize).expect("threads");
+    let table = Table::read(&mut bytes, grid, kind);
+    let p: Vec<f64> = (0..grid.0 * grid.1).map(|_| bytes.value()).collect();
+    if is_single {
+        compare::<f32>(&table, grid, kind, &threads, &p);
+    } else {
+        compare::<f64>(&table, grid, kind, &threads, &p);
+    }
+}
+
+/// Transforms keep the norm of what they transform but for the rounding of their steps, and the symbol is at most the sum of the coefficients' absolute
+/// values: so errors are, in the norm, at most some units of rounding for each step times this sum and the norm of p.
+fn compare<T: Real>(table: &Table, grid: (usize, usize), kind: u64, threads: &Threads, p: &[f64]) {
+    let product = match kind {
+        0 => Product::<T>::even(grid, |kx, ky| table.at(kx as i64, ky as i64), threads),
+        _ => Product::<T>::uneven(grid, table, threads),
+    };
+    let product = product.expect("memory");
+    let given: Vec<T> = p.iter().map(|p| T::of(*p)).collect();
+    let mut u = vec![T::nan(); p.len()];
+    product.apply(&given, &mut u, &mut product.memory().expect("memory"));
+    let (p, mut expected): (Vec<f64>, _) = (given.iter().map(|p| p.to_double()).collect(), vec![0.0; p.len()]);
+    dense::apply(grid, |kx, ky| table.at(kx, ky), &p, &mut expected);
+    let norm = |values: &mut dyn Iterator<Item = f64>| values.map(|value| value * value).sum::<f64>().sqrt();
+    let sum: f64 = table.values.iter().map(|value| value.abs()).sum();
+    let steps = ((4 * p.len()) as f64).log2() + 2.0;
+    let allowed = 8.0 * steps * T::epsilon().to_double() * sum * norm(&mut p.iter().copied());
+    let error = norm(&mut u.iter().zip(&expected).map(|(u, expected)| u.to_double() - expected));
+    assert!(error <= allowed, "{grid:?}, kind {kind}, {} threads: {error:e}, {allowed:e}", threads.count());
+}

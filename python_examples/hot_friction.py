@@ -1,0 +1,51 @@
+"""Friction that falls as the surfaces get warm: creep forces of a wheel that brakes at 30 m/s. The law is a program's own: turns of a solve, flash
+temperatures of its heat, and coefficients by these. `python3 hot_friction.py`."""
+
+import sys
+
+import numpy as np
+
+import contact_normal as cn
+
+MX, MY, DX, DY, FORCE, SPEED = 40, 32, 0.36, 0.9, 106700.0, 3e4  # mm, N, s
+STEEL = dict(shear_modulus=82000.0, poisson_ratio=0.28)
+HEAT = dict(conductivity=50.0, diffusivity=14.0, speed=-SPEED)  # N/(s K), mm^2/s; both surfaces come in at the leading edge, at larger x.
+COLD, HOT, BEGINS, RANGE = 0.4, 0.15, 100.0, 500.0  # mu falls from COLD to HOT between a rise of BEGINS and of BEGINS + RANGE.
+PART, TURNS, ENOUGH = 0.6, 60, 1e-6
+
+
+def coefficient(rise):
+    return COLD - (COLD - HOT) * np.clip((rise - BEGINS) / RANGE, 0.0, 1.0)
+
+
+def rolled(solver, h, creepage):
+    """The forces, the rise and the turns that bring mu to that of its own temperature."""
+    mu = np.full((MY, MX), COLD)
+    for turn in range(1, TURNS + 1):
+        friction = dict(coefficient=mu, motion="STEADY_ROLLING", creepage=(-creepage, 0.0), continues=turn > 1)
+        result = solver.solve(h, force=FORCE, friction=friction, initial_guess="PREVIOUS" if turn > 1 else "NONE", tolerance=1e-7)
+        if result.status != cn.OK:
+            sys.exit(f"stopped early: {result.message}")
+        slides = result.stick_slip == 2
+        flux = np.where(slides, np.hypot(*result.traction) * np.hypot(*result.slip), 0.0) * SPEED / DX
+        rise = cn.flash_temperature(flux, DX, DY, **HEAT).rise[0]
+        change = np.where(result.contact, coefficient(rise) - mu, 0.0)
+        if np.abs(change).max() < ENOUGH:
+            return result.tangential_force[0], rise.max(), mu[result.contact].min(), turn
+        # More heat, less friction, less heat: a part of the change settles sooner than all of it.
+        mu = mu + PART * change
+    sys.exit("turns do not settle")
+
+
+def main():
+    x, y = (np.arange(MX) - 0.5 * (MX - 1)) * DX, (np.arange(MY) - 0.5 * (MY - 1)) * DY
+    h = 8e-4 * x**2 + 2.8142e-4 * y[:, None] ** 2
+    print("creepage  force/(0.4 N)  warmest [K]  least mu  turns")
+    with cn.Solver(MY, MX, DX, DY, **STEEL) as solver:
+        for creepage in (0.001, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2):
+            force, warmest, least, turns = rolled(solver, h, creepage)
+            print(f"{creepage:8.3f}  {force / (COLD * FORCE):13.4f}  {warmest:11.1f}  {least:8.4f}  {turns:5}")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,101 @@
+//! Bounds by slips, and what they leave of the conditions.
+
+use super::super::certificate::{scale, Certificate};
+use super::super::plane::{clip, dot, square};
+use super::super::problem::{Problem, State};
+use super::super::tangent::{Side, Tangent};
+use super::march::March;
+use super::STEEP;
+use crate::methods::fields;
+
+/// Bounds by the slips of what slipped in the last step.
+pub(super) fn lag(problem: &mut Problem, state: &State, tangent: &Tangent, march: &mut March) {
+    follow(problem, state, tangent, march, None);
+}
+
+/// The same; with rho, where a bound rises, as far as both `|q| + rho slip` and that of the new bound and slip are the same.
+pub(super) fn follow(problem: &mut Problem, state: &State, tangent: &Tangent, march: &mut March, rho: Option<f64>) {
+    let law = march.law;
+    let mut bound = std::mem::take(&mut problem.bound);
+    march.go(|k, place, had| {
+        let slips = place.pressure > 0.0 && tangent.side[k] == Side::Slip;
+        let slip = if slips { square(problem.slip_at(k, &state.u)).sqrt() } else { 0.0 };
+        let mut response = law.at(slip, place, had);
+        if let Some(rho) = rho.filter(|_| place.pressure > 0.0 && response.slope[0] > 0.0) {
+            response = law.resolve(square(state.q[k]).sqrt() + rho * slip, rho, place, had).response;
+        }
+        bound[k] = response.bound;
+        response.particle
+    });
+    problem.bound = bound;
+}
+
+/// The larger of what is left of the slips and of the bounds: on slip the slip across q and `|q| - g`, on stick the slip.
+pub(super) fn worst(problem: &Problem, state: &State, tangent: &Tangent) -> f64 {
+    let of = |k: usize| {
+        let (q, g) = (state.q[k], problem.bound[k]);
+        match tangent.side[k] {
+            Side::Outside => [0.0; 2],
+            Side::Stick => [square(problem.slip_at(k, &state.u)), (square(q).sqrt() - g).max(0.0).powi(2)],
+            Side::Slip => {
+                let s = problem.slip_at(k, &state.u);
+                let across = s[0] * q[1] - s[1] * q[0];
+                let is_against = dot(s, q) < 0.0;
+                let rest = if is_against { across * across / square(q) } else { square(s) };
+                [rest, (square(q).sqrt() - g).powi(2)]
+            }
+        }
+    };
+    let [slips, bounds] = fields::sum(problem.threads(), state.q.len(), of).map(|sum| problem.rms_of(sum));
+    let slips = if slips > 0.0 { slips / scale(problem, state) } else { 0.0 };
+    let bounds = if bounds > 0.0 { bounds / problem.rms_bound() } else { 0.0 };
+    if slips.is_nan() || bounds.is_nan() {
+        return f64::NAN;
+    }
+    slips.max(bounds)
+}
+
+/// A fresh product for a certificate, of tractions on their circles. Where bounds rise these stay as they are: the way to the circles
+/// changes slips, and bounds by more than the way.
+pub(super) fn settle(problem: &mut Problem, state: &mut State, tangent: &Tangent, march: &March) {
+    match march.rises > STEEP {
+        true => problem.refresh_unclipped(state),
+        false => onto_circles(problem, state, tangent),
+    }
+}
+
+/// Elements that slip go onto their circles, those that stick stay inside; a fresh product.
+pub(super) fn onto_circles(problem: &mut Problem, state: &mut State, tangent: &Tangent) {
+    let (bound, threads) = (&problem.bound, problem.threads().clone());
+    fields::map(&threads, &mut state.q, |k, q| match tangent.side[k] {
+        Side::Slip => {
+            let length = square(q).sqrt();
+            let q = if length > 0.0 { q } else { tangent.normal[k] };
+            let length = if length > 0.0 { length } else { 1.0 };
+            clip(q.map(|q| q * (bound[k] / length)), bound[k])
+        }
+        Side::Stick => clip(q, bound[k]),
+        Side::Outside => [0.0; 2],
+    });
+    problem.refresh_unclipped(state);
+}
+
+/// Bounds of what slips become what it carries; the larger residual of both certificates.
+pub(super) fn freeze(problem: &mut Problem, state: &State, tangent: &Tangent, march: &mut March) -> f64 {
+    lag(problem, state, tangent, march);
+    let of = |k: usize| match tangent.side[k] {
+        Side::Slip => [(square(state.q[k]).sqrt() - problem.bound[k]).powi(2)],
+        Side::Stick => [(square(state.q[k]).sqrt() - problem.bound[k]).max(0.0).powi(2)],
+        Side::Outside => [0.0],
+    };
+    let [left] = fields::sum(problem.threads(), state.q.len(), of).map(|sum| problem.rms_of(sum));
+    let bounds = if left > 0.0 { left / problem.rms_bound() } else { 0.0 };
+    for (k, side) in tangent.side.iter().enumerate() {
+        if *side == Side::Slip {
+            problem.bound[k] = square(state.q[k]).sqrt();
+        } else if *side == Side::Stick {
+            problem.bound[k] = problem.bound[k].max(square(state.q[k]).sqrt());
+        }
+    }
+    Certificate::of(problem, state).residual.max(bounds)
+}

@@ -1,0 +1,145 @@
+//! How steeply bounds fall with the slip, of whatever its particle has: `law_slope` of a report.
+//!
+//! Of an element of pressure p, with mu at rest, memory c and the part t = c/(c + dt max(v, v0)) that a particle keeps of its coefficient m:
+//!
+//! ```text
+//! -dg/dv = p mu [(1 - t) (-f') + (-t') (1 - f)] + p (m - mu) (-t')        f: mu_s(v)/mu
+//! ```
+//!
+//! Both parts in v are not negative, so that the largest is that of an element on the hull of the pairs `(p mu, p (m - mu))`. In steady
+//! rolling m is at most the largest coefficient that the particle has met.
+
+use super::element::{Law, Particle};
+use super::march::March;
+use crate::error::Result;
+use crate::memory::zeros;
+
+/// Slip velocities to a factor of two, and factors of two about each half speed and about the speed of the memory.
+const EACH: i32 = 8;
+const REACH: i32 = 20;
+
+/// Sets how steeply bounds fall and rise, each slope times the influence of its element on itself.
+pub fn measure(march: &mut March, influence: impl Fn(usize) -> f64) -> Result<()> {
+    let law = march.law;
+    let softening = law.layer.map_or(0.0, |layer| (-layer.hardening).max(0.0));
+    let (mut softest, mut stiffest, mut pairs) = (0.0f64, 0.0f64, Vec::new());
+    if law.remembers() {
+        pairs = zeros(march.grid.len(), "the slope of a law")?;
+    }
+    march.go(|k, place, had| {
+        let most = had.coefficient.max(place.coefficient);
+        if place.pressure > 0.0 {
+            let by = influence(k);
+            let [at_rest, beyond] =
+                [place.coefficient, had.coefficient - place.coefficient].map(|mu| place.pressure * mu * by);
+            (softest, stiffest) = (softest.max(by), stiffest.max(at_rest));
+            if let Some(pair) = pairs.get_mut(k) {
+                *pair = [at_rest, beyond];
+            }
+        }
+        Particle { coefficient: most, ..had }
+    });
+    if pairs.is_empty() {
+        pairs.push([stiffest, 0.0]);
+    }
+    let hull = hull(pairs);
+    let slope = |[by_bound, by_memory]: [f64; 2]| {
+        hull.iter().map(|[at_rest, beyond]| by_bound * at_rest + by_memory * beyond).fold(0.0, f64::max)
+    };
+    march.falls = law.slopes().map(slope).fold(softening * softest, f64::max);
+    march.rises = rises(march, influence);
+    Ok(())
+}
+
+/// The largest slope upwards: of what particles lack of the coefficient at rest, and of a layer that hardens.
+fn rises(march: &mut March, influence: impl Fn(usize) -> f64) -> f64 {
+    let law = march.law;
+    let hardening = law.layer.map_or(0.0, |layer| layer.hardening.max(0.0));
+    let [_, forgets] = law.slopes().fold([0.0f64; 2], |most, slope| [0, 1].map(|k| most[k].max(slope[k])));
+    let mut steepest = 0.0f64;
+    march.go(|k, place, had| {
+        let lacks = place.pressure * (place.coefficient - had.coefficient);
+        if place.pressure > 0.0 {
+            steepest = steepest.max(influence(k) * hardening.max(forgets * lacks));
+        }
+        Particle { coefficient: had.coefficient.min(place.coefficient), ..had }
+    });
+    steepest
+}
+
+/// Of points those that are farthest in a direction of which no part is negative.
+fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    points.sort_unstable_by(|a, b| b[0].total_cmp(&a[0]).then(b[1].total_cmp(&a[1])));
+    let mut count = 0;
+    for k in 0..points.len() {
+        let point = points[k];
+        if count > 0 && point[1] <= points[count - 1][1] {
+            continue;
+        }
+        // The last one lies within where the way turns from it.
+        let turn = |[a, b]: [[f64; 2]; 2]| (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0]);
+        while count > 1 && turn([points[count - 2], points[count - 1]]) <= 0.0 {
+            count -= 1;
+        }
+        points[count] = point;
+        count += 1;
+    }
+    points.truncate(count);
+    points
+}
+
+impl Law {
+    /// Whether coefficients follow the slip with delay.
+    fn remembers(&self) -> bool {
+        self.fall.is_some_and(|law| law.memory_distance > 0.0)
+    }
+
+    /// At slip velocities what slopes have by the bound at rest, and by what a particle has beyond.
+    fn slopes(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+        // Below the kink of a linear law, which is one of them.
+        let below = 1.0 - 2.0 * f64::EPSILON;
+        let place = move |h: f64, k: i32| below * h * (f64::from(k) / f64::from(EACH)).exp2();
+        let places = move |h: f64| (-EACH * REACH..=EACH * REACH).map(move |k| place(h, k));
+        self.fall.iter().flat_map(move |law| {
+            let (c, dt) = (law.memory_distance, self.duration);
+            let at = move |v: f64| {
+                let (value, slope) = law.at(v);
+                let whole = c + dt * v.max(law.memory_speed);
+                let kept = if c > 0.0 { c / whole } else { 0.0 };
+                // From memory_speed on, there too.
+                let forgets = if c > 0.0 && v >= law.memory_speed { c * dt / (whole * whole) } else { 0.0 };
+                [((kept - 1.0) * slope + forgets * (1.0 - value)) * self.rate, forgets * self.rate]
+            };
+            let parts = law.falling.into_iter().zip(law.half_speed).filter(|(part, _)| *part > 0.0);
+            let speeds = parts.map(|(_, h)| h).chain((c > 0.0).then_some(c / dt));
+            speeds.flat_map(places).chain([0.0, law.memory_speed]).map(at)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The farthest of random points in each direction is on the hull, which has no others.
+    #[test]
+    fn the_hull_has_the_farthest_in_each_direction() {
+        let mut state = 7u64;
+        let mut draw = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f64 / (1u64 << 24) as f64
+        };
+        for n in [1, 2, 3, 10, 300] {
+            let points: Vec<[f64; 2]> = (0..n).map(|_| [draw(), draw() - 0.5]).collect();
+            let found = hull(points.clone());
+            let far = |of: &[[f64; 2]], t: f64| of.iter().map(|p| t.cos() * p[0] + t.sin() * p[1]).fold(-1.0, f64::max);
+            for k in 0..=1000 {
+                let t = f64::from(k) / 1000.0 * std::f64::consts::FRAC_PI_2;
+                assert!((far(&points, t) - far(&found, t)).abs() <= 1e-15, "{n} {t}");
+            }
+            assert!(found.len() <= 60, "{n} {}", found.len());
+        }
+        let line: Vec<[f64; 2]> = (0..1000).map(|k| [f64::from(k), -0.25 * f64::from(k)]).collect();
+        assert_eq!(hull(line), [[999.0, -249.75], [0.0, 0.0]]);
+    }
+}

@@ -1,0 +1,126 @@
+//! Turns that come together slowly are extrapolated (Anderson 1965).
+//!
+//! ```text
+//! x: the distance that the normal problem was solved with,   y: the one that the turn made of it,   r = y - x
+//! g: |r - sum over j of g_j dr_j| least,                     dr_j, dy_j: changes of r and y from turn to turn, of the last ones
+//! x = y - sum over j of g_j dy_j
+//! ```
+//!
+//! Turns of unlike bodies that nearly all slip are slow in some modes: the creepage, and the sizes of what sticks.
+
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::linalg::cholesky::llt::{factor, solve};
+use faer::prelude::ReborrowMut;
+use faer::{MatMut, Par};
+
+use crate::error::Result;
+use crate::memory::reserve;
+use crate::sums::in_blocks;
+
+/// Turns are slow where the change falls by less than this.
+const SLOW: f64 = 0.5;
+/// Changes from turn to turn that are remembered. Of unlike bodies at .9997 of mu N and a tolerance of 1e-9, 16 x 16 elements: none, or one as Irons and
+/// Tuck have it, takes more than 50 turns, five take 15.
+const DEPTH: usize = 5;
+
+/// Of the sum of the changes' squares, which are products of numbers that round by 1e-16.
+const ROUND_OFF: f64 = 1e-14;
+
+/// A turn, or the change from one to the next: r and y.
+#[derive(Debug, Default)]
+struct Pair {
+    r: Vec<f64>,
+    y: Vec<f64>,
+}
+
+/// What it knows of the turns so far: nothing before one was slow.
+#[derive(Debug)]
+pub struct Extrapolation {
+    last: Pair,
+    /// Oldest first.
+    changes: Vec<Pair>,
+    /// The change of the last turn.
+    change: f64,
+}
+
+impl Extrapolation {
+    /// Before the first turn.
+    pub fn new() -> Extrapolation {
+        Extrapolation { last: Pair::default(), changes: Vec::new(), change: f64::INFINITY }
+    }
+
+    /// Takes a turn from x to y that changed the distance by `change`.
+    pub fn turn(&mut self, x: &[f64], y: &[f64], change: f64) -> Result<()> {
+        let is_slow = change > SLOW * self.change;
+        self.change = change;
+        if !is_slow && self.last.r.is_empty() {
+            return Ok(());
+        }
+        let mut pair = if self.changes.len() < DEPTH { Pair::default() } else { self.changes.remove(0) };
+        for (to, before, of) in [(&mut pair.r, &self.last.r, true), (&mut pair.y, &self.last.y, false)] {
+            to.clear();
+            reserve(to, y.len(), "the turns before")?;
+            // Where there is no surface nothing changes.
+            let value = |(x, y): (&f64, &f64)| {
+                if !x.is_finite() {
+                    0.0
+                } else if of {
+                    y - x
+                } else {
+                    *y
+                }
+            };
+            to.extend(x.iter().zip(y).map(value));
+            to.iter_mut().zip(before).for_each(|(now, before)| *now -= before);
+        }
+        if self.last.r.is_empty() {
+            self.last = pair;
+        } else {
+            for (last, change) in [(&mut self.last.r, &pair.r), (&mut self.last.y, &pair.y)] {
+                last.iter_mut().zip(change).for_each(|(last, change)| *last += change);
+            }
+            self.changes.push(pair);
+        }
+        Ok(())
+    }
+
+    /// Moves y on to where the turns lead.
+    pub fn extrapolate(&self, y: &mut [f64]) {
+        let count = self.changes.len();
+        if count == 0 {
+            return;
+        }
+        let dot = |a: &[f64], b: &[f64]| in_blocks(a.iter().zip(b).map(|(a, b)| a * b));
+        let row = |i: usize| self.changes.iter().map(move |change| dot(&self.changes[i].r, &change.r));
+        let gram: Vec<f64> = (0..count).flat_map(row).collect();
+        let right = self.changes.iter().map(|change| dot(&change.r, &self.last.r)).collect();
+        let parts = least_squares(gram, right);
+        for (part, change) in parts.iter().zip(&self.changes) {
+            y.iter_mut().zip(&change.y).for_each(|(y, change)| *y -= part * change);
+        }
+    }
+}
+
+/// g of the normal equations; changes that are alike to round-off have parts of 0, nearly. None where there is no g.
+fn least_squares(mut gram: Vec<f64>, mut right: Vec<f64>) -> Vec<f64> {
+    let n = right.len();
+    let trace: f64 = gram.iter().step_by(n + 1).sum();
+    gram.iter_mut().step_by(n + 1).for_each(|square| *square += ROUND_OFF * trace);
+    let scratch = StackReq::any_of(&[
+        factor::cholesky_in_place_scratch::<f64>(n, Par::Seq, Default::default()),
+        solve::solve_in_place_scratch::<f64>(n, 1, Par::Seq),
+    ]);
+    let mut memory = MemBuffer::new(scratch);
+    let stack = MemStack::new(&mut memory);
+    let mut matrix = MatMut::from_column_major_slice_mut(&mut gram, n, n);
+    if factor::cholesky_in_place(matrix.rb_mut(), Default::default(), Par::Seq, stack, Default::default()).is_err() {
+        return Vec::new();
+    }
+    solve::solve_in_place(matrix.as_ref(), MatMut::from_column_major_slice_mut(&mut right, n, 1), Par::Seq, stack);
+    right.retain(|part| part.is_finite());
+    if right.len() == n {
+        right
+    } else {
+        Vec::new()
+    }
+}

@@ -1,0 +1,105 @@
+//! Unlike bodies by forces: tractions change the pressures, and with them the greatest force.
+
+use contact_normal::effects::Coefficient;
+use contact_normal::error::Error;
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Scene};
+use contact_normal::solver::{solve, Options, Outcome, Solver};
+
+use super::unlike::RIGID_ON_SOFT;
+
+fn ball() -> (Grid, Vec<f64>) {
+    let at = |k: usize| (k as f64 - 7.5).powi(2);
+    (Grid::new(16, 16, 1.0, 1.0).unwrap(), (0..256).map(|i| (at(i % 16) + at(i / 16)) / 50.0).collect())
+}
+
+/// Creepages that are given bracket the answer, so the force that each of them gives is no force that cannot be: it gives the creepage back. The
+/// pressures without tractions carry less than most of these forces, where the coefficient of friction varies, or the approach is given.
+#[test]
+fn forces_beyond_what_the_first_pressures_carry_are_found() {
+    let (grid, h) = ball();
+    let mu: Vec<f64> = (0..256).map(|i| if i % 16 < 8 { 0.5 } else { 0.1 }).collect();
+    let (varies, uniform) = (Coefficient::PerElement(&mu), Coefficient::Uniform(0.5));
+    let (options, mut beyond) = (Options { tolerance: 1e-9, ..Options::default() }, 0);
+    for (load, coefficient) in
+        [(Load::Force(5.0), varies), (Load::Approach(0.5), varies), (Load::Approach(0.5), uniform)]
+    {
+        for motion in [Motion::Shift, Motion::SteadyRolling] {
+            for creepage in [-0.05, -0.1, -0.2, -0.3, 0.1, 0.3] {
+                let given = |x: Prescribed| {
+                    let prescribed = [x, Prescribed::Creepage(0.0)];
+                    let friction = Friction { coefficient, motion, prescribed, ..Friction::new(0.5) };
+                    Scene { friction: Some(friction), ..Scene::new(grid, &h, RIGID_ON_SOFT, load) }
+                };
+                let of = |scene: &Scene<'_>| {
+                    let (solver, outcome, _) = solve(scene, &options).unwrap();
+                    assert_eq!(outcome, Outcome::Converged, "{load:?} {motion:?} {creepage}");
+                    let carried: f64 = solver.state().p.iter().enumerate().map(|(i, p)| coefficient.at(i) * p).sum();
+                    let force: f64 = solver.friction().map_or(0.0, |found| found.traction.iter().map(|q| q[0]).sum());
+                    (force, carried)
+                };
+                let (force, carried) = of(&given(Prescribed::Creepage(creepage)));
+                // All slips: any larger creepage gives this force, too.
+                if force.abs() > (1.0 - 1e-6) * carried {
+                    continue;
+                }
+                let (_, plain) = of(&Scene::new(grid, &h, RIGID_ON_SOFT, load));
+                beyond += usize::from(force.abs() > plain);
+                let (again, _) = of(&given(Prescribed::Force(force)));
+                // The tolerance of the force, which is relative to mu N.
+                assert!((again - force).abs() <= 1e-9 * carried, "{load:?} {motion:?} {creepage}: {again} {force}");
+            }
+        }
+    }
+    assert!(beyond > 5, "{beyond} beyond what the first pressures carry");
+}
+
+/// More than the pressures of full slip carry, which a large creepage shows, is refused by these pressures; the handle keeps its last result.
+#[test]
+fn forces_beyond_full_slip_are_refused() {
+    let (grid, h) = ball();
+    let mu: Vec<f64> = (0..256).map(|i| if i % 16 < 8 { 0.5 } else { 0.1 }).collect();
+    for (load, sign) in [(Load::Force(5.0), 1.0), (Load::Force(5.0), -1.0), (Load::Approach(0.5), 1.0)] {
+        let with = |x: Prescribed| {
+            let prescribed = [x, Prescribed::Creepage(0.0)];
+            let friction = Friction { coefficient: Coefficient::PerElement(&mu), prescribed, ..Friction::new(0.5) };
+            Scene { friction: Some(friction), ..Scene::new(grid, &h, RIGID_ON_SOFT, load) }
+        };
+        let (slips, options) = (with(Prescribed::Creepage(1e3 * sign)), Options::default());
+        let mut solver = Solver::new(&slips, &options).unwrap();
+        assert_eq!(solver.solve(&slips, &options, None, None).unwrap().0, Outcome::Converged);
+        let traction = solver.friction().unwrap().traction.clone();
+        let most: f64 = traction.iter().map(|q| q[0]).sum();
+        let refused = solver.solve(&with(Prescribed::Force(1.001 * most)), &options, None, None);
+        let Err(Error::Infeasible(message)) = refused else { panic!("{refused:?}") };
+        let least: f64 = message.rsplit(' ').next().unwrap().parse().unwrap();
+        // The pressures of a little less than full slip, to the tolerance.
+        assert!((least / most.abs() - 1.0).abs() <= 1e-4, "{message}: {most}");
+        assert!(solver.friction().unwrap().traction == traction, "the last result");
+        let almost = solver.solve(&with(Prescribed::Force(0.999 * most)), &options, None, None).unwrap();
+        assert_eq!(almost.0, Outcome::Converged);
+    }
+}
+
+/// A tolerance below round-off is not met; the result is the best that was found, not what products in single precision took for it. Scenes of which
+/// ten in forty ended at 3e-8.
+#[test]
+fn below_round_off_the_best_is_returned() {
+    for (m, mu) in [(35, 1.3e-4), (34, 1.5e-2), (22, 8.9e-3), (16, 1.4e-4), (29, 3.2e-3)] {
+        for shift in [0.0, 0.3] {
+            let at = |k: usize| k as f64 - 0.5 * (m as f64 - 1.0) + shift;
+            let of = |i: usize| (2.0 * at(i % m).powi(2) + at(i / m).powi(2)) / (m * m) as f64;
+            let (grid, h) = (Grid::new(m, m, 1.0, 1.0).unwrap(), (0..m * m).map(of).collect::<Vec<f64>>());
+            let forces = [1.8 * mu, 0.21 * mu].map(Prescribed::Force);
+            let friction = Friction { motion: Motion::SteadyRolling, prescribed: forces, ..Friction::new(mu) };
+            let bodies = Bodies { shear_modulus: [1.0, 5.0], poisson_ratio: [0.1, 0.3] };
+            let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, Load::Force(3.0)) };
+            for tolerance in [1e-15, 1e-16, 1e-17] {
+                let (_, _, report) = solve(&scene, &Options { tolerance, ..Options::default() }).unwrap();
+                let found = report.friction.unwrap().certificate;
+                // Sums of some hundred products, each of which rounds by 1e-16.
+                assert!(found.residual <= 1e-14, "{m} {mu} {shift} {tolerance}: {}", found.residual);
+            }
+        }
+    }
+}
