@@ -107,8 +107,10 @@ class Numbers(unittest.TestCase):
         self.assert_refused("^h has dtype complex", lambda: solve(H + 0j))
         self.assert_refused("^h holds 9007199254740993; it must be at most 2", lambda: solve(np.full((M, M), 2**53 + 1)))
         huge = H.astype(np.longdouble)
-        huge[3, 4] = np.longdouble(10) ** 400
-        self.assert_refused("^h holds a number that does not fit", lambda: solve(huge))
+        # On Windows it is a double.
+        if np.finfo(np.longdouble).max > np.finfo(float).max:
+            huge[3, 4] = np.longdouble(10) ** 400
+            self.assert_refused("^h holds a number that does not fit", lambda: solve(huge))
         huge[3, 4] = np.inf
         self.assertEqual(solve(huge).pressure[3, 4], 0.0)
         for same in (H.astype(">f8"), H.astype(np.longdouble), np.asfortranarray(H), H.tolist()):
