@@ -185,6 +185,9 @@ fn check_stop(found: &Found, conditions: &Conditions, broken: &mut Broken<'_>) {
         _ if case.stop.tolerance * scale <= 10.0 * rounding => Some("friction: a tolerance below ten times round-off"),
         _ if is_steady && !is_monotone(case, found) => Some("friction: steady rolling that is not monotone"),
         _ if !case.place.is_alike() && mu > MUCH_FRICTION => Some("friction: unlike bodies, mu > 1"),
+        _ if !case.place.is_alike() && nearly_slips(case, found) => {
+            Some("friction: unlike bodies by 0.999 of what they carry at the end, or more")
+        }
         _ if rules::is_at_rounding(&normal, &outputs(found)) => {
             Some("friction: the normal problem is left to round-off")
         }
@@ -197,6 +200,13 @@ fn check_stop(found: &Found, conditions: &Conditions, broken: &mut Broken<'_>) {
             format!("status {status}, {left:e} left of {scale:e}, rounding {rounding:e}: {message}")
         }),
     }
+}
+
+/// Whether the forces that are given are nearly all that the last pressures carry: turns there go between pressures that carry them and that do not.
+fn nearly_slips(case: &Case, found: &Found) -> bool {
+    let carried: f64 = case.slide.mu.iter().zip(&found.p).map(|(mu, p)| mu * p.max(0.0)).sum();
+    let given = [0, 1].map(|k| if case.slide.is_force(k) { case.slide.amount[k] } else { 0.0 });
+    length(given) >= (1.0 - 1e-3) * carried * case.place.grid.element_area()
 }
 
 /// Own tables xx, yy and xy over the offsets `-mx..mx` by `-my..my` of a place.
