@@ -59,7 +59,12 @@ def debian(folder, processor):
         subprocess.run(["apt-get", *command], env={**os.environ, "APT_CONFIG": str(apt / "conf")}, check=True, stdout=subprocess.DEVNULL)
     for package in (apt / "var/cache/apt/archives").glob("*.deb"):
         subprocess.run(["dpkg-deb", "-x", package, root], check=True)
-    return [f"qemu-{processor}", "-L", root, "-E", f"PYTHONPATH={folder / 'site'}", root / "usr/bin" / f"python{DEBIAN['python']}"]
+    # The processes that a test starts run by qemu, too: sys.executable is this script.
+    script = folder / "python"
+    script.write_text(f'#!/bin/sh\nexec qemu-{processor} -0 "$0" -L {root} -E PYTHONHOME={root}/usr -E PYTHONPATH={folder}/site '
+                      f'{root}/usr/bin/python{DEBIAN["python"]} "$@"\n')
+    script.chmod(0o755)
+    return [script]
 
 
 def pip(*command):
