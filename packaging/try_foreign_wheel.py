@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parents[1]
 # The last versions that need nothing of Windows' C library which Debian 12's wine lacks (crealf, for one).
 WINDOWS = {"python": "3.13", "packages": ["numpy==2.1.0", "matplotlib==3.9.2", "contourpy==1.3.0", "pyparsing==3.1.4"]}
 # Examples and tests that need complex functions, which it lacks, too, or the executor of concurrent.futures, whose processes hang there.
-LACKING = ("friction", "test_plots", "test_traps", "test_creep_forces")
+LACKING = ("friction", "creep_force_table", "test_plots", "test_traps", "test_creep_forces")
 # Debian 12's Python, and its glibc.
 DEBIAN = {"python": "3.11", "glibc": 36, "packages": ["numpy", "matplotlib"]}
 DEBIAN_PROCESSORS = {"aarch64": "arm64"}
