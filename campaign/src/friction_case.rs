@@ -39,6 +39,12 @@ impl Slide {
         self.prescribed[k] == CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE
     }
 
+    /// The size of the forces that are given; 0 where none is.
+    pub fn force(&self) -> f64 {
+        let [x, y] = [0, 1].map(|k| if self.is_force(k) { self.amount[k] } else { 0.0 });
+        x.hypot(y)
+    }
+
     fn length(&self, grid: &Grid) -> f64 {
         match self.motion {
             CONTACT_NORMAL_MOTION_SHIFT => 1.0,
@@ -196,10 +202,7 @@ impl Case {
 
     /// Why the forces may be refused, if they may: any force below mu N is reached by a creepage that is large enough.
     pub fn may_be_infeasible(&self) -> Option<&'static str> {
-        let amount = &self.slide.amount;
-        let given = |k: usize| self.slide.is_force(k);
-        let force = [0, 1].map(|k| if given(k) { amount[k] } else { 0.0 });
-        let size = force[0].hypot(force[1]);
+        let size = self.slide.force();
         // Tractions change the pressures of unlike bodies: not their sum, where that is given.
         let sum_is_given = matches!(self.place.load, Load::Force(_)) && self.slide.uniform;
         let much = self.slide.mu.iter().any(|mu| *mu > 1.0);

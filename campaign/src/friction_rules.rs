@@ -205,8 +205,7 @@ fn check_stop(found: &Found, conditions: &Conditions, broken: &mut Broken<'_>) {
 /// Whether the forces that are given are nearly all that the last pressures carry: turns there go between pressures that carry them and that do not.
 fn nearly_slips(case: &Case, found: &Found) -> bool {
     let carried: f64 = case.slide.mu.iter().zip(&found.p).map(|(mu, p)| mu * p.max(0.0)).sum();
-    let given = [0, 1].map(|k| if case.slide.is_force(k) { case.slide.amount[k] } else { 0.0 });
-    length(given) >= (1.0 - 1e-3) * carried * case.place.grid.element_area()
+    case.slide.force() >= (1.0 - 1e-3) * carried * case.place.grid.element_area()
 }
 
 /// Own tables xx, yy and xy over the offsets `-mx..mx` by `-my..my` of a place.

@@ -16,15 +16,15 @@ use crate::progress::Monitor;
 
 /// Bodies that no force holds are first pressed together by this part of all attraction.
 const PRESSED: f64 = 0.01;
-/// The pressing force: so many times the least force that is known, or the last pressing force; so often at most.
+/// Bodies are pressed by this factor times the least force that is known, or times the last pressing force. There are this many ways at most.
 const MORE: f64 = 10.0;
 const WAYS: u32 = 4;
-/// A way finds less force if it is so many times the least.
+/// A way has found less force if that is below the least, a pull, times this factor.
 const LESS: f64 = 1.0 + 1e-6;
-/// The way of a pull-off: so many times the cycles of a solve, of which each state takes at most such a part.
+/// The first way of a pull-off may take this factor times the cycles of a solve. Each of its states may take one part in this many of a solve's.
 const PULL_OFF: u64 = 3;
 const STATES: u64 = 4;
-/// Cycles of each further way: so many times those of the first, and some.
+/// Each further way may take this factor times the cycles of the first way, and these cycles.
 const TIMES: u64 = 4;
 const AT_LEAST: u64 = 500;
 
@@ -103,7 +103,7 @@ impl Solver {
         make: MakeFrozen<'a>,
         monitor: &'m mut Monitor<'c>,
     ) -> Walker<'a, 'm, 'c> {
-        Walker { level: &mut self.levels[0], goal, make, monitor, each: u64::MAX }
+        Walker::new(&mut self.levels[0], goal, make, monitor)
     }
 
     /// Of the first way of a pull-off, which has many states: each may take a part of the cycles, and all together some times as many.
@@ -148,12 +148,7 @@ impl Solver {
             let times = TIMES * (monitor.count.cycles - before) + AT_LEAST;
             most = if goal.wanted.is_none() { times } else { most.min(times) };
         }
-        let mut pressing = match (&least, goal.wanted.unwrap_or(0.0)) {
-            (Some(least), _) => MORE * least.sum.abs(),
-            (None, wanted) if wanted > 0.0 => MORE * wanted,
-            (None, wanted) if wanted < 0.0 => wanted.abs().min(self.most_attraction()),
-            _ => PRESSED * self.most_attraction(),
-        };
+        let mut pressing = self.first_pressing(least.as_ref(), goal);
         for _ in 0..WAYS {
             let pressed = Goal { wanted: Some(pressing), most, ..goal };
             let ended = nested::solve(&mut self.levels, pressed, (Start::Auto, make), monitor)?;
@@ -188,6 +183,16 @@ impl Solver {
             return Ok(without);
         }
         Ok(Walk::Least { sum: least.sum, approach: least.approach() })
+    }
+
+    /// The force by which bodies are pressed first, where a state of the least force is known or none.
+    fn first_pressing(&self, least: Option<&Place>, goal: Goal) -> f64 {
+        match (least, goal.wanted.unwrap_or(0.0)) {
+            (Some(least), _) => MORE * least.sum.abs(),
+            (None, wanted) if wanted > 0.0 => MORE * wanted,
+            (None, wanted) if wanted < 0.0 => wanted.abs().min(self.most_attraction()),
+            _ => PRESSED * self.most_attraction(),
+        }
     }
 
     /// The sum of all attraction, at a distance of 0 everywhere.
@@ -227,8 +232,7 @@ impl Solver {
         monitor.enter_grid();
         let ended = nested::solve(&mut self.levels[last..], unloaded, (start, make), monitor)?;
         let is_found = ended.end == Descent::By(End::Solved)
-            && Walker { level: &mut self.levels[last], goal: coarse, make, monitor, each: u64::MAX }.walk(None)?
-                == Walk::Found;
+            && Walker::new(&mut self.levels[last], coarse, make, monitor).walk(None)? == Walk::Found;
         if !is_found {
             return Ok(false);
         }

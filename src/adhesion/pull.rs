@@ -55,7 +55,12 @@ struct Least {
     step: f64,
 }
 
-impl Walker<'_, '_, '_> {
+impl<'a, 'm, 'c> Walker<'a, 'm, 'c> {
+    /// On a grid, from what it holds; each state may take all cycles of the goal.
+    pub fn new(level: &'a mut Level, goal: Goal, make: MakeFrozen<'a>, monitor: &'m mut Monitor<'c>) -> Self {
+        Walker { level, goal, make, monitor, each: u64::MAX }
+    }
+
     /// The sum of p at an approach, from what the level holds; none where no state is found.
     pub fn solve_at(&mut self, approach: f64) -> Result<Option<f64>> {
         self.level.now.p.border = [approach];

@@ -57,22 +57,10 @@ impl Extrapolation {
             return Ok(());
         }
         let mut pair = if self.changes.len() < DEPTH { Pair::default() } else { self.changes.remove(0) };
-        for (to, before, of) in [(&mut pair.r, &self.last.r, true), (&mut pair.y, &self.last.y, false)] {
-            to.clear();
-            reserve(to, y.len(), "the turns before")?;
-            // Where there is no surface nothing changes.
-            let value = |(x, y): (&f64, &f64)| {
-                if !x.is_finite() {
-                    0.0
-                } else if of {
-                    y - x
-                } else {
-                    *y
-                }
-            };
-            to.extend(x.iter().zip(y).map(value));
-            to.iter_mut().zip(before).for_each(|(now, before)| *now -= before);
-        }
+        // Where there is no surface nothing changes.
+        let values = || x.iter().zip(y).map(|(x, y)| if x.is_finite() { [y - x, *y] } else { [0.0; 2] });
+        difference(&mut pair.r, values().map(|[r, _]| r), &self.last.r)?;
+        difference(&mut pair.y, values().map(|[_, y]| y), &self.last.y)?;
         if self.last.r.is_empty() {
             self.last = pair;
         } else {
@@ -99,6 +87,15 @@ impl Extrapolation {
             y.iter_mut().zip(&change.y).for_each(|(y, change)| *y -= part * change);
         }
     }
+}
+
+/// Values less those of before, if there are any.
+fn difference(to: &mut Vec<f64>, values: impl ExactSizeIterator<Item = f64>, before: &[f64]) -> Result<()> {
+    to.clear();
+    reserve(to, values.len(), "the turns before")?;
+    to.extend(values);
+    to.iter_mut().zip(before).for_each(|(now, before)| *now -= before);
+    Ok(())
 }
 
 /// g of the normal equations; changes that are alike to round-off have parts of 0, nearly. None where there is no g.

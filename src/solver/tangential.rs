@@ -10,8 +10,8 @@ use crate::progress::Monitor;
 use crate::scene::{Friction, Prescribed, Scene};
 use crate::threads::Threads;
 
-/// Of the greatest force that pressures carry, where they carry less than is given: nearly all elements slip then. Unlike bodies change their pressures
-/// by a fifth of the tractions at most, so forces that are less than the last pressures carry by this part are found.
+/// Where pressures carry less than the force that is given, this part of what they carry is solved for: nearly all elements slip then, and the next
+/// pressures carry what those of full slip do to 1e-4 (tests/friction/unlike_forces.rs).
 const IN_REACH: f64 = 1.0 - 1e-7;
 
 /// The state of a solver for scenes with friction.
@@ -147,7 +147,7 @@ impl Tangent {
     ) -> Result<(Outcome, Report, Option<Error>)> {
         match self.solve_from(start, turn, pressure, monitor) {
             Err(refusal @ Error::Infeasible(_)) if stop != Outcome::Converged || self.unlike.is_some() => {
-                let request = Request { start, ..Request::new(pressure, turn.friction, turn.options.tolerance) };
+                let request = Request::new(pressure, turn.friction, turn.options.tolerance);
                 let part = IN_REACH * self.solver.part_in_reach(&request)?;
                 let in_reach = |prescribed: Prescribed| match prescribed {
                     Prescribed::Force(force) => Prescribed::Force(part * force),

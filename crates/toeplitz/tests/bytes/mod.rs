@@ -106,8 +106,8 @@ pub fn product(data: &[u8]) {
     }
 }
 
-/// Transforms keep the norm of what they transform but for the rounding of their steps, and the symbol is at most the sum of the coefficients' absolute
-/// values: so errors are, in the norm, at most some units of rounding for each step times this sum and the norm of p.
+/// A transform keeps the norm of its values; each of its steps rounds. No value of the symbol exceeds the sum of the coefficients' absolute values. So the
+/// norm of the error is at most this sum, times the norm of p, times some roundings a step.
 fn compare<T: Real>(table: &Table, grid: (usize, usize), kind: u64, threads: &Threads, p: &[f64]) {
     let product = match kind {
         0 => Product::<T>::even(grid, |kx, ky| table.at(kx as i64, ky as i64), threads),
