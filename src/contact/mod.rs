@@ -2,6 +2,7 @@
 
 mod admissible;
 mod balance;
+mod bearing_area;
 mod certificate;
 mod curvature;
 mod direction;

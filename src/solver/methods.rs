@@ -22,9 +22,6 @@ const WORTHLESS: f64 = 0.3;
 /// of 1000 for NORM, which ends on every area of contact.
 const SHARE: f64 = 0.4;
 const LEAST_SHARE: u64 = 60;
-/// The cycles of PROJECTED_CG with limits at most. Most scenes with limits take fewer; where it takes more it mostly goes round in circles, and the
-/// projected Newton method goes on from its best iterate.
-const LIMITED_SHARE: u64 = 100;
 
 /// The methods of a solver, set up when they are first asked for and kept.
 pub struct Methods {
@@ -97,7 +94,7 @@ impl Methods {
                 }
             }
             let is_last = Some(&stage) == stages.last();
-            task.goal.max_cycles = if is_last { most } else { share::<S>(stage, task.monitor.count.cycles, most) };
+            task.goal.max_cycles = if is_last { most } else { share(task.monitor.count.cycles, most) };
             stop = self.run(stage, task)?;
             let has_more = task.monitor.count.cycles < most && !is_last;
             task.goal.max_cycles = most;
@@ -169,13 +166,16 @@ impl Methods {
         from: Start,
         error_ratio: f64,
     ) -> Result<()> {
+        let (self_influence, threads) = (task.problem.self_influence(), &task.problem.threads);
         match stage {
             Stage::Direct | Stage::ProjectedCg if !S::FIXED => {
                 // A guess that is worth nothing is gone.
                 if from != Start::Nothing {
                     task.state.unload();
                 }
-                self.projected_cg.start(task)?;
+                if !task.state.start_on_bearing_area(task.set, self_influence, threads) {
+                    self.projected_cg.start(task)?;
+                }
             }
             Stage::FullMultigrid if !S::FIXED => {
                 task.state.unload();
@@ -184,7 +184,7 @@ impl Methods {
             }
             _ => {
                 task.state.unload();
-                task.state.start(task.problem.self_influence());
+                task.state.start(self_influence);
             }
         }
         if error_ratio > 0.0 {
@@ -242,10 +242,9 @@ impl Methods {
 
 /// Cycles up to which a method may go on before the next takes over, of which so many are done: a part of those that are left, so that every method of the list
 /// has its turn.
-fn share<S: AdmissibleSet>(stage: Stage, done: u64, most: u64) -> u64 {
+fn share(done: u64, most: u64) -> u64 {
     let left = most.saturating_sub(done);
-    let share = left.min(LEAST_SHARE.max((SHARE * left as f64) as u64));
-    done + if S::LIMITED && stage == Stage::ProjectedCg { share.min(LIMITED_SHARE) } else { share }
+    done + left.min(LEAST_SHARE.max((SHARE * left as f64) as u64))
 }
 
 /// Whether `p'Ap < 0`: where an iteration diverges by an indefinite A, p is all of such a direction.

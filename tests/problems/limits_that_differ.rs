@@ -11,7 +11,7 @@ use contact_normal::solver::{solve, Options, Outcome, Solver};
 const TOLERANCE: f64 = 1.01e-6;
 
 /// The conditions within limits: e = 0 between the bounds, e >= 0 where p = 0, e <= 0 where p is at its limit.
-fn assert_conditions(solver: &Solver, scene: &Scene<'_>, limits: &[f64], what: &str) {
+pub fn assert_conditions(solver: &Solver, scene: &Scene<'_>, limits: &[f64], what: &str) {
     let (state, h) = (solver.state(), scene.undeformed_distance);
     let u = displacements(scene, &state.p);
     let (mut residual, mut distance, mut touching, mut counts, mut violation) = (0.0, 0.0, 0.0, (0.0, 0.0), 0.0);

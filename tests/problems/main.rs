@@ -21,6 +21,7 @@ mod surfaces;
 mod accuracy;
 mod accuracy_target;
 mod batch;
+mod bearing_area;
 mod bill;
 mod coated_period;
 mod coating;

@@ -62,6 +62,10 @@ const ROUNDINGS: f64 = 800.0;
 /// Iterations without a new least residual after which the contact area may be cycling: another method takes over. Measured: on 162
 /// scenes (ellipse, rough surface, wheel and rail, white noise) 20 and 40 are the same.
 const PATIENCE: u32 = 20;
+/// The same after an element has reached its limit, and the part of the least residual that a new one has to be; then the projected Newton method goes on.
+/// Measured on 260 random scenes with limits: 5 % fewer products than with 20 and 1, the slowest one in ten takes two thirds of them.
+const PATIENCE_AT_LIMITS: u32 = 6;
+const PROGRESS_AT_LIMITS: f64 = 0.7;
 /// The measures of one iteration.
 #[derive(Clone, Copy, Debug)]
 pub struct Cycle {
@@ -148,10 +152,14 @@ impl<T: Real> Iteration<T> {
                 return End::Limit;
             }
             since_least += 1;
-            if residual < least {
+            let (patience, progress) = match S::LIMITED && state.reached_limit {
+                true => (PATIENCE_AT_LIMITS, PROGRESS_AT_LIMITS),
+                false => (PATIENCE, 1.0),
+            };
+            if residual < progress * least {
                 (least, since_least) = (residual, 1);
             }
-            if since_least > PATIENCE {
+            if since_least > patience {
                 return End::Stagnated;
             }
             iterations += 1;
