@@ -73,9 +73,19 @@ pub fn random(
     Coating { layers, shear_modulus, poisson_ratio }
 }
 
+/// One layer on both bodies, which are the same; now and then on rigid ones, and then it is of the bodies' material.
+pub fn on_both(random: &mut Random, grid: &Grid, (shear_modulus, poisson_ratio): (f64, f64)) -> Coating {
+    let coating = self::random(random, grid, ([shear_modulus; 2], [poisson_ratio; 2]), None);
+    let Some(layer) = coating.layers[0].or(coating.layers[1]) else { return coating };
+    let on_rigid = random.chance(0.3) && layer.thickness > 0.0;
+    let layer = Layer { shear_modulus: if on_rigid { shear_modulus } else { layer.shear_modulus }, ..layer };
+    let shear_modulus = if on_rigid { [f64::INFINITY; 2] } else { coating.shear_modulus };
+    Coating { layers: [Some(layer); 2], shear_modulus, ..coating }
+}
+
 impl Coating {
     /// `(c, thickness, G1/G2, nu)` of what is at the surface of a body; no thickness: one material.
-    fn surface(&self, b: usize) -> (f64, f64, f64, [f64; 2]) {
+    pub fn surface(&self, b: usize) -> (f64, f64, f64, [f64; 2]) {
         let (g, nu) = (self.shear_modulus[b], self.poisson_ratio[b]);
         match self.layers[b].filter(|layer| layer.thickness > 0.0) {
             Some(layer) => {
@@ -84,6 +94,18 @@ impl Coating {
             }
             None => ((1.0 - nu) / (2.0 * PI * g), 0.0, 1.0, [nu, nu]),
         }
+    }
+
+    /// Both bodies' compliance over pi, of what is at their surfaces.
+    pub fn compliance(&self) -> f64 {
+        self.surface(0).0 + self.surface(1).0
+    }
+
+    /// G and nu at the surfaces of both bodies, which are the same.
+    pub fn at_surface(&self) -> ([f64; 2], [f64; 2]) {
+        let own = (self.shear_modulus, self.poisson_ratio);
+        let layer = self.layers[0].filter(|layer| layer.thickness > 0.0);
+        layer.map_or(own, |layer| ([layer.shear_modulus; 2], [layer.poisson_ratio; 2]))
     }
 
     /// The coefficients of both bodies; with one period those of layers that are none.

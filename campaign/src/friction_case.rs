@@ -178,7 +178,9 @@ impl Case {
             distance: if is_roller || random.chance(0.6) {
                 0.0
             } else {
-                grid.dx.max(grid.dy) * step(random.between(0.3, 3.0))
+                // The oracle of coatings is a table along the distance.
+                let longest = if place.effects.coating.is_some() { 30.0 } else { f64::INFINITY };
+                grid.dx.max(grid.dy) * step(random.between(0.3, 3.0)).min(longest)
             },
             direction: match random.uniform() {
                 u if is_roller => [0.0, std::f64::consts::PI][usize::from(u < 0.5)],
@@ -241,9 +243,14 @@ impl Case {
         ["shift", "transient rolling", "steady rolling"][self.slide.motion as usize]
     }
 
-    /// The motion and whether bodies are alike.
+    /// The motion, whether bodies are alike, and whether both are coated.
     pub fn kind(&self) -> String {
-        format!("{}, {} bodies", self.motion(), if self.place.is_alike() { "like" } else { "unlike" })
+        let bodies = match () {
+            _ if self.place.effects.coating.is_some() => "coated",
+            _ if self.place.is_alike() => "like",
+            _ => "unlike",
+        };
+        format!("{}, {bodies} bodies", self.motion())
     }
 
     /// A line contact of unlike bodies by force, called with the cycles of the default.

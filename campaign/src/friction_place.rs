@@ -3,6 +3,7 @@
 use contact_normal::ffi::CONTACT_NORMAL_CRITERION_RESIDUAL;
 
 use crate::case::{self, Case, How};
+use crate::coating::{self, Coating};
 use crate::effects::{self, Effects, Values};
 use crate::grid::{Grid, Load};
 use crate::half_space::{compliance, free};
@@ -20,7 +21,7 @@ pub struct Place {
     pub surface: String,
     pub h: Vec<f64>,
     pub load: Load,
-    /// A layer and a limit at most.
+    /// A coating of both bodies, a layer and a limit at most.
     pub effects: Effects,
 }
 
@@ -89,10 +90,18 @@ impl Place {
         let (surface, h) = surfaces(random, &grid);
         let height = unit * random.decades(1e-4, 1.0);
         (place.surface, place.h) = (surface, h.iter().map(|h| h * height).collect());
+        // By numbers of their own: the others stay what they were.
+        let own = &mut random.beside(0xc0a7);
+        // Elements of an oracle by quadrature are not slender.
+        if own.chance(0.15) && place.is_alike() && (0.1..=10.0).contains(&(grid.dx / grid.dy)) {
+            let coating = coating::on_both(own, &grid, (shear_modulus[0], poisson_ratio[0]));
+            place.shear_modulus = coating.shear_modulus;
+            place.effects.coating = Some(coating);
+        }
         place.press(random, is_measured);
         if random.chance(0.1) {
-            let c = compliance(shear_modulus, poisson_ratio);
-            place.effects.layer = Some(effects::layer(random, &grid, free(1, 1, grid.dx, grid.dy, c).at(0, 0)));
+            let own = free(1, 1, grid.dx, grid.dy, place.compliance()).at(0, 0);
+            place.effects.layer = Some(effects::layer(random, &grid, own));
         }
         if random.chance(0.15) {
             place.effects.limit = place.limit(random);
@@ -114,18 +123,24 @@ impl Place {
         self.surface = "roller".into();
         self.h = (0..n).map(|i| x(i).powi(2) / (2.0 * radius)).collect();
         // Hertz: a line of half width a carries pi E* a^2/(4 R) on each length.
-        let e_star = 1.0 / (std::f64::consts::PI * compliance(self.shear_modulus, self.poisson_ratio));
+        let e_star = 1.0 / (std::f64::consts::PI * self.compliance());
         let a = random.between(0.1, 0.45) * n as f64 * unit;
         self.load = Load::Force(0.25 * std::f64::consts::PI * e_star * a * a / radius * self.grid.dy);
     }
 
+    /// That of the surfaces.
+    fn compliance(&self) -> f64 {
+        let own = || compliance(self.shear_modulus, self.poisson_ratio);
+        self.effects.coating.as_ref().map_or_else(own, Coating::compliance)
+    }
+
     fn scales(&self) -> Scales {
-        Scales::of(&self.h, &Effects::default(), &self.grid, compliance(self.shear_modulus, self.poisson_ratio))
+        Scales::of(&self.h, &Effects::default(), &self.grid, self.compliance())
     }
 
     /// Another load.
     pub fn press(&mut self, random: &mut Random, is_measured: bool) {
-        let c = compliance(self.shear_modulus, self.poisson_ratio);
+        let c = self.compliance();
         self.load = match is_measured {
             true => measured::load(random, &self.grid, &self.h, c, None),
             false => case::load(random, &self.scales(), &self.grid),

@@ -15,6 +15,16 @@ pub fn transfer(mu: f64, [nu1, nu2]: [f64; 2], s: f64) -> f64 {
     n / d
 }
 
+/// How the surface gives way to tractions along a wave and across it, over a half-space of the layer's material: plane and antiplane strain.
+pub fn of_tractions(mu: f64, [nu1, nu2]: [f64; 2], s: f64) -> [f64; 2] {
+    let lambda = 1.0 - 4.0 * (1.0 - nu1) / (1.0 + mu * (3.0 - 4.0 * nu2));
+    let kappa = (mu - 1.0) / (mu + 3.0 - 4.0 * nu1);
+    let th = (-2.0 * s).exp();
+    let n = 1.0 - 4.0 * s * kappa * th - lambda * kappa * th * th;
+    let d = 1.0 - (lambda + kappa + 4.0 * kappa * s * s) * th + lambda * kappa * th * th;
+    [n / d, (mu + s.tanh()) / (1.0 + mu * s.tanh())]
+}
+
 /// Nodes and weights on [0, 1] by Newton's method on the Legendre polynomial.
 pub fn gauss(n: usize) -> Vec<(f64, f64)> {
     let legendre = |x: f64| {
@@ -45,7 +55,13 @@ pub struct Table {
 }
 
 impl Table {
+    /// Of pressures: order 0.
     pub fn new(mu: f64, nu: [f64; 2], last: f64) -> Table {
+        Table::of(mu, &|s| transfer(mu, nu, s) - 1.0, libm::j0, last)
+    }
+
+    /// Of any function of s that fades as a layer's does, of G1/G2 = mu, with a Bessel function.
+    pub fn of(mu: f64, faded: &dyn Fn(f64) -> f64, bessel: fn(f64) -> f64, last: f64) -> Table {
         let count = ((0.5 * last).asinh() / 0.5).ceil().max(1.0);
         let width = 1.0001 * (0.5 * last).asinh() / count;
         // Chebyshev points of the second kind, and their barycentric weights.
@@ -53,8 +69,8 @@ impl Table {
         let weight = |i: usize| if i == 0 || i == NODES - 1 { 0.5 } else { 1.0 } * if i % 2 == 0 { 1.0 } else { -1.0 };
         let place = |panel: usize, node: f64| 2.0 * ((panel as f64 + node) * width).sinh();
         let panel = |panel: usize| {
-            let rule = hankel(mu, nu, place(panel, 1.0));
-            let f = |rho: f64| rule.iter().map(|(s, w)| w * libm::j0(s * rho)).sum::<f64>();
+            let rule = hankel(mu, faded, place(panel, 1.0));
+            let f = |rho: f64| rule.iter().map(|(s, w)| w * bessel(s * rho)).sum::<f64>();
             nodes.iter().map(|&node| f(place(panel, node))).collect()
         };
         let panels = (0..count as usize).map(panel).collect();
@@ -77,14 +93,14 @@ impl Table {
     }
 }
 
-/// Nodes s and weights times B(s) - 1: panels of ten points on eight radians at most, doubling from where a stiff layer begins to be one.
-fn hankel(mu: f64, nu: [f64; 2], rho: f64) -> Vec<(f64, f64)> {
+/// Nodes s and weights times the function: panels of ten points on eight radians at most, doubling from where a stiff layer begins to be one.
+fn hankel(mu: f64, faded: &dyn Fn(f64) -> f64, rho: f64) -> Vec<(f64, f64)> {
     let (widest, rule) = (f64::min(0.5, 8.0 / rho), gauss(10));
     let (mut nodes, mut low, mut width) = (Vec::new(), 0.0, f64::min(widest, 0.02 / mu.max(1.0)));
     while low < 22.0 {
         nodes.extend(rule.iter().map(|(x, w)| {
             let s = low + width * x;
-            (s, w * width * (transfer(mu, nu, s) - 1.0))
+            (s, w * width * faded(s))
         }));
         low += width;
         width = f64::min(2.0 * width, widest);

@@ -197,5 +197,7 @@ impl Law {
 /// Of the size of an element's influence on itself.
 fn own_influence(case: &Case) -> f64 {
     let grid = &case.place.grid;
-    (grid.dx * grid.dy).sqrt() / (2.0 * case.place.shear_modulus[0])
+    let modulus =
+        case.place.effects.coating.as_ref().map_or(case.place.shear_modulus, |coating| coating.at_surface().0);
+    (grid.dx * grid.dy).sqrt() / (2.0 * modulus[0])
 }

@@ -51,5 +51,6 @@ pub mod stress;
 mod stress_waves;
 pub mod surface;
 mod tangential;
+mod tangential_coating;
 mod tangential_coefficients;
 pub mod verdict;

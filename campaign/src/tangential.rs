@@ -4,9 +4,11 @@
 use std::cell::OnceCell;
 use std::f64::consts::PI;
 
+use crate::coating::Coating;
 use crate::fft::Convolution;
 use crate::friction_place::Place;
 use crate::grid::Grid;
+use crate::tangential_coating::{Coat, ACCURACY};
 pub use crate::tangential_coefficients::Vector;
 use crate::tangential_coefficients::{Compliance, Element, Entry};
 
@@ -27,15 +29,22 @@ pub struct Operator {
 impl Operator {
     pub fn new(place: &Place, by: Vector) -> Operator {
         let Grid { mx, my, dx, dy } = place.grid;
-        let each = |of: [f64; 2]| [0, 1].map(|b: usize| of[b] / place.shear_modulus[b]);
-        let [shear, poisson] = [each([1.0; 2]), each(place.poisson_ratio)].map(|[a, b]| 0.5 * (a + b));
-        let [one, other] = each(place.poisson_ratio.map(|nu| 1.0 - 2.0 * nu));
+        let coating = place.effects.coating.as_ref();
+        let (modulus, ratio) = coating.map_or((place.shear_modulus, place.poisson_ratio), Coating::at_surface);
+        let each = |of: [f64; 2]| [0, 1].map(|b: usize| of[b] / modulus[b]);
+        let [shear, poisson] = [each([1.0; 2]), each(ratio)].map(|[a, b]| 0.5 * (a + b));
+        let [one, other] = each(ratio.map(|nu| 1.0 - 2.0 * nu));
         let unlike = if place.is_alike() { 0.0 } else { 0.25 * (one - other) };
         let element = Element::new(Compliance { shear, poisson, unlike }, [dx, dy]);
         let mut largest: f64 = 0.0;
+        let coat = coating.map(|coating| Coat::new(coating, &place.grid, by));
         let mut entry = |kx: i64, ky: i64| {
-            let (entry, terms) = element.at([kx as f64 * dx + by[0], ky as f64 * dy + by[1]]);
+            let at = [kx as f64 * dx + by[0], ky as f64 * dy + by[1]];
+            let (mut entry, terms) = element.at(at);
             largest = largest.max(terms);
+            if let Some(coat) = &coat {
+                entry.iter_mut().zip(coat.at(at)).for_each(|(value, change)| *value += shear / PI * change);
+            }
             entry
         };
         let reach = |m: usize| 1 - m as i64..m as i64;
@@ -46,7 +55,8 @@ impl Operator {
         // Eight terms, each to some units of round-off of the largest; and the transforms, here and there.
         let terms = (shear + poisson.abs() + unlike.abs()) * largest / PI + greatest;
         let steps = 4.0 + (16.0 * table.len() as f64).log2();
-        let rounding = [64.0 * f64::EPSILON * terms, 8.0 * steps * f64::EPSILON * norm];
+        let quadrature = if coat.is_some() { ACCURACY * greatest } else { 0.0 };
+        let rounding = [64.0 * f64::EPSILON * terms + quadrature, 8.0 * steps * f64::EPSILON * norm];
         Operator { grid: place.grid, table, couples: unlike != 0.0, rounding, transforms: OnceCell::new() }
     }
 

@@ -7,7 +7,7 @@ use super::properties::{Properties, Stresses, HALF_SPACE_ALONE};
 use super::{Effect, Value};
 use crate::error::{invalid, positive, require, Error, Result};
 use crate::grid::Grid;
-use crate::influence::{radial, Coated, CoatedBody, CoatedPeriodic, Kernel};
+use crate::influence::{radial, Coat, Coated, CoatedBody, CoatedPeriodic, Kernel};
 use crate::scene::{Bodies, Plain};
 
 /// Bound on the shear modulus of a coating over that of its substrate.
@@ -63,13 +63,7 @@ impl Coating {
         let plain = CoatedBody { compliance: (1.0 - ratio) / (2.0 * PI * modulus), layer: None };
         let Some(layer) = self.in_effect(b, scene) else { return Ok(plain) };
         let CoatingLayer { thickness, shear_modulus, poisson_ratio } = layer;
-        let mu = self.ratio(b, scene);
-        if !(mu <= STIFFEST) {
-            return invalid(format!(
-                "{} is {shear_modulus}, that of the body {modulus}; their ratio must be at most {STIFFEST:e}",
-                NAMES[b][1]
-            ));
-        }
+        let mu = self.ratio(b, scene)?;
         let compliance = (1.0 - poisson_ratio) / (2.0 * PI * shear_modulus);
         Ok(CoatedBody { compliance, layer: Some((thickness, radial(mu, [poisson_ratio, ratio]))) })
     }
@@ -81,7 +75,7 @@ impl Coating {
         let (s, transfer) = (PI * t / longer, &radial.transfer);
         // B(s) of a thin layer: what is below, its compression, and its shear.
         let is_sheared = transfer.substrate + transfer.of_mean * s < 2.0 / 3.0 * s.powi(3) || transfer.of_mean == 0.0;
-        if self.ratio(b, scene) < RIGID && *t < THINNEST * longer && is_sheared {
+        if self.ratio(b, scene)? < RIGID && *t < THINNEST * longer && is_sheared {
             return invalid(format!(
                 "{} is {t} on elements {} x {}; a layer that is almost incompressible, on a body that is rigid beside it, must be at least \
                  {THINNEST} of the longer side: take smaller elements",
@@ -92,8 +86,15 @@ impl Coating {
     }
 
     /// The shear modulus of a layer in that of the body: 0 on a rigid one.
-    fn ratio(&self, b: usize, scene: &Plain<'_>) -> f64 {
-        self.layers[b].map_or(1.0, |layer| layer.shear_modulus / scene.bodies.shear_modulus[b])
+    fn ratio(&self, b: usize, scene: &Plain<'_>) -> Result<f64> {
+        let (modulus, below) = (self.layers[b].map_or(1.0, |layer| layer.shear_modulus), scene.bodies.shear_modulus[b]);
+        match modulus / below {
+            mu if mu <= STIFFEST => Ok(mu),
+            _ => invalid(format!(
+                "{} is {modulus}, that of the body {below}; their ratio must be at most {STIFFEST:e}",
+                NAMES[b][1]
+            )),
+        }
     }
 
     /// Both bodies; none: they have no coating in effect.
@@ -104,8 +105,34 @@ impl Coating {
 }
 
 impl Coating {
+    /// The coating that both bodies have, for their tractions; none in effect: there is none.
+    pub fn of_both(&self, scene: &Plain<'_>) -> Result<Option<Coat>> {
+        let Some(layer) = self.in_effect(0, scene) else { return Ok(None) };
+        let nu = [layer.poisson_ratio, scene.bodies.poisson_ratio[0]];
+        Ok(Some(Coat::new(layer.thickness, self.ratio(0, scene)?, nu)))
+    }
+
+    /// The difference between both bodies; none: they are the same, layer and what is below.
+    fn difference(&self, scene: &Plain<'_>) -> Option<String> {
+        let (one, two) = match [0, 1].map(|b| self.in_effect(b, scene)) {
+            [None, None] => return None,
+            [Some(one), Some(two)] => (one, two),
+            [one, _] => return Some(format!("coating[{}] is none", usize::from(one.is_some()))),
+        };
+        let Bodies { shear_modulus: g, poisson_ratio: nu } = scene.bodies;
+        let pairs = [
+            (NAMES[0][0], NAMES[1][0], [one.thickness, two.thickness]),
+            (NAMES[0][1], NAMES[1][1], [one.shear_modulus, two.shear_modulus]),
+            (NAMES[0][2], NAMES[1][2], [one.poisson_ratio, two.poisson_ratio]),
+            ("shear_modulus[0]", "shear_modulus[1]", g),
+            ("poisson_ratio[0]", "poisson_ratio[1]", nu),
+        ];
+        let differ = pairs.into_iter().find(|(_, _, [one, two])| one != two);
+        differ.map(|(first, second, [one, two])| format!("{first} is {one} and {second} {two}"))
+    }
+
     /// The materials at the surfaces: a body's own, or its layer's.
-    fn at_surface(&self, scene: &Plain<'_>) -> Bodies {
+    pub fn at_surface(&self, scene: &Plain<'_>) -> Bodies {
         let mut bodies = scene.bodies;
         for b in 0..2 {
             if let Some(layer) = self.in_effect(b, scene) {
@@ -158,6 +185,19 @@ impl Effect for Coating {
     // A ratio that is no number is refused by name.
     fn gives_way(&self, scene: &Plain<'_>) -> bool {
         (0..2).filter_map(|b| self.in_effect(b, scene)).any(|layer| !(layer.poisson_ratio >= 0.5))
+    }
+
+    // Of other bodies what couples both problems is no difference of moduli.
+    fn check_tractions(&self, scene: &Plain<'_>) -> Result<()> {
+        // What is no coating is refused for that.
+        let is_checked = self.check(&scene.grid).is_ok() && scene.bodies.check_each().is_ok();
+        match self.difference(scene).filter(|_| is_checked) {
+            Some(difference) => Err(Error::Unsupported(format!(
+                "friction and coating are both given, and {difference}; this version solves them together where both bodies are the same, \
+                 with the same coating, or with tangential tables of your own (friction->influence)"
+            ))),
+            None => Ok(()),
+        }
     }
 
     fn kernel(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<Option<Arc<dyn Kernel>>> {

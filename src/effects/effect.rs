@@ -65,6 +65,11 @@ pub trait Effect {
         None
     }
 
+    /// Refuses tractions whose coefficients are the library's, where it has none, or where they would change the pressures.
+    fn check_tractions(&self, _scene: &Plain<'_>) -> Result<()> {
+        Ok(())
+    }
+
     /// Its own kernel, in place of the half-space's; others may have a say in it.
     fn kernel(&self, _scene: &Plain<'_>, _others: &[Option<&dyn Effect>]) -> Result<Option<Arc<dyn Kernel>>> {
         Ok(None)

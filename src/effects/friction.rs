@@ -111,7 +111,7 @@ pub struct Friction<'a> {
     pub weights: Option<[&'a [f64]; 2]>,
     /// The compliance of a thin elastic layer between the bodies, a length per traction: it displaces by that times the traction on it.
     pub compliance: Coefficient<'a>,
-    /// Tangential coefficients of the caller's own; none: those of the half-space.
+    /// Tangential coefficients of the caller's own; none: those of the bodies.
     pub influence: Option<TangentialInfluence<'a>>,
     /// Whether the derivatives of the forces by the creepages and the spin are asked for.
     pub sensitivities: bool,
@@ -229,7 +229,7 @@ impl Effect for Friction<'_> {
             Some(influence) if influence.cross.is_none() => &["adhesion", "period", "patches"],
             // The coupling of both problems is a table of offsets alone.
             Some(_) => &["adhesion", "row_tables", "period", "patches", "coating"],
-            None => &["adhesion", "influence", "row_tables", "period", "patches", "coating"],
+            None => &["adhesion", "influence", "row_tables", "period", "patches"],
         };
         // Laws and layers ask for pressures: with adhesion there are only bounds.
         let excludes = if has_particles { excludes } else { &excludes[1..] };
@@ -262,6 +262,9 @@ impl Effect for Friction<'_> {
 
     fn check_load(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<()> {
         self.check_bodies_of_law(&scene.bodies)?;
+        if self.influence.is_none() {
+            others.iter().flatten().try_for_each(|other| other.check_tractions(scene))?;
+        }
         let has_bodies = others.iter().flatten().all(|other| other.properties().own_coefficients.is_none());
         let lacks_cross = self.influence.is_some_and(|influence| influence.cross.is_none());
         if lacks_cross && has_bodies && scene.bodies.unlike() != 0.0 {

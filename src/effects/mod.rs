@@ -9,7 +9,7 @@
 //! | patches | period | no | those of the set-up |
 //! | layer | | a uniform one | that of the set-up |
 //! | pressure_limit | | yes | another one for each solve |
-//! | friction | period, patches; without tangential tables influence, row_tables, coating; with a law or a layer that yields adhesion | yes | another one for each solve |
+//! | friction | period, patches; without tangential tables influence, row_tables, coating of bodies that are not the same; with a law or a layer that yields adhesion | yes | another one for each solve |
 //! | adhesion | row_tables, patches, pressure_limit, friction | no | another one for each solve |
 //! | visco | layer, friction, adhesion; influence, row_tables, coating of bodies that do not relax alike | yes | its moduli and times are those of the set-up |
 //!

@@ -2,7 +2,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`coefficients`], `compliance`, `near_element`, `series`, `quadrant` | influence of tangential tractions, far from an element, and kept for all operators |
+//! | [`coefficients`], `half_space`, `compliance`, `near_element`, `series`, `quadrant` | influence of tangential tractions, far from an element, and kept for all operators |
 //! | [`Toeplitz`], [`dense`] | products of two components, by FFT and by direct summation |
 //! | `operators`, `window` | the operators of the box around C |
 //! | `problem`, `plane`, `certificate`, `tangent` | the problem on one grid, how well its conditions hold, which elements slip |
@@ -32,6 +32,7 @@ mod disc;
 mod discs;
 mod excess;
 mod forces;
+mod half_space;
 mod interpolation;
 mod iterate_with_law;
 mod lanes;

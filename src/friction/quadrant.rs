@@ -58,7 +58,7 @@ impl Quadrant {
         }
         // On a line Axy is 0, and that of steps along it.
         let along_line = (grid.my == 1 && by.1 == 0.0) || (grid.mx == 1 && by.0 == 0.0);
-        along_line || self.tangential.compliance().poisson == 0.0
+        along_line || self.tangential.is_uncoupled()
     }
 
     /// The coefficients at a whole offset.

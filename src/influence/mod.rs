@@ -27,7 +27,7 @@ pub mod special;
 mod table;
 
 pub(crate) use coated::gauss_legendre;
-pub use coated::{radial, Base, Coated, CoatedBody, CoatedPeriodic, Radial, Transfer};
+pub use coated::{radial, Across, Along, Base, Coat, Coated, CoatedBody, CoatedPeriodic, Radial, Response, Transfer};
 pub use coefficients::Coefficients;
 pub use diagonal::Layer;
 pub(crate) use gauss::{gauss, gauss_each};

@@ -32,8 +32,8 @@ impl Solver {
         let Some(tangent) = self.friction.as_deref() else { return };
         let found = (&scene.friction, &mut report.friction, tangent.solution());
         if let (Some(friction), Some(found), Some(solution)) = found {
-            let alike = tangent.is_of_like_bodies();
-            let solved = Solved { problem, state, outline, curvature, parts, friction, solution, alike };
+            let (alike, coated) = (tangent.is_of_like_bodies(), tangent.is_of_coated_bodies());
+            let solved = Solved { problem, state, outline, curvature, parts, friction, solution, alike, coated };
             found.error = tangential_estimates::estimate(&solved, found);
         }
     }

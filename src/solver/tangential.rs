@@ -58,9 +58,16 @@ impl Tangent {
     pub fn new(scene: &Scene<'_>, options: &Options, threads: &Threads) -> Result<Tangent> {
         let Grid { dx, dy, .. } = scene.grid;
         let own = scene.friction.as_ref().and_then(|friction| friction.influence);
-        let tangential = match &own {
-            Some(own) => Tangential::of_tables(dx, dy, own)?,
-            None => Tangential::new(dx, dy, Compliance::of(&scene.bodies)),
+        let plain = scene.plain();
+        let coating = match (&own, &scene.coating) {
+            (None, Some(coating)) => coating.of_both(&plain)?.map(|coat| (coat, coating.at_surface(&plain))),
+            _ => None,
+        };
+        let below = Compliance::of(&scene.bodies);
+        let tangential = match (&own, coating) {
+            (Some(own), _) => Tangential::of_tables(dx, dy, own)?,
+            (None, Some((coat, surface))) => Tangential::of_coated(dx, dy, Compliance::of(&surface), (coat, below)),
+            (None, None) => Tangential::new(dx, dy, below),
         };
         let solver = Solver::new(scene.grid, tangential, options.precision != Precision::Double, threads);
         let unlike = coupling(scene)?.map(|source| UnlikeBodies::new(&scene.grid, source, threads));
@@ -89,6 +96,11 @@ impl Tangent {
     /// Whether tractions do not change the pressures.
     pub fn is_of_like_bodies(&self) -> bool {
         self.unlike.is_none()
+    }
+
+    /// Whether both have a coating.
+    pub fn is_of_coated_bodies(&self) -> bool {
+        self.solver.tangential().is_coated()
     }
 
     /// There is no last result any more.

@@ -158,6 +158,13 @@ fn the_example_of_hot_friction_prints_what_is_expected() {
 }
 
 #[test]
+fn the_example_of_coated_wheels_prints_what_is_expected() {
+    let example = root().join("python_examples/coated_wheels.py");
+    let printed = run(python_in(&scratch("python_coated_wheels")).arg(&example));
+    assert_eq!(printed, std::fs::read_to_string(example.with_extension("expected")).expect("what is expected"));
+}
+
+#[test]
 fn the_friction_example_prints_what_is_expected_and_draws() {
     prints_what_is_expected_and_draws("friction");
 }

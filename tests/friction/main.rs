@@ -4,6 +4,8 @@ mod batch;
 mod branches;
 mod cancelling;
 mod cattaneo;
+mod coated;
+mod coated_coefficients;
 mod coefficients;
 mod conditions;
 mod effects;

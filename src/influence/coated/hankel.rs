@@ -5,7 +5,7 @@
 
 use super::polynomial::{chebyshev, clenshaw, node};
 use super::quadrature::{gauss_legendre, hankel_rule};
-use super::transfer::Transfer;
+use super::response::Response;
 
 /// Nodes of a panel in v.
 const N: usize = 16;
@@ -23,12 +23,12 @@ pub struct Hankel {
 
 impl Hankel {
     /// Up to a distance; `pole` is the length L of the nearest pole of B.
-    pub fn new(transfer: &Transfer, pole: f64, last: f64) -> Hankel {
+    pub fn new(transfer: &dyn Response, pole: f64, last: f64) -> Hankel {
         let v_max = (0.5 * last).asinh();
         let count = (v_max / PANEL).ceil();
         let width = v_max / count;
-        let near = 12.0 * f64::max(1.0, transfer.substrate.cbrt());
-        let less = 1.0 - transfer.substrate;
+        let near = 12.0 * f64::max(1.0, transfer.substrate().cbrt());
+        let less = 1.0 - transfer.substrate();
         let mut hankel = Hankel { width, layer: Vec::new(), substrate: Vec::new() };
         for panel in 0..count as usize {
             let rho = |x: f64| 2.0 * ((panel as f64 + 0.5 + 0.5 * x) * width).sinh();
@@ -65,14 +65,14 @@ impl Hankel {
 }
 
 /// `F_B0 rho`, by Ogata's rule.
-fn far_value(transfer: &Transfer, pole: f64, rho: f64) -> f64 {
-    let term = |(x, w): &(f64, f64)| w * (transfer.at(x / rho) - transfer.substrate);
+fn far_value(transfer: &dyn Response, pole: f64, rho: f64) -> f64 {
+    let term = |(x, w): &(f64, f64)| w * (transfer.at(x / rho) - transfer.substrate());
     hankel_rule(rho / pole).iter().map(term).sum()
 }
 
 /// Nodes s, and weights times B - 1, for distances up to `rho_max`: composite 24-point Gauss-Legendre on panels of at most 30 radians of
 /// J0, for which it leaves `(15 e/96)^48 = 2e-18`; the first one ends at half the distance of the nearest pole, and later ones grow fourfold.
-fn near_rule(transfer: &Transfer, pole: f64, rho_max: f64) -> Vec<(f64, f64)> {
+fn near_rule(transfer: &dyn Response, pole: f64, rho_max: f64) -> Vec<(f64, f64)> {
     let gauss = gauss_legendre(24);
     let width = f64::min(1.5, 30.0 / rho_max);
     let (mut rule, mut low, mut high) = (Vec::new(), 0.0, f64::min(width, 0.5 / pole));

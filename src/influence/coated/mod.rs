@@ -9,21 +9,29 @@
 //! under the integral. A body without a coating has b = 1 and no correction.
 
 mod hankel;
+mod known;
 mod layer;
 mod offsets;
 mod periodic;
 mod polynomial;
 mod quadrature;
 mod radial;
+mod response;
+mod shear;
+mod tensor;
+mod tractions;
 mod transfer;
 mod waves;
 
 use std::f64::consts::PI;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use offsets::{first_beyond, first_of_half, COATED};
 pub use periodic::CoatedPeriodic;
 pub use radial::{Base, Radial};
+pub use response::Response;
+pub use shear::{Across, Along};
+pub use tractions::Coat;
 pub use transfer::Transfer;
 
 use super::kernel::Kernel;
@@ -31,6 +39,7 @@ use super::HalfSpace;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::zeros;
+use known::Known;
 use layer::Layer;
 pub(crate) use quadrature::gauss_legendre;
 
@@ -43,28 +52,11 @@ pub struct CoatedBody {
     pub layer: Option<(f64, Arc<Radial>)>,
 }
 
-/// A layer's materials: G1/G2 and both Poisson ratios.
-type Materials = [f64; 3];
-
-/// Tables that were made, the latest last: scenes of the same materials share them.
-static KNOWN: Mutex<Vec<(Materials, Arc<Radial>)>> = Mutex::new(Vec::new());
-/// Tables that are kept: some 20 kB each.
-const MOST_KNOWN: usize = 16;
+static KNOWN: Known<Radial> = Known::new();
 
 /// The radial functions of a layer of `mu` times the substrate's shear modulus: made once for each pair of materials.
 pub fn radial(mu: f64, [nu1, nu2]: [f64; 2]) -> Arc<Radial> {
-    let materials = [mu, nu1, nu2];
-    let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, radial)) = known().iter().find(|(of, _)| *of == materials) {
-        return radial.clone();
-    }
-    let radial = Arc::new(Radial::new(Transfer::new(mu, [nu1, nu2])));
-    let mut known = known();
-    if known.len() == MOST_KNOWN {
-        known.remove(0);
-    }
-    known.push((materials, radial.clone()));
-    radial
+    KNOWN.get([mu, nu1, nu2], || Radial::new(Transfer::new(mu, [nu1, nu2])))
 }
 
 /// Coefficients of two bodies of which one or both have a coating, on one grid.

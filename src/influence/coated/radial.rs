@@ -22,7 +22,9 @@
 
 use super::hankel::Hankel;
 use super::polynomial::{chebyshev, evaluate, integral, node, powers, terms};
-use super::transfer::{Transfer, TERMS};
+use super::quadrature::gauss_legendre;
+use super::response::{Response, TERMS};
+use super::transfer::Transfer;
 
 /// Coefficients of a polynomial in w at most, of degree 13, and of its integral.
 const P: usize = 14;
@@ -43,12 +45,14 @@ pub enum Base {
 
 /// The radial functions of a layer of unit thickness.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Radial {
+pub struct Radial<R = Transfer> {
     /// B.
-    pub transfer: Transfer,
+    pub transfer: R,
     taylor: [f64; TERMS],
     /// Of w from 4 on.
     panels: Vec<Panel>,
+    /// `M_1/rho^2` on the first of them.
+    mean: [f64; P],
     /// Where they end.
     far: f64,
     /// B at [`FIRST`] and on, eight values an octave.
@@ -74,11 +78,11 @@ impl Panel {
 const FIRST: f64 = 1.0 / (1u64 << 32) as f64;
 const OCTAVES: usize = 38;
 
-impl Radial {
+impl<R: Response> Radial<R> {
     /// The table of a layer: takes milliseconds.
-    pub fn new(transfer: Transfer) -> Radial {
+    pub fn new(transfer: R) -> Radial<R> {
         let taylor = transfer.taylor();
-        let scale = transfer.substrate.max(1.0);
+        let scale = transfer.substrate().max(1.0);
         let pole = (6..TERMS).map(|k| (taylor[k].abs() / scale).powf(1.0 / k as f64)).fold(0.5, f64::max);
         // Octaves of w up to there.
         let octaves = ((50.0 * pole).powi(2) + 1.0).log2().ceil() as usize;
@@ -90,27 +94,45 @@ impl Radial {
         for panel in 0..4 * octaves {
             let (low, high) = ends_of(panel);
             if low == SMOOTH {
-                before += 2.0 * (1.0 - transfer.substrate);
+                before += 2.0 * (1.0 - transfer.substrate());
             }
-            let panel = Radial::panel(&hankel, &transfer, (low, high), before);
+            let panel = Radial::<R>::panel(&hankel, &transfer, (low, high), before);
             before = evaluate(&panel.m, 1.0);
             panels.push(panel);
         }
-        let roughly =
-            (0..=8 * OCTAVES).map(|k| transfer.at(FIRST * (1u64 << (k / 8)) as f64 * (1.0 + (k % 8) as f64 / 8.0)));
-        Radial { transfer, taylor, panels, far, roughly: roughly.collect() }
+        let mean = Radial::<R>::mean(&panels[0]);
+        let place = |k: usize| FIRST * (1u64 << (k / 8)) as f64 * (1.0 + (k % 8) as f64 / 8.0);
+        let roughly = (0..=8 * OCTAVES).map(|k| transfer.at(place(k))).collect();
+        Radial { transfer, taylor, panels, mean, far, roughly }
     }
 
     /// F and M where w lies between these; M is `before` at the lower end.
-    fn panel(hankel: &Hankel, transfer: &Transfer, (low, high): (f64, f64), before: f64) -> Panel {
+    fn panel(hankel: &Hankel, transfer: &R, (low, high): (f64, f64), before: f64) -> Panel {
         let rho = |x: f64| (0.5 * (low + high) + 0.5 * (high - low) * x - 4.0).max(0.0).sqrt();
         let is_near = high <= SMOOTH;
         let value = |x: f64| if is_near { hankel.layer(rho(x)) } else { hankel.substrate(rho(x)) };
         let coefficients: [f64; P] = chebyshev(&std::array::from_fn(|i| value(node(i, P))));
-        let half_space = if is_near { 1.0 } else { transfer.substrate } / rho(1.0);
+        let half_space = if is_near { 1.0 } else { transfer.substrate() } / rho(1.0);
         let terms = terms(&coefficients, LEFT_OUT * half_space);
         let f = powers(&coefficients[..terms]);
         Panel { f, terms, m: integral(&f, 0.25 * (high - low), before) }
+    }
+
+    /// `M_1/rho^2 = integral from 0 to 1 of F_1(rho sqrt(x)) dx/2` on the first panel, by the polynomial there, which the rule integrates exactly.
+    fn mean(first: &Panel) -> [f64; P] {
+        let rule = gauss_legendre(P.div_ceil(2));
+        let value = |place: f64| {
+            // Of the way from w = 4 on: where rho^2 is 0.
+            let way = 0.5 * (1.0 + place);
+            let f = |(x, weight): &(f64, f64)| weight * evaluate(first.f(), 2.0 * way * x - 1.0);
+            0.5 * rule.iter().map(f).sum::<f64>()
+        };
+        powers(&chebyshev(&std::array::from_fn::<f64, P, _>(|i| value(node(i, P)))))
+    }
+
+    /// How many panels there are.
+    pub(super) fn panels(&self) -> usize {
+        self.panels.len()
     }
 
     /// B(s) to three digits, for preconditioners: linear between places an eighth of an octave apart.
@@ -118,7 +140,7 @@ impl Radial {
         let eighths = (s / FIRST).to_bits() >> 49;
         let first = 1023 << 3;
         if eighths < first {
-            return self.transfer.substrate;
+            return self.transfer.substrate();
         }
         let k = (eighths - first) as usize;
         let Some([low, high]) = self.roughly.get(k..k + 2) else { return 1.0 };
@@ -143,8 +165,8 @@ impl Radial {
             (self.far_f(rho2.sqrt()), Base::Substrate)
         };
         match (of, base) {
-            (Base::Layer, Base::Substrate) => value + (1.0 - self.transfer.substrate) / rho2.sqrt(),
-            (Base::Substrate, Base::Layer) => value - (1.0 - self.transfer.substrate) / rho2.sqrt(),
+            (Base::Layer, Base::Substrate) => value + (1.0 - self.transfer.substrate()) / rho2.sqrt(),
+            (Base::Substrate, Base::Layer) => value - (1.0 - self.transfer.substrate()) / rho2.sqrt(),
             _ => value,
         }
     }
@@ -156,7 +178,7 @@ impl Radial {
             let x = x + k as f64 * dx;
             4.0 + (x * x + y * y)
         };
-        let less = 1.0 - self.transfer.substrate;
+        let less = 1.0 - self.transfer.substrate();
         let mut first = 0;
         while first < out.len() {
             let start = w(first);
@@ -198,9 +220,24 @@ impl Radial {
             (self.far_m(rho), Base::Substrate)
         };
         match (of, base) {
-            (Base::Layer, Base::Substrate) => value + (1.0 - self.transfer.substrate) * rho,
-            (Base::Substrate, Base::Layer) => value - (1.0 - self.transfer.substrate) * rho,
+            (Base::Layer, Base::Substrate) => value + (1.0 - self.transfer.substrate()) * rho,
+            (Base::Substrate, Base::Layer) => value - (1.0 - self.transfer.substrate()) * rho,
             _ => value,
+        }
+    }
+
+    /// `M/rho^2` by the square of rho; of the layer as base also where that is 0.
+    pub fn mean_at_square(&self, rho2: f64, base: Base) -> f64 {
+        let (w, (low, high), rho) = (4.0 + rho2, ends_of(0), rho2.sqrt());
+        let less = 1.0 - self.transfer.substrate();
+        if w < high {
+            let mean = evaluate(&self.mean, (w - 0.5 * (low + high)) * (2.0 / (high - low)));
+            return if base == Base::Layer { mean } else { mean + less / rho };
+        }
+        match (w < self.far, base) {
+            (true, _) => self.m(rho, base) / rho2,
+            (false, Base::Substrate) => self.far_m(rho) / rho2,
+            (false, Base::Layer) => self.far_m(rho) / rho2 - less / rho,
         }
     }
 
@@ -241,7 +278,7 @@ fn fill_run(polynomial: &[f64], (x, dx, shift, scale): (f64, f64, f64, f64), run
 }
 
 /// The panel of w >= 4, and its ends: exponent and first two digits are its number.
-fn panel_of(w: f64) -> (usize, (f64, f64)) {
+pub(super) fn panel_of(w: f64) -> (usize, (f64, f64)) {
     let panel = (w.to_bits() >> 50) as usize - FIRST_PANEL;
     (panel, ends_of(panel))
 }
@@ -249,7 +286,8 @@ fn panel_of(w: f64) -> (usize, (f64, f64)) {
 /// Exponent and first digits of 4.
 const FIRST_PANEL: usize = (1023 + 2) << 2;
 
-fn ends_of(panel: usize) -> (f64, f64) {
+/// The ends of a panel.
+pub(super) fn ends_of(panel: usize) -> (f64, f64) {
     let end = |panel: usize| f64::from_bits(((panel + FIRST_PANEL) as u64) << 50);
     (end(panel), end(panel + 1))
 }

@@ -18,21 +18,21 @@
 //! D = (1 - lambda)(1 - kappa) + ((1 - lambda) kappa th + lambda (1 - kappa)) e + 4 kappa th (sinh^2 s - s^2)    stiff, e = 1 - th
 //! ```
 
+use super::response::{Response, TERMS};
+
 /// Beyond, exponentials are so small that nothing cancels.
-const PLAIN: f64 = 20.0;
-/// Taylor coefficients that are kept.
-pub const TERMS: usize = 12;
+pub(super) const PLAIN: f64 = 20.0;
 
 /// B of one layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transfer {
-    lambda: f64,
-    kappa: f64,
+    pub(super) lambda: f64,
+    pub(super) kappa: f64,
     /// `1 - lambda`, `1 - kappa`, `1 + lambda`, `1 - lambda kappa`.
-    less_lambda: f64,
+    pub(super) less_lambda: f64,
     less_kappa: f64,
     more_lambda: f64,
-    less_both: f64,
+    pub(super) less_both: f64,
     /// B(0).
     pub substrate: f64,
     /// `(G1/(1 - nu1))/M`, with the oedometric modulus `M = 2 G1 (1 - nu1)/(1 - 2 nu1)`.
@@ -69,8 +69,7 @@ impl Transfer {
             // expm1(-4 s) = less (2 + less)
             self.less_both - lambda * kappa * less * (2.0 + less) + 4.0 * s * kappa * th
         } else {
-            let odd = if s <= 0.5 { th * sinh_less(2.0 * s) } else { -0.5 * less * (2.0 + less) - 2.0 * s * th };
-            self.less_both + 2.0 * (lambda * kappa * odd + 2.0 * s * kappa * self.more_lambda * th)
+            self.less_both + 2.0 * (lambda * kappa * fade.odd(s) + 2.0 * s * kappa * self.more_lambda * th)
         };
         n / self.denominator(s, fade)
     }
@@ -91,7 +90,8 @@ impl Transfer {
         fade.th * (lambda + kappa * grows - 2.0 * lambda * kappa * fade.th) / self.denominator(s, fade)
     }
 
-    fn denominator(&self, s: f64, Fade { th, less }: Fade) -> f64 {
+    /// D, of which all loads have the same.
+    pub(super) fn denominator(&self, s: f64, Fade { th, less }: Fade) -> f64 {
         let Transfer { lambda, kappa, .. } = *self;
         if kappa < 0.0 || s > PLAIN {
             return 1.0 - (lambda + kappa + 4.0 * kappa * s * s) * th + lambda * kappa * th * th;
@@ -110,13 +110,16 @@ impl Transfer {
     /// The Taylor coefficients of B at 0, by dividing the series of N and D, which are written with `1 - lambda` and `1 - kappa`
     /// so that they do not cancel for stiff layers.
     pub fn taylor(&self) -> [f64; TERMS] {
-        let (a, b, c) = (self.less_lambda, self.less_kappa, self.less_both);
-        // x^k/k!
-        let term = |x: f64, k: i32| (1..=k).fold(1.0, |product, i| product * x / f64::from(i));
         let n = |k: i32| match k {
-            0 => c,
+            0 => self.less_both,
             _ => 4.0 * self.kappa * term(-2.0, k - 1) - self.lambda * self.kappa * term(-4.0, k),
         };
+        self.over_denominator(n)
+    }
+
+    /// The Taylor coefficients of the quotient by D of what has the coefficients `n(k)`.
+    pub(super) fn over_denominator(&self, n: impl Fn(i32) -> f64) -> [f64; TERMS] {
+        let (a, b, c) = (self.less_lambda, self.less_kappa, self.less_both);
         let d = |k: i32| match k {
             0 => a * b,
             _ => {
@@ -135,21 +138,54 @@ impl Transfer {
     }
 }
 
+impl Response for Transfer {
+    fn at(&self, s: f64) -> f64 {
+        Transfer::at(self, s)
+    }
+
+    fn less_one(&self, s: f64) -> f64 {
+        Transfer::less_one(self, s)
+    }
+
+    fn substrate(&self) -> f64 {
+        self.substrate
+    }
+
+    fn taylor(&self) -> [f64; TERMS] {
+        Transfer::taylor(self)
+    }
+}
+
+/// `x^k/k!`.
+pub(super) fn term(x: f64, k: i32) -> f64 {
+    (1..=k).fold(1.0, |product, i| product * x / f64::from(i))
+}
+
 /// `th = exp(-2 s)` and `th - 1`, both with all their digits.
 #[derive(Clone, Copy)]
-struct Fade {
-    th: f64,
-    less: f64,
+pub(super) struct Fade {
+    pub(super) th: f64,
+    pub(super) less: f64,
 }
 
 impl Fade {
-    fn new(s: f64) -> Fade {
+    pub(super) fn new(s: f64) -> Fade {
         if s < 1.0 {
             let less = (-2.0 * s).exp_m1();
             return Fade { th: 1.0 + less, less };
         }
         let th = (-2.0 * s).exp();
         Fade { th, less: th - 1.0 }
+    }
+
+    /// `th (sinh 2s - 2s)`.
+    pub(super) fn odd(self, s: f64) -> f64 {
+        let Fade { th, less } = self;
+        if s <= 0.5 {
+            th * sinh_less(2.0 * s)
+        } else {
+            -0.5 * less * (2.0 + less) - 2.0 * s * th
+        }
     }
 }
 

@@ -1,0 +1,20 @@
+//! What a bonded layer makes of the waves of a load.
+
+/// Taylor coefficients that are kept.
+pub const TERMS: usize = 12;
+
+/// The displacement of a surface with a layer by a wave, over that of a half-space of the layer's material: a function of `s = k t` that is 1 for
+/// short waves.
+pub trait Response {
+    /// B(s), s >= 0.
+    fn at(&self, s: f64) -> f64;
+
+    /// `B(s) - 1`, without cancellation where B is near 1 for large s.
+    fn less_one(&self, s: f64) -> f64;
+
+    /// B(0).
+    fn substrate(&self) -> f64;
+
+    /// The Taylor coefficients of B at 0.
+    fn taylor(&self) -> [f64; TERMS];
+}

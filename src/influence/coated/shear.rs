@@ -1,0 +1,122 @@
+//! How a bonded layer on a half-space gives way to waves of tractions, along the wave and across it.
+//!
+//! A traction along its wave vector displaces the surface along by `(1 - nu1)/(G1 k) L(k t)` times its amplitude. That is plane strain, with lambda,
+//! kappa, th and D of [`Transfer`]:
+//!
+//! ```text
+//! L(s) = N/D,    N = 1 - 4 s kappa th - lambda kappa th^2
+//! N = (1 - lambda kappa) - lambda kappa expm1(-4 s) - 4 s kappa th                                     soft: lambda < 0, kappa < 0
+//! N = (1 - lambda kappa) + 2 lambda kappa th (sinh 2s - 2s) - 4 s kappa (1 - lambda) th                 stiff: lambda > 0, kappa > 0
+//! ```
+//!
+//! One across its wave vector displaces by `1/(G1 k) T(k t)`: antiplane shear, a line of one impedance that ends on another.
+//!
+//! ```text
+//! T(s) = (mu + tanh s)/(1 + mu tanh s),    T(s) - 1 = 2 kappa' th/(1 - kappa' th),    kappa' = (mu - 1)/(mu + 1)
+//! ```
+//!
+//! L(0) = B(0) and T(0) = mu are the substrate. On a rigid body L = s/(1 - nu1) and T = s for small s: a layer of compliance t/G1, compressible or not.
+
+use super::response::{Response, TERMS};
+use super::transfer::{term, Fade, Transfer, PLAIN};
+
+/// L of one layer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Along(Transfer);
+
+impl Along {
+    /// Of a layer of shear modulus `mu` times the substrate's, with both Poisson ratios.
+    pub fn new(mu: f64, nu: [f64; 2]) -> Along {
+        Along(Transfer::new(mu, nu))
+    }
+
+    fn less_one_plain(&self, s: f64) -> f64 {
+        let Transfer { lambda, kappa, .. } = self.0;
+        let fade = Fade::new(s);
+        let grows = (1.0 - 2.0 * s).powi(2);
+        fade.th * (lambda + kappa * grows - 2.0 * lambda * kappa * fade.th) / self.0.denominator(s, fade)
+    }
+}
+
+impl Response for Along {
+    fn at(&self, s: f64) -> f64 {
+        if s > PLAIN {
+            return 1.0 + self.less_one_plain(s);
+        }
+        let Transfer { lambda, kappa, less_lambda, less_both, .. } = self.0;
+        let fade = Fade::new(s);
+        let (Fade { th, less }, both) = (fade, lambda * kappa);
+        let n = if both <= 0.0 {
+            1.0 - both * th * th - 4.0 * s * kappa * th
+        } else if kappa < 0.0 {
+            // expm1(-4 s) = less (2 + less)
+            less_both - both * less * (2.0 + less) - 4.0 * s * kappa * th
+        } else {
+            less_both + 2.0 * both * fade.odd(s) - 4.0 * s * kappa * less_lambda * th
+        };
+        n / self.0.denominator(s, fade)
+    }
+
+    fn less_one(&self, s: f64) -> f64 {
+        if s >= 1.0 {
+            self.less_one_plain(s)
+        } else {
+            self.at(s) - 1.0
+        }
+    }
+
+    fn substrate(&self) -> f64 {
+        self.0.substrate
+    }
+
+    // lambda is written as 1 less what it lacks: of stiff layers it is nearly 1, and the rest begins with s^3.
+    fn taylor(&self) -> [f64; TERMS] {
+        let Transfer { kappa, less_lambda, less_both, .. } = self.0;
+        let stiff = |k: i32| if k < 3 { 0.0 } else { -4.0 * term(-2.0, k - 1) - term(-4.0, k) };
+        self.0.over_denominator(|k| match k {
+            0 => less_both,
+            _ => kappa * (stiff(k) + less_lambda * term(-4.0, k)),
+        })
+    }
+}
+
+/// T of one layer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Across {
+    mu: f64,
+}
+
+impl Across {
+    /// Of a layer of shear modulus `mu` times the substrate's.
+    pub fn new(mu: f64) -> Across {
+        Across { mu }
+    }
+}
+
+impl Response for Across {
+    fn at(&self, s: f64) -> f64 {
+        let tanh = s.tanh();
+        (self.mu + tanh) / (1.0 + self.mu * tanh)
+    }
+
+    fn less_one(&self, s: f64) -> f64 {
+        let th = (-2.0 * s).exp();
+        2.0 * (self.mu - 1.0) * th / ((1.0 + th) - self.mu * (-2.0 * s).exp_m1())
+    }
+
+    fn substrate(&self) -> f64 {
+        self.mu
+    }
+
+    fn taylor(&self) -> [f64; TERMS] {
+        // sinh and cosh by turns.
+        let of = |even: f64, odd: f64| move |k: usize| if k % 2 == 0 { even } else { odd } * term(1.0, k as i32);
+        let (n, d) = (of(self.mu, 1.0), of(1.0, self.mu));
+        let mut taylor = [0.0; TERMS];
+        for k in 0..TERMS {
+            let known: f64 = (1..=k).map(|j| d(j) * taylor[k - j]).sum();
+            taylor[k] = n(k) - known;
+        }
+        taylor
+    }
+}

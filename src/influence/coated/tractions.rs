@@ -1,0 +1,176 @@
+//! What tractions on coated surfaces displace beyond what they displace on half-spaces.
+//!
+//! With the responses L along and T across the wave vector ([`Along`], [`Across`]) a traction wave displaces by `(1/(G1 k))` times
+//!
+//! ```text
+//! ((1 - nu1) L k k^T/k^2 + T (1 - k k^T/k^2)) q
+//! ```
+//!
+//! The inverse transform of `(B - b)/k k_i k_j/k^2` is `d_i d_j Psi/(2 pi t)` in lengths of t, with a function of the distance rho alone. Its Laplacian is
+//! the radial function F_b of B, and its slope `M_b/rho` ([`Radial`]). As for pressures b = 1, a half-space of the layer's material, serves at distances
+//! below t, and b = B(0), the substrate, beyond:
+//!
+//! ```text
+//! d_x d_x Psi = g + (F - 2 g) cos^2       X = integral over the element       g = M/rho^2
+//! d_y d_y Psi = g + (F - 2 g) sin^2       Y
+//! d_x d_y Psi = (F - 2 g) cos sin         Z
+//!
+//! Axx = (1 - nu1) X(L) + Y(T),    Ayy = (1 - nu1) Y(L) + X(T),    Axy = (1 - nu1) Z(L) - Z(T)       in 1/(2 pi G1) of one body
+//! ```
+//!
+//! Up to [`CORNERS`] diagonals of the element X and Y are differences over its corners of `T(x, y)` and of `T(y, x)` as of the normal coefficients
+//! (`layer.rs`), and Z is one of Psi, whose differences along an edge are integrals of its slope. Beyond, and of layers that are much thicker than elements
+//! are long, tensor Gauss serves, at any offset: steps of rolling go between the centres.
+
+use std::sync::{Arc, OnceLock};
+
+use super::known::Known;
+use super::quadrature::gauss_legendre;
+use super::radial::{Base, Radial};
+use super::response::Response;
+use super::tensor::Tensor;
+
+/// Diagonals of an element up to which differences over its corners serve.
+const CORNERS: f64 = 2.5;
+/// Points a side of tensor Gauss up to these distances, in longer sides of an element: `(n!)^4/((2n + 1)((2n)!)^2) r^-2n` is at most 3e-13 of a function
+/// like 1/r; of the last rule from 400 on.
+const POINTS: [(f64, usize); 4] = [(12.0, 7), (40.0, 4), (400.0, 3), (f64::INFINITY, 2)];
+/// Points of the rule for lines.
+const LINE: usize = 40;
+
+static KNOWN: Known<Tensor> = Known::new();
+
+/// One coating that both bodies have.
+#[derive(Clone, Debug)]
+pub struct Coat {
+    tensor: Arc<Tensor>,
+    t: f64,
+}
+
+impl Coat {
+    /// A layer of thickness t and of `mu` times the substrate's shear modulus, with both Poisson ratios.
+    pub fn new(t: f64, mu: f64, nu: [f64; 2]) -> Coat {
+        Coat { tensor: KNOWN.get([mu, nu[0], nu[1]], || Tensor::new(mu, nu)), t }
+    }
+
+    /// The same in other units of length.
+    pub fn in_units_of(&self, length: f64) -> Coat {
+        Coat { t: self.t / length, ..self.clone() }
+    }
+
+    /// The half-space that the coefficients at an offset are made of, and what is to be added to `pi G1` times its Axx, Ayy, Axy, both bodies'; offsets are
+    /// in elements `dx` by `dy`.
+    pub fn at(&self, (x, y): (f64, f64), (dx, dy): (f64, f64)) -> (Base, [f64; 3]) {
+        let place = Place::new([x.abs() * dx, y.abs() * dy].map(|x| x / self.t), [dx / self.t, dy / self.t]);
+        let sign = match (x, y) {
+            (0.0, _) | (_, 0.0) => 0.0,
+            _ if (x < 0.0) == (y < 0.0) => 1.0,
+            _ => -1.0,
+        };
+        let [xx, yy, xy] = match place.rule {
+            Some(rule) => place.by_gauss(&self.tensor, rule_of(rule)),
+            None => place.near(&self.tensor),
+        };
+        let sum = [xx, yy, sign * xy];
+        (place.base, sum.map(|sum| self.t * sum))
+    }
+}
+
+/// A place beside a loaded element, in thicknesses.
+struct Place {
+    /// x and y of the offset, not negative.
+    at: [f64; 2],
+    /// Of the element.
+    size: [f64; 2],
+    base: Base,
+    /// The rule of tensor Gauss; none: differences over the corners.
+    rule: Option<usize>,
+}
+
+impl Place {
+    fn new(at: [f64; 2], size: [f64; 2]) -> Place {
+        let (distance, longer) = (at[0].hypot(at[1]), size[0].max(size[1]));
+        // Both functions are smooth on a scale of t, too.
+        let smooth = distance.max(1.0) / longer;
+        let is_near = smooth <= POINTS[0].0 && distance <= CORNERS * size[0].hypot(size[1]);
+        let rule = POINTS.iter().position(|(last, _)| smooth <= *last).unwrap_or(POINTS.len() - 1);
+        let base = if (if is_near { longer } else { distance }) < 1.0 { Base::Layer } else { Base::Substrate };
+        Place { at, size, base, rule: (!is_near).then_some(rule) }
+    }
+
+    fn by_gauss(&self, tensor: &Tensor, rule: &[(f64, f64)]) -> [f64; 3] {
+        let [[x, y], [dx, dy]] = [self.at, self.size];
+        let mut sums = [0.0; 3];
+        for (sx, wx) in rule {
+            let x = x + (sx - 0.5) * dx;
+            for (sy, wy) in rule {
+                let y = y + (sy - 0.5) * dy;
+                let ([all, turning], weight) = (tensor.at_square(x * x + y * y, self.base), wx * wy);
+                sums[0] += weight * (all + turning * x * x);
+                sums[1] += weight * (all + turning * y * y);
+                sums[2] += weight * (turning * x * y);
+            }
+        }
+        sums.map(|sum| sum * dx * dy)
+    }
+
+    fn near(&self, tensor: &Tensor) -> [f64; 3] {
+        let (along, across) = (self.by_corners(&tensor.along), self.by_corners(&tensor.across));
+        let kept = tensor.kept;
+        [kept * along[0] + across[1], kept * along[1] + across[0], kept * along[2] - across[2]]
+    }
+
+    /// X, Y and Z.
+    fn by_corners<R: Response>(&self, radial: &Radial<R>) -> [f64; 3] {
+        let ends = |k: usize| [self.at[k] - 0.5 * self.size[k], self.at[k] + 0.5 * self.size[k]];
+        let ([xm, xp], [ym, yp], of) = (ends(0), ends(1), (radial, self.base));
+        let corners = |f: &dyn Fn(f64, f64) -> f64| f(xp, yp) - f(xp, ym) - f(xm, yp) + f(xm, ym);
+        let rising = |x: f64| along_ray(of, ym.hypot(x), yp.hypot(x));
+        [corners(&|x, y| side(of, x, y)), corners(&|x, y| side(of, y, x)), rising(xp) - rising(xm)]
+    }
+}
+
+/// `integral from 0 to b of a M(r)/r^2 dy`, `r^2 = a^2 + y^2`: odd in both.
+fn side<R: Response>((radial, base): (&Radial<R>, Base), a: f64, b: f64) -> f64 {
+    let (height, end) = (a.abs(), (b / a).abs().asinh());
+    if a == 0.0 || !end.is_finite() {
+        return 0.0;
+    }
+    let at = |(u, w): &(f64, f64)| {
+        let cosh = (end * u).cosh();
+        let m = match base {
+            // M of a near place by what has all its digits.
+            Base::Layer => radial.mean_at_square((height * cosh).powi(2), base) * (height * cosh) * height,
+            Base::Substrate => radial.m(height * cosh, base) / cosh,
+        };
+        w * m
+    };
+    let value = end * line().iter().map(at).sum::<f64>();
+    if (a < 0.0) == (b < 0.0) {
+        value
+    } else {
+        -value
+    }
+}
+
+/// `Psi(to) - Psi(from)`, by the slope M/rho in `v = asinh(rho/2)`.
+fn along_ray<R: Response>((radial, base): (&Radial<R>, Base), from: f64, to: f64) -> f64 {
+    let (start, end) = ((0.5 * from).asinh(), (0.5 * to).asinh());
+    let at = |(u, w): &(f64, f64)| {
+        let v = start + (end - start) * u;
+        let rho = 2.0 * v.sinh();
+        w * radial.mean_at_square((rho * rho).max(f64::MIN_POSITIVE), base) * rho * 2.0 * v.cosh()
+    };
+    (end - start) * line().iter().map(at).sum::<f64>()
+}
+
+fn line() -> &'static [(f64, f64)] {
+    static KNOWN: OnceLock<Vec<(f64, f64)>> = OnceLock::new();
+    KNOWN.get_or_init(|| gauss_legendre(LINE))
+}
+
+/// The rules of tensor Gauss.
+fn rule_of(k: usize) -> &'static [(f64, f64)] {
+    static KNOWN: [OnceLock<Vec<(f64, f64)>>; POINTS.len()] = [const { OnceLock::new() }; POINTS.len()];
+    KNOWN[k].get_or_init(|| gauss_legendre(POINTS[k].1))
+}
