@@ -17,7 +17,7 @@ NOUNS = {
     "stress": ("Stresses below the surface", "From pressures and tractions.", ("stress", "subsurface")),
     "heat": ("Flash temperature", "From the heat of friction.", ("heat", "flash")),
     "wear": ("Wear", "From the work of friction.", ("wear", "worn")),
-    "closed_forms": ("Closed forms", "Hertz, influence coefficients, coatings.", ("hertz", "influence_half_space", "coating_compliance")),
+    "closed_forms": ("Closed forms", "Hertz, influence coefficients, coatings.", ("hertz", "influence_half_space", "influence_rolling", "coating_compliance")),
     "library": ("The library", "Versions, statuses, log, memory.", ()),
 }
 

@@ -126,6 +126,17 @@ inline std::vector<double> influence_rolling(std::int32_t cx, std::int32_t cy, d
     return coefficients;
 }
 
+/// The tangential ones, one after the other: xx, yy and xy, as `friction::influence` takes each. See `contact_normal_influence_rolling_tangential`.
+inline std::vector<double> influence_rolling_tangential(std::int32_t cx, std::int32_t cy, double dx, double dy, const body &one,
+                                                        const body &other, const visco &relaxing, double speed)
+{
+    const detail::pair_of_bodies both(one, other);
+    const contact_normal_visco named = relaxing.named();
+    std::vector<double> coefficients(12 * detail::count(cx) * detail::count(cy));
+    check(contact_normal_influence_rolling_tangential(cx, cy, dx, dy, both.shear_modulus, both.poisson_ratio, &named, speed, coefficients.data()));
+    return coefficients;
+}
+
 /// What a body with a coating of this thickness and material gives way to a pressure wave: see `contact_normal_coating_compliance`.
 inline double coating_compliance(double thickness, const body &material, const body &below, double wave_number)
 {

@@ -25,7 +25,7 @@ from ._pull_off import pull_off
 from ._result import Result, TangentialResult
 from ._solve import AccurateResult, solve, solve_to_accuracy, to_accuracy
 from ._solver import Solver
-from ._special import HertzSolution, coating_compliance, hertz, influence_half_space, influence_rolling
+from ._special import HertzSolution, coating_compliance, hertz, influence_half_space, influence_rolling, influence_rolling_tangential
 from ._stress import SubsurfaceStress
 from ._subsurface import stress_at_points, subsurface_stress
 from ._tangential import solve_tangential
@@ -64,6 +64,7 @@ __all__ = [
     "hertz",
     "influence_half_space",
     "influence_rolling",
+    "influence_rolling_tangential",
     "plot_contact_area",
     "pull_off",
     "quantities",

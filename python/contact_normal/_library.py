@@ -107,6 +107,10 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
         c_int32,
         [c_int32, c_int32, c_double, c_double, POINTER(c_double), POINTER(c_double), POINTER(Visco), c_double, POINTER(c_double)],
     ),
+    "influence_rolling_tangential": (
+        c_int32,
+        [c_int32, c_int32, c_double, c_double, POINTER(c_double), POINTER(c_double), POINTER(Visco), c_double, POINTER(c_double)],
+    ),
     "coating_compliance": (c_int32, [POINTER(Coating), c_double, c_double, c_double, POINTER(c_double)]),
     "subsurface_stress": (
         c_int32,

@@ -163,13 +163,54 @@ def influence_rolling(
     >>> bool(table[4, 4] > table[4, 12])  # behind the element, and ahead of it
     True
     """
+    return _rolling(library.contact_normal_influence_rolling, (), (cx, cy, dx, dy), (shear_modulus, poisson_ratio, visco, speed))
+
+
+def influence_rolling_tangential(
+    cx: int,
+    cy: int,
+    dx: float,
+    dy: float,
+    *,
+    shear_modulus: Both,
+    poisson_ratio: Both,
+    visco: Mapping[str, Any],
+    speed: float,
+) -> Doubles:
+    """The tangential influence coefficients of bodies that relax and roll steadily, for `friction=dict(influence=(xx, yy, xy), ...)` in steady rolling.
+
+    Parameters
+    ----------
+    cx, cy, dx, dy, shear_modulus, poisson_ratio, visco, speed
+        As for `influence_rolling`; the bodies must be alike, at once and as they relax. The tables must reach across the grid, and across the contact area
+        and a step.
+
+    Returns
+    -------
+    ndarray, (3, 2 cy, 2 cx)
+        xx, yy and xy: displacements per unit traction. They are not even in x.
+
+    Examples
+    --------
+    >>> import contact_normal
+    >>> branches = {"modulus": (4.0, 4.0), "time": (0.01, 0.01)}
+    >>> xx, yy, xy = contact_normal.influence_rolling_tangential(8, 4, 0.1, 0.1, shear_modulus=8.0, poisson_ratio=0.4, visco=branches, speed=100.0)
+    >>> bool(xx[4, 4] > xx[4, 12]), bool(abs(xy[4]).max() == 0)
+    (True, True)
+    """
+    return _rolling(
+        library.contact_normal_influence_rolling_tangential, (3,), (cx, cy, dx, dy), (shear_modulus, poisson_ratio, visco, speed)
+    )
+
+
+def _rolling(function: Any, more: tuple[int, ...], sizes: tuple[int, int, float, float], of_bodies: tuple[Both, Both, Mapping[str, Any], float]) -> Doubles:
+    (cx, cy, dx, dy), (shear_modulus, poisson_ratio, visco, speed) = sizes, of_bodies
     cx, cy = integer("cx", cx), integer("cy", cy)
-    table = np.zeros((2 * max(cy, 0), 2 * max(cx, 0)))
+    table = np.zeros((*more, 2 * max(cy, 0), 2 * max(cx, 0)))
     constants = bodies(shear_modulus, poisson_ratio, None, None)[:2]
     size = number("dx", dx), number("dy", dy)
     effect, arrays = named_visco(visco)
-    check(*called(library.contact_normal_influence_rolling, cx, cy, *size, *constants, ctypes.byref(effect), number("speed", speed),
-                  pointer(table), keep=(table, effect, arrays)))
+    check(*called(function, cx, cy, *size, *constants, ctypes.byref(effect), number("speed", speed), pointer(table), keep=(table, effect, arrays)))
     return table
 
 

@@ -5,7 +5,7 @@ use std::ffi::CStr;
 use libc::c_char;
 
 /// Effects of a scene, members of the options and the fields, and what functions do.
-const NAMES: [&str; 38] = [
+const NAMES: [&str; 39] = [
     "accuracy",
     "adhesion",
     "batch",
@@ -20,6 +20,7 @@ const NAMES: [&str; 38] = [
     "frictional_wear",
     "influence",
     "influence_rolling",
+    "influence_rolling_tangential",
     "initial_traction",
     "keep",
     "law",
@@ -47,7 +48,7 @@ const NAMES: [&str; 38] = [
 ];
 
 /// 1 if this library has what is called so, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop"), a member of
-/// the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "yield_limit"), or what calls do ("batch", "accuracy", "price_list", "stress", "flash_temperature", "frictional_wear", "influence_rolling", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump",
+/// the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "yield_limit"), or what calls do ("batch", "accuracy", "price_list", "stress", "flash_temperature", "frictional_wear", "influence_rolling", "influence_rolling_tangential", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump",
 /// "set_option", "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_has(name: *const c_char) -> i32 {

@@ -10,11 +10,12 @@ use super::visco::contact_normal_visco;
 use crate::analytic::{self, Hertz};
 use crate::effects::Effect;
 use crate::error::positive;
+use crate::friction::rolling_tables;
 use crate::grid::Grid;
 use crate::influence::{HalfSpace, Kernel};
 use crate::memory::zeros;
 use crate::scene::{Bodies, Load};
-use crate::visco::{rolling_table, RollingBody};
+use crate::visco::{rolling_table, RollingBody, Series};
 
 /// The exact Hertz solution.
 #[repr(C)]
@@ -134,21 +135,70 @@ pub unsafe extern "C" fn contact_normal_influence_rolling(
     guard(|| {
         // SAFETY (all): NULL, or as many values as the comment says, by the conventions of the ABI.
         unsafe {
-            let bodies = bodies(shear_modulus, poisson_ratio)?;
-            let given = structs::read(visco, "visco")?;
+            let (bodies, [one, other]) = rolling_bodies((shear_modulus, poisson_ratio), visco, (dx, dy))?;
             let (cx, cy) = (count("cx", cx)?, count("cy", cy)?);
             let size = table_size(cx, cy)?;
-            let grid = Grid::new(1, 1, dx, dy)?;
             if coefficients.is_null() {
                 return Err(Refusal::null("coefficients"));
             }
-            let visco = given.translate()?;
-            visco.check(&grid)?;
-            let [one, other] = visco.series(&bodies)?;
             let body = |b: usize, series| RollingBody { compliance: bodies.compliance_of(b), series };
             let table = rolling_table((cx, cy), (dx, dy), &[body(0, one), body(1, other)], speed)?;
             std::ptr::copy_nonoverlapping(table.as_ptr(), coefficients, size);
             Ok(CONTACT_NORMAL_OK)
         }
     })
+}
+
+/// The tangential influence coefficients of bodies that relax and roll steadily, as tables that `friction->influence` takes in steady rolling: `xx`, `yy` and
+/// `xy`, one after the other, each over the offsets of `contact_normal_influence_rolling`: `coefficients[3][2 cy][2 cx]`. The other arguments are those of that
+/// function. UNSUPPORTED: unlike bodies, at once or as they relax, and a body of whose modulus nothing is left in the end. NOT_FINITE, INVALID_ARGUMENT:
+/// coefficients beyond the range of doubles. Since 0.2.
+#[no_mangle]
+pub unsafe extern "C" fn contact_normal_influence_rolling_tangential(
+    cx: i32,
+    cy: i32,
+    dx: f64,
+    dy: f64,
+    shear_modulus: *const f64,
+    poisson_ratio: *const f64,
+    visco: *const contact_normal_visco,
+    speed: f64,
+    coefficients: *mut f64,
+) -> contact_normal_status {
+    guard(|| {
+        // SAFETY (all): NULL, or as many values as the comment says, by the conventions of the ABI.
+        unsafe {
+            let (bodies, series) = rolling_bodies((shear_modulus, poisson_ratio), visco, (dx, dy))?;
+            let (cx, cy) = (count("cx", cx)?, count("cy", cy)?);
+            let size = table_size(cx, cy)?;
+            if coefficients.is_null() {
+                return Err(Refusal::null("coefficients"));
+            }
+            let [one, other] = series;
+            let body = |b: usize, series| RollingBody { compliance: 0.5 / bodies.shear_modulus[b], series };
+            let of_bodies = (&[body(0, one), body(1, other)], bodies.poisson_ratio);
+            let tables = rolling_tables((cx, cy), (dx, dy), of_bodies, speed)?;
+            for (k, table) in tables.iter().enumerate() {
+                std::ptr::copy_nonoverlapping(table.as_ptr(), coefficients.add(k * size), size);
+            }
+            Ok(CONTACT_NORMAL_OK)
+        }
+    })
+}
+
+/// The bodies, and how they relax.
+unsafe fn rolling_bodies(
+    (shear_modulus, poisson_ratio): (*const f64, *const f64),
+    visco: *const contact_normal_visco,
+    (dx, dy): (f64, f64),
+) -> Result<(Bodies, [Series; 2]), Refusal> {
+    // SAFETY (all): NULL, or as many values as the ABI says.
+    unsafe {
+        let bodies = bodies(shear_modulus, poisson_ratio)?;
+        let given = structs::read(visco, "visco")?;
+        let visco = given.translate()?;
+        visco.check(&Grid::new(1, 1, dx, dy)?)?;
+        let series = visco.series(&bodies)?;
+        Ok((bodies, series))
+    }
 }

@@ -7,6 +7,7 @@
 //! | `operators`, `window` | the operators of the box around C |
 //! | `problem`, `plane`, `certificate`, `tangent` | the problem on one grid, how well its conditions hold, which elements slip |
 //! | `tables`, `row_tables`, `row_product` | coefficients of the caller's own, also per loaded row, and products with these |
+//! | `rolling_tables` | tables of bodies that relax and roll steadily |
 //! | `excess` | a layer between the bodies that differs between elements |
 //! | `lanes`, `beside` | passes over fields by component in vectors of the machine, residuals continued beside C; fields of pairs: `methods::fields` |
 //! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for motions that are given; the fields of these, on C alone |
@@ -49,6 +50,7 @@ mod problem;
 mod quadrant;
 mod request;
 mod result;
+mod rolling_tables;
 mod row_product;
 mod row_tables;
 mod scales;
@@ -75,6 +77,7 @@ pub use last::Last;
 pub use law::Particle;
 pub use plane::Vector;
 pub use request::{Request, Start};
+pub use rolling_tables::rolling_tables;
 pub use solution::{Report, Solution, EXTERIOR, PLASTIC, SLIP, STICK};
 pub use solver::Solver;
 pub use toeplitz::Toeplitz;

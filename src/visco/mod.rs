@@ -18,7 +18,7 @@
 
 mod map;
 mod modes;
-mod rolling;
+pub(crate) mod rolling;
 mod series;
 
 pub use map::{Form, Map};

@@ -45,83 +45,89 @@ pub struct RollingBody {
 }
 
 /// A part of the coefficients: W times `weight`, with the decay length L in elements; a itself without one.
-struct Part {
-    weight: f64,
+pub struct Part {
+    pub weight: f64,
     length: Option<f64>,
 }
 
-/// A row of elements, whose coefficients at once are known between offsets, too.
-struct Row<'a> {
-    ky: f64,
-    element: (f64, f64),
-    rule: &'a [(f64, f64)],
+/// A row of elements, whose coefficients at once, N of them, are known between offsets, too.
+pub struct Row<'a, const N: usize> {
+    /// Those at an offset in x.
+    pub at: &'a dyn Fn(f64) -> [f64; N],
+    /// Whether the loaded element is in it.
+    pub is_loaded: bool,
+    /// Of panels.
+    pub rule: &'a [(f64, f64)],
 }
 
-impl Row<'_> {
-    fn at(&self, kx: f64) -> f64 {
-        integral_at((kx.abs(), self.ky), self.element)
-    }
+/// `sum + weight value`.
+fn plus<const N: usize>(sum: [f64; N], weight: f64, value: [f64; N]) -> [f64; N] {
+    std::array::from_fn(|k| sum[k] + weight * value[k])
+}
 
+impl<const N: usize> Row<'_, N> {
     /// `1/L` times the integral from s to s + d of `exp(-s/L) a(kx + s)`.
-    fn panel(&self, kx: f64, (s, d): (f64, f64), length: f64) -> f64 {
-        let term = |(node, weight): &(f64, f64)| {
+    fn panel(&self, kx: f64, (s, d): (f64, f64), length: f64) -> [f64; N] {
+        let sum = self.rule.iter().fold([0.0; N], |sum, (node, weight)| {
             let at = s + node * d;
-            weight * (-at / length).exp() * self.at(kx + at)
-        };
-        d / length * self.rule.iter().map(term).sum::<f64>()
+            plus(sum, weight * (-at / length).exp(), (self.at)(kx + at))
+        });
+        sum.map(|sum| d / length * sum)
     }
 
     /// The same of an interval, in panels that are short beside L.
-    fn interval(&self, kx: f64, (from, to): (f64, f64), length: f64) -> f64 {
+    fn interval(&self, kx: f64, (from, to): (f64, f64), length: f64) -> [f64; N] {
         let to = to.min(DECAYED * length);
         if !(to > from) {
-            return 0.0;
+            return [0.0; N];
         }
         let panels = ((to - from) / (LONGEST * length)).ceil().max(1.0);
         let d = (to - from) / panels;
-        (0..panels as usize).map(|k| self.panel(kx, (from + k as f64 * d, d), length)).sum()
+        let panel = |k: usize| self.panel(kx, (from + k as f64 * d, d), length);
+        (0..panels as usize).fold([0.0; N], |sum, k| plus(sum, 1.0, panel(k)))
     }
 
     /// From an offset to the next.
-    fn element(&self, kx: i64, length: f64) -> f64 {
+    fn element(&self, kx: i64, length: f64) -> [f64; N] {
         let x = kx as f64;
-        let has_edge = self.ky == 0.0 && (kx == 0 || kx == -1);
+        let has_edge = self.is_loaded && (kx == 0 || kx == -1);
         if !has_edge {
-            return self.interval(x, (0.0, 0.5), length) + self.interval(x, (0.5, 1.0), length);
+            return plus(self.interval(x, (0.0, 0.5), length), 1.0, self.interval(x, (0.5, 1.0), length));
         }
         let end = |k: i32| if k == GRADED { 0.0 } else { 0.5 * SHORTER.powi(k) };
         let beside = |k: i32| {
             let (far, near) = (end(k), end(k + 1));
-            self.interval(x, (0.5 - far, 0.5 - near), length) + self.interval(x, (0.5 + near, 0.5 + far), length)
+            let before = self.interval(x, (0.5 - far, 0.5 - near), length);
+            plus(before, 1.0, self.interval(x, (0.5 + near, 0.5 + far), length))
         };
-        (0..GRADED).map(beside).sum()
+        (0..GRADED).fold([0.0; N], |sum, k| plus(sum, 1.0, beside(k)))
     }
 
     /// W far ahead.
-    fn tail(&self, kx: i64, length: f64) -> f64 {
-        let (mut sum, mut s) = (0.0, 0.0);
+    fn tail(&self, kx: i64, length: f64) -> [f64; N] {
+        let (mut sum, mut s) = ([0.0; N], 0.0);
         while s < DECAYED * length {
             let d = (OF_DISTANCE * (kx as f64 + s)).max(OF_DISTANCE).min(LONGEST * length);
-            sum += self.panel(kx as f64, (s, d), length);
+            sum = plus(sum, 1.0, self.panel(kx as f64, (s, d), length));
             s += d;
         }
         sum
     }
 
     /// Adds a part of the offsets `-cx..=cx`.
-    fn add(&self, part: &Part, cx: usize, out: &mut [f64]) {
+    pub fn add(&self, part: &Part, cx: usize, out: &mut [[f64; N]]) {
         let Some(length) = part.length else {
-            let at = |k: usize| self.at(k as f64 - cx as f64);
-            return out.iter_mut().enumerate().for_each(|(k, value)| *value += part.weight * at(k));
+            let at = |k: usize| (self.at)(k as f64 - cx as f64);
+            return out.iter_mut().enumerate().for_each(|(k, value)| *value = plus(*value, part.weight, at(k)));
         };
         let (cx, decay) = (cx as i64, (-1.0 / length).exp());
         let mut w = self.tail(cx, length);
         for (k, value) in out.iter_mut().enumerate().rev() {
             let kx = k as i64 - cx;
             if kx < cx {
-                w = self.element(kx, length) + decay * w;
+                w = plus(self.element(kx, length), decay, w);
             }
-            *value += part.weight * w;
+            *value = plus(*value, part.weight, w);
         }
     }
 }
@@ -138,33 +144,52 @@ fn by_elements(series: &Series, dx: f64, speed: f64) -> Option<Series> {
     Series::new(1.0, &series.fractions, &times)
 }
 
-/// The parts of both bodies, with compliances in units of 2 to this power; refuses what creeps for ever.
-fn parts(bodies: &[RollingBody; 2], power: i32, dx: f64, speed: f64) -> Result<Vec<Part>> {
+/// The parts of body `b`, with compliances in units of 2 to this power; refuses what creeps for ever.
+pub fn parts(b: usize, body: &RollingBody, power: i32, dx: f64, speed: f64) -> Result<Vec<Part>> {
     let mut parts = Vec::new();
-    for (b, body) in bodies.iter().enumerate() {
-        let compliance = times_power(body.compliance, -power);
-        if compliance == 0.0 {
-            continue;
-        }
-        parts.push(Part { weight: compliance, length: None });
-        if body.series.is_empty() {
-            continue;
-        }
-        if body.series.rest == 0.0 {
-            return Err(Error::Unsupported(format!(
-                "nothing is left of the modulus of body {} in the end: in steady rolling it gives way without limit",
-                b + 1
-            )));
-        }
-        let Some(series) = by_elements(&body.series, dx, speed) else {
-            return invalid(format!("the branches of body {} add up to more than its modulus", b + 1));
-        };
-        for mode in Mode::of(&Series { rest: body.series.rest, ..series }) {
-            parts.push(Part { weight: compliance / (mode.inertia * mode.rate), length: Some(1.0 / mode.rate) });
-        }
+    let compliance = times_power(body.compliance, -power);
+    if compliance == 0.0 {
+        return Ok(parts);
+    }
+    parts.push(Part { weight: compliance, length: None });
+    if body.series.is_empty() {
+        return Ok(parts);
+    }
+    if body.series.rest == 0.0 {
+        return Err(Error::Unsupported(format!(
+            "nothing is left of the modulus of body {} in the end: in steady rolling it gives way without limit",
+            b + 1
+        )));
+    }
+    let Some(series) = by_elements(&body.series, dx, speed) else {
+        return invalid(format!("the branches of body {} add up to more than its modulus", b + 1));
+    };
+    for mode in Mode::of(&Series { rest: body.series.rest, ..series }) {
+        parts.push(Part { weight: compliance / (mode.inertia * mode.rate), length: Some(1.0 / mode.rate) });
     }
     Ok(parts)
 }
+
+/// Refuses what no table is of; returns the greatest compliance.
+pub fn check((cx, cy): (usize, usize), (dx, dy): (f64, f64), bodies: &[RollingBody; 2], speed: f64) -> Result<f64> {
+    require(speed.is_finite() && speed != 0.0, "speed", speed, "it must be finite, and not 0")?;
+    if cx == 0 || cy == 0 {
+        return invalid(format!("cx and cy are {cx} and {cy}; they must be positive"));
+    }
+    Grid::new(1, 1, dx, dy)?;
+    bodies.iter().try_for_each(|body| not_negative("compliance", body.compliance))?;
+    let most = bodies.iter().map(|body| body.compliance).fold(0.0, f64::max);
+    require(most > 0.0, "compliance", most, "a body must give way")?;
+    Ok(most)
+}
+
+/// The rule of panels.
+pub fn rule() -> Vec<(f64, f64)> {
+    gauss_legendre(NODES)
+}
+
+/// Why coefficients are refused.
+pub const OUT_OF_RANGE: &str = "element sizes, moduli and times take it out of the range of numbers";
 
 /// The coefficients of two bodies that roll steadily towards +x at a speed, or towards -x at one below 0, as a table of the offsets
 /// `-cx..cx` by `-cy..cy`.
@@ -178,38 +203,29 @@ pub fn rolling_table(
     bodies: &[RollingBody; 2],
     speed: f64,
 ) -> Result<Vec<f64>> {
-    require(speed.is_finite() && speed != 0.0, "speed", speed, "it must be finite, and not 0")?;
-    if cx == 0 || cy == 0 {
-        return invalid(format!("cx and cy are {cx} and {cy}; they must be positive"));
-    }
-    Grid::new(1, 1, dx, dy)?;
-    bodies.iter().try_for_each(|body| not_negative("compliance", body.compliance))?;
-    let most = bodies.iter().map(|body| body.compliance).fold(0.0, f64::max);
-    require(most > 0.0, "compliance", most, "a body must give way")?;
+    let most = check((cx, cy), (dx, dy), bodies, speed)?;
     let ((d, of_d), (_, of_compliance)) = (apart(dx), apart(most));
-    let (rule, parts) = (gauss_legendre(NODES), parts(bodies, of_compliance, dx, speed)?);
+    let mut of_bodies = parts(0, &bodies[0], of_compliance, dx, speed)?;
+    of_bodies.extend(parts(1, &bodies[1], of_compliance, dx, speed)?);
     let mut table: Vec<f64> = zeros(4 * cx * cy, WHAT)?;
-    let mut row: Vec<f64> = zeros(2 * cx + 1, WHAT)?;
+    let (mut row, rule): (Vec<[f64; 1]>, _) = (zeros(2 * cx + 1, WHAT)?, rule());
     for ky in 0..=cy {
-        row.fill(0.0);
-        let of = Row { ky: ky as f64, element: (d, times_power(dy, -of_d)), rule: &rule };
-        parts.iter().filter(|part| part.weight > 0.0).for_each(|part| of.add(part, cx, &mut row));
+        row.fill([0.0]);
+        let element = (d, times_power(dy, -of_d));
+        let at = |kx: f64| [integral_at((kx.abs(), ky as f64), element)];
+        let of = Row { at: &at, is_loaded: ky == 0, rule: &rule };
+        of_bodies.iter().filter(|part| part.weight > 0.0).for_each(|part| of.add(part, cx, &mut row));
         if speed < 0.0 {
             row.reverse();
         }
-        for value in &mut row {
+        for [value] in &mut row {
             *value = times_power(*value / std::f64::consts::PI, of_d + of_compliance);
             let is_one = value.is_normal() && *value > 0.0;
-            require(
-                is_one,
-                "a coefficient",
-                *value,
-                "element sizes, moduli and times take it out of the range of numbers",
-            )?;
+            require(is_one, "a coefficient", *value, OUT_OF_RANGE)?;
         }
         // Even in y.
         for iy in [cy.checked_sub(ky), Some(cy + ky)].into_iter().flatten().filter(|iy| *iy < 2 * cy) {
-            table[iy * 2 * cx..][..2 * cx].copy_from_slice(&row[..2 * cx]);
+            table[iy * 2 * cx..][..2 * cx].iter_mut().zip(&row).for_each(|(value, [at])| *value = *at);
         }
     }
     Ok(table)

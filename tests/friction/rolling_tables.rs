@@ -2,7 +2,7 @@
 //! and mirrors.
 
 use contact_normal::error::Error;
-use contact_normal::friction::{Compliance, Request, Solution, Solver, Tangential, EXTERIOR, SLIP};
+use contact_normal::friction::{rolling_tables, Compliance, Request, Solution, Solver, Tangential, EXTERIOR, SLIP};
 use contact_normal::grid::Grid;
 use contact_normal::influence::Table;
 use contact_normal::scene::{
@@ -85,7 +85,10 @@ fn cylinders_that_relax_and_roll_are_those_of_contact() {
         };
         let table = rolling_table((mx, 1), (dx, dy), &[body(), body()], 1000.0).unwrap();
         let tangential = Tangential::new(dx, dy, Compliance { shear: 1.0 / g, poisson: nu / g, unlike: 0.0 });
-        let own = tables(&tangential, reach, 1000.0 * creep / dx);
+        let expected = tables(&tangential, reach, 1000.0 * creep / dx);
+        let sheared = || RollingBody { compliance: 0.5 / g, ..body() };
+        let own = rolling_tables(reach, (dx, dy), (&[sheared(), sheared()], [nu; 2]), 1000.0).unwrap();
+        assert_near(&own, &expected, reach);
         let friction = Friction {
             motion: Motion::SteadyRolling,
             prescribed: [Prescribed::Force(-0.6 * 0.3 * 6e5), Prescribed::Creepage(0.0)],
@@ -105,6 +108,49 @@ fn cylinders_that_relax_and_roll_are_those_of_contact() {
         assert!((report.measures.approach - approach).abs() <= 4e-5, "{creep}: {}", report.measures.approach);
         assert!((found.creepage[0] / creepage - 1.0).abs() <= 5.1e-4, "{creep}: {:?}", found.creepage);
         assert_eq!(found.certificate.stick_count, sticks, "{creep}");
+    }
+}
+
+/// Where they are read: tables that are those of the test, to ten digits of the largest.
+fn assert_near(found: &[Vec<f64>; 3], expected: &[Vec<f64>; 3], (cx, cy): (usize, usize)) {
+    let largest = expected[0].iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    for k in (0..4 * cx * cy).filter(|k| k % (2 * cx) > 0 && k / (2 * cx) > 0) {
+        for (found, expected) in found.iter().zip(expected) {
+            let error = (found[k] - expected[k]).abs();
+            assert!(error <= 1e-10 * largest, "{k}: {} {} of {largest}", found[k], expected[k]);
+        }
+    }
+}
+
+/// The library's tables are those of the test's own quadrature; rolling towards -x is a mirror; unlike bodies are refused.
+#[test]
+fn tables_of_bodies_that_relax_are_those_of_quadrature() {
+    let (reach, (dx, dy), nu, g) = ((9, 6), (0.5, 0.7), 0.3, 4.0);
+    let tangential = Tangential::new(dx, dy, Compliance { shear: 1.0 / g, poisson: nu / g, unlike: 0.0 });
+    for length in [0.05, 0.7, 3.0, 40.0] {
+        // Half of the modulus relaxes, in half the time in which the bodies creep.
+        let body = |part: f64| RollingBody {
+            compliance: 0.5 / g,
+            series: Series::new(g, &[part * g], &[0.5 * length * dx / 10.0]).unwrap(),
+        };
+        let both = (&[body(0.5), body(0.5)], [nu; 2]);
+        let found = rolling_tables(reach, (dx, dy), both, 10.0).unwrap();
+        assert_near(&found, &tables(&tangential, reach, length), reach);
+        let back = rolling_tables(reach, (dx, dy), both, -10.0).unwrap();
+        let width = 2 * reach.0;
+        for (component, (one, other)) in found.iter().zip(&back).enumerate() {
+            for k in (0..one.len()).filter(|k| k % width > 0) {
+                let mirror = k - k % width + width - k % width;
+                let sign = if component == 2 { -1.0 } else { 1.0 };
+                assert_eq!(other[k], sign * one[mirror], "{component} {k}");
+            }
+        }
+        for (bodies, nu) in [([body(0.5), body(0.4)], [nu; 2]), ([body(0.5), body(0.5)], [nu, 0.2])] {
+            let refused = rolling_tables(reach, (dx, dy), (&bodies, nu), 10.0).unwrap_err().to_string();
+            assert!(refused.contains("unlike"), "{refused}");
+        }
+        // Incompressible ones push nothing sideways, however they relax.
+        assert!(rolling_tables(reach, (dx, dy), (&[body(0.5), body(0.4)], [0.5; 2]), 10.0).is_ok());
     }
 }
 

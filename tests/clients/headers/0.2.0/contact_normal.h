@@ -3022,6 +3022,22 @@ contact_normal_status contact_normal_influence_rolling(int32_t cx,
                                                        double *coefficients);
 
 /*
+ The tangential influence coefficients of bodies that relax and roll steadily, as tables that `friction->influence` takes in steady rolling: `xx`, `yy` and
+ `xy`, one after the other, each over the offsets of `contact_normal_influence_rolling`: `coefficients[3][2 cy][2 cx]`. The other arguments are those of that
+ function. UNSUPPORTED: unlike bodies, at once or as they relax, and a body of whose modulus nothing is left in the end. NOT_FINITE, INVALID_ARGUMENT:
+ coefficients beyond the range of doubles. Since 0.2.
+ */
+contact_normal_status contact_normal_influence_rolling_tangential(int32_t cx,
+                                                                  int32_t cy,
+                                                                  double dx,
+                                                                  double dy,
+                                                                  const double *shear_modulus,
+                                                                  const double *poisson_ratio,
+                                                                  const struct contact_normal_visco *visco,
+                                                                  double speed,
+                                                                  double *coefficients);
+
+/*
  Stresses in the half-space that is `body` 1 or 2 of a scene, at n depths below the centres of its elements: from pressures and tractions
  `[my][mx]`, constant on each element. NULL: none; one of them at least must be given. Tractions are those that act on this body, in +x
  and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, a `period` in both directions,
@@ -3108,7 +3124,7 @@ contact_normal_status contact_normal_kept(int64_t *bytes, int32_t *threads);
 
 /*
  1 if this library has what is called so, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop"), a member of
- the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "yield_limit"), or what calls do ("batch", "accuracy", "price_list", "stress", "flash_temperature", "frictional_wear", "influence_rolling", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump",
+ the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "yield_limit"), or what calls do ("batch", "accuracy", "price_list", "stress", "flash_temperature", "frictional_wear", "influence_rolling", "influence_rolling_tangential", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump",
  "set_option", "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
  */
 int32_t contact_normal_has(const char *name);
