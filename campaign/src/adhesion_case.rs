@@ -212,7 +212,7 @@ fn effects(random: &mut Random, grid: &Grid, bodies: ([f64; 2], [f64; 2])) -> Ef
     effects
 }
 
-/// Friction is solved on half-spaces only.
+/// Friction of coated bodies is solved where both have the same coating; here they seldom have.
 fn friction_goes(effects: &Effects) -> bool {
     effects.period.is_none() && effects.patches.is_none() && effects.coating.is_none()
 }

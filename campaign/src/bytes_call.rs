@@ -233,8 +233,7 @@ impl Call {
             return;
         };
         let Case { grid, shear_modulus, poisson_ratio, h, load, .. } = case.clone();
-        let place =
-            Place { grid, shear_modulus, poisson_ratio, surface: "bytes".into(), h, load, effects: Effects::default() };
+        let place = Place { surface: "bytes".into(), h, load, ..Place::new(grid, shear_modulus, poisson_ratio) };
         // Tractions of unlike bodies displace along the normal, which the oracle of the normal problem does not know.
         if place.is_alike() {
             let failures = is_true(&case, &found);

@@ -6,12 +6,13 @@ use contact_normal::ffi::*;
 
 use crate::bytes_reader::{Bytes, ROOM, SENTINEL, SENTINEL_CONTACT};
 
-use crate::friction_case::{Case, Slide};
+use crate::friction_case::Case;
 use crate::friction_found::Found;
 use crate::friction_place::{Place, Stop};
 use crate::friction_rules::{answer, tables};
 use crate::grid::Grid;
 use crate::init::initialised;
+use crate::slide::Slide;
 
 /// A pair of arrays, in x and in y.
 type Pair = [Vec<f64>; 2];

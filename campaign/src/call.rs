@@ -252,6 +252,26 @@ impl Handle {
     }
 }
 
+/// A step of bodies that relax, on a handle that the first one makes.
+pub fn step(handle: &mut Option<Handle>, case: &Case, visco: &contact_normal_visco) -> Outputs {
+    run(case, false, |scene, options, fields, report| {
+        // SAFETY (all): structs with the arrays that they declare, and a handle that no one else uses.
+        unsafe {
+            let scene = contact_normal_scene { visco, ..*scene };
+            if handle.is_none() {
+                let mut new = null_mut();
+                let status = contact_normal_solver_new(&scene, options, &mut new);
+                if status != CONTACT_NORMAL_OK {
+                    return status;
+                }
+                *handle = Some(Handle(new));
+            }
+            let handle = handle.as_ref().map_or(null_mut(), |handle| handle.0);
+            contact_normal_solver_solve(handle, &scene, options, fields, report)
+        }
+    })
+}
+
 /// Solves a case on its own.
 pub fn solve(case: &Case) -> Outputs {
     run(case, false, |scene, options, fields, report| {

@@ -6,10 +6,11 @@ use contact_normal::ffi::*;
 
 use crate::call::{bare_scene, cancel, last_error, Canceller, SENTINEL};
 use crate::effect_structs::{effect_structs, EffectStructs};
-use crate::friction_case::Slide;
 use crate::friction_found::Found;
 use crate::friction_place::{Place, Stop};
 use crate::init::initialised;
+use crate::own_tractions::Structs;
+use crate::slide::Slide;
 
 /// A scene whose effects and friction point into a place and a slide.
 struct Scene {
@@ -17,6 +18,7 @@ struct Scene {
     // Boxed: the scene points to them.
     _effects: Box<EffectStructs>,
     _friction: Option<Box<contact_normal_friction>>,
+    _tables: Option<Box<Structs>>,
 }
 
 /// Where tractions before a step come from.
@@ -32,9 +34,13 @@ fn scene(place: &Place, slide: Option<(&Slide, From)>) -> Scene {
     let mut scene = bare_scene(&place.grid, &place.h, (place.shear_modulus, place.poisson_ratio), place.load);
     let effects = effect_structs(&place.effects);
     effects.point_from(&mut scene, &place.effects);
-    let friction = slide.map(|(slide, from)| Box::new(friction(slide, from)));
+    let mut friction = slide.map(|(slide, from)| Box::new(friction(slide, from)));
+    let tables = place.own.as_ref().map(|own| Structs::new(own));
+    if let (Some(friction), Some(tables), Some(own)) = (&mut friction, &tables, &place.own) {
+        tables.put(own, friction);
+    }
     scene.friction = friction.as_ref().map_or(null(), |friction| &raw const **friction);
-    Scene { scene, _effects: effects, _friction: friction }
+    Scene { scene, _effects: effects, _friction: friction, _tables: tables }
 }
 
 fn friction(slide: &Slide, from: From) -> contact_normal_friction {
@@ -207,7 +213,10 @@ impl Handle {
     /// Set up for a place, or the status and why not.
     pub fn new(place: &Place, stop: &Stop) -> Result<Handle, (i32, String)> {
         let mut canceller = Canceller { calls: 0, at: 0 };
-        let (scene, options) = (scene(place, None), options(stop, &mut canceller));
+        // Tables belong to what a handle is set up with.
+        let nothing = place.own.as_ref().map(|_| Slide::nothing(place.grid.len()));
+        let slide = nothing.as_ref().map(|slide| (slide, From::Slide));
+        let (scene, options) = (scene(place, slide), options(stop, &mut canceller));
         let mut handle = null_mut();
         // SAFETY: structs with the arrays that they declare.
         let status = unsafe { contact_normal_solver_new(&scene.scene, &options, &mut handle) };

@@ -7,81 +7,7 @@ use crate::friction_place::{Place, Stop};
 use crate::grid::{Grid, Load};
 use crate::random::Random;
 use crate::rules;
-
-/// How they slide.
-#[derive(Clone, Debug)]
-pub struct Slide {
-    pub mu: Vec<f64>,
-    /// Given as one number.
-    pub uniform: bool,
-    pub motion: i32,
-    pub prescribed: [i32; 2],
-    /// The creepages or the forces.
-    pub amount: [f64; 2],
-    pub spin: f64,
-    pub spin_centre: [f64; 2],
-    /// As it is given: 0 is dx.
-    pub distance: f64,
-    pub direction: f64,
-    pub previous: Option<[Vec<f64>; 2]>,
-    pub rigid: Option<[Vec<f64>; 2]>,
-    /// Whether the derivatives of the forces are asked for.
-    pub sensitivities: bool,
-}
-
-impl Slide {
-    pub fn has_forces(&self) -> bool {
-        self.is_force(0) || self.is_force(1)
-    }
-
-    /// Whether the force is given in that direction.
-    pub fn is_force(&self, k: usize) -> bool {
-        self.prescribed[k] == CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE
-    }
-
-    /// The size of the forces that are given; 0 where none is.
-    pub fn force(&self) -> f64 {
-        let [x, y] = [0, 1].map(|k| if self.is_force(k) { self.amount[k] } else { 0.0 });
-        x.hypot(y)
-    }
-
-    fn length(&self, grid: &Grid) -> f64 {
-        match self.motion {
-            CONTACT_NORMAL_MOTION_SHIFT => 1.0,
-            _ if self.distance == 0.0 => grid.dx,
-            _ => self.distance,
-        }
-    }
-
-    /// Where particles were before the step; of a shift here.
-    pub fn step(&self, grid: &Grid) -> [f64; 2] {
-        if self.motion == CONTACT_NORMAL_MOTION_SHIFT {
-            return [0.0; 2];
-        }
-        let (sine, cosine) = self.direction.sin_cos();
-        let clean = |value: f64| if value.abs() < 1e-15 { 0.0 } else { value };
-        [self.length(grid) * clean(cosine), self.length(grid) * clean(sine)]
-    }
-
-    /// The rigid slip of an element with the creepages of the report, and of what size its terms are.
-    pub fn rigid_slip(&self, grid: &Grid, i: usize, creepage: [f64; 2]) -> ([f64; 2], f64) {
-        let (step, length) = (self.step(grid), self.length(grid));
-        let centre = |k: usize, m: usize, d: f64| (k as f64 - 0.5 * (m as f64 - 1.0)) * d;
-        let x = centre(i % grid.mx, grid.mx, grid.dx) - self.spin_centre[0] + step[0] / 6.0;
-        let y = centre(i / grid.mx, grid.my, grid.dy) - self.spin_centre[1] + step[1] / 6.0;
-        let own = self.rigid.as_ref().map_or([0.0; 2], |own| [own[0][i], own[1][i]]);
-        let arms = self.spin_centre[0].abs() + self.spin_centre[1].abs() + x.abs() + y.abs();
-        let sizes = length * (creepage[0].abs() + creepage[1].abs() + self.spin.abs() * arms);
-        let w = [length * (creepage[0] - self.spin * y) + own[0], length * (creepage[1] + self.spin * x) + own[1]];
-        (w, sizes + own[0].abs() + own[1].abs())
-    }
-
-    /// The tractions before the step.
-    pub fn before(&self) -> Vec<[f64; 2]> {
-        let at = |i: usize| self.previous.as_ref().map_or([0.0; 2], |before| [before[0][i], before[1][i]]);
-        (0..self.mu.len()).map(at).collect()
-    }
-}
+use crate::slide::Slide;
 
 /// A case.
 #[derive(Clone)]
@@ -167,7 +93,7 @@ impl Case {
             |random: &mut Random, size: f64| -> Vec<f64> { (0..n).map(|_| size * random.between(-1.0, 1.0)).collect() };
         let previous = random.chance(0.3).then(|| [0, 1].map(|_| noise(random, garbage)));
         let own_size = slip * random.decades(0.01, 1.0) * if is_shift { 1.0 } else { grid.dx / size };
-        let slide = Slide {
+        let mut slide = Slide {
             mu,
             uniform,
             motion,
@@ -192,6 +118,9 @@ impl Case {
             rigid: random.chance(0.15).then(|| [0, 1].map(|_| noise(random, own_size))),
             sensitivities: false,
         };
+        if let Some(own) = &place.own {
+            slide.fit(&own.kind, &mut random.beside(0x7ab1e), &grid);
+        }
         let mut stop = Stop::unhindered(random);
         if random.chance(0.1) {
             stop.max_cycles = random.integer(1, 30) as i32;
@@ -247,6 +176,7 @@ impl Case {
     pub fn kind(&self) -> String {
         let bodies = match () {
             _ if self.place.effects.coating.is_some() => "coated",
+            _ if self.place.own.is_some() => "tables of like",
             _ if self.place.is_alike() => "like",
             _ => "unlike",
         };

@@ -1,5 +1,7 @@
 //! Where bodies with friction touch: grid, bodies, surface, load, a layer, a limit of the pressures.
 
+use std::sync::Arc;
+
 use contact_normal::ffi::CONTACT_NORMAL_CRITERION_RESIDUAL;
 
 use crate::case::{self, Case, How};
@@ -8,9 +10,11 @@ use crate::effects::{self, Effects, Values};
 use crate::grid::{Grid, Load};
 use crate::half_space::{compliance, free};
 use crate::measured;
+use crate::own_tractions::{Kind, OwnTractions};
 use crate::random::Random;
 use crate::scales::{self, Scales};
 use crate::surface;
+use crate::tangential_coefficients::{Compliance, Element};
 
 /// The bodies and what presses them together.
 #[derive(Clone, Debug)]
@@ -23,6 +27,8 @@ pub struct Place {
     pub load: Load,
     /// A coating of both bodies, a layer and a limit at most.
     pub effects: Effects,
+    /// Tangential coefficients of the caller's own.
+    pub own: Option<Arc<OwnTractions>>,
 }
 
 /// Like bodies in most cases, of nu = 0 now and then: without nu shifts start from a smaller load.
@@ -73,7 +79,8 @@ impl Place {
     /// A flat surface that nothing presses.
     pub fn new(grid: Grid, shear_modulus: [f64; 2], poisson_ratio: [f64; 2]) -> Place {
         let (surface, h) = ("flat".into(), vec![0.0; grid.len()]);
-        Place { grid, shear_modulus, poisson_ratio, surface, h, load: Load::Force(0.0), effects: Effects::default() }
+        let (load, effects) = (Load::Force(0.0), Effects::default());
+        Place { grid, shear_modulus, poisson_ratio, surface, h, load, effects, own: None }
     }
 
     /// A small one, or one of what people bring.
@@ -97,6 +104,8 @@ impl Place {
             let coating = coating::on_both(own, &grid, (shear_modulus[0], poisson_ratio[0]));
             place.shear_modulus = coating.shear_modulus;
             place.effects.coating = Some(coating);
+        } else if own.chance(0.1) && place.is_alike() && grid.len() <= 600 {
+            place.take_tables(own);
         }
         place.press(random, is_measured);
         if random.chance(0.1) {
@@ -107,6 +116,34 @@ impl Place {
             place.effects.limit = place.limit(random);
         }
         place
+    }
+
+    /// Tangential tables, and of the pressures where these are per loaded row.
+    fn take_tables(&mut self, random: &mut Random) {
+        let (grid, kind) = (self.grid, Kind::random(random, &self.grid));
+        let element = self.element();
+        let at = |kx: i64, ky: i64| {
+            let [xx, yy, xy, ..] = element.at([kx as f64 * grid.dx, ky as f64 * grid.dy]).0;
+            [xx, yy, xy]
+        };
+        let own = OwnTractions::new(kind, &grid, &at);
+        self.effects.row_tables = own.of_pressures(&grid, self.compliance());
+        self.own = Some(Arc::new(own));
+    }
+
+    /// What is at the surfaces of both bodies.
+    pub fn materials(&self) -> Compliance {
+        let coating = self.effects.coating.as_ref();
+        let (modulus, ratio) = coating.map_or((self.shear_modulus, self.poisson_ratio), Coating::at_surface);
+        let each = |of: [f64; 2]| [0, 1].map(|b: usize| of[b] / modulus[b]);
+        let [shear, poisson] = [each([1.0; 2]), each(ratio)].map(|[a, b]| 0.5 * (a + b));
+        let [one, other] = each(ratio.map(|nu| 1.0 - 2.0 * nu));
+        Compliance { shear, poisson, unlike: if self.is_alike() { 0.0 } else { 0.25 * (one - other) } }
+    }
+
+    /// Tangential coefficients of half-spaces of these.
+    pub fn element(&self) -> Element {
+        Element::new(self.materials(), [self.grid.dx, self.grid.dy])
     }
 
     /// A limit for the load.

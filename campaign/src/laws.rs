@@ -47,6 +47,7 @@ pub fn run(random: &mut Random) -> Run {
         let mut place = Place::random(random, false);
         place.shear_modulus[1] = place.shear_modulus[0];
         place.poisson_ratio[1] = place.poisson_ratio[0];
+        (place.own, place.effects.row_tables) = (None, None);
         let without = frictionless(&place, &Stop::unhindered(random));
         if without.status != CONTACT_NORMAL_OK || without.p.iter().all(|p| !(*p > 0.0)) {
             continue;

@@ -8,6 +8,7 @@
 //! cargo run --release -p campaign -- --measured --friction 5000
 //! cargo run --release -p campaign -- --adhesion 5000  cases with adhesion alone, of seeds 0..5000
 //! cargo run --release -p campaign -- --laws 5000      laws of friction, layers that yield, wear, of seeds 0..5000
+//! cargo run --release -p campaign -- --relaxing 5000  paths of bodies that relax, of seeds 0..5000
 //! cargo run --release -p campaign -- --seed 17        one case again, with all that is known of it
 //! cargo run --release -p campaign -- --measured --seed 17
 //! cargo run --release -p campaign -- --replay FILE    the scene of a dump (docs/dump.md)
@@ -32,7 +33,7 @@ fn main() -> ExitCode {
         return dumped(&arguments[0]);
     }
     let (is_measured, is_friction, one) = (named("--measured"), named("--friction"), named("--seed"));
-    let (is_adhesive, is_law) = (named("--adhesion"), named("--laws"));
+    let (is_adhesive, is_law, is_relaxing) = (named("--adhesion"), named("--laws"), named("--relaxing"));
     let number = |i: usize| arguments.get(i).and_then(|text| text.parse::<u64>().ok());
     let run = if is_measured { measured } else { ordinary };
     if one {
@@ -47,6 +48,9 @@ fn main() -> ExitCode {
     }
     if is_law {
         return laws(count, first);
+    }
+    if is_relaxing {
+        return relaxing(count, first);
     }
     let mut account = Account::default();
     for seed in first..first + count {
@@ -100,6 +104,17 @@ fn friction(count: u64, first: u64, is_measured: bool) -> ExitCode {
     for seed in first..first + count {
         let run = campaign::friction::run(&mut Random::new(seed ^ 0x00f1_c710), is_measured);
         calls.add(seed, run.statuses.into_iter().map(|status| (run.case.kind(), status)), run.verdict);
+    }
+    calls.print()
+}
+
+/// Steps of bodies that relax: how they ended, and what was not kept.
+fn relaxing(count: u64, first: u64) -> ExitCode {
+    let mut calls = Calls::default();
+    for seed in first..first + count {
+        let run = campaign::relaxing::run(seed);
+        let kind = format!("{}, {}", run.case.method(), run.case.effects.name());
+        calls.add(seed, run.statuses.into_iter().map(|status| (kind.clone(), status)), run.verdict);
     }
     calls.print()
 }

@@ -5,7 +5,7 @@ use std::panic::{catch_unwind, AssertUnwindSafe};
 use crate::case::Case;
 use crate::random::Random;
 use crate::verdict::Verdict;
-use crate::{accuracy, batch, call, friction, measured, rules, sequence, set_influence, stress};
+use crate::{accuracy, batch, call, friction, measured, relaxing, rules, sequence, set_influence, stress};
 
 /// What came of one case.
 pub struct Run {
@@ -109,6 +109,11 @@ fn beside(run: &mut Run) {
         u if u < 0.25 => {
             let asked = friction::run(random, case.is_measured);
             run.beside = Some((asked.case.kind(), asked.statuses));
+            asked.verdict
+        }
+        u if u < 0.28 && case.grid.len() < 15000 => {
+            let asked = relaxing::run(case.seed);
+            run.beside = Some(("steps of bodies that relax".into(), asked.statuses));
             asked.verdict
         }
         _ => return,

@@ -1,16 +1,16 @@
 //! Displacements by tractions and by pressures, of like and of unlike bodies, by coefficients of the campaign's own
 //! (`tangential_coefficients`). Tractions displace along the normal by `-(Axz qx + Ayz qy)`.
 
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
 use std::f64::consts::PI;
 
-use crate::coating::Coating;
 use crate::fft::Convolution;
 use crate::friction_place::Place;
 use crate::grid::Grid;
+use crate::own_tractions::Kind;
 use crate::tangential_coating::{Coat, ACCURACY};
 pub use crate::tangential_coefficients::Vector;
-use crate::tangential_coefficients::{Compliance, Element, Entry};
+use crate::tangential_coefficients::{Compliance, Entry};
 
 /// Products of more terms are done by the transform.
 const LONG: usize = 300_000;
@@ -20,6 +20,8 @@ pub struct Operator {
     grid: Grid,
     /// Of offsets `-(m - 1)..m`.
     pub table: Vec<Entry>,
+    /// Factors of the rows of loads and displacements, of tables per loaded row.
+    rows: Option<Vec<f64>>,
     couples: bool,
     /// What rounding may do to a displacement by loads whose sizes add up to 1, and by loads whose 2-norm is 1.
     rounding: [f64; 2],
@@ -30,12 +32,8 @@ impl Operator {
     pub fn new(place: &Place, by: Vector) -> Operator {
         let Grid { mx, my, dx, dy } = place.grid;
         let coating = place.effects.coating.as_ref();
-        let (modulus, ratio) = coating.map_or((place.shear_modulus, place.poisson_ratio), Coating::at_surface);
-        let each = |of: [f64; 2]| [0, 1].map(|b: usize| of[b] / modulus[b]);
-        let [shear, poisson] = [each([1.0; 2]), each(ratio)].map(|[a, b]| 0.5 * (a + b));
-        let [one, other] = each(ratio.map(|nu| 1.0 - 2.0 * nu));
-        let unlike = if place.is_alike() { 0.0 } else { 0.25 * (one - other) };
-        let element = Element::new(Compliance { shear, poisson, unlike }, [dx, dy]);
+        let Compliance { shear, poisson, unlike } = place.materials();
+        let (element, own) = (place.element(), place.own.as_ref().map(|own| &own.kind));
         let mut largest: f64 = 0.0;
         let coat = coating.map(|coating| Coat::new(coating, &place.grid, by));
         let mut entry = |kx: i64, ky: i64| {
@@ -48,8 +46,21 @@ impl Operator {
             entry
         };
         let reach = |m: usize| 1 - m as i64..m as i64;
-        let table: Vec<Entry> =
-            reach(my).flat_map(|ky| reach(mx).map(move |kx| (kx, ky))).map(|(kx, ky)| entry(kx, ky)).collect();
+        let table: Vec<Entry> = match own {
+            None => reach(my).flat_map(|ky| reach(mx).map(move |kx| (kx, ky))).map(|(kx, ky)| entry(kx, ky)).collect(),
+            Some(kind) => {
+                // Steps are whole elements along x.
+                let step = (by[0] / dx).round() as i64;
+                let largest = &Cell::new(largest);
+                let at = |kx: i64, ky: i64| {
+                    let ([xx, yy, xy, ..], terms) = element.at([kx as f64 * dx, ky as f64 * dy]);
+                    largest.set(largest.get().max(terms));
+                    [xx, yy, xy]
+                };
+                let row = |ky: i64| kind.row(ky, 1 - mx as i64 + step, 2 * mx - 1, &at);
+                reach(my).flat_map(row).map(|[xx, yy, xy]| [xx, yy, xy, 0.0, 0.0]).collect()
+            }
+        };
         let greatest = table.iter().flatten().fold(0.0, |greatest: f64, value| greatest.max(value.abs()));
         let norm = table.iter().flatten().map(|value| value * value).sum::<f64>().sqrt();
         // Eight terms, each to some units of round-off of the largest; and the transforms, here and there.
@@ -57,7 +68,11 @@ impl Operator {
         let steps = 4.0 + (16.0 * table.len() as f64).log2();
         let quadrature = if coat.is_some() { ACCURACY * greatest } else { 0.0 };
         let rounding = [64.0 * f64::EPSILON * terms + quadrature, 8.0 * steps * f64::EPSILON * norm];
-        Operator { grid: place.grid, table, couples: unlike != 0.0, rounding, transforms: OnceCell::new() }
+        let rows = match own {
+            Some(Kind::Rows { d }) => Some(d.clone()),
+            _ => None,
+        };
+        Operator { grid: place.grid, table, rows, couples: unlike != 0.0, rounding, transforms: OnceCell::new() }
     }
 
     /// Whether pressures displace sideways and tractions along the normal.
@@ -76,7 +91,12 @@ impl Operator {
     pub fn between(&self, i: usize, j: usize) -> Entry {
         let (mx, my) = (self.grid.mx, self.grid.my);
         let (kx, ky) = (i % mx + mx - 1 - j % mx, i / mx + my - 1 - j / mx);
-        self.table[ky * (2 * mx - 1) + kx]
+        let entry = self.table[ky * (2 * mx - 1) + kx];
+        entry.map(|value| self.of_row(i) * self.of_row(j) * value)
+    }
+
+    fn of_row(&self, i: usize) -> f64 {
+        self.rows.as_ref().map_or(1.0, |d| d[i / self.grid.mx])
     }
 
     fn transforms(&self) -> &[Convolution; 5] {
@@ -98,7 +118,8 @@ impl Operator {
             };
             return (0..q.len()).map(|i| loaded.iter().fold([0.0; 3], |u, &j| add(i, u, j))).collect();
         }
-        let [x, y] = [0, 1].map(|k: usize| q.iter().map(|q| q[k]).collect::<Vec<f64>>());
+        let [x, y] =
+            [0, 1].map(|k: usize| q.iter().enumerate().map(|(i, q)| self.of_row(i) * q[k]).collect::<Vec<f64>>());
         let [xx, yy, xy, xz, yz] = self.transforms();
         let [of_x, of_y] = xy.apply([&x, &y]);
         let mut u: Vec<[f64; 3]> = (0..q.len()).map(|i| [of_y[i], of_x[i], 0.0]).collect();
@@ -110,6 +131,7 @@ impl Operator {
                 u.iter_mut().zip(sum).for_each(|(u, value)| u[2] -= value);
             }
         }
+        u.iter_mut().enumerate().for_each(|(i, u)| *u = u.map(|value| self.of_row(i) * value));
         u
     }
 

@@ -1,0 +1,138 @@
+//! Tangential coefficients of the caller's own: tables over offsets, of like bodies that are softer or that relax and roll, and tables per loaded row.
+//!
+//! All are made of the coefficients of half-spaces, so that the campaign's products (`tangential`) know them:
+//!
+//! ```text
+//! even:    f A
+//! uneven:  A + c sum over n >= 0 of (1 - e) e^n A(x + n)        in steady rolling: material behind has given way
+//! rows:    d_i A d_j, of the rows i and j; pressures alike
+//! ```
+
+use contact_normal::ffi::*;
+
+use crate::effects::OwnCoefficients;
+use crate::grid::Grid;
+use crate::half_space::free;
+use crate::init::initialised;
+use crate::random::Random;
+
+/// Elements that a step of rolling goes at most.
+pub const STEP: usize = 3;
+/// Of what is left of an uneven table behind its end.
+const NOTHING: f64 = 1e-18;
+
+/// What the tables are made by.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Kind {
+    Even { factor: f64 },
+    Uneven { c: f64, e: f64 },
+    Rows { d: Vec<f64> },
+}
+
+/// The tables xx, yy and xy.
+#[derive(Clone, Debug)]
+pub struct OwnTractions {
+    pub kind: Kind,
+    cx: usize,
+    cy: usize,
+    values: [Vec<f64>; 3],
+}
+
+/// Where half-spaces have coefficients xx, yy and xy, by whole elements.
+pub type At<'a> = &'a dyn Fn(i64, i64) -> [f64; 3];
+
+impl Kind {
+    /// Any.
+    pub fn random(random: &mut Random, grid: &Grid) -> Kind {
+        match random.integer(0, 3) {
+            0 => Kind::Even { factor: random.decades(0.1, 10.0) },
+            1 => Kind::Rows { d: (0..grid.my).map(|_| random.between(0.8, 1.2)).collect() },
+            _ => Kind::Uneven { c: random.decades(0.1, 10.0), e: (-1.0 / random.decades(0.1, 30.0)).exp() },
+        }
+    }
+
+    /// The coefficients of a row of offsets from `first` on.
+    pub fn row(&self, ky: i64, first: i64, count: usize, at: At<'_>) -> Vec<[f64; 3]> {
+        let plain = || (0..count as i64).map(|k| at(first + k, ky));
+        match *self {
+            Kind::Rows { .. } => plain().collect(),
+            Kind::Even { factor } => plain().map(|entry| entry.map(|value| factor * value)).collect(),
+            Kind::Uneven { c, e } => {
+                let beyond = (NOTHING.ln() / e.ln()).ceil() as i64;
+                let (mut behind, mut row) = ([0.0; 3], vec![[0.0; 3]; count]);
+                for k in (0..count as i64 + beyond).rev() {
+                    let entry = at(first + k, ky);
+                    behind = [0, 1, 2].map(|i: usize| (1.0 - e) * entry[i] + e * behind[i]);
+                    if let Some(value) = row.get_mut(k as usize) {
+                        *value = [0, 1, 2].map(|i: usize| entry[i] + c * behind[i]);
+                    }
+                }
+                row
+            }
+        }
+    }
+}
+
+impl OwnTractions {
+    /// For a grid and steps of a few elements.
+    pub fn new(kind: Kind, grid: &Grid, at: At<'_>) -> OwnTractions {
+        let (cx, is_by_row) = (grid.mx + STEP + 1, matches!(kind, Kind::Rows { .. }));
+        let cy = if is_by_row { grid.my } else { grid.my + 1 };
+        let mut values = [Vec::new(), Vec::new(), Vec::new()];
+        let mut add = |ky: i64, factor: f64| {
+            for entry in kind.row(ky, -(cx as i64), 2 * cx, at) {
+                values.iter_mut().zip(entry).for_each(|(values, value)| values.push(factor * value));
+            }
+        };
+        match &kind {
+            Kind::Rows { d } => {
+                (0..cy * cy).for_each(|k| add((k % cy) as i64 - (k / cy) as i64, d[k % cy] * d[k / cy]))
+            }
+            _ => (-(cy as i64)..cy as i64).for_each(|ky| add(ky, 1.0)),
+        }
+        OwnTractions { kind, cx, cy, values }
+    }
+
+    /// The coefficients of pressures of tables per loaded row; none: those of the bodies.
+    pub fn of_pressures(&self, grid: &Grid, c: f64) -> Option<OwnCoefficients> {
+        let Kind::Rows { d } = &self.kind else { return None };
+        let (cx, cy) = (grid.mx, grid.my);
+        let half_space = free(cx + 1, cy, grid.dx, grid.dy, c);
+        let value = |k: usize| {
+            let (kx, iy, jy) = (k % (2 * cx), k / (2 * cx) % cy, k / (2 * cx) / cy);
+            d[iy] * d[jy] * half_space.at(kx as i64 - cx as i64, iy as i64 - jy as i64)
+        };
+        Some(OwnCoefficients { cx, cy, values: (0..cy * cy * 2 * cx).map(value).collect() })
+    }
+}
+
+/// The structs of the C ABI.
+pub struct Structs {
+    tables: [contact_normal_influence; 3],
+    rows: [contact_normal_row_tables; 3],
+}
+
+impl Structs {
+    /// That point to these tables.
+    pub fn new(own: &OwnTractions) -> Box<Structs> {
+        let table = |values: &Vec<f64>| {
+            let mut table = initialised(contact_normal_influence_init);
+            (table.cx, table.cy, table.coefficients) = (own.cx as i32, own.cy as i32, values.as_ptr());
+            table
+        };
+        let rows = |values: &Vec<f64>| {
+            let mut rows = initialised(contact_normal_row_tables_init);
+            (rows.cx, rows.rows, rows.coefficients) = (own.cx as i32, own.cy as i32, values.as_ptr());
+            rows
+        };
+        Box::new(Structs { tables: own.values.each_ref().map(table), rows: own.values.each_ref().map(rows) })
+    }
+
+    /// Of a friction.
+    pub fn put(&self, own: &OwnTractions, friction: &mut contact_normal_friction) {
+        match own.kind {
+            Kind::Rows { .. } => friction.row_tables = self.rows.each_ref().map(|rows| &raw const *rows),
+            _ => friction.influence = self.tables.each_ref().map(|table| &raw const *table),
+        }
+    }
+}

@@ -1,0 +1,265 @@
+//! Bodies that relax: a random scene, random branches and a random path of loads on one handle, each step certified.
+//!
+//! A body is a spring with dashpots, `u = w + sum of r_k q_k` and `t_k dq_k/dt = u - q_k`, where w is what it gives way at once and `r_k = G_k/G`. In a step q
+//! is linear in q before it, in w before it and in w after it. So displacements are `u = s A p + H`, with a number s and what is left of the steps
+//! before, H: an elastic scene with the distances h + H and a compliance of s, whose rules are those of every scene (`rules`).
+
+use contact_normal::ffi::*;
+
+use crate::call::{self, Outputs};
+use crate::case::{self, Case};
+use crate::grid::Load;
+use crate::half_space::compliance;
+use crate::init::initialised;
+use crate::random::Random;
+use crate::rules;
+use crate::scales::Scales;
+use crate::verdict::Verdict;
+
+/// What the history of a step may be off, over its largest value: of exponentials of times that differ by a thousand, here and there.
+const ACCURACY: f64 = 1e-11;
+/// How many times larger products of earlier steps, and what rounding did to them, are in the history: bodies give way up to twenty times as much in the end.
+const GROWS: f64 = 32.0;
+/// Branches of a body at most.
+const MOST: usize = 3;
+/// Terms of the series of an exponential, of matrices whose norm is 1/2.
+const TERMS: u32 = 18;
+
+/// A body that relaxes.
+struct Body {
+    /// Of the compliance at once of both.
+    share: f64,
+    modulus: Vec<f64>,
+    /// Moduli over that at once.
+    r: Vec<f64>,
+    time: Vec<f64>,
+    /// `[element][branch]`, and w.
+    q: Vec<Vec<f64>>,
+    w: Vec<f64>,
+}
+
+/// q after a step: by q before, row by row, by w before and by w after.
+struct Map {
+    by_q: Vec<Vec<f64>>,
+    by_before: Vec<f64>,
+    by_after: Vec<f64>,
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+impl Body {
+    fn random(random: &mut Random, (share, g): (f64, f64), unit: f64, n: usize) -> Body {
+        let count = if g.is_finite() && share > 0.0 { random.integer(0, MOST) } else { 0 };
+        // A fluid of one branch: the others keep something.
+        let total = if count == 1 && random.chance(0.3) { 1.0 } else { random.between(0.05, 0.95) };
+        let parts: Vec<f64> = (0..count).map(|_| random.between(0.1, 1.0)).collect();
+        let sum: f64 = parts.iter().sum();
+        let r: Vec<f64> = parts.iter().map(|part| total * (part / sum)).collect();
+        let modulus = r.iter().map(|r| r * g).collect();
+        let time = (0..count).map(|_| unit * random.decades(0.03, 30.0)).collect();
+        Body { share, modulus, r, time, q: vec![vec![0.0; count]; n], w: vec![0.0; n] }
+    }
+
+    /// q of one element after a step of a form.
+    fn after(&self, form: i32, dt: f64, q: &[f64], (before, after): (f64, f64)) -> Vec<f64> {
+        let n = q.len();
+        let steps: Vec<f64> = self.time.iter().map(|t| dt / t).collect();
+        let fades = |k: usize| (-steps[k]).exp();
+        match form {
+            CONTACT_NORMAL_FORM_RELAXATION => {
+                let u = before + dot(&self.r, q);
+                let mean = |k: usize| -(-steps[k]).exp_m1() / steps[k];
+                let left: Vec<f64> = (0..n).map(|k| fades(k) * q[k] + (mean(k) - fades(k)) * u).collect();
+                let of_end: Vec<f64> = (0..n).map(|k| 1.0 - mean(k)).collect();
+                let end = (after + dot(&self.r, &left)) / (1.0 - dot(&self.r, &of_end));
+                (0..n).map(|k| left[k] + of_end[k] * end).collect()
+            }
+            CONTACT_NORMAL_FORM_BACKWARD_EULER => {
+                let part: Vec<f64> = steps.iter().map(|step| step / (1.0 + step)).collect();
+                let left: Vec<f64> = (0..n).map(|k| (1.0 - part[k]) * q[k]).collect();
+                let end = (after + dot(&self.r, &left)) / (1.0 - dot(&self.r, &part));
+                (0..n).map(|k| left[k] + part[k] * end).collect()
+            }
+            // CREEP: q, w and the change of w in the step, whose rates are linear.
+            _ => {
+                let mut state: Vec<f64> = q.iter().copied().chain([before, after - before]).collect();
+                let mut rates = vec![vec![0.0; n + 2]; n + 2];
+                for k in 0..n {
+                    (0..n).for_each(|j| rates[k][j] = steps[k] * (self.r[j] - f64::from(u8::from(j == k))));
+                    rates[k][n] = steps[k];
+                }
+                rates[n][n + 1] = 1.0;
+                // A power of two of parts, in each of which the series ends soon.
+                let norm = rates.iter().map(|row| row.iter().map(|value| value.abs()).sum()).fold(0.5, f64::max);
+                let parts = 2f64.powi((2.0 * norm).log2().ceil() as i32);
+                for _ in 0..parts as u64 {
+                    let mut term = state.clone();
+                    for k in 1..=TERMS {
+                        term = rates.iter().map(|row| dot(row, &term) / parts / f64::from(k)).collect();
+                        state.iter_mut().zip(&term).for_each(|(state, term)| *state += term);
+                    }
+                }
+                state[..n].to_vec()
+            }
+        }
+    }
+
+    fn map(&self, form: i32, dt: f64) -> Map {
+        let n = self.r.len();
+        let unit = |j: usize| (0..n).map(|k| f64::from(u8::from(k == j))).collect::<Vec<f64>>();
+        if dt == 0.0 {
+            return Map { by_q: (0..n).map(unit).collect(), by_before: vec![0.0; n], by_after: vec![0.0; n] };
+        }
+        let columns: Vec<Vec<f64>> = (0..n).map(|j| self.after(form, dt, &unit(j), (0.0, 0.0))).collect();
+        let by_q = (0..n).map(|k| columns.iter().map(|column| column[k]).collect()).collect();
+        let none = vec![0.0; n];
+        Map {
+            by_q,
+            by_before: self.after(form, dt, &none, (1.0, 0.0)),
+            by_after: self.after(form, dt, &none, (0.0, 1.0)),
+        }
+    }
+
+    /// s of the body, and its part of H.
+    fn left(&self, map: &Map) -> (f64, Vec<f64>) {
+        let of = |q: &[f64], w: f64| {
+            (0..q.len()).map(|k| self.r[k] * (dot(&map.by_q[k], q) + map.by_before[k] * w)).sum::<f64>()
+        };
+        (1.0 + dot(&self.r, &map.by_after), self.q.iter().zip(&self.w).map(|(q, w)| of(q, *w)).collect())
+    }
+
+    /// The step is done, with these products A p.
+    fn keep(&mut self, map: &Map, products: &[f64]) {
+        for ((q, w), product) in self.q.iter_mut().zip(&mut self.w).zip(products) {
+            let end = self.share * product;
+            *q = (0..q.len()).map(|k| dot(&map.by_q[k], q) + map.by_before[k] * *w + map.by_after[k] * end).collect();
+            *w = end;
+        }
+    }
+}
+
+/// The status of each step, and what was not kept.
+pub struct Run {
+    pub case: Case,
+    pub statuses: Vec<i32>,
+    pub verdict: Verdict,
+}
+
+/// What goes with bodies that relax: all but layers, and coefficients that know no bodies.
+fn suited(mut case: Case) -> Case {
+    let effects = &mut case.effects;
+    (effects.layer, effects.influence, effects.row_tables, effects.coating) = (None, None, None, None);
+    (effects.indefinite, effects.unsymmetric) = (false, false);
+    let how = &mut case.how;
+    (how.cancel_at, how.fixed, how.given) = (None, None, None);
+    (how.criterion, how.max_cycles) = (CONTACT_NORMAL_CRITERION_RESIDUAL, 1000);
+    case
+}
+
+/// A path of two to six steps.
+pub fn run(seed: u64) -> Run {
+    let random = &mut Random::new(seed ^ 0x5109_c0de);
+    let mut case = suited(Case::new(seed));
+    let c = compliance(case.shear_modulus, case.poisson_ratio);
+    let scales = Scales::of(&case.h, &case.effects, &case.grid, c);
+    let unit = random.decades(1e-6, 1e6);
+    let of = |b: usize| (1.0 - case.poisson_ratio[b]) / case.shear_modulus[b];
+    let mut bodies = [0, 1]
+        .map(|b: usize| Body::random(random, (of(b) / (of(0) + of(1)), case.shear_modulus[b]), unit, case.grid.len()));
+    let mut visco = initialised(contact_normal_visco_init);
+    for (b, body) in bodies.iter().enumerate() {
+        visco.branches[b] = body.r.len() as i32;
+        (visco.modulus[b], visco.time[b]) = (body.modulus.as_ptr(), body.time.as_ptr());
+    }
+    let (mut statuses, mut verdict, mut handle, mut rounding) = (Vec::new(), Verdict::default(), None, 0.0);
+    for step in 0..random.integer(2, 6) {
+        if step > 0 {
+            case.load = case::load(random, &scales, &case.grid);
+        }
+        visco.time_step = if random.chance(0.15) { 0.0 } else { unit * random.decades(0.01, 10.0) };
+        (visco.form, visco.continues) = (random.integer(0, 3) as i32, i32::from(step > 0));
+        let form = match (visco.form, case.load) {
+            (CONTACT_NORMAL_FORM_AUTO, Load::Approach(_)) => CONTACT_NORMAL_FORM_RELAXATION,
+            (CONTACT_NORMAL_FORM_AUTO, Load::Force(_)) => CONTACT_NORMAL_FORM_CREEP,
+            (form, _) => form,
+        };
+        let maps = bodies.each_ref().map(|body| body.map(form, visco.time_step));
+        let [(one, of_one), (other, of_other)] = [0, 1].map(|b: usize| bodies[b].left(&maps[b]));
+        let left: Vec<f64> = of_one.iter().zip(&of_other).map(|(a, b)| a + b).collect();
+        let found = call::step(&mut handle, &case, &visco);
+        statuses.push(found.status);
+        let s = bodies[0].share * one + bodies[1].share * other;
+        let details = format!("step {step} of {:e}, form {form}, s {s}: {}: ", visco.time_step, case.describe());
+        verdict.add(check(&case, (s, &left, rounding), &found).within(&details));
+        if found.status < 0 || !verdict.failures.is_empty() {
+            break;
+        }
+        let operator = case.operator();
+        let products = operator.displace(&found.p);
+        rounding += GROWS * operator.rounding(&found.p);
+        bodies.iter_mut().zip(&maps).for_each(|(body, map)| body.keep(map, &products));
+    }
+    Run { case, statuses, verdict }
+}
+
+/// The rules of the elastic scene that a step is.
+fn check(case: &Case, (s, left, rounding): (f64, &[f64], f64), found: &Outputs) -> Verdict {
+    let mut elastic = case.clone();
+    elastic.shear_modulus = case.shear_modulus.map(|g| g / s);
+    elastic.h.iter_mut().zip(left).for_each(|(h, left)| *h += left);
+    let largest = left.iter().fold(0.0, |most: f64, left| most.max(left.abs()));
+    elastic.h_rounding = ACCURACY * largest + rounding;
+    let u = found.u.iter().zip(left).map(|(u, left)| u - left).collect();
+    let Outputs { status, message, p, e, contact, report, overrun, written, .. } = found;
+    let (message, p, e, contact) = (message.clone(), p.clone(), e.clone(), contact.clone());
+    let found =
+        Outputs { status: *status, message, p, u, e, contact, report: *report, overrun: *overrun, written: *written };
+    rules::check(&elastic, &found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Held displacements and held pressures of one branch, by closed forms; by two branches that are one; and a jump.
+    #[test]
+    fn one_branch_relaxes_and_creeps_by_exponentials() {
+        let body = |r: &[f64], time: &[f64]| Body {
+            share: 1.0,
+            modulus: r.to_vec(),
+            r: r.to_vec(),
+            time: time.to_vec(),
+            q: vec![vec![0.0; r.len()]],
+            w: vec![0.0],
+        };
+        let (r, t, dt): (f64, f64, f64) = (0.7, 3.0, 2.0);
+        for parts in [vec![r], vec![0.3 * r, 0.7 * r]] {
+            let times = vec![t; parts.len()];
+            // Of q = 0 and u = 1 throughout w begins at 1 and falls to 1 - r (1 - exp(-dt/t)).
+            let fade = 1.0 - (-dt / t).exp();
+            let held = body(&parts, &times).after(
+                CONTACT_NORMAL_FORM_RELAXATION,
+                dt,
+                &vec![0.0; parts.len()],
+                (1.0, 1.0 - r * fade),
+            );
+            assert!(held.iter().all(|q| (q - fade).abs() <= 1e-14), "{held:?}");
+            let crept = body(&parts, &times).after(CONTACT_NORMAL_FORM_CREEP, dt, &vec![0.0; parts.len()], (1.0, 1.0));
+            let expected = (1.0 - (-(1.0 - r) * dt / t).exp()) / (1.0 - r);
+            assert!(crept.iter().all(|q| (q - expected).abs() <= 1e-13), "{crept:?} {expected}");
+            let mut one = body(&parts, &times);
+            let (s, left) = one.left(&one.map(CONTACT_NORMAL_FORM_CREEP, 0.0));
+            assert!(s == 1.0 && left == [0.0]);
+            let jump = one.map(CONTACT_NORMAL_FORM_CREEP, 0.0);
+            one.keep(&jump, &[1.0]);
+            let (s, left) = one.left(&one.map(CONTACT_NORMAL_FORM_CREEP, dt));
+            // Held pressures: s + H is what has crept.
+            assert!((s + left[0] - (1.0 + r * expected)).abs() <= 1e-13, "{s} {left:?}");
+        }
+        let stiff = body(&[0.5, 0.4], &[1e-3, 1e3]).after(CONTACT_NORMAL_FORM_CREEP, 1.0, &[0.0, 0.0], (1.0, 1.0));
+        // The fast branch follows: q = u, u = w/(1 - .5) but for what the slow one adds.
+        assert!((stiff[0] / 2.0 - 1.0).abs() < 2e-3, "{stiff:?}");
+    }
+}

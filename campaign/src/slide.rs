@@ -1,0 +1,109 @@
+//! How bodies slide: motion, creepages or forces, and what was before.
+
+use contact_normal::ffi::*;
+
+use crate::grid::Grid;
+use crate::own_tractions::{Kind, STEP};
+use crate::random::Random;
+
+/// How they slide.
+#[derive(Clone, Debug)]
+pub struct Slide {
+    pub mu: Vec<f64>,
+    /// Given as one number.
+    pub uniform: bool,
+    pub motion: i32,
+    pub prescribed: [i32; 2],
+    /// The creepages or the forces.
+    pub amount: [f64; 2],
+    pub spin: f64,
+    pub spin_centre: [f64; 2],
+    /// As it is given: 0 is dx.
+    pub distance: f64,
+    pub direction: f64,
+    pub previous: Option<[Vec<f64>; 2]>,
+    pub rigid: Option<[Vec<f64>; 2]>,
+    /// Whether the derivatives of the forces are asked for.
+    pub sensitivities: bool,
+}
+
+impl Slide {
+    /// Steady rolling without creepages.
+    pub fn nothing(n: usize) -> Slide {
+        Slide {
+            mu: vec![0.3; n],
+            uniform: true,
+            motion: CONTACT_NORMAL_MOTION_STEADY_ROLLING,
+            prescribed: [CONTACT_NORMAL_PRESCRIBED_CREEPAGE; 2],
+            amount: [0.0; 2],
+            spin: 0.0,
+            spin_centre: [0.0; 2],
+            distance: 0.0,
+            direction: 0.0,
+            previous: None,
+            rigid: None,
+            sensitivities: false,
+        }
+    }
+
+    /// Becomes a motion that tables serve: steps of whole elements along x.
+    pub fn fit(&mut self, kind: &Kind, random: &mut Random, grid: &Grid) {
+        if matches!(kind, Kind::Uneven { .. }) {
+            self.motion = CONTACT_NORMAL_MOTION_STEADY_ROLLING;
+        }
+        self.direction = [0.0, std::f64::consts::PI][random.integer(0, 1)];
+        self.distance = random.integer(1, STEP) as f64 * grid.dx;
+    }
+
+    pub fn has_forces(&self) -> bool {
+        self.is_force(0) || self.is_force(1)
+    }
+
+    /// Whether the force is given in that direction.
+    pub fn is_force(&self, k: usize) -> bool {
+        self.prescribed[k] == CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE
+    }
+
+    /// The size of the forces that are given; 0 where none is.
+    pub fn force(&self) -> f64 {
+        let [x, y] = [0, 1].map(|k| if self.is_force(k) { self.amount[k] } else { 0.0 });
+        x.hypot(y)
+    }
+
+    fn length(&self, grid: &Grid) -> f64 {
+        match self.motion {
+            CONTACT_NORMAL_MOTION_SHIFT => 1.0,
+            _ if self.distance == 0.0 => grid.dx,
+            _ => self.distance,
+        }
+    }
+
+    /// Where particles were before the step; of a shift here.
+    pub fn step(&self, grid: &Grid) -> [f64; 2] {
+        if self.motion == CONTACT_NORMAL_MOTION_SHIFT {
+            return [0.0; 2];
+        }
+        let (sine, cosine) = self.direction.sin_cos();
+        let clean = |value: f64| if value.abs() < 1e-15 { 0.0 } else { value };
+        [self.length(grid) * clean(cosine), self.length(grid) * clean(sine)]
+    }
+
+    /// The rigid slip of an element with the creepages of the report, and of what size its terms are.
+    pub fn rigid_slip(&self, grid: &Grid, i: usize, creepage: [f64; 2]) -> ([f64; 2], f64) {
+        let (step, length) = (self.step(grid), self.length(grid));
+        let centre = |k: usize, m: usize, d: f64| (k as f64 - 0.5 * (m as f64 - 1.0)) * d;
+        let x = centre(i % grid.mx, grid.mx, grid.dx) - self.spin_centre[0] + step[0] / 6.0;
+        let y = centre(i / grid.mx, grid.my, grid.dy) - self.spin_centre[1] + step[1] / 6.0;
+        let own = self.rigid.as_ref().map_or([0.0; 2], |own| [own[0][i], own[1][i]]);
+        let arms = self.spin_centre[0].abs() + self.spin_centre[1].abs() + x.abs() + y.abs();
+        let sizes = length * (creepage[0].abs() + creepage[1].abs() + self.spin.abs() * arms);
+        let w = [length * (creepage[0] - self.spin * y) + own[0], length * (creepage[1] + self.spin * x) + own[1]];
+        (w, sizes + own[0].abs() + own[1].abs())
+    }
+
+    /// The tractions before the step.
+    pub fn before(&self) -> Vec<[f64; 2]> {
+        let at = |i: usize| self.previous.as_ref().map_or([0.0; 2], |before| [before[0][i], before[1][i]]);
+        (0..self.mu.len()).map(at).collect()
+    }
+}
