@@ -31,6 +31,7 @@ pub mod dense;
 mod derivatives;
 mod disc;
 mod discs;
+mod downhill;
 mod excess;
 mod forces;
 mod half_space;

@@ -5,6 +5,7 @@
 
 use super::best::Best;
 use super::bracket;
+use super::downhill;
 use super::forces::Forces;
 use super::interpolation::interpolate;
 use super::levels::{restrict, Level};
@@ -45,6 +46,7 @@ pub struct Work<'a> {
 enum Way {
     Gradients,
     Newton(Manner),
+    Downhill,
     Bracket,
 }
 
@@ -54,6 +56,7 @@ impl Way {
         match self {
             Way::Gradients => "the gradients' method",
             Way::Newton(_) => "Newton's method",
+            Way::Downhill => "the projected Newton method",
             Way::Bracket => "a bracket of creepages",
         }
     }
@@ -104,7 +107,7 @@ fn ways(forces: Forces, newton_first: bool, (is_rolling, certified): (bool, bool
     } else if is_rolling {
         vec![Newton(Manner::Plain), Newton(Manner::Bold), Newton(Manner::Plain)]
     } else {
-        vec![if newton_first { Newton(Manner::Plain) } else { Gradients }, Newton(Manner::Plain), Gradients]
+        vec![if newton_first { Newton(Manner::Plain) } else { Gradients }, Newton(Manner::Plain), Way::Downhill]
     }
 }
 
@@ -146,7 +149,7 @@ fn one(
         if way == Way::Newton(Manner::InTurns) && slipping < MOSTLY_SLIP * problem.count() as f64 {
             continue;
         }
-        let another = way != Way::Gradients && k + 1 < ways.len();
+        let another = k + 1 < ways.len();
         let limit = if another { SHARE * left } else { left }.ceil() as u64;
         if limit == 0 {
             end = Outcome::IterationLimit;
@@ -180,6 +183,10 @@ fn by(way: Way, level: &mut Level, best: &mut Best, forces: Forces, goal: Goal<'
         Way::Newton(manner) => {
             let memory = (&mut memory.tangent, &mut memory.fields, best);
             newton::solve(problem, state, memory, (forces, manner), goal)
+        }
+        Way::Downhill => {
+            let memory = (&mut memory.tangent, &mut memory.fields, best);
+            downhill::solve(problem, state, memory, goal)
         }
         Way::Bracket => bracket::solve(problem, state, (memory, best), forces, goal),
         Way::Gradients => {

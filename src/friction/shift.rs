@@ -22,8 +22,9 @@ use crate::methods::fields::Fields;
 use crate::operator::fft::Real;
 use crate::progress::Outcome;
 
-/// Iterations without a new least residual after which another method takes over.
+/// Iterations without the residual falling to this part of its least after which another method takes over.
 const PATIENCE: u32 = 10;
+const PROGRESS: f64 = 0.9;
 
 /// Deferred corrections above this part of a step are multiplied at once, both as rms.
 const MOST_DEFERRED: f64 = 0.2;
@@ -104,7 +105,7 @@ fn until_it_ends<T: Real>(problem: &mut Problem, state: &mut State, discs: &mut 
             continue;
         }
         since += 1;
-        if residual < least {
+        if residual < PROGRESS * least {
             (least, since) = (residual, 0);
         }
         if since > PATIENCE || !residual.is_finite() {

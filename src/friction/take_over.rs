@@ -25,9 +25,9 @@ pub(super) const LARGEST_RATIO: f64 = 1e30;
 /// And this part of it: the round-off of what pressures displace sideways is a slip, too.
 const LEAST_RATIO: f64 = 1e-60;
 
-/// Bounds below this part of the largest carry nothing that counts, and leave the range of single precision: elements of them are
-/// solved as if they carried nothing, and get what their slip asks for.
-const NEGLIGIBLE: f64 = 1e-30;
+/// Bounds below this part of the largest carry nothing but round-off, and make a system singular: elements of them are solved as if they carried
+/// nothing, and get what their slip asks for.
+const NEGLIGIBLE: f64 = 1e-17;
 /// Tractions before the step are at most so many times the largest bound.
 const LARGEST_BEFORE: f64 = 1e150;
 

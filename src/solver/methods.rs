@@ -22,6 +22,9 @@ const WORTHLESS: f64 = 0.3;
 /// of 1000 for NORM, which ends on every area of contact.
 const SHARE: f64 = 0.4;
 const LEAST_SHARE: u64 = 60;
+/// The cycles of PROJECTED_CG with limits at most. Most scenes with limits take fewer; where it takes more it mostly goes round in circles, and the
+/// projected Newton method goes on from its best iterate.
+const LIMITED_SHARE: u64 = 100;
 
 /// The methods of a solver, set up when they are first asked for and kept.
 pub struct Methods {
@@ -94,7 +97,7 @@ impl Methods {
                 }
             }
             let is_last = Some(&stage) == stages.last();
-            task.goal.max_cycles = if is_last { most } else { share(task.monitor.count.cycles, most) };
+            task.goal.max_cycles = if is_last { most } else { share::<S>(stage, task.monitor.count.cycles, most) };
             stop = self.run(stage, task)?;
             let has_more = task.monitor.count.cycles < most && !is_last;
             task.goal.max_cycles = most;
@@ -242,9 +245,10 @@ impl Methods {
 
 /// Cycles up to which a method may go on before the next takes over, of which so many are done: a part of those that are left, so that every method of the list
 /// has its turn.
-fn share(done: u64, most: u64) -> u64 {
+fn share<S: AdmissibleSet>(stage: Stage, done: u64, most: u64) -> u64 {
     let left = most.saturating_sub(done);
-    done + left.min(LEAST_SHARE.max((SHARE * left as f64) as u64))
+    let share = left.min(LEAST_SHARE.max((SHARE * left as f64) as u64));
+    done + if S::LIMITED && stage == Stage::ProjectedCg { share.min(LIMITED_SHARE) } else { share }
 }
 
 /// Whether `p'Ap < 0`: where an iteration diverges by an indefinite A, p is all of such a direction.

@@ -20,6 +20,7 @@ mod laws_steep;
 mod laws_that_rise;
 mod layer;
 mod linear_theory;
+mod long_elements;
 mod onset_of_rolling;
 mod own_law;
 mod plastic;

@@ -1,0 +1,157 @@
+//! Shift, and a step of transient rolling, with the motion given, where faster methods go round in circles: Newton's method, projected on the discs. Every
+//! step lowers the energy `1/2 q.Aq + w.q`, so no state comes back (Bertsekas, *Projected Newton methods for optimization problems with simple
+//! constraints*, 1982).
+//!
+//! ```text
+//! z       a step of Newton's method                            (module `step`)
+//! d = clip(q + z + c) - q,    c: so that d carries the force of z
+//! a = -(d, s)/(d, A d), at most 1;    q = q + a d
+//! ```
+//!
+//! c, because a force that is missing displaces all of C: on long lines a falls to nothing without it. Where d leads uphill, `z = -rho s` does not.
+
+use super::best::Best;
+use super::forces::Forces;
+use super::plane::{add, clip, dot, plus, square, Vector};
+use super::problem::{Problem, State};
+use super::shift::Goal;
+use super::step::{compliance, step, Effort};
+use super::tangent::{rho_of, Tangent};
+use crate::error::Result;
+use crate::methods::fields::{self, Fields};
+use crate::progress::Outcome;
+
+/// The inner residual relative to that of the step, and directions of one step at most.
+const INNER: f64 = 0.1;
+const MOST: usize = 16;
+/// The last step need not be solved further than to this part of the tolerance.
+const ENOUGH: f64 = 0.5;
+/// Rounds in which a force is carried.
+const ROUNDS: u32 = 4;
+/// Steps without a new least residual after which the energy falls by round-off only.
+const PATIENCE: u32 = 40;
+
+/// A step from q to `q + a d`.
+struct Way {
+    d: Vec<Vector>,
+    product: Vec<Vector>,
+    /// `(d, s)`, negative downhill.
+    slope: f64,
+}
+
+/// Iterates from what the state holds.
+pub fn solve(
+    problem: &mut Problem,
+    state: &mut State,
+    (tangent, fields, best): (&mut Tangent, &mut Fields, &mut Best),
+    goal: Goal<'_>,
+) -> Result<Outcome> {
+    let Goal { tolerance, limit, watch, .. } = goal;
+    let made = problem.operators.products;
+    tangent.fit(problem.grid.len())?;
+    problem.continue_residuals()?;
+    problem.refresh(state);
+    let (mut least, mut since) = (f64::INFINITY, 0);
+    loop {
+        let rho = rho_of((problem.rms_bound(), problem.rms_slip()), 1.0 / compliance(problem));
+        let residual = tangent.predict(problem, state, rho).residual;
+        best.see(problem, state, residual, fields)?;
+        if residual < tolerance {
+            if state.is_exact {
+                return Ok(Outcome::Converged);
+            }
+            problem.refresh(state);
+            continue;
+        }
+        since += 1;
+        if residual < least {
+            (least, since) = (residual, 0);
+        }
+        if since > PATIENCE || !residual.is_finite() {
+            return Ok(Outcome::Stagnated);
+        }
+        let left = limit.saturating_sub(problem.operators.products - made);
+        if left == 0 {
+            return Ok(Outcome::IterationLimit);
+        }
+        let inner = INNER.max(ENOUGH * tolerance / residual);
+        let effort = Effort { inner, most: MOST.min(left as usize), left: residual, length: 1.0 };
+        let part = go(problem, state, tangent, (effort, rho), fields)?;
+        if !(part > 0.0) {
+            problem.refresh(state);
+            return Ok(Outcome::Stagnated);
+        }
+        if !watch(residual) {
+            return Ok(Outcome::Cancelled);
+        }
+    }
+}
+
+/// One step. Returns a; 0 where nothing leads downhill.
+fn go(
+    problem: &mut Problem,
+    state: &mut State,
+    tangent: &Tangent,
+    (effort, rho): (Effort, f64),
+    fields: &mut Fields,
+) -> Result<f64> {
+    let (n, threads) = (state.q.len(), problem.threads().clone());
+    let (mut q, mut u) = (fields.take(n)?, fields.take(n)?);
+    fields::fill(&threads, &mut q, |i| state.q[i]);
+    fields::fill(&threads, &mut u, |i| state.u[i]);
+    step(problem, state, tangent, (Forces::NONE, effort), fields)?;
+    let mut way = Way { d: fields.take(n)?, product: fields.take(n)?, slope: f64::NAN };
+    let carry = carried(problem, &state.q);
+    way.to(problem, (&q, &u), |i| add(state.q[i], carry));
+    if !(way.slope < 0.0) {
+        way.to(problem, (&q, &u), |i| plus(q[i], -rho, problem.slip_at(i, &u)));
+    }
+    let mut part = 0.0;
+    if way.slope < 0.0 {
+        problem.operators.multiply(&way.d, problem.rms_bound(), &mut way.product);
+        let curvature = fields::dot(&threads, &way.d, &way.product);
+        part = if curvature > 0.0 { (-way.slope / curvature).min(1.0) } else { 1.0 };
+    } else {
+        fields::fill(&threads, &mut way.product, |_| [0.0; 2]);
+    }
+    problem.update = part * problem.rms_of(fields::dot(&threads, &way.d, &way.d));
+    fields::fill(&threads, &mut state.q, |i| plus(q[i], part, way.d[i]));
+    fields::fill(&threads, &mut state.u, |i| plus(u[i], part, way.product[i]));
+    state.is_exact = false;
+    [q, u, way.d, way.product].into_iter().for_each(|field| fields.give(field));
+    Ok(part)
+}
+
+/// What is added everywhere so that `clip(to + c)` carries the force of `to`: a force that is missing displaces all of C, and would cut the step short.
+fn carried(problem: &Problem, to: &[Vector]) -> Vector {
+    let mut c = [0.0; 2];
+    for _ in 0..ROUNDS {
+        let of_element = |i: usize| {
+            let (g, moved) = (problem.bound[i], add(to[i], c));
+            if !(g > 0.0) {
+                return [0.0; 3];
+            }
+            let left = plus(to[i], -1.0, clip(moved, g));
+            [left[0], left[1], f64::from(u8::from(square(moved) < g * g))]
+        };
+        let [x, y, free] = fields::sum(problem.threads(), to.len(), of_element);
+        if free == 0.0 {
+            break;
+        }
+        c = add(c, [x / free, y / free]);
+    }
+    c
+}
+
+impl Way {
+    /// d from q to the nearest feasible tractions.
+    fn to(&mut self, problem: &Problem, (q, u): (&[Vector], &[Vector]), to: impl Fn(usize) -> Vector + Sync + Send) {
+        let threads = problem.threads();
+        fields::fill(threads, &mut self.d, |i| plus(clip(to(i), problem.bound[i]), -1.0, q[i]));
+        let d = &self.d;
+        let [slope] = fields::sum(threads, d.len(), |i| {
+            [if problem.bound[i] > 0.0 { dot(d[i], problem.slip_at(i, u)) } else { 0.0 }]
+        });
+        self.slope = slope;
+    }
+}
