@@ -66,6 +66,11 @@ fn large(random: &mut Random, unit: f64) -> Grid {
         u if u < 0.9 => (random.integer(10, 50), random.integer(10, 50)),
         _ => (random.integer(50, 100), random.integer(50, 100)),
     };
+    // By numbers of their own: the others stay what they were.
+    let own = &mut random.beside(0x11e5);
+    if my == 1 && own.chance(0.15) {
+        return Grid { mx: own.integer(1000, 4000), my, dx: unit, dy: unit * own.decades(1e2, 1e5) };
+    }
     // Rollers: elements as long as the contact is wide, and longer.
     if my == 1 && random.chance(0.4) {
         return Grid { mx, my, dx: unit, dy: unit * random.decades(1.0, 5.0 * mx as f64) };
