@@ -41,6 +41,7 @@ EXAMPLES = {
     "what_matters": Example(("what_matters",)),
     "visco": Example(("visco",)),
     "wear": Example(("wear",)),
+    "hot_friction": Example(("flash_temperature",)),
     "adhesion": Example(("adhesion_loop", "adhesion_rough"), takes_folder=True),
 }
 

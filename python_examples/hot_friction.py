@@ -1,5 +1,5 @@
 """Friction that falls as the surfaces get warm: creep forces of a wheel that brakes at 30 m/s. The law is a program's own: turns of a solve, flash
-temperatures of its heat, and coefficients by these. `python3 hot_friction.py`."""
+temperatures of its heat, and coefficients by these. `python3 hot_friction.py [picture.svg]`."""
 
 import sys
 
@@ -19,7 +19,7 @@ def coefficient(rise):
 
 
 def rolled(solver, h, creepage):
-    """The forces, the rise and the turns that bring mu to that of its own temperature."""
+    """The result with the mu of its own temperature, the rise, the least mu and the turns that it takes."""
     mu = np.full((MY, MX), COLD)
     for turn in range(1, TURNS + 1):
         friction = dict(coefficient=mu, motion="STEADY_ROLLING", creepage=(-creepage, 0.0), continues=turn > 1)
@@ -31,20 +31,47 @@ def rolled(solver, h, creepage):
         rise = cn.flash_temperature(flux, DX, DY, **HEAT).rise[0]
         change = np.where(result.contact, coefficient(rise) - mu, 0.0)
         if np.abs(change).max() < ENOUGH:
-            return result.tangential_force[0], rise.max(), mu[result.contact].min(), turn
+            return result, rise, mu[result.contact].min(), turn
         # More heat, less friction, less heat: a part of the change settles sooner than all of it.
         mu = mu + PART * change
     sys.exit("turns do not settle")
 
 
-def main():
+def draw(picture, found, cold):
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(10.0, 4.0), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    creepages = list(found)
+    left.plot(creepages, [cold[creepage] / FORCE for creepage in creepages], marker="o", label="cold")
+    left.plot(creepages, [found[creepage][0].tangential_force[0] / FORCE for creepage in creepages], marker="o", label="warmed by its own heat")
+    left.set(title="creep force", xlabel="creepage", ylabel="force over load", xscale="log")
+    left.set_ylim(0.0, 1.1 * COLD)
+    left.legend(fontsize="small")
+    for creepage in creepages[::2]:
+        result, rise = found[creepage]
+        right.plot(result.x, rise[MY // 2], label=f"creepage {creepage:g}")
+    right.set(title="surface of the wheel, along the middle", xlabel="x [mm], the wheel rolls to the right", ylabel="rise of the temperature [K]")
+    right.legend(fontsize="small")
+    figure.savefig(picture)
+
+
+def main(picture=None):
     x, y = (np.arange(MX) - 0.5 * (MX - 1)) * DX, (np.arange(MY) - 0.5 * (MY - 1)) * DY
     h = 8e-4 * x**2 + 2.8142e-4 * y[:, None] ** 2
     print("creepage  force/(0.4 N)  warmest [K]  least mu  turns")
+    found, cold = {}, {}
     with cn.Solver(MY, MX, DX, DY, **STEEL) as solver:
         for creepage in (0.001, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2):
-            force, warmest, least, turns = rolled(solver, h, creepage)
-            print(f"{creepage:8.3f}  {force / (COLD * FORCE):13.4f}  {warmest:11.1f}  {least:8.4f}  {turns:5}")
+            result, rise, least, turns = rolled(solver, h, creepage)
+            force = result.tangential_force[0]
+            print(f"{creepage:8.3f}  {force / (COLD * FORCE):13.4f}  {rise.max():11.1f}  {least:8.4f}  {turns:5}")
+            found[creepage] = (result, rise)
+            if picture:
+                friction = dict(coefficient=COLD, motion="STEADY_ROLLING", creepage=(-creepage, 0.0))
+                cold[creepage] = solver.solve(h, force=FORCE, friction=friction).tangential_force[0]
+    if picture:
+        draw(picture, found, cold)
 
 
 if __name__ == "__main__":
