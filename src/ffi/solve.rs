@@ -215,7 +215,7 @@ fn stagnation(report: &Report, method: Method, state: &State) -> String {
 /// Distances that are so much larger than what the surfaces give way are far from where they are measured.
 const FAR: f64 = 100.0;
 
-/// Distances of the contact area.
+/// Distances of the contact area: of its free elements, whose distances the residual is measured by, where there are some.
 struct Distances {
     /// The largest of h, or of u.
     largest: f64,
@@ -228,7 +228,8 @@ struct Distances {
 impl Distances {
     fn of(state: &State) -> Distances {
         let (mut largest, mut squares, mut count) = (0.0f64, 0.0, 0usize);
-        for i in (0..state.h.len()).filter(|&i| state.touches(i)) {
+        let has_free = state.contact_count() > 0;
+        for i in (0..state.h.len()).filter(|&i| if has_free { state.contact[i] } else { state.touches(i) }) {
             largest = largest.max(state.h[i].abs()).max(state.u[i].abs());
             squares += (state.h[i] - state.approach).powi(2);
             count += 1;

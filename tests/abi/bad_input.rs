@@ -34,6 +34,22 @@ fn a_stagnation_says_what_limits() {
     assert!(message.contains("round-off of distances of order 1e9"), "{message}");
 }
 
+/// All but one of the elements that touch are at their limit, which displaces by 1e-12 of the heights: those of the free one are what counts.
+#[test]
+fn beside_elements_at_their_limit_it_says_so_too() {
+    let mut call = Call::new();
+    call.h.iter_mut().enumerate().for_each(|(i, h)| *h = 0.1 + 0.7071 * i as f64);
+    let scene = &mut call.scene.known;
+    (scene.load, scene.force) =
+        (CONTACT_NORMAL_PRESCRIBED_FORCE, 10.37 * scene.dx * scene.dy * 1e-9 * scene.shear_modulus[0]);
+    let limit = 1e-9 * scene.shear_modulus[0];
+    call.use_limit().limit = limit;
+    call.options.known.tolerance = 1e-12;
+    let (status, message) = call.run(Through::Solve, null_mut());
+    assert_eq!(status, CONTACT_NORMAL_STAGNATED, "{message}");
+    assert!(message.contains("round-off of distances of order"), "{message}");
+}
+
 /// Cycles that make everything worse end with p = 0. That is no matter of round-off.
 #[test]
 fn a_diverging_smoother_is_not_blamed_on_round_off() {
