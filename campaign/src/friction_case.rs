@@ -104,9 +104,10 @@ impl Case {
             distance: if is_roller || random.chance(0.6) {
                 0.0
             } else {
-                // The oracle of coatings is a table along the distance.
+                // The oracle of coatings is a table along the distance; more than a million elements are refused.
                 let longest = if place.effects.coating.is_some() { 30.0 } else { f64::INFINITY };
-                grid.dx.max(grid.dy) * step(random.between(0.3, 3.0)).min(longest)
+                let elements = step(random.between(0.3, 3.0)).min(longest);
+                (grid.dx.max(grid.dy) * elements).min(1e6 * grid.dx.min(grid.dy))
             },
             direction: match random.uniform() {
                 u if is_roller => [0.0, std::f64::consts::PI][usize::from(u < 0.5)],
