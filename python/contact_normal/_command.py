@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
 
@@ -10,7 +11,7 @@ from . import _command_bill, _command_prices, _command_replay, _command_solve, _
 from ._library import VERSION, ContactNormalError
 
 # What the program returns; the page on the command line has the same table.
-STOPPED_EARLY, REFUSED, NO_FILE, INTERRUPTED = 1, 3, 4, 130
+STOPPED_EARLY, REFUSED, NO_FILE, INTERRUPTED, READER_GONE = 1, 3, 4, 130, 141
 _CODES = """\
 exit codes:
   0    done; of a solve: its contact conditions hold to the tolerance
@@ -19,6 +20,7 @@ exit codes:
   3    refused: the scene, a value or a file's contents; the message names the rule
   4    a file cannot be read or written, or a package or program that this needs is not installed
   130  interrupted
+  141  the program that read the output, as head, ended before
 """
 
 
@@ -45,7 +47,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     given = parser().parse_args(arguments)
     try:
-        return int(given.run(given))
+        code = int(given.run(given))
+        sys.stdout.flush()
+        return code
+    except BrokenPipeError:
+        # The reader, as `head`, has enough. Python would say so once more at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return READER_GONE
     except (ContactNormalError, ValueError, TypeError) as error:
         return _failed(error, REFUSED)
     except (OSError, ImportError) as error:

@@ -15,6 +15,9 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _POWERS = {"length": (1, 0), "force": (0, 1), "pressure": (-2, 1), "area": (2, 0), "moment": (1, 1)}
 _PRESSURES = {("m", "N"): "Pa", ("mm", "N"): "MPa", ("um", "N"): "TPa", ("m", "kN"): "kPa", ("mm", "kN"): "GPa",
               ("um", "mN"): "GPa", ("um", "uN"): "MPa", ("nm", "nN"): "GPa"}
+# Names that are never of the other kind.
+_LENGTHS = {"nm", "um", "mm", "cm", "m"}
+_FORCES = {"nN", "uN", "mN", "N", "kN", "MN"}
 
 
 def checked(units: Any) -> Units:
@@ -25,7 +28,14 @@ def checked(units: Any) -> Units:
     for name in (length, force):
         if not isinstance(name, str) or not name:
             raise TypeError(f'units are {units!r}; they must be a pair as ("mm", "N")')
+    if _latin(length) in _FORCES or _latin(force) in _LENGTHS:
+        raise ValueError(f'units are {units!r}; the first is that of lengths, the second that of forces, as ("mm", "N")')
     return length, force
+
+
+def same_length(one: str, other: str) -> bool:
+    """Whether two names are of one unit of length."""
+    return _latin(one) == _latin(other)
 
 
 class WithUnits:

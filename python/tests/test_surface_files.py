@@ -16,6 +16,21 @@ matplotlib.use("Agg")
 from matplotlib import pyplot  # noqa: E402
 
 
+class DataArray:
+    """What the reader asks an xarray.DataArray for."""
+
+    def __init__(self, values, dims, unit, of_coordinates):
+        self.values, self.dims, self.attrs = values, dims, {"units": unit} if unit else {}
+        if len(dims) == 2:
+            self.coords = {name: DataArray(1e-3 * np.arange(4), (name,), of_coordinates, None) for name in dims}
+
+    def __getitem__(self, name):
+        return self.coords[name]
+
+    def transpose(self, *dims):
+        return self if dims == self.dims else DataArray(self.values.T, dims, self.attrs.get("units"), None)
+
+
 class Files(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -35,6 +50,37 @@ class Files(unittest.TestCase):
             self.assertEqual((made.dx, made.dy), (1.0, 2.0))
         with self.assertRaisesRegex(ValueError, "has heights, other; give variable, one of them"):
             surface.read(self.folder / "two.npz", dx=1.0, dy=2.0)
+
+    def test_units_that_differ_are_refused(self):
+        def array(heights, length):
+            return DataArray(np.eye(4), ("y", "x"), heights, length)
+
+        self.assertEqual(surface.from_xarray(array("mm", "mm"), units=("mm", "kN")).units, ("mm", "kN"))
+        self.assertEqual(surface.from_xarray(array("um", "\u00b5m")).units, ("um", "N"))
+        with self.assertRaisesRegex(ValueError, "heights are in um, and x in mm"):
+            surface.from_xarray(array("um", "mm"))
+        with self.assertRaisesRegex(ValueError, "lengths are in mm in the file"):
+            surface.from_xarray(array("mm", "mm"), units=("m", "N"))
+        plain = DataArray(np.eye(4), ("a", "b"), None, None)
+        plain.coords = {}
+        self.assertEqual(surface.from_xarray(plain, dx=1e-6, dy=2e-6).dy, 2e-6)
+        with self.assertRaisesRegex(ValueError, "no coordinates: give dx"):
+            surface.from_xarray(plain)
+
+    def test_units_of_two_surfaces_agree(self):
+        one, other = (surface.heights(np.eye(4), dx=1.0, dy=1.0, units=units) for units in (("mm", "N"), ("um", "mN")))
+        with self.assertRaisesRegex(ValueError, "one unit of length"):
+            surface.gap(one, other)
+        unnamed = surface.heights(np.eye(4), dx=1.0, dy=1.0)
+        self.assertEqual(surface.gap(unnamed, one).units, ("mm", "N"))
+        for units in (("m", "m"), ("N", "m")):
+            with self.assertRaisesRegex(ValueError, "first is that of lengths"):
+                surface.heights(np.eye(4), dx=1.0, dy=1.0, units=units)
+
+    def test_one_array_has_no_names(self):
+        np.save(self.folder / "b.npy", np.eye(4))
+        with self.assertRaisesRegex(ValueError, "holds one array"):
+            surface.read(self.folder / "b.npy", "q", dx=1.0, dy=1.0)
 
     def test_files_keep_every_bit(self):
         path = self.folder / "gap.txt"

@@ -10,6 +10,7 @@ import numpy as np
 
 from .._arguments import number, two
 from .._gap import Gap
+from .._units import same_length
 from ._heights import Heights, refuse_others
 
 if TYPE_CHECKING:
@@ -46,6 +47,9 @@ def gap(lower: Heights, upper: Heights | None = None, *, turned: str = "y") -> G
             raise ValueError(f"the surfaces have {sides[0]} and {sides[1]}; grids must be equal")
         if upper.period != period:
             raise ValueError(f"the periods are {period!r} and {upper.period!r}; they must be equal")
+        if units and upper.units and not same_length(units[0], upper.units[0]):
+            raise ValueError(f"the units are {units!r} and {upper.units!r}; heights must be in one unit of length")
+        units = units or upper.units
         z = z + (upper.turned_over(turned) if turned else upper).z
     if np.isnan(z).all():
         raise ValueError("no element was measured on both surfaces")

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from .._units import same_length
 from ._heights import Heights, heights
 
 
@@ -17,7 +18,7 @@ def from_xarray(array: Any, **given: Any) -> Heights:
     """Heights of an `xarray.DataArray` with two dimensions that have coordinates, in any order.
 
     The dimension of x is the one whose name begins with "x", or else the second one. Units of lengths are those of the attribute "units", if x, y and
-    the heights agree on them.
+    the heights have it; units that differ are refused. With dx or size the coordinates are not read.
     """
     if len(array.dims) != 2:
         raise ValueError(f"the array has the dimensions {tuple(array.dims)}; heights have two")
@@ -25,13 +26,27 @@ def from_xarray(array: Any, **given: Any) -> Heights:
     if str(y).lower().startswith("x") and not str(x).lower().startswith("x"):
         x, y = y, x
     ordered = array.transpose(y, x)
+    if "dx" in given or "size" in given:
+        return heights(ordered.values, **_with_unit(array.attrs.get("units"), given))
     for name in (x, y):
         if name not in array.coords:
-            raise ValueError(f"the dimension {name} has no coordinates: give dx and dy to heights(array.values, ...)")
-    said = {one.attrs.get("units") for one in (array, array[x], array[y])}
-    if len(said) == 1 and None not in said and "units" not in given:
-        given["units"] = (str(said.pop()), "N")
-    return heights(ordered.values, x=ordered[x].values, y=ordered[y].values, **given)
+            raise ValueError(f"the dimension {name} has no coordinates: give dx and dy")
+    said = [one.attrs.get("units") for one in (array, array[x], array[y])]
+    for name, unit in ((x, said[1]), (y, said[2])):
+        if said[0] and unit and not same_length(str(said[0]), str(unit)):
+            raise ValueError(f"the heights are in {said[0]}, and {name} in {unit}: convert one of them")
+    unit = said[0] if all(said) else None
+    return heights(ordered.values, x=ordered[x].values, y=ordered[y].values, **_with_unit(unit, given))
+
+
+def _with_unit(unit: Any, given: dict[str, Any]) -> dict[str, Any]:
+    """What is given, in the unit that the file says, if it does."""
+    if not unit:
+        return given
+    units = given.get("units") or (str(unit), "N")
+    if not same_length(str(unit), units[0]):
+        raise ValueError(f"units are {units!r}, but lengths are in {unit} in the file: name that unit, or convert the heights")
+    return {**given, "units": units}
 
 
 def from_topography(topography: Any, **given: Any) -> Heights:
@@ -42,9 +57,9 @@ def from_topography(topography: Any, **given: Any) -> Heights:
     said: dict[str, Any] = {"size": tuple(float(length) for length in topography.physical_sizes), "axes": "xy"}
     if topography.is_periodic:
         said["period"] = "xy"
-    if unit:
-        said["units"] = (str(unit), "N")
-    return heights(topography.heights(), **{**said, **given})
+    if "dx" in given or "size" in given:
+        del said["size"]
+    return heights(topography.heights(), **{**said, **_with_unit(unit, given)})
 
 
 def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any) -> Heights:
@@ -58,7 +73,7 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     variable : str, optional
         Which array of a file that has several.
     **given
-        What the file does not tell, or tells wrong: see `heights`.
+        What the file does not tell, or tells wrong: see `heights`. `units` may name no other unit of length than the file does.
 
     Raises
     ------
@@ -89,6 +104,8 @@ def _of_numpy(path: str | os.PathLike[str], variable: str | None) -> Any:
     try:
         found = np.load(path)
         if isinstance(found, np.ndarray):
+            if variable is not None:
+                raise ValueError(f"{path} holds one array; give variable for files of several")
             return found
         with found as file:
             return file[_chosen(variable, list(file), path)]
