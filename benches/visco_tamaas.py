@@ -1,12 +1,18 @@
-"""Steps of a body that relaxes, beside tamaas (MaxwellViscoelastic, backward Euler): `visco_tamaas.py [ELEMENTS]`, with tamaas installed."""
+"""Steps of a body that relaxes, beside tamaas (MaxwellViscoelastic, backward Euler): `build/peers/bin/python benches/visco_tamaas.py
+[ELEMENTS]`, after `make bench-peers` or with tamaas installed."""
 
+import os
 import sys
 import time
 
-import numpy as np
-import tamaas
+ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+os.environ.setdefault("CONTACT_NORMAL_LIBRARY", os.path.join(ROOT, "target", "release", "libcontact_normal.so"))
+sys.path.insert(0, os.path.join(ROOT, "python"))
 
-import contact_normal as cn
+import numpy as np  # noqa: E402
+import tamaas  # noqa: E402
+
+import contact_normal as cn  # noqa: E402
 
 N = int(sys.argv[1]) if len(sys.argv) > 1 else 128
 DX, RADIUS, NU = 1.0 / N, 1.0, 0.5

@@ -55,7 +55,11 @@ compiler_for() {
     std=(-Zbuild-std=std,panic_unwind)
 }
 
-export WINEPREFIX=$here/wine CARGO_TARGET_DIR=$here/target CARGO_PROFILE_CHECKED_DEBUG=0
+# Not below the project: cargo looks through its folders, and wine's has a link to the root of all.
+rm -rf "$here/wine"
+WINEPREFIX=$(mktemp -d)
+trap 'rm -rf "$WINEPREFIX"' EXIT
+export WINEPREFIX CARGO_TARGET_DIR=$here/target CARGO_PROFILE_CHECKED_DEBUG=0
 export CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER=aarch64-linux-gnu-gcc
 test -n "$sudo" || apt-get update -qq
 for target in "${targets[@]}"; do
