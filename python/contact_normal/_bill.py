@@ -112,13 +112,16 @@ class Bill(list[BillRow]):
     def __str__(self) -> str:
         if not self:
             return "the scene names no effect: there is nothing to leave out"
-        lines = [f"{'without':34}{'quantity':18}{'change':>10}{'+-':>10}{'seconds':>11}{'saved':>11}  verdict at {self.target:g}"]
-        for row in self:
+        # As wide as the longest names, and the columns of shorter bills stay.
+        names = [" + ".join(row.omitted) for row in self]
+        width = max(34, *(len(name) + 2 for name in names))
+        lines = [f"{'without':{width}}{'quantity':18}{'change':>10}{'+-':>10}{'seconds':>11}{'saved':>11}  verdict at {self.target:g}"]
+        for name, row in zip(names, self):
             value = abs(row.value)
             error = f"{row.error / value:10.2g}" if row.error >= 0 and value else f"{row.lack:>10}"
             saved = row.seconds - row.seconds_without
             lines.append(
-                f"{' + '.join(row.omitted):34}{row.quantity:18}{row.relative:10.2g}{error}{row.seconds:11.2g}{saved:11.2g}  {row.verdict}"
+                f"{name:{width}}{row.quantity:18}{row.relative:10.2g}{error}{row.seconds:11.2g}{saved:11.2g}  {row.verdict}"
             )
         return "\n".join(lines)
 
