@@ -1,4 +1,4 @@
-//! Influence coefficients of tangential tractions: those of both bodies as half-spaces ([`HalfSpace`]), with what one coating on both
+//! Influence coefficients of tangential tractions: those of both bodies as half-spaces (`HalfSpace`), with what one coating on both
 //! changes ([`Coat`]), or tables of the caller's own; and a layer between the bodies.
 //!
 //! Offsets are in elements and need not be whole: rolling asks for displacements between centres.

@@ -38,7 +38,7 @@ fn a_stagnation_says_what_limits() {
 #[test]
 fn beside_elements_at_their_limit_it_says_so_too() {
     let mut call = Call::new();
-    call.h.iter_mut().enumerate().for_each(|(i, h)| *h = 0.1 + 0.7071 * i as f64);
+    call.h.iter_mut().enumerate().for_each(|(i, h)| *h = 0.1 + 0.7031 * i as f64);
     let scene = &mut call.scene.known;
     (scene.load, scene.force) =
         (CONTACT_NORMAL_PRESCRIBED_FORCE, 10.37 * scene.dx * scene.dy * 1e-9 * scene.shear_modulus[0]);
