@@ -6,6 +6,7 @@ contact area and the adhesive over the total force on 128 x 128 elements, produc
 """
 
 import argparse
+import functools
 import os
 import sys
 
@@ -23,6 +24,7 @@ KAPPA, FEWEST, MOST, SLOPE = 0.25, 4, 16, 0.1
 SELF_INFLUENCE = 4 / np.pi * np.arcsinh(1.0)
 
 
+@functools.cache
 def surface(n, seed=3):
     """Heights with the same waves on any grid, and the elastic energy of full contact per area."""
     draw = np.random.default_rng(seed)

@@ -136,7 +136,7 @@ impl Place {
         self.own = Some(Arc::new(own));
     }
 
-    /// What is at the surfaces of both bodies.
+    /// The materials at the surfaces of both bodies: of their coating, or their own.
     pub fn materials(&self) -> Compliance {
         let coating = self.effects.coating.as_ref();
         let (modulus, ratio) = coating.map_or((self.shear_modulus, self.poisson_ratio), Coating::at_surface);

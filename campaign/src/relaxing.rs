@@ -259,7 +259,7 @@ mod tests {
             assert!((s + left[0] - (1.0 + r * expected)).abs() <= 1e-13, "{s} {left:?}");
         }
         let stiff = body(&[0.5, 0.4], &[1e-3, 1e3]).after(CONTACT_NORMAL_FORM_CREEP, 1.0, &[0.0, 0.0], (1.0, 1.0));
-        // The fast branch follows: q = u, u = w/(1 - .5) but for what the slow one adds.
+        // The fast branch follows, so q = u. The slow one adds little to u = w/(1 - .5).
         assert!((stiff[0] / 2.0 - 1.0).abs() < 2e-3, "{stiff:?}");
     }
 }

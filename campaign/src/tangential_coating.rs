@@ -34,7 +34,7 @@ fn j2(x: f64) -> f64 {
 }
 
 impl Coat {
-    /// On a grid, for displacements at so many lengths from the centres.
+    /// On a grid. Displacements are taken at a distance from the centres.
     pub fn new(coating: &Coating, grid: &Grid, by: Vector) -> Coat {
         let (_, t, mu, nu) = coating.surface(0);
         let reach = |m: usize, d: f64, by: f64| (m as f64 + 1.0) * d + by.abs();
@@ -66,7 +66,7 @@ impl Coat {
                 sums[2] += d * 2.0 * cosine * sine;
             }
         }
-        // What is odd across a line of elements is 0 on it.
+        // A function that is odd across a line of elements is 0 on it.
         if at[0] == 0.0 || at[1] == 0.0 {
             sums[2] = 0.0;
         }

@@ -189,7 +189,7 @@ impl Effect for Coating {
 
     // Of other bodies what couples both problems is no difference of moduli.
     fn check_tractions(&self, scene: &Plain<'_>) -> Result<()> {
-        // What is no coating is refused for that.
+        // A layer or a body without meaning is refused by its own check.
         let is_checked = self.check(&scene.grid).is_ok() && scene.bodies.check_each().is_ok();
         match self.difference(scene).filter(|_| is_checked) {
             Some(difference) => Err(Error::Unsupported(format!(

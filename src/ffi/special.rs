@@ -9,13 +9,13 @@ use super::structs::{self, versioned};
 use super::visco::contact_normal_visco;
 use crate::analytic::{self, Hertz};
 use crate::effects::Effect;
-use crate::error::positive;
+use crate::error::{positive, Error};
 use crate::friction::rolling_tables;
 use crate::grid::Grid;
 use crate::influence::{HalfSpace, Kernel};
 use crate::memory::zeros;
 use crate::scene::{Bodies, Load};
-use crate::visco::{rolling_table, RollingBody, Series};
+use crate::visco::{rolling_table, RollingBody};
 
 /// The exact Hertz solution.
 #[repr(C)]
@@ -133,18 +133,13 @@ pub unsafe extern "C" fn contact_normal_influence_rolling(
     coefficients: *mut f64,
 ) -> contact_normal_status {
     guard(|| {
-        // SAFETY (all): NULL, or as many values as the comment says, by the conventions of the ABI.
+        let (materials, size) = ((shear_modulus, poisson_ratio), (dx, dy));
+        let compliance = |bodies: &Bodies, b: usize| bodies.compliance_of(b);
+        // SAFETY: NULL, or as many values as the comment says, by the conventions of the ABI.
         unsafe {
-            let (bodies, [one, other]) = rolling_bodies((shear_modulus, poisson_ratio), visco, (dx, dy))?;
-            let (cx, cy) = (count("cx", cx)?, count("cy", cy)?);
-            let size = table_size(cx, cy)?;
-            if coefficients.is_null() {
-                return Err(Refusal::null("coefficients"));
-            }
-            let body = |b: usize, series| RollingBody { compliance: bodies.compliance_of(b), series };
-            let table = rolling_table((cx, cy), (dx, dy), &[body(0, one), body(1, other)], speed)?;
-            std::ptr::copy_nonoverlapping(table.as_ptr(), coefficients, size);
-            Ok(CONTACT_NORMAL_OK)
+            write_rolling((cx, cy), size, materials, visco, compliance, coefficients, |offsets, _, bodies| {
+                rolling_table(offsets, size, bodies, speed).map(|table| [table])
+            })
         }
     })
 }
@@ -166,39 +161,50 @@ pub unsafe extern "C" fn contact_normal_influence_rolling_tangential(
     coefficients: *mut f64,
 ) -> contact_normal_status {
     guard(|| {
-        // SAFETY (all): NULL, or as many values as the comment says, by the conventions of the ABI.
+        let (materials, size) = ((shear_modulus, poisson_ratio), (dx, dy));
+        let compliance = |bodies: &Bodies, b: usize| 0.5 / bodies.shear_modulus[b];
+        // SAFETY: NULL, or as many values as the comment says, by the conventions of the ABI.
         unsafe {
-            let (bodies, series) = rolling_bodies((shear_modulus, poisson_ratio), visco, (dx, dy))?;
-            let (cx, cy) = (count("cx", cx)?, count("cy", cy)?);
-            let size = table_size(cx, cy)?;
-            if coefficients.is_null() {
-                return Err(Refusal::null("coefficients"));
-            }
-            let [one, other] = series;
-            let body = |b: usize, series| RollingBody { compliance: 0.5 / bodies.shear_modulus[b], series };
-            let of_bodies = (&[body(0, one), body(1, other)], bodies.poisson_ratio);
-            let tables = rolling_tables((cx, cy), (dx, dy), of_bodies, speed)?;
-            for (k, table) in tables.iter().enumerate() {
-                std::ptr::copy_nonoverlapping(table.as_ptr(), coefficients.add(k * size), size);
-            }
-            Ok(CONTACT_NORMAL_OK)
+            write_rolling(
+                (cx, cy),
+                size,
+                materials,
+                visco,
+                compliance,
+                coefficients,
+                |offsets, poisson_ratio, bodies| rolling_tables(offsets, size, (bodies, poisson_ratio), speed),
+            )
         }
     })
 }
 
-/// The bodies, and how they relax.
-unsafe fn rolling_bodies(
+/// Writes K tables of bodies that relax and roll steadily, one after the other; `make` has the offsets, Poisson's ratios and the bodies.
+unsafe fn write_rolling<const K: usize>(
+    (cx, cy): (i32, i32),
+    (dx, dy): (f64, f64),
     (shear_modulus, poisson_ratio): (*const f64, *const f64),
     visco: *const contact_normal_visco,
-    (dx, dy): (f64, f64),
-) -> Result<(Bodies, [Series; 2]), Refusal> {
+    compliance: impl Fn(&Bodies, usize) -> f64,
+    coefficients: *mut f64,
+    make: impl FnOnce((usize, usize), [f64; 2], &[RollingBody; 2]) -> Result<[Vec<f64>; K], Error>,
+) -> Result<contact_normal_status, Refusal> {
     // SAFETY (all): NULL, or as many values as the ABI says.
     unsafe {
         let bodies = bodies(shear_modulus, poisson_ratio)?;
         let given = structs::read(visco, "visco")?;
         let visco = given.translate()?;
         visco.check(&Grid::new(1, 1, dx, dy)?)?;
-        let series = visco.series(&bodies)?;
-        Ok((bodies, series))
+        let [one, other] = visco.series(&bodies)?;
+        let (cx, cy) = (count("cx", cx)?, count("cy", cy)?);
+        let size = table_size(cx, cy)?;
+        if coefficients.is_null() {
+            return Err(Refusal::null("coefficients"));
+        }
+        let body = |b: usize, series| RollingBody { compliance: compliance(&bodies, b), series };
+        let tables = make((cx, cy), bodies.poisson_ratio, &[body(0, one), body(1, other)])?;
+        for (k, table) in tables.iter().enumerate() {
+            std::ptr::copy_nonoverlapping(table.as_ptr(), coefficients.add(k * size), size);
+        }
+        Ok(CONTACT_NORMAL_OK)
     }
 }

@@ -31,10 +31,9 @@ const ROUNDS: u32 = 4;
 /// Steps without a new least residual after which the energy falls by round-off only.
 const PATIENCE: u32 = 40;
 
-/// A step from q to `q + a d`.
+/// The way of a step.
 struct Way {
     d: Vec<Vector>,
-    product: Vec<Vector>,
     /// `(d, s)`, negative downhill.
     slope: f64,
 }
@@ -100,7 +99,7 @@ fn go(
     fields::fill(&threads, &mut q, |i| state.q[i]);
     fields::fill(&threads, &mut u, |i| state.u[i]);
     step(problem, state, tangent, (Forces::NONE, effort), fields)?;
-    let mut way = Way { d: fields.take(n)?, product: fields.take(n)?, slope: f64::NAN };
+    let (mut way, mut product) = (Way { d: fields.take(n)?, slope: f64::NAN }, fields.take(n)?);
     let carry = carried(problem, &state.q);
     way.to(problem, (&q, &u), |i| add(state.q[i], carry));
     if !(way.slope < 0.0) {
@@ -108,17 +107,17 @@ fn go(
     }
     let mut part = 0.0;
     if way.slope < 0.0 {
-        problem.operators.multiply(&way.d, problem.rms_bound(), &mut way.product);
-        let curvature = fields::dot(&threads, &way.d, &way.product);
+        problem.operators.multiply(&way.d, problem.rms_bound(), &mut product);
+        let curvature = fields::dot(&threads, &way.d, &product);
         part = if curvature > 0.0 { (-way.slope / curvature).min(1.0) } else { 1.0 };
-    } else {
-        fields::fill(&threads, &mut way.product, |_| [0.0; 2]);
+        fields::map(&threads, &mut q, |i, q| plus(q, part, way.d[i]));
+        fields::map(&threads, &mut u, |i, u| plus(u, part, product[i]));
     }
     problem.update = part * problem.rms_of(fields::dot(&threads, &way.d, &way.d));
-    fields::fill(&threads, &mut state.q, |i| plus(q[i], part, way.d[i]));
-    fields::fill(&threads, &mut state.u, |i| plus(u[i], part, way.product[i]));
+    std::mem::swap(&mut state.q, &mut q);
+    std::mem::swap(&mut state.u, &mut u);
     state.is_exact = false;
-    [q, u, way.d, way.product].into_iter().for_each(|field| fields.give(field));
+    [q, u, way.d, product].into_iter().for_each(|field| fields.give(field));
     Ok(part)
 }
 

@@ -53,7 +53,7 @@ pub fn rolling_tables(
         for (tangential, parts) in &of_bodies {
             let at = |kx: f64| tangential.at(kx, ky as f64);
             let of = Row { at: &at, is_loaded: ky == 0, rule: &rule };
-            parts.iter().filter(|part| part.weight > 0.0).for_each(|part| of.add(part, cx, &mut row));
+            parts.iter().for_each(|part| of.add(part, cx, &mut row));
         }
         for entry in &mut row {
             *entry = entry.map(|value| times_power(value, of_d + of_compliance));

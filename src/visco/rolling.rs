@@ -46,7 +46,7 @@ pub struct RollingBody {
 
 /// A part of the coefficients: W times `weight`, with the decay length L in elements; a itself without one.
 pub struct Part {
-    pub weight: f64,
+    weight: f64,
     length: Option<f64>,
 }
 
@@ -167,6 +167,7 @@ pub fn parts(b: usize, body: &RollingBody, power: i32, dx: f64, speed: f64) -> R
     for mode in Mode::of(&Series { rest: body.series.rest, ..series }) {
         parts.push(Part { weight: compliance / (mode.inertia * mode.rate), length: Some(1.0 / mode.rate) });
     }
+    parts.retain(|part| part.weight > 0.0);
     Ok(parts)
 }
 
@@ -214,7 +215,7 @@ pub fn rolling_table(
         let element = (d, times_power(dy, -of_d));
         let at = |kx: f64| [integral_at((kx.abs(), ky as f64), element)];
         let of = Row { at: &at, is_loaded: ky == 0, rule: &rule };
-        of_bodies.iter().filter(|part| part.weight > 0.0).for_each(|part| of.add(part, cx, &mut row));
+        of_bodies.iter().for_each(|part| of.add(part, cx, &mut row));
         if speed < 0.0 {
             row.reverse();
         }

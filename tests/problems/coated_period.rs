@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
-use contact_normal::influence::{radial, CoatedBody, CoatedPeriodic, HalfSpace, Kernel, Periodic, Transfer};
+use contact_normal::influence::{radial, CoatedBody, CoatedPeriodic, HalfSpace, Kernel, Periodic, Response, Transfer};
 use contact_normal::operator::dense;
 use contact_normal::scene::{Bodies, Coating, CoatingLayer, Layer, Load, Period, Scene};
 use contact_normal::solver::{solve, ActiveSet, Guess, InitialGuess, Method, Options, Outcome, Problem, Solver};

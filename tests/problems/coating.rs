@@ -5,7 +5,9 @@ use std::f64::consts::PI;
 use astro_float::{BigFloat, Consts, RoundingMode};
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
-use contact_normal::influence::{radial, Base, Coated, CoatedBody, Coefficients, HalfSpace, Kernel, Transfer};
+use contact_normal::influence::{
+    radial, Base, Coated, CoatedBody, Coefficients, HalfSpace, Kernel, Response, Transfer,
+};
 use contact_normal::operator::{dense, Operator};
 use contact_normal::scene::{Bodies, Coating, CoatingLayer, Layer, Load, Patches, Period, PressureLimit, Scene};
 use contact_normal::solver::{Method, Options, Outcome, Solver};

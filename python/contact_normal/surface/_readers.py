@@ -57,7 +57,7 @@ def from_topography(topography: Any, **given: Any) -> Heights:
     said: dict[str, Any] = {"size": tuple(float(length) for length in topography.physical_sizes), "axes": "xy"}
     if topography.is_periodic:
         said["period"] = "xy"
-    if "dx" in given or "size" in given:
+    if "dx" in given:
         del said["size"]
     return heights(topography.heights(), **{**said, **_with_unit(unit, given)})
 

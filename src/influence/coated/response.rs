@@ -18,3 +18,13 @@ pub trait Response {
     /// The Taylor coefficients of B at 0.
     fn taylor(&self) -> [f64; TERMS];
 }
+
+/// The Taylor coefficients of a quotient, by those of both.
+pub(super) fn quotient(n: impl Fn(i32) -> f64, d: impl Fn(i32) -> f64) -> [f64; TERMS] {
+    let mut taylor = [0.0; TERMS];
+    for k in 0..TERMS {
+        let known: f64 = (1..=k).map(|j| d(j as i32) * taylor[k - j]).sum();
+        taylor[k] = (n(k as i32) - known) / d(0);
+    }
+    taylor
+}

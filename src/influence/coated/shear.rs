@@ -17,7 +17,7 @@
 //!
 //! L(0) = B(0) and T(0) = mu are the substrate. On a rigid body L = s/(1 - nu1) and T = s for small s: a layer of compliance t/G1, compressible or not.
 
-use super::response::{Response, TERMS};
+use super::response::{quotient, Response, TERMS};
 use super::transfer::{term, Fade, Transfer, PLAIN};
 
 /// L of one layer.
@@ -110,13 +110,7 @@ impl Response for Across {
 
     fn taylor(&self) -> [f64; TERMS] {
         // sinh and cosh by turns.
-        let of = |even: f64, odd: f64| move |k: usize| if k % 2 == 0 { even } else { odd } * term(1.0, k as i32);
-        let (n, d) = (of(self.mu, 1.0), of(1.0, self.mu));
-        let mut taylor = [0.0; TERMS];
-        for k in 0..TERMS {
-            let known: f64 = (1..=k).map(|j| d(j) * taylor[k - j]).sum();
-            taylor[k] = n(k) - known;
-        }
-        taylor
+        let of = |even: f64, odd: f64| move |k: i32| if k % 2 == 0 { even } else { odd } * term(1.0, k);
+        quotient(of(self.mu, 1.0), of(1.0, self.mu))
     }
 }

@@ -18,7 +18,7 @@
 //! D = (1 - lambda)(1 - kappa) + ((1 - lambda) kappa th + lambda (1 - kappa)) e + 4 kappa th (sinh^2 s - s^2)    stiff, e = 1 - th
 //! ```
 
-use super::response::{Response, TERMS};
+use super::response::{quotient, Response, TERMS};
 
 /// Beyond, exponentials are so small that nothing cancels.
 pub(super) const PLAIN: f64 = 20.0;
@@ -57,32 +57,6 @@ impl Transfer {
         }
     }
 
-    /// B(s), s >= 0.
-    pub fn at(&self, s: f64) -> f64 {
-        if s > PLAIN {
-            return 1.0 + self.less_one_plain(s);
-        }
-        let Transfer { lambda, kappa, .. } = *self;
-        let fade = Fade::new(s);
-        let Fade { th, less } = fade;
-        let n = if kappa >= 0.0 && lambda > 0.0 {
-            // expm1(-4 s) = less (2 + less)
-            self.less_both - lambda * kappa * less * (2.0 + less) + 4.0 * s * kappa * th
-        } else {
-            self.less_both + 2.0 * (lambda * kappa * fade.odd(s) + 2.0 * s * kappa * self.more_lambda * th)
-        };
-        n / self.denominator(s, fade)
-    }
-
-    /// `B(s) - 1`, without cancellation where B is near 1 for large s.
-    pub fn less_one(&self, s: f64) -> f64 {
-        if s >= 1.0 {
-            self.less_one_plain(s)
-        } else {
-            self.at(s) - 1.0
-        }
-    }
-
     fn less_one_plain(&self, s: f64) -> f64 {
         let Transfer { lambda, kappa, .. } = *self;
         let fade = Fade::new(s);
@@ -107,16 +81,6 @@ impl Transfer {
             + 4.0 * kappa * even
     }
 
-    /// The Taylor coefficients of B at 0, by dividing the series of N and D, which are written with `1 - lambda` and `1 - kappa`
-    /// so that they do not cancel for stiff layers.
-    pub fn taylor(&self) -> [f64; TERMS] {
-        let n = |k: i32| match k {
-            0 => self.less_both,
-            _ => 4.0 * self.kappa * term(-2.0, k - 1) - self.lambda * self.kappa * term(-4.0, k),
-        };
-        self.over_denominator(n)
-    }
-
     /// The Taylor coefficients of the quotient by D of what has the coefficients `n(k)`.
     pub(super) fn over_denominator(&self, n: impl Fn(i32) -> f64) -> [f64; TERMS] {
         let (a, b, c) = (self.less_lambda, self.less_kappa, self.less_both);
@@ -129,30 +93,46 @@ impl Transfer {
                 stiff + (a + b) * term(-2.0, k) + b * quadratic - c * term(-4.0, k)
             }
         };
-        let mut taylor = [0.0; TERMS];
-        for k in 0..TERMS {
-            let known: f64 = (1..=k).map(|j| d(j as i32) * taylor[k - j]).sum();
-            taylor[k] = (n(k as i32) - known) / d(0);
-        }
-        taylor
+        quotient(n, d)
     }
 }
 
 impl Response for Transfer {
     fn at(&self, s: f64) -> f64 {
-        Transfer::at(self, s)
+        if s > PLAIN {
+            return 1.0 + self.less_one_plain(s);
+        }
+        let Transfer { lambda, kappa, .. } = *self;
+        let fade = Fade::new(s);
+        let Fade { th, less } = fade;
+        let n = if kappa >= 0.0 && lambda > 0.0 {
+            // expm1(-4 s) = less (2 + less)
+            self.less_both - lambda * kappa * less * (2.0 + less) + 4.0 * s * kappa * th
+        } else {
+            self.less_both + 2.0 * (lambda * kappa * fade.odd(s) + 2.0 * s * kappa * self.more_lambda * th)
+        };
+        n / self.denominator(s, fade)
     }
 
     fn less_one(&self, s: f64) -> f64 {
-        Transfer::less_one(self, s)
+        if s >= 1.0 {
+            self.less_one_plain(s)
+        } else {
+            self.at(s) - 1.0
+        }
     }
 
     fn substrate(&self) -> f64 {
         self.substrate
     }
 
+    // By the series of N and D, which are written with `1 - lambda` and `1 - kappa` so that they do not cancel for stiff layers.
     fn taylor(&self) -> [f64; TERMS] {
-        Transfer::taylor(self)
+        let n = |k: i32| match k {
+            0 => self.less_both,
+            _ => 4.0 * self.kappa * term(-2.0, k - 1) - self.lambda * self.kappa * term(-4.0, k),
+        };
+        self.over_denominator(n)
     }
 }
 

@@ -8,6 +8,7 @@
 
 use std::f64::consts::PI;
 
+use super::response::Response;
 use super::CoatedBody;
 use crate::error::Result;
 use crate::grid::Grid;
