@@ -28,8 +28,16 @@ class Heights(unittest.TestCase):
         told = {"units": "um"}
         array = xarray.DataArray(Z, dims=("y", "x"), coords={"x": ("x", np.arange(7.0), told), "y": ("y", np.arange(5.0), told)}, attrs=told)
         self.assertEqual(surface.from_xarray(array).units, ("um", "N"))
-        self.assertEqual(surface.from_xarray(array, units=("m", "kN")).units, ("m", "kN"))
-        self.assertIsNone(surface.from_xarray(array.assign_attrs(units="nm")).units)
+        self.assertEqual(surface.from_xarray(array, units=("um", "mN")).units, ("um", "mN"))
+        self.assertIsNone(surface.from_xarray(array.assign_attrs(units="")).units)
+
+    def test_units_that_disagree_are_refused(self):
+        told = {"units": "um"}
+        array = xarray.DataArray(Z, dims=("y", "x"), coords={"x": ("x", np.arange(7.0), told), "y": ("y", np.arange(5.0), told)}, attrs=told)
+        with self.assertRaisesRegex(ValueError, "lengths are in um in the file"):
+            surface.from_xarray(array, units=("m", "kN"))
+        with self.assertRaisesRegex(ValueError, "the heights are in nm, and x in um"):
+            surface.from_xarray(array.assign_attrs(units="nm"))
 
     def test_what_has_no_grid_is_refused(self):
         with self.assertRaisesRegex(ValueError, "the dimension x has no coordinates"):
