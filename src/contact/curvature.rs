@@ -1,6 +1,10 @@
 //! How much the undeformed distance and the pressures bend within an element: what elements cannot show.
 
-use super::{Outline, Problem, State};
+use std::f64::consts::PI;
+use std::ops::Range;
+
+use super::{each_jump, Jump, Outline, Problem, State};
+use crate::bounding_box::bounding_box;
 
 /// Rows of the contact area that are looked at, at least: the means over more of them are the same.
 const ROWS: usize = 32;
@@ -15,8 +19,12 @@ pub struct Curvature {
     pub depth: f64,
     /// u = approach - h, its mean with the weights of a flat punch's pressures: the force over dF/d(approach) (Betti).
     pub displaced: f64,
+    /// Means over the rim, with their weight beside the area's: of `|bend|` over the square of the elements of its run.
+    pub short: f64,
     /// rms of the second differences of p, over that of p.
     pub pressure: f64,
+    /// Jumps of h beside contact: the sum of `|J|` times what is uncertain of an element.
+    pub jumps: f64,
 }
 
 /// Sums over some elements.
@@ -28,9 +36,12 @@ struct Sums {
     rim_bend: f64,
     rim_h: f64,
     rim_count: f64,
+    rim_short: f64,
     differences: f64,
     squares: f64,
     lowest: f64,
+    /// Elements of the run along a row that is counted.
+    run: f64,
 }
 
 impl Curvature {
@@ -45,7 +56,12 @@ impl Curvature {
             let first = row.iter().position(|&inside| inside).unwrap_or(0);
             let end = row.iter().rposition(|&inside| inside).map_or(0, |last| last + 1);
             let plain = !layered && iy > 0 && iy + 1 < my;
+            let mut end_of_run = 0;
             for ix in (first..end).filter(|&ix| row[ix]) {
+                if ix >= end_of_run {
+                    let run = run(row, ix, mx);
+                    (sums.run, end_of_run) = (run.len() as f64, run.end);
+                }
                 if plain && ix > 0 && ix + 1 < mx {
                     sums.add_inner(state, iy * mx + ix);
                 } else {
@@ -53,7 +69,10 @@ impl Curvature {
                 }
             }
         }
-        sums.curvature(state.approach, outline.scatter(state.contact_count()))
+        let (jumps, at_rim) = jumps(problem, state, repeats);
+        sums.without_jumps(at_rim.map(|sum| sum / (24 * stride) as f64));
+        let of_area = area_weight(problem, state, outline);
+        Curvature { jumps, ..sums.curvature(state.approach, of_area) }
     }
 
     /// The second differences of the pressures at their peak, over it: small where elements resolve the peak. None without pressures.
@@ -114,6 +133,7 @@ impl Sums {
         self.count += 1.0;
         if rim {
             self.rim_bend += bend;
+            self.rim_short += bend.abs() / (self.run * self.run);
             self.rim_h += state.h[at];
             self.rim_count += 1.0;
         }
@@ -122,12 +142,15 @@ impl Sums {
         self.lowest = self.lowest.min(state.h[at]);
     }
 
-    /// A flat punch presses most at its rim. For `h = r^n` its weights give n k, of the mean over the area 2 n and over the rim n^2 with
-    /// `k = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2)`: two thirds and one third of these are right to a tenth up to n = 10. Many
-    /// places hardly feel each other. The force of a flat punch on each is in proportion to its width, not its area. The mean over the rims has
-    /// these weights; that over the area is divided by the root of the number of places.
-    fn curvature(&self, approach: f64, scatter: f64) -> Curvature {
-        let of_area = 2.0 / (3.0 * scatter);
+    /// Takes away what jumps add to the bends of the elements beside them.
+    fn without_jumps(&mut self, [bend, short]: [f64; 2]) {
+        self.bend -= bend;
+        self.rim_bend -= bend;
+        self.rim_short = (self.rim_short - short).max(0.0);
+    }
+
+    /// Means over the area, with this weight, and over the rim.
+    fn curvature(&self, approach: f64, of_area: f64) -> Curvature {
         let weighted = |sum: f64, rim: f64| {
             let mean = sum / self.count.max(1.0);
             let of_rim = if self.rim_count > 0.0 { rim / self.rim_count } else { mean };
@@ -138,9 +161,65 @@ impl Sums {
             bend: weighted(self.bend, self.rim_bend),
             depth: above(self.lowest),
             displaced: above(weighted(self.h, self.rim_h)),
+            short: (1.0 - of_area) * self.rim_short / self.rim_count.max(1.0),
             pressure: if self.squares > 0.0 { (self.differences / self.squares).sqrt() } else { 0.0 },
+            jumps: 0.0,
         }
     }
+}
+
+/// The weight of the mean over the area, beside that over the rim, so that both together are the mean with the pressures of a flat punch.
+///
+/// A flat punch presses most at its rim. For `h = r^n` its weights give n k, of the mean over the area 2 n and over the rim n^2 with
+/// `k = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2)`: two thirds and one third of these are right to a tenth up to n = 10. Many
+/// places hardly feel each other. The force of a flat punch on each is in proportion to its width, not its area. The mean over the rims has
+/// these weights; that over the area is divided by the root of the number of places.
+///
+/// With two periods the punch presses the more uniformly, the more of the period is in contact. Strips that fill the part c of it have the pressures
+/// `cos(pi x)/sqrt(k^2 - sin^2(pi x))`, k = sin(pi c/2) (Westergaard 1939). Of a wave `2 sin^2(pi x)` their mean is k^2, that over the area
+/// `m = 1 - sin(pi c)/(pi c)`, and that of the rim 2 k^2: the weight `k^2/(2 k^2 - m)` goes from three quarters to 1.
+fn area_weight(problem: &Problem, state: &State, outline: &Outline) -> f64 {
+    let (grid, count) = (&state.grid, state.contact_count());
+    let repeats = problem.coefficients.repeats(grid);
+    let scatter = outline.scatter(count, repeats);
+    if repeats != (true, true) {
+        return 2.0 / (3.0 * scatter);
+    }
+    let filled = PI * count as f64 / grid.len() as f64;
+    let (k, m) = ((0.5 * filled).sin().powi(2), 1.0 - filled.sin() / filled);
+    let of_strips = if count > 0 { k / (2.0 * k - m) } else { 0.75 };
+    let of_places = (2.0 / 3.0 + outline.straight_part() / 12.0) / scatter;
+    of_places + (1.0 - of_places) * (4.0 * of_strips - 3.0)
+}
+
+/// The jumps of h beside contact: see [`Curvature::jumps`]; and what they add at the rim to second differences of h, and to these over the square
+/// of the elements of their run.
+fn jumps(problem: &Problem, state: &State, repeats: (bool, bool)) -> (f64, [f64; 2]) {
+    let (grid, contact) = (&state.grid, &state.contact);
+    let (mut sum, mut bend, mut short) = (0.0, 0.0, 0.0);
+    let visit = |Jump { between: (i, j), height, uncertain, lines }: Jump| {
+        sum += lines * height.abs() * uncertain;
+        // Beside a jump within contact the second differences have opposite signs.
+        if contact[i] != contact[j] {
+            let (inside, up) = if contact[i] { (i, height) } else { (j, -height) };
+            let run = run(contact, inside, grid.mx).len() as f64;
+            bend += lines * up;
+            short += lines * up.abs() / (run * run);
+        }
+    };
+    let touching = bounding_box(contact, grid, &problem.threads, |row| row.contains(&true), |inside| *inside);
+    if let Some(part) = touching {
+        each_jump((grid, &part), repeats, (|i: usize| state.h[i], false), |i, j| contact[i] || contact[j], visit);
+    }
+    (sum, [bend, short])
+}
+
+/// The elements in contact without a gap along the row of one that is.
+fn run(contact: &[bool], at: usize, mx: usize) -> Range<usize> {
+    let row = at / mx * mx;
+    let before = contact[row..at].iter().rev().take_while(|&&inside| inside).count();
+    let behind = contact[at..row + mx].iter().take_while(|&&inside| inside).count();
+    at - before..at + behind
 }
 
 /// The elements before and behind element `i` of `m`; none beyond the end of what does not repeat itself.

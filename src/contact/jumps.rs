@@ -30,16 +30,28 @@ struct Line {
     across: Direction,
 }
 
-/// Sum over the jumps J between neighbours of `|J|` times the part of an element that is uncertain times `weight(i, j)` of the two
-/// elements, of which one lies in `part` of the grid. Of many lines some are looked at, unless `all`.
-pub fn at_jumps(
+/// A jump between two neighbours of a line.
+#[derive(Clone, Copy, Debug)]
+pub struct Jump {
+    /// The elements before and behind it.
+    pub between: (usize, usize),
+    /// The quantity behind it, less that before it.
+    pub height: f64,
+    /// The part of an element that is uncertain.
+    pub uncertain: f64,
+    /// Lines that this one stands for.
+    pub lines: f64,
+}
+
+/// Visits the jumps between neighbours that are wanted, of which one lies in `part` of the grid. Of many lines some are looked at, unless `all`.
+pub fn each_jump(
     (grid, part): (&Grid, &Part),
     repeats: (bool, bool),
     (value, all): (impl Fn(usize) -> f64, bool),
-    weight: impl Fn(usize, usize) -> f64,
-) -> f64 {
+    is_wanted: impl Fn(usize, usize) -> bool,
+    mut visit: impl FnMut(Jump),
+) {
     let [x, y] = Direction::both(grid, repeats);
-    let mut sum = 0.0;
     for (along, across, numbers, places) in [(x, y, &part.1, &part.0), (y, x, &part.0, &part.1)] {
         // A jump needs four different centres.
         if along.m < 4 {
@@ -47,13 +59,26 @@ pub fn at_jumps(
         }
         let stride = if all { 1 } else { (numbers.len() / LINES).max(1) };
         let looked_at = (numbers.start + stride / 2..numbers.end).step_by(stride);
-        let each = numbers.len() as f64 / looked_at.len() as f64;
+        let lines = numbers.len() as f64 / looked_at.len() as f64;
         // Where a whole period is looked at, the jump at its seam comes last.
         let first = if along.repeats && places.len() == along.m { 0 } else { -1 };
         let places = places.start as isize + first..places.end as isize;
-        let of_line = |number| Line { number, along, across }.jumps(places.clone(), &value, &weight);
-        sum += each * looked_at.map(of_line).sum::<f64>();
+        for number in looked_at {
+            Line { number, along, across }.jumps((places.clone(), lines), &value, &is_wanted, &mut visit);
+        }
     }
+}
+
+/// Sum over the jumps J, in all lines, of `|J|` times the part of an element that is uncertain times `weight(i, j)` of the two elements.
+pub fn at_jumps(
+    part: (&Grid, &Part),
+    repeats: (bool, bool),
+    value: impl Fn(usize) -> f64,
+    weight: impl Fn(usize, usize) -> f64,
+) -> f64 {
+    let mut sum = 0.0;
+    let add = |jump: Jump| sum += weight(jump.between.0, jump.between.1) * jump.height.abs() * jump.uncertain;
+    each_jump(part, repeats, (value, true), |i, j| weight(i, j) > 0.0, add);
     sum
 }
 
@@ -63,26 +88,30 @@ impl Line {
         self.along.at(place).map(|at| self.number * self.across.step + at)
     }
 
-    fn jumps(&self, places: Range<isize>, value: &impl Fn(usize) -> f64, weight: &impl Fn(usize, usize) -> f64) -> f64 {
-        let mut sum = 0.0;
+    fn jumps(
+        &self,
+        (places, lines): (Range<isize>, f64),
+        value: &impl Fn(usize) -> f64,
+        is_wanted: &impl Fn(usize, usize) -> bool,
+        visit: &mut impl FnMut(Jump),
+    ) {
         let mut before = self.second(places.start, value);
         for place in places {
             let behind = self.second(place + 1, value);
             // Nearly all places end here.
             if before > 0.0 && behind < 0.0 || before < 0.0 && behind > 0.0 {
                 if let (Some(i), Some(j)) = (self.at(place), self.at(place + 1)) {
-                    let weight = weight(i, j);
-                    if weight > 0.0 {
-                        sum += weight * self.uncertain(place, behind - before, value);
+                    let uncertain = if is_wanted(i, j) { self.uncertain(place, behind - before, value) } else { 0.0 };
+                    if uncertain > 0.0 {
+                        visit(Jump { between: (i, j), height: 0.5 * (before - behind), uncertain, lines });
                     }
                 }
             }
             before = behind;
         }
-        sum
     }
 
-    /// `|J|` of a jump behind `place` with the third difference `found`, times what is uncertain of an element; 0 where there is none.
+    /// What is uncertain of an element, of a jump behind `place` with the third difference `found`; 0 where there is none.
     fn uncertain(&self, place: isize, found: f64, value: &impl Fn(usize) -> f64) -> f64 {
         let second = |k: isize| self.second(place + k, value);
         let change = |from: isize, to: isize| {
@@ -104,8 +133,10 @@ impl Line {
         if !beside.is_empty() && !beside.iter().any(|line| goes_on(line, -1..2)) {
             return 0.0;
         }
-        let is_straight = beside.iter().all(|line| goes_on(line, 0..1));
-        0.5 * found.abs() * if is_straight { AT_STRAIGHT } else { AT_STEPS }
+        match beside.iter().all(|line| goes_on(line, 0..1)) {
+            true => AT_STRAIGHT,
+            false => AT_STEPS,
+        }
     }
 
     /// The second difference at a place; no number where the surface ends.

@@ -25,7 +25,7 @@ pub use curvature::Curvature;
 pub use ends::at_ends;
 pub use exchange::{admit, truncate};
 pub use guard::ExchangeGuard;
-pub use jumps::at_jumps;
+pub use jumps::{at_jumps, each_jump, Jump};
 pub use outline::Outline;
 pub use problem::Problem;
 pub use snapshot::Snapshot;

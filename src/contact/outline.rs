@@ -120,16 +120,21 @@ impl Outline {
         self.straight.0 as f64 * grid.dx + self.straight.1 as f64 * grid.dy
     }
 
-    /// Mean length of the runs of `count` elements in contact, along rows and columns alike.
-    pub fn chord(&self, count: usize) -> f64 {
-        let sides = self.changes + self.edges + self.border.0 + self.border.1;
+    /// Mean length of the runs of `count` elements in contact, along rows and columns alike. Where the grid repeats itself its border ends none.
+    pub fn chord(&self, count: usize, repeats: (bool, bool)) -> f64 {
+        let sides = self.changes + self.ends(repeats);
         4.0 * count as f64 / sides.max(1) as f64
+    }
+
+    /// The part of the changes that lies in straight pieces.
+    pub fn straight_part(&self) -> f64 {
+        (self.straight.0 + self.straight.1) as f64 / self.changes.max(1) as f64
     }
 
     /// The root of the number of equal circles that a contact area of `count` elements with these chords is made of, at least 1: the chord of
     /// one circle of that area, `(pi/2) sqrt(count/pi)`, over the mean one.
-    pub fn scatter(&self, count: usize) -> f64 {
-        (0.5 * (PI * count as f64).sqrt() / self.chord(count)).max(1.0)
+    pub fn scatter(&self, count: usize, repeats: (bool, bool)) -> f64 {
+        (0.5 * (PI * count as f64).sqrt() / self.chord(count, repeats)).max(1.0)
     }
 
     /// A*: the area of `count` elements in contact, corrected.

@@ -238,7 +238,7 @@ impl contact_normal_report_tangential {
 impl contact_normal_report_accuracy {
     fn set(&mut self, report: &Report) {
         set_errors!(self, report.error);
-        (self.halved_seconds, self.halved_error_force) = (report.halving.seconds, report.halving.force);
+        (self.halved_seconds, self.halved_error_force) = (report.halving.seconds, report.halving.force());
         self.limited_by = match report.limit {
             Limit::Unknown => CONTACT_NORMAL_LIMITED_BY_UNKNOWN,
             Limit::Grid => CONTACT_NORMAL_LIMITED_BY_GRID,

@@ -13,7 +13,7 @@
 //! outline is off by the same part everywhere, up to some times more. ([`Curvature`] has b; docs/accuracy.md the measurements.)
 //!
 //! Where the surface itself ends pressures are infinite, and the edge lies anywhere between two centres ([`at_ends`]); a surface that
-//! jumps does so anywhere between two centres as well ([`at_jumps`]). Both are of first order in the size of the elements.
+//! jumps does so anywhere between two centres as well ([`Curvature::jumps`]). Both are of first order in the size of the elements.
 //!
 //! *Pressures.* Their second differences within the contact area and across its rim are what elements do not show: of the largest
 //! pressure a tenth, in the rms one half. A peak whose second difference is no small part of it is singular, or not resolved: it has no estimate.
@@ -24,9 +24,9 @@
 
 use std::cell::Cell;
 
+use super::falling::Falling;
 use super::report::{Halving, Limit};
-use crate::bounding_box::bounding_box;
-use crate::contact::{at_ends, at_jumps, Curvature, Outline, Problem, State};
+use crate::contact::{at_ends, Curvature, Outline, Problem, State};
 use crate::progress::{DiscretisationError, LedgerRow};
 use crate::scene::Load;
 
@@ -64,6 +64,8 @@ pub const SECONDS_EXPONENT: f64 = 1.13;
 pub struct Parts {
     /// By the bend: of second order in the size of the elements.
     pub smooth: f64,
+    /// By the bend, where chords are short: of fourth order.
+    pub short: f64,
     /// By ends of the surface: of first order.
     pub ends: f64,
     /// By jumps of it: of first order.
@@ -82,7 +84,8 @@ impl Parts {
     /// Of a state; none where contact is on single elements.
     pub fn of(problem: &Problem, state: &State, curvature: &Curvature, outline: &Outline) -> Option<Parts> {
         let count = state.contact_count();
-        let chord = outline.chord(count);
+        let repeats = problem.coefficients.repeats(&state.grid);
+        let chord = outline.chord(count, repeats);
         if count == 0 || chord < LEAST_CHORD {
             return None;
         }
@@ -95,19 +98,26 @@ impl Parts {
         };
         let pressure = force / (count as f64 * state.grid.element_area());
         let along_lines = STRAIGHT * pressure / problem.modulus() * outline.straight_length(&state.grid) / count as f64;
-        let widened = 1.0 + outline.scatter(count) * (SHORT_CHORD / chord).powi(2);
-        let smooth = AT_MOST * by * (widened * curvature.bend.abs() + along_lines);
+        // Where contact is in many places it is not the mean chord that counts, but that of the sharpest ones.
+        let of_runs = (curvature.bend.abs() / (chord * chord)).max(curvature.short);
+        let short = AT_MOST * by * outline.scatter(count, repeats) * SHORT_CHORD * SHORT_CHORD * of_runs;
+        let smooth = AT_MOST * by * (curvature.bend.abs() + along_lines);
         let (ends, highest_at_ends) = ends(problem, state, outline);
         let ends = by * ends + one_element(problem, state) * found.abs();
-        let jumps = JUMPS * by * jumps(problem, state) / count as f64;
+        let jumps = if problem.exact_edges { 0.0 } else { JUMPS * by * curvature.jumps / count as f64 };
         let likely = sign * PART * by * curvature.bend;
-        let parts = Parts { smooth, ends, jumps, stiffness, by, highest_at_ends, likely };
+        let parts = Parts { smooth, short, ends, jumps, stiffness, by, highest_at_ends, likely };
         (parts.error().is_finite() && stiffness.is_finite()).then_some(parts)
     }
 
     /// Together.
     pub fn error(&self) -> f64 {
-        self.smooth + self.of_first_order()
+        self.of_bend() + self.of_first_order()
+    }
+
+    /// By the bend.
+    pub fn of_bend(&self) -> f64 {
+        self.smooth + self.short
     }
 
     /// Ends and jumps.
@@ -136,24 +146,12 @@ fn one_element(problem: &Problem, state: &State) -> f64 {
     is_one(state.grid.mx, x) + is_one(state.grid.my, y)
 }
 
-/// Error of the approach by jumps of h, times the elements in contact.
-fn jumps(problem: &Problem, state: &State) -> f64 {
-    if problem.exact_edges {
-        return 0.0;
-    }
-    let (grid, contact) = (&state.grid, &state.contact);
-    let touching = bounding_box(contact, grid, &problem.threads, |row| row.contains(&true), |inside| *inside);
-    let weight = |i: usize, j: usize| if contact[i] || contact[j] { 1.0 } else { 0.0 };
-    let value = |i: usize| state.h[i];
-    touching.map_or(0.0, |part| at_jumps((grid, &part), problem.coefficients.repeats(grid), (value, false), weight))
-}
-
 /// dF/d(approach): the force over the displacement, in the mean with the weights of a flat punch's pressures; where the bodies are half-spaces
 /// without a layer, at least that of a circle of the same area, which the mean pressure compresses in series.
-/// No number where a layer, or the images of a period, leave no mean displacement.
+/// No number where the displacement has no mean above 0: near full contact of two periods, or with a layer.
 fn stiffness(problem: &Problem, force: f64, displaced: f64, area: f64) -> f64 {
     let found = if displaced > 0.0 { force / displaced } else { f64::NAN };
-    if problem.coefficients.has_layer() {
+    if problem.coefficients.has_layer() || problem.coefficients.repeats(&problem.grid) == (true, true) {
         return found;
     }
     let compressed = problem.coefficients.kernel().constant() / problem.grid.element_area();
@@ -202,7 +200,7 @@ pub fn estimate(
     let lines = STRAIGHT_OFF * straight + edges_off(problem, outline) + curved.sqrt();
     // Where forces are off, the area that carries them is off as well.
     let carried = parts.filter(|parts| parts.smooth > 0.0);
-    let carried = carried.map_or(0.0, |parts| parts.smooth / parts.by * parts.stiffness / measures.force);
+    let carried = carried.map_or(0.0, |parts| parts.of_bend() / parts.by * parts.stiffness / measures.force);
     let lines = lines * finest.grid.element_area() + carried * measures.contact_area;
     let count = ledger.len();
     for (i, row) in ledger.iter_mut().enumerate() {
@@ -231,8 +229,8 @@ pub fn estimate(
     }
     let Some(parts) = parts else { return Default::default() };
     let hidden = residual * found.abs();
-    let halved = parts.smooth / 4.0 + parts.of_first_order() / 2.0;
-    let halving = Halving { seconds: 4.0_f64.powf(SECONDS_EXPONENT) * seconds, force: halved + hidden };
+    let falling = Falling { by_sixteen: parts.short, by_four: parts.smooth, by_two: parts.of_first_order(), hidden };
+    let halving = Halving { seconds: 4.0_f64.powf(SECONDS_EXPONENT) * seconds, error: Some(falling) };
     let limit = if parts.error() >= hidden { Limit::Grid } else { Limit::Tolerance };
     (limit, halving)
 }

@@ -15,6 +15,7 @@ mod compression;
 mod errors;
 mod estimates;
 mod extrapolation;
+mod falling;
 mod friction_batch;
 mod friction_table;
 mod handle;
@@ -50,6 +51,7 @@ pub use crate::progress::{
 };
 pub use batch::Problem;
 pub use bill::{effects_bill, BillOptions, BillRow, Neglected, Omission, Verdict};
+pub use falling::Falling;
 pub use friction_batch::{solve_friction_batch, Ended, Entry, RUN};
 pub use linear::Stiffness;
 pub use options::{ActiveSet, InitialGuess, Method, Options};

@@ -1,5 +1,6 @@
 //! The report of a solve: its results, its cost, and its course.
 
+use super::falling::Falling;
 use super::Method;
 use crate::adhesion;
 use crate::friction;
@@ -24,13 +25,20 @@ pub enum Limit {
 pub struct Halving {
     /// Seconds of a solve, at the growth of the time with the number of elements that was measured: n^1.13 (docs/performance.md).
     pub seconds: f64,
-    /// Error of the force (or the approach) that would be left.
-    pub force: f64,
+    /// The error of the force (or the approach) on this and finer grids, if it is known.
+    pub error: Option<Falling>,
+}
+
+impl Halving {
+    /// Error of the force (or the approach) that would be left; negative: not known.
+    pub fn force(&self) -> f64 {
+        self.error.map_or(-1.0, |error| error.after(1))
+    }
 }
 
 impl Default for Halving {
     fn default() -> Halving {
-        Halving { seconds: -1.0, force: -1.0 }
+        Halving { seconds: -1.0, error: None }
     }
 }
 
@@ -96,8 +104,7 @@ impl Report {
             Limit::Grid => "the grid, not the tolerance,",
             Limit::Tolerance => "the tolerance, not the grid,",
         };
-        let Halving { seconds, force } = self.halving;
-        let error = self.error.force;
+        let (seconds, force, error) = (self.halving.seconds, self.halving.force(), self.error.force);
         Some(format!(
             "{what} limits this answer: halving the elements would cost about {seconds:.2e} s and bring the error of the force or \
              approach from {error:.2e} to {force:.2e}"

@@ -72,7 +72,7 @@ pub fn estimate(solved: &Solved<'_>, found: &Report) -> Vector {
     let unknown = [-1.0; 2];
     let &Solved { state, outline, curvature, friction, alike, coated, .. } = solved;
     let count = state.contact_count();
-    let chord = outline.chord(count);
+    let chord = outline.chord(count, solved.problem.coefficients.repeats(&state.grid));
     let is_plain = friction.compliance == Coefficient::Uniform(0.0) && friction.weights.is_none();
     if !is_plain || count == 0 || !(chord >= LEAST_CHORD) || !(curvature.depth > 0.0) {
         return unknown;
@@ -159,6 +159,6 @@ impl Solved<'_> {
         let value = |i: usize| mu[i];
         let whole = (0..grid.mx, 0..grid.my);
         let repeats = problem.coefficients.repeats(grid);
-        at_jumps((grid, &whole), repeats, (value, true), weight) * grid.element_area()
+        at_jumps((grid, &whole), repeats, value, weight) * grid.element_area()
     }
 }

@@ -86,6 +86,6 @@ impl Solver {
         report.measures.approach = approach;
         report.measures.certificate.violation *= s;
         report.error.force = lengthened(report.error.force);
-        report.halving.force = lengthened(report.halving.force);
+        report.halving.error = report.halving.error.map(|error| error.times(of_found));
     }
 }

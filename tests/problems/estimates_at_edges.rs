@@ -165,8 +165,7 @@ fn jumps_are_found_and_waves_are_not() {
     let of = |h: &dyn Fn(f64, f64) -> f64, approach, period| {
         let h = at_centres(&grid, [0.0; 2], h);
         let found = report(&Scene { period, ..Scene::new(grid, &h, UNIT, Load::Approach(approach)) });
-        // Of first order: what halving the elements halves.
-        (4.0 * found.halving.force - found.error.force).max(0.0) / found.error.force
+        found.halving.error.expect("an estimate").by_two / found.error.force
     };
     for waves in [4.0, 8.0, 12.0, 16.0, 24.0] {
         let part = of(&|x, y| 0.01 * ((PI * waves * x).cos() + (PI * waves * y).cos()), -0.01, period);

@@ -21,7 +21,7 @@ fn changes_and_edges_of_a_corner() {
     let outline = Outline::of(&state);
     assert_eq!((outline.changes, outline.edges, outline.border, outline.rows), (2, 2, (2, 2), 2));
     // Two runs along rows, two along columns: of 2 and 1 elements.
-    assert_eq!(outline.chord(3), 1.5);
+    assert_eq!(outline.chord(3, (false, false)), 1.5);
     assert_eq!(outline.corrected_area(&state, 3), (3.0 - 2.0 * SHARE) * 2.0);
 }
 
@@ -43,10 +43,18 @@ fn a_circle_has_eight_changes_a_radius() {
         assert_eq!(outline.edges, 0);
         // M is off by 8 of 400 at most, and so are chords.
         let count = state.contact_count();
-        assert!((outline.scatter(count) - 1.0).abs() <= 0.02, "{}", outline.scatter(count));
+        assert!(
+            (outline.scatter(count, (false, false)) - 1.0).abs() <= 0.02,
+            "{}",
+            outline.scatter(count, (false, false))
+        );
         // Four of them.
         let four = Outline { changes: 4 * outline.changes, ..outline };
-        assert!((four.scatter(4 * count) - 2.0).abs() <= 0.04, "{}", four.scatter(4 * count));
+        assert!(
+            (four.scatter(4 * count, (false, false)) - 2.0).abs() <= 0.04,
+            "{}",
+            four.scatter(4 * count, (false, false))
+        );
     }
 }
 

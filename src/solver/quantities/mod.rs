@@ -9,8 +9,10 @@ mod sequence;
 mod values;
 
 pub use on_grids::{quantities, OnGrid, QuantityRow};
-pub use sequence::{Falling, Sequence};
+pub use sequence::Sequence;
 pub use values::{values, Lack};
+
+use super::falling::Falling;
 
 /// A quantity that has an accuracy and a price.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

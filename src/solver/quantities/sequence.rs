@@ -3,36 +3,7 @@
 //! With elements of size h a value is off by `c h^q`, q being 1 or 2 (Richardson). Between two grids, k doublings apart, it changes by `d`, so
 //! that `d/(2^k - 1)` is left where q = 1, and `d/(4^k - 1)` where q = 2. Areas jump from grid to grid: so no error is less than that of
 //! first order that the grid before has promised, unless both say that the order is the second.
-
-/// An error: what falls by 4 with a doubling of the elements in both directions, what falls by 2, and what the residual hides.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Falling {
-    /// The part that falls by 4.
-    pub by_four: f64,
-    /// The part that falls by 2.
-    pub by_two: f64,
-    /// The part that stays.
-    pub hidden: f64,
-}
-
-impl Falling {
-    /// As it is.
-    pub fn now(&self) -> f64 {
-        self.after(0)
-    }
-
-    /// After so many doublings; with a negative number before them.
-    pub fn after(&self, doublings: i32) -> f64 {
-        let ratio = 0.5_f64.powi(doublings);
-        self.by_four * ratio * ratio + self.by_two * ratio + self.hidden
-    }
-
-    /// Relative to a value, if that is one.
-    pub fn over(self, whole: f64) -> Option<Falling> {
-        let [by_four, by_two, hidden] = [self.by_four, self.by_two, self.hidden].map(|part| part / whole.abs());
-        (by_four + by_two + hidden).is_finite().then_some(Falling { by_four, by_two, hidden })
-    }
-}
+use crate::solver::falling::Falling;
 
 /// Changes that fall by less than this with a doubling, thrice or as often as is known, do not come to an end: the quantity is singular.
 /// A logarithm changes by the same each time, a change of first order by a half.
@@ -78,7 +49,7 @@ impl Sequence {
         let (newest, before) = (changes.last()?, changes.iter().rev().nth(1));
         let hidden = last.hidden;
         let Some(before) = before else {
-            return Some(Falling { by_four: 0.0, by_two: newest.first_order(), hidden });
+            return Some(Falling { by_two: newest.first_order(), hidden, ..Falling::default() });
         };
         if is_singular(&changes, hidden) {
             return None;
@@ -88,9 +59,9 @@ impl Sequence {
         let found = newest.first_order();
         if found <= 2.0 * SECOND_ORDER * promised {
             let second = newest.second_order().max(before.second_order() * 0.25_f64.powi(newest.doublings));
-            return Some(Falling { by_four: MARGIN * second, by_two: 0.0, hidden });
+            return Some(Falling { by_four: MARGIN * second, hidden, ..Falling::default() });
         }
-        Some(Falling { by_four: 0.0, by_two: found.max(promised), hidden })
+        Some(Falling { by_two: found.max(promised), hidden, ..Falling::default() })
     }
 
     fn changes(&self) -> Vec<Change> {

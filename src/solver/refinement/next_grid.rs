@@ -8,7 +8,8 @@ use crate::error::{invalid, require, Result};
 use crate::grid::Grid;
 use crate::progress::Outcome;
 use crate::solver::estimates::SECONDS_EXPONENT;
-use crate::solver::quantities::{Falling, Quantity};
+use crate::solver::falling::Falling;
+use crate::solver::quantities::Quantity;
 
 /// The accuracy that is asked for, and what it may cost.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,8 @@
 
 use crate::contact::State;
 use crate::scene::Load;
-use crate::solver::quantities::{Falling, Lack, Quantity, Sequence};
+use crate::solver::falling::Falling;
+use crate::solver::quantities::{Lack, Quantity, Sequence};
 use crate::solver::{Report, Solver};
 
 /// The relative errors of a solution, where they are known.
@@ -15,18 +16,12 @@ impl Outlook {
     /// Of a solution with estimates.
     pub fn of(solver: &Solver, report: &Report, load: Load) -> Outlook {
         let (error, measures) = (&report.error, &report.measures);
-        let residual = measures.certificate.residual;
         let found = measures.found(load);
-        let hidden = residual * found.abs();
-        // s + e and s/4 + e/2 are told.
-        let (whole, halved) = (error.force - hidden, report.halving.force - hidden);
-        let by_two = (4.0 * halved - whole).clamp(0.0, whole.max(0.0));
-        let known = error.force >= 0.0 && solver.has_solved();
-        let force = Falling { by_four: whole - by_two, by_two, hidden };
+        let force = report.halving.error.filter(|_| error.force >= 0.0 && solver.has_solved());
         let peak = Falling { by_four: error.max_pressure, ..Falling::default() };
         let area = Falling { by_two: error.corrected_area, ..Falling::default() };
         let mut outlook = Outlook::default();
-        outlook.set(Quantity::Force, if known { force.over(found) } else { None });
+        outlook.set(Quantity::Force, force.and_then(|falling| falling.over(found)));
         let peak = if error.max_pressure >= 0.0 { peak.over(measures.max_pressure) } else { None };
         outlook.set(Quantity::MaxPressure, peak);
         let area = if error.corrected_area >= 0.0 { area.over(measures.corrected_area) } else { None };

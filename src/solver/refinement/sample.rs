@@ -7,7 +7,8 @@ use super::solved::Solved;
 use super::{on_grid, SurfaceCallback};
 use crate::error::Result;
 use crate::scene::{scaled, Scene};
-use crate::solver::quantities::{Falling, Quantity};
+use crate::solver::falling::Falling;
+use crate::solver::quantities::Quantity;
 use crate::solver::{Options, Outcome, Progress, ProgressCallback};
 
 /// Samples are timed again, so often at most: the first solve of a size is slow, and machines are busy.
@@ -126,7 +127,10 @@ impl Sample {
     /// Seconds and products to a residual: what follows the last iteration is needed by any.
     pub(super) fn to(&self, tolerance: f64) -> (f64, f64) {
         let Some(&end) = self.reached.last() else { return (self.seconds, self.products) };
-        let at = self.reached.iter().find(|(residual, ..)| *residual <= tolerance).unwrap_or(&end);
+        let mut met = self.reached.iter().skip_while(|(residual, ..)| !(*residual <= tolerance));
+        let first = met.next().unwrap_or(&end);
+        // An iteration of several parts is told of by each of them.
+        let at = met.take_while(|(residual, ..)| *residual == first.0).last().unwrap_or(first);
         (self.seconds - (end.1 - at.1), self.products - (end.2 - at.2))
     }
 }

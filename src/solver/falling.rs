@@ -1,0 +1,40 @@
+//! How an error falls from grid to grid.
+
+/// An error in its parts: how much each falls with a doubling of the elements in both directions, and what the residual hides.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Falling {
+    /// The part that falls by 16: that of places of few elements.
+    pub by_sixteen: f64,
+    /// The part that falls by 4.
+    pub by_four: f64,
+    /// The part that falls by 2.
+    pub by_two: f64,
+    /// The part that stays.
+    pub hidden: f64,
+}
+
+impl Falling {
+    /// As it is.
+    pub fn now(&self) -> f64 {
+        self.after(0)
+    }
+
+    /// After so many doublings; with a negative number before them. Not more than the second power of the elements is believed of coarser grids.
+    pub fn after(&self, doublings: i32) -> f64 {
+        let ratio = 0.5_f64.powi(doublings);
+        let by_four = self.by_four + self.by_sixteen * (ratio * ratio).min(1.0);
+        by_four * ratio * ratio + self.by_two * ratio + self.hidden
+    }
+
+    /// Each part times a factor.
+    pub fn times(self, factor: f64) -> Falling {
+        let [by_sixteen, by_four, by_two, hidden] =
+            [self.by_sixteen, self.by_four, self.by_two, self.hidden].map(|part| part * factor);
+        Falling { by_sixteen, by_four, by_two, hidden }
+    }
+
+    /// Relative to a value, if that is one.
+    pub fn over(self, whole: f64) -> Option<Falling> {
+        Some(self.times(1.0 / whole.abs())).filter(|relative| relative.now().is_finite())
+    }
+}
