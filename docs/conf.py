@@ -10,6 +10,7 @@ sys.path.insert(0, str(root / "python"))
 sys.path.insert(0, str(here))
 
 import dark_pictures  # noqa: E402 - beside this file
+import language_tabs  # noqa: E402
 import mathml  # noqa: E402
 import reference_pages  # noqa: E402
 import reference_python  # noqa: E402
@@ -49,3 +50,4 @@ def setup(app):
     app.add_html_math_renderer("mathml", (mathml.visit_math, None), (mathml.visit_displaymath, None))
     app.connect("autodoc-process-signature", reference_python.signature)
     app.add_transform(dark_pictures.DarkPictures)
+    app.add_transform(language_tabs.LanguageTabs)
