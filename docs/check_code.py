@@ -65,6 +65,7 @@ FORTRAN = """subroutine block(mx, my, h, p)
   real(c_double), target :: h(mx, my), p(mx, my)
   type(contact_normal_scene) :: scene
   type(contact_normal_fields) :: fields
+  type(contact_normal_report) :: report
 %s
 end subroutine
 """
