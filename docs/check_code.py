@@ -61,7 +61,7 @@ FORTRAN = """subroutine block(mx, my, h, p)
   use contact_normal
   use, intrinsic :: iso_c_binding
   implicit none
-  integer(c_int32_t) :: mx, my, status
+  integer(c_int32_t) :: mx, my, status, k
   real(c_double), target :: h(mx, my), p(mx, my)
   type(contact_normal_scene) :: scene
   type(contact_normal_fields) :: fields
