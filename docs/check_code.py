@@ -100,7 +100,7 @@ def main(prefix: Path, folder: Path, only: list) -> None:
     link = [f"-L{prefix / 'lib'}", "-lcontact_normal"]
     count = 0
     pages = [page for page in sorted((root / "docs").rglob("*.md")) if not {"generated", "notebooks"} & set(page.parts)]
-    pages = [page for page in [root / "README.md", *pages] if not only or page.name in only]
+    pages = [page for page in [root / "README.md", root / "python" / "README.md", *pages] if not only or page.name in only]
     for page in pages:
         blocks = re.findall(r"^```(\w+)\n(.*?)^```", page.read_text(), re.DOTALL | re.MULTILINE)
         python = [block for language, block in blocks if language == "python"]
