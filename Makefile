@@ -140,10 +140,10 @@ $(PEERS_PYTHON): benches/peers/requirements.txt
 		-r benches/peers/requirements.txt
 	touch $@
 
-# Local Fourier analysis beside measurement, and docs/local_fourier_analysis.png.
+# Local Fourier analysis beside measurement; keeps what `make pictures` and `make docs` draw.
 analysis: tools
 	$(CARGO) run --release --locked -p local_fourier_analysis target/local_fourier_analysis
-	"$(find_python)" local_fourier_analysis/picture.py target/local_fourier_analysis docs/local_fourier_analysis.png
+	"$(find_python)" local_fourier_analysis/picture.py --keep target/local_fourier_analysis
 
 # What accuracy costs, and what the library says of it: all tables of docs/accuracy.md and docs/notes/2026-11-accuracy.md on the screen;
 # `make pictures` draws the first of them. ACCURACY="--quick", or some of estimates, searches, prices, study. Those by Python follow: searches on

@@ -1,4 +1,4 @@
-"""Runs or compiles every code block of the pages in a folder: `check_code.py PREFIX FOLDER`, with the library installed in PREFIX.
+"""Runs or compiles every code block of the pages in a folder: `check_code.py PREFIX FOLDER [PAGE.md ...]`, with the library installed in PREFIX.
 
 Blocks of Python run one after the other, one page in one process; notebooks have run when their pages were written. A block of C, C++ or Fortran that is a program is compiled, linked and
 run; any other is compiled inside a function, with the variables of PREAMBLE declared. sh, cmake, toml and text are left alone: `make
@@ -17,6 +17,7 @@ import numpy as np
 dx = dy = 0.2
 x, y = (np.arange(95) - 47) * 0.2, (np.arange(88) - 43.5) * 0.2
 h = 0.001 * x[None, :] ** 2 + 0.002 * y[:, None] ** 2
+steel = dict(shear_modulus=82000.0, poisson_ratio=0.28)
 """
 # Pages whose Python is a whole program as it is printed.
 WHOLE = ("README.md", "tutorial.md", "creep_force_tables.md")
@@ -45,16 +46,26 @@ void block(int mx, int my, const std::vector<double> &h);
 void block(int mx, int my, const std::vector<double> &h)
 {
 %s
+%s
 }
 """
+# What a fragment of C++ uses but does not declare.
+CPP_DECLARED = {
+    "scene": "contact_normal::scene scene({mx, my, 0.2, 0.2}, {82000.0, 0.28}); scene.undeformed_distance(h);",
+    "patch_of_element": "std::vector<std::int32_t> patch_of_element(h.size());",
+    "factors": "std::vector<double> factors{1.0, 0.0, 0.0, 1.0};",
+    "table": "std::vector<double> table;",
+    "tables": "std::vector<double> tables;",
+}
 FORTRAN = """subroutine block(mx, my, h, p)
   use contact_normal
   use, intrinsic :: iso_c_binding
   implicit none
-  integer(c_int32_t) :: mx, my, status
+  integer(c_int32_t) :: mx, my, status, k
   real(c_double), target :: h(mx, my), p(mx, my)
   type(contact_normal_scene) :: scene
   type(contact_normal_fields) :: fields
+  type(contact_normal_report) :: report
 %s
 end subroutine
 """
@@ -68,14 +79,19 @@ def run(command: list, folder: Path, **more) -> None:
         raise SystemExit(f"{' '.join(map(str, command))}:\n{done.stdout}\n{done.stderr}")
 
 
+def declared_in_cpp(block: str) -> str:
+    """Declarations of what a fragment of C++ uses and does not declare."""
+    return "\n".join(code for name, code in CPP_DECLARED.items() if re.search(rf"\b{name}\b", block) and not re.search(rf"contact_normal::{name} {name}\b", block))
+
+
 def declared(block: str) -> str:
     """Declarations of what a C fragment, and the function around it, uses and does not declare."""
     block += " status"
     return "\n".join(code for name, code in C_DECLARED.items() if name in block and f"contact_normal_{name.rstrip('.')} {name.rstrip('.')};" not in block)
 
 
-def main(prefix: Path, folder: Path) -> None:
-    """Checks all pages."""
+def main(prefix: Path, folder: Path, only: list) -> None:
+    """Checks all pages, or those of these names."""
     folder.mkdir(parents=True, exist_ok=True)
     for data in (*(root / "data" / "wheel_rail").glob("*.txt"), *(root / "data" / "heights").glob("*.npy"), *(root / "data" / "profiles").glob("*.pr?")):
         (folder / data.name).write_bytes(data.read_bytes())
@@ -84,7 +100,7 @@ def main(prefix: Path, folder: Path) -> None:
     link = [f"-L{prefix / 'lib'}", "-lcontact_normal"]
     count = 0
     pages = [page for page in sorted((root / "docs").rglob("*.md")) if not {"generated", "notebooks"} & set(page.parts)]
-    pages = [root / "README.md", *pages]
+    pages = [page for page in [root / "README.md", root / "python" / "README.md", *pages] if not only or page.name in only]
     for page in pages:
         blocks = re.findall(r"^```(\w+)\n(.*?)^```", page.read_text(), re.DOTALL | re.MULTILINE)
         python = [block for language, block in blocks if language == "python"]
@@ -103,13 +119,15 @@ def main(prefix: Path, folder: Path) -> None:
             elif language == "cpp":
                 whole = "int main" in block
                 source = source.with_suffix(".cpp")
-                source.write_text(block if whole else CPP % block)
+                source.write_text(block if whole else CPP % (declared_in_cpp(block), block))
                 compiler = ["g++", "-std=c++17", *WARNINGS, *flags, source]
             elif language == "fortran":
                 whole = block.lstrip().startswith("program")
                 source = source.with_suffix(".f90")
                 source.write_text(block if whole else FORTRAN % block)
-                compiler = ["gfortran", *WARNINGS, prefix / "include" / "contact_normal.f90", source]
+                # A fragment does not use all that is declared around it.
+                unused = [] if whole else ["-Wno-unused-variable", "-Wno-unused-dummy-argument"]
+                compiler = ["gfortran", *WARNINGS, *unused, prefix / "include" / "contact_normal.f90", source]
             else:
                 continue
             if whole:
@@ -123,4 +141,4 @@ def main(prefix: Path, folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve())
+    main(Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve(), sys.argv[3:])

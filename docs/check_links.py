@@ -1,5 +1,5 @@
 """Checks every relative link and picture of the pages and of README.md: the file exists, and so does the heading behind a #. No page is
-longer than LONGEST lines, and troubleshooting.md has each status and each warning of the header."""
+longer than LONGEST lines, and troubleshooting.md has each status and each warning of the header. What registries show has no relative link."""
 
 import re
 import sys
@@ -9,6 +9,8 @@ root = Path(__file__).resolve().parent.parent
 
 
 LONGEST = 250
+# What registries of packages show, where no other file of the project is.
+ALONE = ("python/README.md", "packaging/crate.md")
 
 
 def anchors(page: Path) -> set[str]:
@@ -27,6 +29,15 @@ def not_explained() -> list[str]:
         raise ValueError(f"the header was not understood: {statuses}, {warnings}")
     told = (root / "docs" / "troubleshooting.md").read_text()
     return [f"docs/troubleshooting.md: no advice for {name}" for name in [*statuses, *warnings] if f"| {name} |" not in told]
+
+
+def not_alone() -> list[str]:
+    """One line per relative link of ALONE; and the program of the crate is that of its documentation, which is a test."""
+    texts = {name: (root / name).read_text() for name in ALONE}
+    found = [f"{name}: {target} leads nowhere on a registry" for name, text in texts.items() for target in re.findall(r"\]\(((?!https?://)[^)\s]+)\)", text)]
+    program = re.search(r"```rust\n(.*?)```", texts["packaging/crate.md"], re.DOTALL).group(1)
+    documentation = re.sub(r"^//! ?", "", (root / "src" / "lib.rs").read_text(), flags=re.MULTILINE)
+    return found + ([] if f"```\n{program}```" in documentation else ["packaging/crate.md: its program is not that of src/lib.rs"])
 
 
 def broken() -> list[str]:
@@ -54,4 +65,4 @@ def broken() -> list[str]:
 
 
 if __name__ == "__main__":
-    sys.exit("\n".join(broken() + not_explained()) or None)
+    sys.exit("\n".join(broken() + not_explained() + not_alone()) or None)

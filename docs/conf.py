@@ -10,6 +10,7 @@ sys.path.insert(0, str(root / "python"))
 sys.path.insert(0, str(here))
 
 import dark_pictures  # noqa: E402 - beside this file
+import language_tabs  # noqa: E402
 import mathml  # noqa: E402
 import reference_pages  # noqa: E402
 import reference_python  # noqa: E402
@@ -24,7 +25,8 @@ myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 napoleon_google_docstring = False
 napoleon_use_rtype = False
-napoleon_use_ivar = True
+# "dx, dy : float" stays one entry, and its text stands once.
+napoleon_custom_sections = [("Parameters", "params_style"), ("Attributes", "params_style")]
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"
 autodoc_preserve_defaults = True
@@ -46,6 +48,6 @@ reference_pages.write(root, here / "reference" / "generated")
 def setup(app):
     """What this project adds to Sphinx."""
     app.add_html_math_renderer("mathml", (mathml.visit_math, None), (mathml.visit_displaymath, None))
-    # Before napoleon, which listens with the default priority.
-    app.connect("autodoc-process-docstring", reference_python.grouped_attributes, priority=400)
+    app.connect("autodoc-process-signature", reference_python.signature)
     app.add_transform(dark_pictures.DarkPictures)
+    app.add_transform(language_tabs.LanguageTabs)

@@ -1,4 +1,4 @@
-"""Draws the pictures of the pages by the example programs, and the one of accuracy.md from its table, in the package's style: `pictures.py [--dark] FOLDER`.
+"""Draws the pictures of the pages by the example programs, others from tables that are kept, in the package's style: `pictures.py [--dark] FOLDER`.
 
 Those in docs/pictures are for light pages, `pictures.py docs/pictures`. `make docs` draws the dark ones, which are not kept.
 """
@@ -46,6 +46,14 @@ EXAMPLES = {
 }
 
 
+# What is measured is not measured again: these draw tables of the pages and of local_fourier_analysis/results.
+TABLES = (
+    ("docs/accuracy_picture.py", "accuracy.svg"),
+    ("docs/peers_picture.py", ""),
+    ("local_fourier_analysis/picture.py", "local_fourier_analysis.svg"),
+)
+
+
 def draw(folder: Path, dark: bool) -> None:
     """Runs every example; what it draws is there afterwards."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -60,8 +68,8 @@ def draw(folder: Path, dark: bool) -> None:
             to = folder if example.takes_folder else folder / f"{example.pictures[0]}.svg"
             command = [sys.executable, root / "python_examples" / f"{name}.py", *example.arguments, to]
             subprocess.run(command, cwd=scratch, env=environment, check=True, stdout=subprocess.DEVNULL)
-        command = [sys.executable, root / "docs" / "accuracy_picture.py", folder / "accuracy.svg"]
-        subprocess.run(command, env=environment, check=True)
+        for script, name in TABLES:
+            subprocess.run([sys.executable, root / script, folder / name], env=environment, check=True)
     for picture in folder.glob("*.svg"):
         picture.write_text("\n".join(line.rstrip() for line in picture.read_text().splitlines()) + "\n")
 

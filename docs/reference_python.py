@@ -1,6 +1,7 @@
 """The Python reference: its members, the keys of a report, and the help of the command line."""
 
 import argparse
+import dataclasses
 import importlib
 import inspect
 import re
@@ -35,38 +36,23 @@ def members() -> str:
     return ".. py:module:: contact_normal\n\n" + "".join(directive for _, directive in listed)
 
 
-def grouped_attributes(app, what, name, obj, options, lines):
-    """Before napoleon reads a docstring: "a, b : type" among attributes becomes one entry for each name."""
-    out, place = [], 0
-    while place < len(lines):
-        end = end_of_entry(lines, place)
-        group = re.match(r"((?:\w+, )+\w+)( : .*)?$", lines[place])
-        if group and end > place + 1:
-            for one in group[1].split(", "):
-                out += [one + (group[2] or ""), *lines[place + 1 : end]]
-        else:
-            out += lines[place:end]
-        place = end
-    lines[:] = out
-
-
-def end_of_entry(lines, place):
-    """The line after the indented ones that follow."""
-    end = place + 1
-    while end < len(lines) and lines[end].startswith(" "):
-        end += 1
-    return end
+def signature(app, what, name, obj, options, arguments, returns):
+    """Classes that only the package makes have no arguments on the page, unless they are tuples, whose arguments are their fields."""
+    if what != "class" or not arguments or issubclass(obj, tuple):
+        return None
+    made_by_users = re.search("^    Parameters$", obj.__doc__ or "", re.MULTILINE) or dataclasses.is_dataclass(obj) and "(_" not in arguments
+    return None if made_by_users else ("", returns)
 
 
 def report_keys(header: str) -> str:
     """A table of the keys of `result.report`, with what the header says of each number."""
     solved = importlib.import_module("contact_normal._solved")
-    rows = []
+    rows = ["| `ledger_rows` | Rows of `result.ledger`. |", "| `warnings` | The bits of `result.warnings`. |"]
     for group in solved._GROUPS:
         body = re.search(rf"typedef struct contact_normal_report_{group} \{{\n(.*?)\n\}}", header, re.DOTALL).group(1)
         for told, code in members_of_struct(body):
             name = re.search(r"(\w+)(\[\d+\])?$", joined(code)).group(1)
-            if name != "reserved":
+            if not name.startswith("reserved"):
                 rows.append(f"| `{solved.report_key(group, name)}` | {escaped(joined(told))} |")
     return "\n".join(["| key | |", "|---|---|", *rows, ""])
 

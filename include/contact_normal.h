@@ -979,7 +979,7 @@ typedef struct contact_normal_row_tables {
 /*
  Effect: friction, `|q| <= mu p`. Tractions q act on body 1; the slip s is that of body 1 over body 2: a length, that of the step.
  Creepages and spin of a shift are lengths and an angle; of rolling they are divided by the length rolled. A negative creepage in x
- gives a positive force in x. Rigid slips, and but in steady rolling the tractions before, must be less than 1e140; the rms of rigid
+ gives a positive force in x. Rigid slips must be less than 1e140, and so must previous tractions, except in steady rolling. The rms of rigid
  slips must lie between 1e-60 and 1e30 times what tractions of the size of mu p displace their own element by, or be 0
  (INVALID_ARGUMENT). See docs/friction.md.
  */

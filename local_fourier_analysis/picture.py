@@ -1,11 +1,12 @@
-"""Draws docs/local_fourier_analysis.png: `make analysis`, or
+"""Draws docs/pictures/local_fourier_analysis.svg from local_fourier_analysis/results, which `make analysis` fills:
 
     cargo run --release -p local_fourier_analysis FOLDER
-    python3 local_fourier_analysis/picture.py FOLDER docs/local_fourier_analysis.png
+    python3 local_fourier_analysis/picture.py --keep FOLDER      # three digits of what the picture shows
+    python3 local_fourier_analysis/picture.py docs/pictures/local_fourier_analysis.svg
 """
 
-import os
 import sys
+from pathlib import Path
 
 import matplotlib
 
@@ -14,20 +15,33 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import LogNorm
 
+RESULTS = Path(__file__).resolve().parent / "results"
+TABLES = "waves", "sizes", "relaxation"
 
-def table(folder, name):
-    return np.genfromtxt(os.path.join(folder, name), delimiter=",", names=True)
+
+def keep(folder):
+    """Copies the tables, with three digits: a picture shows no more. The frequencies of waves are those of a grid."""
+    RESULTS.mkdir(exist_ok=True)
+    for name in TABLES:
+        head, *rows = (Path(folder) / f"{name}.csv").read_text().split()
+        first = 2 if name == "waves" else 0
+        rows = [",".join(f"{float(value):.3g}" for value in row.split(",")[first:]) for row in rows]
+        (RESULTS / f"{name}.csv").write_text("\n".join([",".join(head.split(",")[first:]), *rows, ""]))
 
 
-def wave_map(axes, waves, name, title, **style):
+def table(name):
+    return np.genfromtxt(RESULTS / f"{name}.csv", delimiter=",", names=True)
+
+
+def wave_map(axes, waves, name, title, label, **style):
     """A field over the frequencies, from -pi to pi; the square is what the next grid sees."""
     side = int(round(len(waves) ** 0.5))
     field = np.roll(waves[name].reshape(side, side), (side // 2, side // 2), (0, 1))
     image = axes.imshow(field, origin="lower", extent=(-1, 1, -1, 1), **style)
     axes.plot([-0.5, 0.5, 0.5, -0.5, -0.5], [-0.5, -0.5, 0.5, 0.5, -0.5], color="white", linewidth=1)
     ticks = [-1, -0.5, 0, 0.5, 1]
-    axes.set(title=title, xlabel="tx / pi", ylabel="ty / pi", xticks=ticks, yticks=ticks)
-    axes.figure.colorbar(image, ax=axes, shrink=0.8)
+    axes.set(title=title, xlabel=r"frequency $t_x/\pi$", ylabel=r"frequency $t_y/\pi$", xticks=ticks, yticks=ticks)
+    axes.figure.colorbar(image, ax=axes, label=label, fraction=0.046, pad=0.03)
 
 
 def over_size(axes, sizes):
@@ -38,35 +52,36 @@ def over_size(axes, sizes):
         ("fft", "FFT", "v"),
     ]:
         axes.semilogx(sizes["across"], sizes[name], marker=marker, label=label)
-    axes.semilogx(sizes["across"], sizes["two_grids"], "k--", label="Gauss-Seidel, two grids")
-    axes.set(title="Smoothing factors, omega = 0.8", xlabel="elements across", ylim=(0, 1.05))
-    axes.legend(fontsize=8, loc="lower left", ncols=2)
+    axes.semilogx(sizes["across"], sizes["two_grids"], "--", color=plt.rcParams["text.color"], label="Gauss-Seidel, two grids")
+    axes.set(title="Smoothing factors, relaxation 0.8", xlabel="elements across the contact area", ylabel="factor per sweep", ylim=(0, 1.05))
+    axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.18))
 
 
 def over_relaxation(axes, relaxation):
-    for m, colour in [(64, "tab:blue"), (256, "tab:red")]:
+    for m, colour in [(64, "C0"), (256, "C1")]:
         rows = relaxation[relaxation["m"] == m]
         axes.plot(rows["omega"], rows["three_grids"], color=colour, label=f"{m}: analysis, 3 grids")
         axes.plot(rows["omega"], rows["measured"], "o", color=colour, label=f"{m}: measured, all grids")
         axes.plot(rows["omega"], rows["table_1"], ":", marker="x", color=colour, label=f"{m}: as in table 1")
-    axes.set(title="Gauss-Seidel, V(1,1), the paper's ellipse", xlabel="omega", ylabel="factor per cycle", ylim=(0, 0.68))
-    axes.legend(fontsize=8, loc="lower left", ncols=2)
+    axes.set(title="Gauss-Seidel, V(1,1), the paper's ellipse", xlabel="relaxation", ylabel="factor per cycle", ylim=(0, 0.68))
+    axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.18))
 
 
-def main(folder, path):
-    waves = table(folder, "waves.csv")
-    figure, axes = plt.subplots(2, 3, figsize=(15, 9), layout="constrained")
-    wave_map(axes[0, 0], waves, "symbol", "A(t) / c(0,0)", norm=LogNorm(), cmap="viridis")
-    for panel, name, title in [
-        (axes[0, 1], "gauss_seidel", "left by a sweep of Gauss-Seidel, omega 0.8"),
-        (axes[0, 2], "red_black", "left by a red-black sweep, omega 0.8"),
-    ]:
-        wave_map(panel, waves, name, title, vmin=0, vmax=1, cmap="magma")
-    wave_map(axes[1, 0], waves, "jacobi", "left by a sweep of Jacobi, omega 0.8", norm=LogNorm(0.1, 30), cmap="magma")
-    over_size(axes[1, 1], table(folder, "sizes.csv"))
-    over_relaxation(axes[1, 2], table(folder, "relaxation.csv"))
-    figure.savefig(path, dpi=80)
+def draw(path):
+    waves = table("waves")
+    figure, axes = plt.subplots(3, 2, figsize=(8.6, 12.0), layout="constrained", height_ratios=(1.0, 1.0, 1.1))
+    figure.get_layout_engine().set(w_pad=0.12, wspace=0.04)
+    wave_map(axes[0, 0], waves, "symbol", "Symbol of A", "A(t)/c(0, 0)", norm=LogNorm(), cmap="viridis")
+    for panel, name, title in [(axes[0, 1], "gauss_seidel", "Gauss-Seidel, relaxation 0.8"), (axes[1, 0], "red_black", "Red-black, relaxation 0.8")]:
+        wave_map(panel, waves, name, title, "left by a sweep", vmin=0, vmax=1, cmap="magma")
+    wave_map(axes[1, 1], waves, "jacobi", "Jacobi, relaxation 0.8", "left by a sweep", norm=LogNorm(0.1, 30), cmap="magma")
+    over_size(axes[2, 0], table("sizes"))
+    over_relaxation(axes[2, 1], table("relaxation"))
+    figure.savefig(path)
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    if sys.argv[1] == "--keep":
+        keep(sys.argv[2])
+    else:
+        draw(sys.argv[1])

@@ -85,14 +85,14 @@ def coatings():
         yield f"{modulus / 80000:g} G, {thickness:g} mm" if thickness else "no coating", x, found.pressure[M // 2]
 
 
-def curves(path, text, lines, across="x [mm]", **of_legend):
+def curves(path, text, lines, across="x [mm]", quantity="pressure [N/mm²]", **of_legend):
     """Pressures along a line of elements, one curve for each (name, places, pressures)."""
     from matplotlib import pyplot
 
     figure, axes = pyplot.subplots(layout="constrained")
     for name, places, p in lines:
         axes.plot(places, p, label=name)
-    axes.set(xlabel=across, ylabel="pressure [N/mm²]", title=text)
+    axes.set(xlabel=across, ylabel=quantity, title=text)
     axes.legend(**of_legend)
     figure.savefig(path)
 
@@ -134,8 +134,8 @@ def draw(folder, layered, limited, periodic, patched, tabled, coated):
     curves(f"{folder}/effects_patches.{ending}", "Two balls side by side, 1000 N together", patched, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=3)
     # The differences from the plane, which is the first, are small.
     _, y, plane = tabled[0]
-    curves(f"{folder}/effects_row_tables.{ending}", f"A roller in a groove, 20 kN: change from a plane's {plane.max():.0f} N/mm²",
-           [(name, y, p - plane) for name, y, p in tabled[1:]], across="y along the section [mm]")
+    curves(f"{folder}/effects_row_tables.{ending}", f"A roller in a groove, 20 kN; in a plane the largest pressure is {plane.max():.0f} N/mm²",
+           [(name, y, p - plane) for name, y, p in tabled[1:]], across="y, along the section of the groove [mm]", quantity="pressure less that in a plane [N/mm²]")
     draw_limits(f"{folder}/effects_pressure_limit.{ending}", limited)
     draw_periods(f"{folder}/effects_period.{ending}", periodic)
 

@@ -68,7 +68,7 @@ def draw(found, picture):
         axes.plot(approach(time), force, style, markersize=5, label=name)
     elastic = 16 / 3 * G * np.sqrt(RADIUS) * approach(times[times <= TURN]) ** 1.5
     axes.plot(approach(times[times <= TURN]), elastic, ":", color="0.5", linewidth=1.2, label="elastic, G at once")
-    axes.set(xlabel="approach, mm", ylabel="force, N", xlim=(0, 0.21), ylim=(0, 1.2 * max(exact)))
+    axes.set(xlabel="approach [mm]", ylabel="force [N]", xlim=(0, 0.21), ylim=(0, 1.2 * max(exact)))
     axes.legend()
     figure.savefig(picture)
 

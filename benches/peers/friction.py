@@ -2,7 +2,7 @@
 
 `build/peers/bin/python benches/peers/friction.py [--largest 256 | --report]` after `make bench-peers`, or with the packages of
 `requirements.txt`. --largest: up to that size (512); --report: only writes again what build/friction_peers.json holds. Prints the table, writes it
-into docs/performance_peers.md, and draws docs/performance_friction.png.
+into docs/performance_peers.md; `make pictures` draws it.
 
 Both have two like bodies, the same h, the same load and one thread. Each goes down the same tolerances, aspher with one for
 each of the two problems, with its preconditioner and without; the fastest ones that reach an accuracy are repeated, both in turns. `tangential.py` has the check.
@@ -35,7 +35,6 @@ MU = 0.3
 TOLERANCES = [10 ** (-0.5 * k) for k in range(4, 20)]
 ACCURACIES = [1e-3, 1e-4, 1e-6]
 REPEATS, LONG, REPEATS_OF_LONG, LONGEST = 5, 8.0, 2, 30.0
-SHOWN = 1e-4  # in the picture
 STALLED = 3  # so many tighter tolerances without a smaller error end a search
 # surface, Poisson ratio, what is given, which part of mu N
 SCENES = [
@@ -201,43 +200,12 @@ def section(measured):
         "The table is for mu = 0.3 and one thread. It has milliseconds of the processor, medians of repeats in turns, for whole cold calls with set-up. "
         "For aspher the set-up is a part of its normal problem. For contact-normal the tangential time is the difference of a call with friction and a call without."
         " Rows of nu = 0 come from a version with a start of its own for nu = 0; without it the tangential problem takes 2.1 to 2.4 times as many instructions there (ball 256).\n\n"
-        + "\n".join(lines) + "\n\n![Friction: time against size](performance_friction.png)\n"
+        + "\n".join(lines) + "\n\n![Friction: time over the size, a shift of half of mu N](pictures/performance_friction.svg)\n"
     )
 
 
-def draw(measured):
-    """The tangential problem over the size, at the accuracy SHOWN."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-    from matplotlib.ticker import NullFormatter
-    from pictures import STYLES
-
-    figure, axes = plt.subplots(1, 2, figsize=(8.0, 3.4), sharey=True, constrained_layout=True)
-    for axis, surface in zip(axes, ("ball", "rough")):
-        for name in PROGRAMS:
-            for part, line in ((0.5, "-"), (0.9, "--")):
-                at = [(one["size"], one["results"][key]["tangential"]) for one in measured
-                      for key in [f"{name} {SHOWN:.0e}"]
-                      if (one["surface"], one["poisson_ratio"], one["given"], one["part"]) == (surface, 0.0, "motion", part) and key in one["results"]]
-                if at:
-                    axis.loglog(*zip(*sorted(at)), label=f"{name}, {part:.0%} of mu N", **{**STYLES[name], "linestyle": line})
-        sizes = sorted({one["size"] for one in measured})
-        axis.set_xlim(sizes[0] / 1.2, sizes[-1] * 1.2)
-        axis.set_xticks(sizes, [str(size) for size in sizes])
-        axis.xaxis.set_minor_formatter(NullFormatter())
-        axis.set_title(f"{surface}, nu = 0, motion given", fontsize=10)
-        axis.set_xlabel("elements in each direction")
-        axis.grid(True, color="0.85", linewidth=0.8)
-    axes[0].set_ylabel(f"tangential problem to {SHOWN:.0e}, s")
-    axes[0].legend(frameon=False, fontsize=8)
-    figure.savefig(os.path.join(ROOT, "docs", "performance_friction.png"), dpi=90)
-    plt.close(figure)
-
-
 def report():
-    """Table and picture."""
+    """The table."""
     with open(RESULTS, encoding="utf-8") as file:
         measured = json.load(file)
     text = section(measured)
@@ -245,7 +213,6 @@ def report():
         before = file.read().split(HEADING)[0]
     with open(PAGE, "w", encoding="utf-8") as file:
         file.write(before.rstrip("\n") + "\n\n" + text)
-    draw(measured)
     print(text)
 
 

@@ -1,4 +1,4 @@
-"""Measures the peers and writes docs/performance_peers.md and docs/performance_*.png.
+"""Measures the peers and writes docs/performance_peers.md, whose tables `make pictures` draws.
 
 `make bench-peers`, or `python run.py [--quick | --slow] [--report]`. --quick: up to 512; --slow: tamaas and ContactMechanics at 1024
 too (an hour more); --report: only writes again what build/peers_*.json hold.
@@ -90,9 +90,7 @@ def table(measured):
 
 
 def report():
-    """Table and pictures."""
-    import pictures
-
+    """The table."""
     measured = []
     for path in glob.glob(os.path.join(ROOT, "build", "peers_*.json")):
         with open(path, encoding="utf-8") as file:
@@ -105,7 +103,7 @@ def report():
         "Each solver has its fastest setting and its loosest tolerance that reach the accuracy. Tolerances are half a decade apart for contact-normal and aspher, and a "
         "decade for the others and where a call takes more than 3 s. Calls are whole calls from Python, with set-up. Times are medians of repeats in turns, in seconds of "
         "the processor; with one thread these are the seconds by the clock on a quiet machine. The last column has the ratio by the clock.\n\n"
-        f"{table(measured)}\n\n![Time against error](performance_error.png)\n\n![Time against size](performance_size.png)\n"
+        f"{table(measured)}\n\n![Time over the size, of each solver, for two accuracies](pictures/performance_peers.svg)\n"
     )
     path = os.path.join(ROOT, "docs", "performance_peers.md")
     # friction.py writes what follows its heading.
@@ -115,7 +113,6 @@ def report():
             friction = "".join(file.read().partition("\n## Friction\n")[1:])
     with open(path, "w", encoding="utf-8") as file:
         file.write(text + friction)
-    pictures.draw(measured, os.path.join(ROOT, "docs"))
     print(text)
 
 

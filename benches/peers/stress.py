@@ -99,7 +99,7 @@ def main():
     tamaas_stress, mine = Tamaas(), np.full((6, LAYERS, M, M), np.nan)
     same = [means_over_elements(field) for field in (p, q)]
     print(f"tamaas {tamaas.__version__}, contact-normal {contact_normal.__version__}; {M} x {M} elements, {LAYERS} depths, {RUNS} runs in turns\n")
-    print("| loads | tamaas, s | contact-normal, s | ratio | half-space that does not repeat itself, s |")
+    print("| loads | tamaas, s | contact-normal, s | ratio | half-space without periods, s |")
     print("|---|---:|---:|---:|---:|")
     for name, loads in (("p", (p, None)), ("p, qx", (p, q))):
         calls = [lambda: tamaas_stress(*loads)[0], lambda: ours(*loads, True, mine), lambda: ours(*loads, False, mine)]

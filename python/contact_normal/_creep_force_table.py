@@ -44,7 +44,7 @@ def creep_force_table(
     """Computes a table of creep forces in steady rolling: of Hertz ellipses, or of a surface.
 
     Of ellipses with semi-axes a in the direction of rolling and b across, of like bodies with shear modulus G, all is relative, with
-    c = sqrt(a b):
+    c = sqrt(a b)::
 
         xi  = (G c^2/(mu N)) times the longitudinal creepage        force_x = Fx/(mu N)
         eta = (G c^2/(mu N)) times the lateral creepage             force_y = Fy/(mu N)

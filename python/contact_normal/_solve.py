@@ -169,7 +169,7 @@ class AccurateResult(Result):
     reached: float | None
     seconds: float
 
-    def take(self, accuracy: Any, middle: tuple[float, float]) -> None:
+    def _take(self, accuracy: Any, middle: tuple[float, float]) -> None:
         """The grid that was taken, and what it reached."""
         self.dx, self.dy, self.seconds, self._centre = accuracy.dx, accuracy.dy, accuracy.seconds, middle
         self._scene = self._scene.on_grid(self.pressure.shape, self.dx, self.dy)
@@ -295,7 +295,7 @@ def solve_to_accuracy(
     finally:
         handle.close()
     result = AccurateResult(status, message, outputs, ledger.report, scene, units)
-    result.take(accuracy, middle)
+    result._take(accuracy, middle)
     return result
 
 

@@ -36,7 +36,7 @@ _WARNINGS = {
     "LAW": WARNING_LAW,
 }
 # Members of the tangential group that have the name of one of the normal problem.
-_ALSO_NORMAL = ("force", "moment", "residual", "gap")
+_ALSO_NORMAL = ("force", "moment", "residual", "gap", "update")
 
 
 def report_key(group: str, name: str) -> str:
@@ -277,7 +277,7 @@ class Solved(WithUnits):
         from ._subsurface import subsurface
 
         found = subsurface(self._scene, self.pressure, depths, self._tractions_on(body, traction), body, components, principal, threads)
-        found.place(self._centre, self.units)
+        found._place(self._centre, self.units)
         return found
 
     def stress_at_points(

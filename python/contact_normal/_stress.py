@@ -64,7 +64,7 @@ class SubsurfaceStress(WithUnits):
         self.x: Doubles = centres(mx, self.dx)
         self.y: Doubles = centres(my, self.dy)
 
-    def place(self, middle: tuple[float, float], units: Units) -> None:
+    def _place(self, middle: tuple[float, float], units: Units) -> None:
         """Moves the middle of the grid there."""
         self.x, self.y, self._units = self.x + middle[0], self.y + middle[1], units
         for largest in (self.largest_von_mises, self.largest_shear):

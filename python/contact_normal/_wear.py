@@ -32,6 +32,7 @@ class FrictionalWear(NamedTuple):
     volume : float
         The material that wears off.
     largest_depth : float
+        The largest depth of wear.
     at : (float, float)
         Where the largest depth is, (x, y) from the middle of the grid.
     """

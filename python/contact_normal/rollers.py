@@ -1,7 +1,7 @@
 """Rollers and gear teeth by their radii, crowns and profiles: gaps of lines and of crowned contacts.
 
 x runs in the direction of rolling, y along the axis of the roller. Two teeth of spur gears touch like two cylinders whose radii are the
-radii of curvature of the flanks at the point of contact.
+radii of curvature of the flanks at the point of contact::
 
     from contact_normal import rollers
     drop = rollers.logarithmic(length=14.0, force=9000.0, e_star=115385.0)

@@ -166,3 +166,26 @@ class Files(unittest.TestCase):
             profiles.read(self.written("b.txt", rows))
         with self.assertRaisesRegex(ValueError, r"has 0 points in the columns \(0, 1\)"):
             profiles.read(self.written("c.whl", head))
+
+    def test_a_column_that_counts_is_named_before_a_turn(self):
+        for kind, made in (("wheel", wheel()), ("rail", rail())):
+            for first, start in (("0 1 2", 0), ("1 2 3", 1)):
+                rows = "\n".join(f"{start + k} {y!r} {z!r}" for k, (y, z) in enumerate(zip(made.y.tolist(), made.z.tolist())))
+                path = self.written("counted.txt", rows)
+                with self.assertRaisesRegex(ValueError, rf"column 0 of counted.txt only counts its lines \({first} ...\).*columns=\(1, 2\)"):
+                    profiles.read(path, kind)
+                self.assert_same(profiles.read(path, kind, columns=(1, 2)), made)
+            # Points of a section at one x.
+            path = self.written("section.txt", "\n".join(f"12.5, {y!r}, {z!r}" for y, z in zip(made.y.tolist(), made.z.tolist())))
+            with self.assertRaisesRegex(ValueError, r"column 0 of section.txt is 12.5 in every line.*columns=\(1, 2\)"):
+                profiles.read(path, kind)
+            self.assert_same(profiles.read(path, kind, columns=(1, 2)), made)
+        # Three columns of which the last is another quantity: the turn is named, and that columns may be meant.
+        made = wheel()
+        path = self.written("mirrored.txt", "\n".join(f"{-y!r} {z!r} 0.5" for y, z in zip(made.y.tolist(), made.z.tolist())))
+        with self.assertRaisesRegex(ValueError, r"mirror=True; or y and z are not the columns \(0, 1\) of its 3: columns="):
+            profiles.read(path, "wheel")
+        # Whole millimetres that do not count lines are coordinates.
+        y = np.arange(-70.0, 61.0)
+        path = self.written("whole.txt", "\n".join(f"{a:.0f} {b!r} 0.5" for a, b in zip(y, np.interp(y, made.y, made.z).tolist())))
+        np.testing.assert_array_equal(profiles.read(path, "wheel").y, y)

@@ -8,7 +8,9 @@ from unittest import mock
 import numpy as np
 
 import contact_normal as cn
+from contact_normal import _solved
 from contact_normal._bar import SolveBar
+from contact_normal._structs import Report, names
 
 G, NU = 82000.0, 0.28
 STEEL = {"shear_modulus": G, "poisson_ratio": NU}
@@ -37,6 +39,17 @@ class Numbers(unittest.TestCase):
         moment = ((X * found.traction[1]).sum() - (Y[:, None] * found.traction[0]).sum()) * DX * DY
         self.assertAlmostEqual(found.report["tangential_moment"], moment, delta=1e-9 * np.abs(found.traction).sum())
         self.assertEqual(solve().tangential_force, (0.0, 0.0))
+
+    def test_each_number_of_a_report_has_a_key_of_its_own(self):
+        groups = [(group, name) for group in _solved._GROUPS for name in names(dict(Report._fields_)[group]) if not name.startswith("reserved")]
+        keys = ["ledger_rows", "warnings", *(_solved.report_key(group, name) for group, name in groups)]
+        self.assertEqual(sorted(keys), sorted(set(keys)))
+        found = solve(method="MULTIGRID", friction={"coefficient": 0.3, "force": (10.0, -5.0)})
+        self.assertEqual(sorted(found.report), sorted(keys))
+        # That of the pressures, not that of the tractions, and not 0 where there are none.
+        self.assertEqual(found.report["update"], found._report.normal.update)
+        self.assertEqual(found.report["tangential_update"], found._report.tangential.update)
+        self.assertGreater(solve(method="MULTIGRID").report["update"], 0.0)
 
     def test_coordinates_of_a_callable_surface(self):
         def ball(x, y):

@@ -1,4 +1,6 @@
-"""From two profiles to a gap: a wheel on a rail. Lengths are in mm, angles in rad, forces in N.
+"""From two profiles to a gap: a wheel on a rail.
+
+Lengths are in mm, angles in rad, forces in N::
 
     from contact_normal import profiles
     track = profiles.Track(profiles.read("rail.prr"), gauge=1435.0)

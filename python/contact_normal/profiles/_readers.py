@@ -55,14 +55,14 @@ def read(
     Raises
     ------
     ValueError
-        If the file has no profile, or the profile is mirrored or upside down; the message names the argument that turns it.
+        If the file has no profile, a column has no coordinates, or the profile is mirrored or upside down; the message names the argument to change.
     """
     end = Path(path).suffix.lower()
     kind = _KINDS.get(end) if kind is None else kind
     if kind is None:
         raise ValueError(f'{path}: kind is not known; give kind="wheel" or kind="rail"')
     text = Path(path).read_text(encoding="latin-1")
-    points, in_mm = _simpack(text, path) if end in (".prr", ".prw") else (_columns(text, columns, path), 1.0)
+    points, in_mm, hint = _simpack(text, path) if end in (".prr", ".prw") else _table(text, columns, path)
     y, z = points.T * (in_mm * number("scale", scale))
     if mirror:
         y = -y
@@ -70,7 +70,10 @@ def read(
         z = -z
     if y[0] > y[-1]:
         y, z = y[::-1], z[::-1]
-    return Profile(np.ascontiguousarray(y), np.ascontiguousarray(z), kind, Path(path).name)
+    try:
+        return Profile(np.ascontiguousarray(y), np.ascontiguousarray(z), kind, Path(path).name)
+    except ValueError as error:
+        raise ValueError(f"{error}{hint}") from None
 
 
 def _has_decimal_commas(lines: list[str]) -> bool:
@@ -89,27 +92,42 @@ def _words(line: str, commas: bool) -> list[str]:
     return (line.replace(",", ".") if commas else line.replace(",", " ")).replace(";", " ").split()
 
 
-def _columns(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) -> np.ndarray:
-    """Two columns of the lines that begin with numbers."""
+def _table(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) -> tuple[np.ndarray, float, str]:
+    """The points of a file of columns, mm, and a hint for a profile that is refused. A column without coordinates is refused as y: it might pass as one."""
+    points, width = _columns(text, columns, path)
+    y, first, name = points[:, 0], columns[0], Path(path).name
+    others = f"columns=({first + 1}, {first + 2})"
+    if width > 2 and y[0] in (0.0, 1.0) and (np.diff(y) == 1.0).all():
+        raise ValueError(f"column {first} of {name} only counts its lines ({y[0]:.0f} {y[1]:.0f} {y[2]:.0f} ...); y and z are other columns: {others}? "
+                         "If it is y, make Profile(y, z, kind)")
+    if (y == y[0]).all():
+        raise ValueError(f"column {first} of {name} is {y[0]:g} in every line; y and z are other columns: {others}?")
+    hint = f"; or y and z are not the columns {columns} of its {width}: columns=" if width > 2 and not name.lower().endswith(_UPSIDE_DOWN) else ""
+    return points, 1.0, hint
+
+
+def _columns(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) -> tuple[np.ndarray, int]:
+    """Two columns of the lines that begin with numbers, and how many columns all of them have."""
     lines = [line for line in text.splitlines() if re.match(r"\s*[-+]?[.,]?\d", line)]
-    commas, rows = _has_decimal_commas(lines), []
+    commas, rows, width = _has_decimal_commas(lines), [], 0
     for line in lines:
         words = _words(line, commas)
         if len(words) <= max(columns) or not all(re.fullmatch(_NUMBER, words[column]) for column in (0, *columns)):
             continue
         rows.append([float(re.sub("[dD]", "e", words[column])) for column in columns])
+        width = min(width or len(words), len(words))
     if len(rows) < 4:
         raise ValueError(f"{path} has {len(rows)} points in the columns {columns}; at least 4 are needed")
-    return np.array(rows)
+    return np.array(rows), width
 
 
-def _simpack(text: str, path: str | os.PathLike[str]) -> tuple[np.ndarray, float]:
-    """The points of a .prr or .prw file, moved, rotated, mirrored and reversed as its header says, and the mm in its unit."""
+def _simpack(text: str, path: str | os.PathLike[str]) -> tuple[np.ndarray, float, str]:
+    """The points of a .prr or .prw file, moved, rotated, mirrored and reversed as its header says, the mm in its unit, and no hint."""
     text = "\n".join(line.split("!")[0] for line in text.splitlines())
     found = re.search(r"point\.begin(.*?)point\.end", text, re.DOTALL)
     if not found:
         raise ValueError(f"{path} has no points between point.begin and point.end")
-    points = _columns(found.group(1), (0, 1), path)
+    points, _ = _columns(found.group(1), (0, 1), path)
     said = dict(re.findall(rf"^\s*([\w.]+)\s*=\s*({_NUMBER})\s*$", text[: found.start()], re.MULTILINE))
 
     def value(name: str, default: float) -> float:
@@ -131,4 +149,4 @@ def _simpack(text: str, path: str | os.PathLike[str]) -> tuple[np.ndarray, float
         z = -z
     if value("inversion", 0.0):
         y, z = y[::-1], z[::-1]
-    return np.column_stack([y, z]), 1000.0 / value("units.len.f", 1000.0)
+    return np.column_stack([y, z]), 1000.0 / value("units.len.f", 1000.0), ""
