@@ -210,3 +210,30 @@ fn a_price_list_needs_no_callback_and_obeys_one() {
     let (stop, rows) = list(Some(&mut cancels)).expect("rows");
     assert_eq!((stop, rows.len(), rows[0].grid), (Outcome::Cancelled, TARGETS.len(), None));
 }
+
+/// The row of a grid that the list has solved itself has the products of that solve: those of a direct one, too, which tells a residual only at its end.
+#[test]
+fn a_row_has_the_products_of_its_grid() {
+    let grid = Grid::new(16, 16, 1.0 / 16.0, 1.0 / 16.0).expect("a grid");
+    let place = |k: usize| (k as f64 + 0.5) / 16.0 - 0.5;
+    let mut on_this_grid = 0;
+    for flat in [0.0, 0.005, 0.02] {
+        let of = |x: f64, y: f64| f64::max(x * x + 1.5 * y * y - flat, 0.0);
+        let h: Vec<f64> = (0..256).map(|i| of(place(i % 16), place(i / 16))).collect();
+        for load in [Load::Approach(0.12), Load::Approach(0.15), Load::Force(0.05)] {
+            let scene = Scene::new(grid, &h, BODIES, load);
+            let options = Options { threads: 1, ..Options::default() };
+            let wanted = (Quantity::Force, &[1e-2][..]);
+            let (_, rows) =
+                cost_of_accuracy(&scene, &options, &Accuracy::new(1e-2), wanted, None, None).expect("a price list");
+            if rows[0].grid.is_none_or(|found| found.mx != 16) {
+                continue;
+            }
+            on_this_grid += 1;
+            let options = Options { tolerance: rows[0].tolerance, ..options };
+            let counted = contact_normal::solver::solve(&scene, &options).expect("a solve").2.count.work_units;
+            assert_eq!(rows[0].work_units, counted, "{flat} {load:?}");
+        }
+    }
+    assert!(on_this_grid >= 4, "{on_this_grid}");
+}
