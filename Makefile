@@ -28,7 +28,7 @@ apt_get = command -v apt-get >/dev/null || { echo "missing, and no apt-get to in
 	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $(1)
 
 .PHONY: all demo demo-tools tools test campaign soak bench bench-table bench-peers analysis accuracy plain-cost
-.PHONY: wheel wheel-library dist machines package-test docs pictures notices clean
+.PHONY: wheel wheel-library dist machines package-test docs pictures crates notices clean
 .DEFAULT_GOAL := all
 
 all:
@@ -244,6 +244,10 @@ pictures: all build/tools/ready
 # What builds wheels and the site: an environment of Python, apart from the user's.
 build/tools/ready: packaging/requirements.txt
 	@$(call environment,build/tools,-r $<)
+
+# The three crates for crates.io, packed but not published: CONTRIBUTING.md has the order.
+crates:
+	$(CARGO) package --locked --no-verify -p contact-normal-par -p contact-normal-toeplitz -p contact-normal
 
 # The licences of what is linked, anew: after a change of Cargo.lock.
 notices:
