@@ -24,55 +24,74 @@ apt_get = command -v apt-get >/dev/null || { echo "missing, and no apt-get to in
 	test -z "$$sudo" || command -v sudo >/dev/null || { \
 		echo "Missing here, and no sudo. Ask your administrator for:  apt-get install --no-install-recommends $(1)" >&2; exit 1; }; \
 	echo "Missing here: $(1). Installing by $$sudo apt-get install --no-install-recommends; to do without, install them before."; \
-	$$sudo apt-get update -qq && \
-	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $(1)
+	$$sudo apt-get $(APT_KEEPS_LITTLE) update -qq && \
+	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get $(APT_KEEPS_LITTLE) install -y -qq --no-install-recommends $(1)
+# A bare Debian would get descriptions in words (39 MB), caches of the lists (78 MB), and keep the packages. What is there stays.
+APT_KEEPS_LITTLE := -o Acquire::Languages=none -o APT::Get::List-Cleanup=false -o Dir::Cache::pkgcache= -o Dir::Cache::srcpkgcache= \
+	-o APT::Keep-Downloaded-Packages=false
 
 .PHONY: all demo demo-tools tools test campaign soak bench bench-table bench-peers analysis accuracy plain-cost
-.PHONY: wheel wheel-library dist machines package-test docs pictures notices clean
+.PHONY: wheel wheel-library dist machines package-test docs pictures crates notices clean
 .DEFAULT_GOAL := all
 
 all:
-	$(CARGO) build --release --locked $(if $(TARGET),--target $(TARGET))
+	$(CARGO) build --profile $(PROFILE) --locked $(if $(TARGET),--target $(TARGET))
 
 # Installs those Debian packages whose tool is missing: for the demo fewer than for the tests. Without sudo: have them installed
 # before, then nothing is done here.
 tools demo-tools:
 	@missing=''; \
 	need() { command -v "$$1" >/dev/null 2>&1 || missing="$$missing $$2"; }; \
-	need gcc gcc; need gfortran gfortran; \
-	if test $@ = tools; then need g++ g++; need valgrind valgrind; need pkg-config pkg-config; need cmake cmake; fi; \
+	need gcc gcc; \
+	if test $@ = tools; then need gfortran gfortran; need g++ g++; need valgrind valgrind; need pkg-config pkg-config; need cmake cmake; fi; \
 	echo 'int main(void) { return 0; }' | gcc -x c - -o /dev/null 2>/dev/null || missing="$$missing gcc libc6-dev"; \
 	if test -n "$(find_python)"; then :; \
 	elif test $@ = tools; then missing="$$missing python3 python3-numpy python3-matplotlib"; \
 	else python3 -c 'import ensurepip, venv' 2>/dev/null || missing="$$missing python3-venv"; fi; \
 	test -z "$$missing" || { $(call apt_get,$$missing); }
 
-# Builds the shared library only, in a profile that compiles in less time and memory than that of a release. numpy and matplotlib come by pip:
-# Debian's packages of them bring twice as much.
-DEMO_BUILT := $(or $(CARGO_TARGET_DIR),target)/demo
-demo: demo-tools
-	@test -n "$(find_python)" || { $(call environment,build/demo,numpy matplotlib); }
-	$(CARGO) rustc --profile demo --locked --lib --crate-type cdylib
-	@mkdir -p build
+# Builds the shared library only, in a profile that compiles in less time and memory than that of a release, and without AVX-512. What comes on the
+# way, several times its size, is deleted. Then numpy and matplotlib come by pip: Debian's packages of them bring twice as much. The examples in
+# Fortran run where its compiler is; none is installed for them.
+DEMO_BUILT := build/demo_library
+DEMO_FORTRAN := $(shell command -v $(FC) 2>/dev/null)
+demo: demo-tools $(DEMO_BUILT)/$(BUILT)
+	@test -n "$(find_python)" || { $(call environment,build/demo,--no-cache-dir --no-compile numpy matplotlib) && \
+		build/demo/$(SCRIPTS)/python -m pip uninstall --quiet --yes setuptools pip; }
 	@ln -sfn $(abspath $(DEMO_BUILT))/$(BUILT) build/$(SONAME)
 	$(CC) -std=c99 -O2 -Iinclude c_examples/hertz.c -o build/hertz_c -L$(DEMO_BUILT) -lcontact_normal -lm
 	$(CC) -std=c99 -O2 -Iinclude c_examples/wheel_rail.c -o build/wheel_rail_c -L$(DEMO_BUILT) -lcontact_normal -lm
+ifdef DEMO_FORTRAN
 	$(FC) -O2 -Jbuild include/contact_normal.f90 fortran_examples/hertz.f90 -o build/hertz_f \
 		-L$(DEMO_BUILT) -lcontact_normal
 	$(FC) -O2 -Jbuild include/contact_normal.f90 fortran_examples/wheel_rail.f90 -o build/wheel_rail_f \
 		-L$(DEMO_BUILT) -lcontact_normal
+endif
 	@echo; echo "== The paper's problem, from C"
 	@$(LOADER_PATH)=build build/hertz_c
+ifdef DEMO_FORTRAN
 	@echo; echo "== The paper's problem, from Fortran"
 	@$(LOADER_PATH)=build build/hertz_f
+endif
 	@echo; echo "== Wheel and rail, from C"
 	@$(LOADER_PATH)=build build/wheel_rail_c $(WHEEL_RAIL)
+ifdef DEMO_FORTRAN
 	@echo; echo "== Wheel and rail, from Fortran"
 	@$(LOADER_PATH)=build build/wheel_rail_f $(WHEEL_RAIL)
+endif
 	@echo; echo "== Wheel and rail, from Python"
 	@CONTACT_NORMAL_LIBRARY=$(abspath $(DEMO_BUILT))/$(BUILT) PYTHONPATH=python PYTHONDONTWRITEBYTECODE=1 \
 		"$(find_python)" python_examples/wheel_rail.py $(WHEEL_RAIL) build/wheel_rail.png
 	@echo; echo "The picture: build/wheel_rail.png"
+ifndef DEMO_FORTRAN
+	@echo "For the same in Fortran: install gfortran, then make demo."
+endif
+
+$(DEMO_BUILT)/$(BUILT): Cargo.toml Cargo.lock build.rs $(shell find src crates -name '*.rs') | demo-tools
+	$(CARGO) rustc --profile demo --locked --lib --crate-type cdylib --no-default-features --target-dir build/demo_target
+	@mkdir -p $(DEMO_BUILT)
+	@cp build/demo_target/demo/$(BUILT) $(DEMO_BUILT)
+	@rm -rf build/demo_target
 
 # Optimised, with debug assertions and overflow checks on; the feature is for tests/handles.
 test: tools
@@ -244,6 +263,10 @@ pictures: all build/tools/ready
 # What builds wheels and the site: an environment of Python, apart from the user's.
 build/tools/ready: packaging/requirements.txt
 	@$(call environment,build/tools,-r $<)
+
+# The three crates for crates.io, packed but not published: CONTRIBUTING.md has the order.
+crates:
+	$(CARGO) package --locked --no-verify -p contact-normal-par -p contact-normal-toeplitz -p contact-normal
 
 # The licences of what is linked, anew: after a change of Cargo.lock.
 notices:

@@ -19,6 +19,8 @@ VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 
 # The target of Rust that the library is built for: empty for this machine.
 TARGET ?=
+# The profile of cargo that it is built in.
+PROFILE := release
 # Its system: linux, macos, or windows (by MinGW-w64).
 ifneq ($(findstring windows,$(TARGET))$(and $(if $(TARGET),,here),$(filter Windows_NT,$(OS))),)
 SYSTEM := windows
@@ -83,7 +85,7 @@ STRIP_PROGRAM = cp
 endif
 
 # Where the built libraries are: a packager (or a test) may have them elsewhere.
-LIBDIR_BUILT ?= $(or $(CARGO_TARGET_DIR),target)$(addprefix /,$(TARGET))/release
+LIBDIR_BUILT ?= $(or $(CARGO_TARGET_DIR),target)$(addprefix /,$(TARGET))/$(PROFILE)
 SHARED_BUILT ?= $(LIBDIR_BUILT)/$(BUILT)
 # And the program that reads dumps.
 REPLAY_BUILT ?= $(LIBDIR_BUILT)/contact-normal-replay$(EXE)

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds the library for other machines and tries it there: Linux on aarch64 by qemu-user, Windows by MinGW-w64 and wine. Runs the examples in C,
-# and the Python package with its tests. For macOS it is only compiled. For Debian 12, as root or with sudo. Usage: packaging/machines.sh [TARGET...]
+# and the Python package, from its wheel, with its tests. For macOS it is only compiled. For Debian 12, as root or with sudo.
+# Usage: packaging/machines.sh [TARGET...]
 #
 # The standard library of a target is rustup's (`rustup target add TARGET`), if it is installed. Otherwise the compiler of Debian's packages is
 # unpacked into build/machines/rust, beside Rust itself: it has aarch64's standard library, and the source, from which cargo builds others.
@@ -67,17 +68,13 @@ for target in "${targets[@]}"; do
     case $target in
         *-apple-*) cargo check --locked "${std[@]}" --target "$target" && echo "$target: compiled, not run" && continue ;;
         *-windows-gnu)
-            need x86_64-w64-mingw32-gcc gcc-mingw-w64-x86-64 && need wine wine wine64
-            library=contact_normal.dll strip=x86_64-w64-mingw32-strip ;;
+            need x86_64-w64-mingw32-gcc gcc-mingw-w64-x86-64 && need wine wine wine64 ;;
         aarch64-*)
-            need aarch64-linux-gnu-gcc gcc-aarch64-linux-gnu libc6-dev-arm64-cross && need qemu-aarch64 qemu-user
-            library=libcontact_normal.so strip=aarch64-linux-gnu-strip ;;
+            need aarch64-linux-gnu-gcc gcc-aarch64-linux-gnu libc6-dev-arm64-cross && need qemu-aarch64 qemu-user ;;
     esac
     cargo build --locked "${std[@]}" --profile checked --lib --bins --target "$target"
     python3 packaging/try_machine.py "$target" "$CARGO_TARGET_DIR/$target/checked" "$here/$target"
-    make -s build/tools/ready
-    rm -rf "$here/wheel"
-    CONTACT_NORMAL_LIBRARY=$CARGO_TARGET_DIR/$target/checked/$library STRIP=$strip \
-        build/tools/bin/python -m build --wheel --no-isolation --outdir "$here/wheel" > "$here/wheel.log"
-    build/tools/bin/python packaging/try_foreign_wheel.py "$here"/wheel/*.whl "$here/python-$target"
+    # The wheel as `make wheel` makes it: that of Linux is linked by zig for glibc 2.28, with its tag checked.
+    STRIP=${target%%-*}-w64-mingw32-strip make -s wheel TARGET="$target" PROFILE=checked CARGO="cargo ${std[*]}"
+    build/tools/bin/python packaging/try_foreign_wheel.py build/wheel/*.whl "$here/python-$target"
 done

@@ -64,7 +64,7 @@ by_fpm() {
     sed "s|@PACKAGE@|$(realpath --relative-to=fpm "$prefix/share/contact-normal")|" fpm/fpm.toml.in > fpm/fpm.toml
     (cd fpm && LIBRARY_PATH=$prefix/lib LD_LIBRARY_PATH=$prefix/lib "${FPM:-fpm}" run) 2>fpm.log || { cat fpm.log >&2; return 1; }
 }
-consumer "Fortran, fpm" by_fpm
+if command -v "${FPM:-fpm}" >/dev/null || test "$(uname -m)" = x86_64; then consumer "Fortran, fpm" by_fpm; else echo "Fortran, fpm: not run, no fpm here"; fi
 
 by_wheel() {
     python3 -m venv python && python/bin/pip install --quiet --disable-pip-version-check "$wheel"

@@ -96,3 +96,8 @@ pub use toeplitz::panics;
 
 #[cfg(panic = "abort")]
 compile_error!("contact-normal turns panics into a status at the C boundary: build it with panic = \"unwind\"");
+
+/// The examples of what crates.io shows.
+#[cfg(doctest)]
+#[doc = include_str!("../packaging/crate.md")]
+struct Readme;

@@ -55,6 +55,8 @@ fn the_version_is_the_same_wherever_it_stands() {
     let version = env!("CARGO_PKG_VERSION");
     for (file, stands) in [
         ("CITATION.cff", format!("\nversion: {version}\n")),
+        ("crates/par/Cargo.toml", format!("\nversion = \"{version}\"\n")),
+        ("crates/toeplitz/Cargo.toml", format!("\nversion = \"{version}\"\n")),
         ("CHANGELOG.md", format!("\n## [{version}] - ")),
         ("fpm.toml", format!("\nversion = \"{version}\"\n")),
         ("include/contact_normal.hpp", format!("contact-normal {version}: ")),

@@ -32,3 +32,8 @@ pub mod sums;
 pub mod threads;
 
 pub use error::{OutOfMemory, Result};
+
+/// The examples of what crates.io shows.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

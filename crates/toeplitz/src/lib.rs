@@ -74,3 +74,8 @@ pub use row_matrices::OfRows;
 pub use set_up::SetUp;
 pub use vector_product::{vector_period, VectorProduct};
 pub use workspace::{Memory, Room};
+
+/// The examples of what crates.io shows.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
