@@ -46,12 +46,13 @@ impl Slide {
         }
     }
 
-    /// Becomes a motion that tables serve: steps of whole elements along x.
+    /// Becomes a motion that tables serve: steps of whole elements along x, that way in which the bodies roll.
     pub fn fit(&mut self, kind: &Kind, random: &mut Random, grid: &Grid) {
-        if matches!(kind, Kind::Uneven { .. }) {
-            self.motion = CONTACT_NORMAL_MOTION_STEADY_ROLLING;
+        let mut back = random.chance(0.5);
+        if let Kind::Uneven { back: rolls_back, .. } = kind {
+            (self.motion, back) = (CONTACT_NORMAL_MOTION_STEADY_ROLLING, *rolls_back);
         }
-        self.direction = [0.0, std::f64::consts::PI][random.integer(0, 1)];
+        self.direction = if back { std::f64::consts::PI } else { 0.0 };
         self.distance = random.integer(1, STEP) as f64 * grid.dx;
     }
 

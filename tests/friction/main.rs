@@ -25,6 +25,7 @@ mod onset_of_rolling;
 mod own_law;
 mod plastic;
 mod refusals;
+mod rolled_towards;
 mod rolling;
 mod rolling_tables;
 mod row_tables;
