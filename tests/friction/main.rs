@@ -34,6 +34,7 @@ mod same_bits;
 #[allow(dead_code)]
 mod scenes;
 mod sensitivities;
+mod slender_that_roll;
 mod stalls;
 mod steady;
 mod steady_hard_cases;
