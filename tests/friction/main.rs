@@ -40,6 +40,7 @@ mod steady;
 mod steady_hard_cases;
 #[path = "../../examples/friction/steady.rs"]
 mod steady_scenes;
+mod stiff_coats;
 mod support;
 mod tables;
 mod threads;
