@@ -55,6 +55,14 @@ impl Kind {
         }
     }
 
+    /// In which uneven ones roll.
+    pub fn direction(&self) -> f64 {
+        match self {
+            Kind::Uneven { back: true, .. } => std::f64::consts::PI,
+            _ => 0.0,
+        }
+    }
+
     /// The coefficients of a row of offsets from `first` on.
     pub fn row(&self, ky: i64, first: i64, count: usize, at: At<'_>) -> Vec<[f64; 3]> {
         let plain = || (0..count as i64).map(|k| at(first + k, ky));
