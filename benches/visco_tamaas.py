@@ -65,4 +65,8 @@ for solve in (own, theirs):
     found.append(solve())
     seconds.append(time.perf_counter() - began)
 off = max(np.abs(p - q).max() / q.max() for p, q in zip(*found))
+# Pressures that agree to their tolerances: of 1e-12 each, of the residual and not of pressures.
+AGREE = 1e-9
 print(f"{N} x {N} elements, {STEPS} steps: pressures differ by {off:.1e} of the largest; {seconds[0]:.3f} s, tamaas {seconds[1]:.3f} s")
+if not off < AGREE:
+    sys.exit(f"pressures differ by {off:.1e} of the largest; {AGREE:.0e} is what both tolerances leave")

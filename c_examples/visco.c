@@ -1,10 +1,11 @@
 /* Effect `visco`: a rigid ball of radius 10 mm on a polymer plate of two branches. First its approach is held, and the force relaxes as the
-   modulus does; then a force is held, and the approach creeps as the compliance does to the power 2/3. mm, N, s. */
+   modulus does; then a force is held, and the approach creeps as the compliance does to the power 2/3. Last, two balls of it roll on each other
+   at one speed, by coefficients of their own: relaxed material is behind, so pressures are ahead of the middle. mm, N, s. */
 #include <math.h>
 
 #include "example.h"
 
-enum { M = 64, STEPS = 8 };
+enum { M = 64, STEPS = 8, ROLLED = 32, REACH = ROLLED + 1 };
 
 static const double G = 8.0, MODULI[2] = {4.0, 3.0}, TIMES[2] = {0.3, 3.0};
 
@@ -37,6 +38,70 @@ static int held(contact_normal_scene *scene, contact_normal_visco *visco)
                    report.normal.max_pressure);
     }
     contact_normal_solver_free(solver);
+    return 1;
+}
+
+/* Coefficients of both balls, which give way to half their modulus in 4 ms: those of pressures, and of tractions one element farther, for the step. */
+static int made(double d, double speed, double *normal, double *own)
+{
+    const double half[1] = {4.0}, time[1] = {0.004}, shear_modulus[2] = {8.0, 8.0}, poisson_ratio[2] = {0.4, 0.4};
+    contact_normal_visco visco;
+    int b;
+
+    contact_normal_visco_init(&visco);
+    for (b = 0; b < 2; b++) {
+        visco.branches[b] = 1;
+        visco.modulus[b] = half;
+        visco.time[b] = time;
+    }
+    return solved(contact_normal_influence_rolling(ROLLED, ROLLED, d, d, shear_modulus, poisson_ratio, &visco, speed, normal),
+                  "contact_normal_influence_rolling")
+        && solved(contact_normal_influence_rolling_tangential(REACH, REACH, d, d, shear_modulus, poisson_ratio, &visco, speed, own),
+                  "contact_normal_influence_rolling_tangential");
+}
+
+/* Balls of radius 50 mm pressed by 100 N roll to the right, or to the left: how far pressures are ahead, and the creep force. */
+static int rolls(double speed)
+{
+    static double h[ROLLED * ROLLED], p[ROLLED * ROLLED], normal[4 * ROLLED * ROLLED], own[12 * REACH * REACH];
+    const double d = 0.4, pi = 3.14159265358979323846;
+    contact_normal_scene scene;
+    contact_normal_friction friction;
+    contact_normal_influence tables[4];
+    contact_normal_fields fields;
+    contact_normal_report report;
+    double moment = 0.0;
+    int i;
+
+    if (!made(d, speed, normal, own)) return 0;
+    contact_normal_scene_init(&scene);
+    contact_normal_friction_init(&friction);
+    contact_normal_fields_init(&fields);
+    contact_normal_report_init(&report);
+    for (i = 0; i < 4; i++) {
+        contact_normal_influence_init(&tables[i]);
+        tables[i].cx = tables[i].cy = i < 3 ? REACH : ROLLED;
+        tables[i].coefficients = i < 3 ? own + i * 4 * REACH * REACH : normal;
+        if (i < 3) friction.influence[i] = &tables[i];
+    }
+    for (i = 0; i < ROLLED * ROLLED; i++) {
+        const double x = (i % ROLLED - 0.5 * (ROLLED - 1)) * d, y = (i / ROLLED - 0.5 * (ROLLED - 1)) * d;
+        h[i] = (x * x + y * y) / 50.0;
+    }
+    scene.mx = scene.my = ROLLED;
+    scene.dx = scene.dy = d;
+    scene.undeformed_distance = h;
+    scene.force = 100.0;
+    scene.influence = &tables[3];
+    scene.friction = &friction;
+    friction.coefficient = 0.3;
+    friction.motion = CONTACT_NORMAL_MOTION_STEADY_ROLLING;
+    friction.rolling_direction = speed > 0.0 ? 0.0 : pi;
+    friction.creepage[0] = speed > 0.0 ? -0.01 : 0.01;
+    fields.pressure = p;
+    if (!solved(contact_normal_solve(&scene, NULL, &fields, &report), "contact_normal_solve")) return 0;
+    for (i = 0; i < ROLLED * ROLLED; i++) moment += p[i] * (i % ROLLED - 0.5 * (ROLLED - 1)) * d * d * d;
+    printf("at %6.0f mm/s: %7.4f mm ahead, creep force %7.3f N\n", speed, moment / report.normal.force, report.tangential.force[0]);
     return 1;
 }
 
@@ -73,5 +138,6 @@ int main(void)
     scene.load = CONTACT_NORMAL_PRESCRIBED_FORCE;
     scene.force = 3.0;
     if (!held(&scene, &visco)) return EXIT_FAILURE;
+    if (!rolls(1000.0) || !rolls(-1000.0) || !rolls(10.0)) return EXIT_FAILURE;
     return EXIT_SUCCESS;
 }

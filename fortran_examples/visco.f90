@@ -1,5 +1,6 @@
 ! Effect `visco`: a rigid ball of radius 10 mm on a polymer plate of two branches. First its approach is held, and the force relaxes as the
-! modulus does; then a force is held, and the approach creeps. mm, N, s.
+! modulus does; then a force is held, and the approach creeps. Last, two balls roll on each other at one speed, by coefficients of
+! their own: relaxed material is behind, so pressures are ahead of the middle. mm, N, s.
 program visco_of_a_ball
   use, intrinsic :: iso_c_binding
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
@@ -37,6 +38,8 @@ program visco_of_a_ball
   scene%load = CONTACT_NORMAL_PRESCRIBED_FORCE
   scene%force = 3
   call held()
+  call rolls(1000.0_c_double)
+  call rolls(-1000.0_c_double)
 
 contains
 
@@ -64,6 +67,59 @@ contains
       end if
     end do
     call contact_normal_solver_free(solver)
+  end subroutine
+
+  ! Balls of radius 50 mm that give way to half their modulus in 4 ms, pressed by 100 N, roll to the right or to the left. Coefficients
+  ! of tractions reach one element farther than those of pressures, for the step.
+  subroutine rolls(speed)
+    real(c_double), intent(in) :: speed
+    integer(c_int32_t), parameter :: n = 32, reach = n + 1
+    real(c_double), parameter :: side = 0.4_c_double, g(2) = 8, nu(2) = 0.4_c_double, pi = acos(-1.0_c_double)
+    real(c_double), pointer, contiguous :: h(:, :), p(:, :), normal(:, :), own(:, :, :), half(:), time(:)
+    real(c_double), pointer, contiguous :: xx(:, :), yy(:, :), xy(:, :)
+    type(contact_normal_scene) :: balls
+    type(contact_normal_visco), pointer :: relaxing
+    type(contact_normal_friction), pointer :: friction
+    type(contact_normal_influence), pointer :: influence
+    type(contact_normal_influence), target :: tables(3)
+    type(contact_normal_fields) :: fields
+    type(contact_normal_report) :: report
+    real(c_double) :: x(n)
+    integer :: i
+
+    allocate (h(n, n), p(n, n), normal(2*n, 2*n), own(2*reach, 2*reach, 3), half(1), time(1), relaxing, friction, influence)
+    half = 4
+    time = 0.004_c_double
+    x = [((i - 0.5_c_double*(n + 1))*side, i=1, n)]
+    h = (spread(x**2, 2, n) + spread(x**2, 1, n))/50
+    call contact_normal_scene_init(balls)
+    call contact_normal_set_visco(balls, relaxing, half, time, half, time)
+    call check(contact_normal_influence_rolling(n, n, side, side, g, nu, relaxing, speed, normal))
+    call check(contact_normal_influence_rolling_tangential(reach, reach, side, side, g, nu, relaxing, speed, own))
+    xx => own(:, :, 1)
+    yy => own(:, :, 2)
+    xy => own(:, :, 3)
+    ! The steps of time are no part of a scene that rolls steadily.
+    balls%visco = c_null_ptr
+    balls%mx = n
+    balls%my = n
+    balls%dx = side
+    balls%dy = side
+    balls%force = 100
+    call contact_normal_set_undeformed_distance(balls, h)
+    call contact_normal_set_influence(balls, influence, n, n, normal)
+    call contact_normal_set_friction(balls, friction, coefficient=0.3_c_double)
+    call contact_normal_set_tangential_influence(friction, tables, xx, yy, xy)
+    friction%motion = CONTACT_NORMAL_MOTION_STEADY_ROLLING
+    friction%rolling_direction = merge(0.0_c_double, pi, speed > 0)
+    friction%creepage(1) = merge(-0.01_c_double, 0.01_c_double, speed > 0)
+    call contact_normal_fields_init(fields)
+    fields%pressure = c_loc(p)
+    call contact_normal_report_init(report)
+    call check(contact_normal_solve(balls, fields=fields, report=report))
+    print '(a, f7.0, a, f8.4, a, f8.3, a)', 'at ', speed, ' mm/s: ', sum(p*spread(x, 2, n))/sum(p), ' mm ahead, creep force ', &
+      report%tangential%force(1), ' N'
+    deallocate (h, p, normal, own, half, time, relaxing, friction, influence)
   end subroutine
 
   subroutine check(status)

@@ -28,9 +28,10 @@ TOLERANCE = 1e-7
 
 
 def base(n, thickness, ratio):
-    """Its half-space of finite thickness: it takes E, not E*."""
+    """Its half-space of finite thickness: it takes E, not E*. Of an incompressible one it divides by 0 for the mean, which is not compressed;
+    nearer to 1/2 than this its solver comes to no end. What is left changes answers by some 1e-6."""
     young = MODULUS * (1 - ratio**2)
-    return PeriodicFFTElasticHalfSpace((n, n), young, (SIDE, SIDE), thickness=thickness, poisson=ratio)
+    return PeriodicFFTElasticHalfSpace((n, n), young, (SIDE, SIDE), thickness=thickness, poisson=min(ratio, 0.5 - 1e-6))
 
 
 def layer(thickness, ratio):
@@ -56,16 +57,27 @@ def solve(n, thickness, ratio, force):
     )
 
 
+# Of the largest pressure and of the approach on 256 x 256 elements, and that of 64 x 64 over that.
+AGREE, FALLS = 2e-4, 4.0
+
+
 def main():
-    """The table."""
+    """The table; ends with an error where an answer is not theirs."""
     print("| Poisson ratio | thickness | elements | largest pressure | contact area | approach |")
     print("|---|---|---|---|---|---|")
-    for ratio in (0.0, 0.3, 0.49):
+    wrong = []
+    for ratio in (0.0, 0.3, 0.49, 0.5):
         for thickness in (0.05, 0.2):
+            found = {}
             for n in (64, 128, 256):
                 theirs, ours = solve(n, thickness, ratio, 0.01)
-                differences = [f"{abs(a / b - 1):.1e}" for a, b in zip(theirs, ours, strict=True)]
-                print(f"| {ratio} | {thickness} | {n} x {n} | " + " | ".join(differences) + " |", flush=True)
+                found[n] = [abs(a / b - 1) for a, b in zip(theirs, ours, strict=True)]
+                print(f"| {ratio} | {thickness} | {n} x {n} | " + " | ".join(f"{off:.1e}" for off in found[n]) + " |", flush=True)
+            for name, coarse, fine in zip(("pressure", "area", "approach"), found[64], found[256], strict=True):
+                if name != "area" and not (fine < AGREE and fine * FALLS < coarse):
+                    wrong.append(f"{name} of {ratio}, {thickness}: {coarse:.1e} on 64 x 64, {fine:.1e} on 256 x 256")
+    if wrong:
+        sys.exit("\n".join(wrong))
 
 
 if __name__ == "__main__":

@@ -6,15 +6,15 @@
 //! c (1/t) integral over the element of F(r/t),    F(rho) = integral over s > 0 of (B(s) - 1) J0(s rho),    c = (1 - nu1)/(2 pi G1)
 //! ```
 //!
-//! F is analytic in |Im rho| < 2. It is tabulated along the distance, and integrated over elements by Gauss's rule: layers here are at least
-//! half as thick as elements are long. With two periods each wave k of a grid and its aliases has `2 pi c (B(k t) - 1)/k` times the means
+//! F is analytic in |Im rho| < 2. It is tabulated along the distance, and integrated over elements by Gauss's rule, on panels at most two thicknesses long
+//! beside the load. With two periods each wave k of a grid and its aliases has `2 pi c (B(k t) - 1)/k` times the means
 //! over elements, and the mean pressure P compresses the layer by `P t/M`, `M = 2 G1 (1 - nu1)/(1 - 2 nu1)`.
 
 use std::f64::consts::PI;
 
 use crate::grid::Grid;
 use crate::half_space::{free, periodic, Quadrant};
-use crate::hankel::{gauss, transfer, Table};
+use crate::hankel::{transfer, Rules, Table};
 use crate::random::Random;
 
 /// Thickness, shear modulus and Poisson ratio of a layer.
@@ -35,8 +35,7 @@ pub struct Coating {
 
 /// What a coefficient may be off, over it: what the library says of its own for G1/G2 of 0.01 to 100, and as much here.
 const ACCURACY: f64 = 2e-10;
-/// Points a side of an element. F has its singularities at +-2i, elements are at most two thicknesses long: `(2 + sqrt 5)^-24 = 1e-15`.
-const POINTS: usize = 12;
+const STIFF: f64 = 100.0;
 /// Layers on one body or on both, of which one may be rigid; with two periods on small grids down to 1/16 of an element.
 pub fn random(
     random: &mut Random,
@@ -73,10 +72,19 @@ pub fn random(
     Coating { layers, shear_modulus, poisson_ratio }
 }
 
-/// One layer on both bodies, which are the same; now and then on rigid ones, and then it is of the bodies' material.
+/// Elements of a grid on which layers may be a twentieth of an element thick: their table along the distance is long.
+const FEW: usize = 2500;
+
+/// One layer on both bodies, which are the same; now and then on rigid ones, and then it is of the bodies' material; or thin and stiff.
 pub fn on_both(random: &mut Random, grid: &Grid, (shear_modulus, poisson_ratio): (f64, f64)) -> Coating {
     let coating = self::random(random, grid, ([shear_modulus; 2], [poisson_ratio; 2]), None);
-    let Some(layer) = coating.layers[0].or(coating.layers[1]) else { return coating };
+    let Some(mut layer) = coating.layers[0].or(coating.layers[1]) else { return coating };
+    let mut beside = random.beside(0x57aff);
+    if grid.len() <= FEW && beside.chance(0.3) {
+        layer.thickness = grid.dx.max(grid.dy) * beside.decades(0.05, 0.7);
+        layer.shear_modulus = shear_modulus * beside.decades(10.0, 1e4);
+        return Coating { layers: [Some(layer); 2], ..coating };
+    }
     let on_rigid = random.chance(0.3) && layer.thickness > 0.0;
     let layer = Layer { shear_modulus: if on_rigid { shear_modulus } else { layer.shear_modulus }, ..layer };
     let shear_modulus = if on_rigid { [f64::INFINITY; 2] } else { coating.shear_modulus };
@@ -132,7 +140,9 @@ impl Coating {
             }
         }
         let largest = quadrant.values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-        quadrant.rounding += ACCURACY * largest;
+        // In stiffer ones as many more digits cancel.
+        let stiffest = surfaces.iter().fold(STIFF, |most: f64, (_, _, mu, _)| most.max(*mu));
+        quadrant.rounding += ACCURACY * largest * stiffest / STIFF;
         quadrant
     }
 }
@@ -149,12 +159,10 @@ fn compression((c, t, mu, [nu1, nu2]): (f64, f64, f64, [f64; 2])) -> f64 {
 fn add_elements(grid: &Grid, (c, t, mu, nu): (f64, f64, f64, [f64; 2]), values: &mut [f64]) {
     let Grid { mx, my, dx, dy } = *grid;
     let table = Table::new(mu, nu, ((mx as f64 + 1.0) * dx).hypot((my as f64 + 1.0) * dy) / t);
-    let near = gauss(POINTS);
-    // F is as smooth as 1/rho, or smoother, beyond eight elements: h/(4 r) to the power of 8.
-    let far = gauss(4);
+    let rules = Rules::new(dx.max(dy) / t);
     for (k, value) in values.iter_mut().enumerate() {
         let (x, y) = ((k % mx) as f64 * dx, (k / mx) as f64 * dy);
-        let rule = if x.hypot(y) > 24.0 * dx.max(dy) { &far } else { &near };
+        let rule = rules.at(x.hypot(y) / t);
         let mut mean = 0.0;
         for (u, wu) in rule {
             for (v, wv) in rule {
@@ -218,6 +226,7 @@ mod tests {
             (1.5, 10.0, [0.0, 0.5]),
             (1.5, 0.0, [0.5, 0.3]),
             (12.0, 100.0, [0.3, 0.3]),
+            (0.16, 5e3, [0.3, 0.2]),
         ] {
             let coating = of(t, mu, nu);
             let fine = coating.coefficients(&Grid { mx: 40, my: 40, dx: 1.0, dy: 0.7 }, None);

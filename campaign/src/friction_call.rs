@@ -214,7 +214,7 @@ impl Handle {
     pub fn new(place: &Place, stop: &Stop) -> Result<Handle, (i32, String)> {
         let mut canceller = Canceller { calls: 0, at: 0 };
         // Tables belong to what a handle is set up with.
-        let nothing = place.own.as_ref().map(|_| Slide::nothing(place.grid.len()));
+        let nothing = place.own.as_ref().map(|own| Slide::nothing(&own.kind, place.grid.len()));
         let slide = nothing.as_ref().map(|slide| (slide, From::Slide));
         let (scene, options) = (scene(place, slide), options(stop, &mut canceller));
         let mut handle = null_mut();

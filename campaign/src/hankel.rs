@@ -5,23 +5,53 @@ use std::f64::consts::PI;
 /// Nodes of a panel of the table, as many as that to be good to 1e-13; panels are half as wide as `asinh(rho/2)` changes by 1.
 const NODES: usize = 14;
 
-/// B(s), from N and D as they are defined: for G1/G2 of 0.01 to 100 some four digits cancel at most.
-pub fn transfer(mu: f64, [nu1, nu2]: [f64; 2], s: f64) -> f64 {
-    let lambda = 1.0 - 4.0 * (1.0 - nu1) / (1.0 + mu * (3.0 - 4.0 * nu2));
-    let kappa = (mu - 1.0) / (mu + 3.0 - 4.0 * nu1);
-    let th = (-2.0 * s).exp();
-    let n = 1.0 + 4.0 * s * kappa * th - lambda * kappa * th * th;
-    let d = 1.0 - (lambda + kappa + 4.0 * kappa * s * s) * th + lambda * kappa * th * th;
+/// N of pressures, N of tractions along a wave, and D of both,
+///
+/// ```text
+/// N = 1 +- 4 s kappa e - lambda kappa e^2,    D = 1 - (lambda + kappa + 4 kappa s^2) e + lambda kappa e^2,    e = exp(-2 s)
+/// ```
+///
+/// as they are defined for a soft layer. Of a stiff one lambda and kappa are near 1: there they are sums of terms that are positive, with
+/// `lambda = 1 - p`, `kappa = 1 - q`, `sinh^2 s - s^2` and `sinh 2s - 2s`.
+fn parts(mu: f64, [nu1, nu2]: [f64; 2], s: f64) -> [f64; 3] {
+    let (p, q) = (4.0 * (1.0 - nu1) / (1.0 + mu * (3.0 - 4.0 * nu2)), 4.0 * (1.0 - nu1) / (mu + 3.0 - 4.0 * nu1));
+    let (lambda, kappa, e) = (1.0 - p, 1.0 - q, (-2.0 * s).exp());
+    if mu < 1.0 {
+        let d = 1.0 - (lambda + kappa + 4.0 * kappa * s * s) * e + lambda * kappa * e * e;
+        let n = 1.0 - lambda * kappa * e * e;
+        return [n + 4.0 * s * kappa * e, n - 4.0 * s * kappa * e, d];
+    }
+    let (faded, rest) = (-(-2.0 * s).exp_m1(), e * e * (p + q - p * q));
+    let pressures = -(-4.0 * s).exp_m1() + rest + 4.0 * s * kappa * e;
+    let tractions = 2.0 * e * beyond(2.0 * s, 1) + 4.0 * s * q * e + rest;
+    let d = p * q + p * kappa * e * faded + lambda * q * faded + 2.0 * kappa * e * beyond(2.0 * s, 2);
+    [pressures, tractions, d]
+}
+
+/// What is left of `sinh x` (1), or of `cosh x` (2), behind the first or the first two terms of its series.
+fn beyond(x: f64, order: u32) -> f64 {
+    if x > 2.0 {
+        return if order == 1 { x.sinh() - x } else { x.cosh() - 1.0 - 0.5 * x * x };
+    }
+    let (mut term, mut sum) = (if order == 1 { x * x * x / 6.0 } else { x.powi(4) / 24.0 }, 0.0);
+    let mut k = f64::from(order + 2);
+    while term > 1e-18 * sum {
+        sum += term;
+        term *= x * x / ((k + 1.0) * (k + 2.0));
+        k += 2.0;
+    }
+    sum
+}
+
+/// B(s).
+pub fn transfer(mu: f64, nu: [f64; 2], s: f64) -> f64 {
+    let [n, _, d] = parts(mu, nu, s);
     n / d
 }
 
 /// How the surface gives way to tractions along a wave and across it, over a half-space of the layer's material: plane and antiplane strain.
-pub fn of_tractions(mu: f64, [nu1, nu2]: [f64; 2], s: f64) -> [f64; 2] {
-    let lambda = 1.0 - 4.0 * (1.0 - nu1) / (1.0 + mu * (3.0 - 4.0 * nu2));
-    let kappa = (mu - 1.0) / (mu + 3.0 - 4.0 * nu1);
-    let th = (-2.0 * s).exp();
-    let n = 1.0 - 4.0 * s * kappa * th - lambda * kappa * th * th;
-    let d = 1.0 - (lambda + kappa + 4.0 * kappa * s * s) * th + lambda * kappa * th * th;
+pub fn of_tractions(mu: f64, nu: [f64; 2], s: f64) -> [f64; 2] {
+    let [_, n, d] = parts(mu, nu, s);
     [n / d, (mu + s.tanh()) / (1.0 + mu * s.tanh())]
 }
 
@@ -44,6 +74,30 @@ pub fn gauss(n: usize) -> Vec<(f64, f64)> {
         (0.5 + 0.5 * x, 1.0 / ((1.0 - x * x) * slope * slope))
     };
     (0..n).map(node).collect()
+}
+
+/// Gauss's rules over an element, of functions of `rho = r/t` that have their singularities at +-2i: twelve points on each two thicknesses beside the load,
+/// `(2 + sqrt 5)^-24 = 1e-15`; twelve in all from 2.5 elements on; and four from 24 elements on, where F is as smooth as 1/rho or smoother.
+pub struct Rules {
+    rules: [Vec<(f64, f64)>; 3],
+    longer: f64,
+}
+
+impl Rules {
+    /// For elements as long as this in their longer direction, in thicknesses.
+    pub fn new(longer: f64) -> Rules {
+        let (near, far) = (gauss(12), gauss(4));
+        let panels = (0.5 * longer).ceil().max(1.0);
+        let panel = |k: u32| near.iter().map(move |(x, w)| ((x + f64::from(k)) / panels, w / panels));
+        let beside = (0..panels as u32).flat_map(panel).collect();
+        Rules { rules: [beside, near, far], longer }
+    }
+
+    /// At a distance in thicknesses, for both directions.
+    pub fn at(&self, distance: f64) -> &[(f64, f64)] {
+        let elements = distance / self.longer;
+        &self.rules[usize::from(elements > 2.5) + usize::from(elements > 24.0)]
+    }
 }
 
 /// F up to a distance, on panels in `v = asinh(rho/2)`.

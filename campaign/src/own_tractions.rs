@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! even:    f A
-//! uneven:  A + c sum over n >= 0 of (1 - e) e^n A(x + n)        in steady rolling: material behind has given way
+//! uneven:  A + c sum over n >= 0 of (1 - e) e^n A(x + n)        in steady rolling towards +x: material behind has given way; or seen in a mirror
 //! rows:    d_i A d_j, of the rows i and j; pressures alike
 //! ```
 
@@ -25,7 +25,7 @@ const NOTHING: f64 = 1e-18;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
     Even { factor: f64 },
-    Uneven { c: f64, e: f64 },
+    Uneven { c: f64, e: f64, back: bool },
     Rows { d: Vec<f64> },
 }
 
@@ -47,7 +47,19 @@ impl Kind {
         match random.integer(0, 3) {
             0 => Kind::Even { factor: random.decades(0.1, 10.0) },
             1 => Kind::Rows { d: (0..grid.my).map(|_| random.between(0.8, 1.2)).collect() },
-            _ => Kind::Uneven { c: random.decades(0.1, 10.0), e: (-1.0 / random.decades(0.1, 30.0)).exp() },
+            _ => Kind::Uneven {
+                c: random.decades(0.1, 10.0),
+                e: (-1.0 / random.decades(0.1, 30.0)).exp(),
+                back: random.chance(0.5),
+            },
+        }
+    }
+
+    /// In which uneven ones roll.
+    pub fn direction(&self) -> f64 {
+        match self {
+            Kind::Uneven { back: true, .. } => std::f64::consts::PI,
+            _ => 0.0,
         }
     }
 
@@ -57,7 +69,11 @@ impl Kind {
         match *self {
             Kind::Rows { .. } => plain().collect(),
             Kind::Even { factor } => plain().map(|entry| entry.map(|value| factor * value)).collect(),
-            Kind::Uneven { c, e } => {
+            Kind::Uneven { c, e, back: true } => {
+                let ahead = Kind::Uneven { c, e, back: false }.row(ky, -(first + count as i64 - 1), count, at);
+                ahead.into_iter().rev().map(|[xx, yy, xy]| [xx, yy, -xy]).collect()
+            }
+            Kind::Uneven { c, e, back: false } => {
                 let beyond = (NOTHING.ln() / e.ln()).ceil() as i64;
                 let (mut behind, mut row) = ([0.0; 3], vec![[0.0; 3]; count]);
                 for k in (0..count as i64 + beyond).rev() {

@@ -28,9 +28,10 @@ pub struct Slide {
 }
 
 impl Slide {
-    /// Steady rolling without creepages.
-    pub fn nothing(n: usize) -> Slide {
+    /// Steady rolling without creepages, that way in which the bodies of these tables roll.
+    pub fn nothing(kind: &Kind, n: usize) -> Slide {
         Slide {
+            direction: kind.direction(),
             mu: vec![0.3; n],
             uniform: true,
             motion: CONTACT_NORMAL_MOTION_STEADY_ROLLING,
@@ -39,19 +40,18 @@ impl Slide {
             spin: 0.0,
             spin_centre: [0.0; 2],
             distance: 0.0,
-            direction: 0.0,
             previous: None,
             rigid: None,
             sensitivities: false,
         }
     }
 
-    /// Becomes a motion that tables serve: steps of whole elements along x.
+    /// Becomes a motion that tables serve: steps of whole elements along x, that way in which the bodies roll.
     pub fn fit(&mut self, kind: &Kind, random: &mut Random, grid: &Grid) {
+        self.direction = random.pick(&[0.0, std::f64::consts::PI]);
         if matches!(kind, Kind::Uneven { .. }) {
-            self.motion = CONTACT_NORMAL_MOTION_STEADY_ROLLING;
+            (self.motion, self.direction) = (CONTACT_NORMAL_MOTION_STEADY_ROLLING, kind.direction());
         }
-        self.direction = [0.0, std::f64::consts::PI][random.integer(0, 1)];
         self.distance = random.integer(1, STEP) as f64 * grid.dx;
     }
 

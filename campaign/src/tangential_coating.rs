@@ -12,7 +12,7 @@
 
 use crate::coating::Coating;
 use crate::grid::Grid;
-use crate::hankel::{gauss, of_tractions, Table};
+use crate::hankel::{of_tractions, Rules, Table};
 use crate::tangential_coefficients::Vector;
 
 /// What a coefficient may be off, over the largest: four digits that cancel in L and the tables' 1e-13, here and there.
@@ -24,8 +24,7 @@ pub struct Coat {
     tables: Option<[Table; 2]>,
     t: f64,
     sides: Vector,
-    near: Vec<(f64, f64)>,
-    far: Vec<(f64, f64)>,
+    rules: Rules,
 }
 
 /// Of 2 theta.
@@ -46,14 +45,19 @@ impl Coat {
         let sum = |s: f64| 0.5 * (parts(s)[1] + parts(s)[0]);
         let difference = |s: f64| 0.5 * (parts(s)[1] - parts(s)[0]);
         let tables = (t > 0.0).then(|| [Table::of(mu, &sum, libm::j0, last), Table::of(mu, &difference, j2, last)]);
-        Coat { tables, t, sides: [grid.dx, grid.dy], near: gauss(12), far: gauss(4) }
+        Coat {
+            tables,
+            t,
+            sides: [grid.dx, grid.dy],
+            rules: Rules::new(grid.dx.max(grid.dy) / if t > 0.0 { t } else { 1.0 }),
+        }
     }
 
     /// xx, yy and xy at an offset, in 1/(pi G1).
     pub fn at(&self, at: Vector) -> [f64; 3] {
         let Some([s, d]) = &self.tables else { return [0.0; 3] };
         let [dx, dy] = self.sides;
-        let rule = if at[0].hypot(at[1]) > 24.0 * dx.max(dy) { &self.far } else { &self.near };
+        let rule = self.rules.at(at[0].hypot(at[1]) / self.t);
         let mut sums = [0.0; 3];
         for (u, wu) in rule {
             for (v, wv) in rule {
@@ -82,9 +86,12 @@ mod tests {
     /// Nine elements are one that is three times as long; a thin layer is what is below, nearly.
     #[test]
     fn nine_elements_are_one() {
-        for (t, modulus, below, nu) in
-            [(1.6, 1.0, f64::INFINITY, [0.5, 0.3]), (4.0, 0.2, 1.0, [0.3, 0.1]), (1.6, 20.0, 1.0, [0.0, 0.5])]
-        {
+        for (t, modulus, below, nu) in [
+            (1.6, 1.0, f64::INFINITY, [0.5, 0.3]),
+            (4.0, 0.2, 1.0, [0.3, 0.1]),
+            (1.6, 20.0, 1.0, [0.0, 0.5]),
+            (0.16, 5e3, 1.0, [0.3, 0.4]),
+        ] {
             let layer = Some(Layer { thickness: t, shear_modulus: modulus, poisson_ratio: nu[0] });
             let coating = Coating { layers: [layer; 2], shear_modulus: [below; 2], poisson_ratio: [nu[1]; 2] };
             let fine = Coat::new(&coating, &Grid { mx: 40, my: 40, dx: 1.0, dy: 0.7 }, [0.0; 2]);

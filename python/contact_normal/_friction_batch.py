@@ -128,6 +128,7 @@ def friction_batch(
     influence: Any = None,
     layer: npt.ArrayLike | None = None,
     pressure_limit: npt.ArrayLike | None = None,
+    coating: Any = None,
     adhesion: Mapping[str, Any] | None = None,
     fields: bool = False,
     units: tuple[str, str] | None = None,
@@ -160,7 +161,7 @@ def friction_batch(
     progress : callable or bool, optional
         Called with a `Progress` about once for each entry, whose `cycles` counts entries that are done; a true result cancels. True: draws
         a bar on stderr.
-    shear_modulus, poisson_ratio, young_modulus, influence, layer, pressure_limit, adhesion, units, **given
+    shear_modulus, poisson_ratio, young_modulus, influence, layer, pressure_limit, coating, adhesion, units, **given
         As for `solve`. With `influence` the friction needs coefficients of its own, too.
 
     Returns
@@ -176,7 +177,8 @@ def friction_batch(
     scene, pressures = with_pressures(
         h, pressure, dx, dy, {"approach": approach, "force": force, "mean_pressure": mean_pressure}, shear_modulus=shear_modulus,
         poisson_ratio=poisson_ratio, young_modulus=young_modulus,
-        effects={"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "friction": friction, "adhesion": adhesion},
+        effects={"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "coating": coating, "friction": friction,
+                 "adhesion": adhesion},
     )
     return table_of(scene, pressures, entries, struct, progress, fields, None, units)
 

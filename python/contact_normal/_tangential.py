@@ -51,6 +51,7 @@ def solve_tangential(
     influence: Any = None,
     layer: npt.ArrayLike | None = None,
     period: str | None = None,
+    coating: Any = None,
     units: tuple[str, str] | None = None,
     progress: Callable[[Progress], Any] | bool | None = None,
     **given: Unpack[SolveOptions],
@@ -68,7 +69,7 @@ def solve_tangential(
         Element sizes.
     friction : mapping
         As for `solve`.
-    shear_modulus, poisson_ratio, young_modulus, influence, layer, period, units, progress, **given
+    shear_modulus, poisson_ratio, young_modulus, influence, layer, period, coating, units, progress, **given
         As for `solve`. With `influence` the friction needs coefficients of its own, too.
 
     Returns
@@ -91,7 +92,7 @@ def solve_tangential(
     >>> round(found.tangential_force[0], 4), bool((found.stick_slip == 1).any() and (found.stick_slip == 2).any())
     (9.6, True)
     """
-    effects, struct = {"influence": influence, "layer": layer, "period": period, "friction": friction}, options(given)
+    effects, struct = {"influence": influence, "layer": layer, "period": period, "coating": coating, "friction": friction}, options(given)
     scene, pressures = with_pressures(None, pressure, dx, dy, {}, shear_modulus=shear_modulus, poisson_ratio=poisson_ratio,
                                       young_modulus=young_modulus, effects=effects)
     assert pressures is not None

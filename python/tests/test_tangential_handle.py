@@ -63,6 +63,27 @@ class HandlesOfTangentialProblems(unittest.TestCase):
         self.assertLess(again.report["tangential_products"], 0.3 * cold.report["tangential_products"])
 
 
+class CoatedBodies(unittest.TestCase):
+    COATED = {**STEEL, "coating": ((0.3, 8200.0, 0.35),) * 2}
+
+    def test_pressures_of_coated_bodies_have_the_tractions_of_the_whole_solve(self) -> None:
+        h = (X[None, :] ** 2 + X[:, None] ** 2) / 100.0
+        whole = cn.solve(h, D, D, force=50.0, friction=SHIFT, tolerance=1e-8, **self.COATED)
+        found = cn.solve_tangential(whole.pressure, D, D, friction=SHIFT, tolerance=1e-8, **self.COATED)
+        np.testing.assert_allclose(found.traction, whole.traction, atol=1e-6 * whole.pressure.max())
+        plain = cn.solve_tangential(whole.pressure, D, D, friction=SHIFT, tolerance=1e-8, **STEEL)
+        self.assertGreater(np.abs(plain.traction - found.traction).max(), 0.01 * whole.pressure.max())
+        entries = [(*SHIFT["creepage"], 0.0), (1e-4, 0.0, 1e-4)]
+        for surface, of in ((None, {"pressure": whole.pressure}), (h, {"force": 50.0})):
+            batch = cn.friction_batch(surface, D, D, entries, friction=SHIFT, tolerance=1e-8, **of, **self.COATED)
+            np.testing.assert_allclose(batch.force[0], whole.tangential_force, atol=1e-6 * 0.3 * 50.0)
+
+    def test_bodies_with_unlike_coatings_are_refused(self) -> None:
+        with self.assertRaises(cn.ContactNormalError) as refused:
+            cn.solve_tangential(PRESSURE, D, D, friction=SHIFT, coating=((0.3, 8200.0, 0.35), None), **STEEL)
+        self.assertEqual(refused.exception.status, cn.UNSUPPORTED)
+
+
 class LayersAndWeights(unittest.TestCase):
     def test_a_stiff_pair_of_bodies_has_the_layer_alone(self) -> None:
         # Bodies that hardly give way: what sticks has the traction of its own part of the layer.

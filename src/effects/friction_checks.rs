@@ -142,7 +142,8 @@ impl Friction<'_> {
         if influence.by_row {
             influence.check_rows(grid)
         } else {
-            influence.check(grid, self.motion == Motion::SteadyRolling)
+            influence.check(grid, self.motion == Motion::SteadyRolling)?;
+            self.check_rolled(grid)
         }
     }
 }

@@ -46,6 +46,7 @@ mod patches;
 mod period;
 mod pressure_limit;
 mod properties;
+mod rolled_towards;
 mod tables;
 mod tangential_influence;
 mod tangential_rows;

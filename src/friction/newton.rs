@@ -11,7 +11,8 @@
 //! projection between steps (Alart and Curnier 1991; Christensen 2002). [`step`](super::step) takes them.
 //!
 //! The certificate takes a fresh product. It is taken at what a step starts with, x0 and a part of the preconditioned residual: where little is missing, that
-//! is enough.
+//! is enough. Where the preconditioner is far from an inverse, as for thin stiff coatings in steady rolling, that part brings back more than it takes, each
+//! time. Then the certificate is taken at x0 alone.
 
 use super::balance::balanced;
 use super::best::Best;
@@ -45,6 +46,10 @@ const DIRECTIONS: usize = 40;
 const KEPT: usize = 1 << 21;
 /// Steps then go this part of their way, every other time: two sets of slipping elements may follow each other for ever.
 const PART: f64 = 0.5;
+/// What a certificate is taken at leaves more than so many times the residual before it, so many times in a row: then the preconditioner is no help. Once
+/// may be what displacements that are not fresh hide.
+const WORSE: f64 = 1.5;
+const TIMES_WORSE: u32 = 2;
 /// Steps without the residual falling to this part of its least.
 const PATIENCE: u32 = 4;
 const PROGRESS: f64 = 0.7;
@@ -119,6 +124,35 @@ impl Course {
     }
 }
 
+/// What certificates were taken at.
+#[derive(Default)]
+struct Tried {
+    /// The residual before the last one, which was not met.
+    before: Option<f64>,
+    /// In a row.
+    worse: u32,
+}
+
+impl Tried {
+    /// Takes the residual behind it.
+    fn compare(&mut self, residual: f64) {
+        if let Some(before) = self.before.take().filter(|_| self.is_by_step()) {
+            self.worse = if residual > WORSE * before { self.worse + 1 } else { 0 };
+        }
+    }
+
+    /// Whether the preconditioner serves.
+    fn is_by_step(&self) -> bool {
+        self.worse < TIMES_WORSE
+    }
+
+    /// Whether it is to be tried.
+    fn is_near(&self, measures: Measures, missing: f64, tolerance: f64) -> bool {
+        let part = if self.is_by_step() { NEAR } else { 1.0 };
+        measures.residual < part * tolerance && measures.excess.max(missing) < tolerance
+    }
+}
+
 /// Iterates from what the state and the offset hold.
 pub fn solve(
     problem: &mut Problem,
@@ -136,7 +170,7 @@ pub fn solve(
     let made = problem.operators.products;
     let of_step = if manner == Manner::InTurns { Forces::NONE } else { forces };
     let mut course = Course::new(if problem.operators.rolling.is_some() { INNER_ROLLING } else { INNER });
-    let mut iterations = 0;
+    let (mut iterations, mut tried) = (0, Tried::default());
     loop {
         let rho = course.factor
             * if manner == Manner::Plain { rho_of((problem.rms_bound(), problem.rms_slip()), cap) } else { cap };
@@ -148,16 +182,16 @@ pub fn solve(
         let excess = if certified { measures.excess } else { measures.excess / COARSE_EXCESS };
         let worst = largest([measures.residual, excess, missing]);
         if !worst.is_finite() {
-            problem.offset = [0.0; 2];
-            state.unload(problem.threads());
-            return Ok(Outcome::Stagnated);
+            return Ok(unloaded(problem, state));
         }
         if worst < tolerance && (state.is_exact || !certified) {
             return Ok(Outcome::Converged);
         }
         best.see(problem, state, worst, fields)?;
-        if certified && !state.is_exact && is_near(measures, missing, tolerance.max(ROUND_OFF)) {
-            polish(problem, state, tangent, of_step, fields)?;
+        tried.compare(measures.residual);
+        if certified && !state.is_exact && tried.is_near(measures, missing, tolerance.max(ROUND_OFF)) {
+            tried.before = Some(measures.residual);
+            polish(problem, state, (tangent, tried.is_by_step()), of_step, fields)?;
             continue;
         }
         let runs_away = manner == Manner::Plain && square(problem.offset).sqrt() > RUNAWAY * (saturating + spinning);
@@ -179,6 +213,13 @@ pub fn solve(
     }
 }
 
+/// Nothing is left of an iteration that came to no numbers.
+fn unloaded(problem: &mut Problem, state: &mut State) -> Outcome {
+    problem.offset = [0.0; 2];
+    state.unload(problem.threads());
+    Outcome::Stagnated
+}
+
 /// The largest of these, which are not negative; NaN if there is one.
 fn largest(values: [f64; 3]) -> f64 {
     values.into_iter().fold(0.0, |most, value| if most.is_nan() || value <= most { most } else { value })
@@ -187,9 +228,4 @@ fn largest(values: [f64; 3]) -> f64 {
 /// As many as there are unknowns, if so many can be kept.
 fn all_directions(problem: &Problem) -> usize {
     (KEPT / problem.grid.len()).min(2 * problem.count() + 2).max(DIRECTIONS)
-}
-
-/// Whether the certificate is to be tried.
-fn is_near(measures: Measures, missing: f64, tolerance: f64) -> bool {
-    measures.residual < NEAR * tolerance && measures.excess.max(missing) < tolerance
 }

@@ -7,7 +7,7 @@ use super::coefficients::{Compliance, Entry, Tangential};
 use crate::error::{finite, require, Error, Result};
 use crate::memory::zeros;
 use crate::powers::{apart, times_power};
-use crate::visco::rolling::{check, parts, rule, Row, OUT_OF_RANGE};
+use crate::visco::rolling::{check, finest, parts, rule, Row, OUT_OF_RANGE};
 use crate::visco::RollingBody;
 
 const WHAT: &str = "the tangential influence coefficients";
@@ -39,6 +39,8 @@ pub fn rolling_tables(
     let most = check((cx, cy), (dx, dy), bodies, speed)?;
     check_alike(bodies, nu)?;
     let ((d, of_d), (_, of_compliance)) = (apart(dx), apart(most));
+    // In elements.
+    let width = times_power(dy, -of_d) / d;
     let of_body = |b: usize| -> Result<_> {
         // Of a compliance of 1.
         let at_once = Compliance { shear: 1.0, poisson: nu[b], unlike: 0.0 };
@@ -52,7 +54,7 @@ pub fn rolling_tables(
         row.fill([0.0; 3]);
         for (tangential, parts) in &of_bodies {
             let at = |kx: f64| tangential.at(kx, ky as f64);
-            let of = Row { at: &at, is_loaded: ky == 0, rule: &rule };
+            let of = Row { at: &at, finest: finest(ky, width), rule: &rule };
             parts.iter().for_each(|part| of.add(part, cx, &mut row));
         }
         for entry in &mut row {

@@ -107,14 +107,17 @@ impl Start {
     }
 }
 
-/// Only what a step starts with, feasible to the last bit, and a fresh product of it.
+/// Only what a step starts with, feasible to the last bit, and a fresh product of it. `by_step`: not the way to the circles alone.
 pub fn polish(
     problem: &mut Problem,
     state: &mut State,
-    tangent: &Tangent,
+    (tangent, by_step): (&Tangent, bool),
     forces: Forces,
     fields: &mut Fields,
 ) -> Result<()> {
+    if !by_step {
+        return settle(problem, state, tangent, fields);
+    }
     let mut system = TangentSystem::new(problem, tangent, forces, fields)?;
     let Start { gained, along, by } = Start::new(&mut system, state, forces, fields)?;
     system.give(fields);
@@ -122,6 +125,17 @@ pub fn polish(
     fields::add_all(problem.threads(), &mut state.q, &[(1.0, &gained)]);
     problem.offset = add(problem.offset, by);
     [gained, along].into_iter().for_each(|field| fields.give(field));
+    problem.refresh(state);
+    Ok(())
+}
+
+/// The same of the way to the circles alone.
+fn settle(problem: &mut Problem, state: &mut State, tangent: &Tangent, fields: &mut Fields) -> Result<()> {
+    let mut way = fields.take(state.q.len())?;
+    fields::fill(problem.threads(), &mut way, |i| to_the_circle(tangent, &problem.bound, state, i));
+    problem.update = problem.rms_of(fields::dot(problem.threads(), &way, &way));
+    fields::add_all(problem.threads(), &mut state.q, &[(1.0, &way)]);
+    fields.give(way);
     problem.refresh(state);
     Ok(())
 }

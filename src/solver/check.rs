@@ -50,7 +50,12 @@ impl SetUp {
             effects::check_bodies(scene)?;
         }
         self.check_table()?;
-        self.named.check(scene)
+        self.named.check(scene)?;
+        let is_uneven = problem.given && !problem.symmetric && problem.coefficients.row_tables().is_none();
+        match scene.friction.as_ref().filter(|_| is_uneven) {
+            Some(friction) => friction.check_pressures_rolled(&problem.grid, &|kx, ky| problem.coefficients.at(kx, ky)),
+            None => Ok(()),
+        }
     }
 
     /// Refuses options that are not those of the set-up.

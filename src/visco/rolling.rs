@@ -8,8 +8,9 @@
 //! W(x) = 1/L integral over 0 < s < dx of exp(-s/L) a(x + s)  +  exp(-dx/L) W(x + dx)
 //! ```
 //!
-//! a is smooth but at the edges of the element, where intervals end and panels become short. Lengths are in elements, times those in which one passes:
-//! of such a time that is below [`SHORTEST`] W is a, and of one above [`LONGEST_TIME`] nothing, to all digits, so they are taken for these. Element
+//! a is smooth but at the edges of the element, where intervals end and panels become short: in its own row down to a part of its shorter side, in
+//! other rows down to the distance from the edge, which is short itself where elements are long in x. Lengths are in elements, times those in which one
+//! passes: of such a time that is below [`SHORTEST`] W is a, and of one above [`LONGEST_TIME`] nothing, to all digits, so they are taken for these. Element
 //! sizes and compliances are taken apart into a number near 1 and a power of two, which the table is multiplied by in the end.
 
 use super::modes::Mode;
@@ -25,9 +26,13 @@ const NODES: usize = 12;
 /// Panels are at most so many L long, and what decays for longer than so many L is nothing.
 const LONGEST: f64 = 2.0;
 const DECAYED: f64 = 40.0;
-/// Panels beside an edge: each is this part of the one before.
-const GRADED: i32 = 10;
-const SHORTER: f64 = 0.15;
+/// Panels beside an edge: each ends at this part of the distance at which it begins, so 12 nodes give 14 digits,
+const SHORTER: f64 = 0.35;
+/// and the last one is this part of the shorter side of the element: there the slope of `a` grows as a logarithm, which the rule knows to 5e-5 of the
+/// square of its length.
+const FINEST: f64 = 1e-5;
+/// Nothing changes within so many elements.
+const NOTHING: f64 = 1e-17;
 /// Far away a panel is at most this part of the distance.
 const OF_DISTANCE: f64 = 0.5;
 /// Powers of two of times, in passages of an element. Within the shorter one the slope of `a` changes nothing. The longer one exceeds 1e14 (the slowest
@@ -54,10 +59,19 @@ pub struct Part {
 pub struct Row<'a, const N: usize> {
     /// Those at an offset in x.
     pub at: &'a dyn Fn(f64) -> [f64; N],
-    /// Whether the loaded element is in it.
-    pub is_loaded: bool,
+    /// The length of panels at the edges of the loaded element: [`finest`].
+    pub finest: f64,
     /// Of panels.
     pub rule: &'a [(f64, f64)],
+}
+
+/// The length of panels at the edges of the loaded element, ky rows away, of elements dy wide.
+pub fn finest(ky: usize, dy: f64) -> f64 {
+    match ky {
+        0 => (FINEST * dy.min(1.0)).max(NOTHING),
+        // As far as the edge is away.
+        _ => ((ky as f64 - 0.5) * dy).max(NOTHING),
+    }
 }
 
 /// `sum + weight value`.
@@ -89,18 +103,17 @@ impl<const N: usize> Row<'_, N> {
 
     /// From an offset to the next.
     fn element(&self, kx: i64, length: f64) -> [f64; N] {
-        let x = kx as f64;
-        let has_edge = self.is_loaded && (kx == 0 || kx == -1);
-        if !has_edge {
-            return plus(self.interval(x, (0.0, 0.5), length), 1.0, self.interval(x, (0.5, 1.0), length));
-        }
-        let end = |k: i32| if k == GRADED { 0.0 } else { 0.5 * SHORTER.powi(k) };
-        let beside = |k: i32| {
-            let (far, near) = (end(k), end(k + 1));
+        let (x, mut sum, mut far) = (kx as f64, [0.0; N], 0.5);
+        let between = |far: f64, near: f64| {
             let before = self.interval(x, (0.5 - far, 0.5 - near), length);
             plus(before, 1.0, self.interval(x, (0.5 + near, 0.5 + far), length))
         };
-        (0..GRADED).fold([0.0; N], |sum, k| plus(sum, 1.0, beside(k)))
+        let has_edge = kx == 0 || kx == -1;
+        while has_edge && far > self.finest {
+            sum = plus(sum, 1.0, between(far, SHORTER * far));
+            far *= SHORTER;
+        }
+        plus(sum, 1.0, between(far, 0.0))
     }
 
     /// W far ahead.
@@ -214,7 +227,7 @@ pub fn rolling_table(
         row.fill([0.0]);
         let element = (d, times_power(dy, -of_d));
         let at = |kx: f64| [integral_at((kx.abs(), ky as f64), element)];
-        let of = Row { at: &at, is_loaded: ky == 0, rule: &rule };
+        let of = Row { at: &at, finest: finest(ky, element.1 / d), rule: &rule };
         of_bodies.iter().for_each(|part| of.add(part, cx, &mut row));
         if speed < 0.0 {
             row.reverse();

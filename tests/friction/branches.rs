@@ -5,7 +5,7 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Branch, Fall, Friction, FrictionLaw, Motion, Prescribed, Previous};
 use contact_normal::solver::Outcome;
 
-use super::laws::{pressures, solver};
+use super::laws::{off_by, pressures, solver};
 
 const FORCE: f64 = 622_216.0;
 
@@ -78,7 +78,11 @@ impl Cylinder {
         Cylinder { grid, pressure: pressures(grid, &h, FORCE) }
     }
 
-    fn step(&self, solver: &mut Solver, (motion, xi): (Motion, f64), branch: Branch) -> Report {
+    fn step(&self, solver: &mut Solver, moved: (Motion, f64), branch: Branch) -> Report {
+        self.step_to(1e-7, solver, moved, branch)
+    }
+
+    fn step_to(&self, tolerance: f64, solver: &mut Solver, (motion, xi): (Motion, f64), branch: Branch) -> Report {
         let friction = Friction {
             motion,
             prescribed: [Prescribed::Creepage(xi), Prescribed::Creepage(0.0)],
@@ -87,7 +91,7 @@ impl Cylinder {
             branch,
             ..Friction::new(0.3)
         };
-        let request = Request::new(&self.pressure, &friction, 1e-7);
+        let request = Request { limit: 10_000, ..Request::new(&self.pressure, &friction, tolerance) };
         let (end, report) = solver.solve(&request, &mut |_, _| true).unwrap();
         assert_eq!(end, Outcome::Converged, "{branch:?} {report:?}");
         report
@@ -114,32 +118,41 @@ fn a_step_has_the_solutions_from_below_and_from_above() {
     for (branch, force, sticks) in [(Branch::Low, 0.5977, 77), (Branch::High, 0.5702, 34)] {
         let report = cylinder.step(&mut cylinder.rolling(branch), STEP, branch);
         println!("{branch:?} {} {} products {}", part(&report), report.certificate.stick_count, report.products);
-        assert!((part(&report) - force).abs() <= 1.01e-4, "{report:?}");
+        // From below .59764 for .5977.
+        assert!(off_by(part(&report), force) <= if branch == Branch::High { 0.5 } else { 0.6 }, "{report:?}");
         assert_eq!(report.certificate.stick_count, sticks);
     }
 }
 
-/// 50 steps from above, a sawtooth of stick and slip: as printed, but for the elements that stick in one step, where one is at its bound.
+/// 50 steps from above, a sawtooth of stick and slip: 40 forces with the four digits printed and ten that differ by less than one of the last digit; elements
+/// that stick as printed, but for one in one step, where it is at its bound. What differs is CONTACT's: a hundredth of the tolerance changes
+/// no force by a thousandth of the last digit.
 #[test]
 fn stick_and_slip_in_turns_is_that_of_contact() {
     let cylinder = Cylinder::new();
-    let mut solver = cylinder.rolling(Branch::Near);
-    let (mut other, mut products) = (0, 0.0);
+    let (mut solver, mut closer) = (cylinder.rolling(Branch::Near), cylinder.rolling(Branch::Near));
+    let (mut other, mut others, mut changes, mut products) = (0, Vec::new(), 0.0f64, 0.0);
     for (k, (force, sticks)) in PRINTED.into_iter().enumerate() {
         let report = cylinder.step(&mut solver, STEP, Branch::High);
         products += report.products;
+        let (found, off) = (part(&report), off_by(part(&report), force));
+        let closest = cylinder.step_to(1e-9, &mut closer, STEP, Branch::High);
+        changes = changes.max((part(&closest) - found).abs());
         println!(
-            "{} {:.4} ({force}) {} ({sticks}) {}",
+            "{} {found:.6} ({force}) {off:.2} {} ({sticks}) {}",
             k + 4,
-            part(&report),
             report.certificate.stick_count,
             report.products
         );
-        // The digits printed; CONTACT ends at changes of 1e-3.
-        assert!((part(&report) - force).abs() <= 1.01e-4, "case {}: {} {force}", k + 4, part(&report));
+        if off > 0.5 {
+            others.push(k + 4);
+        }
+        // CONTACT ends where an outer iteration changes slips by less than 1e-3.
+        assert!(off < 1.0, "case {}: {found} {force}", k + 4);
         assert!(report.certificate.stick_count.abs_diff(sticks) <= 1, "case {}", k + 4);
         other += usize::from(report.certificate.stick_count != sticks);
     }
-    println!("products {products}");
-    assert!(other <= 1, "{other}");
+    println!("products {products}, of other digits {others:?}, of a closer tolerance {changes:e}");
+    assert!(other <= 1 && others.len() <= 10, "{other} {others:?}");
+    assert!(changes <= 1e-7, "{changes:e}");
 }

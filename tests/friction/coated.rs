@@ -14,7 +14,7 @@ use super::steady_scenes::ellipse;
 use super::support::{ball, residual_by, run};
 
 /// Of a layer with `1/G1 = 1` of thickness t, on `G2 = 1/mu`; both bodies.
-fn coated(grid: &Grid, t: f64, mu: f64, [nu1, nu2]: [f64; 2]) -> Tangential {
+pub fn coated(grid: &Grid, t: f64, mu: f64, [nu1, nu2]: [f64; 2]) -> Tangential {
     let [surface, below] =
         [(1.0, nu1), (mu, nu2)].map(|(shear, nu)| Compliance { shear, poisson: shear * nu, unlike: 0.0 });
     Tangential::of_coated(grid.dx, grid.dy, surface, (Coat::new(t, mu, [nu1, nu2]), below))

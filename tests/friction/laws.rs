@@ -126,23 +126,34 @@ const PRINTED: [(f64, f64, usize); 30] = [
     (0.25, -0.5685, 0),
 ];
 
+/// How far a number is from one of four digits, in units of its last digit.
+pub fn off_by(number: f64, printed: f64) -> f64 {
+    (number - printed).abs() / 10f64.powi(printed.abs().log10().floor() as i32 - 3)
+}
+
+/// All forces but one have the four digits printed, and that one differs by less than one of its last digit; elements that stick as printed.
 #[test]
 fn a_creep_curve_with_falling_friction_is_that_of_contact() {
     let wheel = Wheel::new(1);
-    let mut most = 0.0f64;
+    let (mut most, mut others) = (0.0f64, Vec::new());
     for (xi, force, sticks) in PRINTED {
         let (end, report, _) = wheel.ended(&wheel.friction(xi, 0.0, Some(RUNNING)), 1e-7);
         assert_eq!(end, Outcome::Converged, "{xi} {report:?}");
         let part = report.force[0] / (0.33 * FORCE);
         println!("{xi} {part:.5} ({force}) {} ({sticks}) products {}", report.certificate.stick_count, report.products);
-        // The digits printed; CONTACT ends at changes of 1e-3.
-        assert!((part - force).abs() <= 1.01e-4, "{xi}: {part} {force}");
+        let off = off_by(part, force);
+        if off > 0.5 {
+            others.push((xi, off));
+        }
+        // CONTACT ends where an outer iteration changes slips by less than 1e-3.
+        assert!(off < 1.0, "{xi}: {part} {force}");
         assert_eq!(report.certificate.stick_count, sticks, "{xi}");
         // By differences of the bound of the element of most pressure, of fresh material.
         assert!((report.law_slope - 0.294).abs() < 0.001, "{}", report.law_slope);
         most = most.max(report.products);
     }
-    println!("most {most}");
+    println!("most {most}, of other digits {others:?}");
+    assert!(others.len() <= 1, "{others:?}");
     assert!(most <= 23.0, "{most} products");
 }
 

@@ -25,6 +25,7 @@ mod onset_of_rolling;
 mod own_law;
 mod plastic;
 mod refusals;
+mod rolled_towards;
 mod rolling;
 mod rolling_tables;
 mod row_tables;
@@ -33,11 +34,13 @@ mod same_bits;
 #[allow(dead_code)]
 mod scenes;
 mod sensitivities;
+mod slender_that_roll;
 mod stalls;
 mod steady;
 mod steady_hard_cases;
 #[path = "../../examples/friction/steady.rs"]
 mod steady_scenes;
+mod stiff_coats;
 mod support;
 mod tables;
 mod threads;

@@ -163,3 +163,70 @@ fn a_flux_that_cools_too_leaves_both_as_warm() {
     let cold = found(grid, &cold, [1.0, 0.0], None);
     assert!(cold.share == 0.5 && cold.rise.iter().flatten().all(|rise| *rise <= 0.0), "{}", cold.share);
 }
+
+/// `exp(P x) K0(P |x|)`, the temperature of a line source of pi at a distance x downstream: `integral over t > 0 of exp(-P (|x| cosh t - x))` by the
+/// trapezoidal rule, to round-off.
+fn of_line(x: f64, wave: f64) -> f64 {
+    let a = (wave * x.abs()).max(1e-300);
+    // It is as wide as 1 over the root of 1 + a, and its width in the complex plane is pi/2.
+    let step = 0.2 / (1.0 + a).sqrt();
+    let fades = if x < 0.0 { (-2.0 * a).exp() } else { 1.0 };
+    let term = |k: u32| (-2.0 * a * (0.5 * step * f64::from(k)).sinh().powi(2)).exp();
+    let terms = (2.0 * (20.0 / a).sqrt().asinh() / step) as u32 + 1;
+    fades * step * (0.5 + (1..terms).map(term).sum::<f64>())
+}
+
+/// The integral of f from a to b by the double exponential rule; f may have the root of the distance, or its logarithm, at the ends.
+fn between(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let step = 1.0 / 16.0;
+    let term = |k: i32| {
+        let t = step * f64::from(k);
+        let s = 0.5 * PI * t.sinh();
+        let from_end = (b - a) / (1.0 + (2.0 * s.abs()).exp());
+        0.5 * PI * t.cosh() / s.cosh().powi(2) * f(if s < 0.0 { a + from_end } else { b - from_end })
+    };
+    0.5 * (b - a) * step * (-56..=56).map(term).sum::<f64>()
+}
+
+/// A band of Hertz's pressure, `q0 sqrt(1 - x^2/a^2)`, that moves at any speed: lines of sources side by side (Carslaw & Jaeger, section 10.7), and the limits
+/// of both ends. `P a` is the Peclet number.
+#[test]
+fn a_band_of_hertz_is_as_warm_as_its_lines() {
+    let (n, a, q0) = (401, 1e-3, 1e7);
+    let d = 2.4 * a / n as f64;
+    let x = |k: usize| (k as f64 - 200.0) * d;
+    // The mean over an element: its antiderivative.
+    let whole = |x: f64| {
+        let s = (x / a).clamp(-1.0, 1.0);
+        0.5 * a * (s * (1.0 - s * s).sqrt() + s.asin())
+    };
+    let flux: Vec<f64> = (0..n).map(|k| q0 * (whole(x(k) + 0.5 * d) - whole(x(k) - 0.5 * d)) / d).collect();
+    for peclet in [0.05, 0.5, 5.0, 50.0, 2e3] {
+        let (wave, speed) = (peclet / a, 2.0 * 1.4e-5 * peclet / a);
+        // A strip so wide that its sides are nothing to the middle: they fade as exp(-P r).
+        let grid = Grid::new(n, 1, d, 1.0).expect("a grid");
+        let warm = found(grid, &flux, [speed, 0.0], Some(1.0));
+        let exact = |at: f64| {
+            let line = |s: f64| (1.0 - (s / a).powi(2)).max(0.0).sqrt() * of_line(at - s, wave);
+            let upstream = if at > -a { between(-a, at.min(a), line) } else { 0.0 };
+            let downstream = if at < a { between(at.max(-a), a, line) } else { 0.0 };
+            q0 / (PI * 50.0) * (upstream + downstream)
+        };
+        let largest = warm.largest[0];
+        for k in (0..n).step_by(10) {
+            let (rise, exact) = (warm.rise[0][k], exact(x(k)));
+            // Of second order in the elements, of which 167 go to a. Of a fast band the flux of an element is not that at its middle for as long as
+            // it takes to get there: (2/3) q' (d/2)^(3/2) of 2.19 q0 a^(1/2). Beside the edges the flux has the root of the distance.
+            let s = (x(k) / a).abs().min(1.0);
+            let slope = s / (1.0 - s * s).max(8.0 * d / a).sqrt();
+            let near = if (x(k).abs() - a).abs() < 4.0 * d { 5e-4 } else { 2e-5 };
+            let tolerance = near + 0.31 * slope * (0.5 * d / a).powf(1.5);
+            assert!((rise - exact).abs() < tolerance * largest, "{peclet} {k}: {rise} {exact} of {largest}");
+        }
+        if peclet > 1e3 {
+            // Blok (1937): 1.11 times the heat of a unit of its length over the root of lambda rho c V 2 a.
+            let blok = 1.11 * (0.5 * PI * q0 * a) / (50.0 * (speed / 1.4e-5 * 2.0 * a).sqrt());
+            assert!((largest / blok - 1.0).abs() < 5e-3, "{largest} {blok}");
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! Coefficients that differ between the sides of an element are those of bodies that relax and roll one way: they are softer behind. A step of rolling goes
+//! that way. In another one bodies would give back more work than was done on them, and the problem would have no solution, or several.
+
+use super::friction::{Friction, Motion};
+use super::tangential_influence::SYMMETRY;
+use crate::error::{invalid, Result};
+use crate::grid::Grid;
+
+const INSTEAD: &str = "give coefficients of bodies that roll as the step goes: of contact_normal_influence_rolling those with a speed below 0 for \
+     rolling towards -x; for rolling along y a grid whose x goes along that";
+
+/// Coefficients of the offsets of a line through an element.
+struct Line<'a> {
+    name: &'static str,
+    count: usize,
+    at: &'a dyn Fn(i64) -> f64,
+}
+
+impl Line<'_> {
+    /// The offset at which both sides differ most, if that is more than round-off of the largest coefficient.
+    fn uneven_at(&self) -> Option<i64> {
+        let off = |k: i64| ((self.at)(k) - (self.at)(-k)).abs();
+        let most = (1..self.count as i64).max_by(|a, b| off(*a).total_cmp(&off(*b)))?;
+        (off(most) > SYMMETRY * (self.at)(0).abs()).then_some(most)
+    }
+
+    /// 1: softer before the element, so bodies roll towards the end of the axis; -1: behind it; 0: even.
+    fn towards(&self) -> f64 {
+        let softer: f64 = (1..self.count as i64).map(|k| (self.at)(-k) - (self.at)(k)).sum();
+        self.uneven_at().map_or(0.0, |_| softer.signum())
+    }
+}
+
+/// Refuses a step of rolling, in elements, that goes another way than the bodies of these coefficients, which are called `name`.
+fn check(name: &str, lines: [Line<'_>; 2], step: (f64, f64)) -> Result<()> {
+    let goes = [step.0, step.1].map(|step| if step == 0.0 { 0.0 } else { step.signum() });
+    let towards = lines.each_ref().map(Line::towards);
+    if towards == [0.0; 2] || towards == goes {
+        return Ok(());
+    }
+    let Some((line, k)) = lines.iter().find_map(|line| Some((line, line.uneven_at()?))) else { return Ok(()) };
+    let ways = lines.iter().zip(towards).filter(|(_, towards)| *towards != 0.0);
+    let ways: Vec<String> =
+        ways.map(|(line, towards)| format!("{}{}", if towards > 0.0 { "+" } else { "-" }, line.name)).collect();
+    invalid(format!(
+        "{name} is {} at {k} elements along {axis} and {} at {}: of bodies that relax and roll towards {}, and a step of rolling goes {step:?} \
+         elements far; {INSTEAD}",
+        (line.at)(k),
+        (line.at)(-k),
+        -k,
+        ways.join(" and "),
+        axis = line.name,
+    ))
+}
+
+impl Friction<'_> {
+    /// Refuses tangential coefficients of bodies that roll another way.
+    pub(super) fn check_rolled(&self, grid: &Grid) -> Result<()> {
+        let Some(own) = self.influence.filter(|own| self.motion != Motion::Shift && !own.by_row) else { return Ok(()) };
+        for component in 0..2 {
+            let in_x = |k: i64| own.at(k, 0)[component];
+            let in_y = |k: i64| own.at(0, k)[component];
+            let lines = [Line { name: "x", count: own.cx, at: &in_x }, Line { name: "y", count: own.cy, at: &in_y }];
+            let name = ["friction->influence[0] (xx)", "friction->influence[1] (yy)"][component];
+            check(name, lines, self.elements_rolled(grid))?;
+        }
+        Ok(())
+    }
+
+    /// Refuses coefficients of pressures, a table of offsets, of bodies that roll another way.
+    pub fn check_pressures_rolled(&self, grid: &Grid, at: &dyn Fn(i64, i64) -> f64) -> Result<()> {
+        if self.motion == Motion::Shift {
+            return Ok(());
+        }
+        let (in_x, in_y) = (|k: i64| at(k, 0), |k: i64| at(0, k));
+        let lines = [Line { name: "x", count: grid.mx, at: &in_x }, Line { name: "y", count: grid.my, at: &in_y }];
+        check("influence", lines, self.elements_rolled(grid))
+    }
+}

@@ -1,0 +1,143 @@
+//! Coefficients of bodies that relax and roll one way, in steps that go another way: refused by name.
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, SQRT_2};
+
+use contact_normal::error::Error;
+use contact_normal::friction::rolling_tables;
+use contact_normal::grid::Grid;
+use contact_normal::influence::Table;
+use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Scene, TangentialInfluence};
+use contact_normal::solver::{solve, solve_tangential, Options, Solver};
+use contact_normal::visco::{rolling_table, RollingBody, Series};
+
+const M: usize = 9;
+/// Two more elements than the grid, for a step.
+const REACH: (usize, usize) = (M + 2, M + 2);
+const WIDTH: usize = 2 * (M + 2);
+
+fn body(relaxing: f64, compliance: f64) -> RollingBody {
+    RollingBody { compliance, series: Series::new(1.0, &[relaxing], &[1.0]).expect("a series") }
+}
+
+/// Coefficients of pressures and of tractions of bodies that roll at a speed; none: that do not relax.
+fn coefficients(speed: Option<f64>) -> (Vec<f64>, [Vec<f64>; 3]) {
+    let relaxing = if speed.is_some() { 0.6 } else { 0.0 };
+    let both = |compliance: f64| [body(relaxing, compliance), body(relaxing, compliance)];
+    let speed = speed.unwrap_or(1.0);
+    let normal = rolling_table(REACH, (1.0, 1.0), &both(0.35), speed).unwrap();
+    (normal, rolling_tables(REACH, (1.0, 1.0), (&both(0.5), [0.3; 2]), speed).unwrap())
+}
+
+/// x and y exchanged: of bodies that roll along y.
+fn turned(table: &[f64]) -> Vec<f64> {
+    (0..table.len()).map(|k| table[k % WIDTH * WIDTH + k / WIDTH]).collect()
+}
+
+struct Case {
+    grid: Grid,
+    h: Vec<f64>,
+    normal: Vec<f64>,
+    own: [Vec<f64>; 3],
+}
+
+impl Case {
+    fn new((normal, own): (Vec<f64>, [Vec<f64>; 3])) -> Case {
+        let at = |k: usize| (k as f64 - 0.5 * (M as f64 - 1.0)).powi(2);
+        let h = (0..M * M).map(|i| 0.02 * (at(i % M) + at(i / M))).collect();
+        Case { grid: Grid::new(M, M, 1.0, 1.0).unwrap(), h, normal, own }
+    }
+
+    fn scene(&self, motion: Motion, (direction, distance): (f64, f64)) -> Scene<'_> {
+        let coefficients = self.own.each_ref().map(|values| &values[..]);
+        let (cx, cy) = REACH;
+        let friction = Friction {
+            motion,
+            prescribed: [Prescribed::Creepage(-1e-3), Prescribed::Creepage(5e-4)],
+            rolling_direction: direction,
+            rolling_distance: distance,
+            influence: Some(TangentialInfluence { cx, cy, coefficients, cross: None, scale: 1.0, by_row: false }),
+            ..Friction::new(0.3)
+        };
+        Scene {
+            influence: Some(Table::scaled(cx, cy, &self.normal, 1.0, &self.grid).unwrap()),
+            friction: Some(friction),
+            ..Scene::new(self.grid, &self.h, Bodies::same(1.0, 0.3), Load::Approach(0.3))
+        }
+    }
+
+    /// Whether a solve is refused, a solve on a handle that was set up with a step along +x or -x, and one of the tangential problem alone.
+    fn refusals(&self, motion: Motion, step: (f64, f64), set_up: Motion, direction: f64) -> [Option<Error>; 3] {
+        let (scene, options) = (self.scene(motion, step), Options::default());
+        let mut handle = Solver::new(&self.scene(set_up, (direction, 1.0)), &options).unwrap();
+        // The handle has the coefficients; it need not be told them again.
+        let unnamed = Scene { influence: None, ..scene.clone() };
+        let pressure = vec![1.0; M * M];
+        [
+            solve(&scene, &options).map(drop).err(),
+            handle.solve(&unnamed, &options, None, None).map(drop).err(),
+            solve_tangential(&scene, &pressure, &options, None).map(drop).err(),
+        ]
+    }
+}
+
+const STEPS: [(f64, f64); 6] =
+    [(0.0, 1.0), (PI, 1.0), (FRAC_PI_2, 1.0), (-FRAC_PI_2, 2.0), (FRAC_PI_4, SQRT_2), (-3.0 * FRAC_PI_4, 2.0 * SQRT_2)];
+
+/// Both tables are of one direction: all steps but those that go there are refused, and the message says which one goes and what to do.
+#[test]
+fn steps_that_go_another_way_than_the_bodies_roll_are_refused() {
+    for (speed, direction, way) in [(1.5, 0.0, "towards +x"), (-1.5, PI, "towards -x")] {
+        let case = Case::new(coefficients(Some(speed)));
+        for step in STEPS {
+            let refusals = case.refusals(Motion::SteadyRolling, step, Motion::SteadyRolling, direction);
+            for (call, refusal) in refusals.into_iter().enumerate() {
+                if step.0 == direction {
+                    assert_eq!(refusal, None, "{speed} {step:?} {call}");
+                    continue;
+                }
+                let Some(Error::InvalidArgument(message)) = refusal else {
+                    panic!("{speed} {step:?} {call}: {refusal:?}")
+                };
+                for words in ["friction->influence[0] (xx) is", way, "elements far", "contact_normal_influence_rolling"]
+                {
+                    assert!(message.contains(words), "{speed} {step:?} {call}: {message}");
+                }
+            }
+        }
+    }
+}
+
+/// Only the coefficients of pressures are of one direction; those of tractions are even. Rolling from step to step is told apart, too; a shift has no direction.
+#[test]
+fn so_are_those_of_pressures_alone() {
+    let (_, even) = coefficients(None);
+    let ([ahead, _], turned_ahead) = ([1.5, -1.5].map(|speed| coefficients(Some(speed)).0), FRAC_PI_2);
+    for (normal, fits, way) in [(ahead.clone(), 0.0, "towards +x"), (turned(&ahead), turned_ahead, "towards +y")] {
+        let case = Case::new((normal, even.clone()));
+        for motion in [Motion::SteadyRolling, Motion::TransientRolling] {
+            for step in STEPS {
+                let [one, handle, alone] = case.refusals(motion, step, Motion::Shift, 0.0);
+                // Pressures that are given have no coefficients.
+                assert_eq!(alone, None);
+                for refusal in [one, handle] {
+                    if step.0 == fits {
+                        assert_eq!(refusal, None, "{way} {step:?}");
+                        continue;
+                    }
+                    let Some(Error::InvalidArgument(message)) = refusal else { panic!("{way} {step:?}: {refusal:?}") };
+                    assert!(message.starts_with("influence is") && message.contains(way), "{step:?}: {message}");
+                }
+            }
+        }
+        assert_eq!(case.refusals(Motion::Shift, (0.0, 1.0), Motion::Shift, 0.0), [None, None, None]);
+    }
+}
+
+/// Even coefficients go with any step.
+#[test]
+fn even_ones_go_any_way() {
+    let case = Case::new(coefficients(None));
+    for step in STEPS {
+        assert_eq!(case.refusals(Motion::SteadyRolling, step, Motion::SteadyRolling, 0.0), [None, None, None]);
+    }
+}
