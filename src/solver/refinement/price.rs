@@ -61,7 +61,7 @@ pub struct Price {
 
 /// Seconds of one thread on a grid of so many elements, from the sample that promises the least: others were disturbed, or so small
 /// that they are mostly overhead. Samples with half the products of the last and fewer hardly see the contact. The set-up grows as the last two
-/// samples say (that of a period hardly does).
+/// samples say (that of a period hardly does). No grid takes longer than a finer one.
 pub(super) fn seconds_on(samples: &[Sample], elements: f64) -> f64 {
     let seen = match samples {
         [.., before, last] => (last.setup / before.setup).ln() / (last.elements / before.elements).ln(),
@@ -73,8 +73,10 @@ pub(super) fn seconds_on(samples: &[Sample], elements: f64) -> f64 {
         sample.setup * ratio.powf(of_setup) + (sample.seconds - sample.setup) * growth(sample.elements, elements)
     };
     let least = samples.last().map_or(0.0, |last| SEES * last.products);
-    let sees = |sample: &&Sample| sample.elements <= elements && sample.products >= least;
-    let seconds = samples.iter().filter(sees).map(carried).fold(f64::INFINITY, f64::min);
+    let of = |sample: &Sample| if sample.elements <= elements { carried(sample) } else { sample.seconds };
+    let has_coarser = samples.first().is_some_and(|first| first.elements <= elements);
+    let sees = |sample: &&Sample| has_coarser && sample.products >= least;
+    let seconds = samples.iter().filter(sees).map(of).fold(f64::INFINITY, f64::min);
     // A grid coarser than all samples: the first of them, carried down. Infinite seconds would let the samples grow without end.
     if seconds.is_finite() {
         seconds
