@@ -113,10 +113,10 @@ def contact_point(row):
     return profiles.contact_points(track, wheelset, position(row), side="left")[0]
 
 
-def pressed(point, row, ahead=0.0, aside=0.0):
-    """The result under the printed force, and the approach from where the bodies touch. The grid is moved by parts of an element."""
+def pressed(point, row):
+    """The result under the printed force, and the approach from where the bodies touch."""
     gap = point.gap(ELEMENT, ELEMENT, 1.2 * row.approach)
-    h = point.distance(gap.x + ahead * ELEMENT, gap.y + aside * ELEMENT)
+    h = point.distance(gap.x, gap.y)
     result = contact_normal.solve(h, ELEMENT, ELEMENT, force=row.force, **STEEL)
     if result.status != contact_normal.OK:
         sys.exit(f"y = {row.y}: stopped early: {result.message}")

@@ -6,20 +6,21 @@
 #include <cstddef>
 #include <cstdio>
 #include <limits>
+#include <stdexcept>
 #include <vector>
 
 namespace cn = contact_normal;
 
 namespace {
 
-/// (x^2 + y^2)/curvature on elements of side d.
-std::vector<double> ball(const cn::grid &grid, double curvature)
+/// (x^2 + y^2)/diameter.
+std::vector<double> ball(const cn::grid &grid, double diameter)
 {
     std::vector<double> h;
     for (int iy = 0; iy < grid.my; iy++) {
         for (int ix = 0; ix < grid.mx; ix++) {
             const double x = (ix - 0.5 * (grid.mx - 1)) * grid.dx, y = (iy - 0.5 * (grid.my - 1)) * grid.dy;
-            h.push_back((x * x + y * y) / curvature);
+            h.push_back((x * x + y * y) / diameter);
         }
     }
     return h;
@@ -33,6 +34,7 @@ void held(cn::scene &scene, cn::visco relaxing, bool by_approach)
     for (int k = 0; k <= 8; k++) {
         scene.visco(relaxing.time_step(k > 0 ? 0.25 : 0.0).continues(k > 0));
         const cn::result found = solver.solve(scene);
+        if (!found) throw std::runtime_error(found.message);
         const double time = found.report.visco.time, force = found.report.normal.force;
         if (k == 0) first = force;
         // G(t) over that at once.
@@ -61,6 +63,7 @@ void rolls(double speed)
     cn::scene scene(grid, rubber);
     scene.undeformed_distance(h).force(100.0).influence(32, 32, normal).friction(friction);
     const cn::result found = cn::solve(scene);
+    if (!found) throw std::runtime_error(found.message);
     double moment = 0.0;
     for (std::size_t i = 0; i < found.pressure.size(); i++) moment += found.pressure[i] * (static_cast<double>(i % 32) - 15.5) * 0.4 * 0.4 * 0.4;
     std::printf("at %6.0f mm/s: %7.4f mm ahead, creep force %7.3f N\n", speed, moment / found.report.normal.force, found.report.tangential.force[0]);
@@ -81,7 +84,7 @@ int main()
         std::printf("  time  approach     force   pressure\n");
         held(scene.force(3.0), relaxing, false);
         for (double speed : {1000.0, -1000.0, 10.0}) rolls(speed);
-    } catch (const cn::error &refused) {
+    } catch (const std::runtime_error &refused) {
         std::fprintf(stderr, "%s\n", refused.what());
         return 1;
     }

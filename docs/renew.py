@@ -14,6 +14,11 @@ def cells(line: str) -> list[str]:
     return [cell.strip() for cell in line.strip().strip("|").split("|")]
 
 
+def words(row: list[str]) -> tuple[str, ...]:
+    """What names a row: its cells that do not begin with a number."""
+    return tuple(cell for cell in row if not re.match(r"[-+]?[.\d]", cell))
+
+
 def is_prefix(one: list[str], other: list[str]) -> bool:
     """Whether the shorter row begins the longer one, and has two cells at least."""
     shorter = min(len(one), len(other))
@@ -25,9 +30,12 @@ def new_table(old: list[str], printed: list[str]) -> list[str]:
     more = len(cells(old[0])) - len(cells(printed[0]))
     if more <= 0:
         return printed
-    kept = {cells(line)[0]: cells(line)[-more:] for line in old[2:]}
+    columns = len(cells(printed[0]))
+    kept = {words(cells(line)[:columns]): cells(line)[-more:] for line in old[2:]}
+    if len(kept) < len(old) - 2:
+        sys.exit(f"rows of the table {old[0]} have the same words: which one is kept?")
     rows = [cells(printed[0]) + cells(old[0])[-more:]]
-    rows += [row + kept.get(row[0], ["?"] * more) for row in map(cells, printed[2:])]
+    rows += [row + kept.get(words(row), ["?"] * more) for row in map(cells, printed[2:])]
     text = ["| " + " | ".join(row) + " |" for row in rows]
     return [text[0], old[1], *text[1:]]
 
@@ -38,12 +46,13 @@ def paragraphs(text: str) -> list[list[str]]:
 
 
 def renewed(page: str, printed: list[list[str]]) -> tuple[str, list[str]]:
-    """The page, and the first lines of what was replaced."""
+    """The page, and the first lines of what was replaced; what was printed is taken once."""
     done = []
 
     def block(found):
         for lines in printed:
             if lines[0].rstrip() == found[2].splitlines()[0].rstrip():
+                printed.remove(lines)
                 done.append(lines[0])
                 return "\n".join([found[1], *(line.rstrip() for line in lines), "```"])
         return found[0]
@@ -53,6 +62,7 @@ def renewed(page: str, printed: list[list[str]]) -> tuple[str, list[str]]:
         for lines in printed:
             rows = [line for line in lines if line.startswith("|")]
             if len(rows) > 2 and is_prefix(cells(old[0]), cells(rows[0])):
+                printed.remove(lines)
                 done.append(rows[0])
                 return "\n".join(new_table(old, rows))
         return found[0]
@@ -66,6 +76,8 @@ def main(names: list[str]) -> None:
     printed = paragraphs(sys.stdin.read())
     for path in map(Path, names):
         text, done = renewed(path.read_text(), printed)
+        if not done:
+            sys.exit(f"{path} has nothing of what was printed")
         path.write_text(text)
         print(f"{path}: {len(done)} renewed", *done, sep="\n    ")
 

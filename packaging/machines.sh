@@ -68,6 +68,7 @@ for target in "${targets[@]}"; do
     case $target in
         *-apple-*) cargo check --locked "${std[@]}" --target "$target" && echo "$target: compiled, not run" && continue ;;
         *-windows-gnu)
+            export STRIP=x86_64-w64-mingw32-strip
             need x86_64-w64-mingw32-gcc gcc-mingw-w64-x86-64 && need wine wine wine64 ;;
         aarch64-*)
             need aarch64-linux-gnu-gcc gcc-aarch64-linux-gnu libc6-dev-arm64-cross && need qemu-aarch64 qemu-user ;;
@@ -75,6 +76,6 @@ for target in "${targets[@]}"; do
     cargo build --locked "${std[@]}" --profile checked --lib --bins --target "$target"
     python3 packaging/try_machine.py "$target" "$CARGO_TARGET_DIR/$target/checked" "$here/$target"
     # The wheel as `make wheel` makes it: that of Linux is linked by zig for glibc 2.28, with its tag checked.
-    STRIP=${target%%-*}-w64-mingw32-strip make -s wheel TARGET="$target" PROFILE=checked CARGO="cargo ${std[*]}"
+    make -s wheel TARGET="$target" PROFILE=checked CARGO="cargo ${std[*]}"
     build/tools/bin/python packaging/try_foreign_wheel.py build/wheel/*.whl "$here/python-$target"
 done

@@ -22,7 +22,7 @@ TARGETS = (1e-2, 3e-3, 1e-3)
 #: A search that is within so many elements of the cheapest safe grid takes one doubling more at most.
 DOUBLING = 4
 #: Elements across the contact from which on estimates are believed: docs/accuracy.md.
-ENOUGH = {"force": 8, "max_pressure": 12, "corrected_area": 32}
+ENOUGH = {"force": 6, "max_pressure": 12, "corrected_area": 32}
 #: Products and seconds are predicted within such a factor, or not.
 PRODUCTS, SECONDS = 1.3, 1.5
 #: Elements of a grid that is solved for the truth, at most.

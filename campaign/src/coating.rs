@@ -35,6 +35,7 @@ pub struct Coating {
 
 /// What a coefficient may be off, over it: what the library says of its own for G1/G2 of 0.01 to 100, and as much here.
 const ACCURACY: f64 = 2e-10;
+/// What coefficients may be off grows with G1/G2 beyond this.
 const STIFF: f64 = 100.0;
 /// Layers on one body or on both, of which one may be rigid; with two periods on small grids down to 1/16 of an element.
 pub fn random(

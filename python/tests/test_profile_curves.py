@@ -177,13 +177,13 @@ class Files(unittest.TestCase):
                 self.assert_same(profiles.read(path, kind, columns=(1, 2)), made)
             # Points of a section at one x.
             path = self.written("section.txt", "\n".join(f"12.5, {y!r}, {z!r}" for y, z in zip(made.y.tolist(), made.z.tolist())))
-            with self.assertRaisesRegex(ValueError, r"column 0 of section.txt is 12.5 in every line.*columns=\(1, 2\)"):
+            with self.assertRaisesRegex(ValueError, r"column 0 of section.txt is 12.5 in every line; .*columns=\(1, 2\)"):
                 profiles.read(path, kind)
             self.assert_same(profiles.read(path, kind, columns=(1, 2)), made)
         # Three columns of which the last is another quantity: the turn is named, and that columns may be meant.
         made = wheel()
         path = self.written("mirrored.txt", "\n".join(f"{-y!r} {z!r} 0.5" for y, z in zip(made.y.tolist(), made.z.tolist())))
-        with self.assertRaisesRegex(ValueError, r"mirror=True; or y and z are not the columns \(0, 1\) of its 3: columns="):
+        with self.assertRaisesRegex(ValueError, r"mirror=True; or give columns=\(y, z\): the file has 3"):
             profiles.read(path, "wheel")
         # Whole millimetres that do not count lines are coordinates.
         y = np.arange(-70.0, 61.0)

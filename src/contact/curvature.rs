@@ -1,13 +1,15 @@
 //! How much the undeformed distance and the pressures bend within an element: what elements cannot show.
 
 use std::f64::consts::PI;
-use std::ops::Range;
 
+use super::direction::{shortest_run, Direction};
 use super::{each_jump, Jump, Outline, Problem, State};
 use crate::bounding_box::bounding_box;
 
 /// Rows of the contact area that are looked at, at least: the means over more of them are the same.
 const ROWS: usize = 32;
+/// Runs of more elements count as if they had so many: estimates take `(2.5/run)^2` of a bend, 2 % of it.
+const LONG: usize = 16;
 
 /// Second differences of h and p over the contact area.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -19,7 +21,7 @@ pub struct Curvature {
     pub depth: f64,
     /// u = approach - h, its mean with the weights of a flat punch's pressures: the force over dF/d(approach) (Betti).
     pub displaced: f64,
-    /// Means over the rim, with their weight beside the area's: of `|bend|` over the square of the elements of its run.
+    /// `|bend|` over the square of the elements of the shorter run through an element: its mean over the rim, times the weight of the rim.
     pub short: f64,
     /// rms of the second differences of p, over that of p.
     pub pressure: f64,
@@ -40,8 +42,6 @@ struct Sums {
     differences: f64,
     squares: f64,
     lowest: f64,
-    /// Elements of the run along a row that is counted.
-    run: f64,
 }
 
 impl Curvature {
@@ -50,22 +50,18 @@ impl Curvature {
         let stride = (outline.rows / ROWS).max(1);
         let (mx, my) = (state.grid.mx, state.grid.my);
         let (repeats, layered) = (problem.coefficients.repeats(&state.grid), problem.coefficients.has_layer());
+        let directions = Direction::both(&state.grid, repeats);
         let mut sums = Sums { lowest: f64::INFINITY, ..Sums::default() };
         let touched = state.contact.chunks_exact(mx).enumerate().filter(|(_, row)| row.contains(&true));
         for (iy, row) in touched.skip(stride / 2).step_by(stride) {
             let first = row.iter().position(|&inside| inside).unwrap_or(0);
             let end = row.iter().rposition(|&inside| inside).map_or(0, |last| last + 1);
             let plain = !layered && iy > 0 && iy + 1 < my;
-            let mut end_of_run = 0;
             for ix in (first..end).filter(|&ix| row[ix]) {
-                if ix >= end_of_run {
-                    let run = run(row, ix, mx);
-                    (sums.run, end_of_run) = (run.len() as f64, run.end);
-                }
                 if plain && ix > 0 && ix + 1 < mx {
-                    sums.add_inner(state, iy * mx + ix);
+                    sums.add_inner(state, &directions, iy * mx + ix);
                 } else {
-                    sums.add(problem, state, repeats, ix, iy);
+                    sums.add(problem, state, &directions, (ix, iy));
                 }
             }
         }
@@ -93,47 +89,50 @@ impl Curvature {
 impl Sums {
     /// An element with four neighbours, without a layer.
     #[inline]
-    fn add_inner(&mut self, state: &State, at: usize) {
+    fn add_inner(&mut self, state: &State, directions: &[Direction; 2], at: usize) {
         let State { h, p, contact, grid, .. } = state;
         let (left, right, below, above) = (at - 1, at + 1, at - grid.mx, at + grid.mx);
         let second = |values: &[f64], a: usize, b: usize| values[a] + values[b] - 2.0 * values[at];
         let finite = |difference: f64| if difference.is_finite() { difference / 24.0 } else { 0.0 };
         let bend = finite(second(h, left, right)) + finite(second(h, below, above));
-        let rim = !(contact[left] && contact[right] && contact[below] && contact[above]);
+        let is_rim = !(contact[left] && contact[right] && contact[below] && contact[above]);
+        let rim = is_rim.then(|| shortest_run(directions, contact, at, LONG));
         let difference = second(p, left, right) + second(p, below, above);
         self.count_in(state, at, (bend, difference, rim));
     }
 
     /// Any element.
-    fn add(&mut self, problem: &Problem, state: &State, (x, y): (bool, bool), ix: usize, iy: usize) {
-        let (mx, my) = (state.grid.mx, state.grid.my);
-        let at = iy * mx + ix;
-        let along = neighbours(ix, mx, x).map(|n| n.map(|ix| iy * mx + ix));
-        let across = neighbours(iy, my, y).map(|n| n.map(|iy| iy * mx + ix));
+    fn add(&mut self, problem: &Problem, state: &State, directions: &[Direction; 2], (ix, iy): (usize, usize)) {
+        let [x, y] = directions;
+        let at = iy * x.m + ix;
+        let along = neighbours(ix, x.m, x.repeats).map(|n| n.map(|ix| iy * x.m + ix));
+        let across = neighbours(iy, y.m, y.repeats).map(|n| n.map(|iy| iy * x.m + ix));
         let yields = |i: usize| state.h[i] + problem.layer(i) * state.p[i];
-        let (mut bend, mut difference, mut rim) = (0.0, 0.0, false);
+        let (mut bend, mut difference, mut is_rim) = (0.0, 0.0, false);
         for pair in [along, across] {
             if let [Some(a), Some(b)] = pair {
                 let of_h = yields(a) + yields(b) - 2.0 * yields(at);
                 bend += if of_h.is_finite() { of_h / 24.0 } else { 0.0 };
-                rim |= !state.contact[a] || !state.contact[b];
+                is_rim |= !state.contact[a] || !state.contact[b];
             }
             if pair != [None, None] {
                 let p = |i: Option<usize>| i.map_or(0.0, |i| state.p[i]);
                 difference += p(pair[0]) + p(pair[1]) - 2.0 * state.p[at];
             }
         }
+        let rim = is_rim.then(|| shortest_run(directions, &state.contact, at, LONG));
         self.count_in(state, at, (bend, difference, rim));
     }
 
+    /// `rim`: of an element at the rim the shorter one of its runs.
     #[inline]
-    fn count_in(&mut self, state: &State, at: usize, (bend, difference, rim): (f64, f64, bool)) {
+    fn count_in(&mut self, state: &State, at: usize, (bend, difference, rim): (f64, f64, Option<usize>)) {
         self.bend += bend;
         self.h += state.h[at];
         self.count += 1.0;
-        if rim {
+        if let Some(run) = rim {
             self.rim_bend += bend;
-            self.rim_short += bend.abs() / (self.run * self.run);
+            self.rim_short += bend.abs() / (run * run) as f64;
             self.rim_h += state.h[at];
             self.rim_count += 1.0;
         }
@@ -186,8 +185,9 @@ fn area_weight(problem: &Problem, state: &State, outline: &Outline) -> f64 {
         return 2.0 / (3.0 * scatter);
     }
     let filled = PI * count as f64 / grid.len() as f64;
-    let (k, m) = ((0.5 * filled).sin().powi(2), 1.0 - filled.sin() / filled);
-    let of_strips = if count > 0 { k / (2.0 * k - m) } else { 0.75 };
+    let (k_squared, m) = ((0.5 * filled).sin().powi(2), 1.0 - filled.sin() / filled);
+    let of_strips = if count > 0 { k_squared / (2.0 * k_squared - m) } else { 0.75 };
+    // From three quarters to 1 for strips: the same part of the way from what other places have to 1.
     let of_places = (2.0 / 3.0 + outline.straight_part() / 12.0) / scatter;
     of_places + (1.0 - of_places) * (4.0 * of_strips - 3.0)
 }
@@ -195,16 +195,16 @@ fn area_weight(problem: &Problem, state: &State, outline: &Outline) -> f64 {
 /// The jumps of h beside contact: see [`Curvature::jumps`]; and what they add at the rim to second differences of h, and to these over the square
 /// of the elements of their run.
 fn jumps(problem: &Problem, state: &State, repeats: (bool, bool)) -> (f64, [f64; 2]) {
-    let (grid, contact) = (&state.grid, &state.contact);
+    let (grid, contact, directions) = (&state.grid, &state.contact, Direction::both(&state.grid, repeats));
     let (mut sum, mut bend, mut short) = (0.0, 0.0, 0.0);
     let visit = |Jump { between: (i, j), height, uncertain, lines }: Jump| {
         sum += lines * height.abs() * uncertain;
         // Beside a jump within contact the second differences have opposite signs.
         if contact[i] != contact[j] {
             let (inside, up) = if contact[i] { (i, height) } else { (j, -height) };
-            let run = run(contact, inside, grid.mx).len() as f64;
+            let run = shortest_run(&directions, contact, inside, LONG);
             bend += lines * up;
-            short += lines * up.abs() / (run * run);
+            short += lines * up.abs() / (run * run) as f64;
         }
     };
     let touching = bounding_box(contact, grid, &problem.threads, |row| row.contains(&true), |inside| *inside);
@@ -212,14 +212,6 @@ fn jumps(problem: &Problem, state: &State, repeats: (bool, bool)) -> (f64, [f64;
         each_jump((grid, &part), repeats, (|i: usize| state.h[i], false), |i, j| contact[i] || contact[j], visit);
     }
     (sum, [bend, short])
-}
-
-/// The elements in contact without a gap along the row of one that is.
-fn run(contact: &[bool], at: usize, mx: usize) -> Range<usize> {
-    let row = at / mx * mx;
-    let before = contact[row..at].iter().rev().take_while(|&&inside| inside).count();
-    let behind = contact[at..row + mx].iter().take_while(|&&inside| inside).count();
-    at - before..at + behind
 }
 
 /// The elements before and behind element `i` of `m`; none beyond the end of what does not repeat itself.

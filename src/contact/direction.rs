@@ -33,4 +33,20 @@ impl Direction {
     pub fn at(&self, place: isize) -> Option<usize> {
         self.place(place).map(|place| place * self.step)
     }
+
+    /// Elements of the run without a gap of marked ones through element `at`, which is one, at `place` of its line; `most` at most.
+    pub fn run(&self, marked: &[bool], (at, place): (usize, usize), most: usize) -> usize {
+        let first = at - place * self.step;
+        let is_marked = |place: isize| self.at(place).is_some_and(|next| marked[first + next]);
+        let behind = (1..most as isize).take_while(|k| is_marked(place as isize + k)).count();
+        let before = (1..most as isize).take_while(|k| is_marked(place as isize - k)).count();
+        (1 + before + behind).min(most)
+    }
+}
+
+/// The shorter one of the runs along x and along y; a line of one element has none.
+pub(super) fn shortest_run(directions: &[Direction; 2], marked: &[bool], at: usize, most: usize) -> usize {
+    let mx = directions[0].m;
+    let runs = directions.iter().zip([at % mx, at / mx]).filter(|(direction, _)| direction.m > 1);
+    runs.map(|(direction, place)| direction.run(marked, (at, place), most)).min().unwrap_or(most)
 }

@@ -24,7 +24,7 @@ impl Line<'_> {
         (off(most) > SYMMETRY * (self.at)(0).abs()).then_some(most)
     }
 
-    /// 1: softer before the element, so bodies roll towards the end of the axis; -1: behind it; 0: even.
+    /// 1: softer at smaller offsets, which are behind a body that rolls towards the end of the axis; -1: at larger ones; 0: even.
     fn towards(&self) -> f64 {
         let softer: f64 = (1..self.count as i64).map(|k| (self.at)(-k) - (self.at)(k)).sum();
         self.uneven_at().map_or(0.0, |_| softer.signum())
@@ -43,8 +43,7 @@ fn check(name: &str, lines: [Line<'_>; 2], step: (f64, f64)) -> Result<()> {
     let ways: Vec<String> =
         ways.map(|(line, towards)| format!("{}{}", if towards > 0.0 { "+" } else { "-" }, line.name)).collect();
     invalid(format!(
-        "{name} is {} at {k} elements along {axis} and {} at {}: of bodies that relax and roll towards {}, and a step of rolling goes {step:?} \
-         elements far; {INSTEAD}",
+        "{name} is {} at {k} elements along {axis} and {} at {}: these bodies roll towards {}, but the step goes {step:?} elements; {INSTEAD}",
         (line.at)(k),
         (line.at)(-k),
         -k,

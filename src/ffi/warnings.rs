@@ -42,7 +42,7 @@ const TEXTS: [(i32, &str); 7] = [
         "elements snap alone, for they are too large for the range of the attraction: smaller elements, or a longer range",
     ),
     (CONTACT_NORMAL_WARNING_ATTRACTION, "the attraction reaches the border of the grid: a larger grid"),
-    (CONTACT_NORMAL_WARNING_LAW, "friction falls so steeply that there may be several solutions, of which this is that of friction's branch: a larger memory distance, or a stiffer layer"),
+    (CONTACT_NORMAL_WARNING_LAW, "friction falls so steeply that there may be several solutions; this is the one that friction.branch asks for: a larger memory distance, or a stiffer layer"),
 ];
 
 /// The warnings in words; none: nothing. Made once, because later solves with a handle allocate nothing.

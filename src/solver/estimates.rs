@@ -199,7 +199,7 @@ pub fn estimate(
     let straight = (outline.straight.0 + outline.straight.1) as f64;
     let lines = STRAIGHT_OFF * straight + edges_off(problem, outline) + curved.sqrt();
     // Where forces are off, the area that carries them is off as well.
-    let carried = parts.filter(|parts| parts.smooth > 0.0);
+    let carried = parts.filter(|parts| parts.of_bend() > 0.0);
     let carried = carried.map_or(0.0, |parts| parts.of_bend() / parts.by * parts.stiffness / measures.force);
     let lines = lines * finest.grid.element_area() + carried * measures.contact_area;
     let count = ledger.len();

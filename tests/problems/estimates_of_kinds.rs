@@ -109,27 +109,42 @@ fn a_peak_beside_a_cut_contact_is_not_trusted() {
     }
 }
 
+/// Depth of the wave.
+const DEPTH: f64 = 0.01;
+
+/// A wave along x, or along y if it is turned; `place`: of its crest, from the middle.
+fn of_wave((mx, my): (usize, usize), turned: bool, place: f64, load: Load) -> Report {
+    let of = |k: usize| DEPTH * (1.0 - (2.0 * PI * ((k as f64 + 0.5) / mx as f64 - 0.5 - place)).cos());
+    let (nx, ny) = if turned { (my, mx) } else { (mx, my) };
+    let grid = Grid::new(nx, ny, 1.0 / nx as f64, 1.0 / ny as f64).expect("a grid");
+    let h: Vec<f64> = (0..grid.len()).map(|i| of(if turned { i / nx } else { i % nx })).collect();
+    let period = Some(Period { x: true, y: true });
+    report(&Scene { period, ..Scene::new(grid, &h, UNIT, load) })
+}
+
 /// Westergaard's wave (1939): the approach of the mean planes is `(p/pi)(1 - log(p/p*))` of the mean pressure `p = p* sin^2(pi c/2)`, and its
 /// derivative is unbounded where the part c in contact goes to 1.
 #[test]
 fn errors_of_a_wave_are_covered_up_to_full_contact() {
-    const DEPTH: f64 = 0.01;
     let closing = PI * DEPTH;
     let mut ratios = Vec::new();
     for part in [0.2, 0.35, 0.5, 0.65, 0.75, 0.85, 0.9] {
         let pressure = closing * (0.5 * PI * part).sin().powi(2);
         let approach = pressure / PI * (1.0 - (pressure / closing).ln());
         for (mx, my) in [(32, 4), (48, 6), (100, 12), (128, 1), (256, 32)] {
-            let grid = Grid::new(mx, my, 1.0 / mx as f64, 1.0 / my as f64).expect("a grid");
-            let of = |k: usize| DEPTH * (1.0 - (2.0 * PI * ((k as f64 + 0.5) / mx as f64 - 0.5)).cos());
-            let h: Vec<f64> = (0..grid.len()).map(|i| of(i % mx)).collect();
             for (load, exact) in [(Load::Approach(approach), pressure), (Load::Force(pressure), approach)] {
-                let period = Some(Period { x: true, y: true });
-                let report = report(&Scene { period, ..Scene::new(grid, &h, UNIT, load) });
+                let of = |turned, place| of_wave((mx, my), turned, place, load);
+                let report = of(false, 0.0);
                 let ratio = report.error.force / (report.measures.found(load) - exact).abs();
-                // As where contact is in one place: 0.58 of the bend for 0.5 within a third. By approach it was 0.16 from 0.7 of the wave on.
+                // The error is half of the bend, within a third (docs/notes), and 0.58 of it is estimated: 0.58/0.67 is 0.87; less on few
+                // elements, as for balls above. By approach it was 0.16 from 0.7 of the wave on.
                 assert!(ratio >= 0.75, "{part} of {mx} x {my}, {load:?}: {ratio}");
                 ratios.push(ratio);
+                // Wherever the period begins, and along y: round-off of sums in another order, and what the residual of 1e-8 hides.
+                for other in [of(false, 0.5), of(true, 0.0)] {
+                    let off = (other.error.force / report.error.force - 1.0).abs();
+                    assert!(off < 1e-3, "{part} of {mx} x {my}, {load:?}: {off}");
+                }
             }
         }
     }

@@ -96,13 +96,13 @@ def _table(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) ->
     """The points of a file of columns, mm, and a hint for a profile that is refused. A column without coordinates is refused as y: it might pass as one."""
     points, width = _columns(text, columns, path)
     y, first, name = points[:, 0], columns[0], Path(path).name
-    others = f"columns=({first + 1}, {first + 2})"
+    others = f"; y and z are other columns: columns=({first + 1}, {first + 2})?" if width > first + 2 else ""
     if width > 2 and y[0] in (0.0, 1.0) and (np.diff(y) == 1.0).all():
-        raise ValueError(f"column {first} of {name} only counts its lines ({y[0]:.0f} {y[1]:.0f} {y[2]:.0f} ...); y and z are other columns: {others}? "
+        raise ValueError(f"column {first} of {name} only counts its lines ({y[0]:.0f} {y[1]:.0f} {y[2]:.0f} ...){others} "
                          "If it is y, make Profile(y, z, kind)")
     if (y == y[0]).all():
-        raise ValueError(f"column {first} of {name} is {y[0]:g} in every line; y and z are other columns: {others}?")
-    hint = f"; or y and z are not the columns {columns} of its {width}: columns=" if width > 2 and not name.lower().endswith(_UPSIDE_DOWN) else ""
+        raise ValueError(f"column {first} of {name} is {y[0]:g} in every line{others}")
+    hint = f"; or give columns=(y, z): the file has {width}" if width > 2 and not name.lower().endswith(_UPSIDE_DOWN) else ""
     return points, 1.0, hint
 
 
