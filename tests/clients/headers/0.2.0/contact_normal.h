@@ -1047,7 +1047,7 @@ typedef struct contact_normal_friction {
   /*
    Own tangential influence coefficients xx, yy and xy instead of the half-space's: the displacement in x by a unit traction in x, in
    y by one in y, and in either by one in the other. All or none, default NULL; all with the same cx, cy and scale. xx and yy must be
-   even in x and in y, xy odd in both, in steady rolling of like bodies in y alone (UNSUPPORTED otherwise); uneven ones are softer behind, and the step must go that way in which their bodies roll (INVALID_ARGUMENT otherwise; so must it beside such a `scene->influence`). Rolling needs steps of whole elements; with the step the tables must reach
+   even in x and in y, xy odd in both, in steady rolling of like bodies in y alone (UNSUPPORTED otherwise); uneven ones are those of bodies that roll in one direction. Steps must go in that direction, and so must they beside an uneven `scene->influence` (INVALID_ARGUMENT otherwise). Rolling needs steps of whole elements; with the step the tables must reach
    across what is in contact. They belong to the set-up of a solver: later scenes may leave them out; others are refused (INFLUENCE_CHANGED). With `scene->influence` or `scene->row_tables` the bodies are not read; otherwise they must be alike, or `influence_cross` given.
    */
   const struct contact_normal_influence *influence[3];
