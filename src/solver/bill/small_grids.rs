@@ -45,6 +45,8 @@ pub struct Variant {
     pub values: Vec<std::result::Result<f64, Lack>>,
     /// By quantity: the change against the scene as it is, grid by grid.
     pub changes: Vec<Sequence>,
+    /// Whether the largest pressure of the finest grid so far is no peak that its elements do not resolve.
+    has_peak: bool,
     /// On the finest grid so far.
     pub seconds: f64,
     pub bytes: f64,
@@ -77,6 +79,7 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
             left_out,
             values: vec![Err(Lack::Unsolved); wanted.len()],
             changes: vec![Sequence::default(); wanted.len()],
+            has_peak: true,
             seconds: 0.0,
             bytes: 0.0,
         };
@@ -131,11 +134,13 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
                 return Ok(false);
             }
             (variant.seconds, variant.bytes) = (found.seconds, found.bytes as f64);
+            variant.has_peak = found.has_peak(&self.wanted);
             for (q, quantity) in self.wanted.iter().enumerate() {
                 let value = verdict::without(*quantity, &variant.left_out, found.values[q]);
                 variant.values[q] = value;
                 if let (Ok(value), Some(Ok(before))) = (value, as_it_is.get(q)) {
-                    variant.changes[q].add(doublings, value - before, found.residual * before.abs());
+                    let hidden = found.residual * before.abs() + quantity.hidden_by_elements(grid.element_area());
+                    variant.changes[q].add(doublings, value - before, hidden);
                 }
             }
             if k == 0 {
@@ -162,6 +167,8 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
                     value: whole.values[q],
                     without: variant.values[q],
                     change: &variant.changes[q],
+                    on_own_grid: self.ratio == 1.0,
+                    has_peaks: whole.has_peak && variant.has_peak,
                 };
                 let costs = [whole.seconds * scale, variant.seconds * scale];
                 let bytes = [whole.bytes * self.ratio, variant.bytes * self.ratio];

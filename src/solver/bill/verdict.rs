@@ -45,13 +45,26 @@ pub struct Measured<'a> {
     pub value: Result<f64, Lack>,
     pub without: Result<f64, Lack>,
     pub change: &'a Sequence,
+    /// Whether the last grid is that of the scene: the change is what leaving out does there.
+    pub on_own_grid: bool,
+    /// Whether peaks of the pressure are known on the last grid.
+    pub has_peaks: bool,
 }
 
 impl Measured<'_> {
+    /// How far the change may be off on the scene's grid.
+    fn error(&self) -> Option<f64> {
+        match self.quantity {
+            _ if self.on_own_grid => self.change.hidden(),
+            Quantity::MaxPressure if !self.has_peaks => None,
+            _ => self.change.falling().map(|falling| falling.now()),
+        }
+    }
+
     /// The row.
     pub fn row(&self, left_out: &[Omission], target: f64, seconds: [f64; 2], bytes: [f64; 2]) -> BillRow {
         let change = self.change.value();
-        let error = self.change.falling().map(|falling| falling.now());
+        let error = self.error();
         let verdict = match (self.value, change, error) {
             (Ok(value), Some(change), Some(error)) => decide(value, change, error, target),
             _ => Verdict::NotDecided,

@@ -89,6 +89,14 @@ impl Quantity {
         matches!(self, Quantity::Force | Quantity::MaxPressure | Quantity::ContactArea)
     }
 
+    /// What no grid shows of a change: areas jump by elements, by four at once where a scene has two planes of symmetry.
+    pub fn hidden_by_elements(self, element_area: f64) -> f64 {
+        match self {
+            Quantity::ContactArea | Quantity::StickArea => 4.0 * element_area,
+            _ => 0.0,
+        }
+    }
+
     /// Its error from several grids, where one grid has no estimate of it: of forces, pressures and areas only where nothing is estimated at all
     /// (`lacks_estimates`: a single peak without an estimate is singular, or not resolved), and from three grids at least, since a value that
     /// is infinite shows in its changes only.

@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::{values, Lack, Quantity, Sequence};
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::scene::{scaled, Regridded, Scene};
+use crate::scene::{scaled, Prescribed, Regridded, Scene};
 use crate::solver::{Options, Outcome, ProgressCallback, Report, Solver};
 
 /// One quantity on one grid.
@@ -69,7 +69,7 @@ impl OnGrid {
             grid: scene.grid,
             outcome,
             values,
-            estimates: wanted.iter().map(|quantity| estimate(&report, *quantity)).collect(),
+            estimates: wanted.iter().map(|quantity| estimate(scene, &report, *quantity)).collect(),
             lacks_estimates: solver.lacks_estimates(),
             residual: report.residual(),
             seconds,
@@ -77,17 +77,36 @@ impl OnGrid {
             bytes: report.bytes,
         })
     }
+
+    /// Whether its largest pressure is a peak that its elements resolve, as far as anything is estimated.
+    pub fn has_peak(&self, wanted: &[Quantity]) -> bool {
+        let at = wanted.iter().position(|quantity| *quantity == Quantity::MaxPressure);
+        self.lacks_estimates || at.is_none_or(|at| self.estimates[at].is_some())
+    }
 }
 
 /// The error that a report has.
-fn estimate(report: &Report, quantity: Quantity) -> Option<f64> {
+fn estimate(scene: &Scene<'_>, report: &Report, quantity: Quantity) -> Option<f64> {
     let error = match quantity {
+        Quantity::TangentialForce => of_tangential_force(scene, report),
         Quantity::Force => report.error.force,
         Quantity::MaxPressure => report.error.max_pressure,
         Quantity::ContactArea => report.error.corrected_area,
         _ => -1.0,
     };
     Some(error).filter(|error| *error >= 0.0)
+}
+
+/// The error of the length of a tangential force that is found in both directions; negative: not known.
+fn of_tangential_force(scene: &Scene<'_>, report: &Report) -> f64 {
+    let (Some(friction), Some(found)) = (&scene.friction, &report.friction) else { return -1.0 };
+    let is_found = friction.prescribed.iter().all(|prescribed| matches!(prescribed, Prescribed::Creepage(_)));
+    let [x, y] = found.error;
+    if is_found && x.min(y) >= 0.0 {
+        x.hypot(y)
+    } else {
+        -1.0
+    }
 }
 
 /// The values of `wanted` on the grid of the scene and on `coarser` grids with half the elements each, coarsest first, one row for each grid

@@ -37,6 +37,11 @@ impl Sequence {
         self.points.last().map(|point| point.value)
     }
 
+    /// What the residual may hide of the value on the last grid.
+    pub fn hidden(&self) -> Option<f64> {
+        self.points.last().map(|point| point.hidden)
+    }
+
     /// Grids so far.
     pub fn len(&self) -> usize {
         self.points.len()

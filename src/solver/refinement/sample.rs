@@ -25,6 +25,9 @@ pub(super) enum Taken {
     Unsolved,
 }
 
+/// Of an iteration: the residual, seconds since the start of the surface, products of the normal problem until then.
+type Told = (f64, f64, f64);
+
 /// The results of a small grid.
 pub(super) struct Sample {
     pub(super) doublings: i32,
@@ -37,10 +40,11 @@ pub(super) struct Sample {
     pub(super) bytes: f64,
     /// How far a step of bodies that relax may be off by its length, relative; 0: none relaxes.
     pub(super) time_error: f64,
-    /// Of each iteration: the residual, seconds since the start of the surface, products until then.
-    reached: Vec<(f64, f64, f64)>,
-    /// Products of all.
+    /// Each iteration.
+    reached: Vec<Told>,
+    /// Products of all, and those of the tangential problem among them.
     pub(super) products: f64,
+    tangential: f64,
     pub(super) seconds: f64,
     /// Of which the set-up took so many.
     pub(super) setup: f64,
@@ -97,6 +101,7 @@ impl Sample {
         let Solved { solver, report, outlook, values } = solved;
         let seconds = began.elapsed().as_secs_f64();
         let (x, y) = across(solver.state(), solver.influence().repeats(solver.grid()));
+        let tangential = report.friction.map_or(0.0, |found| found.products);
         Ok(Taken::Sample(Box::new(Sample {
             doublings,
             elements: elements as f64,
@@ -107,7 +112,8 @@ impl Sample {
             bytes: report.bytes as f64,
             time_error: report.visco.map_or(0.0, |step| step.time_error),
             reached,
-            products: report.count.work_units + report.friction.map_or(0.0, |found| found.products),
+            products: report.count.work_units + tangential,
+            tangential,
             seconds,
             setup: report.setup_seconds,
         })))
@@ -124,13 +130,24 @@ impl Sample {
         self.outlook.falling(self.quantity)
     }
 
-    /// Seconds and products to a residual: what follows the last iteration is needed by any.
+    /// Seconds and products to a residual. A solve is a row of passes, the normal problem's, the tangential one's and their turns, and each of them ends
+    /// there: what it does beyond goes. What follows the last iteration of a pass is needed by any residual.
     pub(super) fn to(&self, tolerance: f64) -> (f64, f64) {
-        let Some(&end) = self.reached.last() else { return (self.seconds, self.products) };
-        let mut met = self.reached.iter().skip_while(|(residual, ..)| !(*residual <= tolerance));
-        let first = met.next().unwrap_or(&end);
-        // An iteration of several parts is told of by each of them.
-        let at = met.take_while(|(residual, ..)| *residual == first.0).last().unwrap_or(first);
-        (self.seconds - (end.1 - at.1), self.products - (end.2 - at.2))
+        let (mut seconds, mut products) = (self.seconds, self.products);
+        let is_tangential = |pair: &&[Told]| pair[0].2 == pair[1].2;
+        let tangential = |told: &[Told]| told.windows(2).filter(is_tangential).count() as f64;
+        // Its products are told at the end only: each iteration has the same.
+        let each = self.tangential / tangential(&self.reached).max(1.0);
+        for met in self.reached.chunk_by(|one, next| (one.0 <= tolerance) == (next.0 <= tolerance)) {
+            let (Some(first), Some(end)) = (met.first(), met.last()) else { continue };
+            if first.0 <= tolerance {
+                // An iteration of several parts is told of by each of them.
+                let parts = met.iter().take_while(|told| told.0 == first.0).count();
+                let at = &met[parts - 1..];
+                (seconds, products) =
+                    (seconds - (end.1 - at[0].1), products - (end.2 - at[0].2) - each * tangential(at));
+            }
+        }
+        (seconds, products)
     }
 }
