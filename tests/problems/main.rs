@@ -23,6 +23,7 @@ mod accuracy_target;
 mod batch;
 mod bearing_area;
 mod bill;
+mod bill_of_areas;
 mod coated_period;
 mod coating;
 mod coating_on_rigid;

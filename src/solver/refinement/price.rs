@@ -10,6 +10,8 @@ use crate::solver::quantities::Quantity;
 
 /// The least and the largest power of the number of elements with which seconds of set-ups grow.
 const SETUP_GROWTH: (f64, f64) = (0.4, 1.08);
+/// The largest power of the number of elements with which seconds of a solve grow.
+const GROWTH: f64 = 1.2;
 /// Samples with less than this part of the products of the last do not count for seconds.
 const SEES: f64 = 0.5;
 /// Residuals with which a grid begins fall so much with a doubling: it starts from the grid before, whose error is of this order at the rim.
@@ -68,11 +70,13 @@ pub(super) fn seconds_on(samples: &[Sample], elements: f64) -> f64 {
         _ => SETUP_GROWTH.1,
     };
     let of_setup = if seen.is_finite() { seen.clamp(SETUP_GROWTH.0, SETUP_GROWTH.1) } else { SETUP_GROWTH.1 };
+    let least = samples.last().map_or(0.0, |last| SEES * last.products);
+    let of_solve = grown(samples, least);
     let carried = |sample: &Sample| {
         let ratio = elements / sample.elements;
-        sample.setup * ratio.powf(of_setup) + (sample.seconds - sample.setup) * growth(sample.elements, elements)
+        let by = growth(sample.elements, elements).max(if ratio > 1.0 { ratio.powf(of_solve) } else { 0.0 });
+        sample.setup * ratio.powf(of_setup) + (sample.seconds - sample.setup) * by
     };
-    let least = samples.last().map_or(0.0, |last| SEES * last.products);
     let of = |sample: &Sample| if sample.elements <= elements { carried(sample) } else { sample.seconds };
     let has_coarser = samples.first().is_some_and(|first| first.elements <= elements);
     let sees = |sample: &&Sample| has_coarser && sample.products >= least;
@@ -83,6 +87,14 @@ pub(super) fn seconds_on(samples: &[Sample], elements: f64) -> f64 {
     } else {
         samples.first().map_or(f64::INFINITY, carried)
     }
+}
+
+/// The power of the number of elements with which the samples themselves grow, where each has `least` products: solves in turns, of unlike bodies, take more than
+/// their products. The least one from sample to sample, for others were disturbed.
+fn grown(samples: &[Sample], least: f64) -> f64 {
+    let of = |pair: &[Sample]| (pair[1].seconds / pair[0].seconds).ln() / (pair[1].elements / pair[0].elements).ln();
+    let seen = samples.windows(2).filter(|pair| pair[0].products >= least).map(of);
+    seen.reduce(f64::min).map_or(0.0, |seen| seen.clamp(0.0, GROWTH))
 }
 
 /// Doublings from the last sample to the first grid that does, and the seconds of one thread to the tolerance of the samples.

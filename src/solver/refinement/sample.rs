@@ -130,24 +130,25 @@ impl Sample {
         self.outlook.falling(self.quantity)
     }
 
-    /// Seconds and products to a residual. A solve is a row of passes, the normal problem's, the tangential one's and their turns, and each of them ends
-    /// there: what it does beyond goes. What follows the last iteration of a pass is needed by any residual.
+    /// Seconds and products to a residual. A solve is a row of passes, the normal problem's, the tangential one's and their turns. A pass ends there: what it
+    /// does beyond goes. What follows the last iteration of a pass is needed by any residual; where residuals rise another one has begun.
     pub(super) fn to(&self, tolerance: f64) -> (f64, f64) {
         let (mut seconds, mut products) = (self.seconds, self.products);
         let is_tangential = |pair: &&[Told]| pair[0].2 == pair[1].2;
         let tangential = |told: &[Told]| told.windows(2).filter(is_tangential).count() as f64;
         // Its products are told at the end only: each iteration has the same.
         let each = self.tangential / tangential(&self.reached).max(1.0);
-        for met in self.reached.chunk_by(|one, next| (one.0 <= tolerance) == (next.0 <= tolerance)) {
-            let (Some(first), Some(end)) = (met.first(), met.last()) else { continue };
-            if first.0 <= tolerance {
-                // An iteration of several parts is told of by each of them.
-                let parts = met.iter().take_while(|told| told.0 == first.0).count();
-                let at = &met[parts - 1..];
-                (seconds, products) =
-                    (seconds - (end.1 - at[0].1), products - (end.2 - at[0].2) - each * tangential(at));
-            }
+        let goes_on = |one: &Told, next: &Told| (one.0 <= tolerance) == (next.0 <= tolerance) && next.0 <= one.0;
+        for met in self.reached.chunk_by(goes_on).filter(|met| met[0].0 <= tolerance) {
+            // An iteration of several parts is told of by each of them.
+            let parts = met.iter().take_while(|told| told.0 == met[0].0).count();
+            let (at, end) = (&met[parts - 1..], met[met.len() - 1]);
+            (seconds, products) = (seconds - (end.1 - at[0].1), products - (end.2 - at[0].2) - each * tangential(at));
         }
         (seconds, products)
     }
 }
+
+#[cfg(test)]
+#[path = "../../../tests/unit/sample.rs"]
+mod tests;
