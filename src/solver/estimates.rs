@@ -38,6 +38,8 @@ const AT_MOST: f64 = 0.58;
 /// where contact is in many places the sharpest carry most.
 const STRAIGHT: f64 = 0.2;
 const SHORT_CHORD: f64 = 2.5;
+/// Of what single runs of elements say in the place of the mean chord: with it no map with spikes of one element misses its target.
+const RUNS: f64 = 0.5;
 /// Of what is uncertain of a jump, the part by which forces are off: 98 of 100 are off by less, wherever it lies.
 const JUMPS: f64 = 0.6;
 /// A peak has no estimate where pressures at ends of the surface are more than this part of it: they are singular, and grow as the root of the
@@ -99,7 +101,7 @@ impl Parts {
         let pressure = force / (count as f64 * state.grid.element_area());
         let along_lines = STRAIGHT * pressure / problem.modulus() * outline.straight_length(&state.grid) / count as f64;
         // Where contact is in many places it is not the mean chord that counts, but that of the sharpest ones.
-        let of_runs = (curvature.bend.abs() / (chord * chord)).max(curvature.short);
+        let of_runs = (curvature.bend.abs() / (chord * chord)).max(RUNS * curvature.short);
         let short = AT_MOST * by * outline.scatter(count, repeats) * SHORT_CHORD * SHORT_CHORD * of_runs;
         let smooth = AT_MOST * by * (curvature.bend.abs() + along_lines);
         let (ends, highest_at_ends) = ends(problem, state, outline);

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::asked::BillOptions;
 use super::omission::Omission;
-use super::verdict::{self, BillRow, Measured};
+use super::verdict::{self, BillRow, Measured, MOVES};
 use crate::effects;
 use crate::error::{require, Error, Result};
 use crate::scene::{scaled, Regridded, Scene};
@@ -38,18 +38,33 @@ pub fn check(scene: &Scene<'_>, options: &Options, asked: &BillOptions) -> Resul
     effects::check_other_grids(scene)
 }
 
+/// Of a quantity, or why there is none.
+type Value = std::result::Result<f64, Lack>;
+
 /// The scene with something left out, or as it is where nothing is.
 pub struct Variant {
     pub left_out: Vec<Omission>,
     /// By quantity: the value, on each grid.
-    pub values: Vec<std::result::Result<f64, Lack>>,
+    pub values: Vec<Value>,
     /// By quantity: the change against the scene as it is, grid by grid.
     pub changes: Vec<Sequence>,
     /// Whether the largest pressure of the finest grid so far is no peak that its elements do not resolve.
     has_peak: bool,
+    /// The largest relative change on it of all but pressures and areas.
+    moved: f64,
     /// On the finest grid so far.
     pub seconds: f64,
     pub bytes: f64,
+}
+
+/// The largest relative change of what is no pressure and no area; without any of these infinite.
+fn moved(wanted: &[Quantity], now: &[Value], before: &[Value]) -> f64 {
+    let is_smooth = |quantity: &Quantity| !quantity.is_local() && quantity.hidden_by_elements(1.0) == 0.0;
+    let of = |(quantity, (now, before)): (&Quantity, (&Value, &Value))| match (*now, *before) {
+        (Ok(now), Ok(before)) if is_smooth(quantity) && before != 0.0 => Some(((now - before) / before).abs()),
+        _ => None,
+    };
+    wanted.iter().zip(now.iter().zip(before)).filter_map(of).reduce(f64::max).unwrap_or(f64::INFINITY)
 }
 
 /// All variants on the grids so far.
@@ -80,6 +95,7 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
             values: vec![Err(Lack::Unsolved); wanted.len()],
             changes: vec![Sequence::default(); wanted.len()],
             has_peak: true,
+            moved: 0.0,
             seconds: 0.0,
             bytes: 0.0,
         };
@@ -118,7 +134,7 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
         self.ratio = self.scene.grid.len() as f64 / grid.len() as f64;
         let regridded = Regridded::new(self.scene, grid, None)?;
         let scene = regridded.scene(self.scene);
-        let mut as_it_is: Vec<std::result::Result<f64, Lack>> = vec![];
+        let mut as_it_is: Vec<Value> = vec![];
         for (k, variant) in self.variants.iter_mut().enumerate() {
             let left = variant.left_out.iter().fold(scene.clone(), |scene, omission| omission.leave_out(&scene));
             let watch = progress.as_mut().map(|progress| &mut **progress as ProgressCallback<'_>);
@@ -136,11 +152,14 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
             (variant.seconds, variant.bytes) = (found.seconds, found.bytes as f64);
             variant.has_peak = found.has_peak(&self.wanted);
             for (q, quantity) in self.wanted.iter().enumerate() {
-                let value = verdict::without(*quantity, &variant.left_out, found.values[q]);
-                variant.values[q] = value;
-                if let (Ok(value), Some(Ok(before))) = (value, as_it_is.get(q)) {
-                    let hidden = found.residual * before.abs() + quantity.hidden_by_elements(grid.element_area());
-                    variant.changes[q].add(doublings, value - before, hidden);
+                variant.values[q] = verdict::without(*quantity, &variant.left_out, found.values[q]);
+            }
+            variant.moved = moved(&self.wanted, &variant.values, &as_it_is);
+            for (q, quantity) in self.wanted.iter().enumerate() {
+                if let (Ok(value), Some(Ok(before))) = (variant.values[q], as_it_is.get(q)) {
+                    let by_elements = quantity.hidden_by_elements(grid.element_area());
+                    let hidden = by_elements.min(MOVES * variant.moved * before.abs());
+                    variant.changes[q].add(doublings, value - before, hidden + found.residual * before.abs());
                 }
             }
             if k == 0 {
@@ -169,6 +188,7 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
                     change: &variant.changes[q],
                     on_own_grid: self.ratio == 1.0,
                     has_peaks: whole.has_peak && variant.has_peak,
+                    moved: variant.moved,
                 };
                 let costs = [whole.seconds * scale, variant.seconds * scale];
                 let bytes = [whole.bytes * self.ratio, variant.bytes * self.ratio];

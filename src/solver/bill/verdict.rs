@@ -3,6 +3,10 @@
 use super::omission::Omission;
 use crate::solver::quantities::{Lack, Quantity, Sequence};
 
+/// Areas, and peaks that elements do not resolve, change by at most so many times what all else does, relatively: an area of Hertz by as much as the
+/// approach, of other smooth surfaces by up to twice that.
+pub const MOVES: f64 = 3.0;
+
 /// The verdict of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
@@ -49,22 +53,28 @@ pub struct Measured<'a> {
     pub on_own_grid: bool,
     /// Whether peaks of the pressure are known on the last grid.
     pub has_peaks: bool,
+    /// The largest relative change there of what is no pressure and no area.
+    pub moved: f64,
 }
 
 impl Measured<'_> {
-    /// How far the change may be off on the scene's grid.
-    fn error(&self) -> Option<f64> {
+    /// How far the change may be off on the scene's grid. A peak that elements do not resolve moves as the rest does, but for a limit that peaks alone reach.
+    fn error(&self, left_out: &[Omission]) -> Option<f64> {
+        let falling = self.change.falling().map(|falling| falling.now());
         match self.quantity {
             _ if self.on_own_grid => self.change.hidden(),
-            Quantity::MaxPressure if !self.has_peaks => None,
-            _ => self.change.falling().map(|falling| falling.now()),
+            Quantity::MaxPressure if !self.has_peaks => {
+                let error = falling?.max(MOVES * self.moved * self.value.ok()?.abs());
+                (error.is_finite() && !left_out.contains(&Omission::PressureLimit)).then_some(error)
+            }
+            _ => falling,
         }
     }
 
     /// The row.
     pub fn row(&self, left_out: &[Omission], target: f64, seconds: [f64; 2], bytes: [f64; 2]) -> BillRow {
         let change = self.change.value();
-        let error = self.error();
+        let error = self.error(left_out);
         let verdict = match (self.value, change, error) {
             (Ok(value), Some(change), Some(error)) => decide(value, change, error, target),
             _ => Verdict::NotDecided,
