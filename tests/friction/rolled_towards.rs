@@ -98,7 +98,8 @@ fn steps_that_go_another_way_than_the_bodies_roll_are_refused() {
                 let Some(Error::InvalidArgument(message)) = refusal else {
                     panic!("{speed} {step:?} {call}: {refusal:?}")
                 };
-                for words in ["friction->influence[0] (xx) is", way, "elements far", "contact_normal_influence_rolling"]
+                for words in
+                    ["friction->influence[0] (xx) is", way, "but the step goes", "contact_normal_influence_rolling"]
                 {
                     assert!(message.contains(words), "{speed} {step:?} {call}: {message}");
                 }

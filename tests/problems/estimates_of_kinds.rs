@@ -140,8 +140,10 @@ fn errors_of_a_wave_are_covered_up_to_full_contact() {
                 // elements, as for balls above. By approach it was 0.16 from 0.7 of the wave on.
                 assert!(ratio >= 0.75, "{part} of {mx} x {my}, {load:?}: {ratio}");
                 ratios.push(ratio);
-                // Wherever the period begins, and along y: round-off of sums in another order, and what the residual of 1e-8 hides.
-                for other in [of(false, 0.5), of(true, 0.0)] {
+                // Wherever the period begins, and along y: round-off of sums in another order, and what the residual of 1e-8 hides. Of 64 rows with
+                // contact and more only some are looked at.
+                let along_y = (part * mx as f64 + 1.0 < 64.0).then(|| of(true, 0.0));
+                for other in [of(false, 0.5)].into_iter().chain(along_y) {
                     let off = (other.error.force / report.error.force - 1.0).abs();
                     assert!(off < 1e-3, "{part} of {mx} x {my}, {load:?}: {off}");
                 }

@@ -157,7 +157,9 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
             variant.moved = moved(&self.wanted, &variant.values, &as_it_is);
             for (q, quantity) in self.wanted.iter().enumerate() {
                 if let (Ok(value), Some(Ok(before))) = (variant.values[q], as_it_is.get(q)) {
-                    let by_elements = quantity.hidden_by_elements(grid.element_area());
+                    // On its own grid an area is what it is.
+                    let by_elements =
+                        if doublings < 0 { quantity.hidden_by_elements(grid.element_area()) } else { 0.0 };
                     let hidden = by_elements.min(MOVES * variant.moved * before.abs());
                     variant.changes[q].add(doublings, value - before, hidden + found.residual * before.abs());
                 }

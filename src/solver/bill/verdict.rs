@@ -7,6 +7,9 @@ use crate::solver::quantities::{Lack, Quantity, Sequence};
 /// approach, of other smooth surfaces by up to twice that.
 pub const MOVES: f64 = 3.0;
 
+/// Single pressures are off by at most so many times the residual (docs/accuracy.md: a hundredth of the target for these).
+const OF_RESIDUAL: f64 = 100.0;
+
 /// The verdict of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
@@ -62,7 +65,8 @@ impl Measured<'_> {
     fn error(&self, left_out: &[Omission]) -> Option<f64> {
         let falling = self.change.falling().map(|falling| falling.now());
         match self.quantity {
-            _ if self.on_own_grid => self.change.hidden(),
+            // Whatever the changes before: it is that of the scene's grid.
+            _ if self.on_own_grid => falling.or(self.change.hidden().map(|hidden| OF_RESIDUAL * hidden)),
             Quantity::MaxPressure if !self.has_peaks => {
                 let error = falling?.max(MOVES * self.moved * self.value.ok()?.abs());
                 (error.is_finite() && !left_out.contains(&Omission::PressureLimit)).then_some(error)
