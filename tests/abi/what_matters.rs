@@ -25,7 +25,8 @@ fn of_layer() -> Call {
 fn quantities(call: &Call, n: i32, wanted: *const i32, coarser: i32) -> (i32, Vec<contact_normal_quantity_row>, i32) {
     let struct_size = size_of::<Longer<contact_normal_quantity_row>>() as i64;
     let row = contact_normal_quantity_row { struct_size, ..Default::default() };
-    let mut rows = vec![Longer { row, unknown: -7 }; 8];
+    // n rows for each of up to 13 grids: all of that must be the caller's memory, and no input may lie there.
+    let mut rows = vec![Longer { row, unknown: -7 }; 26];
     // What the first row says of what this library does not know must be 0.
     rows[0].unknown = 0;
     let mut written = -1;
@@ -58,7 +59,7 @@ fn bill(call: &Call, target: f64, pairs: i32, capacity: i32) -> (i32, Vec<contac
 fn rows_of_quantities_have_the_callers_size() {
     let (status, rows, written) = quantities(&Call::new(), 2, WANTED.as_ptr(), 1);
     // 6 x 5 elements, and 3 x 3 (5/2, rounded).
-    assert_eq!((status, written), (CONTACT_NORMAL_OK, 4));
+    assert_eq!((status, written), (CONTACT_NORMAL_OK, 4), "{}", last_error());
     assert_eq!(rows[..4].iter().map(|row| (row.mx, row.my)).collect::<Vec<_>>(), [(3, 3), (3, 3), (6, 5), (6, 5)]);
     assert!(rows[..4]
         .iter()
@@ -68,7 +69,7 @@ fn rows_of_quantities_have_the_callers_size() {
     assert!(rows[3].error > 0.0 && rows[3].lack == CONTACT_NORMAL_LACK_NONE);
     // So many grids are not there.
     assert_eq!(quantities(&Call::new(), 2, WANTED.as_ptr(), 3).2, 8);
-    assert_eq!(quantities(&Call::new(), 1, WANTED.as_ptr(), 12).0, CONTACT_NORMAL_OK);
+    assert_eq!(quantities(&Call::new(), 1, WANTED.as_ptr(), 12).0, CONTACT_NORMAL_OK, "{}", last_error());
 }
 
 #[test]
