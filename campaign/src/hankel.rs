@@ -28,7 +28,7 @@ fn parts(mu: f64, [nu1, nu2]: [f64; 2], s: f64) -> [f64; 3] {
     [pressures, tractions, d]
 }
 
-/// What is left of `sinh x` (1), or of `cosh x` (2), behind the first or the first two terms of its series.
+/// `sinh x - x` (1), or `cosh x - 1 - x^2/2` (2), without cancellation for small x.
 fn beyond(x: f64, order: u32) -> f64 {
     if x > 2.0 {
         return if order == 1 { x.sinh() - x } else { x.cosh() - 1.0 - 0.5 * x * x };

@@ -38,15 +38,15 @@ impl Direction {
     pub fn run(&self, marked: &[bool], (at, place): (usize, usize), most: usize) -> usize {
         let first = at - place * self.step;
         let is_marked = |place: isize| self.at(place).is_some_and(|next| marked[first + next]);
-        let behind = (1..most as isize).take_while(|k| is_marked(place as isize + k)).count();
-        let before = (1..most as isize).take_while(|k| is_marked(place as isize - k)).count();
-        (1 + before + behind).min(most)
+        let behind = (1..most).take_while(|k| is_marked(place as isize + *k as isize)).count();
+        let before = (1..most - behind).take_while(|k| is_marked(place as isize - *k as isize)).count();
+        1 + before + behind
     }
 }
 
 /// The shorter one of the runs along x and along y; a line of one element has none.
 pub(super) fn shortest_run(directions: &[Direction; 2], marked: &[bool], at: usize, most: usize) -> usize {
     let mx = directions[0].m;
-    let runs = directions.iter().zip([at % mx, at / mx]).filter(|(direction, _)| direction.m > 1);
-    runs.map(|(direction, place)| direction.run(marked, (at, place), most)).min().unwrap_or(most)
+    let lines = directions.iter().zip([at % mx, at / mx]).filter(|(direction, _)| direction.m > 1);
+    lines.fold(most, |least, (direction, place)| direction.run(marked, (at, place), least))
 }

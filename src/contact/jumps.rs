@@ -111,7 +111,7 @@ impl Line {
         }
     }
 
-    /// What is uncertain of an element, of a jump behind `place` with the third difference `found`; 0 where there is none.
+    /// The part of an element by which a jump behind `place` may be off, whose third difference is `found`; 0 if there is no jump.
     fn uncertain(&self, place: isize, found: f64, value: &impl Fn(usize) -> f64) -> f64 {
         let second = |k: isize| self.second(place + k, value);
         let change = |from: isize, to: isize| {

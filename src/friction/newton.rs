@@ -46,8 +46,8 @@ const DIRECTIONS: usize = 40;
 const KEPT: usize = 1 << 21;
 /// Steps then go this part of their way, every other time: two sets of slipping elements may follow each other for ever.
 const PART: f64 = 0.5;
-/// What a certificate is taken at leaves more than so many times the residual before it, so many times in a row: then the preconditioner is no help. Once
-/// may be what displacements that are not fresh hide.
+/// The preconditioner does not help where a certificate finds more than WORSE times the residual before it, TIMES_WORSE times in a row. A single time may
+/// come from displacements that were not fresh.
 const WORSE: f64 = 1.5;
 const TIMES_WORSE: u32 = 2;
 /// Steps without the residual falling to this part of its least.

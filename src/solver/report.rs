@@ -79,6 +79,11 @@ impl Report {
         Report { count: monitor.count, measures, tolerance, ..Report::default() }
     }
 
+    /// Products of the tangential problem; 0 without one.
+    pub(super) fn tangential_products(&self) -> f64 {
+        self.friction.map_or(0.0, |found| found.products)
+    }
+
     /// The larger one of the relative residuals of the normal and the tangential problem.
     pub(super) fn residual(&self) -> f64 {
         let normal = self.measures.certificate.residual;

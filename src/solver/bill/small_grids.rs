@@ -20,6 +20,8 @@ const PART: f64 = 0.05;
 const NEXT: f64 = 5.0;
 /// Elements of the first grid in its longer direction, at least.
 const FIRST: usize = 16;
+/// Elements that change sides at once: four where a scene has two planes of symmetry. Fewer show in no area.
+const JUMP: f64 = 4.0;
 /// Of the target, what residuals may hide.
 const TOLERANCE_PER_TARGET: f64 = 0.01;
 
@@ -59,7 +61,7 @@ pub struct Variant {
 
 /// The largest relative change of what is no pressure and no area; without any of these infinite.
 fn moved(wanted: &[Quantity], now: &[Value], before: &[Value]) -> f64 {
-    let is_smooth = |quantity: &Quantity| !quantity.is_local() && quantity.hidden_by_elements(1.0) == 0.0;
+    let is_smooth = |quantity: &Quantity| !quantity.is_local() && !quantity.is_area();
     let of = |(quantity, (now, before)): (&Quantity, (&Value, &Value))| match (*now, *before) {
         (Ok(now), Ok(before)) if is_smooth(quantity) && before != 0.0 => Some(((now - before) / before).abs()),
         _ => None,
@@ -157,11 +159,12 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
             variant.moved = moved(&self.wanted, &variant.values, &as_it_is);
             for (q, quantity) in self.wanted.iter().enumerate() {
                 if let (Ok(value), Some(Ok(before))) = (variant.values[q], as_it_is.get(q)) {
-                    // On its own grid an area is what it is.
-                    let by_elements =
-                        if doublings < 0 { quantity.hidden_by_elements(grid.element_area()) } else { 0.0 };
-                    let hidden = by_elements.min(MOVES * variant.moved * before.abs());
-                    variant.changes[q].add(doublings, value - before, hidden + found.residual * before.abs());
+                    // On the scene's own grid an area is what it is.
+                    let by_elements = match quantity.is_area() && doublings < 0 {
+                        true => (JUMP * grid.element_area()).min(MOVES * variant.moved * before.abs()),
+                        false => 0.0,
+                    };
+                    variant.changes[q].add(doublings, value - before, by_elements + found.residual * before.abs());
                 }
             }
             if k == 0 {

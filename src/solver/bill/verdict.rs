@@ -3,8 +3,8 @@
 use super::omission::Omission;
 use crate::solver::quantities::{Lack, Quantity, Sequence};
 
-/// Areas, and peaks that elements do not resolve, change by at most so many times what all else does, relatively: an area of Hertz by as much as the
-/// approach, of other smooth surfaces by up to twice that.
+/// An area, or a peak that elements do not resolve, changes by at most so many times the largest relative change of the other quantities. The area of a
+/// Hertz contact changes as the approach does, that of other smooth surfaces up to twice as much.
 pub const MOVES: f64 = 3.0;
 
 /// Single pressures are off by at most so many times the residual (docs/accuracy.md: a hundredth of the target for these).

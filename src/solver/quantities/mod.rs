@@ -89,12 +89,9 @@ impl Quantity {
         matches!(self, Quantity::Force | Quantity::MaxPressure | Quantity::ContactArea)
     }
 
-    /// What no grid shows of a change: areas jump by elements, by four at once where a scene has two planes of symmetry.
-    pub fn hidden_by_elements(self, element_area: f64) -> f64 {
-        match self {
-            Quantity::ContactArea | Quantity::StickArea => 4.0 * element_area,
-            _ => 0.0,
-        }
+    /// Whether it is a sum of whole elements.
+    pub fn is_area(self) -> bool {
+        matches!(self, Quantity::ContactArea | Quantity::StickArea)
     }
 
     /// Its error from several grids, where one grid has no estimate of it: of forces, pressures and areas only where nothing is estimated at all
@@ -113,7 +110,7 @@ impl Quantity {
         match self {
             Quantity::Force => 6,
             Quantity::MaxPressure => 12,
-            Quantity::ContactArea | Quantity::StickArea => 32,
+            area if area.is_area() => 32,
             _ => 16,
         }
     }

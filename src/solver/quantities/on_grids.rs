@@ -73,7 +73,7 @@ impl OnGrid {
             lacks_estimates: solver.lacks_estimates(),
             residual: report.residual(),
             seconds,
-            work_units: report.count.work_units + report.friction.map_or(0.0, |found| found.products),
+            work_units: report.count.work_units + report.tangential_products(),
             bytes: report.bytes,
         })
     }

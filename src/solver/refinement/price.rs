@@ -77,15 +77,14 @@ pub(super) fn seconds_on(samples: &[Sample], elements: f64) -> f64 {
         let by = growth(sample.elements, elements).max(if ratio > 1.0 { ratio.powf(of_solve) } else { 0.0 });
         sample.setup * ratio.powf(of_setup) + (sample.seconds - sample.setup) * by
     };
-    let of = |sample: &Sample| if sample.elements <= elements { carried(sample) } else { sample.seconds };
-    let has_coarser = samples.first().is_some_and(|first| first.elements <= elements);
-    let sees = |sample: &&Sample| has_coarser && sample.products >= least;
-    let seconds = samples.iter().filter(sees).map(of).fold(f64::INFINITY, f64::min);
-    // A grid coarser than all samples: the first of them, carried down. Infinite seconds would let the samples grow without end.
-    if seconds.is_finite() {
-        seconds
-    } else {
-        samples.first().map_or(f64::INFINITY, carried)
+    match samples.first() {
+        // A grid coarser than all samples: the first of them, carried down.
+        Some(first) if first.elements > elements => carried(first),
+        _ => {
+            let of = |sample: &Sample| if sample.elements <= elements { carried(sample) } else { sample.seconds };
+            let sees = |sample: &&Sample| sample.products >= least;
+            samples.iter().filter(sees).map(of).fold(f64::INFINITY, f64::min)
+        }
     }
 }
 

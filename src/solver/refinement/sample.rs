@@ -101,7 +101,7 @@ impl Sample {
         let Solved { solver, report, outlook, values } = solved;
         let seconds = began.elapsed().as_secs_f64();
         let (x, y) = across(solver.state(), solver.influence().repeats(solver.grid()));
-        let tangential = report.friction.map_or(0.0, |found| found.products);
+        let tangential = report.tangential_products();
         Ok(Taken::Sample(Box::new(Sample {
             doublings,
             elements: elements as f64,
