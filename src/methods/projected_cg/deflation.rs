@@ -31,8 +31,10 @@ pub(super) struct Deflation<T> {
     /// The sums of d^2, and of w^2 over the elements of d.
     length: f64,
     pub(super) size: f64,
-    /// Whether d is 1 on C (module `uniform`).
+    /// Whether d is of C, not of the last change (modules `uniform` and `flat_punch`).
     pub(super) is_uniform: bool,
+    /// Elements of C when d was made.
+    pub(super) elements: u64,
     /// Elements that left C, which are 0 in d but not in what w is of.
     pub(super) outside: Vec<(usize, f64)>,
 }

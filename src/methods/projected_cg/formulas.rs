@@ -253,6 +253,8 @@ impl Becomes<1, 3> for MovedU<'_> {
 #[derive(Clone, Copy)]
 pub(super) struct Entering<'a> {
     pub(super) approach: f64,
+    /// An exterior element enters where it penetrates by more, one at its limit where it is so far away.
+    pub(super) allowance: f64,
     /// Whether the contact area is given.
     pub(super) is_fixed: bool,
     /// Which are at their limit; none: no element is.
@@ -262,15 +264,16 @@ pub(super) struct Entering<'a> {
 impl Wanted<1> for Entering<'_> {
     #[inline(always)]
     fn of<S: Simd>(&self, first: usize, u: Vector<S>, [h]: [Vector<S>; 1]) -> Holds<S> {
-        let (e, zero) = (h - self.approach + u, u.all(0.0));
+        let (e, zero) = (h - (self.approach - self.allowance) + u, u.all(0.0));
         if self.is_fixed {
             return zero.is_below(zero);
         }
         if self.held.is_empty() {
             return e.is_below(zero);
         }
-        // 1 at the limit, -1 elsewhere.
-        let side = e.of_each(|lane| if self.held.get(first + lane) == Some(&true) { 1.0 } else { -1.0 });
-        zero.is_below(side * e)
+        let is_held = |lane| self.held.get(first + lane) == Some(&true);
+        let side = e.of_each(|lane| if is_held(lane) { 1.0 } else { -1.0 });
+        let twice = e.of_each(|lane| if is_held(lane) { 2.0 * self.allowance } else { 0.0 });
+        twice.is_below(side * e)
     }
 }

@@ -162,7 +162,11 @@ impl<T: Real> Iteration<T> {
             cycle = self.iterate(state, set, &mut search);
             let Some(cycle) = &mut cycle else { return End::Breakdown };
             if self.is_another_area(cycle, iterations) {
-                cycle.products += self.deflate::<S>(state, is_mean_free);
+                let products = self.deflate::<S>(state, is_mean_free);
+                cycle.products += products;
+                if products > 0 && self.is_plane_strain() {
+                    search.tq = 0.0;
+                }
             }
         }
     }
@@ -187,6 +191,7 @@ impl<T: Real> Iteration<T> {
         }
         self.least_energy::<S>(state, &mut update, None);
         self.fit_approach(state, &update);
+        self.choose_punches(state, is_mean_free);
         self.update_displacements::<S>(state, &update);
         self.segments.find(&state.contact);
         let products = products + self.deflate::<S>(state, is_mean_free) + self.restrict_deflation(state);

@@ -54,6 +54,9 @@ impl<T: Real> Iteration<T> {
             },
         );
         self.limits.residual = rr;
+        if self.is_plane_strain() {
+            self.find_allowance();
+        }
         if rr == 0.0 {
             0.0
         } else {
@@ -75,11 +78,15 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// For the extension: counts elements of C where C has changed.
-    fn count_near(&mut self, state: &State) {
-        let (Some(_), Some(extension)) = (&self.preconditioner, &mut self.extension) else { return };
+    /// For the preconditioner: counts elements of C and finds its pieces where C has changed.
+    pub(super) fn count_near(&mut self, state: &State) {
+        let Some(preconditioner) = &mut self.preconditioner else { return };
         let (segments, before) = (&self.segments, self.counted.replace(self.segments.version()));
-        if before != self.counted {
+        if before == self.counted {
+            return;
+        }
+        preconditioner.find_pieces(&state.contact);
+        if let Some(extension) = &mut self.extension {
             let has_changed = |elements| before.is_none_or(|before| segments.changed_since(before, elements));
             extension.count(&state.contact, |inside| inside, has_changed);
         }

@@ -7,6 +7,7 @@
 //! W_l, diagonal, picks the elements whose compliance is near c_l (see [`Layer::levels`](crate::influence::Layer::levels)), so that
 //! M is symmetric and positive definite. It is applied as E^T M E (module [`extension`](crate::methods::extension)), with an E for each level.
 
+use super::punches::Punches;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
@@ -31,6 +32,10 @@ pub struct Preconditioner<T: Real> {
     right: Vec<T>,
     term: Vec<T>,
     unit: Vec<T>,
+    /// Of a line in plane strain.
+    punches: Option<Punches>,
+    /// Whether they are in use.
+    has_punches: bool,
 }
 
 impl<T: Real> Preconditioner<T> {
@@ -52,12 +57,41 @@ impl<T: Real> Preconditioner<T> {
         }
         let mixed = if parts[0].weights.is_empty() { 0 } else { grid.len() };
         let memory = || zeros(mixed, "the preconditioner");
-        Ok(Some(Preconditioner { right: memory()?, term: memory()?, unit: memory()?, parts }))
+        let punches = if mixed == 0 { Punches::if_plane_strain(influence, factor, grid)? } else { None };
+        Ok(Some(Preconditioner {
+            right: memory()?,
+            term: memory()?,
+            unit: memory()?,
+            has_punches: punches.is_some(),
+            punches,
+            parts,
+        }))
     }
 
     /// An operator, the workspace of which products by M need.
     pub fn inverse(&self) -> &Operator<T> {
         &self.parts[0].inverse
+    }
+
+    /// Whether it moves the pieces of C as flat punches.
+    pub(super) fn has_punches(&self) -> bool {
+        self.has_punches
+    }
+
+    /// Moves the pieces of C as flat punches, on a line in plane strain, if `wanted`. Returns whether that is new.
+    pub(super) fn use_punches(&mut self, wanted: bool) -> bool {
+        let before = std::mem::replace(&mut self.has_punches, wanted && self.punches.is_some());
+        before != self.has_punches
+    }
+
+    /// Of a line in plane strain: the pieces of another C.
+    pub(super) fn find_pieces(&mut self, contact: &[bool]) {
+        self.punches.iter_mut().filter(|_| self.has_punches).for_each(|punches| punches.find(contact));
+    }
+
+    /// Of a line in plane strain: d becomes the pressure of a flat punch on the C that was found last, of mean 1 there.
+    pub(super) fn press_flat(&mut self, d: &mut [T]) {
+        self.punches.iter_mut().for_each(|punches| punches.press_flat(d));
     }
 
     /// z = E^T M E z, z being zero outside C. For directions without force: a mix is no multiple of 1 on a uniform
@@ -70,8 +104,13 @@ impl<T: Real> Preconditioner<T> {
         extension: &mut Option<Extension<T, 1>>,
         workspace: &mut Workspace<T>,
     ) {
-        let Preconditioner { parts, right, term, unit } = self;
+        let Preconditioner { parts, right, term, unit, punches, has_punches } = self;
         if let [Part { inverse, weights, compliance }] = &parts[..] {
+            if let Some(punches) = punches.as_mut().filter(|_| *has_punches) {
+                punches.take_means(z);
+                inverse.apply_in_place(z, workspace);
+                return punches.give_forces(z, without_force);
+            }
             if weights.is_empty() {
                 return extended(extension, z, *compliance, |z| inverse.apply_in_place(z, workspace));
             }
@@ -101,7 +140,7 @@ impl<T: Real> Preconditioner<T> {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let parts: usize = self.parts.iter().map(|part| part.inverse.bytes() + size_of_val(&part.weights[..])).sum();
-        parts + 3 * size_of_val(&self.right[..])
+        parts + 3 * size_of_val(&self.right[..]) + self.punches.as_ref().map_or(0, Punches::bytes)
     }
 }
 

@@ -12,11 +12,14 @@
 //! d = 1 on C;   w = A d: one product
 //! ```
 //!
+//! On a line in plane strain d is the pressure of a flat punch instead (module `flat_punch`), whatever the surface.
+//!
 //! d is made anew when a quarter of C has left it. Elements that left take corrections in each step, so that this costs less than it saves; and
 //! where C is found late, as around a spike on which the coarse grids see nothing else, d is first made then.
 //!
 //! Measured by approach: 180 planes of 80 x 80 with one spike, many, or plateaus, 5 to 31 iterations, 15 in the median, by force 5 to 29 and 14;
-//! without d most with spikes take more than 60. Lines of 9600 elements with two periods 94 to 300, where scaling left one of ten without an end.
+//! without d most with spikes take more than 60. Lines of 9600 elements with two periods, contact of more than
+//! half, 94 to 300, where scaling left one of ten without an end.
 
 use super::iteration::Cycle;
 use super::vectors::Iteration;
@@ -45,23 +48,31 @@ impl<T: Real> Iteration<T> {
         // Below a layer that differs between elements, few carry much for another reason, and 1 is no direction.
         let is_of_few =
             !is_nearly_full && !self.operator.has_diagonal() && few_carry_much(state, self.segments.count());
-        if !(is_nearly_full || is_of_few) || self.deflation.reserve(state.p.len()).is_err() {
+        let is_plane_strain = self.is_plane_strain();
+        if !(is_nearly_full || is_of_few || is_plane_strain) || self.deflation.reserve(state.p.len()).is_err() {
             return 0;
         }
         self.deflation.is_uniform = true;
         for (d, inside) in self.deflation.d.iter_mut().zip(&state.contact) {
             *d = T::of(f64::from(u8::from(*inside)));
         }
-        self.operator.apply(&self.deflation.d, &mut self.deflation.w, &mut self.workspace);
+        let products = if is_plane_strain {
+            self.press_flat(state)
+        } else {
+            self.operator.apply(&self.deflation.d, &mut self.deflation.w, &mut self.workspace);
+            1
+        };
+        self.deflation.elements = self.segments.count() as u64;
         self.deflation.measure();
-        1
+        products
     }
 
     /// Whether so much of C has changed that a direction on it is to be made anew, or for the first time.
     pub(super) fn is_another_area(&self, cycle: &Cycle, iterations: u64) -> bool {
         let count = self.segments.count() as u64;
         if self.deflation.is_there() {
-            self.deflation.is_uniform && ANOTHER * self.deflation.left() as u64 > count
+            let grown = if self.is_plane_strain() { count.saturating_sub(self.deflation.elements) } else { 0 };
+            self.deflation.is_uniform && ANOTHER * grown.max(self.deflation.left() as u64) > count
         } else {
             iterations.is_power_of_two() && ANOTHER * cycle.changes > count
         }

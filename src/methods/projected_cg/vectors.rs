@@ -73,7 +73,7 @@ pub struct Iteration<T: Real> {
     pub(super) operator: Operator<T>,
     pub(super) preconditioner: Option<Preconditioner<T>>,
     pub(super) extension: Option<Extension<T, 1>>,
-    /// The version of C whose elements the extension has counted.
+    /// The version of C that the extension and the preconditioner know.
     pub(super) counted: Option<u64>,
     pub(super) workspace: Workspace<T>,
     pub(super) t: Vec<T>,
@@ -84,6 +84,8 @@ pub struct Iteration<T: Real> {
     pub(super) truncation: Truncation,
     /// The direction that costs no product.
     pub(super) deflation: Deflation<T>,
+    /// On a line in plane strain: the penetration up to which elements stay outside.
+    pub(super) allowance: f64,
     /// By approach: whether p is scaled to the least energy after each step.
     pub(super) is_scaled: bool,
     /// With limits.
@@ -115,6 +117,7 @@ impl<T: Real> Iteration<T> {
             segments: Segments::new(grid, threads)?,
             truncation,
             deflation: Deflation::default(),
+            allowance: 0.0,
             is_scaled: false,
             limits: Beyond::default(),
             threads: threads.clone(),
@@ -131,7 +134,7 @@ impl<T: Real> Iteration<T> {
         self.threads = threads.for_a_pass(n);
         self.workspace = workspace(&self.operator, &self.preconditioner)?;
         self.extension = Extension::if_worthwhile(grid, &self.threads)?;
-        self.counted = None;
+        (self.counted, self.allowance) = (None, 0.0);
         self.segments = Segments::new(grid, &self.threads)?;
         for values in [&mut self.t, &mut self.q, &mut self.z] {
             asleep(values, n, T::nan(), DIRECTIONS, &self.threads)?;
@@ -157,6 +160,7 @@ impl<T: Real> Iteration<T> {
         // The next iteration takes over its memory.
         self.preconditioner = None;
         self.preconditioner = preconditioner(influence, factor, grid, self.operator.threads())?;
+        self.counted = None;
         if self.needs() != before {
             self.workspace = workspace(&self.operator, &self.preconditioner)?;
         }

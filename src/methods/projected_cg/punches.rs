@@ -1,0 +1,277 @@
+//! Lines in plane strain: the preconditioner's part for the forces of the pieces of C.
+//!
+//! M takes the residual as 0 outside C. For a residual that is uniform over many pieces of C this is far from the truth: its energy grows with the number of
+//! pieces, and conjugate gradients take some 100 iterations. In plane strain the force of a piece displaces all others, so that such residuals matter.
+//! Here M works on residuals without the mean of each piece, and finds pressures without a force on each piece. The forces follow
+//! from the means. With g_i the pressure of a flat punch on piece i, of the force 1:
+//!
+//! ```text
+//! Q = 1 - sum over pieces of 1_i g_i^T
+//! M' = Q^T M Q + sum over joints of (g_l - g_r)(g_l - g_r)^T/s + g g^T/(g, A g)
+//! ```
+//!
+//! A joint makes one punch of two neighbours l and r, `g = a g_l + (1 - a) g_r` with the least energy `(g, A g)`; then g_l - g_r, of the energy s, is
+//! conjugate to g. Pieces within 4 elements are joined, then within 8, and so on; g of the last joint is that of all of C. What is known of a
+//! punch is its centre and its energy: two of them displace each other as forces at their centres, and a piece of n elements displaces itself as a
+//! force n/4 elements away does (exact for a logarithm; Johnson, Contact Mechanics, section 2.7).
+//!
+//! Measured on rough lines of 9600 elements with two periods, Hurst exponents of 0.3 and 0.8, conjugate gradients on the C of the solution: 24 to
+//! 52 iterations, with M alone 32 to more than 400.
+
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::influence::Coefficients;
+use crate::memory::{reserve, zeros};
+use crate::operator::fft::Real;
+
+/// Elements of a line from which on it is used.
+const LEAST: usize = 64;
+/// Pieces of at most so many elements have the energy of their g; that of longer ones is read from the kernel.
+const SHORT: usize = 8;
+/// The least energy of a joint relative to that of one element. Coefficients of elastic bodies are above it.
+const LEAST_ENERGY: f64 = 1e-3;
+/// The forces are so many times those of the formula, since M' A has its least eigenvalues there. With 1, conjugate gradients take 1 to 1.25 times as many
+/// iterations; with 4 as many as with 2.
+const FORCES: f64 = 2.0;
+const WHAT: &str = "the pieces of a line";
+
+/// A piece of C, or several joined.
+#[derive(Clone, Copy, Default)]
+struct Punch {
+    /// In elements.
+    centre: f64,
+    energy: f64,
+}
+
+/// The joint of two punches.
+#[derive(Clone, Copy, Default)]
+struct Joint {
+    left: u32,
+    right: u32,
+    /// a.
+    part: f64,
+    /// s.
+    energy: f64,
+}
+
+/// The pieces of C on a line, and their joints.
+pub(super) struct Punches {
+    /// Coefficients at offsets 0, 1, ...
+    kernel: Vec<f64>,
+    /// The line's period in elements, if it has one.
+    period: Option<f64>,
+    /// First element and end of each piece.
+    pieces: Vec<(u32, u32)>,
+    /// g of the pieces, per element.
+    weights: Vec<f64>,
+    /// Of the pieces, then of the joints in their order.
+    punches: Vec<Punch>,
+    joints: Vec<Joint>,
+    /// Of each punch: the mean residual, then the force.
+    values: Vec<f64>,
+    /// Punches that are not joined yet.
+    open: Vec<u32>,
+}
+
+impl Punches {
+    /// On a line in plane strain; none elsewhere. The coefficients are taken times `factor`.
+    pub(super) fn if_plane_strain(influence: &Coefficients, factor: f64, grid: &Grid) -> Result<Option<Punches>> {
+        let n = grid.len();
+        if n != grid.mx.max(grid.my) || n < LEAST || influence.depends_on_place() {
+            return Ok(None);
+        }
+        let along = |k: usize| if grid.my == 1 { influence.at(k as i64, 0) } else { influence.at(0, k as i64) };
+        // A logarithm falls by the same over each doubling of the distance; coefficients of short elements fall by half of that.
+        let fall = |k: usize| along(k) - along(2 * k);
+        if !(fall(n / 8) > 0.5 * fall(1)) {
+            return Ok(None);
+        }
+        let (x, y) = influence.repeats(grid);
+        let mut kernel = zeros(n, WHAT)?;
+        kernel.iter_mut().enumerate().for_each(|(k, value)| *value = factor * along(k));
+        Punches::new(kernel, (if grid.my == 1 { x } else { y }).then_some(n as f64)).map(Some)
+    }
+
+    /// Of coefficients at offsets 0, 1, ... along the line, and its period in elements.
+    fn new(kernel: Vec<f64>, period: Option<f64>) -> Result<Punches> {
+        let n = kernel.len();
+        let mut punches = Punches {
+            kernel,
+            period,
+            pieces: Vec::new(),
+            weights: zeros(n, WHAT)?,
+            punches: Vec::new(),
+            joints: Vec::new(),
+            values: Vec::new(),
+            open: Vec::new(),
+        };
+        let most = n.div_ceil(2);
+        reserve(&mut punches.pieces, most, WHAT)?;
+        reserve(&mut punches.punches, 2 * most, WHAT)?;
+        reserve(&mut punches.joints, most, WHAT)?;
+        reserve(&mut punches.values, 2 * most, WHAT)?;
+        reserve(&mut punches.open, most, WHAT)?;
+        Ok(punches)
+    }
+
+    /// The pieces of C and their joints.
+    pub(super) fn find(&mut self, contact: &[bool]) {
+        self.find_pieces(contact);
+        self.punches.clear();
+        self.joints.clear();
+        self.open.clear();
+        for k in 0..self.pieces.len() {
+            let (start, end) = self.pieces[k];
+            self.set_weights(start as usize, end as usize);
+            let energy = self.energy(start as usize, end as usize);
+            self.open.push(self.punches.len() as u32);
+            self.punches.push(Punch { centre: 0.5 * f64::from(start + end), energy });
+        }
+        let mut within = 4.0;
+        while self.open.len() > 1 {
+            self.join_within(within);
+            within *= 2.0;
+        }
+        self.values.resize(self.punches.len(), 0.0);
+    }
+
+    fn find_pieces(&mut self, contact: &[bool]) {
+        self.pieces.clear();
+        let mut i = 0;
+        while i < contact.len() {
+            let length = contact[i..].iter().take_while(|inside| **inside).count();
+            if length > 0 {
+                self.pieces.push((i as u32, (i + length) as u32));
+            }
+            i += length + 1;
+        }
+    }
+
+    /// g on the elements of a piece: that of a flat punch at their middles, with the sum 1.
+    fn set_weights(&mut self, start: usize, end: usize) {
+        let weights = &mut self.weights[start..end];
+        let (mut sum, length) = (0.0, (end - start) as f64);
+        for (k, weight) in weights.iter_mut().enumerate() {
+            let x = k as f64 + 0.5;
+            *weight = 1.0 / (x * (length - x)).sqrt();
+            sum += *weight;
+        }
+        weights.iter_mut().for_each(|weight| *weight /= sum);
+    }
+
+    /// (g, A g) of a piece.
+    fn energy(&self, start: usize, end: usize) -> f64 {
+        let g = &self.weights[start..end];
+        if g.len() > SHORT {
+            return self.at(0.25 * g.len() as f64);
+        }
+        let displaced = |i: usize| -> f64 { g.iter().enumerate().map(|(j, g)| g * self.kernel[i.abs_diff(j)]).sum() };
+        g.iter().enumerate().map(|(i, g)| g * displaced(i)).sum()
+    }
+
+    /// The coefficient at a distance in elements.
+    fn at(&self, distance: f64) -> f64 {
+        let distance = self.period.map_or(distance, |period| distance.min(period - distance));
+        let k = (distance as usize).min(self.kernel.len() - 2);
+        self.kernel[k] + (distance - k as f64) * (self.kernel[k + 1] - self.kernel[k])
+    }
+
+    /// Joins neighbours whose centres are in the same window of so many elements.
+    fn join_within(&mut self, length: f64) {
+        let window = |punch: Punch| (punch.centre / length) as usize;
+        let mut kept = 0_usize;
+        for k in 0..self.open.len() {
+            let next = self.open[k];
+            let last = kept.checked_sub(1).map(|last| self.open[last]);
+            match last.filter(|last| window(self.punches[*last as usize]) == window(self.punches[next as usize])) {
+                Some(last) => self.open[kept - 1] = self.join(last, next),
+                None => {
+                    self.open[kept] = next;
+                    kept += 1;
+                }
+            }
+        }
+        self.open.truncate(kept);
+    }
+
+    /// The joint of two punches, with the least energy.
+    fn join(&mut self, left: u32, right: u32) -> u32 {
+        let (l, r) = (self.punches[left as usize], self.punches[right as usize]);
+        let mutual = self.at(r.centre - l.centre);
+        let energy = (l.energy + r.energy - 2.0 * mutual).max(LEAST_ENERGY * self.kernel[0].abs());
+        let part = ((r.energy - mutual) / energy).clamp(0.0, 1.0);
+        let rest = 1.0 - part;
+        let (centre, mixed) = (part * l.centre + rest * r.centre, 2.0 * part * rest * mutual);
+        let joined = part * part * l.energy + rest * rest * r.energy + mixed;
+        self.joints.push(Joint { left, right, part, energy });
+        self.punches.push(Punch { centre, energy: joined });
+        self.punches.len() as u32 - 1
+    }
+
+    /// z = Q r: takes the means of the pieces from r, which z holds.
+    pub(super) fn take_means<T: Real>(&mut self, z: &mut [T]) {
+        for (&(start, end), mean) in self.pieces.iter().zip(&mut self.values) {
+            let piece = start as usize..end as usize;
+            let (z, g) = (&mut z[piece.clone()], &self.weights[piece]);
+            *mean = z.iter().zip(g).map(|(z, g)| z.to_double() * g).sum();
+            z.iter_mut().for_each(|z| *z = *z - T::of(*mean));
+        }
+    }
+
+    /// z = Q^T z, and the pressures of the forces that belong to the means; `without_force`: their sum is 0.
+    pub(super) fn give_forces<T: Real>(&mut self, z: &mut [T], without_force: bool) {
+        self.find_forces(without_force);
+        for (&(start, end), force) in self.pieces.iter().zip(&self.values) {
+            let piece = start as usize..end as usize;
+            let (z, g) = (&mut z[piece.clone()], &self.weights[piece]);
+            let missing = FORCES * force - z.iter().map(|z| z.to_double()).sum::<f64>();
+            z.iter_mut().zip(g).for_each(|(z, g)| *z += T::of(missing * g));
+        }
+    }
+
+    /// Forces of the pieces from their means.
+    fn find_forces(&mut self, without_force: bool) {
+        let Punches { values, joints, punches, pieces, .. } = self;
+        for (k, Joint { left, right, part, .. }) in joints.iter().enumerate() {
+            values[pieces.len() + k] = part * values[*left as usize] + (1.0 - part) * values[*right as usize];
+        }
+        if let (Some(value), Some(all)) = (values.last_mut(), punches.last()) {
+            let stiffness = all.energy.max(LEAST_ENERGY * self.kernel[0].abs()).recip();
+            *value *= if without_force { 0.0 } else { stiffness };
+        }
+        self.distribute();
+    }
+
+    /// Forces of the pieces from that of the last joint, and the means.
+    fn distribute(&mut self) {
+        let Punches { values, joints, pieces, .. } = self;
+        for (k, Joint { left, right, part, energy }) in joints.iter().enumerate().rev() {
+            let (force, left, right) = (values[pieces.len() + k], *left as usize, *right as usize);
+            let moved = (values[left] - values[right]) / energy;
+            (values[left], values[right]) = (part * force + moved, (1.0 - part) * force - moved);
+        }
+    }
+
+    /// d becomes g of the last joint, of mean 1 on C; it is 0 elsewhere before.
+    pub(super) fn press_flat<T: Real>(&mut self, d: &mut [T]) {
+        self.values.fill(0.0);
+        if let Some(value) = self.values.last_mut() {
+            *value = self.pieces.iter().map(|(start, end)| f64::from(end - start)).sum();
+        }
+        self.distribute();
+        for (&(start, end), force) in self.pieces.iter().zip(&self.values) {
+            let piece = start as usize..end as usize;
+            d[piece.clone()].iter_mut().zip(&self.weights[piece]).for_each(|(d, g)| *d = T::of(force * g));
+        }
+    }
+
+    /// Bytes held.
+    pub(super) fn bytes(&self) -> usize {
+        let lists = size_of::<(u32, u32)>() + size_of::<u32>() + size_of::<Joint>() + 2 * size_of::<Punch>() + 16;
+        self.kernel.len() * 16 + self.pieces.capacity() * lists
+    }
+}
+
+#[cfg(test)]
+#[path = "../../../tests/unit/punches.rs"]
+mod tests;
