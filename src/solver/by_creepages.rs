@@ -108,15 +108,14 @@ impl Solver {
             let against = wanted.map(|force| -force / length(wanted) * length(along));
             let held = if is_far { against } else { along }.map(|c| part * c);
             let end = self.turns_with(turns, of, held, cycles, monitor)?;
-            match turns.friction.as_ref().and_then(place) {
-                Some(place) if end == Outcome::Converged => {
-                    // All of it is reached, or more.
-                    if place.missing() <= of.1.tolerance || dot(place.excess, wanted) >= 0.0 {
-                        return Ok((Some(place), end));
-                    }
-                }
-                _ if end != Outcome::Stagnated => return Ok((None, end)),
-                _ => {}
+            if end != Outcome::Converged && end != Outcome::Stagnated {
+                return Ok((None, end));
+            }
+            // All of it is reached, or more.
+            let reaches = |at: &Place| at.missing() <= of.1.tolerance || dot(at.excess, wanted) >= 0.0;
+            let found = turns.friction.as_ref().and_then(place).filter(|_| end == Outcome::Converged);
+            if let Some(place) = found.filter(reaches) {
+                return Ok((Some(place), end));
             }
         }
         Ok((None, Outcome::Converged))

@@ -132,7 +132,7 @@ impl Solver {
             // What a turn had not enough products for goes on in the next one.
             let is_done = turns.friction.as_ref().is_none_or(TangentialTurn::is_at_round_off);
             let goes_on = stop == Outcome::Converged && so_far == Outcome::IterationLimit && !is_done;
-            if holds && !goes_on || so_far != Outcome::Converged && !goes_on {
+            if !goes_on && (holds || so_far != Outcome::Converged) {
                 return Ok(so_far);
             }
             if solved == MOST_TURNS {
