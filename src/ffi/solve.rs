@@ -169,7 +169,13 @@ pub(super) fn run(
 pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Option<&State>) -> String {
     let (cycles, residual) = (report.count.cycles, report.measures.certificate.residual);
     let tangential = report.friction.map(|found| format!("; that of friction is {:e}", found.certificate.residual));
-    let mut message = format!("{} after {cycles} cycles; the residual is {residual:e}", why(stop));
+    let products = match report.friction {
+        Some(found) if stop == Outcome::IterationLimit => {
+            format!(" and {} products of friction", found.products.round())
+        }
+        _ => String::new(),
+    };
+    let mut message = format!("{} after {cycles} cycles{products}; the residual is {residual:e}", why(stop));
     message += tangential.as_deref().unwrap_or_default();
     if let Some(missing) = report.friction.map(|found| found.missing).filter(|missing| *missing > report.tolerance) {
         message += &format!("; the tangential force is off by {missing:e} of mu N");

@@ -44,6 +44,8 @@ pub enum Start<'a> {
     Before,
     /// The same step once more, with other pressures: from the last result. What was before the step stays.
     Again,
+    /// The same with creepages, times the length rolled, in the place of given forces: these are what is found.
+    Held(Vector),
     /// From the last result.
     Last,
     /// From tractions of the caller's, in x and y.
@@ -54,6 +56,11 @@ impl Start<'_> {
     /// Whether it may be worth less than the coarser grids.
     pub fn is_guess(&self) -> bool {
         matches!(self, Start::Last | Start::Given(_))
+    }
+
+    /// Whether it is the same step once more.
+    pub fn is_again(&self) -> bool {
+        matches!(self, Start::Again | Start::Held(_))
     }
 }
 

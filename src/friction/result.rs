@@ -2,7 +2,7 @@
 
 use super::certificate::is_on_circle;
 use super::levels::Level;
-use super::plane::against;
+use super::plane::{against, Vector};
 use super::solution::{resultant, Report, Solution, EXTERIOR, SLIP, STICK};
 use super::solver::Solver;
 use super::window::Window;
@@ -67,6 +67,16 @@ impl Solver {
 
     /// See [`Report::missing`].
     pub(super) fn missing(&self, friction: &Friction<'_>, report: &Report) -> f64 {
+        let [x, y] = self.excess(friction, report);
+        if report.carried > 0.0 {
+            x.hypot(y) / report.carried
+        } else {
+            0.0
+        }
+    }
+
+    /// By how much the forces of the last result, times the weights of creepages, exceed those that are given.
+    pub fn excess(&self, friction: &Friction<'_>, report: &Report) -> Vector {
         let carried = |k: usize| match friction.weights {
             None => report.force[k],
             Some(weights) => {
@@ -74,14 +84,9 @@ impl Solver {
                 in_blocks(terms) * self.grid.element_area()
             }
         };
-        let [x, y] = [0, 1].map(|k| match friction.prescribed[k] {
+        [0, 1].map(|k| match friction.prescribed[k] {
             Prescribed::Force(force) => carried(k) - force,
             Prescribed::Creepage(_) => 0.0,
-        });
-        if report.carried > 0.0 {
-            x.hypot(y) / report.carried
-        } else {
-            0.0
-        }
+        })
     }
 }

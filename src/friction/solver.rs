@@ -109,6 +109,11 @@ impl Solver {
         }
     }
 
+    /// The creepages of the last result where its forces were given, times the length rolled.
+    pub fn offset(&self) -> Vector {
+        self.offset
+    }
+
     /// There is no last result any more.
     pub fn forget(&mut self) {
         self.has_solution = false;
@@ -138,8 +143,11 @@ impl Solver {
         }
         self.make_room()?;
         self.set_layer(friction);
-        let forces = Forces::of(friction, &self.grid, bound)?;
-        if keeps && !matches!(request.start, Start::Again) {
+        let forces = match request.start {
+            Start::Held(_) => Forces::NONE,
+            _ => Forces::of(friction, &self.grid, bound)?,
+        };
+        if keeps && !request.start.is_again() {
             self.keep_tractions()?;
             self.keep_particles();
         }
@@ -199,7 +207,7 @@ impl Solver {
         self.set_up(window, rolling)?;
         let mut had_slip = self.begin(request, from_rest, window, bound)?;
         if request.friction.has_law() {
-            let nested = from_rest && !matches!(request.start, Start::Again);
+            let nested = from_rest && !request.start.is_again();
             let end = self.iterate_with_law(request, (window, forces, (nested, had_slip)), watch, report)?;
             [report.update, _] = self.scales.own_traction([self.levels[0].problem.update, 0.0]);
             return Ok(end);
@@ -216,7 +224,7 @@ impl Solver {
                 had_slip = self.begin(&Request { start: Start::Before, ..*request }, from_rest, window, bound)?;
             }
         }
-        let nested = from_rest && !is_worth_something && !matches!(request.start, Start::Again);
+        let nested = from_rest && !is_worth_something && !request.start.is_again();
         let end = match request.is_cancelled {
             true => Outcome::Cancelled,
             false => self.iterate(request, forces, (nested, had_slip), watch, report)?,

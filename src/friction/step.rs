@@ -9,7 +9,7 @@
 //! Where the curvature D dominates M is near the inverse of the system, and theta near 1. One product serves x0 and z1; flexible GMRES does the rest.
 //! Where x0 is short there is nothing to start with: all products are GMRES'.
 
-use super::certificate::scale;
+use super::certificate::{is_on_circle, scale};
 use super::forces::{sum_of, sum_of_both, sum_of_bounds, Forces};
 use super::plane::{add, plus, square, Vector};
 use super::problem::{Problem, State};
@@ -25,7 +25,8 @@ const LEAST_THETA: f64 = 0.8;
 const TURNED: f64 = 0.1;
 
 /// The way to the circles is short where it displaces less than this part of what the linear solve leaves, and is less than this part of the
-/// residual beside the bounds.
+/// residual beside the bounds; and where the slips of elements inside their circles are less than this part of what is projected. (Slips of 1e10 times
+/// what tractions displace: round-off is projected, and a way of 1e-6 of the bounds is the residual.)
 const SHORT: f64 = 0.1;
 
 /// The kind of a step.
@@ -69,11 +70,14 @@ fn to_the_circle(tangent: &Tangent, bound: &[f64], state: &State, i: usize) -> V
     }
 }
 
-/// x0, as a root of a sum of squares.
-fn way_to_the_circles(problem: &Problem, tangent: &Tangent, state: &State) -> f64 {
-    let squared = |i: usize| [square(to_the_circle(tangent, &problem.bound, state, i))];
-    let [sum] = fields::sum(problem.threads(), problem.bound.len(), squared);
-    sum.sqrt()
+/// x0, and the slips of elements that slip inside their circles, which certificates take for slips of what sticks: both as roots of sums of squares.
+fn way_to_the_circles(problem: &Problem, tangent: &Tangent, state: &State) -> [f64; 2] {
+    let squared = |i: usize| {
+        let is_inside = tangent.side[i] == Side::Slip && !is_on_circle(state.q[i], problem.bound[i]);
+        let slip = if is_inside { square(problem.slip_at(i, &state.u)) } else { 0.0 };
+        [square(to_the_circle(tangent, &problem.bound, state, i)), slip]
+    };
+    fields::sum(problem.threads(), problem.bound.len(), squared).map(f64::sqrt)
 }
 
 impl Start {
@@ -167,9 +171,10 @@ pub fn step(
     let target = effort.inner * projected.max(weight * square(missing)).sqrt();
     let mut system = TangentSystem::new(problem, tangent, forces, fields)?;
     let mut product = fields.take(n)?;
-    let way = way_to_the_circles(system.problem, tangent, state);
+    let [way, inside] = way_to_the_circles(system.problem, tangent, state);
     let all = effort.left * system.problem.rms_bound() * (system.problem.count() as f64).sqrt();
-    let is_short = compliance(system.problem) * way <= SHORT * target && way <= SHORT * all;
+    let is_short =
+        compliance(system.problem) * way <= SHORT * target && way <= SHORT * all && inside <= SHORT * projected.sqrt();
     let Start { gained, along, by } = if is_short {
         fields::fill(&threads, &mut product, |_| [0.0; 2]);
         Start::nothing(n, &threads, fields)?

@@ -135,12 +135,13 @@ impl Solver {
         let Level { problem, state, .. } = &mut self.levels[0];
         match request.start {
             Start::Before => {}
-            Start::Again | Start::Last => {
+            Start::Again | Start::Held(_) | Start::Last => {
                 window
                     .elements(&self.grid)
                     .for_each(|(k, i)| state.q[k] = self.solution.traction[i].map(|q| scales.traction(q)));
                 let found = |k: usize| matches!(request.friction.prescribed[k], Prescribed::Force(_));
-                problem.offset = scales.displacement([0, 1].map(|k| if found(k) { self.offset[k] } else { 0.0 }));
+                let offset = if let Start::Held(offset) = request.start { offset } else { self.offset };
+                problem.offset = scales.displacement([0, 1].map(|k| if found(k) { offset[k] } else { 0.0 }));
             }
             Start::Given([x, y]) => {
                 window.elements(&self.grid).for_each(|(k, i)| state.q[k] = in_range([x[i], y[i]], &scales));

@@ -3,7 +3,9 @@
 use super::unlike_bodies::UnlikeBodies;
 use super::{Options, Outcome};
 use crate::error::{Error, Result};
-use crate::friction::{Compliance, CrossTables, Last, Report, Request, Solution, Solver, Source, Start, Tangential};
+use crate::friction::{
+    Compliance, CrossTables, Last, Report, Request, Solution, Solver, Source, Start, Tangential, Vector,
+};
 use crate::grid::Grid;
 use crate::operator::Precision;
 use crate::progress::Monitor;
@@ -172,6 +174,11 @@ impl Tangent {
             }
             found => found.map(|(outcome, report)| (outcome, report, None)),
         }
+    }
+
+    /// By how much the last forces exceed those that are given, and the creepages found with them, times the length rolled.
+    pub fn excess(&self, friction: &Friction<'_>, found: &Report) -> (Vector, Vector) {
+        (self.solver.excess(friction, found), self.solver.offset())
     }
 
     /// Adds what the last tractions displace along the normal to an undeformed distance: nothing where bodies are alike.

@@ -5,8 +5,9 @@ use super::{Options, Outcome};
 use crate::contact::State;
 use crate::effects::Coupled;
 use crate::error::{Error, Result};
-use crate::friction::{Report, Start};
+use crate::friction::{Report, Start, Vector};
 use crate::progress::Monitor;
+use crate::scene::{Friction, Prescribed};
 
 /// Its solver, and the results so far.
 pub struct TangentialTurn<'a> {
@@ -16,28 +17,116 @@ pub struct TangentialTurn<'a> {
     pub turn: Turn<'a>,
     /// Of the last solve, with the products and the seconds of all.
     pub found: Option<Report>,
+    /// Creepages, times the length rolled, that turns are taken with in the place of forces that are given.
+    pub held: Option<Vector>,
+    /// Products of a turn at most.
+    pub most: usize,
+    /// Whether turns by force may be followed by turns with creepages.
+    pub by_force: bool,
     /// Why the last pressures do not carry the forces that are given.
     refusal: Option<Error>,
+}
+
+/// One turn makes this part of the products that are left; a few are made as they are. What is not solved then is gone on with by the next turn.
+const TURN: f64 = 0.6;
+const FEW: usize = 50;
+
+/// Residuals below that cannot be made much smaller.
+pub const ROUND_OFF: f64 = 1e-11;
+/// Turns by a force of more than that part of mu N make this part of the products: turns with creepages can follow.
+const NEAR: f64 = 0.8;
+const BY_FORCE: f64 = 0.6;
+/// Tolerances of turns with creepages, relative to the options': the forces of two of them are compared. Below the least is round-off.
+const SHARPER: f64 = 0.1;
+const LEAST_TOLERANCE: f64 = 1e-13;
+
+/// Options of turns with creepages.
+pub fn sharper(options: &Options) -> Options {
+    Options { tolerance: (SHARPER * options.tolerance).max(LEAST_TOLERANCE.min(options.tolerance)), ..*options }
 }
 
 impl<'a> TangentialTurn<'a> {
     /// Of which nothing is solved yet.
     pub fn new(tangent: &'a mut Tangent, turn: Turn<'a>) -> TangentialTurn<'a> {
-        TangentialTurn { tangent, turn, found: None, refusal: None }
+        let Friction { prescribed, .. } = turn.friction;
+        let by_force = prescribed.iter().any(|prescribed| matches!(prescribed, Prescribed::Force(_)));
+        // Below round-off there is nothing to be gained.
+        let is_attainable = turn.options.tolerance >= LEAST_TOLERANCE;
+        let by_force = by_force && is_attainable && !tangent.is_of_like_bodies() && !turn.friction.has_law();
+        TangentialTurn { tangent, turn, found: None, held: None, most: usize::MAX, by_force, refusal: None }
     }
 
     /// Iterations that the options leave.
     fn left(&self) -> usize {
         let done = self.found.as_ref().map_or(0, |found| found.products as usize);
-        self.turn.options.max_cycles.saturating_sub(done)
+        let share = if self.is_near() { BY_FORCE } else { 1.0 };
+        ((share * self.turn.options.max_cycles as f64).ceil() as usize).saturating_sub(done)
+    }
+
+    /// By how much the last forces exceed those that are given, and the creepages with them, times the length rolled.
+    pub fn excess(&self) -> Option<(Vector, Vector)> {
+        Some(self.tangent.excess(self.turn.friction, self.found.as_ref()?))
+    }
+
+    /// Whether turns are taken by a force that lets nearly all slip.
+    pub fn is_near(&self) -> bool {
+        let [x, y] = self.wanted();
+        self.by_force && self.found.as_ref().is_some_and(|found| x.hypot(y) > NEAR * found.carried)
+    }
+
+    /// Whether only round-off is left of the last solve.
+    pub fn is_at_round_off(&self) -> bool {
+        self.found.as_ref().is_some_and(|found| found.certificate.residual.max(found.missing) < ROUND_OFF)
+    }
+
+    /// Whether the last pressures do not carry the forces that are given.
+    pub fn is_refused(&self) -> bool {
+        self.refusal.is_some()
+    }
+
+    /// That is forgotten, and returned.
+    pub fn take_refusal(&mut self) -> Option<Error> {
+        self.refusal.take()
+    }
+
+    /// Refuses it so.
+    pub fn refuse_by(&mut self, refusal: Option<Error>) {
+        self.refusal = refusal;
+    }
+
+    /// The forces that are given, 0 where none is.
+    pub fn wanted(&self) -> Vector {
+        self.turn.friction.prescribed.map(|prescribed| match prescribed {
+            Prescribed::Force(force) => force,
+            Prescribed::Creepage(_) => 0.0,
+        })
+    }
+
+    /// The largest slip of the last result.
+    pub fn largest_slip(&self) -> f64 {
+        let slips = self.tangent.solution().into_iter().flat_map(|solution| &solution.slip);
+        slips.fold(0.0, |largest: f64, slip| largest.max(slip[0].hypot(slip[1])))
+    }
+
+    /// The forces that were found are those that are given, to the tolerance.
+    pub fn accept(&mut self, missing: f64) {
+        self.refusal = None;
+        self.found.iter_mut().for_each(|found| found.missing = missing);
     }
 }
 
 impl Coupled for TangentialTurn<'_> {
     fn solve(&mut self, stop: Outcome, state: &State, monitor: &mut Monitor<'_>) -> Result<Outcome> {
-        let rest = Options { max_cycles: self.left(), ..*self.turn.options };
+        let left = self.left();
+        let of_turn = if self.displaces() { (TURN * left as f64).ceil() as usize } else { left };
+        let rest = Options { max_cycles: of_turn.max(FEW).min(left).min(self.most), ..*self.turn.options };
+        let rest = if self.held.is_some() { sharper(&rest) } else { rest };
         let turn = Turn { options: &rest, ..self.turn };
-        let start = if self.found.is_some() { Start::Again } else { turn.start() };
+        let start = match self.held {
+            Some(held) => Start::Held(held),
+            None if self.found.is_some() => Start::Again,
+            None => turn.start(),
+        };
         let (outcome, mut found, refusal) = self.tangent.solve_after(stop, &turn, &state.p, start, monitor)?;
         // Those of a normal problem that is not solved refuse nothing.
         self.refusal = refusal.filter(|_| stop == Outcome::Converged);

@@ -43,13 +43,19 @@ impl<'a> Turns<'a> {
     }
 
     /// Solves those that displace, or those that do not, with the pressures of a normal problem that ended with `stop`. Returns the worst outcome.
-    fn solve(&mut self, displace: bool, stop: Outcome, state: &State, monitor: &mut Monitor<'_>) -> Result<Outcome> {
+    pub(super) fn solve(
+        &mut self,
+        displace: bool,
+        stop: Outcome,
+        state: &State,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Outcome> {
         self.that(displace).try_fold(stop, |so_far, coupled| Ok(worse(so_far, coupled.solve(stop, state, monitor)?)))
     }
 
     /// The undeformed distance with what is displaced, and by how much that has changed where pressures act (in C and at a limit): rms
     /// relative to `h - approach`. No change at all: none on the whole grid.
-    fn distance(&mut self, state: &State) -> (&[f64], Option<f64>) {
+    pub(super) fn distance(&mut self, state: &State) -> (&[f64], Option<f64>) {
         let (own, mut displaced) = (&self.distances.own, std::mem::take(&mut self.distances.displaced));
         displaced.copy_from_slice(own);
         self.that(true).for_each(|coupled| coupled.displace(&mut displaced));
@@ -100,22 +106,40 @@ impl Solver {
         monitor: &mut Monitor<'_>,
     ) -> Result<Outcome> {
         turns.distances.take(&self.state.h)?;
+        let mut cycles = 0;
+        stop = self.turn_about(turns, (scene, options), stop, &mut cycles, monitor)?;
+        self.meet_by_creepages(turns, (scene, options), stop, &mut cycles, monitor)
+    }
+
+    /// The same once, as friction says: by force, or with creepages that are held. `cycles`: of the normal problem so far.
+    pub(super) fn turn_about(
+        &mut self,
+        turns: &mut Turns<'_>,
+        (scene, options): (&Scene<'_>, &Options),
+        mut stop: Outcome,
+        cycles: &mut usize,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Outcome> {
         let again = Options { initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*options };
-        let (mut cycles, mut extrapolation) = (0, Extrapolation::new());
+        let mut extrapolation = Extrapolation::new();
         for solved in 0..=MOST_TURNS {
             let so_far = turns.solve(true, stop, &self.state, monitor)?;
             let (distance, change) = turns.distance(&self.state);
             // Without a displacement the normal problem stays solved.
             let Some(change) = change else { return Ok(so_far) };
             extrapolation.turn(&self.state.h, distance, change)?;
-            if self.holds_with((distance, change), (scene, options), monitor) || so_far != Outcome::Converged {
+            let holds = self.holds_with((distance, change), (scene, options), monitor);
+            // What a turn had not enough products for goes on in the next one.
+            let is_done = turns.friction.as_ref().is_none_or(TangentialTurn::is_at_round_off);
+            let goes_on = stop == Outcome::Converged && so_far == Outcome::IterationLimit && !is_done;
+            if !goes_on && (holds || so_far != Outcome::Converged) {
                 return Ok(so_far);
             }
             if solved == MOST_TURNS {
                 break;
             }
             // The work of all turns together is bounded by what the caller said.
-            let left = options.max_cycles.saturating_sub(cycles);
+            let left = options.max_cycles.saturating_sub(*cycles);
             if left == 0 || !turns.that(true).all(|coupled| coupled.has_work_left()) {
                 return Ok(Outcome::IterationLimit);
             }
@@ -127,7 +151,7 @@ impl Solver {
             let again = Options { max_cycles: left, ..again };
             (stop, _) = self.solve_normal(displaced, &again, None, monitor)?;
             stop = self.meet_compressed(displaced, &again, None, monitor, stop)?;
-            cycles += monitor.count.cycles as usize;
+            *cycles += monitor.count.cycles as usize;
         }
         log::info!("the normal problem and what displaces its distance do not agree after {MOST_TURNS} turns");
         Ok(Outcome::Stagnated)
@@ -135,7 +159,7 @@ impl Solver {
 
     /// Takes the normal certificate of the pressures with the distance that was made last, which changed it by `change`: that is reported.
     /// Says whether it holds.
-    fn holds_with(
+    pub(super) fn holds_with(
         &mut self,
         (distance, change): (&[f64], f64),
         (scene, options): (&Scene<'_>, &Options),

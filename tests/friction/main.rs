@@ -21,6 +21,7 @@ mod laws_that_rise;
 mod layer;
 mod linear_theory;
 mod long_elements;
+mod near_full_slip;
 mod onset_of_rolling;
 mod own_law;
 mod plastic;

@@ -1,0 +1,206 @@
+//! Unlike bodies by force, where turns by force do not come together or their last pressures do not carry the force: by turns with creepages that are held.
+//!
+//! With a creepage that is held tractions follow the pressures and the other way round, and both come together in a few turns, near full slip, too. The
+//! forces that are found so are compared with those that are given. The next creepage is that of a secant (Broyden 1965), within the two that are
+//! known to carry too much and too little where one force is given.
+//!
+//! *Forces beyond full slip.* Near full slip forces need not fall as creepages grow: what the pressures carry changes more. So creepages about
+//! those of turns by force are looked through for one that reaches the force. A force is refused where none of them does.
+
+use super::creepage_trials::{dot, length, Place, Trials};
+use super::tangential_turn::{sharper, TangentialTurn, ROUND_OFF};
+use super::turns::Turns;
+use super::{Options, Solver};
+use crate::contact::Survey;
+use crate::effects::Coefficient;
+use crate::error::Result;
+use crate::friction::Vector;
+use crate::progress::{Monitor, Outcome};
+use crate::scene::{Load, Prescribed, Scene};
+
+/// Where forces miss less than this part of mu N tractions by force are tried with the same pressures, by so many products.
+const CLOSE: f64 = 1e-4;
+const FINISH: usize = 30;
+/// Creepages at most.
+const MOST_TRIALS: u32 = 30;
+/// Creepages that are looked through, relative to those of turns by force; of two forces those from BEHIND on lie straight against them.
+const ABOUT: [f64; 14] = [1.0, 1.3, 2.0, 4.0, 16.0, 64.0, 256.0, 1e3, 1e4, 1e6, 0.75, 0.5, 0.25, 0.1];
+const BEHIND: f64 = 64.0;
+/// Where turns by force leave more than that part of mu N only the far one is: before full slip pressures carry at most some thousandths more.
+const BEYOND: f64 = 1e-2;
+const FAR: f64 = 1e6;
+
+/// The directions in which forces are given.
+fn given(scene: &Scene<'_>) -> [bool; 2] {
+    let prescribed = scene.friction.map_or([Prescribed::Creepage(0.0); 2], |friction| friction.prescribed);
+    prescribed.map(|prescribed| matches!(prescribed, Prescribed::Force(_)))
+}
+
+impl Solver {
+    /// Ends turns by force, which ended with `stop`, with creepages where that is to be tried.
+    pub(super) fn meet_by_creepages(
+        &mut self,
+        turns: &mut Turns<'_>,
+        (scene, options): (&Scene<'_>, &Options),
+        stop: Outcome,
+        cycles: &mut usize,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Outcome> {
+        let tried =
+            |friction: &&mut TangentialTurn<'_>| friction.is_near() || stop == Outcome::Stagnated && friction.by_force;
+        let Some(friction) = turns.friction.as_mut().filter(tried) else { return Ok(stop) };
+        let is_refused = friction.is_refused();
+        if stop == Outcome::Cancelled
+            || stop == Outcome::Converged && !is_refused
+            || is_refused && carries_always(scene)
+        {
+            return Ok(stop);
+        }
+        let Some(from) = place(friction) else { return Ok(stop) };
+        let normal = monitor.survey.as_ref().map_or(f64::INFINITY, Survey::relative_residual);
+        let is_done = stop == Outcome::IterationLimit || normal < ROUND_OFF;
+        if stop != Outcome::Converged && friction.is_at_round_off() && is_done {
+            return Ok(stop);
+        }
+        friction.by_force = false;
+        if stop == Outcome::Converged && from.missing() <= options.tolerance {
+            friction.accept(from.missing());
+            return Ok(stop);
+        }
+        log::info!("turns by force leave {:e} of mu N, turns with creepages go on", from.missing());
+        let mut refusal = friction.take_refusal();
+        let is_beyond = refusal.is_some() && from.missing() > BEYOND;
+        let places = if is_beyond { &[FAR] } else { &ABOUT[..] };
+        let (from, mut end) = self.look_about(turns, (scene, options), (from, places), cycles, monitor)?;
+        if is_beyond && from.is_none() && end != Outcome::Cancelled {
+            end = Outcome::Converged;
+        }
+        if let (Some(from), Outcome::Converged) = (from, end) {
+            refusal = None;
+            end = self.bracket(turns, (scene, options), from, cycles, monitor)?;
+        } else if end == Outcome::Converged && refusal.is_none() {
+            end = Outcome::Stagnated;
+        }
+        if let Some(friction) = turns.friction.as_mut().filter(|_| end == Outcome::Converged) {
+            friction.refuse_by(refusal);
+        }
+        if let Some(friction) = &mut turns.friction {
+            friction.held = None;
+        }
+        Ok(end)
+    }
+
+    /// A place that reaches the force, among those about the creepages of turns by force; none is found, or the search ends otherwise than by convergence.
+    fn look_about(
+        &mut self,
+        turns: &mut Turns<'_>,
+        of: (&Scene<'_>, &Options),
+        (from, parts): (Place, &[f64]),
+        cycles: &mut usize,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<(Option<Place>, Outcome)> {
+        let given = given(of.0);
+        let wanted = turns.friction.as_ref().map_or([0.0; 2], TangentialTurn::wanted);
+        for part in parts {
+            let along = [0, 1].map(|k| if given[k] { from.creepage[k] } else { 0.0 });
+            // Far away both forces lie against the creepages.
+            let is_far = *part >= BEHIND && given == [true; 2] && length(wanted) > 0.0;
+            let against = wanted.map(|force| -force / length(wanted) * length(along));
+            let held = if is_far { against } else { along }.map(|c| part * c);
+            let end = self.turns_with(turns, of, held, cycles, monitor)?;
+            if end != Outcome::Converged && end != Outcome::Stagnated {
+                return Ok((None, end));
+            }
+            // All of it is reached, or more.
+            let reaches = |at: &Place| at.missing() <= of.1.tolerance || dot(at.excess, wanted) >= 0.0;
+            let found = turns.friction.as_ref().and_then(place).filter(|_| end == Outcome::Converged);
+            if let Some(place) = found.filter(reaches) {
+                return Ok((Some(place), end));
+            }
+        }
+        Ok((None, Outcome::Converged))
+    }
+
+    /// The creepages of the force, from a place on.
+    fn bracket(
+        &mut self,
+        turns: &mut Turns<'_>,
+        of: (&Scene<'_>, &Options),
+        from: Place,
+        cycles: &mut usize,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Outcome> {
+        let (scene, options) = of;
+        let scale = turns.friction.as_ref().map_or(0.0, TangentialTurn::largest_slip);
+        let (mut found, mut trials) = (from, Trials::new(from, given(scene), scale));
+        for _ in 0..MOST_TRIALS {
+            if found.missing() <= options.tolerance {
+                return Ok(Outcome::Converged);
+            }
+            if found.missing() < CLOSE && self.finish(turns, (scene, options), monitor)? {
+                return Ok(Outcome::Converged);
+            }
+            let next = trials.next(found);
+            log::info!("creepages {:?} leave {:e} of mu N", found.creepage, found.missing());
+            if next == found.creepage {
+                break;
+            }
+            let end = self.turns_with(turns, of, next, cycles, monitor)?;
+            if end != Outcome::Converged {
+                return Ok(end);
+            }
+            found = match turns.friction.as_ref().and_then(place) {
+                Some(found) => found,
+                None => break,
+            };
+        }
+        Ok(Outcome::Stagnated)
+    }
+
+    /// Turns with creepages that are held.
+    fn turns_with(
+        &mut self,
+        turns: &mut Turns<'_>,
+        (scene, options): (&Scene<'_>, &Options),
+        creepage: Vector,
+        cycles: &mut usize,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Outcome> {
+        if let Some(friction) = &mut turns.friction {
+            friction.held = Some(creepage);
+        }
+        self.turn_about(turns, (scene, &sharper(options)), Outcome::Converged, cycles, monitor)
+    }
+
+    /// Tractions by force with the pressures that were found last: whether both problems are solved so.
+    fn finish(&mut self, turns: &mut Turns<'_>, of: (&Scene<'_>, &Options), monitor: &mut Monitor<'_>) -> Result<bool> {
+        if let Some(friction) = &mut turns.friction {
+            (friction.held, friction.most) = (None, FINISH);
+        }
+        let end = turns.solve(true, Outcome::Converged, &self.state, monitor)?;
+        let (distance, change) = turns.distance(&self.state);
+        let holds = change.is_none_or(|change| self.holds_with((distance, change), of, monitor));
+        let is_refused = turns.friction.as_mut().is_some_and(|friction| {
+            friction.most = usize::MAX;
+            friction.take_refusal().is_some()
+        });
+        Ok(end == Outcome::Converged && !is_refused && holds)
+    }
+}
+
+/// Whether the pressures carry the same whatever they are.
+fn carries_always(scene: &Scene<'_>) -> bool {
+    let is_uniform = |friction: &crate::scene::Friction<'_>| {
+        matches!(friction.coefficient, Coefficient::Uniform(_))
+            && friction.layer.is_none()
+            && friction.weights.is_none()
+    };
+    matches!(scene.load, Load::Force(_)) && scene.friction.as_ref().is_some_and(is_uniform)
+}
+
+/// Where the last solve ended.
+fn place(friction: &TangentialTurn<'_>) -> Option<Place> {
+    let carried = friction.found.as_ref()?.carried;
+    let (excess, creepage) = friction.excess()?;
+    (carried > 0.0).then(|| Place { creepage, excess: excess.map(|excess| excess / carried) })
+}

@@ -1,0 +1,135 @@
+//! The search for the creepages of forces that are given, by turns with creepages that are held.
+
+use crate::friction::Vector;
+
+/// A trial is good if it leaves at most this part of the least that was missing.
+const PROGRESS: f64 = 0.5;
+/// Of two forces: what misses more than so many times the least goes back halfway.
+const WORSE: f64 = 2.0;
+/// The first step along the creepages, relative to these, at most so many times what is missing; and no step is longer than so many times what there is.
+const FIRST: f64 = 0.1;
+const MOST_STEPS: f64 = 1e6;
+const LONGEST: f64 = 0.8;
+/// Creepages of less than this part of the slips are of their order.
+const SMALL: f64 = 1e-3;
+
+/// A place in the search.
+#[derive(Clone, Copy)]
+pub struct Place {
+    /// Times the length rolled.
+    pub creepage: Vector,
+    /// Of the forces, relative to mu N.
+    pub excess: Vector,
+}
+
+impl Place {
+    /// What is missing of the forces, or beyond them.
+    pub fn missing(&self) -> f64 {
+        length(self.excess)
+    }
+}
+
+/// The creepages to try.
+pub struct Trials {
+    given: [bool; 2],
+    /// How creepages go with what forces exceed by.
+    slope: [Vector; 2],
+    last: Option<Place>,
+    /// Of one force: the greatest creepage that carries more, the least that carries less.
+    between: [Option<f64>; 2],
+    best: Place,
+    bad: u32,
+    /// Creepages below that are small.
+    small: f64,
+}
+
+/// Of a vector.
+pub fn length(v: Vector) -> f64 {
+    v[0].hypot(v[1])
+}
+
+/// `v . w`.
+pub fn dot(v: Vector, w: Vector) -> f64 {
+    v[0] * w[0] + v[1] * w[1]
+}
+
+impl Trials {
+    /// From a place; slips are of the order of `scale`. Across the creepages forces turn with them; along them the first step is a short one.
+    pub fn new(from: Place, given: [bool; 2], scale: f64) -> Trials {
+        let only = |v: Vector| [0, 1].map(|k| if given[k] { v[k] } else { 0.0 });
+        let small = SMALL * scale;
+        let size = length(only(from.creepage)).max(small);
+        let along = match only(from.creepage) {
+            [0.0, 0.0] => only(from.excess),
+            along => along,
+        };
+        let along = along.map(|c| c / length(along));
+        let steps = (FIRST / dot(along, from.excess).abs()).clamp(1.0, MOST_STEPS);
+        let row = |k: usize| {
+            let of = |l: usize| f64::from(u8::from(k == l)) + (steps - 1.0) * along[k] * along[l];
+            only([size * of(0), size * of(1)])
+        };
+        let slope = [0, 1].map(|k| if given[k] { row(k) } else { [0.0; 2] });
+        Trials { given, slope, last: None, between: [None; 2], best: from, bad: 0, small }
+    }
+
+    /// The next creepages after a place.
+    pub fn next(&mut self, at: Place) -> Vector {
+        let Place { creepage, excess } = at;
+        if let Some(before) = self.last.replace(at) {
+            let change = |now: Vector, then: Vector| [0, 1].map(|k| now[k] - then[k]);
+            self.turn(change(creepage, before.creepage), change(excess, before.excess));
+        }
+        let missing = at.missing();
+        self.bad = if missing > PROGRESS * self.best.missing() { self.bad + 1 } else { 0 };
+        if missing < self.best.missing() {
+            self.best = at;
+        }
+        let by = self.slope.map(|row| dot(row, excess));
+        let shorter = (LONGEST * length(creepage).max(self.small) / length(by)).min(1.0);
+        let secant = [0, 1].map(|k| creepage[k] + shorter * by[k]);
+        match self.given {
+            [true, true] if missing > WORSE * self.best.missing() => {
+                [0, 1].map(|k| 0.5 * (creepage[k] + self.best.creepage[k]))
+            }
+            [true, true] => secant,
+            [in_x, _] => {
+                let k = usize::from(!in_x);
+                let mut next = creepage;
+                next[k] = self.between(creepage[k], excess[k], secant[k]);
+                next
+            }
+        }
+    }
+
+    /// The next creepage of one force: that of the secant, if it lies where the force is.
+    fn between(&mut self, at: f64, excess: f64, secant: f64) -> f64 {
+        self.between[usize::from(excess < 0.0)] = Some(at);
+        match self.between {
+            [Some(more), Some(less)] => {
+                let inside = (secant - more) * (less - secant) > 0.0;
+                if inside && self.bad % 3 != 2 {
+                    secant
+                } else {
+                    0.5 * (more + less)
+                }
+            }
+            // Forces fall as creepages grow.
+            _ if (secant - at) * excess > 0.0 => secant,
+            _ => at + (at - secant),
+        }
+    }
+
+    /// Broyden's update: a change of creepages by dc changed the forces by de.
+    fn turn(&mut self, dc: Vector, de: Vector) {
+        let by = self.slope.map(|row| dot(row, de));
+        let along = [0, 1].map(|k| dc[0] * self.slope[0][k] + dc[1] * self.slope[1][k]);
+        let size = dot(dc, by);
+        if size != 0.0 {
+            for (k, row) in self.slope.iter_mut().enumerate() {
+                let rest = (dc[k] + by[k]) / size;
+                *row = [0, 1].map(|l| row[l] - rest * along[l]);
+            }
+        }
+    }
+}
