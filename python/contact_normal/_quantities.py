@@ -25,7 +25,7 @@ QUANTITIES: dict[str, int] = {
     name[len(_PREFIX):].lower(): value for name, value in vars(_constants).items() if name.startswith(_PREFIX)
 }
 _NAMES = {number: name for name, number in QUANTITIES.items()}
-LACKS = ("", "no friction", "prescribed", "not with an effect of the scene", "no contact", "singular", "one grid", "unsolved")
+LACKS = ("", "no friction", "prescribed", "not with an effect of the scene", "no contact", "singular", "one grid", "unsolved", "not falling yet")
 
 
 def numbers(name: str, wanted: Sequence[str]) -> Any:

@@ -62,6 +62,7 @@ mod random_problems;
 mod refine;
 mod rough_surface;
 mod row_tables;
+mod slow_quantities;
 mod smoothers;
 mod special;
 mod stress_of_patches;

@@ -154,7 +154,8 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
             (variant.seconds, variant.bytes) = (found.seconds, found.bytes as f64);
             variant.has_peak = found.has_peak(&self.wanted);
             for (q, quantity) in self.wanted.iter().enumerate() {
-                variant.values[q] = verdict::without(*quantity, &variant.left_out, found.values[q]);
+                variant.values[q] =
+                    verdict::without(*quantity, &variant.left_out, found.values[q].map(|found| found.value));
             }
             variant.moved = moved(&self.wanted, &variant.values, &as_it_is);
             for (q, quantity) in self.wanted.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::{values, Lack, Quantity, Sequence};
+use super::{values, Course, Lack, Quantity, Value};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::scene::{scaled, Prescribed, Regridded, Scene};
@@ -34,7 +34,7 @@ pub struct OnGrid {
     /// How the solve ended.
     pub outcome: Outcome,
     /// The values of the quantities asked for, in their order.
-    pub values: Vec<std::result::Result<f64, Lack>>,
+    pub values: Vec<std::result::Result<Value, Lack>>,
     /// Errors from this grid alone.
     pub estimates: Vec<Option<f64>>,
     /// Whether nothing is estimated from one such grid: a limit is reached, or something attracts.
@@ -125,7 +125,7 @@ pub fn quantities(
     options.check_several_grids()?;
     scene.check(&crate::threads::Threads::One)?;
     let options = Options { estimates: true, ..*options };
-    let mut sequences = vec![Sequence::default(); wanted.len()];
+    let mut courses: Vec<Course> = wanted.iter().map(|quantity| Course::of(*quantity, scene)).collect();
     let (mut rows, mut worst, mut before) = (Vec::new(), Outcome::Converged, None);
     for doublings in -(coarser as i32)..=0 {
         let grid = scaled(&scene.grid, doublings)?;
@@ -144,26 +144,29 @@ pub fn quantities(
         if doublings == 0 {
             worst = found.outcome;
         }
-        for (k, quantity) in wanted.iter().enumerate() {
-            rows.push(row(*quantity, k, &found, doublings, &mut sequences[k]));
+        for (k, course) in courses.iter_mut().enumerate() {
+            rows.push(row(k, &found, doublings, course));
         }
     }
     Ok((worst, rows))
 }
 
-fn row(quantity: Quantity, k: usize, found: &OnGrid, doublings: i32, sequence: &mut Sequence) -> QuantityRow {
+fn row(k: usize, found: &OnGrid, doublings: i32, course: &mut Course) -> QuantityRow {
     let value = found.values[k].ok();
     if let Some(value) = value {
-        sequence.add(doublings, value, found.residual * value.abs());
+        course.add(doublings, value, found.residual);
     }
-    let falling = value.and_then(|_| quantity.error_of(sequence, found.lacks_estimates));
+    let falling = value.and_then(|_| course.falling(found.lacks_estimates));
     let of_sequence = falling.map(|falling| falling.now());
     let error = value.and(found.estimates[k]).or(of_sequence);
     let lack = match (found.values[k], error) {
         (Err(lack), _) => Some(lack),
         (Ok(_), Some(_)) => None,
-        (Ok(_), None) if sequence.len() < 2 + usize::from(found.lacks_estimates) => Some(Lack::OneGrid),
-        (Ok(_), None) => Some(Lack::Singular),
+        (Ok(_), None) if course.len() < 2 + usize::from(found.lacks_estimates) => Some(Lack::OneGrid),
+        // The report says so of one grid.
+        (Ok(_), None) if course.tells_singular() || course.quantity().has_estimate() => Some(Lack::Singular),
+        (Ok(_), None) => Some(Lack::Unsettled),
     };
+    let (quantity, value) = (course.quantity(), value.map(|value| value.value));
     QuantityRow { quantity, grid: found.grid, value, error, lack, seconds: found.seconds, work_units: found.work_units }
 }

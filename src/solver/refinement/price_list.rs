@@ -51,7 +51,7 @@ pub fn cost_of_accuracy(
         require_target(target)?;
     }
     quantity.check(scene)?;
-    let mut history = History::of(std::iter::once(quantity));
+    let mut history = History::of(std::iter::once(quantity), scene);
     let least = targets.iter().copied().fold(f64::INFINITY, f64::min);
     let tolerance = tolerance_for(quantity, least).clamp(1e-12, options.tolerance);
     let options = Options { tolerance, estimates: true, ..*options };
