@@ -55,7 +55,7 @@ class Quantity(NamedTuple):
         Of set-up and solve on this grid; products on it.
     lack : str
         "no friction", "prescribed", "not with an effect of the scene", "no contact", "singular" (it grows from grid to grid), "one grid",
-        "unsolved"; "": nothing is missing.
+        "unsolved", "not falling yet" (one more grid tells whether it converges); "": nothing is missing.
     """
 
     name: str

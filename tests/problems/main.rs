@@ -28,6 +28,7 @@ mod coated_period;
 mod coating;
 mod coating_on_rigid;
 mod coefficients;
+mod counted_costs;
 mod dashpots;
 mod effects;
 mod estimates;

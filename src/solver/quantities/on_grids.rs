@@ -41,10 +41,12 @@ pub struct OnGrid {
     pub lacks_estimates: bool,
     /// The relative residual.
     pub residual: f64,
-    /// Its cost.
+    /// Its cost, and the part of the set-up.
     pub seconds: f64,
-    /// Products, in work units.
+    pub setup_seconds: f64,
+    /// Products, in work units, and those of the tangential problem among them.
     pub work_units: f64,
+    pub tangential: f64,
     /// Bytes of its solver.
     pub bytes: u64,
 }
@@ -73,7 +75,9 @@ impl OnGrid {
             lacks_estimates: solver.lacks_estimates(),
             residual: report.residual(),
             seconds,
+            setup_seconds: report.setup_seconds,
             work_units: report.count.work_units + report.tangential_products(),
+            tangential: report.tangential_products(),
             bytes: report.bytes,
         })
     }
