@@ -30,6 +30,8 @@ SURFACES = ("superellipsoid", "finite roller", "two balls", "torus", "worn", "el
 #: Elements of the finest grid of a search, and of the truth.
 MOST, FINEST = 2**16, 2**18
 FIRST = 16
+#: Seconds below which the call from Python is no small part.
+SHORT = 1e-3
 
 
 class Tally:
@@ -159,10 +161,13 @@ def judge(judged: Judged, tally: Tally, what: str, say: bool) -> None:
         if row.error < 0:
             tally.unknown += 1
             continue
-        true = max(errors[k], 1e-6 * abs(row.value), 1e-300)
+        true = max(errors[k], 1e-6 * abs(row.value))
+        # A depth at the surface, on each grid.
+        if true == 0:
+            continue
         tally.estimates.append(row.error / true)
         if say and row.error < 0.3 * true:
-            print(f"  low: {what}, on {row.shape}: {row.error / true:.2f} of {true / abs(truth):.1e}")
+            print(f"  low: {what}, on {row.shape}: {row.error / true:.2f} of {true:.1e}")
     judge_prices(judged, tally, what, say)
 
 
@@ -183,7 +188,8 @@ def judge_prices(judged: Judged, tally: Tally, what: str, say: bool) -> None:
             least = min(least, time.perf_counter() - began)
         counted = found[0].work_units
         tally.products.append(row.work_units / counted)
-        tally.seconds.append(row.seconds_one_thread / least)
+        if least > SHORT:
+            tally.seconds.append(row.seconds_one_thread / least)
         if say and not 1 / PRODUCTS <= tally.products[-1] <= PRODUCTS:
             print(f"  products: {what}, {row.target:g} on {row.shape}: {row.work_units:.1f} predicted, {counted:.1f} counted")
 

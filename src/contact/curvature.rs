@@ -59,7 +59,7 @@ impl Curvature {
             let end = row.iter().rposition(|&inside| inside).map_or(0, |last| last + 1);
             let plain = !layered && iy > 0 && iy + 1 < my;
             // In each row other elements: whole rows would leave out rims that lie along them.
-            let shift = (iy.wrapping_mul(GOLDEN) & 0xffff) * stride >> 16;
+            let shift = ((iy.wrapping_mul(GOLDEN) & 0xffff) * stride) >> 16;
             let first = (first + shift).next_multiple_of(stride) - shift;
             for ix in (first..end).step_by(stride).filter(|&ix| row[ix]) {
                 if plain && ix > 0 && ix + 1 < mx {

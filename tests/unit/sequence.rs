@@ -54,9 +54,9 @@ fn what_jumps_is_covered_by_the_change_before() {
     assert_eq!(falling.hidden, 1e-6);
 }
 
-/// Input of steady rolling of unlike bodies: the last change is small, and of the other sign.
+/// Forces of steady rolling of unlike bodies, 1.83 in the end: the last change is small.
 #[test]
-fn a_small_change_of_the_other_sign_is_no_second_order_where_the_order_is_the_first() {
+fn a_small_change_is_no_second_order_where_the_order_is_the_first() {
     let mut sequence = Sequence::default();
     for (k, value) in [1.54, 1.67, 1.65].into_iter().enumerate() {
         sequence.add(k as i32, value, 0.0);

@@ -15,6 +15,9 @@ use crate::solver::falling::Falling;
 /// A ratio by which changes of a sum fall with a doubling at least, and those of a stress at the surface.
 pub const SUM: f64 = 2.0 / 3.0;
 const SURFACE: f64 = 0.75;
+/// Elements by which an area is off at least, over the root of their number: the outline of a circle of n elements has `3.5 sqrt(n)`, of which grids of twice
+/// the elements may agree by chance.
+const OUTLINE: f64 = 0.3;
 
 /// The value of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,11 +25,13 @@ pub struct Value {
     pub value: f64,
     /// Of a largest stress and of its depth: that stress.
     pub peak: Option<Peak>,
+    /// Of an area that is counted: its elements.
+    pub counted: f64,
 }
 
 impl From<f64> for Value {
     fn from(value: f64) -> Value {
-        Value { value, peak: None }
+        Value { value, peak: None, counted: 0.0 }
     }
 }
 
@@ -34,13 +39,15 @@ impl From<f64> for Value {
 #[derive(Clone, Debug)]
 pub struct Course {
     quantity: Quantity,
-    /// Steady rolling: in the step of the tractions it is of first order, and its changes have any sign.
+    /// Steady rolling: of first order in the step of the tractions, and irregular.
     rolls: bool,
     values: Sequence,
     /// Of a largest stress: itself, and the largest one at the surface.
     stress: Sequence,
     surface: Sequence,
     last: Option<Peak>,
+    /// What counting elements leaves uncertain of an area.
+    least: f64,
 }
 
 impl Course {
@@ -48,7 +55,7 @@ impl Course {
     pub fn of(quantity: Quantity, scene: &Scene<'_>) -> Course {
         let rolls = scene.friction.is_some_and(|friction| friction.motion == Motion::SteadyRolling);
         let [values, stress, surface] = std::array::from_fn(|_| Sequence::default());
-        Course { quantity, rolls: rolls && quantity.is_tangential(), values, stress, surface, last: None }
+        Course { quantity, rolls: rolls && quantity.is_tangential(), values, stress, surface, last: None, least: 0.0 }
     }
 
     /// Which.
@@ -60,6 +67,7 @@ impl Course {
     pub fn add(&mut self, doublings: i32, found: Value, residual: f64) {
         self.values.add(doublings, found.value, residual * found.value.abs());
         self.last = found.peak;
+        self.least = if found.counted > 0.0 { OUTLINE * found.value.abs() / found.counted.sqrt() } else { 0.0 };
         if let Some(peak) = found.peak {
             self.stress.add(doublings, peak.value, residual * peak.value);
             self.surface.add(doublings, peak.at_surface, residual * peak.at_surface);
@@ -85,8 +93,11 @@ impl Course {
             (Quantity::MaxPressure, _) => self.values.falling(),
             (Quantity::VonMisesDepth, Some(peak)) => self.of_depth(peak),
             (_, Some(peak)) => self.of_stress(peak),
-            _ if self.rolls => self.values.of_first_order().or(self.values.slow(SUM)),
-            _ => self.values.falling().or(self.values.slow(SUM)),
+            _ => {
+                let known = if self.rolls { self.values.of_first_order() } else { self.values.falling() };
+                let found = known.or(self.values.slow(SUM))?;
+                Some(Falling { by_two: found.by_two + (self.least - found.now()).max(0.0), ..found })
+            }
         }
     }
 

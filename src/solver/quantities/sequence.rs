@@ -72,16 +72,12 @@ impl Sequence {
         Some(Falling { by_two: found.max(promised), hidden, ..Falling::default() })
     }
 
-    /// The same of what is of first order and irregular: a small change is no second order where it has another sign than the one before.
+    /// The same of what is of first order and irregular: a small change is no second order.
     pub fn of_first_order(&self) -> Option<Falling> {
         let falling = self.falling()?;
-        match self.changes()[..] {
-            [.., before, newest] if before.by * newest.by < 0.0 => {
-                let by_two = newest.first_order().max(before.promises(&newest));
-                Some(Falling { by_two, by_four: 0.0, ..falling })
-            }
-            _ => Some(falling),
-        }
+        let [.., before, newest] = self.changes()[..] else { return Some(falling) };
+        let by_two = newest.first_order().max(before.promises(&newest));
+        Some(Falling { by_two, by_four: 0.0, ..falling })
     }
 
     /// The error of what converges for certain, whether its changes fall yet or not: the rest of a row of changes that fall as the last two do, by

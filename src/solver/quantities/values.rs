@@ -94,7 +94,11 @@ pub fn values(
         };
         if let Some(stress) = stress {
             let is_depth = *quantity == Quantity::VonMisesDepth;
-            let value = |peak: Peak| Value { value: if is_depth { peak.depth } else { peak.value }, peak: Some(peak) };
+            let value = |peak: Peak| Value {
+                value: if is_depth { peak.depth } else { peak.value },
+                peak: Some(peak),
+                counted: 0.0,
+            };
             values.push(peak(solver, scene, &mut stresses, stress)?.map(value));
             continue;
         }
@@ -106,7 +110,11 @@ pub fn values(
             Quantity::Stiffness => stiffness(solver)?,
             _ => tangential(solver, scene, report, *quantity),
         };
-        values.push(number.map(Value::from));
+        let counted = |value: f64| match quantity {
+            Quantity::StickArea => value / scene.grid.element_area(),
+            _ => 0.0,
+        };
+        values.push(number.map(|value| Value { counted: counted(value), ..Value::from(value) }));
     }
     Ok(values)
 }

@@ -10,6 +10,8 @@ use crate::solver::quantities::Quantity;
 
 /// Residuals with which a grid begins fall so much with a doubling: it starts from the grid before, whose error is of this order at the rim.
 const BEGINS: f64 = 0.35;
+/// By so much tangential products usually grow with a doubling.
+const MORE: f64 = 1.1;
 /// Elements across the contact on a sample that can be carried on.
 pub(super) const ACROSS: usize = 12;
 
@@ -96,7 +98,9 @@ fn to(samples: &[Sample], doublings: i32, tolerance: f64) -> (f64, f64) {
     let begins = tolerance / BEGINS.powi(finer);
     if let Some((part, tangential)) = sample.between(tolerance) {
         let before = at.checked_sub(1).and_then(|before| samples[before].between(tolerance));
-        let grows = before.map_or(1.0, |before| (tangential / before.1).clamp(1.0, MOST_MORE));
+        // What two samples show is irregular: half of it is believed, and half of what is usual.
+        let seen = before.map_or(MORE, |before| tangential / before.1);
+        let grows = (seen * MORE).sqrt().clamp(1.0, MOST_MORE);
         return (part, sample.normal(tolerance, begins) + tangential * grows.powi(finer));
     }
     let (seconds, products) = sample.to(tolerance, begins);

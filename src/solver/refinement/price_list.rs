@@ -25,6 +25,8 @@ const SECONDS: f64 = 0.035;
 const FIRST: usize = 32;
 /// Bound on the cost of a grid with four times as many elements, where samples have not shown it.
 const NEXT: f64 = 5.0;
+/// The same from below.
+const LEAST_NEXT: f64 = 2.0;
 
 /// On more elements contact that is still on fewer across is left alone, whatever is known.
 const UNRESOLVED: f64 = 2e5;
@@ -126,7 +128,8 @@ fn count(
     for row in rows.iter().filter(|row| row.obstacle.is_none()) {
         let (Some(grid), tolerance) = (row.grid, row.tolerance) else { continue };
         let doublings = (grid.mx.max(grid.my) as f64 / scene.grid.mx.max(scene.grid.my) as f64).log2().round() as i32;
-        let seconds = last.solve * NEXT.powi((doublings - last.doublings).max(0));
+        let finer = doublings - last.doublings;
+        let seconds = last.solve * if finer > 0 { NEXT } else { LEAST_NEXT }.powi(finer);
         let is_known = counted.iter().any(|one| one.is_of(&grid, tolerance));
         if is_known || began.elapsed().as_secs_f64() + seconds > FOR_COUNTS {
             continue;
