@@ -14,8 +14,8 @@ use crate::solver::quantities::{Lack, OnGrid, Quantity, Sequence};
 use crate::solver::{Options, Outcome, ProgressCallback};
 use crate::threads::Threads;
 
-/// Effort of a bill whatever the scene's is, a tenth of a second, and the part of the scene's, which grows with this power of its elements.
-const EFFORT: f64 = 1e8;
+/// Effort of a bill whatever the scene's is, less than a tenth of a second for what counts do not tell, and the part of the scene's, which grows with this power of its elements.
+const EFFORT: f64 = 7e7;
 const PART: f64 = 0.05;
 const GROWTH: f64 = 1.1;
 /// The next grid takes so many times as long, at most.
