@@ -57,9 +57,8 @@ pub fn cost_of_accuracy(
     quantity.check(scene)?;
     let mut history = History::of(std::iter::once(quantity), scene);
     let least = targets.iter().copied().fold(f64::INFINITY, f64::min);
-    let largest = targets.iter().copied().fold(0.0, f64::max);
     let tolerance = tolerance_for(quantity, least).clamp(1e-12, options.tolerance);
-    let loosest = tolerance_for(quantity, largest).max(tolerance);
+    let loosest = tolerance_for(quantity, targets.iter().copied().fold(0.0, f64::max)).max(tolerance);
     let options = Options { tolerance, estimates: true, ..*options };
     let one = Options { threads: 1, ..options };
     // The first time in a process this times the machine, which is none of the list's own time.
@@ -84,36 +83,52 @@ pub fn cost_of_accuracy(
         let had = list(&samples, 1.0).into_iter().filter(|price| price.obstacle.is_none());
         let dearest = had.map(|price| price.seconds).fold(0.0, f64::max);
         let most = SECONDS.max(PART * dearest);
-        if let Some((last, before)) = samples.split_last_mut() {
-            let dear = began.elapsed().as_secs_f64() + last.cost.seconds > most;
-            let loose = Options { tolerance: loosest, ..one };
-            let before = before.last().filter(|_| dear);
-            if last.loosen(scene, &loose, before, (&mut surface, &mut progress))? == Outcome::Cancelled {
-                return Ok((Outcome::Cancelled, list(&samples, 1.0)));
-            }
+        let (loose, left) = (Options { tolerance: loosest, ..one }, most - began.elapsed().as_secs_f64());
+        if loosen(scene, &loose, (&mut samples, left), (&mut surface, &mut progress))? == Outcome::Cancelled {
+            return Ok((Outcome::Cancelled, list(&samples, 1.0)));
         }
         // Where one grid has no estimate the error follows from three, and from four if two changes happen to be alike.
         let has_error = |last: &Sample| last.falling().is_some() || samples.len() > 3;
         let is_known = |last: &Sample| last.across >= ACROSS && has_error(last) || last.cost.elements > UNRESOLVED;
-        let known = samples.last().is_some_and(is_known);
         let over = began.elapsed().as_secs_f64() + next > most;
-        if known && over || scaled(&scene.grid, doublings).is_err() {
+        if samples.last().is_some_and(is_known) && over || scaled(&scene.grid, doublings).is_err() {
             break;
         }
     }
     let counted = count(scene, &one, (&samples, &list(&samples, 1.0)), (&mut surface, &mut progress))?;
     let Some(counted) = counted else { return Ok((Outcome::Cancelled, list(&samples, 1.0))) };
-    // How much faster more threads are.
-    let mut speed_up = 1.0;
-    if let Some(last) = samples.last().filter(|last| options.threads != 1 && last.cost.seconds < SECONDS) {
-        let callbacks = (&mut surface, &mut progress);
-        match Sample::take(scene, &options, (last.doublings, last.cost.seconds), quantity, callbacks)? {
-            Taken::Sample(again) => speed_up = (last.cost.seconds / again.cost.seconds).max(1.0),
-            Taken::Cancelled => return Ok((Outcome::Cancelled, list(&samples, 1.0))),
-            Taken::Unsolved => {}
-        }
-    }
-    Ok((Outcome::Converged, list_with(&samples, &counted, speed_up)))
+    Ok(match speed_up(scene, &options, (&samples, quantity), (&mut surface, &mut progress))? {
+        Some(speed_up) => (Outcome::Converged, list_with(&samples, &counted, speed_up)),
+        None => (Outcome::Cancelled, list(&samples, 1.0)),
+    })
+}
+
+/// Solves the last sample to a loose tolerance, if that takes no more than the seconds that are `left`; else it has what the sample before has.
+fn loosen(
+    scene: &Scene<'_>,
+    options: &Options,
+    (samples, left): (&mut [Sample], f64),
+    callbacks: Callbacks<'_, '_, '_>,
+) -> Result<Outcome> {
+    let Some((last, before)) = samples.split_last_mut() else { return Ok(Outcome::Converged) };
+    let before = before.last().filter(|_| last.cost.seconds > left);
+    last.loosen(scene, options, before, callbacks)
+}
+
+/// How much faster more threads are. None: cancelled by a callback.
+fn speed_up(
+    scene: &Scene<'_>,
+    options: &Options,
+    (samples, quantity): (&[Sample], Quantity),
+    callbacks: Callbacks<'_, '_, '_>,
+) -> Result<Option<f64>> {
+    let last = samples.last().filter(|last| options.threads != 1 && last.cost.seconds < SECONDS);
+    let Some(last) = last else { return Ok(Some(1.0)) };
+    Ok(match Sample::take(scene, options, (last.doublings, last.cost.seconds), quantity, callbacks)? {
+        Taken::Sample(again) => Some((last.cost.seconds / again.cost.seconds).max(1.0)),
+        Taken::Cancelled => None,
+        Taken::Unsolved => Some(1.0),
+    })
 }
 
 /// The products of the rows whose grids take little time: these are solved. None: cancelled by a callback.
