@@ -166,14 +166,16 @@ analysis: tools
 
 # What accuracy costs, and what the library says of it: all tables of docs/accuracy.md and docs/notes/2026-11-accuracy.md on the screen;
 # `make pictures` draws the first of them. ACCURACY="--quick", or some of estimates, searches, prices, study. Those by Python follow: searches on
-# fourteen kinds of surface, and what neglect_below leaves out.
+# fourteen kinds of surface and for all quantities, and what neglect_below leaves out.
 ACCURACY ?=
 accuracy: tools all build/tools/ready
 	$(CARGO) run --release --locked --example accuracy -- $(ACCURACY)
 	@test ! -e build/accuracy.csv || "$(find_python)" benches/accuracy.py build/accuracy.csv
 	@export CONTACT_NORMAL_LIBRARY=$(abspath $(LIBDIR_BUILT))/$(BUILT) PYTHONPATH=$(abspath python); \
 	$(TOOLS)/python benches/searches/run.py $(if $(findstring --quick,$(ACCURACY)),--seeds 1) && \
-	$(TOOLS)/python benches/searches/neglect.py $(if $(findstring --quick,$(ACCURACY)),--scenes 20)
+	$(TOOLS)/python benches/searches/quantities.py $(if $(findstring --quick,$(ACCURACY)),--seeds 1) && \
+	$(TOOLS)/python benches/searches/neglect.py $(if $(findstring --quick,$(ACCURACY)),--scenes 20) && \
+	$(TOOLS)/python benches/searches/neglect.py --elements 128 --scenes $(if $(findstring --quick,$(ACCURACY)),10,50)
 
 # An effect that is not named is free: instructions and bytes of a plain solve beside the recorded ones. RECORD="what came in" records them.
 RECORD ?=

@@ -698,6 +698,11 @@
 #define CONTACT_NORMAL_LACK_UNSOLVED 7
 
 /*
+ `lack`: there is no error, since the changes from grid to grid do not fall yet: one more grid tells whether the value converges.
+ */
+#define CONTACT_NORMAL_LACK_UNSETTLED 8
+
+/*
  `omitted`: nothing.
  */
 #define CONTACT_NORMAL_OMIT_NONE 0

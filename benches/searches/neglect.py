@@ -1,6 +1,6 @@
 """Judges `neglect_below` on random scenes: what is left out, and how far that is from a solve with every effect to a hundredth of the tolerance.
 
-    neglect.py [--scenes 200] [--first 0] [--list]
+    neglect.py [--scenes 200] [--first 0] [--elements 64] [--list]
 
 Sizes of the effects are such that about half of them matter. Prints one line for each target, and with --list what is beyond it.
 """
@@ -15,17 +15,16 @@ from surfaces import rough
 
 import contact_normal
 
-M = 64
 TARGETS = (1e-1, 1e-2, 1e-3)
 Random = np.random.Generator
 
 
-def surface(random: Random) -> np.ndarray:
+def surface(random: Random, m: int) -> np.ndarray:
     """A paraboloid, one with waves on it, or a rough plane, over a square of side 1."""
-    x = (np.arange(M) + 0.5) / M - 0.5
+    x = (np.arange(m) + 0.5) / m - 0.5
     kind = random.integers(3)
     if kind == 2:
-        z = 5e-3 * rough(random, M)
+        z = 5e-3 * rough(random, m)
         return z.max() - z
     a, b, (x0, y0) = random.uniform(0.5, 2), random.uniform(0.5, 4), random.uniform(-0.05, 0.05, 2)
     waves = 5e-3 * kind * np.cos(2 * np.pi * random.integers(2, 6) * x)[None, :]
@@ -38,11 +37,11 @@ def about(random: Random, low: float, high: float) -> float:
     return float(np.exp(random.uniform(np.log(low), np.log(high))))
 
 
-def scene(random: Random) -> tuple[np.ndarray, dict[str, Any]]:
+def scene(random: Random, m: int) -> tuple[np.ndarray, dict[str, Any]]:
     """A surface, and one to four effects beside friction or without it; G is 0.5 and E* about 0.7."""
-    h = surface(random)
+    h = surface(random, m)
     bodies: dict[str, Any] = {"shear_modulus": 0.5, "poisson_ratio": 0.3}
-    plain = contact_normal.solve(h, 1 / M, 1 / M, approach=about(random, 0.02, 0.1), **bodies)
+    plain = contact_normal.solve(h, 1 / m, 1 / m, approach=about(random, 0.02, 0.1), **bodies)
     load = {"force": plain.force} if random.integers(2) else {"approach": plain.approach}
     pressure, radius = plain.max_pressure, np.sqrt(plain.contact_area / np.pi)
     effects: dict[str, Any] = {}
@@ -79,15 +78,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scenes", type=int, default=200)
     parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--elements", type=int, default=64, help="of the scene in a direction")
     parser.add_argument("--list", action="store_true")
     given = parser.parse_args()
+    d = 1 / given.elements
     beyond = dict.fromkeys(TARGETS, 0)
     with_omissions, worst, refused = dict.fromkeys(TARGETS, 0), dict.fromkeys(TARGETS, 0.0), 0
     for seed in range(given.first, given.first + given.scenes):
-        h, whole = scene(np.random.default_rng([seed, 7]))
+        h, whole = scene(np.random.default_rng([seed, 7]), given.elements)
         try:
-            results = {target: contact_normal.solve(h, 1 / M, 1 / M, **whole, neglect_below=target) for target in TARGETS}
-            truth = numbers(contact_normal.solve(h, 1 / M, 1 / M, **whole, tolerance=1e-8), whole)
+            results = {target: contact_normal.solve(h, d, d, **whole, neglect_below=target) for target in TARGETS}
+            truth = numbers(contact_normal.solve(h, d, d, **whole, tolerance=1e-8), whole)
         except contact_normal.ContactNormalError as error:
             refused += 1
             if given.list:

@@ -25,7 +25,7 @@ QUANTITIES: dict[str, int] = {
     name[len(_PREFIX):].lower(): value for name, value in vars(_constants).items() if name.startswith(_PREFIX)
 }
 _NAMES = {number: name for name, number in QUANTITIES.items()}
-LACKS = ("", "no friction", "prescribed", "not with an effect of the scene", "no contact", "singular", "one grid", "unsolved")
+LACKS = ("", "no friction", "prescribed", "not with an effect of the scene", "no contact", "singular", "one grid", "unsolved", "not falling yet")
 
 
 def numbers(name: str, wanted: Sequence[str]) -> Any:
@@ -55,7 +55,7 @@ class Quantity(NamedTuple):
         Of set-up and solve on this grid; products on it.
     lack : str
         "no friction", "prescribed", "not with an effect of the scene", "no contact", "singular" (it grows from grid to grid), "one grid",
-        "unsolved"; "": nothing is missing.
+        "unsolved", "not falling yet" (one more grid tells whether it converges); "": nothing is missing.
     """
 
     name: str

@@ -27,6 +27,8 @@ pub const CONTACT_NORMAL_LACK_SINGULAR: i32 = 5;
 pub const CONTACT_NORMAL_LACK_ONE_GRID: i32 = 6;
 /// `lack`: a grid was not solved.
 pub const CONTACT_NORMAL_LACK_UNSOLVED: i32 = 7;
+/// `lack`: there is no error, since the changes from grid to grid do not fall yet: one more grid tells whether the value converges.
+pub const CONTACT_NORMAL_LACK_UNSETTLED: i32 = 8;
 
 /// A quantity on one grid.
 #[repr(C)]
@@ -65,6 +67,7 @@ pub(super) fn lack_of(lack: Option<Lack>) -> i32 {
         Some(Lack::Singular) => CONTACT_NORMAL_LACK_SINGULAR,
         Some(Lack::OneGrid) => CONTACT_NORMAL_LACK_ONE_GRID,
         Some(Lack::Unsolved) => CONTACT_NORMAL_LACK_UNSOLVED,
+        Some(Lack::Unsettled) => CONTACT_NORMAL_LACK_UNSETTLED,
     }
 }
 

@@ -1,4 +1,4 @@
-//! How the seconds of a product grow with the number of elements on this machine.
+//! How seconds grow with the number of elements on this machine.
 //!
 //! A product of n elements takes `n log n` operations, but its arrays leave one cache after the other, at other sizes on each machine. So a
 //! few products of half-spaces are timed, in a process once (by each of the threads that ask first), when seconds are first predicted: 32 x 32 to 256 x 256 elements, the least of some
@@ -22,6 +22,25 @@ const TIMES: usize = 4;
 const POWERS: (f64, f64) = (1.0, 1.2);
 /// The power where nothing could be timed (docs/performance.md).
 const GROWTH: f64 = 1.08;
+/// The least and the largest power of the number of elements with which seconds of set-ups grow.
+const SETUP_GROWTH: (f64, f64) = (0.1, 1.08);
+/// The largest power of the number of elements with which seconds of a solve grow.
+const MOST_GROWTH: f64 = 1.2;
+/// Products grow by so much at most with a doubling.
+pub const MOST_MORE: f64 = 1.25;
+/// Samples with less than this part of the products of the last do not count for seconds.
+const SEES: f64 = 0.5;
+
+/// What a solve cost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    pub elements: f64,
+    /// Of one thread, and the part of the set-up.
+    pub seconds: f64,
+    pub setup: f64,
+    /// In work units.
+    pub products: f64,
+}
 
 /// Elements, and the seconds of a product.
 type Timed = (f64, f64);
@@ -37,6 +56,58 @@ pub fn growth(from: f64, to: f64) -> f64 {
         }
     }
     growth_by(MACHINE.get().map_or(&[], Vec::as_slice), from, to)
+}
+
+/// Seconds of one thread on a grid of so many elements, from the sample that promises the least: others were disturbed, or so small
+/// that they are mostly overhead. Where products grow from sample to sample, each is carried on to as many. Samples with half the products of the last and fewer hardly see the contact. The set-up grows as the last two
+/// samples say (that of a period hardly does). No grid takes longer than a finer one. Without samples 0.
+pub fn seconds_on(samples: &[Cost], elements: f64) -> f64 {
+    let seen = match samples {
+        [.., before, last] => (last.setup / before.setup).ln() / (last.elements / before.elements).ln(),
+        _ => SETUP_GROWTH.1,
+    };
+    let of_setup = if seen.is_finite() { seen.clamp(SETUP_GROWTH.0, SETUP_GROWTH.1) } else { SETUP_GROWTH.1 };
+    let least = samples.last().map_or(0.0, |last| SEES * last.products);
+    let of_solve = grown(samples, least);
+    let more = more_products(samples, elements);
+    let carried = |sample: &Cost| {
+        let ratio = elements / sample.elements;
+        let products = if ratio > 1.0 { more / sample.products } else { 1.0 };
+        let by = growth(sample.elements, elements) * if products > 1.0 { products } else { 1.0 };
+        let by = by.max(if ratio > 1.0 { ratio.powf(of_solve) } else { 0.0 });
+        sample.setup * ratio.powf(of_setup) + (sample.seconds - sample.setup) * by
+    };
+    match samples.first() {
+        None => 0.0,
+        // A grid coarser than all samples: the first of them, carried down.
+        Some(first) if first.elements > elements => carried(first),
+        _ => {
+            let of = |sample: &Cost| if sample.elements <= elements { carried(sample) } else { sample.seconds };
+            let sees = |sample: &&Cost| sample.products >= least;
+            samples.iter().filter(sees).map(of).fold(f64::INFINITY, f64::min)
+        }
+    }
+}
+
+/// Products on more elements than the last sample has: from one to the next they may grow, with friction by a fifth with a doubling.
+fn more_products(samples: &[Cost], elements: f64) -> f64 {
+    match samples {
+        [.., before, last] => {
+            let doublings = |from: f64, to: f64| 0.5 * (to / from).log2();
+            let seen = (last.products / before.products).powf(1.0 / doublings(before.elements, last.elements));
+            let each = if seen.is_finite() { seen.clamp(1.0, MOST_MORE) } else { 1.0 };
+            last.products * each.powf(doublings(last.elements, elements).max(0.0))
+        }
+        _ => samples.last().map_or(0.0, |last| last.products),
+    }
+}
+
+/// The power of the number of elements with which the samples themselves grow, where each has `least` products: solves in turns, of unlike bodies, take more than
+/// their products. The least one from sample to sample, for others were disturbed.
+fn grown(samples: &[Cost], least: f64) -> f64 {
+    let of = |pair: &[Cost]| (pair[1].seconds / pair[0].seconds).ln() / (pair[1].elements / pair[0].elements).ln();
+    let seen = samples.windows(2).filter(|pair| pair[0].products >= least).map(of);
+    seen.reduce(f64::min).map_or(0.0, |seen| seen.clamp(0.0, MOST_GROWTH))
 }
 
 /// The seconds of a product on m x m elements.

@@ -68,7 +68,7 @@ pub fn solve_to_accuracy(
     check(scene, options, surface.is_some())?;
     let options = Options { tolerance: accuracy.tolerance(options.tolerance), estimates: true, ..*options };
     let (mut best, mut before): (Option<Solved>, Option<Past>) = (None, None);
-    let mut history = History::of(accuracy.wanted().map(|(quantity, _)| quantity));
+    let mut history = History::of(accuracy.wanted().map(|(quantity, _)| quantity), scene);
     let wanted = history.wanted();
     wanted.iter().try_for_each(|quantity| quantity.check(scene))?;
     let mut doublings = if history.needs_coarser() { first_of_history(&scene.grid) } else { 0 };

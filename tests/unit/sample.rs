@@ -6,7 +6,9 @@ fn sample(reached: Vec<Told>, tangential: f64) -> Sample {
     let &(_, seconds, products) = reached.last().expect("an iteration");
     Sample {
         doublings: 0,
-        elements: 256.0,
+        cost: Cost { elements: 256.0, seconds: seconds + 1.0, setup: 0.0, products: products + 1.0 + tangential },
+        solve: seconds + 1.0,
+        tolerance: 1e-6,
         across: 16,
         values: Values { of: vec![], residual: 0.0, lack_estimates: false },
         outlook: Outlook::default(),
@@ -14,21 +16,19 @@ fn sample(reached: Vec<Told>, tangential: f64) -> Sample {
         bytes: 0.0,
         time_error: 0.0,
         reached,
-        products: products + 1.0 + tangential,
         tangential,
-        seconds: seconds + 1.0,
-        setup: 0.0,
+        loose: None,
     }
 }
 
 #[test]
 fn what_is_done_beyond_a_residual_goes() {
     let plain = sample(vec![(1e-1, 1.0, 1.0), (1e-2, 2.0, 2.0), (1e-4, 3.0, 3.0), (1e-6, 4.0, 4.0)], 0.0);
-    assert_eq!(plain.to(1e-2), (3.0, 3.0));
-    assert_eq!(plain.to(1e-6), (5.0, 5.0));
+    assert_eq!(plain.to(1e-2, 1e-2), (3.0, 3.0));
+    assert_eq!(plain.to(1e-6, 1e-6), (5.0, 5.0));
     // A direct solve tells a residual at its end only.
     let direct = sample(vec![(0.0, 1.0, 1.0), (0.0, 2.0, 1.0), (0.0, 3.0, 2.0)], 0.0);
-    assert_eq!(direct.to(1e-2), (4.0, 3.0));
+    assert_eq!(direct.to(1e-2, 1e-2), (4.0, 3.0));
 }
 
 /// With friction the normal problem is solved to its end, then the tangential one, of which no products are told: four between its first iterations.
@@ -36,12 +36,30 @@ fn what_is_done_beyond_a_residual_goes() {
 fn both_problems_of_friction_end_there() {
     let reached = vec![(1e-2, 1.0, 1.0), (1e-4, 2.0, 2.0), (1e-1, 3.0, 2.0), (1e-3, 4.0, 2.0), (1e-5, 5.0, 2.0)];
     // 1 s and one product of the normal problem, 1 s and a third of 6 products of the tangential one.
-    assert_eq!(sample(reached, 6.0).to(1e-2), (6.0 - 1.0 - 1.0, 9.0 - 1.0 - 2.0));
+    assert_eq!(sample(reached, 6.0).to(1e-2, 1e-2), (6.0 - 1.0 - 1.0, 9.0 - 1.0 - 2.0));
 }
 
 /// Tangential problems that tell nothing, between two of the normal one: the time of them stays.
 #[test]
 fn turns_are_needed_by_any_residual() {
     let turns = sample(vec![(1e-4, 1.0, 1.0), (1e-6, 2.0, 2.0), (1e-5, 12.0, 3.0), (1e-7, 13.0, 4.0)], 0.0);
-    assert_eq!(turns.to(1e-2), (14.0 - 2.0, 5.0 - 2.0));
+    assert_eq!(turns.to(1e-2, 1e-2), (14.0 - 2.0, 5.0 - 2.0));
+}
+
+/// Half of the seconds and a third of 9 tangential products to 1e-2 for 1e-6: at 1e-4, half way by the logarithm, 3/4 and 2/3.
+#[test]
+fn between_two_tolerances_costs_are_those_of_the_logarithm() {
+    let mut sample = sample(vec![(1e-6, 1.0, 1.0)], 9.0);
+    assert_eq!(sample.between(1e-4), None);
+    sample.loose = Some(Loose { tolerance: 1e-2, seconds: 0.5, tangential: 1.0 / 3.0, normal: 0.5 });
+    let near = |found: Option<(f64, f64)>, (part, products): (f64, f64)| {
+        let (a, b) = found.expect("known");
+        assert!((a - part).abs() < 1e-12 && (b - products).abs() < 1e-12, "{a} {b}");
+    };
+    near(sample.between(1e-4), (0.75, 6.0));
+    // Beyond both ends what is there.
+    near(sample.between(1e-8), (1.0, 9.0));
+    near(sample.between(1e-1), (0.5, 3.0));
+    // Two products of the normal problem to 1e-6; half of what is told to 1e-2.
+    assert_eq!((sample.normal(1e-6, 1e-6), sample.normal(1e-2, 1e-2)), (2.0, 1.0));
 }

@@ -53,3 +53,32 @@ fn what_jumps_is_covered_by_the_change_before() {
     assert!(falling.now() >= 0.03, "{falling:?}");
     assert_eq!(falling.hidden, 1e-6);
 }
+
+/// Forces of steady rolling of unlike bodies, 1.83 in the end: the last change is small.
+#[test]
+fn a_small_change_is_no_second_order_where_the_order_is_the_first() {
+    let mut sequence = Sequence::default();
+    for (k, value) in [1.54, 1.67, 1.65].into_iter().enumerate() {
+        sequence.add(k as i32, value, 0.0);
+    }
+    // Half of the change before.
+    let first = sequence.of_first_order().expect("an error");
+    assert!((first.now() - 0.065).abs() < 1e-12 && first.by_four == 0.0, "{first:?}");
+    assert!(sequence.falling().expect("an error").now() < 0.03);
+}
+
+/// The root of the elements: the rest is `h^.5`, changes fall by the root of 2, which is less than 0.75 says.
+#[test]
+fn what_converges_slowly_is_covered() {
+    for last in [1, 2, 5] {
+        let sequence = of(&(0..=last).collect::<Vec<_>>(), |h| 1.0 - h.sqrt());
+        let (falling, truth) = (sequence.slow(0.75).expect("an error"), 0.5f64.powi(last).sqrt());
+        let least = if last == 1 { 0.4 } else { 0.99 };
+        assert!((least * truth..1.01 * truth).contains(&falling.now()), "{last}: {falling:?} of {truth}");
+    }
+    // Changes that do not fall: three times the last.
+    let grows = of(&[0, 1, 2], |h| -h.log2());
+    assert!(grows.falling().is_none());
+    assert!((grows.slow(0.75).expect("an error").now() - 3.0).abs() < 1e-12);
+    assert!(of(&[0], |h| h).slow(0.75).is_none());
+}

@@ -5,7 +5,7 @@
 pub struct BillOptions {
     /// The accuracy asked for: changes that are smaller, relative to the quantity, are negligible.
     pub target: f64,
-    /// Seconds at most; 0: 5 % of what the scene is predicted to take, or a tenth of a second.
+    /// Seconds at most; 0: about 5 % of what the scene takes, or a tenth of a second, by what is counted: no clock chooses the grids.
     pub max_seconds: f64,
     /// Whether pairs are left out, too.
     pub pairs: bool,

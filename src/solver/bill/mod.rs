@@ -4,6 +4,7 @@
 //! tells the error of the change (module `quantities`). Pairs are left out, too: leaving out two is not the sum of leaving out each.
 
 mod asked;
+mod effort;
 mod neglect;
 mod omission;
 mod small_grids;

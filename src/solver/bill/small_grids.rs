@@ -3,19 +3,21 @@
 use std::time::Instant;
 
 use super::asked::BillOptions;
+use super::effort::effort;
 use super::omission::Omission;
 use super::verdict::{self, BillRow, Measured, MOVES};
 use crate::effects;
 use crate::error::{require, Error, Result};
 use crate::scene::{scaled, Regridded, Scene};
-use crate::solver::machine::growth;
+use crate::solver::machine::{seconds_on, Cost};
 use crate::solver::quantities::{Lack, OnGrid, Quantity, Sequence};
 use crate::solver::{Options, Outcome, ProgressCallback};
 use crate::threads::Threads;
 
-/// Seconds that a bill may take whatever the scene does, and the part of the scene's.
-const SECONDS: f64 = 0.1;
+/// Effort of a bill whatever the scene's is, less than a tenth of a second for what counts do not tell, and the part of the scene's, which grows with this power of its elements.
+const EFFORT: f64 = 7e7;
 const PART: f64 = 0.05;
+const GROWTH: f64 = 1.1;
 /// The next grid takes so many times as long, at most.
 const NEXT: f64 = 5.0;
 /// Elements of the first grid in its longer direction, at least.
@@ -54,9 +56,11 @@ pub struct Variant {
     has_peak: bool,
     /// The largest relative change on it of all but pressures and areas.
     moved: f64,
+    /// On each grid.
+    costs: Vec<Cost>,
     /// On the finest grid so far.
-    pub seconds: f64,
-    pub bytes: f64,
+    effort: f64,
+    bytes: f64,
 }
 
 /// The largest relative change of what is no pressure and no area; without any of these infinite.
@@ -98,7 +102,8 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
             changes: vec![Sequence::default(); wanted.len()],
             has_peak: true,
             moved: 0.0,
-            seconds: 0.0,
+            costs: vec![],
+            effort: 0.0,
             bytes: 0.0,
         };
         let variants = std::iter::once(vec![]).chain(left_out).map(of).collect();
@@ -114,16 +119,22 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
         let elements = self.scene.grid.mx.max(self.scene.grid.my);
         // At least two grids: of one alone nothing is known of errors.
         let first = -((elements / FIRST).max(2).ilog2() as i32);
+        let mut spent = 0.0;
         for doublings in first..=0 {
             let entered = Instant::now();
             if !self.on(doublings, &mut progress)? {
                 return Ok(Outcome::Cancelled);
             }
-            let next = entered.elapsed().as_secs_f64() * NEXT;
-            let whole = self.variants[0].seconds * self.growth();
-            let most = if self.asked.max_seconds > 0.0 { self.asked.max_seconds } else { SECONDS.max(PART * whole) };
-            let known = doublings > first;
-            if known && began.elapsed().as_secs_f64() + next > most {
+            let effort: f64 = self.variants.iter().map(|variant| variant.effort).sum();
+            spent += effort;
+            let over = if self.asked.max_seconds > 0.0 {
+                let next = entered.elapsed().as_secs_f64() * NEXT;
+                began.elapsed().as_secs_f64() + next > self.asked.max_seconds
+            } else {
+                let whole = self.variants[0].effort * self.ratio.powf(GROWTH);
+                spent + NEXT * effort > EFFORT.max(PART * whole)
+            };
+            if doublings > first && over {
                 break;
             }
         }
@@ -151,10 +162,13 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
             if found.outcome == Outcome::Cancelled {
                 return Ok(false);
             }
-            (variant.seconds, variant.bytes) = (found.seconds, found.bytes as f64);
+            let (seconds, setup) = (found.seconds, found.setup_seconds);
+            variant.costs.push(Cost { elements: grid.len() as f64, seconds, setup, products: found.work_units });
+            (variant.effort, variant.bytes) = (effort(&left, &found, &self.wanted), found.bytes as f64);
             variant.has_peak = found.has_peak(&self.wanted);
             for (q, quantity) in self.wanted.iter().enumerate() {
-                variant.values[q] = verdict::without(*quantity, &variant.left_out, found.values[q]);
+                variant.values[q] =
+                    verdict::without(*quantity, &variant.left_out, found.values[q].map(|found| found.value));
             }
             variant.moved = moved(&self.wanted, &variant.values, &as_it_is);
             for (q, quantity) in self.wanted.iter().enumerate() {
@@ -174,17 +188,13 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
         Ok(true)
     }
 
-    /// Seconds of the scene's grid over those of the last grid.
-    fn growth(&self) -> f64 {
-        let elements = self.scene.grid.len() as f64;
-        growth(elements / self.ratio, elements)
-    }
-
     /// The rows.
     pub fn rows(&self) -> Vec<BillRow> {
         let Some((whole, variants)) = self.variants.split_first() else { return vec![] };
-        let scale = self.growth();
+        let seconds = |variant: &Variant| seconds_on(&variant.costs, self.scene.grid.len() as f64);
+        let as_it_is = seconds(whole);
         let of = |variant: &Variant| -> Vec<BillRow> {
+            let without = seconds(variant);
             let row = |(q, quantity): (usize, &Quantity)| {
                 let measured = Measured {
                     quantity: *quantity,
@@ -195,7 +205,7 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
                     has_peaks: whole.has_peak && variant.has_peak,
                     moved: variant.moved,
                 };
-                let costs = [whole.seconds * scale, variant.seconds * scale];
+                let costs = [as_it_is, without];
                 let bytes = [whole.bytes * self.ratio, variant.bytes * self.ratio];
                 measured.row(&variant.left_out, self.asked.target, costs, bytes)
             };

@@ -1,7 +1,7 @@
 //! One row of the bill: a change, its error, and what follows from both.
 
 use super::omission::Omission;
-use crate::solver::quantities::{Lack, Quantity, Sequence};
+use crate::solver::quantities::{Lack, Quantity, Sequence, SUM};
 
 /// An area, or a peak that elements do not resolve, changes by at most so many times the largest relative change of the other quantities. The area of a
 /// Hertz contact changes as the approach does, that of other smooth surfaces up to twice as much.
@@ -63,7 +63,9 @@ pub struct Measured<'a> {
 impl Measured<'_> {
     /// How far the change may be off on the scene's grid. A peak that elements do not resolve moves as the rest does, but for a limit that peaks alone reach.
     fn error(&self, left_out: &[Omission]) -> Option<f64> {
-        let falling = self.change.falling().map(|falling| falling.now());
+        // A change of a sum converges, as the sum does.
+        let slow = if self.quantity.is_local() { None } else { self.change.slow(SUM) };
+        let falling = self.change.falling().or(slow).map(|falling| falling.now());
         match self.quantity {
             // Whatever the changes before: it is that of the scene's grid.
             _ if self.on_own_grid => falling.or(self.change.hidden().map(|hidden| OF_RESIDUAL * hidden)),
@@ -87,7 +89,7 @@ impl Measured<'_> {
             (Err(lack), ..) | (_, Err(lack), _) => Some(lack),
             (.., Some(_)) => None,
             _ if self.change.len() < 2 => Some(Lack::OneGrid),
-            _ => Some(Lack::Singular),
+            _ => Some(Lack::Unsettled),
         };
         BillRow {
             omission: left_out[0],

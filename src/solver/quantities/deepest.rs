@@ -25,16 +25,17 @@ const NEAR: f64 = 1e-3;
 pub struct Peak {
     pub value: f64,
     pub depth: f64,
+    /// The largest value at the surface; 0: not known.
+    pub at_surface: f64,
+    /// Whether it lies within an element of the surface: single pressures make it.
+    pub is_near: bool,
 }
 
 impl Peak {
     /// The larger of both.
     pub fn or(self, other: Peak) -> Peak {
-        if other.value > self.value {
-            other
-        } else {
-            self
-        }
+        let larger = if other.value > self.value { other } else { self };
+        Peak { at_surface: self.at_surface.max(other.at_surface), ..larger }
     }
 }
 
@@ -129,7 +130,9 @@ impl<'a> Surface<'a> {
             let at = if z < known[best].depth { best } else { best + 1 };
             known.insert(at, of(&[z])?[0]);
         }
-        Ok(known.into_iter().fold(Peak::default(), Peak::or))
+        let largest = known.iter().copied().fold(Peak::default(), Peak::or);
+        let at_surface = known.first().filter(|peak| peak.depth == 0.0).map_or(0.0, |peak| peak.value);
+        Ok(Peak { at_surface, is_near: largest.depth < long, ..largest })
     }
 
     fn largest(&self, stress: Stress, poisson_ratio: f64, depths: &[f64], threads: &Threads) -> Result<Vec<Peak>> {
@@ -140,7 +143,9 @@ impl<'a> Surface<'a> {
         };
         let loads = Loads { pressure: Some(&self.pressure), traction_x: x, traction_y: y, patches: self.patches };
         let mut peaks = Vec::new();
-        let each = |k: usize, depth: &Depth| peaks.push(Peak { value: stress.largest(depth), depth: depths[k] });
+        let each = |k: usize, depth: &Depth| {
+            peaks.push(Peak { value: stress.largest(depth), depth: depths[k], ..Peak::default() });
+        };
         subsurface_stress(&body, &loads, depths, &stress.wanted(), threads, None, each)?;
         Ok(peaks)
     }

@@ -1,18 +1,18 @@
 //! Quantities of a result: their values on one grid, and their errors from several.
 //!
 //! Forces, pressures and areas have estimates from one grid (module `estimates`). All other quantities are compared on grids of twice and
-//! four times the elements ([`Sequence`]).
+//! four times the elements ([`Course`]).
 
+mod course;
 mod deepest;
 mod on_grids;
 mod sequence;
 mod values;
 
+pub use course::{Course, Value, SUM};
 pub use on_grids::{quantities, OnGrid, QuantityRow};
 pub use sequence::Sequence;
 pub use values::{values, Lack};
-
-use super::falling::Falling;
 
 /// A quantity that has an accuracy and a price.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,14 +94,6 @@ impl Quantity {
         matches!(self, Quantity::ContactArea | Quantity::StickArea)
     }
 
-    /// Its error from several grids, where one grid has no estimate of it: of forces, pressures and areas only where nothing is estimated at all
-    /// (`lacks_estimates`: a single peak without an estimate is singular, or not resolved), and from three grids at least, since a value that
-    /// is infinite shows in its changes only.
-    pub fn error_of(self, sequence: &Sequence, lacks_estimates: bool) -> Option<Falling> {
-        let is_known = !self.has_estimate() || lacks_estimates && sequence.len() > 2;
-        sequence.falling().filter(|_| is_known)
-    }
-
     /// Elements across the contact, in the direction with fewer, from which on its estimate is believed. Measured on balls, ellipses, cones, two
     /// balls, tori, superellipsoids, blunt rollers and punches anywhere between the elements: from there on at most 5 % of the estimates are below
     /// the error, and none is below a third of it (docs/notes/2026-11-accuracy.md). Areas jump by whole rows of elements. Of what follows from
@@ -113,6 +105,12 @@ impl Quantity {
             area if area.is_area() => 32,
             _ => 16,
         }
+    }
+
+    /// Whether tractions make it.
+    pub fn is_tangential(self) -> bool {
+        use Quantity::{Creepage, SpinMoment, StickArea, TangentialForce};
+        matches!(self, TangentialForce | Creepage | SpinMoment | StickArea)
     }
 
     /// Whether it follows from single pressures, not from sums of them.

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::{values, Lack, Quantity, Sequence};
+use super::{values, Course, Lack, Quantity, Value};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::scene::{scaled, Prescribed, Regridded, Scene};
@@ -34,17 +34,19 @@ pub struct OnGrid {
     /// How the solve ended.
     pub outcome: Outcome,
     /// The values of the quantities asked for, in their order.
-    pub values: Vec<std::result::Result<f64, Lack>>,
+    pub values: Vec<std::result::Result<Value, Lack>>,
     /// Errors from this grid alone.
     pub estimates: Vec<Option<f64>>,
     /// Whether nothing is estimated from one such grid: a limit is reached, or something attracts.
     pub lacks_estimates: bool,
     /// The relative residual.
     pub residual: f64,
-    /// Its cost.
+    /// Its cost, and the part of the set-up.
     pub seconds: f64,
-    /// Products, in work units.
+    pub setup_seconds: f64,
+    /// Products, in work units, and those of the tangential problem among them.
     pub work_units: f64,
+    pub tangential: f64,
     /// Bytes of its solver.
     pub bytes: u64,
 }
@@ -73,7 +75,9 @@ impl OnGrid {
             lacks_estimates: solver.lacks_estimates(),
             residual: report.residual(),
             seconds,
+            setup_seconds: report.setup_seconds,
             work_units: report.count.work_units + report.tangential_products(),
+            tangential: report.tangential_products(),
             bytes: report.bytes,
         })
     }
@@ -125,7 +129,7 @@ pub fn quantities(
     options.check_several_grids()?;
     scene.check(&crate::threads::Threads::One)?;
     let options = Options { estimates: true, ..*options };
-    let mut sequences = vec![Sequence::default(); wanted.len()];
+    let mut courses: Vec<Course> = wanted.iter().map(|quantity| Course::of(*quantity, scene)).collect();
     let (mut rows, mut worst, mut before) = (Vec::new(), Outcome::Converged, None);
     for doublings in -(coarser as i32)..=0 {
         let grid = scaled(&scene.grid, doublings)?;
@@ -144,26 +148,29 @@ pub fn quantities(
         if doublings == 0 {
             worst = found.outcome;
         }
-        for (k, quantity) in wanted.iter().enumerate() {
-            rows.push(row(*quantity, k, &found, doublings, &mut sequences[k]));
+        for (k, course) in courses.iter_mut().enumerate() {
+            rows.push(row(k, &found, doublings, course));
         }
     }
     Ok((worst, rows))
 }
 
-fn row(quantity: Quantity, k: usize, found: &OnGrid, doublings: i32, sequence: &mut Sequence) -> QuantityRow {
+fn row(k: usize, found: &OnGrid, doublings: i32, course: &mut Course) -> QuantityRow {
     let value = found.values[k].ok();
     if let Some(value) = value {
-        sequence.add(doublings, value, found.residual * value.abs());
+        course.add(doublings, value, found.residual);
     }
-    let falling = value.and_then(|_| quantity.error_of(sequence, found.lacks_estimates));
+    let falling = value.and_then(|_| course.falling(found.lacks_estimates));
     let of_sequence = falling.map(|falling| falling.now());
     let error = value.and(found.estimates[k]).or(of_sequence);
     let lack = match (found.values[k], error) {
         (Err(lack), _) => Some(lack),
         (Ok(_), Some(_)) => None,
-        (Ok(_), None) if sequence.len() < 2 + usize::from(found.lacks_estimates) => Some(Lack::OneGrid),
-        (Ok(_), None) => Some(Lack::Singular),
+        (Ok(_), None) if course.len() < 2 + usize::from(found.lacks_estimates) => Some(Lack::OneGrid),
+        // The report says so of one grid.
+        (Ok(_), None) if course.tells_singular() || course.quantity().has_estimate() => Some(Lack::Singular),
+        (Ok(_), None) => Some(Lack::Unsettled),
     };
+    let (quantity, value) = (course.quantity(), value.map(|value| value.value));
     QuantityRow { quantity, grid: found.grid, value, error, lack, seconds: found.seconds, work_units: found.work_units }
 }

@@ -3,6 +3,7 @@
 //! With elements of size h a value is off by `c h^q`, q being 1 or 2 (Richardson). Between two grids, k doublings apart, it changes by `d`, so
 //! that `d/(2^k - 1)` is left where q = 1, and `d/(4^k - 1)` where q = 2. Areas jump from grid to grid: so no error is less than that of
 //! first order that the grid before has promised, unless both say that the order is the second.
+
 use crate::solver::falling::Falling;
 
 /// Changes that fall by less than this with a doubling, thrice or as often as is known, do not come to an end: the quantity is singular.
@@ -12,6 +13,9 @@ const SINGULAR: f64 = 0.8;
 const SECOND_ORDER: f64 = 0.38;
 /// An error of second order is taken so many times, since its order is known from three grids only.
 const MARGIN: f64 = 2.0;
+
+/// Changes of first order fall by this; slower ones are not taken to fall by more.
+const LEAST: f64 = 0.5;
 
 /// Values of one quantity on grids of the same rectangle, coarsest first.
 #[derive(Clone, Debug, Default)]
@@ -59,14 +63,33 @@ impl Sequence {
         if is_singular(&changes, hidden) {
             return None;
         }
-        // The change of this grid that the change before has promised.
-        let promised = before.first_order() * 0.5_f64.powi(newest.doublings);
+        let promised = before.promises(newest);
         let found = newest.first_order();
         if found <= 2.0 * SECOND_ORDER * promised {
             let second = newest.second_order().max(before.second_order() * 0.25_f64.powi(newest.doublings));
             return Some(Falling { by_four: MARGIN * second, hidden, ..Falling::default() });
         }
         Some(Falling { by_two: found.max(promised), hidden, ..Falling::default() })
+    }
+
+    /// The same of what is of first order and irregular: a small change is no second order.
+    pub fn of_first_order(&self) -> Option<Falling> {
+        let falling = self.falling()?;
+        let [.., before, newest] = self.changes()[..] else { return Some(falling) };
+        let by_two = newest.first_order().max(before.promises(&newest));
+        Some(Falling { by_two, by_four: 0.0, ..falling })
+    }
+
+    /// The error of what converges for certain, whether its changes fall yet or not: the rest of a row of changes that fall as the last two do, by
+    /// `ratio` at least with a doubling, and by a half at most.
+    pub fn slow(&self, ratio: f64) -> Option<Falling> {
+        let (last, falls) = match self.changes().iter().map(|change| change.of_one().abs()).collect::<Vec<f64>>()[..] {
+            [] => return None,
+            [only] => (only, LEAST),
+            [.., before, newest] if before > 0.0 => (newest.max(LEAST * before), (newest / before).clamp(LEAST, ratio)),
+            [.., newest] => (newest, ratio),
+        };
+        Some(Falling { by_two: last * falls / (1.0 - falls), hidden: self.hidden()?, ..Falling::default() })
     }
 
     fn changes(&self) -> Vec<Change> {
@@ -94,6 +117,11 @@ impl Change {
     /// The same of second order.
     fn second_order(&self) -> f64 {
         self.by.abs() / (4f64.powi(self.doublings) - 1.0)
+    }
+
+    /// The error of first order on the grid behind another change, as this one says.
+    fn promises(&self, next: &Change) -> f64 {
+        self.first_order() * 0.5_f64.powi(next.doublings)
     }
 
     /// The change of a doubling.

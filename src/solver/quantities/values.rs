@@ -1,7 +1,7 @@
 //! The values of quantities on one grid.
 
 use super::deepest::{Peak, Stress, Surface};
-use super::Quantity;
+use super::{Quantity, Value};
 use crate::contact::Outline;
 use crate::error::{invalid, Error, Result};
 use crate::friction::STICK;
@@ -27,6 +27,8 @@ pub enum Lack {
     OneGrid,
     /// A grid was not solved.
     Unsolved,
+    /// Its changes from grid to grid do not fall yet: these grids do not tell whether it converges.
+    Unsettled,
 }
 
 impl Quantity {
@@ -77,7 +79,7 @@ pub fn values(
     scene: &Scene<'_>,
     report: &Report,
     wanted: &[Quantity],
-) -> Result<Vec<std::result::Result<f64, Lack>>> {
+) -> Result<Vec<std::result::Result<Value, Lack>>> {
     let mut stresses = [None, None];
     let mut values = Vec::new();
     for quantity in wanted {
@@ -85,17 +87,34 @@ pub fn values(
             values.push(Err(lack));
             continue;
         }
-        values.push(match quantity {
+        let stress = match quantity {
+            Quantity::MaxShear => Some(Stress::Shear),
+            Quantity::MaxVonMises | Quantity::VonMisesDepth => Some(Stress::VonMises),
+            _ => None,
+        };
+        if let Some(stress) = stress {
+            let is_depth = *quantity == Quantity::VonMisesDepth;
+            let value = |peak: Peak| Value {
+                value: if is_depth { peak.depth } else { peak.value },
+                peak: Some(peak),
+                counted: 0.0,
+            };
+            values.push(peak(solver, scene, &mut stresses, stress)?.map(value));
+            continue;
+        }
+        let number = match quantity {
             Quantity::Force => Ok(report.measures.found(scene.load)),
             Quantity::MaxPressure => Ok(report.measures.max_pressure),
             Quantity::ContactArea => Ok(area(solver, report)),
             Quantity::MeanGap => Ok(mean_gap(solver)),
             Quantity::Stiffness => stiffness(solver)?,
-            Quantity::MaxVonMises => peak(solver, scene, &mut stresses, Stress::VonMises)?.map(|peak| peak.value),
-            Quantity::VonMisesDepth => peak(solver, scene, &mut stresses, Stress::VonMises)?.map(|peak| peak.depth),
-            Quantity::MaxShear => peak(solver, scene, &mut stresses, Stress::Shear)?.map(|peak| peak.value),
             _ => tangential(solver, scene, report, *quantity),
-        });
+        };
+        let counted = |value: f64| match quantity {
+            Quantity::StickArea => value / scene.grid.element_area(),
+            _ => 0.0,
+        };
+        values.push(number.map(|value| Value { counted: counted(value), ..Value::from(value) }));
     }
     Ok(values)
 }

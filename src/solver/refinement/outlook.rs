@@ -2,8 +2,9 @@
 
 use crate::contact::State;
 use crate::scene::Load;
+use crate::scene::Scene;
 use crate::solver::falling::Falling;
-use crate::solver::quantities::{Lack, Quantity, Sequence};
+use crate::solver::quantities::{Course, Lack, Quantity, Value};
 use crate::solver::{Report, Solver};
 
 /// The relative errors of a solution, where they are known.
@@ -47,34 +48,34 @@ impl Outlook {
 /// The values of quantities, grid by grid.
 #[derive(Clone, Debug)]
 pub struct History {
-    sequences: Vec<(Quantity, Sequence)>,
+    courses: Vec<Course>,
 }
 
 impl History {
     /// Of all that is wanted: where a limit is reached, or something attracts, one grid alone has no estimates.
-    pub fn of(wanted: impl Iterator<Item = Quantity>) -> History {
-        History { sequences: wanted.map(|quantity| (quantity, Sequence::default())).collect() }
+    pub fn of(wanted: impl Iterator<Item = Quantity>, scene: &Scene<'_>) -> History {
+        History { courses: wanted.map(|quantity| Course::of(quantity, scene)).collect() }
     }
 
     /// Whether grids below the scene's own tell of errors that it does not.
     pub fn needs_coarser(&self) -> bool {
-        self.sequences.iter().any(|(quantity, _)| !quantity.has_estimate())
+        self.courses.iter().any(|course| !course.quantity().has_estimate())
     }
 
     /// Which.
     pub fn wanted(&self) -> Vec<Quantity> {
-        self.sequences.iter().map(|(quantity, _)| *quantity).collect()
+        self.courses.iter().map(Course::quantity).collect()
     }
 
     /// Adds the values of a grid, and tells its outlook what they say.
     pub fn add(&mut self, doublings: i32, values: &Values, outlook: &mut Outlook) {
-        for ((quantity, sequence), value) in self.sequences.iter_mut().zip(&values.of) {
-            let Ok(value) = *value else { continue };
-            sequence.add(doublings, value, values.residual * value.abs());
+        for (course, value) in self.courses.iter_mut().zip(&values.of) {
+            let Ok(found) = *value else { continue };
+            course.add(doublings, found, values.residual);
             // The values of one grid stay.
-            if !quantity.has_estimate() || values.lack_estimates {
-                let falling = quantity.error_of(sequence, values.lack_estimates);
-                outlook.set(*quantity, falling.and_then(|falling| falling.over(value)));
+            if !course.quantity().has_estimate() || values.lack_estimates {
+                let falling = course.falling(values.lack_estimates);
+                outlook.set(course.quantity(), falling.and_then(|falling| falling.over(found.value)));
             }
         }
     }
@@ -83,7 +84,7 @@ impl History {
 /// The values of one grid, in the order of the wanted quantities.
 pub struct Values {
     /// The values.
-    pub of: Vec<Result<f64, Lack>>,
+    pub of: Vec<Result<Value, Lack>>,
     /// The relative residual.
     pub residual: f64,
     /// Whether nothing is estimated from one such grid: a limit is reached, or something attracts.

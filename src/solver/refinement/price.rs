@@ -5,17 +5,13 @@ use super::sample::Sample;
 use super::Accuracy;
 use crate::grid::Grid;
 use crate::scene::{scaled, Scene};
-use crate::solver::machine::growth;
+use crate::solver::machine::{seconds_on, Cost, MOST_MORE};
 use crate::solver::quantities::Quantity;
 
-/// The least and the largest power of the number of elements with which seconds of set-ups grow.
-const SETUP_GROWTH: (f64, f64) = (0.4, 1.08);
-/// The largest power of the number of elements with which seconds of a solve grow.
-const GROWTH: f64 = 1.2;
-/// Samples with less than this part of the products of the last do not count for seconds.
-const SEES: f64 = 0.5;
 /// Residuals with which a grid begins fall so much with a doubling: it starts from the grid before, whose error is of this order at the rim.
 const BEGINS: f64 = 0.35;
+/// By so much tangential products usually grow with a doubling.
+const MORE: f64 = 1.1;
 /// Elements across the contact on a sample that can be carried on.
 pub(super) const ACROSS: usize = 12;
 
@@ -34,6 +30,20 @@ pub enum Obstacle {
     Time,
     /// Bodies relax, and the length of the step alone leaves more than the error that is wanted.
     Step,
+}
+
+/// Products that were counted, on a grid to a tolerance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Counted {
+    pub grid: Grid,
+    pub tolerance: f64,
+    pub products: f64,
+}
+
+impl Counted {
+    pub fn is_of(&self, grid: &Grid, tolerance: f64) -> bool {
+        self.grid == *grid && self.tolerance == tolerance
+    }
 }
 
 /// The price of one accuracy.
@@ -61,41 +71,6 @@ pub struct Price {
     pub time_error: f64,
 }
 
-/// Seconds of one thread on a grid of so many elements, from the sample that promises the least: others were disturbed, or so small
-/// that they are mostly overhead. Samples with half the products of the last and fewer hardly see the contact. The set-up grows as the last two
-/// samples say (that of a period hardly does). No grid takes longer than a finer one.
-pub(super) fn seconds_on(samples: &[Sample], elements: f64) -> f64 {
-    let seen = match samples {
-        [.., before, last] => (last.setup / before.setup).ln() / (last.elements / before.elements).ln(),
-        _ => SETUP_GROWTH.1,
-    };
-    let of_setup = if seen.is_finite() { seen.clamp(SETUP_GROWTH.0, SETUP_GROWTH.1) } else { SETUP_GROWTH.1 };
-    let least = samples.last().map_or(0.0, |last| SEES * last.products);
-    let of_solve = grown(samples, least);
-    let carried = |sample: &Sample| {
-        let ratio = elements / sample.elements;
-        let by = growth(sample.elements, elements).max(if ratio > 1.0 { ratio.powf(of_solve) } else { 0.0 });
-        sample.setup * ratio.powf(of_setup) + (sample.seconds - sample.setup) * by
-    };
-    match samples.first() {
-        // A grid coarser than all samples: the first of them, carried down.
-        Some(first) if first.elements > elements => carried(first),
-        _ => {
-            let of = |sample: &Sample| if sample.elements <= elements { carried(sample) } else { sample.seconds };
-            let sees = |sample: &&Sample| sample.products >= least;
-            samples.iter().filter(sees).map(of).fold(f64::INFINITY, f64::min)
-        }
-    }
-}
-
-/// The power of the number of elements with which the samples themselves grow, where each has `least` products: solves in turns, of unlike bodies, take more than
-/// their products. The least one from sample to sample, for others were disturbed.
-fn grown(samples: &[Sample], least: f64) -> f64 {
-    let of = |pair: &[Sample]| (pair[1].seconds / pair[0].seconds).ln() / (pair[1].elements / pair[0].elements).ln();
-    let seen = samples.windows(2).filter(|pair| pair[0].products >= least).map(of);
-    seen.reduce(f64::min).map_or(0.0, |seen| seen.clamp(0.0, GROWTH))
-}
-
 /// Doublings from the last sample to the first grid that does, and the seconds of one thread to the tolerance of the samples.
 pub(super) fn predict(
     scene: &Scene<'_>,
@@ -110,23 +85,32 @@ pub(super) fn predict(
         enough && falling.after(*k) <= target && scaled(&scene.grid, last.doublings + k).is_ok()
     };
     let k = (least..=most).find(does)?;
-    Some((k, seconds_on(samples, last.elements * 4f64.powi(k))))
+    let costs: Vec<Cost> = samples.iter().map(|sample| sample.cost).collect();
+    Some((k, seconds_on(&costs, last.cost.elements * 4f64.powi(k))))
 }
 
 /// Of the seconds of a solve the part that a tolerance takes on a grid of so many doublings, and its products: those of the finest sample that is
 /// not finer. On finer grids than that the iteration begins nearer to the end.
 fn to(samples: &[Sample], doublings: i32, tolerance: f64) -> (f64, f64) {
-    let Some(sample) = samples.iter().rev().find(|sample| sample.doublings <= doublings).or(samples.first()) else {
-        return (1.0, 0.0);
-    };
-    let (seconds, products) = sample.to(tolerance / BEGINS.powi((doublings - sample.doublings).max(0)));
-    (seconds / sample.seconds, products)
+    let at = samples.iter().rposition(|sample| sample.doublings <= doublings).unwrap_or(0);
+    let Some(sample) = samples.get(at) else { return (1.0, 0.0) };
+    let finer = (doublings - sample.doublings).max(0);
+    let begins = tolerance / BEGINS.powi(finer);
+    if let Some((part, tangential)) = sample.between(tolerance) {
+        let before = at.checked_sub(1).and_then(|before| samples[before].between(tolerance));
+        // What two samples show is irregular: half of it is believed, and half of what is usual.
+        let seen = before.map_or(MORE, |before| tangential / before.1);
+        let grows = (seen * MORE).sqrt().clamp(1.0, MOST_MORE);
+        return (part, sample.normal(tolerance, begins) + tangential * grows.powi(finer));
+    }
+    let (seconds, products) = sample.to(tolerance, begins);
+    (seconds / sample.cost.seconds, products)
 }
 
 /// One row.
 pub(super) fn price(
     scene: &Scene<'_>,
-    samples: &[Sample],
+    (samples, counted): (&[Sample], &[Counted]),
     accuracy: &Accuracy,
     (quantity, target): (Quantity, f64),
     speed_up: f64,
@@ -154,6 +138,7 @@ pub(super) fn price(
     };
     let Ok(grid) = scaled(&scene.grid, last.doublings + k) else { return nothing };
     let (part, work_units) = to(samples, last.doublings + k, tolerance);
+    let work_units = counted.iter().find(|one| one.is_of(&grid, tolerance)).map_or(work_units, |one| one.products);
     let seconds = seconds * part;
     let bytes = last.bytes * 4f64.powi(k);
     let most = if accuracy.max_elements == 0 { MOST_ELEMENTS } else { accuracy.max_elements };

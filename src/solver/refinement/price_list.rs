@@ -7,9 +7,9 @@ use std::time::Instant;
 
 use super::next_grid::{require_target, tolerance_for};
 use super::outlook::History;
-use super::price::{price, ACROSS};
+use super::price::{price, Counted, ACROSS};
 pub use super::price::{Obstacle, Price};
-use super::sample::{Sample, Taken};
+use super::sample::{Callbacks, Sample, Taken};
 use super::{check, Accuracy, SurfaceCallback};
 use crate::error::Result;
 use crate::grid::Grid;
@@ -25,11 +25,15 @@ const SECONDS: f64 = 0.035;
 const FIRST: usize = 32;
 /// Bound on the cost of a grid with four times as many elements, where samples have not shown it.
 const NEXT: f64 = 5.0;
+/// The same from below.
+const LEAST_NEXT: f64 = 2.0;
 
 /// On more elements contact that is still on fewer across is left alone, whatever is known.
 const UNRESOLVED: f64 = 2e5;
 /// Samples at most.
 const MOST_SAMPLES: usize = 12;
+/// Rows are counted for these seconds: those that are small.
+const FOR_COUNTS: f64 = 0.005;
 /// Samples are timed again for this part of the seconds.
 const FOR_TIMES: f64 = 0.5;
 
@@ -51,18 +55,21 @@ pub fn cost_of_accuracy(
         require_target(target)?;
     }
     quantity.check(scene)?;
-    let mut history = History::of(std::iter::once(quantity));
+    let mut history = History::of(std::iter::once(quantity), scene);
     let least = targets.iter().copied().fold(f64::INFINITY, f64::min);
     let tolerance = tolerance_for(quantity, least).clamp(1e-12, options.tolerance);
+    let loosest = tolerance_for(quantity, targets.iter().copied().fold(0.0, f64::max)).max(tolerance);
     let options = Options { tolerance, estimates: true, ..*options };
     let one = Options { threads: 1, ..options };
     // The first time in a process this times the machine, which is none of the list's own time.
     machine::growth(1.0, 1.0);
     let began = Instant::now();
     let (mut samples, mut doublings): (Vec<Sample>, i32) = (Vec::new(), first(&scene.grid));
-    let list = |samples: &[Sample], speed_up: f64| -> Vec<Price> {
-        targets.iter().map(|target| price(scene, samples, accuracy, (quantity, *target), speed_up)).collect()
+    let list_with = |samples: &[Sample], counted: &[Counted], speed_up: f64| -> Vec<Price> {
+        let one = |target: &f64| price(scene, (samples, counted), accuracy, (quantity, *target), speed_up);
+        targets.iter().map(one).collect()
     };
+    let list = |samples: &[Sample], speed_up: f64| list_with(samples, &[], speed_up);
     while samples.len() < MOST_SAMPLES {
         let spare = FOR_TIMES * (SECONDS - began.elapsed().as_secs_f64());
         let sample = match Sample::take(scene, &one, (doublings, spare), quantity, (&mut surface, &mut progress))? {
@@ -70,31 +77,86 @@ pub fn cost_of_accuracy(
             Taken::Cancelled => return Ok((Outcome::Cancelled, list(&samples, 1.0))),
             Taken::Unsolved => break,
         };
-        let next = sample.seconds * NEXT;
+        let next = sample.cost.seconds * NEXT;
         samples.push(sample);
         doublings += 1;
         let had = list(&samples, 1.0).into_iter().filter(|price| price.obstacle.is_none());
         let dearest = had.map(|price| price.seconds).fold(0.0, f64::max);
+        let most = SECONDS.max(PART * dearest);
+        let (loose, left) = (Options { tolerance: loosest, ..one }, most - began.elapsed().as_secs_f64());
+        if loosen(scene, &loose, (&mut samples, left), (&mut surface, &mut progress))? == Outcome::Cancelled {
+            return Ok((Outcome::Cancelled, list(&samples, 1.0)));
+        }
         // Where one grid has no estimate the error follows from three, and from four if two changes happen to be alike.
         let has_error = |last: &Sample| last.falling().is_some() || samples.len() > 3;
-        let is_known = |last: &Sample| last.across >= ACROSS && has_error(last) || last.elements > UNRESOLVED;
-        let known = samples.last().is_some_and(is_known);
-        let over = began.elapsed().as_secs_f64() + next > SECONDS.max(PART * dearest);
-        if known && over || scaled(&scene.grid, doublings).is_err() {
+        let is_known = |last: &Sample| last.across >= ACROSS && has_error(last) || last.cost.elements > UNRESOLVED;
+        let over = began.elapsed().as_secs_f64() + next > most;
+        if samples.last().is_some_and(is_known) && over || scaled(&scene.grid, doublings).is_err() {
             break;
         }
     }
-    // How much faster more threads are.
-    let mut speed_up = 1.0;
-    if let Some(last) = samples.last().filter(|last| options.threads != 1 && last.seconds < SECONDS) {
-        let callbacks = (&mut surface, &mut progress);
-        match Sample::take(scene, &options, (last.doublings, last.seconds), quantity, callbacks)? {
-            Taken::Sample(again) => speed_up = (last.seconds / again.seconds).max(1.0),
-            Taken::Cancelled => return Ok((Outcome::Cancelled, list(&samples, 1.0))),
-            Taken::Unsolved => {}
+    let counted = count(scene, &one, (&samples, &list(&samples, 1.0)), (&mut surface, &mut progress))?;
+    let Some(counted) = counted else { return Ok((Outcome::Cancelled, list(&samples, 1.0))) };
+    Ok(match speed_up(scene, &options, (&samples, quantity), (&mut surface, &mut progress))? {
+        Some(speed_up) => (Outcome::Converged, list_with(&samples, &counted, speed_up)),
+        None => (Outcome::Cancelled, list(&samples, 1.0)),
+    })
+}
+
+/// Solves the last sample to a loose tolerance, if that takes no more than the seconds that are `left`; else it has what the sample before has.
+fn loosen(
+    scene: &Scene<'_>,
+    options: &Options,
+    (samples, left): (&mut [Sample], f64),
+    callbacks: Callbacks<'_, '_, '_>,
+) -> Result<Outcome> {
+    let Some((last, before)) = samples.split_last_mut() else { return Ok(Outcome::Converged) };
+    let before = before.last().filter(|_| last.cost.seconds > left);
+    last.loosen(scene, options, before, callbacks)
+}
+
+/// How much faster more threads are. None: cancelled by a callback.
+fn speed_up(
+    scene: &Scene<'_>,
+    options: &Options,
+    (samples, quantity): (&[Sample], Quantity),
+    callbacks: Callbacks<'_, '_, '_>,
+) -> Result<Option<f64>> {
+    let last = samples.last().filter(|last| options.threads != 1 && last.cost.seconds < SECONDS);
+    let Some(last) = last else { return Ok(Some(1.0)) };
+    Ok(match Sample::take(scene, options, (last.doublings, last.cost.seconds), quantity, callbacks)? {
+        Taken::Sample(again) => Some((last.cost.seconds / again.cost.seconds).max(1.0)),
+        Taken::Cancelled => None,
+        Taken::Unsolved => Some(1.0),
+    })
+}
+
+/// The products of the rows whose grids take little time: these are solved. None: cancelled by a callback.
+fn count(
+    scene: &Scene<'_>,
+    options: &Options,
+    (samples, rows): (&[Sample], &[Price]),
+    (surface, progress): Callbacks<'_, '_, '_>,
+) -> Result<Option<Vec<Counted>>> {
+    let (began, mut counted) = (Instant::now(), Vec::<Counted>::new());
+    let Some(last) = samples.last() else { return Ok(Some(counted)) };
+    for row in rows.iter().filter(|row| row.obstacle.is_none()) {
+        let (Some(grid), tolerance) = (row.grid, row.tolerance) else { continue };
+        let doublings = (grid.mx.max(grid.my) as f64 / scene.grid.mx.max(scene.grid.my) as f64).log2().round() as i32;
+        let finer = doublings - last.doublings;
+        let seconds = last.solve * if finer > 0 { NEXT } else { LEAST_NEXT }.powi(finer);
+        let is_known = counted.iter().any(|one| one.is_of(&grid, tolerance));
+        if is_known || began.elapsed().as_secs_f64() + seconds > FOR_COUNTS {
+            continue;
+        }
+        let options = Options { tolerance, ..*options };
+        match Sample::count(scene, &options, doublings, (surface, progress))? {
+            Ok(Some(products)) => counted.push(Counted { grid, tolerance, products }),
+            Ok(None) => {}
+            Err(_) => return Ok(None),
         }
     }
-    Ok((Outcome::Converged, list(&samples, speed_up)))
+    Ok(Some(counted))
 }
 
 /// Doublings, or with a sign halvings, from the scene's grid to the first sample.

@@ -8,6 +8,7 @@ use super::{on_grid, SurfaceCallback};
 use crate::error::Result;
 use crate::scene::{scaled, Scene};
 use crate::solver::falling::Falling;
+use crate::solver::machine::Cost;
 use crate::solver::quantities::Quantity;
 use crate::solver::{Options, Outcome, Progress, ProgressCallback};
 
@@ -25,13 +26,20 @@ pub(super) enum Taken {
     Unsolved,
 }
 
+/// By a callback.
+pub(super) struct Cancelled;
+
 /// Of an iteration: the residual, seconds since the start of the surface, products of the normal problem until then.
 type Told = (f64, f64, f64);
 
 /// The results of a small grid.
 pub(super) struct Sample {
     pub(super) doublings: i32,
-    pub(super) elements: f64,
+    /// Of one thread or of all, to this tolerance.
+    pub(super) cost: Cost,
+    /// Seconds without those of stresses and of the stiffness.
+    pub(super) solve: f64,
+    tolerance: f64,
     /// In the direction with fewer of them.
     pub(super) across: usize,
     values: Values,
@@ -42,12 +50,21 @@ pub(super) struct Sample {
     pub(super) time_error: f64,
     /// Each iteration.
     reached: Vec<Told>,
-    /// Products of all, and those of the tangential problem among them.
-    pub(super) products: f64,
+    /// Products of the tangential problem.
     tangential: f64,
-    pub(super) seconds: f64,
-    /// Of which the set-up took so many.
-    pub(super) setup: f64,
+    /// What less is needed to a looser tolerance, if that is known.
+    loose: Option<Loose>,
+}
+
+/// What a loose tolerance takes of the seconds and of the tangential products of a tight one. Tangential problems tell no products, those of unlike bodies are
+/// solved once more in each turn, and a loose start on coarse grids is another one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Loose {
+    tolerance: f64,
+    seconds: f64,
+    tangential: f64,
+    /// Products of the normal problem over those that the iterations of the tight one tell.
+    normal: f64,
 }
 
 impl Sample {
@@ -60,14 +77,14 @@ impl Sample {
         (surface, progress): Callbacks<'_, '_, '_>,
     ) -> Result<Taken> {
         let (began, mut spent) = (Instant::now(), 0.0);
-        let mut taken = Sample::take_once(scene, options, doublings, quantity, (surface, progress))?;
+        let mut taken = Sample::take_once(scene, options, (doublings, &[quantity]), (surface, progress))?;
         for _ in 0..AGAIN {
             let Taken::Sample(best) = &mut taken else { break };
-            if spent + 2.0 * best.seconds > spare {
+            if spent + 2.0 * best.cost.seconds > spare {
                 break;
             }
-            match Sample::take_once(scene, options, doublings, quantity, (surface, progress))? {
-                Taken::Sample(again) if again.seconds < best.seconds => *best = again,
+            match Sample::take_once(scene, options, (doublings, &[quantity]), (surface, progress))? {
+                Taken::Sample(again) if again.cost.seconds < best.cost.seconds => *best = again,
                 Taken::Cancelled => return Ok(Taken::Cancelled),
                 _ => {}
             }
@@ -79,8 +96,7 @@ impl Sample {
     fn take_once(
         scene: &Scene<'_>,
         options: &Options,
-        doublings: i32,
-        quantity: Quantity,
+        (doublings, wanted): (i32, &[Quantity]),
         (surface, progress): Callbacks<'_, '_, '_>,
     ) -> Result<Taken> {
         let (began, mut reached) = (Instant::now(), Vec::new());
@@ -91,32 +107,94 @@ impl Sample {
             }
             progress.as_mut().is_some_and(|progress| progress(told))
         };
-        let wanted = &[quantity];
-        let solved =
-            match on_grid(scene, (options, &wanted[..]), doublings, surface, &mut Some(&mut watch), &|_| false)? {
-                Ok(solved) => solved,
-                Err((Outcome::Cancelled, ..)) => return Ok(Taken::Cancelled),
-                Err(_) => return Ok(Taken::Unsolved),
-            };
+        let solved = match on_grid(scene, (options, wanted), doublings, surface, &mut Some(&mut watch), &|_| false)? {
+            Ok(solved) => solved,
+            Err((Outcome::Cancelled, ..)) => return Ok(Taken::Cancelled),
+            Err(_) => return Ok(Taken::Unsolved),
+        };
         let Solved { solver, report, outlook, values } = solved;
         let seconds = began.elapsed().as_secs_f64();
         let (x, y) = across(solver.state(), solver.influence().repeats(solver.grid()));
         let tangential = report.tangential_products();
         Ok(Taken::Sample(Box::new(Sample {
             doublings,
-            elements: elements as f64,
+            cost: Cost {
+                elements: elements as f64,
+                seconds,
+                setup: report.setup_seconds,
+                products: report.count.work_units + tangential,
+            },
+            solve: report.setup_seconds + report.solve_seconds,
+            tolerance: options.tolerance,
             across: x.min(y),
             values,
             outlook,
-            quantity,
+            quantity: wanted.first().copied().unwrap_or(Quantity::Force),
             bytes: report.bytes as f64,
             time_error: report.visco.map_or(0.0, |step| step.time_error),
             reached,
-            products: report.count.work_units + tangential,
             tangential,
-            seconds,
-            setup: report.setup_seconds,
+            loose: None,
         })))
+    }
+
+    /// Solves once more to a loose tolerance, or takes what the sample before has where `before` is given. Cancelled: by a callback.
+    pub(super) fn loosen(
+        &mut self,
+        scene: &Scene<'_>,
+        options: &Options,
+        before: Option<&Sample>,
+        callbacks: Callbacks<'_, '_, '_>,
+    ) -> Result<Outcome> {
+        let tolerance = options.tolerance;
+        if let Some(before) = before {
+            self.loose = before.loose;
+        } else if tolerance <= self.tolerance {
+            self.loose = Some(Loose { tolerance, seconds: 1.0, tangential: 1.0, normal: 1.0 });
+        }
+        if self.loose.is_some() {
+            return Ok(Outcome::Converged);
+        }
+        match Sample::take_once(scene, options, (self.doublings, &[]), callbacks)? {
+            Taken::Sample(again) => {
+                self.loose = Some(Loose {
+                    tolerance,
+                    seconds: (1.0 - (self.solve - again.solve) / self.cost.seconds).min(1.0),
+                    tangential: (again.tangential / self.tangential).min(1.0),
+                    normal: (again.cost.products - again.tangential) / self.told(tolerance),
+                });
+            }
+            Taken::Cancelled => return Ok(Outcome::Cancelled),
+            Taken::Unsolved => {}
+        }
+        Ok(Outcome::Converged)
+    }
+
+    /// The products of a grid to a tolerance, where it is solved. Cancelled: by a callback.
+    pub(super) fn count(
+        scene: &Scene<'_>,
+        options: &Options,
+        doublings: i32,
+        callbacks: Callbacks<'_, '_, '_>,
+    ) -> Result<std::result::Result<Option<f64>, Cancelled>> {
+        Ok(match Sample::take_once(scene, options, (doublings, &[]), callbacks)? {
+            Taken::Sample(sample) => Ok(Some(sample.cost.products)),
+            Taken::Unsolved => Ok(None),
+            Taken::Cancelled => Err(Cancelled),
+        })
+    }
+
+    /// How far a tolerance is on the way from the tight to the loose one, by its logarithm, with the costs of the loose one.
+    fn on_the_way(&self, tolerance: f64) -> Option<(f64, Loose)> {
+        let loose = self.loose?;
+        let at = (tolerance / self.tolerance).ln() / (loose.tolerance / self.tolerance).ln();
+        Some((if at.is_finite() { at.clamp(0.0, 1.0) } else { 0.0 }, loose))
+    }
+
+    /// With friction the part of the seconds to a tolerance, and tangential products, between those that were solved for. None: not known.
+    pub(super) fn between(&self, tolerance: f64) -> Option<(f64, f64)> {
+        let (at, loose) = self.on_the_way(tolerance).filter(|_| self.tangential > 0.0)?;
+        Some((1.0 + at * (loose.seconds - 1.0), self.tangential * (1.0 + at * (loose.tangential - 1.0))))
     }
 
     /// With the error that the values of this and coarser grids have.
@@ -130,23 +208,44 @@ impl Sample {
         self.outlook.falling(self.quantity)
     }
 
-    /// Seconds and products to a residual. A solve is a row of passes, the normal problem's, the tangential one's and their turns. A pass ends there: what it
-    /// does beyond goes. What follows the last iteration of a pass is needed by any residual; where residuals rise another one has begun.
-    pub(super) fn to(&self, tolerance: f64) -> (f64, f64) {
-        let (mut seconds, mut products) = (self.seconds, self.products);
-        let is_tangential = |pair: &&[Told]| pair[0].2 == pair[1].2;
-        let tangential = |told: &[Told]| told.windows(2).filter(is_tangential).count() as f64;
+    /// Seconds and products to a residual, which on finer grids of the same tolerance is `begins`.
+    pub(super) fn to(&self, tolerance: f64, begins: f64) -> (f64, f64) {
+        let beyond = self.beyond(begins);
         // Its products are told at the end only: each iteration has the same.
-        let each = self.tangential / tangential(&self.reached).max(1.0);
+        let each = self.tangential / tangential_iterations(&self.reached).max(1.0);
+        let tangential = self.tangential - each * beyond.2;
+        (self.cost.seconds - beyond.0, self.normal(tolerance, begins) + tangential)
+    }
+
+    /// Products of the normal problem to a residual, which on finer grids of the same tolerance is `begins`.
+    pub(super) fn normal(&self, tolerance: f64, begins: f64) -> f64 {
+        let more = self.on_the_way(tolerance).map_or(1.0, |(at, loose)| 1.0 + at * (loose.normal - 1.0));
+        more * self.told(begins)
+    }
+
+    /// The same as iterations tell.
+    fn told(&self, tolerance: f64) -> f64 {
+        self.cost.products - self.tangential - self.beyond(tolerance).1
+    }
+
+    /// What is done beyond a residual: seconds, products of the normal problem, iterations of the tangential one. A solve is a row of passes, the normal problem's,
+    /// the tangential one's and their turns. A pass ends there. What follows the last iteration of a pass is needed by any residual; where residuals rise
+    /// another one has begun.
+    fn beyond(&self, tolerance: f64) -> (f64, f64, f64) {
         let goes_on = |one: &Told, next: &Told| (one.0 <= tolerance) == (next.0 <= tolerance) && next.0 <= one.0;
-        for met in self.reached.chunk_by(goes_on).filter(|met| met[0].0 <= tolerance) {
+        let met = self.reached.chunk_by(goes_on).filter(|met| met[0].0 <= tolerance);
+        met.fold((0.0, 0.0, 0.0), |(seconds, normal, tangential), met| {
             // An iteration of several parts is told of by each of them.
             let parts = met.iter().take_while(|told| told.0 == met[0].0).count();
             let (at, end) = (&met[parts - 1..], met[met.len() - 1]);
-            (seconds, products) = (seconds - (end.1 - at[0].1), products - (end.2 - at[0].2) - each * tangential(at));
-        }
-        (seconds, products)
+            (seconds + end.1 - at[0].1, normal + end.2 - at[0].2, tangential + tangential_iterations(at))
+        })
     }
+}
+
+/// Iterations of the tangential problem: no product of the normal one lies before them.
+fn tangential_iterations(told: &[Told]) -> f64 {
+    told.windows(2).filter(|pair| pair[0].2 == pair[1].2).count() as f64
 }
 
 #[cfg(test)]

@@ -1,0 +1,94 @@
+//! Errors of what converges slowly, against a finer grid: stresses at the surface that overtake those below, forces of steady rolling.
+
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, PressureLimit, Scene};
+use contact_normal::solver::{quantities, Options, Quantity, QuantityRow};
+
+type Surface = fn(f64, f64) -> f64;
+
+/// Estimates below this part of the error are too low (docs/accuracy.md).
+const LOW: f64 = 0.3;
+
+fn on(m: usize, surface: Surface) -> (Grid, Vec<f64>) {
+    let grid = Grid::new(m, m, 1.0 / m as f64, 1.0 / m as f64).expect("a grid");
+    let at = |k: usize| (k as f64 + 0.5) / m as f64 - 0.5;
+    (grid, (0..grid.len()).map(|i| surface(at(i % m), at(i / m))).collect())
+}
+
+/// The last row of `quantity` on m x m elements, with `coarser` grids before.
+fn last(scene: &Scene<'_>, m: usize, surface: Surface, (quantity, coarser): (Quantity, usize)) -> QuantityRow {
+    let (grid, h) = on(m, surface);
+    let scene = Scene { grid, undeformed_distance: &h, ..scene.clone() };
+    let (_, rows) = quantities(&scene, &Options::default(), &[quantity], coarser, None).expect("a solvable scene");
+    *rows.last().expect("a row")
+}
+
+/// The error is at least 0.3 of the distance to a grid four times finer, and at most `most` times of it; or it is not known.
+fn assert_covered(scene: &Scene<'_>, (m, surface): (usize, Surface), quantity: Quantity, most: f64) {
+    let row = last(scene, m, surface, (quantity, 2));
+    let truth = last(scene, 4 * m, surface, (quantity, 0)).value.expect("a value");
+    let off = (row.value.expect("a value") - truth).abs();
+    if let Some(error) = row.error {
+        assert!(error >= LOW * off && error <= most * off, "{quantity:?} on {m}: {error:e} for {off:e}; {row:?}");
+    }
+}
+
+fn cone(x: f64, y: f64) -> f64 {
+    0.25 * (x - 0.007).hypot(y + 0.003)
+}
+
+fn fourth_power(x: f64, y: f64) -> f64 {
+    let (x, y) = (x - 0.017, y + 0.011);
+    6.0 * (x.powi(4) + y.powi(4)) + 0.3 * (x * x + y * y)
+}
+
+fn ellipse(x: f64, y: f64) -> f64 {
+    let (x, y) = (x - 0.013, y + 0.021);
+    let (c, s) = (0.4f64.cos(), 0.4f64.sin());
+    0.6 * (c * x + s * y).powi(2) + 2.2 * (c * y - s * x).powi(2)
+}
+
+fn scene<'a>(bodies: Bodies, load: Load) -> Scene<'a> {
+    Scene::new(Grid { mx: 1, my: 1, dx: 1.0, dy: 1.0 }, &[], bodies, load)
+}
+
+fn rolling() -> Friction<'static> {
+    let prescribed = [Prescribed::Creepage(-0.002), Prescribed::Creepage(0.001)];
+    Friction { prescribed, motion: Motion::SteadyRolling, spin: 0.01, ..Friction::new(0.3) }
+}
+
+/// The stress at the tip is infinite, as a logarithm: a lucky last change must not hide it.
+#[test]
+fn the_tip_of_a_cone() {
+    let scene = scene(Bodies::same(0.5, 0.3), Load::Approach(0.03));
+    for m in [64, 128] {
+        assert_covered(&scene, (m, cone), Quantity::MaxVonMises, 20.0);
+        assert_covered(&scene, (m, cone), Quantity::MaxShear, 20.0);
+    }
+}
+
+/// Below a limit of the pressures the stress is settled, to 1e-4, and at the trailing edge of the slip another one grows: on four times the elements it
+/// is the largest.
+#[test]
+fn a_limit_beside_friction() {
+    let limit = Some(PressureLimit::Uniform(0.06));
+    let plain = scene(Bodies::same(0.5, 0.3), Load::Force(0.006));
+    let scene = Scene { pressure_limit: limit, friction: Some(rolling()), ..plain };
+    for quantity in [Quantity::MaxVonMises, Quantity::VonMisesDepth, Quantity::MaxShear] {
+        assert_covered(&scene, (64, ellipse), quantity, 20.0);
+    }
+    let row = last(&scene, 64, ellipse, (Quantity::MaxVonMises, 2));
+    assert!(row.error.is_some(), "{row:?}");
+}
+
+/// Forces of steady rolling of unlike bodies jump from grid to grid.
+#[test]
+fn steady_rolling_of_unlike_bodies() {
+    let bodies = Bodies { shear_modulus: [0.5, 0.9], poisson_ratio: [0.3, 0.25] };
+    let scene = Scene { friction: Some(rolling()), ..scene(bodies, Load::Approach(0.03)) };
+    for quantity in [Quantity::TangentialForce, Quantity::SpinMoment] {
+        assert_covered(&scene, (64, fourth_power), quantity, 20.0);
+    }
+    let row = last(&scene, 64, fourth_power, (Quantity::TangentialForce, 2));
+    assert!(row.error.is_some(), "{row:?}");
+}
