@@ -162,11 +162,7 @@ impl<T: Real> Iteration<T> {
             cycle = self.iterate(state, set, &mut search);
             let Some(cycle) = &mut cycle else { return End::Breakdown };
             if self.is_another_area(cycle, iterations) {
-                let products = self.deflate::<S>(state, is_mean_free);
-                cycle.products += products;
-                if products > 0 && self.is_plane_strain() {
-                    search.tq = 0.0;
-                }
+                cycle.products += self.deflate::<S>(state, is_mean_free);
             }
         }
     }

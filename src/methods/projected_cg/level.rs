@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::deflation::Last;
 use super::inner::{in_either, Inner, MadeOf};
 use super::part::{enter, leave};
+use super::punches::Punches;
 use super::scaling::Scaling;
 use super::{Cycle, End, Window};
 use crate::contact::{AdmissibleSet, Freshness, State};
@@ -90,6 +91,11 @@ impl Level {
     /// The coefficients of this grid.
     pub fn influence(&self) -> &Coefficients {
         &self.influence
+    }
+
+    /// Whether it is a line in plane strain on which a uniform pressure displaces nothing.
+    pub(super) fn is_mean_free_line(&self) -> bool {
+        self.influence.is_mean_free() && Punches::serve(&self.influence, &self.grid)
     }
 
     /// The next window is chosen by itself, so that a result does not depend, in the last bits, on the solve before.

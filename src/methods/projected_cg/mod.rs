@@ -7,6 +7,7 @@ mod deflation;
 mod deflation_passes;
 mod energy;
 mod exchange;
+mod find_force;
 mod flat_punch;
 mod formulas;
 mod inner;

@@ -35,6 +35,15 @@ const LEAST_ENERGY: f64 = 1e-3;
 const FORCES: f64 = 2.0;
 const WHAT: &str = "the pieces of a line";
 
+/// The coefficient at an offset along a line.
+fn along(influence: &Coefficients, grid: &Grid, k: usize) -> f64 {
+    if grid.my == 1 {
+        influence.at(k as i64, 0)
+    } else {
+        influence.at(0, k as i64)
+    }
+}
+
 /// A piece of C, or several joined.
 #[derive(Clone, Copy, Default)]
 struct Punch {
@@ -74,21 +83,24 @@ pub(super) struct Punches {
 }
 
 impl Punches {
+    /// Whether a grid is a line in plane strain: a logarithm falls by the same over each doubling of the distance, coefficients of short elements by half
+    /// of that.
+    pub(super) fn serve(influence: &Coefficients, grid: &Grid) -> bool {
+        let n = grid.len();
+        let fall = |k: usize| along(influence, grid, k) - along(influence, grid, 2 * k);
+        let is_line = n == grid.mx.max(grid.my) && n >= LEAST;
+        is_line && !influence.depends_on_place() && fall(n / 8) > 0.5 * fall(1)
+    }
+
     /// On a line in plane strain; none elsewhere. The coefficients are taken times `factor`.
     pub(super) fn if_plane_strain(influence: &Coefficients, factor: f64, grid: &Grid) -> Result<Option<Punches>> {
+        if !Punches::serve(influence, grid) {
+            return Ok(None);
+        }
         let n = grid.len();
-        if n != grid.mx.max(grid.my) || n < LEAST || influence.depends_on_place() {
-            return Ok(None);
-        }
-        let along = |k: usize| if grid.my == 1 { influence.at(k as i64, 0) } else { influence.at(0, k as i64) };
-        // A logarithm falls by the same over each doubling of the distance; coefficients of short elements fall by half of that.
-        let fall = |k: usize| along(k) - along(2 * k);
-        if !(fall(n / 8) > 0.5 * fall(1)) {
-            return Ok(None);
-        }
         let (x, y) = influence.repeats(grid);
         let mut kernel = zeros(n, WHAT)?;
-        kernel.iter_mut().enumerate().for_each(|(k, value)| *value = factor * along(k));
+        kernel.iter_mut().enumerate().for_each(|(k, value)| *value = factor * along(influence, grid, k));
         Punches::new(kernel, (if grid.my == 1 { x } else { y }).then_some(n as f64)).map(Some)
     }
 

@@ -40,7 +40,7 @@ const BELIEVED: f64 = 2.0;
 
 /// The method's windows, operators and coarser grids.
 pub struct ProjectedCg {
-    finest: Level,
+    pub(super) finest: Level,
     /// None before it is first needed.
     coarse: Option<CoarseGrids>,
     predictor: Predictor,
@@ -216,7 +216,11 @@ impl<S: AdmissibleSet> Step<S> for ProjectedCg {
         let by_approach = self.predicted && matches!(state.load, Load::Approach(_));
         self.lend_operator(problem, state)?;
         let last = Some(self.predictor.last()).filter(|_| by_approach && was == Freshness::Exact);
-        let end = self.finest.run(state, *set, (was, last), &inner, problem.grid.len(), monitor)?;
+        let end = if self.finds_force::<S>(state, &inner) {
+            self.find_force((state, *set), &inner, problem.grid.len(), monitor)?
+        } else {
+            self.finest.run(state, *set, (was, last), &inner, problem.grid.len(), monitor)?
+        };
         self.finest.rest();
         state.u_is = Freshness::Stale;
         let gives_up = end == End::Stagnated && monitor.count.residual > STALLED;

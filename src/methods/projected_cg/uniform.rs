@@ -56,15 +56,13 @@ impl<T: Real> Iteration<T> {
         for (d, inside) in self.deflation.d.iter_mut().zip(&state.contact) {
             *d = T::of(f64::from(u8::from(*inside)));
         }
-        let products = if is_plane_strain {
-            self.press_flat(state)
-        } else {
-            self.operator.apply(&self.deflation.d, &mut self.deflation.w, &mut self.workspace);
-            1
-        };
+        if is_plane_strain {
+            self.press_flat(state);
+        }
+        self.operator.apply(&self.deflation.d, &mut self.deflation.w, &mut self.workspace);
         self.deflation.elements = self.segments.count() as u64;
         self.deflation.measure();
-        products
+        1
     }
 
     /// Whether so much of C has changed that a direction on it is to be made anew, or for the first time.
