@@ -1,4 +1,4 @@
-//! Unlike bodies by force, where turns by force do not come together or their last pressures do not carry the force: by turns with creepages that are held.
+//! Forces on unlike bodies. If turns by force do not converge, or their last pressures cannot carry the force, turns with held creepages follow.
 //!
 //! With a creepage that is held tractions follow the pressures and the other way round, and both come together in a few turns, near full slip, too. The
 //! forces that are found so are compared with those that are given. The next creepage is that of a secant (Broyden 1965), within the two that are
@@ -72,9 +72,6 @@ impl Solver {
         let is_beyond = refusal.is_some() && from.missing() > BEYOND;
         let places = if is_beyond { &[FAR] } else { &ABOUT[..] };
         let (from, mut end) = self.look_about(turns, (scene, options), (from, places), cycles, monitor)?;
-        if is_beyond && from.is_none() && end != Outcome::Cancelled {
-            end = Outcome::Converged;
-        }
         if let (Some(from), Outcome::Converged) = (from, end) {
             refusal = None;
             end = self.bracket(turns, (scene, options), from, cycles, monitor)?;
@@ -101,8 +98,10 @@ impl Solver {
     ) -> Result<(Option<Place>, Outcome)> {
         let given = given(of.0);
         let wanted = turns.friction.as_ref().map_or([0.0; 2], TangentialTurn::wanted);
+        let along = [0, 1].map(|k| if given[k] { from.creepage[k] } else { 0.0 });
+        // Without a creepage all parts are the same.
+        let parts = if length(along) > 0.0 { parts } else { &parts[..1] };
         for part in parts {
-            let along = [0, 1].map(|k| if given[k] { from.creepage[k] } else { 0.0 });
             // Far away both forces lie against the creepages.
             let is_far = *part >= BEHIND && given == [true; 2] && length(wanted) > 0.0;
             let against = wanted.map(|force| -force / length(wanted) * length(along));
@@ -154,6 +153,11 @@ impl Solver {
                 None => break,
             };
         }
+        // The best is what a solve returns that does not converge.
+        let best = trials.best();
+        if found.missing() > best.missing() {
+            self.turns_with(turns, of, best.creepage, cycles, monitor)?;
+        }
         Ok(Outcome::Stagnated)
     }
 
@@ -169,7 +173,7 @@ impl Solver {
         if let Some(friction) = &mut turns.friction {
             friction.held = Some(creepage);
         }
-        self.turn_about(turns, (scene, &sharper(options)), Outcome::Converged, cycles, monitor)
+        self.turn_about(turns, (scene, &sharper(options)), (Outcome::Converged, false), cycles, monitor)
     }
 
     /// Tractions by force with the pressures that were found last: whether both problems are solved so.
@@ -179,7 +183,7 @@ impl Solver {
         }
         let end = turns.solve(true, Outcome::Converged, &self.state, monitor)?;
         let (distance, change) = turns.distance(&self.state);
-        let holds = change.is_none_or(|change| self.holds_with((distance, change), of, monitor));
+        let holds = self.holds_with((distance, change.unwrap_or(0.0)), of, monitor);
         let is_refused = turns.friction.as_mut().is_some_and(|friction| {
             friction.most = usize::MAX;
             friction.take_refusal().is_some()

@@ -73,12 +73,17 @@ impl Trials {
         Trials { given, slope, last: None, between: [None; 2], best: from, bad: 0, small }
     }
 
+    /// The place that misses least.
+    pub fn best(&self) -> Place {
+        self.best
+    }
+
     /// The next creepages after a place.
     pub fn next(&mut self, at: Place) -> Vector {
         let Place { creepage, excess } = at;
         if let Some(before) = self.last.replace(at) {
             let change = |now: Vector, then: Vector| [0, 1].map(|k| now[k] - then[k]);
-            self.turn(change(creepage, before.creepage), change(excess, before.excess));
+            self.learn(change(creepage, before.creepage), change(excess, before.excess));
         }
         let missing = at.missing();
         self.bad = if missing > PROGRESS * self.best.missing() { self.bad + 1 } else { 0 };
@@ -121,7 +126,7 @@ impl Trials {
     }
 
     /// Broyden's update: a change of creepages by dc changed the forces by de.
-    fn turn(&mut self, dc: Vector, de: Vector) {
+    fn learn(&mut self, dc: Vector, de: Vector) {
         let by = self.slope.map(|row| dot(row, de));
         let along = [0, 1].map(|k| dc[0] * self.slope[0][k] + dc[1] * self.slope[1][k]);
         let size = dot(dc, by);

@@ -107,16 +107,17 @@ impl Solver {
     ) -> Result<Outcome> {
         turns.distances.take(&self.state.h)?;
         let mut cycles = 0;
-        stop = self.turn_about(turns, (scene, options), stop, &mut cycles, monitor)?;
+        stop = self.turn_about(turns, (scene, options), (stop, true), &mut cycles, monitor)?;
         self.meet_by_creepages(turns, (scene, options), stop, &mut cycles, monitor)
     }
 
-    /// The same once, as friction says: by force, or with creepages that are held. `cycles`: of the normal problem so far.
+    /// The same once, as friction says: by force, or with creepages that are held. The normal problem ended with `stop`; `is_met`: with the distances that
+    /// the state has. `cycles`: of the normal problem so far.
     pub(super) fn turn_about(
         &mut self,
         turns: &mut Turns<'_>,
         (scene, options): (&Scene<'_>, &Options),
-        mut stop: Outcome,
+        (mut stop, is_met): (Outcome, bool),
         cycles: &mut usize,
         monitor: &mut Monitor<'_>,
     ) -> Result<Outcome> {
@@ -126,7 +127,7 @@ impl Solver {
             let so_far = turns.solve(true, stop, &self.state, monitor)?;
             let (distance, change) = turns.distance(&self.state);
             // Without a displacement the normal problem stays solved.
-            let Some(change) = change else { return Ok(so_far) };
+            let Some(change) = change.or((solved == 0 && !is_met).then_some(0.0)) else { return Ok(so_far) };
             extrapolation.turn(&self.state.h, distance, change)?;
             let holds = self.holds_with((distance, change), (scene, options), monitor);
             // What a turn had not enough products for goes on in the next one.

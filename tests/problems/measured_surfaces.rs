@@ -140,7 +140,7 @@ fn a_limit_that_is_not_reached_changes_nothing_of_that() {
     }
 }
 
-/// Measured: 13 to 50 iterations by force, 13 to 40 by approach; 23 to 200 with two periods, by approach.
+/// Measured: 14 to 50 iterations by force, 15 to 40 by approach; 25 to 215 with two periods, by approach.
 #[test]
 fn line_scans_with_periods_end() {
     let m = 9600;

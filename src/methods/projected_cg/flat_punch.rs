@@ -21,20 +21,21 @@ impl<T: Real> Iteration<T> {
         self.preconditioner.as_ref().is_some_and(Preconditioner::has_punches)
     }
 
-    /// Before the first iteration: whether pieces of C move as flat punches.
-    pub(super) fn choose_punches(&mut self, state: &State, is_mean_free: bool) {
-        let by_approach = matches!(state.load, Load::Approach(_));
+    /// Before the first iteration: whether pieces of C move as flat punches, and what elements are allowed.
+    pub(super) fn choose_punches(&mut self, state: &State) {
+        self.allowance = 0.0;
         let Some(m) = &mut self.preconditioner else { return };
-        if m.use_punches(!(by_approach && is_mean_free)) {
-            (self.counted, self.allowance) = (None, 0.0);
+        if m.use_punches(matches!(state.load, Load::Approach(_))) {
+            self.counted = None;
         }
         if self.is_plane_strain() {
             self.residual(state);
         }
     }
 
-    /// Elements that penetrate by less than the mean and the spread of the residual, which z holds, stay outside: pieces move as flat punches, u beside
-    /// C is as uncertain as the residual on it, and most elements that enter because of that leave at once.
+    /// An exterior element enters only if it penetrates by more than the mean of the residual, which z holds, and three standard deviations. Smaller
+    /// penetrations are as uncertain as the residual; most such elements would leave at once. By approach the mean may be negative: as by
+    /// force, a distance counts from its mean over C.
     pub(super) fn find_allowance(&mut self) {
         let mut sums = Sums::new();
         sums.add([], [&self.z], |[], [r]| [r, r * r]);

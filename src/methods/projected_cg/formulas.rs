@@ -253,7 +253,7 @@ impl Becomes<1, 3> for MovedU<'_> {
 #[derive(Clone, Copy)]
 pub(super) struct Entering<'a> {
     pub(super) approach: f64,
-    /// An exterior element enters where it penetrates by more, one at its limit where it is so far away.
+    /// Exterior elements enter C where -e exceeds it, elements at their limit where e does.
     pub(super) allowance: f64,
     /// Whether the contact area is given.
     pub(super) is_fixed: bool,

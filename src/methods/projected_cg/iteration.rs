@@ -103,6 +103,7 @@ impl<T: Real> Iteration<T> {
             self.limits.forget();
             self.forget_directions(state.grid.mx);
             self.find_contact(state);
+            self.choose_punches(state);
             let mut update = Update::default();
             self.least_energy::<S>(state, &mut update, None);
             if S::LIMITED && state.has_limited() {
@@ -187,7 +188,7 @@ impl<T: Real> Iteration<T> {
         }
         self.least_energy::<S>(state, &mut update, None);
         self.fit_approach(state, &update);
-        self.choose_punches(state, is_mean_free);
+        self.choose_punches(state);
         self.update_displacements::<S>(state, &update);
         self.segments.find(&state.contact);
         let products = products + self.deflate::<S>(state, is_mean_free) + self.restrict_deflation(state);

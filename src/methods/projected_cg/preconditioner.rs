@@ -78,9 +78,10 @@ impl<T: Real> Preconditioner<T> {
         self.has_punches
     }
 
-    /// Moves the pieces of C as flat punches, on a line in plane strain, if `wanted`. Returns whether that is new.
-    pub(super) fn use_punches(&mut self, wanted: bool) -> bool {
-        let before = std::mem::replace(&mut self.has_punches, wanted && self.punches.is_some());
+    /// Moves the pieces of C as flat punches, on a line in plane strain; not by approach where a punch may displace nothing. Returns whether that is new.
+    pub(super) fn use_punches(&mut self, by_approach: bool) -> bool {
+        let serves = |punches: &Punches| !(by_approach && punches.is_mean_free());
+        let before = std::mem::replace(&mut self.has_punches, self.punches.as_ref().is_some_and(serves));
         before != self.has_punches
     }
 

@@ -30,8 +30,7 @@ const LEAST: usize = 64;
 const SHORT: usize = 8;
 /// The least energy of a joint relative to that of one element. Coefficients of elastic bodies are above it.
 const LEAST_ENERGY: f64 = 1e-3;
-/// The forces are so many times those of the formula, since M' A has its least eigenvalues there. With 1, conjugate gradients take 1 to 1.25 times as many
-/// iterations; with 4 as many as with 2.
+/// Forces are doubled: M' A has its least eigenvalues on them. With 1 conjugate gradients take up to 1.25 times as many iterations, with 4 as many.
 const FORCES: f64 = 2.0;
 const WHAT: &str = "the pieces of a line";
 
@@ -69,6 +68,8 @@ pub(super) struct Punches {
     kernel: Vec<f64>,
     /// The line's period in elements, if it has one.
     period: Option<f64>,
+    /// Whether a uniform pressure displaces nothing.
+    is_mean_free: bool,
     /// First element and end of each piece.
     pieces: Vec<(u32, u32)>,
     /// g of the pieces, per element.
@@ -101,7 +102,8 @@ impl Punches {
         let (x, y) = influence.repeats(grid);
         let mut kernel = zeros(n, WHAT)?;
         kernel.iter_mut().enumerate().for_each(|(k, value)| *value = factor * along(influence, grid, k));
-        Punches::new(kernel, (if grid.my == 1 { x } else { y }).then_some(n as f64)).map(Some)
+        let punches = Punches::new(kernel, (if grid.my == 1 { x } else { y }).then_some(n as f64))?;
+        Ok(Some(Punches { is_mean_free: influence.is_mean_free(), ..punches }))
     }
 
     /// Of coefficients at offsets 0, 1, ... along the line, and its period in elements.
@@ -110,6 +112,7 @@ impl Punches {
         let mut punches = Punches {
             kernel,
             period,
+            is_mean_free: false,
             pieces: Vec::new(),
             weights: zeros(n, WHAT)?,
             punches: Vec::new(),
@@ -124,6 +127,11 @@ impl Punches {
         reserve(&mut punches.values, 2 * most, WHAT)?;
         reserve(&mut punches.open, most, WHAT)?;
         Ok(punches)
+    }
+
+    /// Whether a uniform pressure displaces nothing.
+    pub(super) fn is_mean_free(&self) -> bool {
+        self.is_mean_free
     }
 
     /// The pieces of C and their joints.

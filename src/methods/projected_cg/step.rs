@@ -51,6 +51,8 @@ pub struct ProjectedCg {
     /// Whether the solve begins on the finest grid from what coarser ones found.
     is_new: bool,
     precision: Precision,
+    /// A force and its approach, where the force is found for the approach.
+    pub(super) secant: Option<(f64, f64)>,
     /// Of the last step: the recursive residual that it ended with, relative.
     recursive: f64,
 }
@@ -66,6 +68,7 @@ impl ProjectedCg {
             predicted: false,
             is_new: false,
             precision,
+            secant: None,
             recursive: 0.0,
         }
     }
@@ -139,7 +142,7 @@ impl ProjectedCg {
 
     /// Another solve begins.
     pub fn begin_anew(&mut self) {
-        (self.predicted, self.is_new) = (false, false);
+        (self.predicted, self.is_new, self.secant) = (false, false, None);
     }
 
     /// A step in time: moves `state` on from the last solution.

@@ -99,7 +99,7 @@ fn to(samples: &[Sample], doublings: i32, tolerance: f64) -> (f64, f64) {
     if let Some((part, tangential)) = sample.between(tolerance) {
         let before = at.checked_sub(1).and_then(|before| samples[before].between(tolerance));
         // What two samples show is irregular: half of it is believed, and half of what is usual.
-        let seen = before.map_or(MORE, |before| tangential / before.1);
+        let seen = before.filter(|before| before.1 > 0.0).map_or(MORE, |before| tangential / before.1);
         let grows = (seen * MORE).sqrt().clamp(1.0, MOST_MORE);
         return (part, sample.normal(tolerance, begins) + tangential * grows.powi(finer));
     }

@@ -160,8 +160,8 @@ impl Sample {
                 self.loose = Some(Loose {
                     tolerance,
                     seconds: (1.0 - (self.solve - again.solve) / self.cost.seconds).min(1.0),
-                    tangential: (again.tangential / self.tangential).min(1.0),
-                    normal: (again.cost.products - again.tangential) / self.told(tolerance),
+                    tangential: (again.tangential / self.tangential.max(1.0)).min(1.0),
+                    normal: (again.cost.products - again.tangential) / self.told(tolerance).max(1.0),
                 });
             }
             Taken::Cancelled => return Ok(Outcome::Cancelled),
