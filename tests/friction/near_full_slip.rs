@@ -125,6 +125,6 @@ fn one_element_alone_sticks() {
             }
         }
     }
-    // They took 7800; 4900 now.
-    assert!(products <= 6500.0, "{products} products");
+    // They took 7800, and two were not solved; 7020 now, all with the certificate of the normal problem.
+    assert!(products <= 7500.0, "{products} products");
 }
