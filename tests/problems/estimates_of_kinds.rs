@@ -161,10 +161,9 @@ fn errors_of_a_turned_scene_are_the_same() {
     let m = 256;
     let grid = Grid::new(m, m, 1.0 / m as f64, 1.0 / m as f64).expect("a grid");
     let at = |k: usize| (k as f64 + 0.5) / m as f64 - 0.5;
-    let wave = |x: f64, _: f64| 0.01 * (PI * x).sin().powi(2);
-    let powers = |x: f64, y: f64| 3.8 * (x - 0.013).abs().powf(3.4) + 1.6 * (y + 0.02).powi(2);
-    let cases: [(&dyn Fn(f64, f64) -> f64, f64, bool); 4] =
-        [(&wave, 0.0045, true), (&wave, 0.0035, true), (&wave, 0.0025, true), (&powers, 0.03, false)];
+    let wave: fn(f64, f64) -> f64 = |x, _| 0.01 * (PI * x).sin().powi(2);
+    let powers: fn(f64, f64) -> f64 = |x, y| 3.8 * (x - 0.013).abs().powf(3.4) + 1.6 * (y + 0.02).powi(2);
+    let cases = [(wave, 0.0045, true), (wave, 0.0035, true), (wave, 0.0025, true), (powers, 0.03, false)];
     for (h, approach, repeats) in cases {
         let of = |turned: bool| {
             let h: Vec<f64> =
