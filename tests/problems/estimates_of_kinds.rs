@@ -154,30 +154,6 @@ fn errors_of_a_wave_are_covered_up_to_full_contact() {
     assert!(ratios[ratios.len() / 2] <= 4.0, "{ratios:?}");
 }
 
-/// On grids of which a part of the elements is looked at: a wave and powers of x and y, and the same along the other axis. The means are those of some
-/// thousand elements: the same to some per cent.
-#[test]
-fn errors_of_a_turned_scene_are_the_same() {
-    let m = 256;
-    let grid = Grid::new(m, m, 1.0 / m as f64, 1.0 / m as f64).expect("a grid");
-    let at = |k: usize| (k as f64 + 0.5) / m as f64 - 0.5;
-    let wave: fn(f64, f64) -> f64 = |x, _| 0.01 * (PI * x).sin().powi(2);
-    let powers: fn(f64, f64) -> f64 = |x, y| 3.8 * (x - 0.013).abs().powf(3.4) + 1.6 * (y + 0.02).powi(2);
-    let cases = [(wave, 0.0045, true), (wave, 0.0035, true), (wave, 0.0025, true), (powers, 0.03, false)];
-    for (h, approach, repeats) in cases {
-        let of = |turned: bool| {
-            let h: Vec<f64> =
-                (0..m * m).map(|i| if turned { h(at(i / m), at(i % m)) } else { h(at(i % m), at(i / m)) }).collect();
-            let period = repeats.then_some(Period { x: true, y: true });
-            report(&Scene { period, ..Scene::new(grid, &h, UNIT, Load::Approach(approach)) }).error
-        };
-        let (one, other) = (of(false), of(true));
-        for (one, other) in [(one.force, other.force), (one.corrected_area, other.corrected_area)] {
-            assert!((one / other).ln().abs() < 0.06, "{approach}: {one:e} and {other:e}");
-        }
-    }
-}
-
 /// A ball whose one side is lower by a step: contact ends at the step, where elements have a second difference as high as that. It is no bend: with it
 /// estimates stayed at 3 to 6 thousandths on all grids.
 #[test]

@@ -208,7 +208,7 @@ fn at_e_of_zero_nobody_enters() {
     assert_eq!(list, [1, 2]);
     for (allowance, enter) in [(0.4, &[1, 2][..]), (0.6, &[])] {
         list.clear();
-        let entering = Entering { allowance, ..entering };
+        let entering = Entering { approach: 1.0 - allowance, allowance, ..entering };
         block.change_and_list_outside(&mut u, &mut list, [&h], [&[0.0_f32; 4][..]], MovedU(&update), entering);
         // u has not changed: the update's length is 0.
         assert_eq!(list, enter, "an allowance of {allowance}");

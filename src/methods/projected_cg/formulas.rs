@@ -252,6 +252,7 @@ impl Becomes<1, 3> for MovedU<'_> {
 /// Step (4.2): elements outside C that enter it.
 #[derive(Clone, Copy)]
 pub(super) struct Entering<'a> {
+    /// Less the allowance.
     pub(super) approach: f64,
     /// Exterior elements enter C where -e exceeds it, elements at their limit where e does.
     pub(super) allowance: f64,
@@ -264,7 +265,7 @@ pub(super) struct Entering<'a> {
 impl Wanted<1> for Entering<'_> {
     #[inline(always)]
     fn of<S: Simd>(&self, first: usize, u: Vector<S>, [h]: [Vector<S>; 1]) -> Holds<S> {
-        let (e, zero) = (h - (self.approach - self.allowance) + u, u.all(0.0));
+        let (e, zero) = (h - self.approach + u, u.all(0.0));
         if self.is_fixed {
             return zero.is_below(zero);
         }
