@@ -79,7 +79,7 @@ fn by(arch: pulp::Arch, n: usize) -> Vec<Vec<u64>> {
         found.push(leaving(arch, block, (p, t.as_slice(), q), Leaving { moved, forecast, set, elements: n }));
     }
     for held in [vec![], (0..n).map(|i| !contact[i] && i % 3 == 0).collect()] {
-        let wanted = Entering { approach: 0.1, allowance: 0.05, is_fixed: false, held: &held };
+        let wanted = Entering { approach: 0.1, is_fixed: false, held: &held };
         let (mut u, mut list) = (u.clone(), Vec::new());
         let (data, list_of, arrays) = (&mut u[..], &mut list, Arrays::of(block, [&h[..]], [&q[..]]));
         arch.dispatch(Everywhere { block, data, list: list_of, arrays, change: MovedU(&UPDATES[0]), wanted });
@@ -167,7 +167,7 @@ fn check_who_enters<S: AdmissibleSet>(set: S, n: usize) {
     let at_limit: Vec<bool> = (0..n).map(|i| S::LIMITED && !contact[i] && i % 3 == 0).collect();
     let held = if S::LIMITED { &at_limit[..] } else { &[] };
     let block = Block::new(0, contact, n, &[]);
-    let entering = Entering { approach: 0.1, allowance: 0.0, is_fixed: S::FIXED, held };
+    let entering = Entering { approach: 0.1, is_fixed: S::FIXED, held };
     for update in &UPDATES {
         let (mut u, mut list) = (before.clone(), Vec::new());
         match update.is_corrected {
@@ -199,20 +199,13 @@ fn elements_enter_by_the_rule_of_the_admissible_set() {
 fn at_e_of_zero_nobody_enters() {
     let (h, mut u, mut list) = ([1.0, 1.0, 1.0, 1.0], [0.0, -0.5, 0.5, 0.0], Vec::new());
     let (block, update) = (Block::new(0, &[false; 4], 4, &[]), Update::default());
-    let plain = Entering { approach: 1.0, allowance: 0.0, is_fixed: false, held: &[] };
+    let plain = Entering { approach: 1.0, is_fixed: false, held: &[] };
     block.change_and_list_outside(&mut u, &mut list, [&h], [&[0.0_f32; 4][..]], MovedU(&update), plain);
     assert_eq!(list, [1]);
     list.clear();
     let entering = Entering { held: &[false, false, true, true], ..plain };
     block.change_and_list_outside(&mut u, &mut list, [&h], [&[0.0_f32; 4][..]], MovedU(&update), entering);
     assert_eq!(list, [1, 2]);
-    for (allowance, enter) in [(0.4, &[1, 2][..]), (0.6, &[])] {
-        list.clear();
-        let entering = Entering { approach: 1.0 - allowance, allowance, ..entering };
-        block.change_and_list_outside(&mut u, &mut list, [&h], [&[0.0_f32; 4][..]], MovedU(&update), entering);
-        // u has not changed: the update's length is 0.
-        assert_eq!(list, enter, "an allowance of {allowance}");
-    }
 }
 
 /// Sums over C of `terms(element)`, one after the other.

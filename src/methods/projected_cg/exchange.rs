@@ -54,8 +54,9 @@ impl<T: Real> Iteration<T> {
         let limited = S::LIMITED && state.has_limited();
         let State { h, u, contact, at_limit, .. } = state;
         let held = if limited { &at_limit[..] } else { &[] };
-        let (approach, allowance) = (state.approach - self.allowance, self.allowance);
-        let (moved, entering) = (MovedU(update), Entering { approach, allowance, is_fixed: S::FIXED, held });
+        // Elements at their limit enter from the other side.
+        let approach = if limited { state.approach } else { state.approach - self.allowance };
+        let (moved, entering) = (MovedU(update), Entering { approach, is_fixed: S::FIXED, held });
         self.segments.list_changing(
             contact,
             u,

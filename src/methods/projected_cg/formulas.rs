@@ -252,10 +252,7 @@ impl Becomes<1, 3> for MovedU<'_> {
 /// Step (4.2): elements outside C that enter it.
 #[derive(Clone, Copy)]
 pub(super) struct Entering<'a> {
-    /// Less the allowance.
     pub(super) approach: f64,
-    /// Exterior elements enter C where -e exceeds it, elements at their limit where e does.
-    pub(super) allowance: f64,
     /// Whether the contact area is given.
     pub(super) is_fixed: bool,
     /// Which are at their limit; none: no element is.
@@ -272,9 +269,8 @@ impl Wanted<1> for Entering<'_> {
         if self.held.is_empty() {
             return e.is_below(zero);
         }
-        let is_held = |lane| self.held.get(first + lane) == Some(&true);
-        let side = e.of_each(|lane| if is_held(lane) { 1.0 } else { -1.0 });
-        let twice = e.of_each(|lane| if is_held(lane) { 2.0 * self.allowance } else { 0.0 });
-        twice.is_below(side * e)
+        // 1 at the limit, -1 elsewhere.
+        let side = e.of_each(|lane| if self.held.get(first + lane) == Some(&true) { 1.0 } else { -1.0 });
+        zero.is_below(side * e)
     }
 }
