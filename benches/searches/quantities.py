@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from run import DOUBLING, PRODUCTS, SECONDS, percent, within
+from run import DOUBLING, PRODUCTS, SECONDS, is_reached, percent, within
 from surfaces import KINDS, Surface
 
 import contact_normal
@@ -141,11 +141,7 @@ def judge(judged: Judged, tally: Tally, what: str, say: bool) -> None:
     truth = judged.row(min(finest + 2, judged.finest())).value
     errors = [abs(judged.row(k).value - truth) for k in range(finest + 1)]
     for target, result in found:
-        tally.searches += 1
-        if result.status != 0:
-            tally.not_reached += 1
-            if say:
-                print(f"  not reached: {what}, {target:g}: {result.message}")
+        if not is_reached(result, tally, f"{what}, {target:g}", say):
             continue
         at = judged.doublings(result.pressure.shape[1])
         miss = abs(judged.row(at).value - truth) / (target * abs(truth) or np.inf)

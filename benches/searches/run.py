@@ -12,6 +12,7 @@ import sys
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from surfaces import KINDS, Surface
@@ -110,6 +111,17 @@ def search(judged: Judged, target: float) -> contact_normal.AccurateResult:
     )
 
 
+def is_reached(result: contact_normal.AccurateResult, tally: Any, what: str, say: bool) -> bool:
+    """Counts a search, and those that end before their target."""
+    tally.searches += 1
+    if result.status == 0:
+        return True
+    tally.not_reached += 1
+    if say:
+        print(f"  not reached: {what}: {result.message}")
+    return False
+
+
 def judge(judged: Judged, tally: Tally, what: str, say: bool) -> None:
     """All searches of a surface with a load, and the estimates on all grids that these have used."""
     found = [(target, search(judged, target)) for target in TARGETS]
@@ -117,11 +129,7 @@ def judge(judged: Judged, tally: Tally, what: str, say: bool) -> None:
     truth = judged.value(judged.on(min(finest + 2, judged.finest())))
     errors = [abs(judged.value(judged.on(k)) / truth - 1) for k in range(finest + 1)]
     for target, result in found:
-        tally.searches += 1
-        if result.status != 0:
-            tally.not_reached += 1
-            if say:
-                print(f"  not reached: {what}, {target:g}: {result.message}")
+        if not is_reached(result, tally, f"{what}, {target:g}", say):
             continue
         miss = abs(judged.value(result) / truth - 1) / target
         tally.misses.append(miss)

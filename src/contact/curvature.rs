@@ -8,7 +8,7 @@ use crate::bounding_box::bounding_box;
 
 /// Rows of the contact area that are looked at, at least: the means over more of them are the same.
 const ROWS: usize = 32;
-/// A longer run counts as one of so many elements: its part of the error, `(2.5/run)^2`, is 2 % or less.
+/// A longer run counts as one of so many elements. Its part of the error, `(2.5/run)^2`, is then 2 %.
 const LONG: usize = 16;
 
 /// Second differences of h and p over the contact area.

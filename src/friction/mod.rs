@@ -76,7 +76,7 @@ pub use coefficients::{Compliance, Tangential};
 pub use cross::{Coupling, CrossTables, Source};
 pub use last::Last;
 pub use law::Particle;
-pub use plane::Vector;
+pub use plane::{dot, length, Vector};
 pub use request::{Request, Start};
 pub use rolling_tables::rolling_tables;
 pub use solution::{Report, Solution, EXTERIOR, PLASTIC, SLIP, STICK};

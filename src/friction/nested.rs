@@ -30,9 +30,10 @@ const SHARE: f64 = 0.4;
 
 /// Creepages and tractions follow each other where more than this part of C slips.
 const MOSTLY_SLIP: f64 = 0.8;
-/// Where nearly all slips, Newton's method with balanced creepages is tried first, by so many products: of 3800 random scenes half take less than half of the
-/// products then. Where one element alone sticks it goes round in circles, and the others do, too: they have no more than so many.
+/// Where nearly all slips, Newton's method with balanced creepages comes first. It has so many products: half of 3800 random scenes then take less than
+/// half of the products, and where one element alone sticks the method goes round in circles.
 const TRIED: u64 = 8;
+/// Plain Newton steps come next. They may go round in circles as well.
 const PLAIN: u64 = 60;
 /// Products that certificates take at the end of a solve that is not done: they are kept back.
 const KEPT_BACK: u64 = 5;

@@ -24,12 +24,17 @@ pub fn clip(q: Vector, g: f64) -> Vector {
 
 /// The traction of length g against a slip, whichever way lengths are rounded.
 pub fn against(slip: Vector, g: f64) -> Vector {
-    let length = slip[0].hypot(slip[1]);
+    let length = length(slip);
     if length > 0.0 {
         clip(slip.map(|s| -s / length * g), g)
     } else {
         [0.0; 2]
     }
+}
+
+/// `|v|`, of any size.
+pub fn length(v: Vector) -> f64 {
+    v[0].hypot(v[1])
 }
 
 /// `|v|^2`.

@@ -2,7 +2,7 @@
 
 use super::certificate::is_on_circle;
 use super::levels::Level;
-use super::plane::{against, Vector};
+use super::plane::{against, length, Vector};
 use super::solution::{resultant, Report, Solution, EXTERIOR, SLIP, STICK};
 use super::solver::Solver;
 use super::window::Window;
@@ -67,9 +67,8 @@ impl Solver {
 
     /// See [`Report::missing`].
     pub(super) fn missing(&self, friction: &Friction<'_>, report: &Report) -> f64 {
-        let [x, y] = self.excess(friction, report);
         if report.carried > 0.0 {
-            x.hypot(y) / report.carried
+            length(self.excess(friction, report)) / report.carried
         } else {
             0.0
         }

@@ -7,14 +7,14 @@
 //! *Forces beyond full slip.* Near full slip forces need not fall as creepages grow: what the pressures carry changes more. So creepages about
 //! those of turns by force are looked through for one that reaches the force. A force is refused where none of them does.
 
-use super::creepage_trials::{dot, length, Place, Trials};
+use super::creepage_trials::{Place, Trials};
 use super::tangential_turn::{sharper, TangentialTurn, ROUND_OFF};
 use super::turns::Turns;
 use super::{Options, Solver};
 use crate::contact::Survey;
 use crate::effects::Coefficient;
 use crate::error::Result;
-use crate::friction::Vector;
+use crate::friction::{dot, length, Vector};
 use crate::progress::{Monitor, Outcome};
 use crate::scene::{Load, Prescribed, Scene};
 
@@ -24,7 +24,7 @@ const FINISH: usize = 30;
 /// Creepages at most.
 const MOST_TRIALS: u32 = 30;
 /// Creepages that are looked through, relative to those of turns by force; of two forces those from BEHIND on lie straight against them.
-const ABOUT: [f64; 14] = [1.0, 1.3, 2.0, 4.0, 16.0, 64.0, 256.0, 1e3, 1e4, 1e6, 0.75, 0.5, 0.25, 0.1];
+const ABOUT: [f64; 14] = [1.0, 1.3, 2.0, 4.0, 16.0, 64.0, 256.0, 1e3, 1e4, FAR, 0.75, 0.5, 0.25, 0.1];
 const BEHIND: f64 = 64.0;
 /// Where turns by force leave more than that part of mu N only the far one is: before full slip pressures carry at most some thousandths more.
 const BEYOND: f64 = 1e-2;

@@ -1,6 +1,6 @@
 //! The search for the creepages of forces that are given, by turns with creepages that are held.
 
-use crate::friction::Vector;
+use crate::friction::{dot, length, Vector};
 
 /// A trial is good if it leaves at most this part of the least that was missing.
 const PROGRESS: f64 = 0.5;
@@ -41,16 +41,6 @@ pub struct Trials {
     bad: u32,
     /// Creepages below that are small.
     small: f64,
-}
-
-/// Of a vector.
-pub fn length(v: Vector) -> f64 {
-    v[0].hypot(v[1])
-}
-
-/// `v . w`.
-pub fn dot(v: Vector, w: Vector) -> f64 {
-    v[0] * w[0] + v[1] * w[1]
 }
 
 impl Trials {

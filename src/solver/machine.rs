@@ -58,9 +58,9 @@ pub fn growth(from: f64, to: f64) -> f64 {
     growth_by(MACHINE.get().map_or(&[], Vec::as_slice), from, to)
 }
 
-/// Seconds of one thread on a grid of so many elements, from the sample that promises the least: others were disturbed, or so small
-/// that they are mostly overhead. Where products grow from sample to sample, each is carried on to as many. Samples with half the products of the last and fewer hardly see the contact. The set-up grows as the last two
-/// samples say (that of a period hardly does). No grid takes longer than a finer one. Without samples 0.
+/// Seconds of one thread on a grid of so many elements; 0 without samples. The sample that promises the least counts: others were disturbed, or are
+/// mostly overhead. Samples with half the products of the last, or fewer, hardly see the contact and do not count. Products grow as they do from sample
+/// to sample. The set-up grows as the last two samples say (that of a period hardly does). No grid takes longer than a finer one.
 pub fn seconds_on(samples: &[Cost], elements: f64) -> f64 {
     let seen = match samples {
         [.., before, last] => (last.setup / before.setup).ln() / (last.elements / before.elements).ln(),

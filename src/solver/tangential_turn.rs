@@ -5,7 +5,7 @@ use super::{Options, Outcome};
 use crate::contact::State;
 use crate::effects::Coupled;
 use crate::error::{Error, Result};
-use crate::friction::{Report, Start, Vector};
+use crate::friction::{length, Report, Start, Vector};
 use crate::progress::Monitor;
 use crate::scene::{Friction, Prescribed};
 
@@ -70,8 +70,8 @@ impl<'a> TangentialTurn<'a> {
 
     /// Whether turns are taken by a force that lets nearly all slip.
     pub fn is_near(&self) -> bool {
-        let [x, y] = self.wanted();
-        self.by_force && self.found.as_ref().is_some_and(|found| x.hypot(y) > NEAR * found.carried)
+        let wanted = length(self.wanted());
+        self.by_force && self.found.as_ref().is_some_and(|found| wanted > NEAR * found.carried)
     }
 
     /// Whether only round-off is left of the last solve.
@@ -105,7 +105,7 @@ impl<'a> TangentialTurn<'a> {
     /// The largest slip of the last result.
     pub fn largest_slip(&self) -> f64 {
         let slips = self.tangent.solution().into_iter().flat_map(|solution| &solution.slip);
-        slips.fold(0.0, |largest: f64, slip| largest.max(slip[0].hypot(slip[1])))
+        slips.fold(0.0, |largest: f64, slip| largest.max(length(*slip)))
     }
 
     /// The forces that were found are those that are given, to the tolerance.

@@ -18,10 +18,8 @@ use crate::progress::{Goal, Monitor};
 use crate::scene::Load;
 use crate::sums::in_blocks;
 
-/// The residual to which the first force is solved.
+/// The residual to which the first force is solved; the next ones to what the approach is off.
 const LOOSE: f64 = 1e-2;
-/// The residual of the next, relative to what the approach is off.
-const CLOSER: f64 = 1.0;
 /// The first change of the force, relative to it: as much as the approach is off, within this range.
 const FIRST: (f64, f64) = (1e-3, 0.03);
 /// Later changes are at most by this factor.
@@ -83,7 +81,7 @@ impl ProjectedCg {
                 break;
             }
             force = next.clamp(force / FURTHEST, FURTHEST * force);
-            tolerance = goal.tolerance.max(tolerance.min(CLOSER * off));
+            tolerance = goal.tolerance.max(tolerance.min(off));
         }
         Ok(end)
     }

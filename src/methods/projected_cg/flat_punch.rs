@@ -11,8 +11,8 @@ use crate::operator::fft::Real;
 use crate::scene::Load;
 use crate::sums::Sums;
 
-/// Elements enter from so many standard deviations of the residual on. Three lines of 9600 elements with two periods, by force from a uniform
-/// pressure: 43, 66 and 48 products with 3, 58, 80 and 62 with 10; with 1 no end.
+/// An element enters from so many standard deviations of the residual on. Three lines of 9600 elements with two periods take 43, 66 and 48 products
+/// with 3, and 58, 80 and 62 with 10 (by force, from a uniform pressure). With 1 they do not end.
 const ALLOWED: f64 = 3.0;
 
 impl<T: Real> Iteration<T> {

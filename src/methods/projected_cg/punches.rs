@@ -11,9 +11,9 @@
 //! ```
 //!
 //! A joint makes one punch of two neighbours l and r, `g = a g_l + (1 - a) g_r` with the least energy `(g, A g)`; then g_l - g_r, of the energy s, is
-//! conjugate to g. Pieces within 4 elements are joined, then within 8, and so on; g of the last joint is that of all of C. What is known of a
-//! punch is its centre and its energy: two of them displace each other as forces at their centres, and a piece of n elements displaces itself as a
-//! force n/4 elements away does (exact for a logarithm; Johnson, Contact Mechanics, section 2.7).
+//! conjugate to g. Pieces within 4 elements are joined, then within 8, and so on; the last joint has all of C. A punch is described by its centre and its
+//! energy. Two punches displace each other as forces at their centres do. A piece of n elements displaces itself as a force n/4 elements away does
+//! (exact for a logarithm; Johnson, Contact Mechanics, section 2.7).
 //!
 //! Measured on rough lines of 9600 elements with two periods, Hurst exponents of 0.3 and 0.8, conjugate gradients on the C of the solution: 24 to
 //! 52 iterations, with M alone 32 to more than 400.

@@ -134,7 +134,7 @@ impl<T: Real> Iteration<T> {
         self.threads = threads.for_a_pass(n);
         self.workspace = workspace(&self.operator, &self.preconditioner)?;
         self.extension = Extension::if_worthwhile(grid, &self.threads)?;
-        (self.counted, self.allowance) = (None, 0.0);
+        self.counted = None;
         self.segments = Segments::new(grid, &self.threads)?;
         for values in [&mut self.t, &mut self.q, &mut self.z] {
             asleep(values, n, T::nan(), DIRECTIONS, &self.threads)?;

@@ -12,8 +12,8 @@ const COATING: f64 = 4e5;
 /// Of an element: for each product of the normal and of the tangential problem.
 const NORMAL: f64 = 10.0;
 const TANGENTIAL: f64 = 4.0;
-/// For the coefficients by which tractions and pressures of unlike bodies feel each other, in rolling twice.
-const UNLIKE: f64 = 3600.0;
+/// For the coefficients by which tractions and pressures of unlike bodies feel each other, in rolling; in a shift they take half.
+const UNLIKE: f64 = 7200.0;
 /// For the largest stress over all depths: so many times more with tractions, and where the scene repeats itself. For the stiffness.
 const STRESS: f64 = 1000.0;
 const WITH_TRACTIONS: f64 = 3.0;
@@ -23,7 +23,7 @@ const STIFFNESS: f64 = 60.0;
 /// Of a scene that was solved on its grid, with the values of `wanted`.
 pub fn effort(scene: &Scene<'_>, found: &OnGrid, wanted: &[Quantity]) -> f64 {
     let repeats = scene.period.is_some_and(|period| period.x || period.y);
-    let unlike = if scene.friction.is_some() && scene.bodies.unlike() != 0.0 { 2.0 * UNLIKE } else { 0.0 };
+    let unlike = if scene.friction.is_some() && scene.bodies.unlike() != 0.0 { UNLIKE } else { 0.0 };
     let normal = found.work_units - found.tangential;
     let stress =
         STRESS * if scene.friction.is_some() { WITH_TRACTIONS } else { 1.0 } * if repeats { REPEATED } else { 1.0 };

@@ -14,9 +14,11 @@ use crate::solver::quantities::{Lack, OnGrid, Quantity, Sequence};
 use crate::solver::{Options, Outcome, ProgressCallback};
 use crate::threads::Threads;
 
-/// Effort of a bill whatever the scene's is, less than a tenth of a second for what counts do not tell, and the part of the scene's, which grows with this power of its elements.
+/// The effort of a bill whatever the scene's is: less than a tenth of a second, since counts do not tell all.
 const EFFORT: f64 = 7e7;
+/// The same as a part of the scene's.
 const PART: f64 = 0.05;
+/// The power of the elements with which the effort of a scene grows.
 const GROWTH: f64 = 1.1;
 /// The next grid takes so many times as long, at most.
 const NEXT: f64 = 5.0;

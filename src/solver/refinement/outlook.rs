@@ -1,8 +1,7 @@
 //! Forecasts for finer grids from a solution.
 
 use crate::contact::State;
-use crate::scene::Load;
-use crate::scene::Scene;
+use crate::scene::{Load, Scene};
 use crate::solver::falling::Falling;
 use crate::solver::quantities::{Course, Lack, Quantity, Value};
 use crate::solver::{Report, Solver};

@@ -56,9 +56,7 @@ pub fn cost_of_accuracy(
     }
     quantity.check(scene)?;
     let mut history = History::of(std::iter::once(quantity), scene);
-    let least = targets.iter().copied().fold(f64::INFINITY, f64::min);
-    let tolerance = tolerance_for(quantity, least).clamp(1e-12, options.tolerance);
-    let loosest = tolerance_for(quantity, targets.iter().copied().fold(0.0, f64::max)).max(tolerance);
+    let (tolerance, loosest) = tolerances(quantity, targets, options);
     let options = Options { tolerance, estimates: true, ..*options };
     let one = Options { threads: 1, ..options };
     // The first time in a process this times the machine, which is none of the list's own time.
@@ -69,23 +67,23 @@ pub fn cost_of_accuracy(
         let one = |target: &f64| price(scene, (samples, counted), accuracy, (quantity, *target), speed_up);
         targets.iter().map(one).collect()
     };
-    let list = |samples: &[Sample], speed_up: f64| list_with(samples, &[], speed_up);
+    let list = |samples: &[Sample]| list_with(samples, &[], 1.0);
     while samples.len() < MOST_SAMPLES {
         let spare = FOR_TIMES * (SECONDS - began.elapsed().as_secs_f64());
         let sample = match Sample::take(scene, &one, (doublings, spare), quantity, (&mut surface, &mut progress))? {
             Taken::Sample(sample) => sample.carried_on(&mut history),
-            Taken::Cancelled => return Ok((Outcome::Cancelled, list(&samples, 1.0))),
+            Taken::Cancelled => return Ok((Outcome::Cancelled, list(&samples))),
             Taken::Unsolved => break,
         };
         let next = sample.cost.seconds * NEXT;
         samples.push(sample);
         doublings += 1;
-        let had = list(&samples, 1.0).into_iter().filter(|price| price.obstacle.is_none());
+        let had = list(&samples).into_iter().filter(|price| price.obstacle.is_none());
         let dearest = had.map(|price| price.seconds).fold(0.0, f64::max);
         let most = SECONDS.max(PART * dearest);
         let (loose, left) = (Options { tolerance: loosest, ..one }, most - began.elapsed().as_secs_f64());
         if loosen(scene, &loose, (&mut samples, left), (&mut surface, &mut progress))? == Outcome::Cancelled {
-            return Ok((Outcome::Cancelled, list(&samples, 1.0)));
+            return Ok((Outcome::Cancelled, list(&samples)));
         }
         // Where one grid has no estimate the error follows from three, and from four if two changes happen to be alike.
         let has_error = |last: &Sample| last.falling().is_some() || samples.len() > 3;
@@ -95,12 +93,20 @@ pub fn cost_of_accuracy(
             break;
         }
     }
-    let counted = count(scene, &one, (&samples, &list(&samples, 1.0)), (&mut surface, &mut progress))?;
-    let Some(counted) = counted else { return Ok((Outcome::Cancelled, list(&samples, 1.0))) };
+    let counted = count(scene, &one, (&samples, &list(&samples)), (&mut surface, &mut progress))?;
+    let Some(counted) = counted else { return Ok((Outcome::Cancelled, list(&samples))) };
     Ok(match speed_up(scene, &options, (&samples, quantity), (&mut surface, &mut progress))? {
         Some(speed_up) => (Outcome::Converged, list_with(&samples, &counted, speed_up)),
-        None => (Outcome::Cancelled, list(&samples, 1.0)),
+        None => (Outcome::Cancelled, list(&samples)),
     })
+}
+
+/// Of the least and of the greatest target.
+fn tolerances(quantity: Quantity, targets: &[f64], options: &Options) -> (f64, f64) {
+    let least = targets.iter().copied().fold(f64::INFINITY, f64::min);
+    let tolerance = tolerance_for(quantity, least).clamp(1e-12, options.tolerance);
+    let greatest = targets.iter().copied().fold(0.0, f64::max);
+    (tolerance, tolerance_for(quantity, greatest).max(tolerance))
 }
 
 /// Solves the last sample to a loose tolerance, if that takes no more than the seconds that are `left`; else it has what the sample before has.
