@@ -184,11 +184,10 @@ impl Case {
         format!("{}, {bodies} bodies", self.motion())
     }
 
-    /// A line contact of unlike bodies by force, called with the cycles of the default.
+    /// A line contact of unlike bodies, called with the cycles of the default.
     pub fn is_slow_line(&self) -> bool {
         let is_line = self.place.grid.mx == 1 || self.place.grid.my == 1;
-        let by_force = self.slide.prescribed.contains(&CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE);
-        is_line && by_force && !self.place.is_alike() && self.stop.is_unhindered()
+        is_line && !self.place.is_alike() && self.stop.is_unhindered()
     }
 
     /// In one line.

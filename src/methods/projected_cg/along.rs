@@ -40,6 +40,10 @@ impl<T: Real> Iteration<T> {
         let Some(last) = last else { return Ok(()) };
         self.deflation.reserve(state.p.len())?;
         self.deflation.is_uniform = false;
+        let Some(last_u) = last.u else {
+            self.displace_change(state, last.p, (window, mx), units);
+            return Ok(());
+        };
         let Deflation { d, w, .. } = &mut self.deflation;
         let mut sums = Sums::new();
         let width = window.x.len();
@@ -48,7 +52,7 @@ impl<T: Real> Iteration<T> {
             let (here, whole) = (row * width..(row + 1) * width, y * mx + window.x.start..y * mx + window.x.end);
             pulp::Arch::new().dispatch(Change {
                 p: (&state.p[here.clone()], &last.p[whole.clone()], units.pressure()),
-                u: (&state.u[here], &last.u[whole], units.length),
+                u: (&state.u[here], &last_u[whole], units.length),
                 d,
                 w,
                 sums: &mut sums,
@@ -59,6 +63,18 @@ impl<T: Real> Iteration<T> {
             self.deflation.take_measures(measures);
         }
         Ok(())
+    }
+
+    /// d: the change of p from `last` on C; w = A d by a product.
+    fn displace_change(&mut self, state: &State, last: &[f64], (window, mx): (&Window, usize), units: &Scaling) {
+        let width = window.x.len();
+        for (i, d) in self.deflation.d.iter_mut().enumerate() {
+            let whole = (window.y.start + i / width) * mx + window.x.start + i % width;
+            let change = state.p[i] - units.pressure() * last[whole];
+            *d = T::of(if state.contact[i] { change } else { 0.0 });
+        }
+        self.operator.apply(&self.deflation.d, &mut self.deflation.w, &mut self.workspace);
+        self.deflation.measure();
     }
 
     /// d becomes the change on C alone; z loses what it held. Returns the products that this takes.

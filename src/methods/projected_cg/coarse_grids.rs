@@ -10,6 +10,7 @@ use std::f64::consts::PI;
 use std::iter::successors;
 use std::ops::Range;
 
+use super::find_force::FindForce;
 use super::level::Level;
 use super::End;
 use crate::blocks;
@@ -38,6 +39,8 @@ const COARSE_ITERATIONS: u64 = 2;
 /// Where elements are at their limit: on 48 scenes (`examples/pressure_limits`) 4, 5, 6, 8 take at most 6.0, 3.2, 3.3, 3.6 times the
 /// work of the plain scene.
 const LIMITED_ITERATIONS: u64 = 5;
+/// Where the force is found for the approach: three forces. With two or four of them lines take at most 130 or 110 products, with three 81.
+const FORCE_ITERATIONS: u64 = 6;
 
 /// One coarser grid.
 pub(super) struct Coarse {
@@ -58,6 +61,8 @@ pub struct CoarseGrids {
     are_current: bool,
     /// The result of the last start on the finest of them.
     found: Survey,
+    /// On lines that find the force for the approach.
+    find_force: FindForce,
 }
 
 impl CoarseGrids {
@@ -76,7 +81,14 @@ impl CoarseGrids {
             });
         }
         let (finest, threads) = (grid.len(), threads.clone());
-        Ok(CoarseGrids { finest, grids, threads, are_current: true, found: Survey::default() })
+        Ok(CoarseGrids {
+            finest,
+            grids,
+            threads,
+            are_current: true,
+            found: Survey::default(),
+            find_force: FindForce::default(),
+        })
     }
 
     /// The finest grid has other coefficients.
@@ -101,7 +113,7 @@ impl CoarseGrids {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.grids.iter().map(|grid| grid.level.bytes() + grid.state.bytes()).sum()
+        self.find_force.bytes() + self.grids.iter().map(|grid| grid.level.bytes() + grid.state.bytes()).sum::<usize>()
     }
 
     /// See [`Level::forget_window`].
@@ -211,7 +223,15 @@ impl CoarseGrids {
         };
         let goal = Goal { criterion: Criterion::Residual, tolerance: goal.tolerance.max(enough), max_cycles };
         let Coarse { level, state, limits, .. } = &mut self.grids[l];
-        let end = level.run(state, S::within(limits), (displacement, None), &goal, self.finest, monitor)?;
+        let set = S::within(limits);
+        let end = if FindForce::serves::<S>(level, state, &goal) {
+            state.u_is = displacement;
+            let goal = Goal { max_cycles: max_cycles.max(FORCE_ITERATIONS), ..goal };
+            self.find_force.begin();
+            self.find_force.run(level, (state, set), (&goal, COARSE_ITERATIONS), self.finest, monitor)?
+        } else {
+            level.run(state, set, (displacement, None), &goal, self.finest, monitor)?
+        };
         level.take_displacements(state);
         Ok(end)
     }

@@ -17,8 +17,8 @@ use crate::sums::Sums;
 pub struct Last<'a> {
     /// p.
     pub p: &'a [f64],
-    /// u = A p.
-    pub u: &'a [f64],
+    /// u = A p; none: a product finds what the change displaces.
+    pub u: Option<&'a [f64]>,
 }
 
 /// d and w = A d.

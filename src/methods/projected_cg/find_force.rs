@@ -4,85 +4,274 @@
 //! both at once take 110 to 390 products. With a force they take 20 to 60, as on other lines. So the force follows from a secant,
 //!
 //! ```text
-//! F_(k+1) = F_k + (approach - a_k) (F_k - F_(k-1))/(a_k - a_(k-1)),   a_k: the approach of F_k
+//! F_(k+1) = F_k + (m - m_k) (F_k - F_(k-1))/(m_k - m_(k-1)),   m = ln(mean of h - approach)
 //! ```
 //!
-//! and each force is solved from the pressures of the last. The error of a_k is of second order in that of the pressures. So all forces but the last are
-//! solved loosely.
+//! and each force is solved loosely (module `mean_gap`: why m).
+//!
+//! *Approach of a force.* A mean of e over C, with weights of the sum 1, is the approach of the solution but for the product of two errors: that
+//! of p, and that of the weights as pressures of a flat punch on C. The change of p with the force is such a pressure.
+//!
+//! *Start of a force.* p is extrapolated along its change with the force. Where there is none, a larger force starts from the pressures and a uniform one, which
+//! displaces nothing: elements leave C sooner than they enter.
+//!
+//! *Near the force* p moves along its change in each step by approach (module `along`).
+//!
+//! Measured on 600 random lines of 64 to 8000 elements, tolerances from 1e-4 to 1e-8: 51 products in the median, 98 of 100 take less than 155, the worst 355. With
+//! approaches as means over C and no extrapolation: 152 in the median, 10 of 100 take more than 300.
 
-use super::step::ProjectedCg;
+use super::deflation::Last;
+use super::level::Level;
+use super::mean_gap::Found;
 use super::End;
 use crate::contact::{norm_of_distance, AdmissibleSet, Freshness, State};
 use crate::error::Result;
+use crate::memory::{computed, reserve};
 use crate::progress::{Goal, Monitor};
 use crate::scene::Load;
-use crate::sums::in_blocks;
+use crate::sums::{in_blocks, mean};
 
-/// The residual to which the first force is solved; the next ones to what the approach is off.
-const LOOSE: f64 = 1e-2;
-/// The first change of the force, relative to it: as much as the approach is off, within this range.
-const FIRST: (f64, f64) = (1e-3, 0.03);
-/// Later changes are at most by this factor.
+/// The residual to which the first force is solved; the next ones to this part of the distance between approaches.
+const LOOSE: f64 = 0.1;
+const PART: f64 = 0.3;
+/// Changes of the force are at most by this factor (60 lines take 88 products at most; with 4 they take 400); p is extrapolated by at most so many times its last
+/// change.
 const FURTHEST: f64 = 2.0;
-/// What the approach may be off beside the residual, as a part of the tolerance.
+const FURTHEST_P: f64 = 4.0;
+/// A force is near if m has to change by this part of its last change at most, and by so much.
+const NEAR: (f64, f64) = (0.3, 0.5);
+/// The approach may be off by this part of the tolerance, beside the residual.
 const ENOUGH: f64 = 0.5;
-/// Forces at most.
+/// Forces at most, and iterations at most along the change of p, unless these have brought the residual to this part.
 const MOST: usize = 20;
+const ALONG: u64 = 40;
+const BROUGHT: f64 = 0.1;
+/// What u of single precision leaves of the residual, and of the approach.
+const ROUNDING: f64 = 1e-6;
+/// A part of the elements in C from which on a uniform pressure is added.
+const MANY: f64 = 0.25;
 
-impl ProjectedCg {
+/// Pressures of a force, and its approach to a residual.
+#[derive(Default)]
+struct Known {
+    p: Vec<f64>,
+    force: f64,
+    approach: f64,
+    residual: f64,
+}
+
+/// A search for the force.
+#[derive(Default)]
+pub(super) struct FindForce {
+    /// The last force with a gap, and its m.
+    last: Option<(f64, f64)>,
+    /// The least force without one.
+    full: Option<f64>,
+    /// An earlier solution, from which the last one differs by more than its residual.
+    before: Known,
+    /// The residual to which the next force is solved.
+    tolerance: Option<f64>,
+    /// Whether steps along the change of p have met the goal; have failed.
+    is_near: bool,
+    has_failed: bool,
+}
+
+impl FindForce {
     /// Whether the force is to be found for the approach.
-    pub(super) fn finds_force<S: AdmissibleSet>(&self, state: &State, goal: &Goal) -> bool {
+    pub(super) fn serves<S: AdmissibleSet>(level: &Level, state: &State, goal: &Goal) -> bool {
         let by_approach = matches!(state.load, Load::Approach(_));
         let presses = || in_blocks(state.p.iter().copied()) > 0.0;
-        by_approach && !S::FIXED && !S::LIMITED && !goal.by_update() && self.finest.is_mean_free_line() && presses()
+        by_approach && !S::FIXED && !S::LIMITED && !goal.by_update() && level.is_mean_free_line() && presses()
     }
 
-    /// Solves by approach as by several forces.
-    pub(super) fn find_force<S: AdmissibleSet>(
+    /// Another grid, or another solve.
+    pub(super) fn begin(&mut self) {
+        *self = FindForce {
+            before: Known { p: std::mem::take(&mut self.before.p), ..Known::default() },
+            ..FindForce::default()
+        };
+        self.before.p.clear();
+    }
+
+    /// Bytes held.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&self.before.p[..])
+    }
+
+    /// Solves by approach as by several forces, with at most `at_once` iterations for each.
+    pub(super) fn run<S: AdmissibleSet>(
         &mut self,
+        level: &mut Level,
+        (state, set): (&mut State, S),
+        (goal, at_once): (&Goal, u64),
+        finest: usize,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<End> {
+        if self.is_near {
+            return self.run_along(level, (state, set), goal, finest, monitor);
+        }
+        let before = monitor.count.cycles;
+        let mut rounding = if state.u_is == Freshness::Exact { 0.0 } else { ROUNDING };
+        for _ in 0..MOST {
+            let most = goal.max_cycles.saturating_sub(monitor.count.cycles - before);
+            let residual = goal.tolerance.max(self.tolerance.unwrap_or(LOOSE));
+            let inner = Goal { tolerance: residual, max_cycles: most.min(at_once), ..*goal };
+            let (end, found) = self.run_force(level, (state, set), &inner, finest, monitor)?;
+            let is_enough = found.off() <= f64::max(rounding, ENOUGH * goal.tolerance);
+            let goes_on = end == End::Met || end == End::Limit && most > at_once;
+            if !goes_on || is_enough && residual <= f64::max(rounding, goal.tolerance) {
+                self.tolerance = Some(goal.tolerance);
+                return Ok(end);
+            }
+            rounding = ROUNDING;
+            if end == End::Met && self.goes_along(&found) {
+                let along = Goal { max_cycles: most.min(ALONG), ..*goal };
+                let end = self.run_along(level, (state, set), &along, finest, monitor)?;
+                self.is_near |= end == End::Limit && monitor.count.residual < BROUGHT * residual;
+                self.has_failed = !self.is_near;
+                if !matches!(end, End::Stagnated | End::Breakdown) {
+                    return Ok(end);
+                }
+            }
+            if is_enough {
+                self.tolerance = Some(goal.tolerance);
+            } else if end == End::Met && found.may_be_loose() {
+                self.tolerance = Some(LOOSE * residual);
+            } else {
+                self.tolerance = Some(residual.min(PART * found.off()).max(ROUNDING));
+                if !self.change(state, &found)? {
+                    return Ok(End::Stagnated);
+                }
+            }
+        }
+        Ok(End::Stagnated)
+    }
+
+    /// Solves by the force that p carries; finds its approach.
+    fn run_force<S: AdmissibleSet>(
+        &mut self,
+        level: &mut Level,
+        (state, set): (&mut State, S),
+        goal: &Goal,
+        finest: usize,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<(End, Found)> {
+        let (prescribed, u_is) = (state.load, state.u_is);
+        let wanted = state.approach;
+        let force = in_blocks(state.p.iter().copied()) * state.grid.element_area();
+        state.load = Load::Force(force);
+        let end = level.run(state, set, (u_is, None), goal, finest, monitor);
+        (state.load, state.u_is) = (prescribed, Freshness::Stale);
+        let end = end?;
+        level.take_displacements(state);
+        let approach = self.approach_of(state);
+        state.approach = wanted;
+        let size = norm_of_distance(state) / (state.contact_count() as f64).sqrt();
+        let mean = Some(mean(&state.h)).filter(|mean| mean.is_finite() && wanted < *mean);
+        Ok((end, Found { wanted, force, approach, residual: goal.tolerance, size, mean }))
+    }
+
+    /// Whether steps along the change of p go on from here.
+    fn goes_along(&self, found: &Found) -> bool {
+        let Known { p, approach, .. } = &self.before;
+        let (m, missing) = (found.m(found.approach), found.m(found.wanted) - found.m(found.approach));
+        let is_near = missing.abs() <= NEAR.0 * (m - found.m(*approach)).abs();
+        let is_near = is_near && (found.mean.is_none() || missing.abs() < NEAR.1);
+        !p.is_empty() && !self.has_failed && !found.is_full() && is_near && self.clearness(found) > 1.0
+    }
+
+    /// The change of the approach from the earlier solution, relative to their residuals.
+    fn clearness(&self, found: &Found) -> f64 {
+        let Known { approach, residual, .. } = &self.before;
+        (found.approach - approach).abs() / (found.residual.max(*residual) * found.size)
+    }
+
+    /// The next force.
+    fn next_force(&mut self, found: &Found) -> f64 {
+        let (force, m) = (found.force, found.m(found.approach));
+        if found.is_full() {
+            self.full = Some(self.full.map_or(force, |full| full.min(force)));
+            return self.last.map_or(force / FURTHEST, |last| 0.5 * (last.0 + force));
+        }
+        let slope = self.last.map(|last| (force - last.0) / (m - last.1));
+        let next = match slope.filter(|slope| *slope < 0.0 && slope.is_finite()) {
+            Some(slope) => force + slope * (found.m(found.wanted) - m),
+            None => found.first_change(),
+        };
+        self.last = Some((force, m));
+        let next = next.clamp(force / FURTHEST, FURTHEST * force);
+        match self.full.filter(|full| *full <= next && force < *full) {
+            Some(full) => 0.5 * (force + full),
+            None => next,
+        }
+    }
+
+    /// Iterates by approach, along the change of p in each step. p is as before where that fails.
+    fn run_along<S: AdmissibleSet>(
+        &mut self,
+        level: &mut Level,
         (state, set): (&mut State, S),
         goal: &Goal,
         finest: usize,
         monitor: &mut Monitor<'_>,
     ) -> Result<End> {
-        let prescribed = state.load;
-        let Load::Approach(approach) = prescribed else { return Ok(End::Stagnated) };
-        let mut force = in_blocks(state.p.iter().copied()) * state.grid.element_area();
-        let (mut last, mut u_is, mut end) = (self.secant, state.u_is, End::Stagnated);
-        let before = monitor.count.cycles;
-        let mut tolerance = goal.tolerance.max(LOOSE);
-        for _ in 0..MOST {
-            let max_cycles = goal.max_cycles.saturating_sub(monitor.count.cycles - before);
-            state.load = Load::Force(force);
-            let inner = Goal { tolerance, max_cycles, ..*goal };
-            let run = self.finest.run(state, set, (u_is, None), &inner, finest, monitor);
-            (state.load, u_is) = (prescribed, Freshness::Stale);
-            let (found, missing) = (state.approach, approach - state.approach);
-            state.approach = approach;
-            end = run?;
-            let size = norm_of_distance(state) / (state.contact_count() as f64).sqrt();
-            let is_enough = missing.abs() <= ENOUGH * goal.tolerance * size;
-            if end != End::Met || tolerance <= goal.tolerance && is_enough {
-                break;
-            }
-            if is_enough {
-                (tolerance, end) = (goal.tolerance, End::Stagnated);
-                continue;
-            }
-            let off = missing.abs() / size;
-            let next = match last.filter(|(_, found_before)| *found_before != found) {
-                Some((force_before, found_before)) => force + missing * (force - force_before) / (found - found_before),
-                None => force * (1.0 + off.clamp(FIRST.0, FIRST.1).copysign(missing)),
-            };
-            last = Some((force, found));
-            self.secant = last;
-            end = End::Stagnated;
-            if !next.is_finite() {
-                break;
-            }
-            force = next.clamp(force / FURTHEST, FURTHEST * force);
-            tolerance = goal.tolerance.max(tolerance.min(off));
+        // A fresh u is of double precision, others of single.
+        let start = computed(state.p.iter().copied(), "pressures by approach")?;
+        let last = Last { p: &self.before.p, u: None };
+        let end = level.run(state, set, (state.u_is, Some(last)), goal, finest, monitor)?;
+        state.u_is = Freshness::Stale;
+        self.is_near = end == End::Met;
+        if matches!(end, End::Stagnated | End::Breakdown) {
+            state.p.copy_from_slice(&start);
+            state.contact.iter_mut().zip(&start).for_each(|(inside, p)| *inside = *p > 0.0);
         }
         Ok(end)
+    }
+
+    /// The approach of the force.
+    fn approach_of(&self, state: &State) -> f64 {
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for (i, before) in self.before.p.iter().enumerate().filter(|(i, _)| state.contact[*i]) {
+            let change = state.p[i] - before;
+            (sum, weights) = (sum + change * (state.h[i] + state.u[i]), weights + change);
+        }
+        Some(sum / weights).filter(|approach| approach.is_finite()).unwrap_or(state.approach)
+    }
+
+    /// p of the next force; false where there is no next force.
+    fn change(&mut self, state: &mut State, found: &Found) -> Result<bool> {
+        let (force, next) = (found.force, self.next_force(found));
+        if !next.is_finite() {
+            return Ok(false);
+        }
+        let (n, is_first) = (state.p.len(), self.before.p.is_empty());
+        let by = Some((next - force) / (force - self.before.force)).filter(|by| by.abs() <= FURTHEST_P);
+        let by = if is_first { 0.0 } else { by.unwrap_or(0.0) };
+        let many = MANY * (n as f64) < state.contact_count() as f64;
+        let keeps = is_first || found.off() > found.residual * self.clearness(found).min(1.0);
+        reserve(&mut self.before.p, n, "pressures of the force before")?;
+        self.before.p.resize(n, 0.0);
+        for (p, before) in state.p.iter_mut().zip(&mut self.before.p) {
+            let now = *p;
+            *p = (now + by * (now - *before)).max(0.0);
+            *before = if keeps { now } else { *before };
+        }
+        if keeps {
+            let Found { approach, residual, .. } = *found;
+            self.before = Known { p: std::mem::take(&mut self.before.p), force, approach, residual };
+        }
+        if is_first && many && next > force {
+            let more = (next - force) / (n as f64 * state.grid.element_area());
+            state.p.iter_mut().for_each(|p| *p += more);
+            state.contact.fill(true);
+            state.u_is = Freshness::Near;
+            return Ok(true);
+        }
+        let carried = in_blocks(state.p.iter().copied()) * state.grid.element_area();
+        for (p, inside) in state.p.iter_mut().zip(&mut state.contact) {
+            *p *= next / carried;
+            *inside = *p > 0.0;
+        }
+        Ok(carried > 0.0)
     }
 }

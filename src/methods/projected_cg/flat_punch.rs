@@ -25,7 +25,7 @@ impl<T: Real> Iteration<T> {
     pub(super) fn choose_punches(&mut self, state: &State) {
         self.allowance = 0.0;
         let Some(m) = &mut self.preconditioner else { return };
-        if m.use_punches(matches!(state.load, Load::Approach(_))) {
+        if m.use_punches(matches!(state.load, Load::Approach(_)) && !self.deflation.is_there()) {
             self.counted = None;
         }
         if self.is_plane_strain() {

@@ -14,6 +14,7 @@ mod inner;
 mod iteration;
 mod level;
 mod limits;
+mod mean_gap;
 mod part;
 mod passes;
 mod preconditioner;

@@ -53,7 +53,7 @@ impl Predictor {
 
     /// The solution from which `state` was moved on.
     pub fn last(&self) -> Last<'_> {
-        Last { p: &self.p, u: &self.u }
+        Last { p: &self.p, u: Some(&self.u) }
     }
 
     /// Moves `state` from the last solution (its u is A p) on, and keeps that. Returns what u is then, in the window that `window`
@@ -117,7 +117,8 @@ impl Predictor {
     /// a and b of the start `a p_1 - b p_0`.
     fn shares(&self, state: &State) -> (f64, f64) {
         let by_force = matches!(state.load, Load::Force(_));
-        let [pu, pe, du, dv, de, sum, sum_before] = pulp::Arch::new().dispatch(Products { state, before: self.last() });
+        let [pu, pe, du, dv, de, sum, sum_before] =
+            pulp::Arch::new().dispatch(Products { state, before: (&self.p, &self.u) });
         let (mut scale, mut share) = (1.0 - pe / pu, du / pu);
         if by_force {
             (scale, share) = (1.0, 1.0 - sum_before / sum);
@@ -157,7 +158,7 @@ fn touch(p: &mut [f64], h: &[f64], contact: &mut [bool]) -> bool {
 /// depends.
 struct Products<'a> {
     state: &'a State,
-    before: Last<'a>,
+    before: (&'a [f64], &'a [f64]),
 }
 
 impl pulp::NullaryFnOnce for Products<'_> {
@@ -170,7 +171,7 @@ impl pulp::NullaryFnOnce for Products<'_> {
         for start in (0..state.p.len()).step_by(state.grid.mx) {
             let row = start..start + state.grid.mx;
             let (p, u, h) = (&state.p[row.clone()], &state.u[row.clone()], &state.h[row.clone()]);
-            let (p_0, u_0) = (&before.p[row.clone()], &before.u[row]);
+            let (p_0, u_0) = (&before.0[row.clone()], &before.1[row]);
             if !(presses(p) | presses(p_0)) {
                 continue;
             }

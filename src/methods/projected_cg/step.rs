@@ -5,6 +5,7 @@
 //! A solve from nothing begins on the coarser grids (`coarse_grids`), a step in time from what the last ones found (`predictor`).
 
 use super::coarse_grids::CoarseGrids;
+use super::find_force::FindForce;
 use super::level::Level;
 use super::predictor::Predictor;
 use super::{End, Window};
@@ -51,8 +52,7 @@ pub struct ProjectedCg {
     /// Whether the solve begins on the finest grid from what coarser ones found.
     is_new: bool,
     precision: Precision,
-    /// A force and its approach, where the force is found for the approach.
-    pub(super) secant: Option<(f64, f64)>,
+    find_force: FindForce,
     /// Of the last step: the recursive residual that it ended with, relative.
     recursive: f64,
 }
@@ -68,7 +68,7 @@ impl ProjectedCg {
             predicted: false,
             is_new: false,
             precision,
-            secant: None,
+            find_force: FindForce::default(),
             recursive: 0.0,
         }
     }
@@ -115,7 +115,11 @@ impl ProjectedCg {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let coarse = self.coarse.as_ref().map_or(0, CoarseGrids::bytes);
-        coarse + self.finest.bytes() + self.before.len() * size_of::<f64>() + self.predictor.bytes()
+        coarse
+            + self.finest.bytes()
+            + self.find_force.bytes()
+            + self.before.len() * size_of::<f64>()
+            + self.predictor.bytes()
     }
 
     /// From nothing: what the coarser grids find.
@@ -142,7 +146,8 @@ impl ProjectedCg {
 
     /// Another solve begins.
     pub fn begin_anew(&mut self) {
-        (self.predicted, self.is_new, self.secant) = (false, false, None);
+        (self.predicted, self.is_new) = (false, false);
+        self.find_force.begin();
     }
 
     /// A step in time: moves `state` on from the last solution.
@@ -219,8 +224,10 @@ impl<S: AdmissibleSet> Step<S> for ProjectedCg {
         let by_approach = self.predicted && matches!(state.load, Load::Approach(_));
         self.lend_operator(problem, state)?;
         let last = Some(self.predictor.last()).filter(|_| by_approach && was == Freshness::Exact);
-        let end = if self.finds_force::<S>(state, &inner) {
-            self.find_force((state, *set), &inner, problem.grid.len(), monitor)?
+        let end = if FindForce::serves::<S>(&self.finest, state, &inner) {
+            let inner =
+                Goal { max_cycles: goal.max_cycles.saturating_sub(monitor.count.cycles).min(4 * ROUND), ..inner };
+            self.find_force.run(&mut self.finest, (state, *set), (&inner, u64::MAX), problem.grid.len(), monitor)?
         } else {
             self.finest.run(state, *set, (was, last), &inner, problem.grid.len(), monitor)?
         };
