@@ -4,8 +4,8 @@ use contact_normal::adhesion::{Law, Start};
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{
-    Adhesion, Bodies, Branches, Coating, Coefficient, Fall, Friction, FrictionLaw, Layer, Load, Motion, Patches,
-    Period, PlasticLayer, Prescribed, PressureLimit, Scene, Visco, Work,
+    Adhesion, Bodies, Coating, Coefficient, Fall, Friction, FrictionLaw, Layer, Load, Motion, Patches, Period,
+    PlasticLayer, Prescribed, PressureLimit, Scene, Work,
 };
 use contact_normal::solver::{
     effects_bill, quantities, solve, BillOptions, BillRow, Neglected, Omission, Options, Outcome, Quantity, Verdict,
@@ -14,22 +14,22 @@ use contact_normal::solver::{
 use crate::random::Random;
 
 const M: usize = 64;
-const WANTED: [Quantity; 3] = [Quantity::Force, Quantity::MaxPressure, Quantity::ContactArea];
+pub const WANTED: [Quantity; 3] = [Quantity::Force, Quantity::MaxPressure, Quantity::ContactArea];
 
 fn grid() -> Grid {
     Grid::new(M, M, 0.05, 0.05).expect("a grid")
 }
 
-fn ball() -> Vec<f64> {
+pub fn ball() -> Vec<f64> {
     let at = |k: usize| (k as f64 - 0.5 * (M as f64 - 1.0)) * 0.05;
     (0..M * M).map(|i| (at(i % M).powi(2) + at(i / M).powi(2)) / 100.0).collect()
 }
 
-fn plain(h: &[f64]) -> Scene<'_> {
+pub fn plain(h: &[f64]) -> Scene<'_> {
     Scene::new(grid(), h, Bodies { shear_modulus: [8e4, 3e4], poisson_ratio: [0.28, 0.35] }, Load::Approach(0.02))
 }
 
-fn bill(scene: &Scene<'_>, target: f64, wanted: &[Quantity]) -> Vec<BillRow> {
+pub fn bill(scene: &Scene<'_>, target: f64, wanted: &[Quantity]) -> Vec<BillRow> {
     // More than enough seconds: the grids do not depend on the machine.
     let asked = BillOptions { max_seconds: 1e3, ..BillOptions::new(target) };
     let (stop, rows) = effects_bill(scene, &Options::default(), &asked, wanted, None).expect("a bill");
@@ -265,41 +265,6 @@ fn laws_of_friction_and_layers_that_yield_are_in_the_bill() {
         assert!(rows.iter().any(|row| pair(&row)), "both are a pair");
         assert!(rows.iter().all(|row| row.omission != Omission::Friction || row.other != Some(Omission::FrictionLaw)));
     }
-}
-
-/// Bodies that relax alike carry less force at the same approach, over the same area: `1/s` of it, and s of a held approach is known. Steps that are short
-/// beside the relaxation change nothing.
-#[test]
-fn relaxation_is_in_the_bill_of_a_step_from_rest() {
-    let h = ball();
-    let step = |time_step: f64, continues: bool| {
-        let branches = Branches { modulus: &[5e4], time: &[2.0] };
-        let visco = Visco { bodies: [branches; 2], time_step, continues, ..Visco::default() };
-        Scene { visco: Some(visco), bodies: Bodies::same(8e4, 0.28), ..plain(&h) }
-    };
-    for (dt, verdict) in [(1.0, Verdict::Needed), (1e-3, Verdict::Negligible)] {
-        let (scene, x) = (step(dt, false), dt / 2.0);
-        let rows = bill(&scene, 1e-2, &WANTED);
-        assert_eq!(rows.len(), 3, "{rows:?}");
-        assert!(rows.iter().all(|row| row.omission == Omission::Visco && row.omission.name() == "visco"));
-        // The approach rises in the step, from rest: G_k remains by the mean of exp(-t/t_k).
-        let s = 1.0 / (1.0 - 5.0 / 8.0 * (1.0 - (1.0 - f64::exp(-x)) / x));
-        let (value, change) = (rows[0].value.expect("a value"), rows[0].change.expect("a change"));
-        // Both solves to a hundredth of the target.
-        assert!((change / value - (s - 1.0)).abs() <= 2e-4 * s, "{dt}: {change} {value} {s}");
-        assert_eq!((rows[0].verdict, rows[2].change), (verdict, Some(0.0)), "{rows:?}");
-        let neglected = Neglected::of(&scene, &Options::default(), 1e-2).expect("a scene");
-        assert_eq!(neglected, Neglected::default());
-    }
-    // A layer that relaxes is all there is of its body, and stays.
-    let coated = Scene {
-        coating: Some(Coating::of_body_1(0.5, 8e4, 0.3)),
-        bodies: Bodies { shear_modulus: [f64::INFINITY, 8e4], poisson_ratio: [0.0, 0.3] },
-        ..step(1.0, false)
-    };
-    assert!(bill(&coated, 1e-2, &WANTED).iter().all(|row| row.omission == Omission::Visco));
-    let refused = effects_bill(&step(1.0, true), &Options::default(), &BillOptions::new(0.1), &WANTED, None);
-    assert!(matches!(refused, Err(Error::Unsupported(message)) if message.contains("visco")));
 }
 
 /// E* is 65000: a work of 1 carries a pull of 1.5 pi w R = 236 beside a load of 1100, a work of 1e-7 nothing that 1 % shows.
