@@ -775,6 +775,11 @@
 #define CONTACT_NORMAL_OMIT_FRICTION_LAYER 13
 
 /*
+ `omitted`: that bodies relax; they give way as at once.
+ */
+#define CONTACT_NORMAL_OMIT_VISCO 14
+
+/*
  `verdict`: the change is too near to the target, or its error is not known; more time decides.
  */
 #define CONTACT_NORMAL_VERDICT_NOT_DECIDED 0

@@ -214,7 +214,12 @@ pub fn table(random: &mut Random, grid: &Grid, c: f64, (unsymmetric, indefinite)
 }
 
 /// `d_iy d_jy c(kx, iy - jy)`: positive definite, and not where one of the two is left out.
-fn row_tables(random: &mut Random, grid: &Grid, c: f64, (unsymmetric, indefinite): (bool, bool)) -> OwnCoefficients {
+pub fn row_tables(
+    random: &mut Random,
+    grid: &Grid,
+    c: f64,
+    (unsymmetric, indefinite): (bool, bool),
+) -> OwnCoefficients {
     let (cx, my) = (grid.mx + random.pick(&[0, 0, 3]), grid.my);
     let half_space = free(cx + 1, my, grid.dx, grid.dy, c);
     let noise = half_space.at(0, 0) * random.decades(0.1, 10.0);

@@ -159,6 +159,10 @@ pub fn call_changed(
     change: impl FnOnce(&mut contact_normal_friction),
 ) -> Found {
     let mut changed = friction(slide, from);
+    let tables = place.own.as_ref().map(|own| Structs::new(own));
+    if let (Some(tables), Some(own)) = (&tables, &place.own) {
+        tables.put(own, &mut changed);
+    }
     change(&mut changed);
     run((place, None, stop), |scene, options, fields, report| {
         // SAFETY (all): structs with the arrays that they declare, and a handle that no one else uses.

@@ -137,7 +137,7 @@ impl Case {
         let size = self.slide.force();
         // Tractions change the pressures of unlike bodies: not their sum, where that is given.
         let sum_is_given = matches!(self.place.load, Load::Force(_)) && self.slide.uniform;
-        let much = self.slide.mu.iter().any(|mu| *mu > 1.0);
+        let much = self.has_much_friction();
         match () {
             // A force of 0 is met where nothing is carried.
             _ if size == 0.0 => None,
@@ -184,10 +184,16 @@ impl Case {
         format!("{}, {bodies} bodies", self.motion())
     }
 
-    /// A line contact of unlike bodies, called with the cycles of the default.
+    /// A line contact of unlike bodies, called with the cycles of the default; not of much friction, with which turns may not settle.
     pub fn is_slow_line(&self) -> bool {
         let is_line = self.place.grid.mx == 1 || self.place.grid.my == 1;
-        is_line && !self.place.is_alike() && self.stop.is_unhindered()
+        is_line && !self.place.is_alike() && self.stop.is_unhindered() && !self.has_much_friction()
+    }
+
+    /// Beyond which the turns between the problems of unlike bodies need not settle, by the library's documents.
+    pub fn has_much_friction(&self) -> bool {
+        self.slide.mu.iter().any(|mu| *mu > 1.0)
+    }
     }
 
     /// In one line.

@@ -124,7 +124,7 @@ impl Place {
     }
 
     /// Tangential tables, and of the pressures where these are per loaded row.
-    fn take_tables(&mut self, random: &mut Random) {
+    pub fn take_tables(&mut self, random: &mut Random) {
         let (grid, kind) = (self.grid, Kind::random(random, &self.grid));
         let element = self.element();
         let at = |kx: i64, ky: i64| {

@@ -12,9 +12,6 @@ use crate::rules;
 use crate::tangential::Operator;
 use crate::verdict::Verdict;
 
-/// Up to this mu the turns between the problems of unlike bodies settle, by the library's documents.
-const MUCH_FRICTION: f64 = 1.0;
-
 /// A verdict whose failures say which case it is.
 struct Broken<'a> {
     case: &'a Case,
@@ -177,14 +174,13 @@ fn check_stop(found: &Found, conditions: &Conditions, broken: &mut Broken<'_>) {
     let (case, status) = (broken.case, found.status);
     let Conditions { left, scale, rounding, ref along_normal, normal_rounding, .. } = *conditions;
     let is_steady = case.slide.motion == CONTACT_NORMAL_MOTION_STEADY_ROLLING;
-    let mu = case.slide.mu.iter().copied().fold(0.0, f64::max);
     let normal = case.place.normal(&case.stop, along_normal, normal_rounding);
     let why = match status {
         CONTACT_NORMAL_CANCELLED => Some("friction: cancelled by the callback"),
         _ if !case.stop.is_unhindered() => Some("friction: stopped within few cycles"),
         _ if case.stop.tolerance * scale <= 10.0 * rounding => Some("friction: a tolerance below ten times round-off"),
         _ if is_steady && !is_monotone(case, found) => Some("friction: steady rolling that is not monotone"),
-        _ if !case.place.is_alike() && mu > MUCH_FRICTION => Some("friction: unlike bodies, mu > 1"),
+        _ if !case.place.is_alike() && case.has_much_friction() => Some("friction: unlike bodies, mu > 1"),
         _ if !case.place.is_alike() && nearly_slips(case, found) => {
             Some("friction: unlike bodies by 0.999 of what they carry at the end, or more")
         }

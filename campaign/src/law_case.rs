@@ -5,6 +5,7 @@ use contact_normal::ffi::*;
 use crate::friction_case::Case;
 use crate::friction_conditions::length;
 use crate::friction_found::Found;
+use crate::own_tractions::Kind;
 use crate::random::Random;
 
 /// What particles of the interface have: mu and a yield limit of each element.
@@ -77,6 +78,9 @@ impl Law {
         let slide = &mut case.slide;
         slide.distance = 0.0;
         slide.direction = [0.0, std::f64::consts::PI][usize::from(random.chance(0.3))];
+        if let Some(own) = case.place.own.as_ref().filter(|own| matches!(own.kind, Kind::Uneven { .. })) {
+            (slide.motion, slide.direction) = (CONTACT_NORMAL_MOTION_STEADY_ROLLING, own.kind.direction());
+        }
         slide.sensitivities = false;
         law
     }

@@ -1,10 +1,11 @@
 //! Laws of friction and layers that yield, in random scenes: each answer certified by the campaign's own products and its own march of particles, and the
-//! wear of each by its own sums.
+//! wear of each, and what the heat of friction does, by its own sums.
 //!
 //! Two conditions: stick and slip with bounds that stand still at |q| (`friction_conditions`), and `|q|` that is the bound of the slip.
 
 use contact_normal::ffi::*;
 
+use crate::flash;
 use crate::friction_call::{call_changed, frictionless, From, Handle};
 use crate::friction_case::Case;
 use crate::friction_conditions::{conditions, length};
@@ -22,6 +23,8 @@ const STEEP: f64 = 0.5;
 pub struct Run {
     pub case: Case,
     pub law: Law,
+    /// Numbers for the heat of friction.
+    heat: Random,
     /// `law_slope` and status of each call.
     pub ends: Vec<(f64, i32)>,
     pub verdict: Verdict,
@@ -37,7 +40,8 @@ impl Run {
             _ => "1 and more",
         };
         let law = if self.law.is_one() { "law" } else { "ideal plastic" };
-        format!("{}, {law}, branch {}, law_slope {range}", self.case.motion(), self.law.branch)
+        let own = if self.case.place.own.is_some() { ", own tables" } else { "" };
+        format!("{}{own}, {law}, branch {}, law_slope {range}", self.case.motion(), self.law.branch)
     }
 }
 
@@ -47,7 +51,11 @@ pub fn run(random: &mut Random) -> Run {
         let mut place = Place::random(random, false);
         place.shear_modulus[1] = place.shear_modulus[0];
         place.poisson_ratio[1] = place.poisson_ratio[0];
-        (place.own, place.effects.row_tables) = (None, None);
+        // By numbers of their own: the others stay what they were.
+        let own = &mut random.beside(0x1a35);
+        if own.chance(0.25) && place.effects.coating.is_none() && place.own.is_none() && place.surface != "roller" {
+            place.take_tables(own);
+        }
         let without = frictionless(&place, &Stop::unhindered(random));
         if without.status != CONTACT_NORMAL_OK || without.p.iter().all(|p| !(*p > 0.0)) {
             continue;
@@ -55,7 +63,8 @@ pub fn run(random: &mut Random) -> Run {
         let mut case = Case::random(random, place, &without);
         (case.stop.max_cycles, case.stop.cancel_at) = (1000, None);
         let law = Law::random(random, &mut case, &without.p);
-        let mut run = Run { case, law, ends: Vec::new(), verdict: Verdict::default() };
+        let heat = random.beside(0xf1a5);
+        let mut run = Run { case, law, heat, ends: Vec::new(), verdict: Verdict::default() };
         run.steps();
         return run;
     }
@@ -116,6 +125,11 @@ impl Run {
         let is_warned = found.report.warnings & CONTACT_NORMAL_WARNING_LAW != 0;
         self.unless(is_warned == (slope >= STEEP), "LAW warns of a law_slope of .5 and more", || format!("{slope}"));
         self.wear(case, found);
+        if self.heat.chance(0.3) {
+            let flux: Vec<f64> = found.q.iter().zip(&found.slip).map(|(q, s)| length(*q) * length(*s)).collect();
+            self.verdict
+                .add(flash::check(&mut self.heat, &case.place.grid, &flux).within(&format!("{}: ", case.describe())));
+        }
         if status > 0 {
             self.stopped(case, found);
             return None;

@@ -5,7 +5,7 @@
 //! handle promises beyond them, `run` puts this together, and `account` tells what was run. `bytes` (with `bytes_friction`) turns random
 //! bytes into calls. Some seeds are asked more beside their case: `batch`, `set_influence`, `accuracy` (a ball to an accuracy), `stress`
 //! (with `stress_waves`), `adhesion`, and `friction` with its rules, its coefficients (`tangential`) and its handles
-//! (`friction_sequence`); `laws` asks for laws of friction (`law_case`), layers that yield, and wear. `replay` has the scene of
+//! (`friction_sequence`); `laws` asks for laws of friction (`law_case`), layers that yield, wear, and `flash` temperatures. `replay` has the scene of
 //! a dump judged. Nothing of the library is used but the C ABI's functions and its reader of dumps: a change of its core does not touch this.
 
 pub mod account;
@@ -23,6 +23,7 @@ pub mod coating;
 mod effect_structs;
 pub mod effects;
 mod fft;
+pub mod flash;
 pub mod friction;
 pub mod friction_call;
 pub mod friction_case;

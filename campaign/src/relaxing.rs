@@ -8,6 +8,8 @@ use contact_normal::ffi::*;
 
 use crate::call::{self, Outputs};
 use crate::case::{self, Case};
+use crate::coating::{Coating, Layer};
+use crate::effects::{self, Effects};
 use crate::grid::Load;
 use crate::half_space::compliance;
 use crate::init::initialised;
@@ -26,6 +28,7 @@ const MOST: usize = 3;
 const TERMS: u32 = 18;
 
 /// A body that relaxes.
+#[derive(Clone)]
 struct Body {
     /// Of the compliance at once of both.
     share: f64,
@@ -147,7 +150,7 @@ pub struct Run {
     pub verdict: Verdict,
 }
 
-/// What goes with bodies that relax: all but layers, and coefficients that know no bodies.
+/// What goes with bodies that relax: all but layers between them; of coatings and coefficients that know no bodies those whose compliance relaxes as a whole.
 fn suited(mut case: Case) -> Case {
     let effects = &mut case.effects;
     (effects.layer, effects.influence, effects.row_tables, effects.coating) = (None, None, None, None);
@@ -158,16 +161,44 @@ fn suited(mut case: Case) -> Case {
     case
 }
 
+/// Now and then layers on rigid bodies, or the caller's own coefficients, of one body beside a rigid one, or of two that relax alike: the materials at the
+/// surfaces.
+fn take_coefficients(case: &mut Case, random: &mut Random) -> Option<([f64; 2], [f64; 2])> {
+    let g = case.shear_modulus.into_iter().find(|g| g.is_finite()).filter(|_| random.chance(0.35))?;
+    let (is_alone, nu, grid) = (random.chance(0.5), random.between(0.0, 0.5), case.grid);
+    let modulus = [g, if is_alone { f64::INFINITY } else { g }];
+    (case.shear_modulus, case.poisson_ratio) = (modulus, [nu; 2]);
+    (case.effects.period, case.effects.patches) = (None, None);
+    let c = compliance(case.shear_modulus, case.poisson_ratio);
+    match random.integer(0, 2) {
+        0 => {
+            let thickness = grid.dx.max(grid.dy) * random.decades(0.5, 50.0);
+            let layer = Layer { thickness, shear_modulus: g, poisson_ratio: nu };
+            let layers = [Some(layer), (!is_alone).then_some(layer)];
+            case.shear_modulus = [f64::INFINITY; 2];
+            case.effects.coating = Some(Coating { layers, shear_modulus: case.shear_modulus, poisson_ratio: [nu; 2] });
+        }
+        1 => case.effects.influence = Some(effects::table(random, &grid, c, (false, false))),
+        _ => case.effects.row_tables = Some(effects::row_tables(random, &grid, c, (false, false))),
+    }
+    case.load = case::load(random, &Scales::of(&case.h, &case.effects, &grid, c), &grid);
+    Some((modulus, [nu; 2]))
+}
+
 /// A path of two to six steps.
 pub fn run(seed: u64) -> Run {
     let random = &mut Random::new(seed ^ 0x5109_c0de);
     let mut case = suited(Case::new(seed));
-    let c = compliance(case.shear_modulus, case.poisson_ratio);
-    let scales = Scales::of(&case.h, &case.effects, &case.grid, c);
+    let alike = take_coefficients(&mut case, &mut random.beside(0xa11c));
+    let (modulus, ratio) = alike.unwrap_or((case.shear_modulus, case.poisson_ratio));
+    let scales = Scales::of(&case.h, &case.effects, &case.grid, compliance(modulus, ratio));
     let unit = random.decades(1e-6, 1e6);
-    let of = |b: usize| (1.0 - case.poisson_ratio[b]) / case.shear_modulus[b];
-    let mut bodies = [0, 1]
-        .map(|b: usize| Body::random(random, (of(b) / (of(0) + of(1)), case.shear_modulus[b]), unit, case.grid.len()));
+    let of = |b: usize| (1.0 - ratio[b]) / modulus[b];
+    let mut bodies =
+        [0, 1].map(|b: usize| Body::random(random, (of(b) / (of(0) + of(1)), modulus[b]), unit, case.grid.len()));
+    if alike.is_some() && modulus[1].is_finite() {
+        bodies[1] = bodies[0].clone();
+    }
     let mut visco = initialised(contact_normal_visco_init);
     for (b, body) in bodies.iter().enumerate() {
         visco.branches[b] = body.r.len() as i32;
@@ -208,15 +239,19 @@ pub fn run(seed: u64) -> Run {
 fn check(case: &Case, (s, left, rounding): (f64, &[f64], f64), found: &Outputs) -> Verdict {
     let mut elastic = case.clone();
     elastic.shear_modulus = case.shear_modulus.map(|g| g / s);
+    let Effects { coating, influence, row_tables, .. } = &mut elastic.effects;
+    let layers = coating.iter_mut().flat_map(|coating| coating.layers.iter_mut().flatten());
+    layers.for_each(|layer| layer.shear_modulus /= s);
+    let own = influence.iter_mut().chain(row_tables).flat_map(|own| own.values.iter_mut());
+    own.for_each(|value| *value *= s);
     elastic.h.iter_mut().zip(left).for_each(|(h, left)| *h += left);
     let largest = left.iter().fold(0.0, |most: f64, left| most.max(left.abs()));
     elastic.h_rounding = ACCURACY * largest + rounding;
     let u = found.u.iter().zip(left).map(|(u, left)| u - left).collect();
     let Outputs { status, message, p, e, contact, report, overrun, written, .. } = found;
     let (message, p, e, contact) = (message.clone(), p.clone(), e.clone(), contact.clone());
-    let found =
-        Outputs { status: *status, message, p, u, e, contact, report: *report, overrun: *overrun, written: *written };
-    rules::check(&elastic, &found)
+    let (status, report, overrun, written) = (*status, *report, *overrun, *written);
+    rules::check(&elastic, &Outputs { status, message, p, u, e, contact, report, overrun, written })
 }
 
 #[cfg(test)]

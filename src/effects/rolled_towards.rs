@@ -75,4 +75,16 @@ impl Friction<'_> {
         let lines = [Line { name: "x", count: grid.mx, at: &in_x }, Line { name: "y", count: grid.my, at: &in_y }];
         check("influence", lines, self.elements_rolled(grid))
     }
+
+    /// The same of tables per loaded row: `at` has the coefficients of a row on itself. Those are even where the operator is symmetric.
+    pub fn check_rows_rolled(&self, grid: &Grid, at: &dyn Fn(usize, i64) -> f64) -> Result<()> {
+        if self.motion == Motion::Shift {
+            return Ok(());
+        }
+        (0..grid.my).try_for_each(|row| {
+            let (in_x, own) = (|k: i64| at(row, k), |_: i64| at(row, 0));
+            let lines = [Line { name: "x", count: grid.mx, at: &in_x }, Line { name: "y", count: 1, at: &own }];
+            check(&format!("row_tables of row {row} on itself"), lines, self.elements_rolled(grid))
+        })
+    }
 }

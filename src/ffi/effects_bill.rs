@@ -41,6 +41,8 @@ pub const CONTACT_NORMAL_OMIT_ADHESION: i32 = 11;
 pub const CONTACT_NORMAL_OMIT_FRICTION_LAW: i32 = 12;
 /// `omitted`: the yield of a third body, not its compliance.
 pub const CONTACT_NORMAL_OMIT_FRICTION_LAYER: i32 = 13;
+/// `omitted`: that bodies relax; they give way as at once.
+pub const CONTACT_NORMAL_OMIT_VISCO: i32 = 14;
 
 /// `verdict`: the change is too near to the target, or its error is not known; more time decides.
 pub const CONTACT_NORMAL_VERDICT_NOT_DECIDED: i32 = 0;

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 pub use super::compliance::Compliance;
 use super::half_space::HalfSpace;
+use super::plane::Vector;
 use super::row_tables::RowTables;
 use super::series::Shape;
 pub use super::tables::Entry;
@@ -162,6 +163,20 @@ impl Tangential {
             && one.compliance == two.compliance
             && Arc::ptr_eq(&one.shape, &two.shape);
         is_multiple.then_some(one.dx / two.dx)
+    }
+
+    /// What waves of tractions displace, by the wave vector, where a coating is a membrane: its coefficients fall off over lengths beyond all grids.
+    pub fn of_waves(&self) -> Option<impl Fn(Vector) -> Entry + Sync + Send + '_> {
+        let (coat, _) = self.coat.as_ref().filter(|(coat, _)| coat.is_membrane())?;
+        let HalfSpace { dx, dy, compliance, .. } = self.half_space;
+        Some(move |[x, y]: Vector| {
+            let (x, y) = (x / dx, y / dy);
+            let k = x.hypot(y);
+            let [along, across] = coat.of_wave(k).map(|of_wave| 2.0 * compliance.shear * of_wave / k);
+            let (cos, sin) = (x / k, y / k);
+            let mixed = |a: f64, b: f64| along * a * a + across * b * b + self.layer;
+            [mixed(cos, sin), mixed(sin, cos), (along - across) * cos * sin]
+        })
     }
 
     /// The coefficients at an offset, in elements; of own tables at the next whole one.

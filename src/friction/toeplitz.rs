@@ -6,6 +6,7 @@
 //! Without Axy (a Poisson ratio of 0, a single row) a traction in one direction displaces in that direction only: the other component is exactly
 //! 0, and takes no time where it is zero.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -97,9 +98,13 @@ impl<T: Real> Toeplitz<T> {
         Ok(Toeplitz { product: VectorProduct::even((grid.mx, grid.my), period, &coefficients, threads)?, unit })
     }
 
-    /// See [`inverse`](Self::inverse).
+    /// See [`inverse`](Self::inverse). Where coatings are membranes coefficients that end at half a period are not positive definite, whatever the grid, and
+    /// waves serve.
     pub fn nearly_inverse(quadrant: &Quadrant, grid: &Grid, threads: &Threads) -> Result<Option<Toeplitz<T>>> {
         let (period, given) = circulant_period(grid);
+        if let Some(of_wave) = quadrant.tangential().of_waves().filter(|_| grid.mx > 1 && grid.my > 1) {
+            return Toeplitz::inverse_of_waves(quadrant, (grid, period), of_wave, threads).map(Some);
+        }
         let unit = 1.0 / unit_of(quadrant.at(0, 0)[0]);
         let fill = |component: usize, ky: i64, row: &mut [f64]| {
             quadrant.fill_row(component, ky, row);
@@ -110,16 +115,45 @@ impl<T: Real> Toeplitz<T> {
             }
         };
         let is_positive = AtomicBool::new(true);
-        let finish = |[xx, yy, xy]: [f64; 3]| {
-            let determinant = xx * yy - xy * xy;
-            if !(determinant > 0.0 && xx > 0.0) {
+        let finish = |values: [f64; 3]| {
+            let (inverse, determinant) = inverted(values);
+            if !(determinant > 0.0 && values[0] > 0.0) {
                 is_positive.store(false, Ordering::Relaxed);
             }
-            [yy, xx, -xy].map(|value| value / determinant / unit)
+            inverse.map(|value| value / unit)
         };
         let coefficients = EvenMatrix { given, is_coupled: !quadrant.is_uncoupled(grid, HERE), fill, finish };
         let product = VectorProduct::even((grid.mx, grid.my), period, &coefficients, threads)?;
         Ok(is_positive.into_inner().then_some(Toeplitz { product, unit }))
+    }
+
+    /// The inverse of what waves of a period displace, by their wave vectors in elements.
+    fn inverse_of_waves(
+        quadrant: &Quadrant,
+        (grid, (px, py)): (&Grid, (usize, usize)),
+        of_wave: impl Fn(Vector) -> Entry + Sync + Send,
+        threads: &Threads,
+    ) -> Result<Toeplitz<T>> {
+        let unit = 1.0 / unit_of(quadrant.at(0, 0)[0]);
+        let (in_x, in_y) = (|k: usize| aliases(k, px), |k: usize| aliases(k, py));
+        let wave = |kx: usize, ky: usize| {
+            let pairs = in_x(kx).into_iter().flat_map(|x| in_y(ky).map(|y| (x, y)));
+            pairs.fold([0.0; 3], |sum, ((x, mean_x), (y, mean_y))| {
+                let entry = of_wave([x, y]);
+                [0, 1, 2].map(|k| sum[k] + mean_x * mean_y * entry[k])
+            })
+        };
+        // The mean displaces as the longest waves do.
+        let mean = [wave(1, 0), wave(0, 1)].iter().fold(0.0, |most: f64, [xx, yy, _]| most.max(*xx).max(*yy));
+        let inverse = |kx: usize, ky: usize| {
+            let [xx, yy, xy] = if (kx, ky) == (0, 0) { [mean, mean, 0.0] } else { wave(kx, ky) };
+            // An odd function has no value half-way around.
+            let xy = if 2 * kx == px || 2 * ky == py { 0.0 } else { xy };
+            inverted([xx, yy, xy]).0.map(|value| value / unit)
+        };
+        let is_coupled = !quadrant.is_uncoupled(grid, HERE);
+        let product = VectorProduct::of_waves((grid.mx, grid.my), (px, py), (is_coupled, inverse), threads)?;
+        Ok(Toeplitz { product, unit })
     }
 
     /// Of coefficients that are neither even nor odd: `at(x, y)` gives those of an offset.
@@ -211,6 +245,19 @@ impl<T: Real> Toeplitz<T> {
     pub fn scales(&self, unit: f64) -> [f64; 2] {
         [1.0 / unit, unit * self.unit]
     }
+}
+
+/// A wave of a period, per element, and the longest that is the same at the centres: with the mean of each over an element.
+fn aliases(k: usize, period: usize) -> [(f64, f64); 2] {
+    let half = PI * k as f64 / period as f64;
+    let mean = |half: f64| if half == 0.0 { 1.0 } else { half.sin() / half };
+    [half, half - PI].map(|half| (2.0 * half, mean(half)))
+}
+
+/// The inverse of a symmetric matrix [xx, yy, xy], and its determinant.
+fn inverted([xx, yy, xy]: [f64; 3]) -> ([f64; 3], f64) {
+    let determinant = xx * yy - xy * xy;
+    ([yy, xx, -xy].map(|value| value / determinant), determinant)
 }
 
 /// Whole elements in x, if a step is that and short.

@@ -13,7 +13,8 @@
 //! lambda T = integral of g(x) dx,    g(x) = 1/(2 pi) integral of exp(-P (|x| cosh t - x)) dt
 //! ```
 //!
-//! g has a logarithm at x = 0, and behind a fast source the root of 1/x: `x = L s^4` makes both smooth. Without motion it is Love's integral.
+//! g has a logarithm at x = 0, and behind a fast source the root of 1/x: `x = L s^4` makes both smooth. It changes where x is half the width of the element, and
+//! 1/P: up to the nearer of both that rule serves, and beyond panels each [`WIDER`] than the one before. Without motion it is Love's integral.
 
 use std::f64::consts::PI;
 
@@ -21,6 +22,10 @@ use std::f64::consts::PI;
 const FADED: f64 = 40.0;
 /// Panels in t are at most so long, and of so many nodes: exp(-a cosh t) is integrated to 1e-10.
 const PANEL: f64 = 2.0;
+/// Of panels in x: their ends have this ratio.
+const WIDER: f64 = 4.0;
+/// The first of them is at least this part of an element.
+const SHORTEST: f64 = 1e-6;
 
 /// Nodes and weights on [0, 1].
 pub type Rule = [(f64, f64)];
@@ -33,11 +38,13 @@ pub fn of_element((x, y): (f64, f64), (dx, dy): (f64, f64), wave: f64, rule: &Ru
     }
     let edges = (y.abs() - 0.5 * dy, y.abs() + 0.5 * dy);
     let (from, to) = (x - 0.5 * dx, x + 0.5 * dx);
-    let behind = |from: f64, to: f64| along((from, to), rule, |distance| strip(distance, edges, (wave, true), rule));
+    let near = (0.5 * dy).min(1.0 / wave).max(SHORTEST * dx);
+    let behind =
+        |from: f64, to: f64| along((from, to), near, rule, |distance| strip(distance, edges, (wave, true), rule));
     let ahead = |from: f64, to: f64| {
         // It fades as exp(-2 P x).
         let to = to.min(from + 0.5 * FADED / wave);
-        along((from, to), rule, |distance| strip(distance, edges, (wave, false), rule))
+        along((from, to), near, rule, |distance| strip(distance, edges, (wave, false), rule))
     };
     match (from < 0.0, to > 0.0) {
         (true, true) => behind(0.0, to) + ahead(0.0, -from),
@@ -54,13 +61,20 @@ fn love((x, y): (f64, f64), (dx, dy): (f64, f64)) -> f64 {
     corner(right, high) - corner(left, high) - corner(right, low) + corner(left, low)
 }
 
-/// The integral of a function of the distance, which at 0 may have a logarithm or the root of 1/x.
-fn along((from, to): (f64, f64), rule: &Rule, f: impl Fn(f64) -> f64) -> f64 {
-    let length = to - from;
-    if from > 0.0 {
-        return length * rule.iter().map(|(s, weight)| weight * f(from + length * s)).sum::<f64>();
+/// The integral of a function of the distance, which at 0 may have a logarithm or the root of 1/x, and changes from `near` on.
+fn along((from, to): (f64, f64), near: f64, rule: &Rule, f: impl Fn(f64) -> f64) -> f64 {
+    let (mut start, mut sum) = (from, 0.0);
+    if !(from > 0.0) {
+        start = to.min(near);
+        sum = rule.iter().map(|(s, weight)| weight * 4.0 * start * s.powi(3) * f(start * s.powi(4))).sum();
     }
-    rule.iter().map(|(s, weight)| weight * 4.0 * length * s.powi(3) * f(length * s.powi(4))).sum()
+    while start < to {
+        let end = to.min(WIDER * start);
+        let length = end - start;
+        sum += length * rule.iter().map(|(s, weight)| weight * f(start + length * s)).sum::<f64>();
+        start = end;
+    }
+    sum
 }
 
 /// g at a distance behind the source or ahead of it, of a strip between two edges in y; the first may be negative.

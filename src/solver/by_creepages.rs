@@ -13,7 +13,7 @@ use super::turns::Turns;
 use super::{Options, Solver};
 use crate::contact::Survey;
 use crate::effects::Coefficient;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::friction::{dot, length, Vector};
 use crate::progress::{Monitor, Outcome};
 use crate::scene::{Load, Prescribed, Scene};
@@ -161,7 +161,7 @@ impl Solver {
         Ok(Outcome::Stagnated)
     }
 
-    /// Turns with creepages that are held.
+    /// Turns with creepages that are held. Those of a search that are beyond the range of slips find nothing: the caller did not give them.
     fn turns_with(
         &mut self,
         turns: &mut Turns<'_>,
@@ -173,7 +173,10 @@ impl Solver {
         if let Some(friction) = &mut turns.friction {
             friction.held = Some(creepage);
         }
-        self.turn_about(turns, (scene, &sharper(options)), (Outcome::Converged, false), cycles, monitor)
+        match self.turn_about(turns, (scene, &sharper(options)), (Outcome::Converged, false), cycles, monitor) {
+            Err(Error::InvalidArgument(_)) => Ok(Outcome::Stagnated),
+            end => end,
+        }
     }
 
     /// Tractions by force with the pressures that were found last: whether both problems are solved so.

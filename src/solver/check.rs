@@ -51,10 +51,12 @@ impl SetUp {
         }
         self.check_table()?;
         self.named.check(scene)?;
-        let is_uneven = problem.given && !problem.symmetric && problem.coefficients.row_tables().is_none();
-        match scene.friction.as_ref().filter(|_| is_uneven) {
-            Some(friction) => friction.check_pressures_rolled(&problem.grid, &|kx, ky| problem.coefficients.at(kx, ky)),
-            None => Ok(()),
+        let is_uneven = problem.given && !problem.symmetric;
+        let Some(friction) = scene.friction.as_ref().filter(|_| is_uneven) else { return Ok(()) };
+        let (grid, coefficients) = (&problem.grid, &problem.coefficients);
+        match coefficients.row_tables() {
+            Some((rows, _)) => friction.check_rows_rolled(grid, &|row, kx| rows.coefficient(row, row, kx)),
+            None => friction.check_pressures_rolled(grid, &|kx, ky| coefficients.at(kx, ky)),
         }
     }
 

@@ -10,7 +10,7 @@ use super::laws::{off_by, pressures, solver};
 const FORCE: f64 = 622_216.0;
 
 /// Of each case from the fourth on, all from above: `Fx/(.3 N)` and elements that stick.
-const PRINTED: [(f64, usize); 50] = [
+pub const PRINTED: [(f64, usize); 50] = [
     (0.5702, 34),
     (0.5739, 79),
     (0.5774, 77),
@@ -63,14 +63,26 @@ const PRINTED: [(f64, usize); 50] = [
     (0.5638, 35),
 ];
 
+/// From .3 to .18 at once.
+pub const FALLS: FrictionLaw = FrictionLaw {
+    fall: Fall::Exponential,
+    kinetic: 0.18,
+    falling: [0.12, 0.0],
+    half_speed: [100.0, 1.0],
+    speed: 45_000.0,
+    time_step: 1.0,
+    memory_distance: 0.0,
+    memory_speed: 0.0,
+};
+
 /// A cylinder on 92 x 1 elements, friction that falls from .3 to .18 at once.
-struct Cylinder {
-    grid: Grid,
-    pressure: Vec<f64>,
+pub struct Cylinder {
+    pub grid: Grid,
+    pub pressure: Vec<f64>,
 }
 
 impl Cylinder {
-    fn new() -> Cylinder {
+    pub fn new() -> Cylinder {
         let (mx, dx) = (92, 0.1);
         let grid = Grid::new(mx, 1, dx, 200.0).unwrap();
         let of = |i: usize| -4.6 + i as f64 * dx;
@@ -78,7 +90,7 @@ impl Cylinder {
         Cylinder { grid, pressure: pressures(grid, &h, FORCE) }
     }
 
-    fn step(&self, solver: &mut Solver, moved: (Motion, f64), branch: Branch) -> Report {
+    pub fn step(&self, solver: &mut Solver, moved: (Motion, f64), branch: Branch) -> Report {
         self.step_to(1e-7, solver, moved, branch)
     }
 
@@ -87,7 +99,7 @@ impl Cylinder {
             motion,
             prescribed: [Prescribed::Creepage(xi), Prescribed::Creepage(0.0)],
             previous: if motion == Motion::SteadyRolling { Previous::None } else { Previous::Kept },
-            law: Some(FrictionLaw::new(Fall::Exponential, (0.18, 0.12), 100.0, 45_000.0)),
+            law: Some(FALLS),
             branch,
             ..Friction::new(0.3)
         };
@@ -97,20 +109,28 @@ impl Cylinder {
         report
     }
 
+    /// mu N at rest.
+    pub fn carried(&self) -> f64 {
+        0.3 * FORCE
+    }
+
     /// From steady rolling, which has one solution from wherever it starts.
-    fn rolling(&self, branch: Branch) -> Solver {
+    pub fn rolling(&self, branch: Branch) -> Solver {
         let mut solver = solver(&self.grid);
-        let report = self.step(&mut solver, (Motion::SteadyRolling, -0.0009999), branch);
+        let report = self.step(&mut solver, ROLLING, branch);
         assert!((part(&report) - 0.5941).abs() <= 1e-4 && report.certificate.stick_count == 45, "{report:?}");
         solver
     }
 }
 
-fn part(report: &Report) -> f64 {
+pub fn part(report: &Report) -> f64 {
     report.force[0] / (0.3 * FORCE)
 }
 
-const STEP: (Motion, f64) = (Motion::TransientRolling, -0.001);
+/// What it rolls like before the first step.
+pub const ROLLING: (Motion, f64) = (Motion::SteadyRolling, -0.0009999);
+
+pub const STEP: (Motion, f64) = (Motion::TransientRolling, -0.001);
 
 #[test]
 fn a_step_has_the_solutions_from_below_and_from_above() {

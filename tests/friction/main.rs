@@ -42,6 +42,7 @@ mod steady_hard_cases;
 #[path = "../../examples/friction/steady.rs"]
 mod steady_scenes;
 mod stiff_coats;
+mod stopping_rule;
 mod support;
 mod tables;
 mod threads;

@@ -5,9 +5,9 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, SQRT_2};
 use contact_normal::error::Error;
 use contact_normal::friction::rolling_tables;
 use contact_normal::grid::Grid;
-use contact_normal::influence::Table;
+use contact_normal::influence::{RowTables, Table};
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Scene, TangentialInfluence};
-use contact_normal::solver::{solve, solve_tangential, Options, Solver};
+use contact_normal::solver::{solve, solve_tangential, Options, Outcome, Solver};
 use contact_normal::visco::{rolling_table, RollingBody, Series};
 
 const M: usize = 9;
@@ -47,19 +47,25 @@ impl Case {
         Case { grid: Grid::new(M, M, 1.0, 1.0).unwrap(), h, normal, own }
     }
 
-    fn scene(&self, motion: Motion, (direction, distance): (f64, f64)) -> Scene<'_> {
-        let coefficients = self.own.each_ref().map(|values| &values[..]);
+    fn scene(&self, motion: Motion, step: (f64, f64)) -> Scene<'_> {
         let (cx, cy) = REACH;
+        let influence = Some(Table::scaled(cx, cy, &self.normal, 1.0, &self.grid).unwrap());
+        Scene { influence, ..self.scene_of_tractions(motion, step, false) }
+    }
+
+    /// With tangential coefficients alone.
+    fn scene_of_tractions(&self, motion: Motion, (direction, distance): (f64, f64), by_row: bool) -> Scene<'_> {
+        let coefficients = self.own.each_ref().map(|values| &values[..]);
+        let (cx, cy) = (REACH.0, if by_row { M } else { REACH.1 });
         let friction = Friction {
             motion,
             prescribed: [Prescribed::Creepage(-1e-3), Prescribed::Creepage(5e-4)],
             rolling_direction: direction,
             rolling_distance: distance,
-            influence: Some(TangentialInfluence { cx, cy, coefficients, cross: None, scale: 1.0, by_row: false }),
+            influence: Some(TangentialInfluence { cx, cy, coefficients, cross: None, scale: 1.0, by_row }),
             ..Friction::new(0.3)
         };
         Scene {
-            influence: Some(Table::scaled(cx, cy, &self.normal, 1.0, &self.grid).unwrap()),
             friction: Some(friction),
             ..Scene::new(self.grid, &self.h, Bodies::same(1.0, 0.3), Load::Approach(0.3))
         }
@@ -131,6 +137,60 @@ fn so_are_those_of_pressures_alone() {
             }
         }
         assert_eq!(case.refusals(Motion::Shift, (0.0, 1.0), Motion::Shift, 0.0), [None, None, None]);
+    }
+}
+
+/// Factors of the rows of loads and displacements.
+fn of_row(row: usize) -> f64 {
+    1.0 + 0.1 * (row as f64).sin()
+}
+
+/// A table of offsets as tables per loaded row, `d_i A d_j`.
+fn per_row(table: &[f64]) -> Vec<f64> {
+    let value = |k: usize| {
+        let (jy, iy, kx) = (k / WIDTH / M, k / WIDTH % M, k % WIDTH);
+        of_row(jy) * of_row(iy) * table[(iy + REACH.1 - jy) * WIDTH + kx]
+    };
+    (0..M * M * WIDTH).map(value).collect()
+}
+
+/// Tables per loaded row of pressures: those of bodies that relax need no symmetry, and have one direction. The answer meets the conditions of contact by
+/// direct sums.
+#[test]
+fn so_are_row_tables_of_pressures() {
+    let (_, even) = coefficients(None);
+    let case = Case::new((Vec::new(), even.map(|table| per_row(&table))));
+    let (cx, _) = REACH;
+    for (speed, fits, way) in [(1.5, 0.0, "towards +x"), (-1.5, PI, "towards -x")] {
+        let normal = per_row(&coefficients(Some(speed)).0);
+        for direction in [0.0, PI] {
+            let mut scene = case.scene_of_tractions(Motion::SteadyRolling, (direction, 1.0), true);
+            scene.row_tables = Some(RowTables::new(cx, M, &normal, &case.grid).unwrap());
+            let options = Options { tolerance: 1e-8, ..Options::default() };
+            let found = solve(&scene, &options);
+            if direction != fits {
+                let Err(Error::InvalidArgument(message)) = found else { panic!("{speed} {direction}") };
+                let names = message.starts_with("row_tables of row 0 on itself is") && message.contains(way);
+                assert!(names && message.contains("but the step goes"), "{message}");
+                continue;
+            }
+            let (solver, end, report) = found.unwrap();
+            assert_eq!(end, Outcome::Converged);
+            assert!(report.friction.unwrap().certificate.residual <= 1e-8);
+            let p = &solver.state().p;
+            let displaced = |i: usize| {
+                let of = |j: usize| normal[(j / M * M + i / M) * WIDTH + cx + i % M - j % M] * p[j];
+                (0..M * M).map(of).sum::<f64>()
+            };
+            for (i, (p, h)) in p.iter().zip(&case.h).enumerate() {
+                let e = h - 0.3 + displaced(i);
+                // The largest h - approach is .3; the residual is an rms over some 40 elements.
+                let is_met = if *p > 0.0 { e.abs() <= 1e-8 * 0.3 * 7.0 } else { e >= -1e-8 };
+                assert!(is_met, "{i}: {e:e} {p}");
+            }
+            let ahead: f64 = (0..M * M).map(|i| p[i] * (i as f64 % M as f64 - 4.0)).sum();
+            assert!(ahead * speed > 0.0, "pressures lie ahead: {ahead}");
+        }
     }
 }
 

@@ -1,4 +1,5 @@
-//! Thin coatings far stiffer than what is below, in steady rolling: membranes. A circulant is far from an inverse of their coefficients.
+//! Thin coatings far stiffer than what is below, in steady rolling: membranes. A circulant of coefficients that end at half a period is no inverse of theirs,
+//! and took up to three times the products; one of waves is as near as for other bodies.
 
 use contact_normal::friction::{dense, Solver, Vector};
 use contact_normal::grid::Grid;
@@ -43,6 +44,7 @@ fn membranes_meet_the_conditions() {
     // Of 440 elements.
     assert!(sides.iter().all(|count| *count > 300), "{sides:?}");
     println!("most products {most}");
+    assert!(most <= 60.0, "{most} products");
 }
 
 /// A third of such scenes came to no end at 1e-7: what a certificate was taken at brought back four times the residual that the step had left.
@@ -52,7 +54,7 @@ fn tolerances_below_single_precision_are_reached() {
     let grid = Grid::new(m, m, 1.0, 1.0).unwrap();
     let at = |k: usize| (k as f64 - 16.0).powi(2);
     let h: Vec<f64> = (0..m * m).map(|i| 0.01 * (at(i % m) + at(i / m))).collect();
-    for tolerance in [1e-6, 1e-7, 1e-8, 1e-10] {
+    for (tolerance, most) in [(1e-6, 60.0), (1e-7, 70.0), (1e-8, 85.0), (1e-10, 115.0)] {
         let scene = Scene {
             coating: Some(Coating { layers: [Some(layer); 2] }),
             friction: Some(steady([-1e-3, 0.5e-3], 0.0, 0.6)),
@@ -63,5 +65,6 @@ fn tolerances_below_single_precision_are_reached() {
         println!("{tolerance} {end:?} {:?} products {}", found.certificate, found.products);
         assert_eq!(end, Outcome::Converged);
         assert!(found.certificate.residual < tolerance);
+        assert!(found.products <= most, "{tolerance} {} products", found.products);
     }
 }

@@ -14,22 +14,22 @@ use contact_normal::solver::{
 use crate::random::Random;
 
 const M: usize = 64;
-const WANTED: [Quantity; 3] = [Quantity::Force, Quantity::MaxPressure, Quantity::ContactArea];
+pub const WANTED: [Quantity; 3] = [Quantity::Force, Quantity::MaxPressure, Quantity::ContactArea];
 
 fn grid() -> Grid {
     Grid::new(M, M, 0.05, 0.05).expect("a grid")
 }
 
-fn ball() -> Vec<f64> {
+pub fn ball() -> Vec<f64> {
     let at = |k: usize| (k as f64 - 0.5 * (M as f64 - 1.0)) * 0.05;
     (0..M * M).map(|i| (at(i % M).powi(2) + at(i / M).powi(2)) / 100.0).collect()
 }
 
-fn plain(h: &[f64]) -> Scene<'_> {
+pub fn plain(h: &[f64]) -> Scene<'_> {
     Scene::new(grid(), h, Bodies { shear_modulus: [8e4, 3e4], poisson_ratio: [0.28, 0.35] }, Load::Approach(0.02))
 }
 
-fn bill(scene: &Scene<'_>, target: f64, wanted: &[Quantity]) -> Vec<BillRow> {
+pub fn bill(scene: &Scene<'_>, target: f64, wanted: &[Quantity]) -> Vec<BillRow> {
     // More than enough seconds: the grids do not depend on the machine.
     let asked = BillOptions { max_seconds: 1e3, ..BillOptions::new(target) };
     let (stop, rows) = effects_bill(scene, &Options::default(), &asked, wanted, None).expect("a bill");

@@ -1,11 +1,14 @@
-//! Prices of a step of bodies that relax.
+//! Prices, and the bill, of a step of bodies that relax.
 
+use contact_normal::error::Error;
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Branches, Load, Scene, Visco};
+use contact_normal::scene::{Bodies, Branches, Coating, Load, Scene, Visco};
 use contact_normal::solver::{
-    cost_of_accuracy, solve, solve_to_accuracy, Accuracy, Obstacle, Options, Outcome, Quantity,
+    cost_of_accuracy, effects_bill, solve, solve_to_accuracy, Accuracy, BillOptions, Neglected, Obstacle, Omission,
+    Options, Outcome, Quantity, Verdict,
 };
 
+use crate::bill::{ball, bill, plain, WANTED};
 use crate::visco::{G, MODULI, TIMES};
 
 /// What the forms RELAXATION and CREEP of a step of dt from rest differ by, relative to the first: in contact A p is h - approach over the compliance of
@@ -75,4 +78,39 @@ fn prices_of_a_step_from_rest_have_the_error_of_the_step() {
     let elastic = Scene { visco: None, ..scene };
     let (_, prices) = cost_of_accuracy(&elastic, &Options::default(), &accuracy, priced, None, None).unwrap();
     assert!(prices.iter().all(|price| price.time_error == 0.0 && price.obstacle != Some(Obstacle::Step)));
+}
+
+/// Bodies that relax alike carry less force at the same approach, over the same area: `1/s` of it, and s of a held approach is known. Steps that are short
+/// beside the relaxation change nothing.
+#[test]
+fn relaxation_is_in_the_bill_of_a_step_from_rest() {
+    let h = ball();
+    let step = |time_step: f64, continues: bool| {
+        let branches = Branches { modulus: &[5e4], time: &[2.0] };
+        let visco = Visco { bodies: [branches; 2], time_step, continues, ..Visco::default() };
+        Scene { visco: Some(visco), bodies: Bodies::same(8e4, 0.28), ..plain(&h) }
+    };
+    for (dt, verdict) in [(1.0, Verdict::Needed), (1e-3, Verdict::Negligible)] {
+        let (scene, x) = (step(dt, false), dt / 2.0);
+        let rows = bill(&scene, 1e-2, &WANTED);
+        assert_eq!(rows.len(), 3, "{rows:?}");
+        assert!(rows.iter().all(|row| row.omission == Omission::Visco && row.omission.name() == "visco"));
+        // The approach rises in the step, from rest: G_k remains by the mean of exp(-t/t_k).
+        let s = 1.0 / (1.0 - 5.0 / 8.0 * (1.0 - (1.0 - f64::exp(-x)) / x));
+        let (value, change) = (rows[0].value.expect("a value"), rows[0].change.expect("a change"));
+        // Both solves to a hundredth of the target.
+        assert!((change / value - (s - 1.0)).abs() <= 2e-4 * s, "{dt}: {change} {value} {s}");
+        assert_eq!((rows[0].verdict, rows[2].change), (verdict, Some(0.0)), "{rows:?}");
+        let neglected = Neglected::of(&scene, &Options::default(), 1e-2).expect("a scene");
+        assert_eq!(neglected, Neglected::default());
+    }
+    // A layer that relaxes is all there is of its body, and stays.
+    let coated = Scene {
+        coating: Some(Coating::of_body_1(0.5, 8e4, 0.3)),
+        bodies: Bodies { shear_modulus: [f64::INFINITY, 8e4], poisson_ratio: [0.0, 0.3] },
+        ..step(1.0, false)
+    };
+    assert!(bill(&coated, 1e-2, &WANTED).iter().all(|row| row.omission == Omission::Visco));
+    let refused = effects_bill(&step(1.0, true), &Options::default(), &BillOptions::new(0.1), &WANTED, None);
+    assert!(matches!(refused, Err(Error::Unsupported(message)) if message.contains("visco")));
 }

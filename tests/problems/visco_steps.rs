@@ -265,8 +265,9 @@ fn what_is_not_solved_is_refused_by_name() {
         let refused = refusal(scene);
         assert!(matches!(&refused, Error::Unsupported(text) if text.contains(words)), "{words}: {refused}");
     }
-    let bill = effects_bill(&plain, &Options::default(), &BillOptions::new(1e-2), &[Quantity::Force], None);
+    // A step that continues: its history is that of one grid.
     let later = Scene { visco: plain.visco.map(|visco| Visco { continues: true, ..visco }), ..plain };
+    let bill = effects_bill(&later, &Options::default(), &BillOptions::new(1e-2), &[Quantity::Force], None);
     let accuracy = solve_to_accuracy(&later, &Options::default(), &Accuracy::new(1e-2), None, None);
     for refused in [bill.map(drop).unwrap_err(), accuracy.map(drop).unwrap_err()] {
         assert!(matches!(&refused, Error::Unsupported(text) if text.contains("visco")), "{refused}");

@@ -58,6 +58,16 @@ impl<T: Real> VectorProduct<T> {
         VectorProduct::of(grid, period, symbol, threads)
     }
 
+    /// Of a symbol: `of(kx, ky)` gives its [xx, yy, xy] at the bins of a [period](vector_period) that are not negative. xx and yy are even, xy is odd.
+    pub fn of_waves(
+        grid: (usize, usize),
+        period: (usize, usize),
+        (is_coupled, of): (bool, impl Fn(usize, usize) -> [f64; 3] + Sync + Send),
+        threads: &Threads,
+    ) -> Result<VectorProduct<T>> {
+        VectorProduct::of(grid, period, transforms(period, threads)?.of_waves(is_coupled, of)?, threads)
+    }
+
     /// The same taken `n` elements further on in x. The period keeps apart offsets of so many elements more.
     pub fn further_on(self, n: i64) -> Result<VectorProduct<T>> {
         self.at(Place::FurtherOn(n))

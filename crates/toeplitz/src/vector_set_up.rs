@@ -30,7 +30,7 @@ impl LaneTransforms<'_> {
         G: Fn([f64; 3]) -> [f64; 3] + Sync + Send,
     {
         let (planes, of_plane) = (if of.is_coupled { 3 } else { 2 }, BLOCK * self.plan.bins.len());
-        let (blocks, of_block, columns) = (self.rows.blocks(), planes * of_plane, self.rows.bins());
+        let (blocks, of_block) = (self.rows.blocks(), planes * of_plane);
         let mut transformed = Vec::new();
         unwritten(&mut transformed, blocks * of_block, f64::NAN, SYMBOL, self.threads)?;
         for plane in 0..planes {
@@ -39,23 +39,50 @@ impl LaneTransforms<'_> {
             let even = Even { given: of.given, fill, finish: |value| value };
             self.of_plane((&even, parity), set_up, (of_block, plane * of_plane), &mut transformed)?;
         }
-        let mut values = Vec::new();
-        unwritten(&mut values, blocks * of_block, T::nan(), SYMBOL, self.threads)?;
         // The transforms have 1/(px py) in them, what is kept of them has it once.
         let (px, py) = self.period();
         let scale = px as f64 * py as f64;
-        self.threads.for_each_plain_row(&mut values, of_block, |block, values| {
+        let symbol = self.of_bins(planes, |block, k| {
             let from = &transformed[block * of_block..][..of_block];
+            let at = |plane: usize| from.get(plane * of_plane + k).map_or(0.0, |value| scale * value);
+            (of.finish)([0, 1, 2].map(at))
+        });
+        keep([&mut transformed]);
+        symbol
+    }
+
+    /// The symbol itself, of coefficients that are even or odd: `of(kx, ky)` gives its [xx, yy, xy] at bins that are not negative.
+    pub(crate) fn of_waves<T: Real>(
+        &self,
+        is_coupled: bool,
+        of: impl Fn(usize, usize) -> [f64; 3] + Sync + Send,
+    ) -> Result<VectorSymbol<T>> {
+        self.of_bins(if is_coupled { 3 } else { 2 }, |block, k| {
+            let row = k / BLOCK;
+            let [xx, yy, xy] = of(block * BLOCK + k % BLOCK, self.plan.bins[row]);
+            [xx, yy, if self.plan.mirrored[row] { -xy } else { xy }]
+        })
+    }
+
+    /// Of the values at place k of each block.
+    fn of_bins<T: Real>(
+        &self,
+        planes: usize,
+        at: impl Fn(usize, usize) -> [f64; 3] + Sync + Send,
+    ) -> Result<VectorSymbol<T>> {
+        let (of_plane, columns, mut values) = (BLOCK * self.plan.bins.len(), self.rows.bins(), Vec::new());
+        unwritten(&mut values, self.rows.blocks() * planes * of_plane, T::nan(), SYMBOL, self.threads)?;
+        let (px, py) = self.period();
+        let scale = px as f64 * py as f64;
+        self.threads.for_each_plain_row(&mut values, planes * of_plane, |block, values| {
             for k in 0..of_plane {
-                let at = |plane: usize| from.get(plane * of_plane + k).map_or(0.0, |value| scale * value);
                 let is_there = block * BLOCK + k % BLOCK < columns;
-                let kept = if is_there { (of.finish)([0, 1, 2].map(at)) } else { [0.0; 3] };
+                let kept = if is_there { at(block, k) } else { [0.0; 3] };
                 for (plane, kept) in kept.into_iter().enumerate().take(planes) {
                     values[plane * of_plane + k] = T::of(kept / scale);
                 }
             }
         });
-        keep([&mut transformed]);
         Ok(VectorSymbol { values, planes, of_plane, is_even: true, factors: Vec::new() })
     }
 

@@ -123,6 +123,40 @@ fn differences_are_direct_sums() {
     }
 }
 
+/// Of a symbol that is a few cosines and sines: coefficients at the nearest offsets alone, which a period two elements longer than the grid keeps apart.
+#[test]
+fn products_of_a_symbol_are_direct_sums() {
+    let nearest = |x: i64, y: i64| match (x.abs(), y.abs()) {
+        (0, 0) => [3.0, 4.0, 0.0],
+        (1, 0) => [-0.7, 0.2, 0.0],
+        (0, 1) => [0.4, -0.3, 0.0],
+        (1, 1) => [0.1, 0.25, 0.35 * (x * y) as f64],
+        _ => [0.0; 3],
+    };
+    for (grid, is_coupled) in GRIDS.into_iter().flat_map(|grid| [(grid, true), (grid, false)]) {
+        let (x, y) = (values(grid, 1), values(grid, 2));
+        let period = vector_period((grid.0 + 2, grid.1 + 2));
+        let wave = |kx: usize, ky: usize| {
+            let turn = |k: usize, period: usize| 2.0 * std::f64::consts::PI * k as f64 / period as f64;
+            let (tx, ty) = (turn(kx, period.0), turn(ky, period.1));
+            let [own, in_x, in_y, both] = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| nearest(x, y));
+            let sum = |k: usize| {
+                own[k] + 2.0 * in_x[k] * tx.cos() + 2.0 * in_y[k] * ty.cos() + 4.0 * both[k] * tx.cos() * ty.cos()
+            };
+            [sum(0), sum(1), -4.0 * both[2] * tx.sin() * ty.sin()]
+        };
+        let product = VectorProduct::<f64>::of_waves(grid, period, (is_coupled, wave), &Threads::One).expect("memory");
+        let c = |x: i64, y: i64| {
+            let [xx, yy, xy] = nearest(x, y);
+            [xx, yy, if is_coupled { xy } else { 0.0 }]
+        };
+        let double = error(&product, c, [&x, &y]);
+        assert!(double <= allowed::<f64>(grid), "{grid:?} {is_coupled}: {double}");
+        let single = error(&product.in_precision::<f32>().expect("memory"), c, [&x, &y]);
+        assert!(single <= allowed::<f32>(grid), "{grid:?} {is_coupled}: {single}");
+    }
+}
+
 #[test]
 fn products_of_any_coefficients_are_direct_sums() {
     let c = |x: i64, y: i64| {

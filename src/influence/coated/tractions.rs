@@ -30,6 +30,8 @@ use super::radial::{Base, Radial};
 use super::response::Response;
 use super::tensor::Tensor;
 
+/// Times the shear modulus of what is below.
+const MEMBRANE: f64 = 30.0;
 /// Diagonals of an element up to which differences over its corners serve.
 const CORNERS: f64 = 2.5;
 /// Points a side of tensor Gauss up to these distances, in longer sides of an element: `(n!)^4/((2n + 1)((2n)!)^2) r^-2n` is at most 3e-13 of a function
@@ -51,6 +53,17 @@ impl Coat {
     /// A layer of thickness t and of `mu` times the substrate's shear modulus, with both Poisson ratios.
     pub fn new(t: f64, mu: f64, nu: [f64; 2]) -> Coat {
         Coat { tensor: KNOWN.get([mu, nu[0], nu[1]], || Tensor::new(mu, nu)), t }
+    }
+
+    /// Whether it is so much stiffer than what is below that it spreads loads as a membrane, over many elements.
+    pub fn is_membrane(&self) -> bool {
+        self.tensor.across.transfer.substrate() >= MEMBRANE
+    }
+
+    /// What a wave of tractions of this wave number displaces along it and across it, in `1/(G1 k)` of one body.
+    pub fn of_wave(&self, k: f64) -> [f64; 2] {
+        let Tensor { along, across, kept, .. } = &*self.tensor;
+        [kept * along.transfer.at(k * self.t), across.transfer.at(k * self.t)]
     }
 
     /// The same in other units of length.

@@ -24,14 +24,18 @@ const KEPT: [Quantity; 3] = [Quantity::Force, Quantity::MaxPressure, Quantity::C
 impl Neglected {
     /// The omissions from `scene` that a target allows all together: each is negligible, and the rest of the scene is solved once
     /// more on small grids. Where that changes too much, the one with the largest change comes back. What makes the result of another kind is
-    /// never left out: friction, adhesion, and a layer in the place of a coating. Nor is a pressure limit: small grids do not see the peaks that
+    /// never left out: friction, adhesion, a step in time, and a layer in the place of a coating. Nor is a pressure limit: small grids do not see the peaks that
     /// reach it, and a limit that no element reaches changes nothing.
     pub fn of(scene: &Scene<'_>, options: &Options, target: f64) -> Result<Neglected> {
         let asked = BillOptions { pairs: false, ..BillOptions::new(target) };
         let wanted = kept(scene);
         let options = &Options { initial_guess: InitialGuess::None, ..*options };
         let stays = |one: &Omission| match one {
-            Omission::Friction | Omission::CoatingAsLayer | Omission::Adhesion | Omission::PressureLimit => true,
+            Omission::Friction
+            | Omission::CoatingAsLayer
+            | Omission::Adhesion
+            | Omission::PressureLimit
+            | Omission::Visco => true,
             // Where there is no patch there is no surface: that stays.
             Omission::Patches => scene.patches.is_some_and(|patches| patches.patch.iter().any(|patch| *patch < 0)),
             _ => false,

@@ -32,11 +32,13 @@ pub enum Omission {
     FrictionLaw,
     /// The yield of a third body: it carries whatever friction does.
     FrictionLayer,
+    /// That bodies relax: they give way as at once.
+    Visco,
 }
 
 impl Omission {
     /// All, in the order of their numbers in the C ABI, which begin at 1.
-    pub const ALL: [Omission; 13] = [
+    pub const ALL: [Omission; 14] = [
         Omission::Coating,
         Omission::Period,
         Omission::Patches,
@@ -50,6 +52,7 @@ impl Omission {
         Omission::Adhesion,
         Omission::FrictionLaw,
         Omission::FrictionLayer,
+        Omission::Visco,
     ];
 
     /// Its number, from 1 on.
@@ -59,7 +62,7 @@ impl Omission {
 
     /// Its name.
     pub fn name(self) -> &'static str {
-        const NAMES: [&str; 13] = [
+        const NAMES: [&str; 14] = [
             "coating",
             "period",
             "patches",
@@ -73,6 +76,7 @@ impl Omission {
             "adhesion",
             "friction_law",
             "friction_layer",
+            "visco",
         ];
         NAMES[self as usize]
     }
@@ -96,9 +100,9 @@ impl Omission {
     fn is_in(self, scene: &Scene<'_>) -> bool {
         let friction = scene.friction.as_ref();
         match self {
-            // Without the coatings two rigid bodies do not give way at all.
-            Omission::Coating => has_coating(scene) && scene.bodies.check().is_ok(),
-            Omission::CoatingAsLayer => has_coating(scene) && scene.bodies.check().is_ok() && as_layer(scene).is_some(),
+            // Without the coatings two rigid bodies do not give way at all, and of what relaxes they are all.
+            Omission::Coating => may_lose_coating(scene),
+            Omission::CoatingAsLayer => may_lose_coating(scene) && as_layer(scene).is_some(),
             Omission::Period => scene.period.is_some_and(|period| period.x || period.y),
             Omission::Patches => scene.patches.is_some(),
             Omission::Layer => scene.layer.is_some(),
@@ -112,6 +116,7 @@ impl Omission {
             }
             Omission::FrictionLaw => friction.is_some_and(|friction| friction.law.is_some()),
             Omission::FrictionLayer => friction.is_some_and(|friction| friction.layer.is_some()),
+            Omission::Visco => relaxes(scene),
         }
     }
 
@@ -153,14 +158,20 @@ impl Omission {
             Omission::FrictionLayer => {
                 left.friction = scene.friction.map(|friction| Friction { layer: None, ..friction });
             }
+            Omission::Visco => left.visco = None,
         }
         left
     }
 }
 
-fn has_coating(scene: &Scene<'_>) -> bool {
+fn relaxes(scene: &Scene<'_>) -> bool {
+    scene.visco.is_some_and(|visco| visco.relaxes())
+}
+
+fn may_lose_coating(scene: &Scene<'_>) -> bool {
     let plain = scene.plain();
-    scene.coating.is_some_and(|coating| (0..2).any(|body| coating.in_effect(body, &plain).is_some()))
+    let is_left = scene.bodies.check().is_ok() && !relaxes(scene);
+    is_left && scene.coating.is_some_and(|coating| (0..2).any(|body| coating.in_effect(body, &plain).is_some()))
 }
 
 /// Like bodies of the same compliance, normal and tangential: the means of 1/G and of nu/G.

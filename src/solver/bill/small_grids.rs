@@ -38,9 +38,6 @@ pub fn check(scene: &Scene<'_>, options: &Options, asked: &BillOptions) -> Resul
     require(is_limit, "max_seconds", seconds, "it must be positive, or 0 for the default")?;
     scene.check(&Threads::One)?;
     scene.check_area(None)?;
-    if scene.visco.is_some_and(|visco| visco.relaxes()) {
-        return Err(Error::Unsupported("visco is given; the bill does not judge a step in time".into()));
-    }
     effects::check_other_grids(scene)
 }
 

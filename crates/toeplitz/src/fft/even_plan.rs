@@ -19,6 +19,8 @@ pub struct EvenPlan<T: Real> {
     pub(crate) kept: Vec<Kept>,
     /// The bin of each kept row, at most py/2.
     pub(crate) bins: Vec<usize>,
+    /// Whether it is kept of the bin py less that.
+    pub(crate) mirrored: Vec<bool>,
 }
 
 /// The kept rows of a block: the first, and the step to the next.
@@ -41,26 +43,29 @@ impl<T: Real> EvenPlan<T> {
 
     fn new(length: usize) -> Result<EvenPlan<T>> {
         let stages = Stages::new(length)?;
-        let (kept, bins) = kept_rows(length, &stages.lowest_bins()?, stages.last)?;
-        Ok(EvenPlan { stages, kept, bins })
+        let (kept, bins) = kept_rows(&stages.lowest_bins()?, stages.last)?;
+        let mirrored = collected(bins.iter().map(|bin| 2 * bin > length), PLAN)?;
+        let bins = collected(bins.iter().map(|&bin| bin.min(length - bin)), PLAN)?;
+        Ok(EvenPlan { stages, kept, bins, mirrored })
     }
 }
 
 impl<T: Real> Plan for EvenPlan<T> {
     fn bytes(&self) -> usize {
-        self.stages.bytes() + size_of_val(&self.kept[..]) + size_of_val(&self.bins[..])
+        let rows = size_of_val(&self.bins[..]) + size_of_val(&self.mirrored[..]);
+        self.stages.bytes() + size_of_val(&self.kept[..]) + rows
     }
 }
 
-/// Where S is kept of each block of the last stage, of which the lowest bin is given, and the bin of each kept row.
-fn kept_rows(length: usize, lowest: &[usize], last: usize) -> Result<(Vec<Kept>, Vec<usize>)> {
+/// Where S is kept of each block of the last stage, of which the lowest bin is given, and the bin of each kept row, of all.
+fn kept_rows(lowest: &[usize], last: usize) -> Result<(Vec<Kept>, Vec<usize>)> {
     let blocks = lowest.len();
     let (mut block_of, mut bins) = (zeros(blocks, PLAN)?, Vec::new());
     reserve(&mut bins, (blocks / 2 + 1) * last, PLAN)?;
     let is_kept = |bin: usize| 2 * bin <= blocks;
     for &bin in lowest.iter().filter(|&&bin| is_kept(bin)) {
         block_of[bin] = bins.len();
-        bins.extend((0..last).map(|q| bin + q * blocks).map(|bin| bin.min(length - bin)));
+        bins.extend((0..last).map(|q| bin + q * blocks));
     }
     let kept = lowest.iter().map(|&bin| match is_kept(bin) {
         true => Kept { first: block_of[bin], step: 1 },
