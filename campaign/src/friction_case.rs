@@ -194,7 +194,6 @@ impl Case {
     pub fn has_much_friction(&self) -> bool {
         self.slide.mu.iter().any(|mu| *mu > 1.0)
     }
-    }
 
     /// In one line.
     pub fn describe(&self) -> String {
