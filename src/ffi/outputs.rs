@@ -1,5 +1,8 @@
 //! The outputs that the caller wants written: fields, a report, a ledger; and the initial guess, which is read.
 
+use std::mem::MaybeUninit;
+use std::slice::from_raw_parts_mut;
+
 use super::arguments::Regions;
 use super::fields::contact_normal_fields;
 use super::ledger::contact_normal_ledger_row;
@@ -185,18 +188,14 @@ impl Outputs {
 
     /// Writes the two parts of the pressures: without adhesion all of them are contact pressures.
     fn write_adhesion(&self, solver: &Solver) {
-        let (fields, split) = (&self.fields, solver.adhesion());
-        let parts = |i: usize| split.as_ref().map_or((solver.state().p[i], 0.0), |split| split(i));
-        // SAFETY (both): not null: room for one value per element, as above.
-        unsafe {
-            for i in 0..solver.state().p.len() {
-                if !fields.contact_pressure.is_null() {
-                    fields.contact_pressure.add(i).write(parts(i).0);
-                }
-                if !fields.attraction.is_null() {
-                    fields.attraction.add(i).write(parts(i).1);
-                }
-            }
+        let n = solver.state().p.len();
+        // SAFETY (both): not null: room for one value per element, as above, with whatever it holds.
+        let room = |to: *mut f64| unsafe { to.cast::<MaybeUninit<f64>>().as_mut().map(|to| from_raw_parts_mut(to, n)) };
+        if let Some(to) = room(self.fields.contact_pressure) {
+            solver.write_part(to, |(contact_pressure, _)| contact_pressure);
+        }
+        if let Some(to) = room(self.fields.attraction) {
+            solver.write_part(to, |(_, attraction)| attraction);
         }
     }
 

@@ -1,6 +1,8 @@
 //! Scenes with adhesion: they are solved on their own grids, by [`adhesion`](crate::adhesion); contact problems whose attraction stands still by the
 //! methods of every other scene.
 
+use std::mem::MaybeUninit;
+
 use super::adhesive_friction::check_alike;
 use super::methods::{self, Methods};
 use super::take_over::{is_without_contact, take_distance};
@@ -57,6 +59,19 @@ impl Solver {
     pub fn adhesion(&self) -> Option<impl Fn(usize) -> (f64, f64) + '_> {
         let solver = self.adhesion.as_deref().filter(|_| self.has_result && self.is_adhesive)?;
         Some(|i| solver.split(&self.state, i))
+    }
+
+    /// Writes what `which` takes of the contact pressure and the attraction of each element of the last result; without adhesion all of the pressures
+    /// are contact pressures.
+    pub fn write_part(&self, to: &mut [MaybeUninit<f64>], which: impl Fn((f64, f64)) -> f64 + Sync + Send) {
+        let (state, split) = (&self.state, self.adhesion());
+        let parts = |i: usize| split.as_ref().map_or((state.p[i], 0.0), |split| split(i));
+        let mx = state.grid.mx;
+        self.problem.threads.for_each_plain_row(to, mx, |y, row| {
+            row.iter_mut().zip(y * mx..).for_each(|(to, i)| {
+                to.write(which(parts(i)));
+            });
+        });
     }
 
     /// Looks for the least force that an equilibrium has: from the load of the scene, and from bodies that are pressed together, the approach goes down

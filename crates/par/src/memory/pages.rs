@@ -22,7 +22,7 @@ pub(super) fn give_pages_back<A>(values: &mut Vec<A>) {
 pub(super) fn give_pages_back<A>(_: &mut Vec<A>) {}
 
 /// Bytes that one thread touches first, at least.
-const TOUCHED: usize = 2 << 20;
+const TOUCHED: usize = 1 << 19;
 
 /// Makes an array n values long, in the room that it has. The threads write many new ones together: the system clears each page at its first
 /// touch, which takes as long as several passes.
