@@ -6,11 +6,11 @@ use super::majorise::Descent;
 use super::nested::{self, coarse_goal};
 use super::newton::{newton, End, Goal};
 use super::place::{Met, Place, Walk};
-use super::pull::Walker;
 use super::request::Start;
 use super::solver::{pulls, Solver};
 use super::tangent::is_stable;
 use super::unknowns::Unknowns;
+use super::way::Walker;
 use crate::error::{Error, Result};
 use crate::progress::Monitor;
 
@@ -24,6 +24,10 @@ const LESS: f64 = 1.0 + 1e-6;
 /// The first way of a pull-off may take this factor times the cycles of a solve. Each of its states may take one part in this many of a solve's.
 const PULL_OFF: u64 = 3;
 const STATES: u64 = 4;
+/// A pull-off whose way is lost is looked for so many times below, in so many steps of this part of the length of the contact.
+const ANEW: u32 = 4;
+const STEPS_BELOW: u32 = 6;
+const BELOW: f64 = 0.1;
 /// Each further way may take this factor times the cycles of the first way, and these cycles.
 const TIMES: u64 = 4;
 const AT_LEAST: u64 = 500;
@@ -121,6 +125,47 @@ impl Solver {
         Walker { each, ..self.walker(Goal { most, ..goal }, make, monitor) }
     }
 
+    /// The first way down. Where it is lost, as elements snap one after the other that are too coarse for the range, a pull-off is looked for from a state
+    /// below, which is found from nothing.
+    fn walk_first(&mut self, goal: Goal, make: MakeFrozen<'_>, monitor: &mut Monitor<'_>) -> Result<Walk> {
+        let mut ended = self.first_walker(goal, make, monitor).walk(None)?;
+        for _ in 0..ANEW {
+            if ended != Walk::Lost || goal.wanted.is_some() {
+                break;
+            }
+            let lost = Place::of(&self.levels[0], Met::of(&self.levels[0]).sum)?;
+            if !self.is_found_below(goal, make, monitor)? {
+                self.levels[0].now.copy_from(&lost.at)?;
+                return Ok(Walk::Lost);
+            }
+            ended = self.first_walker(goal, make, monitor).walk(None)?;
+            let is_less = match ended {
+                Walk::Least { sum, .. } => sum < lost.sum,
+                _ => Met::of(&self.levels[0]).sum < lost.sum,
+            };
+            if !is_less {
+                self.levels[0].now.copy_from(&lost.at)?;
+                return Ok(if ended == Walk::Interrupted { ended } else { Walk::Lost });
+            }
+        }
+        Ok(ended)
+    }
+
+    /// Whether a state of bodies that touch is found below what the finest grid holds, from nothing.
+    fn is_found_below(&mut self, goal: Goal, make: MakeFrozen<'_>, monitor: &mut Monitor<'_>) -> Result<bool> {
+        let from = self.levels[0].now.approach();
+        let step = self.walker(goal, make, monitor).first_step(BELOW)?;
+        let each = Goal { wanted: None, most: goal.most / STATES + 1, ..goal };
+        for k in (1..=STEPS_BELOW).filter(|_| step > 0.0) {
+            self.levels.iter_mut().for_each(|level| level.now.p.border = [from - f64::from(k) * step]);
+            let ended = nested::solve(&mut self.levels, each, (Start::Auto, make), monitor)?;
+            if ended.is_in_contact() || monitor.is_cancelled() {
+                return Ok(ended.is_in_contact());
+            }
+        }
+        Ok(false)
+    }
+
     /// Down the stable branch: from what the finest grid holds, if it is a state to go down from, and from bodies that are pressed together. The
     /// second is for bodies of which one asperity alone holds without a load, and for those that nothing holds then. More and more pressed, until no less
     /// force is found. The finest grid then has the state of the least.
@@ -136,7 +181,7 @@ impl Solver {
         if is_state {
             let before = monitor.count.cycles;
             met = Some(Met::of(&self.levels[0]));
-            match self.first_walker(goal, make, monitor).walk(None)? {
+            match self.walk_first(goal, make, monitor)? {
                 Walk::Least { sum, .. } => least = Some(Place::of(&self.levels[0], sum)?),
                 Walk::Lost | Walk::Met => {
                     met = None;
@@ -145,7 +190,7 @@ impl Solver {
                 ended => return Ok(ended),
             }
             // Each further way takes at most some times as long.
-            let times = TIMES * (monitor.count.cycles - before) + AT_LEAST;
+            let times = TIMES * monitor.count.cycles.saturating_sub(before) + AT_LEAST;
             most = if goal.wanted.is_none() { times } else { most.min(times) };
         }
         let mut pressing = self.first_pressing(least.as_ref(), goal);

@@ -2,8 +2,8 @@
 
 use super::newton::{newton, End};
 use super::place::{Place, Walk};
-use super::pull::Walker;
 use super::tangent::is_stable;
+use super::way::Walker;
 use crate::error::Result;
 
 /// Secants at most, between two states.

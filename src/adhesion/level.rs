@@ -88,9 +88,9 @@ impl Level {
             problem,
             work,
             surface: Surface::default(),
-            now: Unknowns::new(n)?,
+            now: Unknowns::new(n, threads)?,
             good: Pressures::default(),
-            fields: Fields::default(),
+            fields: Fields::touched_by(threads),
             inverse,
             frozen: None,
             of_descents: 0,
@@ -137,7 +137,7 @@ impl Level {
             return Ok(still);
         }
         if !is_small(self.now.u.len()) {
-            self.fields = Fields::default();
+            self.fields = Fields::touched_by(&self.problem.threads);
         }
         let state = State::new(self.problem.grid, (Load::Approach(0.0), 0.0), &self.problem.threads)?;
         Ok((make(&self.problem)?, state))

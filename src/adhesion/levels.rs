@@ -99,9 +99,11 @@ pub fn take_surfaces(levels: &mut [Level], given: Surfaces<'_>) -> Result<()> {
 pub fn prolong(coarse: &mut Level, fine: &mut Level) -> Result<()> {
     fine.fields = std::mem::take(&mut coarse.fields);
     let (from, to) = (coarse.problem.grid, fine.problem.grid);
-    let p = fine.now.p.field.as_flattened_mut();
-    transfer::interpolate(&to, &from, coarse.now.p.field.as_flattened(), p, |to, value| *to = value);
-    p.iter_mut().zip(&fine.surface.h).filter(|(_, h)| h.is_infinite()).for_each(|(p, _)| *p = 0.0);
+    let (pressures, h) = (coarse.now.p.field.as_flattened(), &fine.surface.h);
+    fine.problem.threads.for_each_plain_row(fine.now.p.field.as_flattened_mut(), to.mx, |y, row| {
+        transfer::interpolate_row(&to, &from, pressures, y, row, |to, value| *to = value);
+        row.iter_mut().zip(&h[y * to.mx..]).filter(|(_, h)| h.is_infinite()).for_each(|(p, _)| *p = 0.0);
+    });
     fine.now.p.border = coarse.now.p.border;
     fine.refresh()
 }

@@ -12,7 +12,7 @@ use super::newton::{End, Goal};
 use super::unknowns::Measured;
 use crate::contact::Freshness;
 use crate::error::Result;
-use crate::methods::fields;
+use crate::methods::fields::{self, BLOCK};
 use crate::progress::{Monitor, Outcome};
 use crate::scene::Load;
 
@@ -105,11 +105,17 @@ fn one(
     let [held] = fields::sum(&threads, n, |i| attraction[i]);
     let problem = &mut level.problem;
     problem.displace(attraction.as_flattened(), product.as_flattened_mut())?;
-    for i in 0..n {
-        let q = level.now.p.field[i][0] + attraction[i][0];
-        (state.h[i], state.p[i]) = (level.surface.h[i] - product[i][0], if q > 0.0 { q } else { 0.0 });
-        state.contact[i] = state.p[i] > 0.0;
-    }
+    let (surface, now) = (&level.surface, &level.now);
+    threads.for_each_plain_row(&mut state.h, BLOCK, |k, h| {
+        h.iter_mut().zip(k * BLOCK..).for_each(|(h, i)| *h = surface.h[i] - product[i][0]);
+    });
+    threads.for_each_row_pair((&mut state.p, BLOCK), (&mut state.contact, BLOCK), |k, p, contact| {
+        for ((p, contact), i) in p.iter_mut().zip(contact).zip(k * BLOCK..) {
+            let q = now.p.field[i][0] + attraction[i][0];
+            *p = if q > 0.0 { q } else { 0.0 };
+            *contact = *p > 0.0;
+        }
+    });
     state.approach = level.now.approach();
     let area = problem.grid.element_area();
     state.load = match goal.wanted {
@@ -122,10 +128,8 @@ fn one(
         let outcome = frozen.solve(problem, state, (tolerance, goal.most), monitor)?;
         log::debug!("the contact problem of a still attraction: {outcome:?}");
         let _: Outcome = outcome;
-        for i in 0..n {
-            level.now.p.field[i] = [state.p[i] - attraction[i][0]];
-            level.now.u[i] = [state.u[i] - product[i][0]];
-        }
+        fields::fill(&threads, &mut level.now.p.field, |i| [state.p[i] - attraction[i][0]]);
+        fields::fill(&threads, &mut level.now.u, |i| [state.u[i] - product[i][0]]);
         level.now.p.border = [state.approach];
     }
     [attraction, product].into_iter().for_each(|field| fields.give(field));

@@ -14,7 +14,7 @@
 //! | `newton`, `system` | semismooth Newton with flexible GMRES, bordered where the force is given |
 //! | `majorise`, `robust` | descent by contact problems whose attraction stands still, and Newton's method with that behind it |
 //! | `nested` | nested iteration; the starts from contact and from apart |
-//! | `pull`, `place`, `held` | the way down to the pull-off, and states on it; the stable state of a force |
+//! | `pull`, `way`, `place`, `held` | the way down to the pull-off, its steps, and states on it; the stable state of a force |
 //! | `stability`, `tangent` | how near a state is to a snap; how its force changes with the approach, and whether it is stable |
 //! | `begin` | the starts from nothing |
 //! | `request`, `solver`, `report` | the whole solve |
@@ -37,6 +37,7 @@ mod stability;
 mod system;
 mod tangent;
 mod unknowns;
+mod way;
 
 pub use law::{Attraction, Law};
 pub use level::Frozen;

@@ -33,7 +33,7 @@ pub fn solve(
         let (end, measured) = descend(level, goal, steps, monitor)?;
         return match end {
             Descent::By(End::Failed) => robust::solve(level, goal, (false, make), monitor),
-            end => Ok(Ended { end, measured, descended: true }),
+            end => Ok(Ended { end, measured, is_lost: true }),
         };
     }
     levels[last].fields = std::mem::take(&mut levels[0].fields);
@@ -78,14 +78,14 @@ fn one(
         let steps = Steps { most: FIRST, from_none: true, make };
         let (end, measured) = descend(level, goal, steps, monitor)?;
         if matches!(end, Descent::By(End::Interrupted)) {
-            return Ok(Ended { end, measured, descended: false });
+            return Ok(Ended { end, measured, is_lost: false });
         }
         if end == Descent::Parted {
             // Without attraction nothing carries a force of 0. With it descent, from no pressures, is far cheaper than Newton's method.
             let steps = Steps { most: BETWEEN, from_none: false, make };
             let (end, measured) = descend(level, goal, steps, monitor)?;
             if end != Descent::By(End::Failed) {
-                return Ok(Ended { end, measured, descended: true });
+                return Ok(Ended { end, measured, is_lost: true });
             }
         }
     }
@@ -94,7 +94,7 @@ fn one(
 
 /// p = 0 at the approach that is given, or that of a first touch. Returns the approach.
 fn begin(level: &mut Level, goal: Goal) -> f64 {
-    level.now.unload();
+    level.now.unload(&level.problem.threads);
     if goal.wanted.is_some() {
         let lowest = crate::contact::lowest(&level.surface.h);
         level.now.p.border = [if lowest.is_finite() { lowest } else { 0.0 }];

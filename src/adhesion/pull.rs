@@ -1,75 +1,87 @@
 //! Forces that pull. Two equilibria belong to one of them, of which the one with dF/dapproach > 0 is stable; below the pull-off force there is none.
 //!
 //! So the approach goes down the stable branch from a state of more force, step by step until nothing is in contact. Asperities part one after the
-//! other, and so do elements that are too coarse: the force falls and rises many times on the way. The least of all is looked at once more in small steps:
-//! that is the pull-off force. Where a force is wanted, the way ends at the first step that crosses it ([`held`](super::held)).
+//! other, and so do elements that are too coarse: the force falls and rises many times on the way. Where it was nearly the least the way is gone once more in
+//! small steps: their least is the pull-off force. Where a force is wanted, the way ends at the first step that crosses it ([`held`](super::held)).
 
-use super::level::{Level, MakeFrozen};
-use super::majorise::Descent;
-use super::newton::{End, Goal};
+use super::level::Level;
 use super::place::{Met, Place, Walk};
-use super::robust;
 use super::tangent::{is_locked, stiffness_of_contact};
 use super::unknowns::energies;
+use super::way::{Walker, Way};
 use crate::error::Result;
 use crate::methods::fields;
-use crate::progress::Monitor;
 
 /// A step: this part of the length that the energy and the stiffness of the contact have together; a larger part down to the state of an earlier way.
 const STEP: f64 = 0.1;
 const LONG: f64 = 0.3;
-/// Steps grow by this where the force changes little, up to the first one.
-const GROWTH: f64 = 1.5;
 /// A step of surfaces that are locked in contact: of the range.
 const OF_RANGE: f64 = 0.1;
-/// Steps at most, and halvings of one at whose end no state is found.
+/// Steps at most.
 const MOST_STEPS: u32 = 400;
-const HALVINGS: u32 = 4;
-/// The steps around the least force are repeated in so many parts. Elements part one by one and do not come back, so that the force of a sphere of
-/// 64 x 64 elements differs by 1e-4 of itself between long and short steps.
+/// Where the force was nearly the least, steps are repeated in so many parts: the edge of a contact rests at rings of elements, so that the force of a
+/// sphere has a minimum at each of them.
 const PARTS: u32 = 8;
-/// Small steps beyond a minimum that find no less; then steps from the minimum, which are halved where they find no less, too: the last elements of a
-/// contact part at a cusp.
-const BEYOND: u32 = 4;
+/// Forces are nearly the least if they are more by at most this part of it, times the square of kappa, within these bounds. The minima of a sphere at
+/// neighbouring rings lie 1 % below the forces between them for kappa 0.4, and 0.01 % for kappa 0.14.
+const NEARLY: f64 = 0.1;
+const NEARLY_WITHIN: (f64, f64) = (0.005, 0.02);
+/// The least force is looked for once more so many small steps above.
+const UP: [f64; 4] = [0.0, 0.25, 0.5, 1.0];
+/// Steps from the minimum, which are halved where they find no less: the last elements of a contact part at a cusp.
 const LAST: u32 = 5;
 /// Two ways have met where their sums of p differ by less than this part of all attraction or repulsion.
 const SAME: f64 = 1e-3;
 /// Of sigma(0): contact pressures below are those of elements that part.
 const PARTING: f64 = 1e-9;
 
-/// Goes from state to state on one grid.
-pub struct Walker<'a, 'm, 'c> {
-    pub level: &'a mut Level,
-    pub goal: Goal,
-    pub make: MakeFrozen<'a>,
-    pub monitor: &'m mut Monitor<'c>,
-    /// Cycles of each state on the way at most: more are a state that is not found.
-    pub each: u64,
-}
-
 /// The least force on a way.
 struct Least {
     at: Place,
-    /// The step before it, and the length of a step there.
+    /// The state before the first one that is nearly the least, and the sum of that one.
     above: Place,
+    first: f64,
+    /// The approach of the last one that is, and the length of a step there.
+    last: f64,
     step: f64,
+    /// The part by which a force that is nearly the least may be more.
+    nearly: f64,
 }
 
-impl<'a, 'm, 'c> Walker<'a, 'm, 'c> {
-    /// On a grid, from what it holds; each state may take all cycles of the goal.
-    pub fn new(level: &'a mut Level, goal: Goal, make: MakeFrozen<'a>, monitor: &'m mut Monitor<'c>) -> Self {
-        Walker { level, goal, make, monitor, each: u64::MAX }
+/// Whether a sum of p is nearly the least.
+fn is_nearly(sum: f64, least: f64, part: f64) -> bool {
+    sum - least <= part * least.abs()
+}
+
+impl Least {
+    /// Of a way that begins.
+    fn of(level: &Level, way: &Way) -> Result<Least> {
+        let Way { here, longest, .. } = way;
+        let place = || Place::of(level, here.sum);
+        let kappa = level.surface.attraction.resolution(level.surface.work, level.self_influence());
+        let nearly = (NEARLY * kappa * kappa).clamp(NEARLY_WITHIN.0, NEARLY_WITHIN.1);
+        Ok(Least { at: place()?, above: place()?, first: here.sum, last: here.approach(), step: *longest, nearly })
     }
 
-    /// The sum of p at an approach, from what the level holds; none where no state is found.
-    pub fn solve_at(&mut self, approach: f64) -> Result<Option<f64>> {
-        self.level.now.p.border = [approach];
-        let most = self.goal.most.min(self.monitor.count.cycles.saturating_add(self.each));
-        let by_approach = Goal { wanted: None, most, ..self.goal };
-        let ended = robust::solve(self.level, by_approach, (true, self.make), self.monitor)?;
-        Ok((ended.end == Descent::By(End::Solved)).then_some(ended.measured.pressures))
+    /// Takes a state of this sum, which the level holds, one step from where the way is.
+    fn look_at(&mut self, level: &Level, sum: f64, way: &Way) -> Result<()> {
+        if sum < self.at.sum {
+            if !is_nearly(self.first, sum, self.nearly) {
+                self.above.sum = way.here.sum;
+                self.above.at.copy_from(&way.here.at)?;
+                self.first = sum;
+            }
+            self.at.take(level, sum)?;
+            self.step = way.here.approach() - level.now.approach();
+        }
+        if is_nearly(sum, self.at.sum, self.nearly) {
+            self.last = level.now.approach();
+        }
+        Ok(())
     }
+}
 
+impl Walker<'_, '_, '_> {
     /// Walks down from what the level holds, the state of more force. `met`: where it may end.
     pub fn walk(&mut self, met: Option<Met>) -> Result<Walk> {
         let first = match is_locked(self.level) {
@@ -84,106 +96,107 @@ impl<'a, 'm, 'c> Walker<'a, 'm, 'c> {
         if !(step > 0.0) {
             return Ok(self.lost());
         }
-        let least = match self.down(sum, step, met)? {
+        let way = Way::from(self.level, sum, step, false)?;
+        let least = match self.down(way, met)? {
             Ok(least) => least,
-            Err(walk) => return Ok(walk),
+            Err(walk) => {
+                if walk == Walk::Lost {
+                    self.solve_at(self.level.now.approach())?;
+                }
+                return Ok(walk);
+            }
         };
         self.closer(least)
     }
 
     /// Down until nothing is in contact: the least force, or how the walk ended before.
-    fn down(&mut self, sum: f64, first: f64, mut met: Option<Met>) -> Result<std::result::Result<Least, Walk>> {
-        let mut step = first;
-        let mut here = Place::of(self.level, sum)?;
-        let mut least = Least { at: Place::of(self.level, sum)?, above: Place::of(self.level, sum)?, step };
+    fn down(&mut self, mut way: Way, mut met: Option<Met>) -> Result<std::result::Result<Least, Walk>> {
+        let mut least = Least::of(self.level, &way)?;
         for _ in 0..MOST_STEPS {
-            let target = here.approach() - step;
-            let meets = met.filter(|met| target <= met.approach && met.approach < here.approach());
+            let target = way.here.approach() - way.step;
+            let meets = met.filter(|met| target <= met.approach && met.approach < way.here.approach());
             let target = meets.map_or(target, |met| met.approach);
-            let Some(sum) = self.step_to(&here, target)? else {
+            let Some(sum) = self.step_to(&mut way, target)? else {
                 self.level.now.copy_from(&least.at.at)?;
                 return Ok(Err(self.lost()));
             };
             let (approach, is_apart) = (self.level.now.approach(), !self.level.now.contact.contains(&true));
             if self.goal.wanted.is_some_and(|wanted| sum <= wanted) {
-                return Ok(Err(self.between(&mut here, (sum, approach))?));
+                return Ok(Err(self.between(&mut way.here, (sum, approach))?));
             }
             if is_apart {
                 break;
             }
-            if sum < least.at.sum {
-                least.above.sum = here.sum;
-                least.above.at.copy_from(&here.at)?;
-                least.at.take(self.level, sum)?;
-                least.step = here.approach() - approach;
-            }
-            if meets.is_some_and(|met| approach == met.approach) {
-                if meets.is_some_and(|met| (sum - met.sum).abs() <= SAME * met.all) {
+            least.look_at(self.level, sum, &way)?;
+            if let Some(at) = meets.filter(|met| approach == met.approach) {
+                if (sum - at.sum).abs() <= SAME * at.all {
                     // What is less than at the meeting lies on this way alone.
-                    return Ok(if least.at.sum < sum { Ok(least) } else { Err(Walk::Met) });
+                    let is_less = least.at.sum < sum - SAME * at.all;
+                    return Ok(if is_less { Ok(least) } else { Err(Walk::Met) });
                 }
                 met = None;
             }
-            let stiffness = (here.sum - sum) / (here.approach() - approach);
+            let stiffness = (way.here.sum - sum) / (way.here.approach() - approach);
             let part = if met.is_some() { LONG } else { STEP };
-            step = (part * self.length(stiffness)).min(GROWTH * step).min(first);
-            here.take(self.level, sum)?;
+            way.step = way.step.min(part * self.length(stiffness));
+            way.take(self.level, sum)?;
         }
         Ok(Ok(least))
     }
 
-    /// A state at an approach, or halfway to it, and so on. None where none is found.
-    fn step_to(&mut self, from: &Place, approach: f64) -> Result<Option<f64>> {
-        let mut way = approach - from.approach();
-        for halving in 0..=HALVINGS {
-            let approach = if halving == 0 { approach } else { from.approach() + way };
-            let found = self.solve_at(approach)?;
-            if self.goal.is_interrupted(self.monitor) {
-                return Ok(None);
-            }
-            if found.is_some() {
-                return Ok(found);
-            }
-            self.level.now.copy_from(&from.at)?;
-            way *= 0.5;
-        }
-        Ok(None)
-    }
-
-    /// Small steps around the least force.
+    /// Small steps where the force was nearly the least.
     fn closer(&mut self, least: Least) -> Result<Walk> {
-        let Least { at: mut best, above, step } = least;
-        let (to, small) = (best.approach() - step, step / f64::from(PARTS));
+        let Least { at: mut best, above, last, step, nearly, .. } = least;
+        let (to, small) = (last - step, step / f64::from(PARTS));
         self.level.now.copy_from(&above.at)?;
-        let (mut here, mut beyond) = (above, 0);
-        for _ in 0..3 * PARTS {
-            let approach = here.approach() - small;
-            if approach < to || beyond == BEYOND {
+        let mut way = Way::from(self.level, above.sum, step, true)?;
+        way.step = small;
+        for _ in 0..MOST_STEPS {
+            let target = way.here.approach() - way.step;
+            let Some(sum) = self.step_to(&mut way, target)? else {
+                if self.goal.is_interrupted(self.monitor) {
+                    self.level.now.copy_from(&best.at)?;
+                    return Ok(Walk::Interrupted);
+                }
+                break;
+            };
+            let approach = self.level.now.approach();
+            if !self.level.now.contact.contains(&true) {
                 break;
             }
-            let found = self.solve_at(approach)?;
-            if self.goal.is_interrupted(self.monitor) {
-                self.level.now.copy_from(&best.at)?;
-                return Ok(Walk::Interrupted);
-            }
-            let Some(sum) = found.filter(|_| self.level.now.contact.contains(&true)) else { break };
             if self.goal.wanted.is_some_and(|wanted| sum <= wanted) {
-                return self.between(&mut here, (sum, approach));
+                return self.between(&mut way.here, (sum, approach));
             }
-            let is_below = approach < best.approach();
             if sum < best.sum {
                 best.take(self.level, sum)?;
-                beyond = 0;
-            } else if is_below {
-                beyond += 1;
             }
-            here.take(self.level, sum)?;
+            if approach <= to {
+                break;
+            }
+            way.longest = if is_nearly(sum, best.sum, nearly) { small } else { step };
+            way.step = way.step.min(way.longest);
+            way.take(self.level, sum)?;
         }
-        self.last(best, small)
+        self.last(best, (small, nearly))
     }
 
-    /// Smaller and smaller steps from the least force.
-    fn last(&mut self, mut best: Place, mut step: f64) -> Result<Walk> {
+    /// The state of the least force that the way has found, and smaller and smaller steps from there.
+    fn last(&mut self, found: Place, (mut step, nearly): (f64, f64)) -> Result<Walk> {
+        let mut best = None::<Place>;
+        // Next to the end of a branch its last state may be none of the tolerance that is asked for.
+        for up in UP {
+            self.level.now.copy_from(&found.at)?;
+            let sum = self.solve_at(found.approach() + up * step)?;
+            if self.goal.is_interrupted(self.monitor) {
+                self.level.now.copy_from(&found.at)?;
+                return Ok(Walk::Interrupted);
+            }
+            if let Some(sum) = sum.filter(|sum| is_nearly(*sum, found.sum, nearly)) {
+                best = Some(Place::of(self.level, sum)?);
+                break;
+            }
+        }
+        let Some(mut best) = best else { return Ok(self.lost()) };
         for _ in 0..LAST {
             step *= 0.5;
             self.level.now.copy_from(&best.at)?;
@@ -203,15 +216,6 @@ impl<'a, 'm, 'c> Walker<'a, 'm, 'c> {
         }
         self.level.now.copy_from(&best.at)?;
         Ok(Walk::Least { sum: best.sum, approach: best.approach() })
-    }
-
-    /// Why no state was found.
-    pub fn lost(&self) -> Walk {
-        if self.goal.is_interrupted(self.monitor) {
-            Walk::Interrupted
-        } else {
-            Walk::Lost
-        }
     }
 
     /// The first step of a walk.

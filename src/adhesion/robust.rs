@@ -1,8 +1,9 @@
-//! One grid: Newton's method, and where it fails, ends uphill or on a saddle, some steps of descent from the last good state, and Newton's method again.
+//! One grid: Newton's method; where it fails in cautious steps; and where that fails, or ends uphill or on a saddle, some steps of descent from the last
+//! good state, and Newton's method again, in bold and cautious steps by turns.
 
 use super::level::{Level, MakeFrozen};
 use super::majorise::{descend, Descent, Steps};
-use super::newton::{newton, End, Goal};
+use super::newton::{newton, End, Goal, Pace};
 use super::tangent::is_stable;
 use super::unknowns::{energies, Measured};
 use crate::error::Result;
@@ -26,8 +27,8 @@ pub struct Ended {
     pub end: Descent,
     /// How well the conditions hold.
     pub measured: Measured,
-    /// Whether descent was needed: the state that it began from was not followed.
-    pub descended: bool,
+    /// Whether Newton's method failed at first: the state that it began from was not followed.
+    pub is_lost: bool,
 }
 
 impl Ended {
@@ -57,12 +58,15 @@ pub fn solve(
     monitor: &mut Monitor<'_>,
 ) -> Result<Ended> {
     let mut good = std::mem::take(&mut level.good);
-    good.take(&level.now)?;
+    good.take(&level.now, &level.problem.threads)?;
     let mut ended = None;
-    let (mut least, mut descended) = (f64::INFINITY, false);
+    let (mut least, mut is_lost, mut has_descended) = (f64::INFINITY, false, false);
     for round in 0..ROUNDS {
         let before = monitor.count.cycles;
-        let (end, measured) = newton(level, goal, keeps && round == 0, monitor)?;
+        // What one pace goes round in circles at the other may solve.
+        let pace = if round % 2 == 0 { goal.pace } else { goal.pace.other() };
+        let keeps = keeps && !has_descended;
+        let (end, measured) = newton(level, Goal { pace, ..goal }, keeps, monitor)?;
         let is_long = monitor.count.cycles - before > SHORT;
         let is_downhill = || energy(level, goal.wanted) <= least + UPHILL * least.abs();
         if end == End::Interrupted || end == End::Solved && is_downhill() && !is_saddle(level, goal, is_long, monitor)?
@@ -70,11 +74,16 @@ pub fn solve(
             ended = Some((Descent::By(end), measured));
             break;
         }
-        descended = true;
-        log::debug!("adhesion: Newton's method {end:?} with {measured:?}; descent goes on");
+        is_lost = true;
+        log::debug!("adhesion: Newton's method {end:?} with {measured:?}");
         if !good.put(&mut level.now) {
             level.refresh()?;
         }
+        if round == 0 && pace == Pace::Bold && end == End::Failed {
+            // Cautious steps are tried before descent, which takes more memory.
+            continue;
+        }
+        has_descended = true;
         let steps = Steps { most: BETWEEN, from_none: false, make };
         let (end, measured) = descend(level, goal, steps, monitor)?;
         if end != Descent::By(End::Failed) {
@@ -82,7 +91,7 @@ pub fn solve(
             break;
         }
         least = energy(level, goal.wanted);
-        good.take(&level.now)?;
+        good.take(&level.now, &level.problem.threads)?;
     }
     level.good = good;
     let (end, measured) = match ended {
@@ -90,5 +99,5 @@ pub fn solve(
         // All that is left goes downhill only.
         None => descend(level, goal, Steps { most: goal.most, from_none: false, make }, monitor)?,
     };
-    Ok(Ended { end, measured, descended })
+    Ok(Ended { end, measured, is_lost })
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::level::{Level, MakeFrozen};
 use super::levels::{levels, take_surfaces};
 use super::majorise::Descent;
-use super::newton::{newton, End, Goal};
+use super::newton::{newton, End, Goal, Pace};
 use super::place::Walk;
 use super::report::{close_grid, Report};
 use super::request::{Request, Start, State};
@@ -81,7 +81,8 @@ impl Solver {
             Load::Approach(_) => None,
             Load::Force(force) => Some(force / area),
         };
-        let goal = Goal { tolerance: request.tolerance, wanted, certified: true, most: request.max_cycles };
+        let goal =
+            Goal { tolerance: request.tolerance, wanted, certified: true, most: request.max_cycles, pace: Pace::Bold };
         self.jumped = false;
         if let Load::Approach(approach) = request.load {
             self.levels.iter_mut().for_each(|level| level.now.p.border = [approach]);
@@ -117,7 +118,7 @@ impl Solver {
             let before = state.contact.iter().filter(|&&inside| inside).count();
             let ended = robust::solve(level, goal, (true, make), monitor)?;
             let change = before.abs_diff(ended.measured.count) as f64;
-            self.jumped = ended.descended && change > SNAPPED * before.max(ended.measured.count) as f64;
+            self.jumped = ended.is_lost && change > SNAPPED * before.max(ended.measured.count) as f64;
             let is_settled = goal.wanted.is_none()
                 || !ended.is_in_contact()
                 || self.walker(goal, make, monitor).settle()? == Walk::Found;
@@ -159,7 +160,7 @@ impl Solver {
         let mut end = end;
         if end == Descent::Parted && wanted == Some(0.0) {
             // Nothing attracts and nothing pulls.
-            level.now.unload();
+            level.now.unload(&level.problem.threads);
             end = Descent::By(End::Solved);
         }
         if end != Descent::By(End::Solved) {

@@ -12,7 +12,7 @@ use super::newton::stiffnesses;
 use super::system::Linearised;
 use super::unknowns::One;
 use crate::error::Result;
-use crate::methods::fgmres::{self, Bordered, Until};
+use crate::methods::fgmres::{Bordered, Until};
 use crate::methods::fields::{self, Fields};
 use crate::progress::Monitor;
 use crate::threads::Threads;
@@ -32,7 +32,8 @@ pub fn stability(level: &mut Level, monitor: &mut Monitor<'_>) -> Result<f64> {
     let mut fields = std::mem::take(&mut level.fields);
     let mut roots = fields.take(n)?;
     stiffnesses(level, |_, e| e.max(0.0), &mut roots);
-    fields::map(&threads, &mut roots, |_, s| s.map(f64::sqrt));
+    let a0 = level.self_influence();
+    fields::map(&threads, &mut roots, |_, s| s.map(|s| (s / a0).sqrt()));
     let lambda = largest_eigenvalue(level, &roots, &threads, &mut fields)?;
     fields.give(roots);
     level.fields = fields;
@@ -78,20 +79,21 @@ fn largest_eigenvalue(level: &mut Level, roots: &[One], threads: &Threads, field
 /// `w = sqrt(s) A~ sqrt(s) v`.
 fn apply(level: &mut Level, roots: &[One], v: &[One], w: &mut [One], fields: &mut Fields<1>) -> Result<()> {
     let (n, threads) = (roots.len(), level.problem.threads.clone());
-    let (mut none, mut right) = (fields.take(n)?, fields.take(n)?);
-    fields::fill(&threads, &mut none, |_| [0.0]);
+    let (mut none, mut right) = (fields.take_of(n)?, fields.take(n)?);
+    fields::fill(&threads, &mut none, |_| [0.0_f32]);
     fields::fill(&threads, &mut right, |i| [roots[i][0] * v[i][0]]);
     let until = Until { target: INNER * fields::dot(&threads, &right, &right).sqrt(), most: DIRECTIONS };
     // Without attraction that changes: outside dp = sqrt(s) v, in contact no change of the distance.
     let mut system = Linearised::new(level, &none, false, fields)?;
     let r = Bordered { field: right, border: [0.0] };
-    let found = fgmres::solve(&mut system, r, (until, 0.0), &threads, fields)?;
+    let found = system.solve(r, (until, 0.0), &threads, fields)?;
     let (mut pressures, mut product) = (Bordered { field: fields.take(n)?, border: [0.0] }, fields.take(n)?);
     fields::fill(&threads, &mut pressures.field, |_| [0.0]);
     fields::fill(&threads, &mut product, |_| [0.0]);
     found.add_to(&mut pressures, &mut product, &threads, fields);
     fields::fill(&threads, w, |i| [roots[i][0] * product[i][0]]);
-    [none, pressures.field, product].into_iter().for_each(|field| fields.give(field));
+    fields.give_of(none);
+    [pressures.field, product].into_iter().for_each(|field| fields.give(field));
     Ok(())
 }
 

@@ -9,13 +9,14 @@
 //! preconditioned by `M (a0 y)` on C and `y/(1 - min(s a0, 1/2))` outside, bordered where the force is given:
 //! `da = (sum z - y_F)/sum Y`, `z -= Y da`, with Y the preconditioned column of da.
 //!
-//! Vectors are stored in single precision, [`Short`]: a linear solve ends at a tenth of its right-hand side.
+//! Vectors are stored in single precision, [`Short`]: a linear solve ends at a tenth of its right-hand side. So are the s a0, which are of the
+//! order of 1.
 
 use super::level::Level;
-use super::unknowns::One;
 use crate::error::Result;
-use crate::methods::fgmres::{Bordered, Direction, System, Turned};
+use crate::methods::fgmres::{self, Bordered, Combination, Direction, System, Turned, Until};
 use crate::methods::fields::{self, Fields};
+use crate::threads::Threads;
 
 /// The diagonal of a row outside C is never taken for less: where elements snap alone the row tells nothing.
 const LEAST_DIAGONAL: f64 = 0.5;
@@ -26,8 +27,8 @@ pub type Short = [f32; 1];
 /// The system, at the contact area and the stiffness given.
 pub struct Linearised<'a> {
     pub level: &'a mut Level,
-    /// s; 0 on C.
-    pub stiffness: &'a [One],
+    /// s a0; 0 on C.
+    pub stiffness: &'a [Short],
     /// a0 Y, where the force is given.
     column: Vec<Short>,
     /// 1/sum a0 Y; 0 where there is none.
@@ -38,7 +39,7 @@ impl<'a> Linearised<'a> {
     /// With Y where the force is given.
     pub fn new(
         level: &'a mut Level,
-        stiffness: &'a [One],
+        stiffness: &'a [Short],
         by_force: bool,
         fields: &mut Fields<1>,
     ) -> Result<Linearised<'a>> {
@@ -62,7 +63,17 @@ impl<'a> Linearised<'a> {
         if self.level.now.contact[i] {
             -1.0 / self.level.self_influence()
         } else {
-            self.stiffness[i][0]
+            f64::from(self.stiffness[i][0]) / self.level.self_influence()
+        }
+    }
+
+    /// Row i of the system for pressures y and their displacements, the approach standing still.
+    pub fn row(&self, i: usize, y: f64, displaced: f64) -> f64 {
+        let displaced = displaced / self.level.self_influence();
+        if self.level.now.contact[i] {
+            displaced
+        } else {
+            y - f64::from(self.stiffness[i][0]) * displaced
         }
     }
 
@@ -71,6 +82,18 @@ impl<'a> Linearised<'a> {
         if !self.column.is_empty() {
             fields.give_of(self.column);
         }
+    }
+
+    /// Solves for a right-hand side; displacements are stored in units of a0, so that single precision holds them whatever the units are.
+    pub fn solve(
+        &mut self,
+        r: Bordered<1>,
+        until: (Until, f64),
+        threads: &Threads,
+        fields: &mut Fields<1>,
+    ) -> Result<Combination<1, f32>> {
+        let found = fgmres::solve(self, r, until, threads, fields)?;
+        Ok(Combination { unit: self.level.self_influence(), ..found })
     }
 
     fn by_force(&self) -> bool {
@@ -84,10 +107,10 @@ impl<'a> Linearised<'a> {
 
     fn precondition_field(&mut self, y: &[Short], z: &mut [Short]) {
         self.level.precondition(y, z);
-        let (contact, a0) = (&self.level.now.contact, self.level.self_influence());
+        let contact = &self.level.now.contact;
         fields::map(&self.level.problem.threads, z, |i, z| match contact[i] {
             true => z,
-            false => [(f64::from(y[i][0]) / (1.0 - (self.stiffness[i][0] * a0).min(LEAST_DIAGONAL))) as f32],
+            false => [(f64::from(y[i][0]) / (1.0 - f64::from(self.stiffness[i][0]).min(LEAST_DIAGONAL))) as f32],
         });
     }
 
@@ -107,18 +130,20 @@ impl System<1, f32> for Linearised<'_> {
     fn direction(&mut self, v: &Bordered<1, f32>, fields: &mut Fields<1>) -> Result<Turned<1, f32>> {
         let z = self.precondition(v, fields)?;
         let (n, threads) = (z.field.len(), &self.level.problem.threads);
-        let (mut product, mut double) = (fields.take(n)?, fields.take(n)?);
+        let (mut displaced, mut double) = (fields.take(n)?, fields.take(n)?);
         fields::fill(threads, &mut double, |i| z.field[i].map(f64::from));
-        self.level.problem.displace(double.as_flattened(), product.as_flattened_mut())?;
+        self.level.problem.displace(double.as_flattened(), displaced.as_flattened_mut())?;
         fields.give(double);
-        let mut row = fields.take_of(n)?;
+        let (mut row, mut product) = (fields.take_of(n)?, fields.take_of(n)?);
         let (contact, a0, by) = (&self.level.now.contact, self.level.self_influence(), z.border[0]);
-        let (stiffness, field, displaced) = (self.stiffness, &z.field, &product);
+        let (stiffness, field) = (self.stiffness, &z.field);
         fields::fill(&self.level.problem.threads, &mut row, |i| {
-            let change = displaced[i][0] - by;
-            let value = if contact[i] { change / a0 } else { f64::from(field[i][0]) - stiffness[i][0] * change };
-            [value as f32]
+            let change = (displaced[i][0] - by) / a0;
+            let outside = || f64::from(field[i][0]) - f64::from(stiffness[i][0]) * change;
+            [(if contact[i] { change } else { outside() }) as f32]
         });
+        fields::fill(&self.level.problem.threads, &mut product, |i| [(displaced[i][0] / a0) as f32]);
+        fields.give(displaced);
         let border = if self.by_force() { [self.sum(&z.field)] } else { [0.0] };
         Ok((Direction { z, product }, Bordered { field: row, border }))
     }

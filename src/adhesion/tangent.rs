@@ -4,37 +4,46 @@
 //! in C  A y = 1,      outside  y = -s g,      g = 1 - A y: how fast the gap closes as the approach grows
 //! ```
 //!
-//! The sum of y is dF/dapproach. An equilibrium is stable under a force only where this is positive.
+//! The sum of y is dF/dapproach. An equilibrium is stable under a force only where this is positive. With the outside divided by -s the system is a symmetric
+//! one, K y = 1, so that the sum is `2 sum y - (y, K y)` as well, and what y leaves wrong enters it squared:
+//!
+//! ```text
+//! sum y + sum_C y g - sum_outside g (y + s g)
+//! ```
 //!
 //! Where the approach is given, it is stable if `lambda < 1` (module [`stability`](super::stability)). With `g0 > 0`, how the gap closes
 //! while the attraction stands still, `g = g0 + A~ s g`. Attraction moves the surfaces towards each other: no element of A~ is negative, at least in
 //! half-spaces. So `g > 0` everywhere means `lambda < 1` (Collatz 1942). Where g is clearly negative somewhere lambda itself is computed.
 
 use super::level::Level;
-use super::newton::stiffnesses;
+use super::newton::{stiffnesses, IN_MEMORY};
 use super::stability::stability;
 use super::system::Linearised;
+use super::unknowns::{is_small, One};
 use crate::error::Result;
-use crate::methods::fgmres::{self, Bordered, Until};
-use crate::methods::fields;
+use crate::methods::fgmres::{Bordered, Until};
+use crate::methods::fields::{self, Fields};
 use crate::progress::Monitor;
+use crate::threads::Threads;
 
 /// To what part of its right-hand side the linear system is solved, and where that does not decide.
 const LOOSE: f64 = 1e-3;
 const FIRM: f64 = 1e-5;
 const DIRECTIONS: [usize; 2] = [30, 90];
 /// On grids of more elements than `SMALL` a force is asked roughly first, and answered where the sum of y is this part of the sum of |y|, and no g as far
-/// below 0: that takes as few directions as a step of Newton's method, and no more memory.
+/// below 0: that takes half as many directions.
 const SMALL: usize = 1024;
-const ROUGH: (f64, usize) = (0.1, 10);
+const ROUGH: (f64, usize) = (0.03, 18);
 const BEYOND_DOUBT: f64 = 0.3;
+/// A linear system is solved if its residual is at most this factor of what was asked for: round-off.
+const SLACK: f64 = 1.0 + 1e-6;
 /// The sum of y is near 0 below this part of the sum of |y|.
 const NEAR: f64 = 0.05;
 /// g beside a contact area is next to 0, and what is loosely solved may be below. At a saddle it is of the order of -1, and more if lambda is near 1.
 const CLOSING: f64 = -0.05;
 
 /// The tangent.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Tangent {
     /// dF/dapproach, per area of an element.
     stiffness: f64,
@@ -42,40 +51,73 @@ struct Tangent {
     all: f64,
     /// The least g where the attraction has a slope.
     closing: f64,
+    /// Whether the linear system is solved as was asked for.
+    is_solved: bool,
 }
 
 impl Tangent {
     fn is_stiffness_clear(&self) -> bool {
-        self.stiffness.abs() > NEAR * self.all
+        self.is_solved && self.stiffness.abs() > NEAR * self.all
     }
 
     /// Whether what decides is beyond doubt.
     fn is_clear(&self, by_force: bool) -> bool {
-        self.closing > CLOSING && (!by_force || self.is_stiffness_clear())
+        self.is_solved && self.closing > CLOSING && (!by_force || self.is_stiffness_clear())
     }
 }
 
-/// The tangent at the state of now.
+/// The tangent at the state of now. On large grids the linear system is solved again and again for what is left of its right-hand side.
 fn tangent(level: &mut Level, (part, most): (f64, usize), monitor: &mut Monitor<'_>) -> Result<Tangent> {
     let (n, threads) = (level.now.u.len(), level.problem.threads.clone());
+    // What is known takes the memory of one direction.
+    let at_once = if is_small(n) { most } else { IN_MEMORY - 1 };
     let mut fields = std::mem::take(&mut level.fields);
-    let (mut stiffness, mut right) = (fields.take(n)?, fields.take(n)?);
+    let mut stiffness = fields.take_of(n)?;
     stiffnesses(level, |_, e| e.max(0.0), &mut stiffness);
     let mut system = Linearised::new(level, &stiffness, false, &mut fields)?;
-    fields::fill(&threads, &mut right, |i| [-system.column_at(i)]);
-    let until = Until { target: part * fields::dot(&threads, &right, &right).sqrt(), most };
-    let r = Bordered { field: right, border: [0.0] };
-    let found = fgmres::solve(&mut system, r, (until, 0.0), &threads, &mut fields)?;
-    let (mut y, mut product) = (Bordered { field: fields.take(n)?, border: [0.0] }, fields.take(n)?);
-    fields::fill(&threads, &mut y.field, |_| [0.0]);
-    fields::fill(&threads, &mut product, |_| [0.0]);
-    found.add_to(&mut y, &mut product, &threads, &mut fields);
-    let [sum, all] = fields::sum(&threads, n, |i| [y.field[i][0], y.field[i][0].abs()]);
+    let (mut known, mut first, mut made, mut is_solved) = (None::<(Bordered<1>, Vec<One>)>, None, 0, false);
+    while !is_solved && made < most {
+        let mut right = fields.take(n)?;
+        fields::fill(&threads, &mut right, |i| {
+            let solved = known.as_ref().map_or(0.0, |(y, product)| system.row(i, y.field[i][0], product[i][0]));
+            [-system.column_at(i) - solved]
+        });
+        let norm = fields::dot(&threads, &right, &right).sqrt();
+        let target = part * *first.get_or_insert(norm);
+        let until = Until { target, most: at_once.min(most - made) };
+        let r = Bordered { field: right, border: [0.0] };
+        let found = system.solve(r, (until, 0.0), &threads, &mut fields)?;
+        is_solved = found.left * norm <= SLACK * target;
+        made += found.directions.len().max(1);
+        let (mut y, mut product) = match known {
+            Some(known) => known,
+            None => {
+                (Bordered { field: zeros(n, &mut fields, &threads)?, border: [0.0] }, zeros(n, &mut fields, &threads)?)
+            }
+        };
+        found.add_to(&mut y, &mut product, &threads, &mut fields);
+        known = Some((y, product));
+    }
+    let Some((y, product)) = known else { return Ok(Tangent::default()) };
+    let (contact, a0) = (&system.level.now.contact, system.level.self_influence());
+    let [sum, all] = fields::sum(&threads, n, |i| {
+        let (y, g) = (y.field[i][0], 1.0 - product[i][0]);
+        let left = if contact[i] { y * g } else { -g * (y + f64::from(stiffness[i][0]) / a0 * g) };
+        [y + left, y.abs()]
+    });
     let opening = fields::largest(&threads, n, |i| if stiffness[i][0] > 0.0 { product[i][0] - 1.0 } else { -1.0 });
-    [stiffness, y.field, product].into_iter().for_each(|field| fields.give(field));
+    fields.give_of(stiffness);
+    [y.field, product].into_iter().for_each(|field| fields.give(field));
     level.fields = fields;
     level.count_products(monitor);
-    Ok(Tangent { stiffness: sum, all, closing: -opening })
+    Ok(Tangent { stiffness: sum, all, closing: -opening, is_solved })
+}
+
+/// A field of zeros.
+fn zeros(n: usize, fields: &mut Fields<1>, threads: &Threads) -> Result<Vec<One>> {
+    let mut field = fields.take(n)?;
+    fields::fill(threads, &mut field, |_| [0.0]);
+    Ok(field)
 }
 
 /// The tangent, solved again more firmly unless it is clear.
@@ -113,7 +155,7 @@ pub fn is_stable(level: &mut Level, by_force: bool, monitor: &mut Monitor<'_>) -
     }
     if by_force && level.now.u.len() > SMALL {
         let found = tangent(level, ROUGH, monitor)?;
-        if found.stiffness > BEYOND_DOUBT * found.all && found.closing > -BEYOND_DOUBT {
+        if found.is_solved && found.stiffness > BEYOND_DOUBT * found.all && found.closing > -BEYOND_DOUBT {
             return Ok(true);
         }
     }

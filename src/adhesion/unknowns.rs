@@ -2,7 +2,7 @@
 
 use super::law::Attraction;
 use crate::error::Result;
-use crate::memory::{unwritten, zeros};
+use crate::memory::unwritten;
 use crate::methods::fgmres::Bordered;
 use crate::methods::fields;
 use crate::threads::Threads;
@@ -26,9 +26,18 @@ pub struct Unknowns {
 
 impl Unknowns {
     /// p = 0 on n elements.
-    pub fn new(n: usize) -> Result<Unknowns> {
-        let p = Bordered { field: zeros(n, MEMORY)?, border: [0.0] };
-        Ok(Unknowns { p, u: zeros(n, MEMORY)?, contact: zeros(n, MEMORY)? })
+    pub fn new(n: usize, threads: &Threads) -> Result<Unknowns> {
+        let mut unknowns = Unknowns::default();
+        unknowns.reserve(n, threads)?;
+        unknowns.unload(threads);
+        Ok(unknowns)
+    }
+
+    /// Makes room for n elements, which hold anything.
+    fn reserve(&mut self, n: usize, threads: &Threads) -> Result<()> {
+        unwritten(&mut self.p.field, n, [f64::NAN], MEMORY, threads)?;
+        unwritten(&mut self.u, n, [f64::NAN], MEMORY, threads)?;
+        Ok(unwritten(&mut self.contact, n, false, MEMORY, threads)?)
     }
 
     /// The approach.
@@ -37,23 +46,28 @@ impl Unknowns {
     }
 
     /// p = 0, and nothing is in contact.
-    pub fn unload(&mut self) {
-        self.p.field.fill([0.0]);
-        self.u.fill([0.0]);
+    pub fn unload(&mut self, threads: &Threads) {
+        fields::fill(threads, &mut self.p.field, |_| [0.0]);
+        fields::fill(threads, &mut self.u, |_| [0.0]);
         self.contact.fill(false);
     }
 
     /// Takes what others hold.
     pub fn copy_from(&mut self, other: &Unknowns) -> Result<()> {
         let n = other.u.len();
-        unwritten(&mut self.p.field, n, [f64::NAN], MEMORY, &Threads::One)?;
-        unwritten(&mut self.u, n, [f64::NAN], MEMORY, &Threads::One)?;
-        unwritten(&mut self.contact, n, false, MEMORY, &Threads::One)?;
+        self.reserve(n, &Threads::One)?;
         self.p.field.copy_from_slice(&other.p.field);
         self.u.copy_from_slice(&other.u);
         self.contact.copy_from_slice(&other.contact);
         self.p.border = other.p.border;
         Ok(())
+    }
+
+    /// Goes on along the line from others, by this part of the way from them. The contact area stays.
+    pub fn go_along(&mut self, from: &Unknowns, part: f64, threads: &Threads) {
+        let on = |[to]: [f64; 1], [from]: [f64; 1]| [to + part * (to - from)];
+        fields::map(threads, &mut self.p.field, |i, to| on(to, from.p.field[i]));
+        fields::map(threads, &mut self.u, |i, to| on(to, from.u[i]));
     }
 
     /// Bytes held.
@@ -80,11 +94,11 @@ pub struct Pressures {
 
 impl Pressures {
     /// Takes those of unknowns.
-    pub fn take(&mut self, from: &Unknowns) -> Result<()> {
+    pub fn take(&mut self, from: &Unknowns, threads: &Threads) -> Result<()> {
         let n = from.u.len();
-        unwritten(&mut self.p.field, n, [f64::NAN], MEMORY, &Threads::One)?;
-        unwritten(&mut self.contact, n, false, MEMORY, &Threads::One)?;
-        self.p.field.copy_from_slice(&from.p.field);
+        unwritten(&mut self.p.field, n, [f64::NAN], MEMORY, threads)?;
+        unwritten(&mut self.contact, n, false, MEMORY, threads)?;
+        fields::fill(threads, &mut self.p.field, |i| from.p.field[i]);
         self.contact.copy_from_slice(&from.contact);
         self.p.border = from.p.border;
         if is_small(n) {
@@ -169,6 +183,8 @@ pub struct Measured {
     pub force: f64,
     /// Elements in contact.
     pub count: usize,
+    /// Elements that have entered or left it.
+    pub changed: usize,
     /// The sum of p.
     pub pressures: f64,
 }
@@ -205,14 +221,16 @@ pub fn measure(
 ) -> Measured {
     let Unknowns { p, u, contact } = unknowns;
     let (p, approach, u) = (&p.field, p.border[0], &*u);
-    let [ee, dd, count, off, pp, pc, sum, all, qc, repulsion] =
+    let [ee, dd, count, off, pp, pc, sum, all, qc, repulsion, changed] =
         fields::over(threads, contact.chunks_mut(fields::BLOCK), |first, contact| {
-            let mut sums = [0.0; 10];
+            let mut sums = [0.0; 11];
             for (k, inside) in contact.iter_mut().enumerate() {
                 let i = first + k;
                 let ([p], e) = (p[i], surface.h[i] - approach + u[i][0]);
                 let q = p + surface.traction(i, e);
+                let was_inside = *inside;
                 *inside = if is_kept { *inside } else { q - e / self_influence > 0.0 };
+                sums[10] += f64::from(u8::from(was_inside != *inside));
                 (sums[4], sums[6], sums[7]) = (sums[4] + p * p, sums[6] + p, sums[7] + p.abs());
                 if *inside {
                     let d = surface.h[i] - approach;
@@ -252,6 +270,7 @@ pub fn measure(
         law: ratio(off.sqrt(), pp.max(part).sqrt().max(nothing)),
         force: wanted.map_or(0.0, |wanted| ratio((sum - wanted).abs(), all.max(CANCELLED * repulsion).max(nothing))),
         count: count as usize,
+        changed: changed as usize,
         pressures: sum,
     }
 }

@@ -3,8 +3,8 @@
 //!
 //! `x = sum_j y_j z_j` with `z_j` the preconditioned vectors; the products of the z_j are kept, so that the product of x costs none.
 //!
-//! Vectors are stored in the precision T, double if nothing else is said; sums, borders and products are always double. x and its product belong to
-//! each other to double precision whatever T: the product is that of the stored z_j.
+//! Vectors and their products are stored in the precision T, double if nothing else is said; sums and borders are always double. x and its product
+//! belong to each other to the precision T, and x is a step: what a step leaves wrong is a part of the step, and the steps become small.
 
 use super::fields::{self as passes, dot_one as dot, plus, Fields, Stored};
 use crate::error::Result;
@@ -26,7 +26,7 @@ impl<const K: usize, T> Default for Bordered<K, T> {
 #[derive(Default)]
 pub struct Direction<const K: usize = 2, T = f64> {
     pub z: Bordered<K, T>,
-    pub product: Vec<[f64; K]>,
+    pub product: Vec<[T; K]>,
 }
 
 /// A direction, and `H` of it.
@@ -42,6 +42,8 @@ pub trait System<const K: usize = 2, T = f64> {
 pub struct Combination<const K: usize = 2, T = f64> {
     pub directions: Vec<Direction<K, T>>,
     pub y: Vec<f64>,
+    /// Products are stored in this unit.
+    pub unit: f64,
     /// The norm of what is left of r, relative to that of r.
     pub left: f64,
 }
@@ -73,7 +75,7 @@ pub fn solve<const K: usize, T: Stored>(
 ) -> Result<Combination<K, T>> {
     let first = (passes::dot(threads, &r.field, &r.field) + weight * dot(&r.border, &r.border)).sqrt();
     let (mut norm, target) = (first, target.max(T::ROUND_OFF * first));
-    let mut found = Combination { directions: Vec::new(), y: Vec::new(), left: 1.0 };
+    let mut found = Combination { directions: Vec::new(), y: Vec::new(), unit: 1.0, left: 1.0 };
     if !(norm > target) {
         fields.give(r.field);
         return Ok(found);
@@ -130,17 +132,18 @@ impl<const K: usize, T: Stored> Direction<K, T> {
     /// Gives its fields back.
     pub fn give(self, fields: &mut Fields<K>) {
         fields.give_of(self.z.field);
-        fields.give(self.product);
+        fields.give_of(self.product);
     }
 }
 
 impl<const K: usize, T: Stored> Combination<K, T> {
     /// Adds x to `to`, and the product of its field to `product`; gives the directions back.
     pub fn add_to(self, to: &mut Bordered<K>, product: &mut [[f64; K]], threads: &Threads, fields: &mut Fields<K>) {
-        let Combination { directions, y, .. } = self;
+        let Combination { directions, y, unit, .. } = self;
         let terms = || y.iter().copied().zip(&directions);
         let of_z: Vec<(f64, &[[T; K]])> = terms().map(|(y, direction)| (y, &direction.z.field[..])).collect();
-        let of_product: Vec<(f64, &[[f64; K]])> = terms().map(|(y, direction)| (y, &direction.product[..])).collect();
+        let of_product: Vec<(f64, &[[T; K]])> =
+            terms().map(|(y, direction)| (unit * y, &direction.product[..])).collect();
         passes::add_all(threads, &mut to.field, &of_z);
         passes::add_all(threads, product, &of_product);
         for (y, direction) in terms() {

@@ -15,6 +15,8 @@ pub const BLOCK: usize = 1024;
 pub struct Fields<const K: usize = 2> {
     free: Vec<Vec<[f64; K]>>,
     single: Vec<Vec<[f32; K]>>,
+    /// Who touches new fields first: the system clears their pages then.
+    threads: Threads,
 }
 
 /// The precision that fields are stored in.
@@ -73,6 +75,11 @@ impl Stored for f32 {
 }
 
 impl<const K: usize> Fields<K> {
+    /// None yet; new ones are first touched by these threads together.
+    pub fn touched_by(threads: &Threads) -> Fields<K> {
+        Fields { threads: threads.clone(), ..Fields::default() }
+    }
+
     /// A field of n elements, which holds anything.
     pub fn take(&mut self, n: usize) -> Result<Vec<[f64; K]>> {
         self.take_of(n)
@@ -86,7 +93,7 @@ impl<const K: usize> Fields<K> {
     /// A field of some precision.
     pub fn take_of<T: Stored>(&mut self, n: usize) -> Result<Vec<[T; K]>> {
         let mut field = T::of_pool(self).pop().unwrap_or_default();
-        unwritten(&mut field, n, [T::nan(); K], "the iteration of Newton's method", &Threads::One)?;
+        unwritten(&mut field, n, [T::nan(); K], "the iteration of Newton's method", &self.threads)?;
         Ok(field)
     }
 

@@ -2,6 +2,7 @@
 
 mod certificate;
 mod dense;
+mod dense_path;
 mod friction;
 mod hard_cases;
 mod loop_of_loading;
