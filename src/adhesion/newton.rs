@@ -70,16 +70,6 @@ pub enum Pace {
     Cautious,
 }
 
-impl Pace {
-    /// The one that this is not.
-    pub fn other(self) -> Pace {
-        match self {
-            Pace::Bold => Pace::Cautious,
-            Pace::Cautious => Pace::Bold,
-        }
-    }
-}
-
 /// The goal of a loop on one grid.
 #[derive(Clone, Copy, Debug)]
 pub struct Goal {

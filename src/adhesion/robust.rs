@@ -63,8 +63,8 @@ pub fn solve(
     let (mut least, mut is_lost, mut has_descended) = (f64::INFINITY, false, false);
     for round in 0..ROUNDS {
         let before = monitor.count.cycles;
-        // What one pace goes round in circles at the other may solve.
-        let pace = if round % 2 == 0 { goal.pace } else { goal.pace.other() };
+        // Where bold steps go round in circles cautious ones may not, and the other way round.
+        let pace = if round % 2 == 0 { goal.pace } else { Pace::Cautious };
         let keeps = keeps && !has_descended;
         let (end, measured) = newton(level, Goal { pace, ..goal }, keeps, monitor)?;
         let is_long = monitor.count.cycles - before > SHORT;

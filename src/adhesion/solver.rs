@@ -92,7 +92,10 @@ impl Solver {
             None => self.begin_anew(goal, (request.start, make), monitor)?,
         };
         let end = match (end, request.pull_off) {
-            (Descent::By(End::Solved), true) => self.pull_off(goal, make, monitor)?,
+            // Where the state of the load is not found ways begin from bodies that are pressed together alone.
+            (Descent::By(end), true) if end != End::Interrupted => {
+                self.pull_off(goal, (end == End::Solved, make), monitor)?
+            }
             (end, _) => end,
         };
         self.conclude(end, goal, request, monitor)
@@ -137,10 +140,15 @@ impl Solver {
         self.begin_anew(goal, (start, make), monitor)
     }
 
-    /// From the state of now to that of the least force.
-    fn pull_off(&mut self, goal: Goal, make: MakeFrozen<'_>, monitor: &mut Monitor<'_>) -> Result<Descent> {
+    /// To the state of the least force, from the state of now if it is one.
+    fn pull_off(
+        &mut self,
+        goal: Goal,
+        (is_state, make): (bool, MakeFrozen<'_>),
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Descent> {
         let goal = Goal { wanted: None, ..goal };
-        Ok(match self.down_all_ways(goal, (true, make), monitor)? {
+        Ok(match self.down_all_ways(goal, (is_state, make), monitor)? {
             Walk::Least { .. } | Walk::Found => Descent::By(End::Solved),
             Walk::Interrupted => Descent::By(End::Interrupted),
             Walk::Lost | Walk::Met => Descent::By(End::Failed),

@@ -18,6 +18,8 @@ const TRIED: u64 = 14;
 /// Halvings of a step, and doublings of one over a snap.
 const HALVINGS: u32 = 2;
 const LEAPS: u32 = 2;
+/// A snap may take this factor times the cycles of a state on the way.
+const LONGER: u64 = 4;
 /// After so few steps of Newton's method the next step is longer, by this factor.
 const EASY: u64 = 6;
 const GROWTH: f64 = 1.5;
@@ -156,8 +158,17 @@ impl Walker<'_, '_, '_> {
         Ok(is_found.then_some(measured.pressures))
     }
 
-    /// Over the end of a branch.
+    /// Over the end of a branch, which may take more cycles than a state on it.
     fn snap(&mut self, way: &Way) -> Result<Option<f64>> {
+        let each = self.each;
+        self.each = each.saturating_mul(LONGER);
+        let found = self.leap(way);
+        self.each = each;
+        found
+    }
+
+    /// To a state beyond, by longer and longer steps.
+    fn leap(&mut self, way: &Way) -> Result<Option<f64>> {
         let mut by = way.longest;
         for leap in 0..=LEAPS {
             self.level.now.copy_from(&way.here.at)?;
