@@ -38,6 +38,10 @@ fn of_element((x, y): (f64, f64), (dx, dy): (f64, f64), p: f64, rule: &[(f64, f6
 /// Of the triangle between the place and an edge; `at` may be negative.
 fn edge((at, (from, to)): (f64, (f64, f64)), x: impl Fn(f64) -> f64, p: f64, rule: &[(f64, f64)]) -> f64 {
     let d = at.abs();
+    // A place on the line sees no triangle.
+    if d == 0.0 {
+        return 0.0;
+    }
     let (from, to) = ((from / d).asinh(), (to / d).asinh());
     let value = |t: f64| {
         let z = p * (d * t.cosh() - x(d * t.sinh()));

@@ -11,7 +11,7 @@ use crate::friction_sequence;
 use crate::random::Random;
 use crate::verdict::Verdict;
 
-/// docs/hard_cases.md: about 1 of 500 such lines takes more than the 1000 cycles of the default, and these do.
+/// Some lines of unlike bodies take more than the 1000 cycles of the default, and these are enough (docs/hard_cases.md).
 const SLOW_CYCLES: i32 = 3000;
 const SLOW_LINE: &str = "friction: a line of unlike bodies took more than 1000 cycles";
 

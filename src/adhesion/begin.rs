@@ -114,51 +114,65 @@ impl Solver {
     fn first_walker<'a, 'm, 'c>(
         &'a mut self,
         goal: Goal,
+        spent: u64,
         make: MakeFrozen<'a>,
         monitor: &'m mut Monitor<'c>,
     ) -> Walker<'a, 'm, 'c> {
         if goal.wanted.is_some() {
             return self.walker(goal, make, monitor);
         }
-        let most = monitor.count.cycles.saturating_add(goal.most.saturating_mul(PULL_OFF));
+        let left = goal.most.saturating_mul(PULL_OFF).saturating_sub(spent);
+        let most = monitor.count.cycles.saturating_add(left);
         let each = goal.most / STATES + 1;
         Walker { each, ..self.walker(Goal { most, ..goal }, make, monitor) }
     }
 
     /// The first way down. Where it is lost, as elements snap one after the other that are too coarse for the range, a pull-off is looked for from a state
-    /// below, which is found from nothing.
-    fn walk_first(&mut self, goal: Goal, make: MakeFrozen<'_>, monitor: &mut Monitor<'_>) -> Result<Walk> {
-        let mut ended = self.first_walker(goal, make, monitor).walk(None)?;
+    /// below, which is found from nothing. Returns the cycles of all that, too.
+    fn walk_first(&mut self, goal: Goal, make: MakeFrozen<'_>, monitor: &mut Monitor<'_>) -> Result<(Walk, u64)> {
+        let before = monitor.count.cycles;
+        let mut ended = self.first_walker(goal, 0, make, monitor).walk(None)?;
+        let mut spent = monitor.count.cycles - before;
         for _ in 0..ANEW {
             if ended != Walk::Lost || goal.wanted.is_some() {
                 break;
             }
             let lost = Place::of(&self.levels[0], Met::of(&self.levels[0]).sum)?;
-            if !self.is_found_below(goal, make, monitor)? {
+            if !self.is_found_below(goal, &mut spent, make, monitor)? {
                 self.levels[0].now.copy_from(&lost.at)?;
-                return Ok(Walk::Lost);
+                return Ok((Walk::Lost, spent));
             }
-            ended = self.first_walker(goal, make, monitor).walk(None)?;
+            let before = monitor.count.cycles;
+            ended = self.first_walker(goal, spent, make, monitor).walk(None)?;
+            spent += monitor.count.cycles - before;
             let is_less = match ended {
                 Walk::Least { sum, .. } => sum < lost.sum,
                 _ => Met::of(&self.levels[0]).sum < lost.sum,
             };
             if !is_less {
                 self.levels[0].now.copy_from(&lost.at)?;
-                return Ok(if ended == Walk::Interrupted { ended } else { Walk::Lost });
+                return Ok((if ended == Walk::Interrupted { ended } else { Walk::Lost }, spent));
             }
         }
-        Ok(ended)
+        Ok((ended, spent))
     }
 
     /// Whether a state of bodies that touch is found below what the finest grid holds, from nothing.
-    fn is_found_below(&mut self, goal: Goal, make: MakeFrozen<'_>, monitor: &mut Monitor<'_>) -> Result<bool> {
+    fn is_found_below(
+        &mut self,
+        goal: Goal,
+        spent: &mut u64,
+        make: MakeFrozen<'_>,
+        monitor: &mut Monitor<'_>,
+    ) -> Result<bool> {
         let from = self.levels[0].now.approach();
         let step = self.walker(goal, make, monitor).first_step(BELOW)?;
         let each = Goal { wanted: None, most: goal.most / STATES + 1, ..goal };
         for k in (1..=STEPS_BELOW).filter(|_| step > 0.0) {
             self.levels.iter_mut().for_each(|level| level.now.p.border = [from - f64::from(k) * step]);
             let ended = nested::solve(&mut self.levels, each, (Start::Auto, make), monitor)?;
+            // The finest grid counts anew.
+            *spent += monitor.count.cycles;
             if ended.is_in_contact() || monitor.is_cancelled() {
                 return Ok(ended.is_in_contact());
             }
@@ -179,9 +193,9 @@ impl Solver {
         // What is known of a way that is lost; how it ends without a least force.
         let (mut before_lost, mut without) = (None, Walk::Lost);
         if is_state {
-            let before = monitor.count.cycles;
             met = Some(Met::of(&self.levels[0]));
-            match self.walk_first(goal, make, monitor)? {
+            let (walk, spent) = self.walk_first(goal, make, monitor)?;
+            match walk {
                 Walk::Least { sum, .. } => least = Some(Place::of(&self.levels[0], sum)?),
                 Walk::Lost | Walk::Met => {
                     met = None;
@@ -190,7 +204,7 @@ impl Solver {
                 ended => return Ok(ended),
             }
             // Each further way takes at most some times as long.
-            let times = TIMES * monitor.count.cycles.saturating_sub(before) + AT_LEAST;
+            let times = TIMES * spent + AT_LEAST;
             most = if goal.wanted.is_none() { times } else { most.min(times) };
         }
         let mut pressing = self.first_pressing(least.as_ref(), goal);

@@ -101,7 +101,10 @@ impl Walker<'_, '_, '_> {
             Ok(least) => least,
             Err(walk) => {
                 if walk == Walk::Lost {
-                    self.solve_at(self.level.now.approach())?;
+                    let least = Place::of(self.level, 0.0)?;
+                    if self.solve_at(least.approach())?.is_none() {
+                        self.level.now.copy_from(&least.at)?;
+                    }
                 }
                 return Ok(walk);
             }
@@ -125,7 +128,7 @@ impl Walker<'_, '_, '_> {
                 return Ok(Err(self.between(&mut way.here, (sum, approach))?));
             }
             if is_apart {
-                break;
+                return Ok(Ok(least));
             }
             least.look_at(self.level, sum, &way)?;
             if let Some(at) = meets.filter(|met| approach == met.approach) {
@@ -141,7 +144,8 @@ impl Walker<'_, '_, '_> {
             way.step = way.step.min(part * self.length(stiffness));
             way.take(self.level, sum)?;
         }
-        Ok(Ok(least))
+        self.level.now.copy_from(&least.at.at)?;
+        Ok(Err(Walk::Lost))
     }
 
     /// Small steps where the force was nearly the least.
@@ -196,7 +200,10 @@ impl Walker<'_, '_, '_> {
                 break;
             }
         }
-        let Some(mut best) = best else { return Ok(self.lost()) };
+        let Some(mut best) = best else {
+            self.level.now.copy_from(&found.at)?;
+            return Ok(self.lost());
+        };
         for _ in 0..LAST {
             step *= 0.5;
             self.level.now.copy_from(&best.at)?;

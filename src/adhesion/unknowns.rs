@@ -243,18 +243,8 @@ pub fn measure(
             }
             sums
         });
-    let penetration =
-        fields::largest(
-            threads,
-            u.len(),
-            |i| {
-                if unknowns.contact[i] {
-                    0.0
-                } else {
-                    approach - surface.h[i] - u[i][0]
-                }
-            },
-        );
+    let outside = |i: usize| if unknowns.contact[i] { 0.0 } else { approach - surface.h[i] - u[i][0] };
+    let penetration = fields::largest(threads, u.len(), outside);
     let n = f64::max(count, 1.0);
     let (part, nothing) = (CANCELLED * CANCELLED * qc, NOTHING * surface.work / surface.attraction.range);
     let scale = (dd / n).sqrt().max(self_influence * (pc.max(part) / n).sqrt());

@@ -144,7 +144,7 @@ impl Walker<'_, '_, '_> {
             now.go_along(&before.at, part, &self.level.problem.threads);
         }
         now.p.border = [approach];
-        let most = self.goal.most.min(self.monitor.count.cycles + TRIED);
+        let most = self.goal.most.min(self.monitor.count.cycles.saturating_add(TRIED.min(self.each)));
         let enough = match self.goal.wanted {
             // Forces are compared with the one that is wanted.
             Some(_) => 0.0,

@@ -165,7 +165,7 @@ impl Tangential {
         is_multiple.then_some(one.dx / two.dx)
     }
 
-    /// What waves of tractions displace, by the wave vector, where a coating is a membrane: its coefficients fall off over lengths beyond all grids.
+    /// What waves of tractions displace, by the wave vector, where a coating is a membrane: its coefficients may fall off over lengths beyond the grid.
     pub fn of_waves(&self) -> Option<impl Fn(Vector) -> Entry + Sync + Send + '_> {
         let (coat, _) = self.coat.as_ref().filter(|(coat, _)| coat.is_membrane())?;
         let HalfSpace { dx, dy, compliance, .. } = self.half_space;

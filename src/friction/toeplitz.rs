@@ -98,7 +98,7 @@ impl<T: Real> Toeplitz<T> {
         Ok(Toeplitz { product: VectorProduct::even((grid.mx, grid.my), period, &coefficients, threads)?, unit })
     }
 
-    /// See [`inverse`](Self::inverse). Where coatings are membranes coefficients that end at half a period are not positive definite, whatever the grid, and
+    /// See [`inverse`](Self::inverse). Where coatings are membranes coefficients that end at half a period may not be positive definite, and
     /// waves serve.
     pub fn nearly_inverse(quadrant: &Quadrant, grid: &Grid, threads: &Threads) -> Result<Option<Toeplitz<T>>> {
         let (period, given) = circulant_period(grid);

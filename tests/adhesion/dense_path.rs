@@ -138,6 +138,7 @@ fn a_pull_off_is_the_least_of_small_steps() {
         let (state, above) = (solver.state(), report.measures.approach);
         let from = At { p: state.p.clone(), contact: state.contact.clone(), sum: 0.0 };
         let least = body.least(above, from, (above - approach) / 40.0) * body.grid.element_area();
+        assert!(least.is_finite(), "the dense path has no step");
         println!("in small steps {least}");
         // A step of 1/40 of the way at a parabola's minimum: some 1e-3 of the depth of the way, and so are small steps of the library.
         assert!(found < least * (1.0 - 2e-3), "{found} {least}");

@@ -45,6 +45,7 @@ mod influence;
 mod layer;
 mod limits_that_differ;
 mod line_contact;
+mod line_scans;
 mod linear;
 mod long_rows;
 mod meaningless;

@@ -28,21 +28,21 @@ const LEAST: f64 = 1e-6;
 
 impl<T: Real> Iteration<T> {
     /// Takes the change from the last solution, if there is one, to `state`, the part of a grid of `mx` columns in the window; none if it
-    /// carries no force.
+    /// carries no force. Returns the products that this takes.
     pub fn deflate_by_change(
         &mut self,
         state: &State,
         last: Option<Last<'_>>,
         (window, mx): (&Window, usize),
         units: &Scaling,
-    ) -> Result<()> {
+    ) -> Result<u64> {
         self.deflation.forget();
-        let Some(last) = last else { return Ok(()) };
+        let Some(last) = last else { return Ok(0) };
         self.deflation.reserve(state.p.len())?;
         self.deflation.is_uniform = false;
         let Some(last_u) = last.u else {
             self.displace_change(state, last.p, (window, mx), units);
-            return Ok(());
+            return Ok(1);
         };
         let Deflation { d, w, .. } = &mut self.deflation;
         let mut sums = Sums::new();
@@ -62,7 +62,7 @@ impl<T: Real> Iteration<T> {
         if f64::abs(sum) > CARRIES * absolute && absolute > LEAST * all {
             self.deflation.take_measures(measures);
         }
-        Ok(())
+        Ok(0)
     }
 
     /// d: the change of p from `last` on C; w = A d by a product.

@@ -39,7 +39,7 @@ const COARSE_ITERATIONS: u64 = 2;
 /// Where elements are at their limit: on 48 scenes (`examples/pressure_limits`) 4, 5, 6, 8 take at most 6.0, 3.2, 3.3, 3.6 times the
 /// work of the plain scene.
 const LIMITED_ITERATIONS: u64 = 5;
-/// Where the force is found for the approach: three forces. With two or four of them lines take at most 130 or 110 products, with three 81.
+/// Where the force is found for the approach: three forces (60 lines then take 85 products at most on the finest grid; with two or four 130 and 110).
 const FORCE_ITERATIONS: u64 = 6;
 
 /// One coarser grid.
@@ -61,7 +61,6 @@ pub struct CoarseGrids {
     are_current: bool,
     /// The result of the last start on the finest of them.
     found: Survey,
-    /// On lines that find the force for the approach.
     find_force: FindForce,
 }
 
@@ -80,15 +79,9 @@ impl CoarseGrids {
                 limits: Vec::new(),
             });
         }
-        let (finest, threads) = (grid.len(), threads.clone());
-        Ok(CoarseGrids {
-            finest,
-            grids,
-            threads,
-            are_current: true,
-            found: Survey::default(),
-            find_force: FindForce::default(),
-        })
+        let (finest, threads, found, find_force) =
+            (grid.len(), threads.clone(), Survey::default(), FindForce::default());
+        Ok(CoarseGrids { finest, grids, threads, are_current: true, found, find_force })
     }
 
     /// The finest grid has other coefficients.
@@ -223,14 +216,14 @@ impl CoarseGrids {
         };
         let goal = Goal { criterion: Criterion::Residual, tolerance: goal.tolerance.max(enough), max_cycles };
         let Coarse { level, state, limits, .. } = &mut self.grids[l];
-        let set = S::within(limits);
+        let (set, finest) = (S::within(limits), self.finest);
         let end = if FindForce::serves::<S>(level, state, &goal) {
             state.u_is = displacement;
-            let goal = Goal { max_cycles: max_cycles.max(FORCE_ITERATIONS), ..goal };
+            let goal = &Goal { max_cycles: max_cycles.max(FORCE_ITERATIONS), ..goal };
             self.find_force.begin();
-            self.find_force.run(level, (state, set), (&goal, COARSE_ITERATIONS), self.finest, monitor)?
+            self.find_force.run(level, (state, set), (goal, COARSE_ITERATIONS), finest, monitor)?
         } else {
-            level.run(state, set, (displacement, None), &goal, self.finest, monitor)?
+            level.run(state, set, (displacement, None), &goal, finest, monitor)?
         };
         level.take_displacements(state);
         Ok(end)

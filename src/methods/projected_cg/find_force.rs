@@ -12,8 +12,8 @@
 //! *Approach of a force.* A mean of e over C, with weights of the sum 1, is the approach of the solution but for the product of two errors: that
 //! of p, and that of the weights as pressures of a flat punch on C. The change of p with the force is such a pressure.
 //!
-//! *Start of a force.* p is extrapolated along its change with the force. Where there is none, a larger force starts from the pressures and a uniform one, which
-//! displaces nothing: elements leave C sooner than they enter.
+//! *Start of a force.* p is extrapolated along its change with the force. For the first larger force a uniform pressure is added instead. It displaces
+//! nothing. Elements then leave C, which is faster than entering it.
 //!
 //! *Near the force* p moves along its change in each step by approach (module `along`).
 //!
@@ -34,7 +34,7 @@ use crate::sums::{in_blocks, mean};
 /// The residual to which the first force is solved; the next ones to this part of the distance between approaches.
 const LOOSE: f64 = 0.1;
 const PART: f64 = 0.3;
-/// Changes of the force are at most by this factor (60 lines take 88 products at most; with 4 they take 400); p is extrapolated by at most so many times its last
+/// Changes of the force are at most by this factor (60 lines of 3000 and 9600 elements take 85 products at most; with 4 they take 400); p is extrapolated by at most so many times its last
 /// change.
 const FURTHEST: f64 = 2.0;
 const FURTHEST_P: f64 = 4.0;
@@ -135,7 +135,7 @@ impl FindForce {
             }
             if is_enough {
                 self.tolerance = Some(goal.tolerance);
-            } else if end == End::Met && found.may_be_loose() {
+            } else if end == End::Met && residual > goal.tolerance && found.may_be_loose() {
                 self.tolerance = Some(LOOSE * residual);
             } else {
                 self.tolerance = Some(residual.min(PART * found.off()).max(ROUNDING));
@@ -240,6 +240,9 @@ impl FindForce {
 
     /// p of the next force; false where there is no next force.
     fn change(&mut self, state: &mut State, found: &Found) -> Result<bool> {
+        if !(found.force > 0.0 && found.force.is_finite()) {
+            return Ok(false);
+        }
         let (force, next) = (found.force, self.next_force(found));
         if !next.is_finite() {
             return Ok(false);
@@ -268,10 +271,13 @@ impl FindForce {
             return Ok(true);
         }
         let carried = in_blocks(state.p.iter().copied()) * state.grid.element_area();
+        if !(carried > 0.0 && carried.is_finite()) {
+            return Ok(false);
+        }
         for (p, inside) in state.p.iter_mut().zip(&mut state.contact) {
             *p *= next / carried;
             *inside = *p > 0.0;
         }
-        Ok(carried > 0.0)
+        Ok(true)
     }
 }

@@ -145,7 +145,8 @@ impl Level {
                 in_either!(inner, inner => inner.displace(state));
                 monitor.count_products(1, work);
             }
-            in_either!(inner, inner => inner.deflate_by_change(state, last, (window, whole.mx), units))?;
+            let products = in_either!(inner, inner => inner.deflate_by_change(state, last, (window, whole.mx), units))?;
+            monitor.count_products(products, work);
             let after_cycle = |cycle: &Cycle| {
                 monitor.count_products(cycle.products, work);
                 monitor.count.active_set_steps += 1;

@@ -18,8 +18,7 @@
 //! where C is found late, as around a spike on which the coarse grids see nothing else, d is first made then.
 //!
 //! Measured by approach: 180 planes of 80 x 80 with one spike, many, or plateaus, 5 to 31 iterations, 15 in the median, by force 5 to 29 and 14;
-//! without d most with spikes take more than 60. Lines of 9600 elements with two periods, contact of more than
-//! half, 94 to 300, where scaling left one of ten without an end.
+//! without d most with spikes take more than 60.
 
 use super::iteration::Cycle;
 use super::vectors::Iteration;
