@@ -145,6 +145,8 @@ PEERS_PYTHON := build/peers/bin/python
 bench-peers: all $(PEERS_PYTHON)
 	$(PEERS_PYTHON) benches/peers/run.py $(PEERS)
 	$(PEERS_PYTHON) benches/peers/adhesion.py --largest 256
+	$(PEERS_PYTHON) benches/peers/thickness.py
+	$(PEERS_PYTHON) benches/visco_tamaas.py
 
 # aspher is built here, for this machine: C++, CMake and Eigen's headers.
 $(PEERS_PYTHON): benches/peers/requirements.txt

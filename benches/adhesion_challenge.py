@@ -68,11 +68,15 @@ def draw(found, picture):
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    figure, axes = pyplot.subplots(figsize=(6.8, 5.6), layout="constrained")
-    most = np.quantile(np.abs(found.pressure[found.contact == 1]), 0.99)
-    image = axes.imshow(found.pressure, origin="lower", extent=(0, SIDE, 0, SIDE), cmap="RdBu_r", vmin=-most, vmax=most)
-    figure.colorbar(image, label="pressure [MPa], negative where they pull")
-    axes.set(xlabel="x [µm]", ylabel="y [µm]")
+    figure, (whole, part) = pyplot.subplots(1, 2, figsize=(6.8, 3.3), layout="constrained")
+    pull = WORK / found.report["range"]
+    x, y, width = 60, 8, 25
+    for axes in (whole, part):
+        image = axes.imshow(found.pressure, origin="lower", extent=(0, SIDE, 0, SIDE), cmap="RdBu_r", vmin=-pull, vmax=pull, interpolation="nearest")
+        axes.set(xlabel="x [µm]", ylabel="y [µm]")
+    whole.add_patch(pyplot.Rectangle((x, y), width, width, fill=False, linewidth=1))
+    part.set(xlim=(x, x + width), ylim=(y, y + width))
+    figure.colorbar(image, ax=(whole, part), label="pressure [MPa], negative where they pull", extend="max")
     figure.savefig(picture)
 
 

@@ -41,10 +41,13 @@ EXAMPLES = {
     "what_matters": Example(("what_matters",)),
     "visco": Example(("visco",)),
     "wear": Example(("wear",)),
+    "coated_wheels": Example(("coated_wheels",)),
     "hot_friction": Example(("flash_temperature",)),
     "adhesion": Example(("adhesion_loop", "adhesion_rough"), takes_folder=True),
 }
 
+# Programs of other folders that draw, and their arguments.
+BENCHES = (("benches/adhesion_challenge.py", ("--largest", "512"), "adhesion_challenge.svg"),)
 
 # What is measured is not measured again: these draw tables of the pages and of local_fourier_analysis/results.
 TABLES = (
@@ -68,6 +71,8 @@ def draw(folder: Path, dark: bool) -> None:
             to = folder if example.takes_folder else folder / f"{example.pictures[0]}.svg"
             command = [sys.executable, root / "python_examples" / f"{name}.py", *example.arguments, to]
             subprocess.run(command, cwd=scratch, env=environment, check=True, stdout=subprocess.DEVNULL)
+        for script, arguments, name in BENCHES:
+            subprocess.run([sys.executable, root / script, *arguments, folder / name], env=environment, check=True, stdout=subprocess.DEVNULL)
         for script, name in TABLES:
             subprocess.run([sys.executable, root / script, folder / name], env=environment, check=True)
     for picture in folder.glob("*.svg"):

@@ -24,7 +24,7 @@ fn the_cxx_header_keeps_its_promises() {
             assert_eq!(run_under_valgrind(&program, &[], &folder), expected, "{source}, {standard}");
         }
     }
-    for name in ["hertz", "adhesion", "laws", "visco", "wear"] {
+    for name in ["hertz", "adhesion", "laws", "visco", "flash_temperature", "wear"] {
         let program = compile(compiler("g++", "c++17"), &format!("cxx_examples/{name}.cpp"), &folder);
         let expected = std::fs::read_to_string(root().join(format!("cxx_examples/{name}.expected"))).expect("expected");
         assert_eq!(run_linked(&program, &[], &folder), expected, "{name}");

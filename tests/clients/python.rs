@@ -151,17 +151,13 @@ fn the_example_of_laws_prints_what_is_expected_and_draws() {
 
 /// A law of the program's own, by turns.
 #[test]
-fn the_example_of_hot_friction_prints_what_is_expected() {
-    let example = root().join("python_examples/hot_friction.py");
-    let printed = run(python_in(&scratch("python_hot_friction")).arg(&example));
-    assert_eq!(printed, std::fs::read_to_string(example.with_extension("expected")).expect("what is expected"));
+fn the_example_of_hot_friction_prints_what_is_expected_and_draws() {
+    prints_what_is_expected_and_draws("hot_friction");
 }
 
 #[test]
-fn the_example_of_coated_wheels_prints_what_is_expected() {
-    let example = root().join("python_examples/coated_wheels.py");
-    let printed = run(python_in(&scratch("python_coated_wheels")).arg(&example));
-    assert_eq!(printed, std::fs::read_to_string(example.with_extension("expected")).expect("what is expected"));
+fn the_example_of_coated_wheels_prints_what_is_expected_and_draws() {
+    prints_what_is_expected_and_draws("coated_wheels");
 }
 
 #[test]

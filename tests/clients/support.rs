@@ -14,8 +14,9 @@ use contact_normal::operator::Operator;
 use contact_normal::threads::Threads;
 
 /// The examples of effects, the same in C and Fortran; each prints what its file `.expected` holds.
-pub const EXAMPLES_OF_EFFECTS: [&str; 14] = [
+pub const EXAMPLES_OF_EFFECTS: [&str; 15] = [
     "adhesion",
+    "laws",
     "visco",
     "layer",
     "pressure_limit",
