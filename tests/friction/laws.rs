@@ -197,12 +197,15 @@ pub fn left(wheel: &Wheel, friction: &Friction<'_>, solution: &Solution) -> [f64
             let s = [0, 1].map(|k| w[k] + u[i][k] - there[i][k] + layer * (q[i][k] - ahead[k]));
             let slides = wheel.pressure[i] > 0.0 && solution.stick_slip[i] == SLIP;
             let v = if slides { s[0].hypot(s[1]) / duration } else { 0.0 };
+            let [one, two] = law.half_speed.map(|half| v / half);
             let falls = match law.fall {
-                Fall::Linear => (1.0 - 0.5 * v / law.half_speed[0]).max(0.0),
-                Fall::Rational => 1.0 / (1.0 + v / law.half_speed[0]),
-                Fall::Exponential => 0.5f64.powf(v / law.half_speed[0]),
+                Fall::Linear => [one, two].map(|v| (1.0 - 0.5 * v).max(0.0)),
+                Fall::Rational => [1.0 / (1.0 + one), 1.0 / (1.0 + two * two)],
+                Fall::Exponential => [one, two].map(|v| 0.5f64.powf(v)),
             };
-            let steady = 0.33 * (law.kinetic + law.falling[0] * falls) / (law.kinetic + law.falling[0]);
+            let [first, second] = law.falling;
+            let all = law.kinetic + first + second;
+            let steady = 0.33 * (law.kinetic + first * falls[0] + second * falls[1]) / all;
             let c = law.memory_distance;
             let kept = if c > 0.0 { c / (c + duration * v.max(law.memory_speed)) } else { 0.0 };
             had = kept * had + (1.0 - kept) * steady;
@@ -232,14 +235,14 @@ pub fn left(wheel: &Wheel, friction: &Friction<'_>, solution: &Solution) -> [f64
 fn all_laws_meet_their_conditions_by_direct_sums() {
     let wheel = Wheel::new(1);
     for fall in [Fall::Linear, Fall::Rational, Fall::Exponential] {
-        for memory_distance in [0.003, 0.0] {
+        for (memory_distance, falling) in [(0.003, [0.19, 0.0]), (0.0, [0.19, 0.0]), (0.003, [0.12, 0.07])] {
             for (xi, spin) in [(0.004, 0.0), (0.003, 8e-4), (0.03, 0.0)] {
-                let law = FrictionLaw { fall, memory_distance, ..RUNNING };
+                let law = FrictionLaw { fall, memory_distance, falling, half_speed: [1250.0, 3000.0], ..RUNNING };
                 let friction = wheel.friction(xi, spin, Some(law));
                 let (end, report, solution) = wheel.ended(&friction, 1e-7);
                 let [slip, bound, _] = left(&wheel, &friction, &solution);
                 println!(
-                    "{fall:?} {memory_distance} {xi} {end:?} slope {:.2} products {} left {slip:.1e} {bound:.1e}",
+                    "{fall:?} {memory_distance} {falling:?} {xi} {end:?} slope {:.2} products {} left {slip:.1e} {bound:.1e}",
                     report.law_slope, report.products
                 );
                 assert_eq!(end, Outcome::Converged);
