@@ -18,7 +18,8 @@ use crate::init::initialised;
 use crate::random::Random;
 use crate::verdict::Verdict;
 
-/// Panels in t are at most so long, and twice as long as the one before, and of so many nodes: (1 - exp(-z))/z, z changing by a factor of e to four, to 1e-12.
+/// A panel in t has at most this length, at most twice the length of the one before, and so many nodes. It integrates (1 - exp(-z))/z to 1e-12, while z
+/// changes by a factor of e to four.
 const PANEL: f64 = 1.0;
 const NODES: usize = 12;
 /// What both quadratures may be off, over the largest rise: what the library says of its own.

@@ -24,7 +24,8 @@ const LESS: f64 = 1.0 + 1e-6;
 /// The first way of a pull-off may take this factor times the cycles of a solve. Each of its states may take one part in this many of a solve's.
 const PULL_OFF: u64 = 3;
 const STATES: u64 = 4;
-/// A pull-off whose way is lost is looked for so many times below, in so many steps of this part of the length of the contact.
+/// Where the way of a pull-off is lost, further ways begin below, so many at most. Each begin is looked for in so many steps. A step is this part of the length
+/// of the contact.
 const ANEW: u32 = 4;
 const STEPS_BELOW: u32 = 6;
 const BELOW: f64 = 0.1;
@@ -127,8 +128,8 @@ impl Solver {
         Walker { each, ..self.walker(Goal { most, ..goal }, make, monitor) }
     }
 
-    /// The first way down. Where it is lost, as elements snap one after the other that are too coarse for the range, a pull-off is looked for from a state
-    /// below, which is found from nothing. Returns the cycles of all that, too.
+    /// The first way down. It may be lost where elements are too coarse for the range and snap one after the other. Then another way begins at a state below,
+    /// which is found from nothing. Returns the cycles of all ways, too.
     fn walk_first(&mut self, goal: Goal, make: MakeFrozen<'_>, monitor: &mut Monitor<'_>) -> Result<(Walk, u64)> {
         let before = monitor.count.cycles;
         let mut ended = self.first_walker(goal, 0, make, monitor).walk(None)?;

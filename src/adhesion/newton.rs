@@ -134,7 +134,7 @@ pub fn newton(level: &mut Level, goal: Goal, keeps: bool, monitor: &mut Monitor<
     Ok((End::Failed, measured))
 }
 
-/// One step, far from the solution or near it. Returns whether so many directions were enough.
+/// Takes one step, of at most so many directions, far from the solution or near it. Returns whether these were enough.
 fn take_step(level: &mut Level, Goal { wanted, pace, .. }: Goal, is_far: bool, most: usize) -> Result<bool> {
     let (n, threads) = (level.now.u.len(), level.problem.threads.clone());
     let mut fields = std::mem::take(&mut level.fields);

@@ -19,8 +19,8 @@ const LONG: f64 = 0.3;
 const OF_RANGE: f64 = 0.1;
 /// Steps at most.
 const MOST_STEPS: u32 = 400;
-/// Where the force was nearly the least, steps are repeated in so many parts: the edge of a contact rests at rings of elements, so that the force of a
-/// sphere has a minimum at each of them.
+/// Where the force was nearly the least, each step is repeated in so many parts. The edge of a contact rests at rings of elements. The force of a sphere has a
+/// minimum at each ring.
 const PARTS: u32 = 8;
 /// Forces are nearly the least if they are more by at most this part of it, times the square of kappa, within these bounds. The minima of a sphere at
 /// neighbouring rings lie 1 % below the forces between them for kappa 0.4, and 0.01 % for kappa 0.14.

@@ -79,17 +79,15 @@ fn largest_eigenvalue(level: &mut Level, roots: &[One], threads: &Threads, field
 /// `w = sqrt(s) A~ sqrt(s) v`.
 fn apply(level: &mut Level, roots: &[One], v: &[One], w: &mut [One], fields: &mut Fields<1>) -> Result<()> {
     let (n, threads) = (roots.len(), level.problem.threads.clone());
-    let (mut none, mut right) = (fields.take_of(n)?, fields.take(n)?);
-    fields::fill(&threads, &mut none, |_| [0.0_f32]);
+    let (none, mut right) = (fields.zeros(n, &threads)?, fields.take(n)?);
     fields::fill(&threads, &mut right, |i| [roots[i][0] * v[i][0]]);
     let until = Until { target: INNER * fields::dot(&threads, &right, &right).sqrt(), most: DIRECTIONS };
     // Without attraction that changes: outside dp = sqrt(s) v, in contact no change of the distance.
     let mut system = Linearised::new(level, &none, false, fields)?;
     let r = Bordered { field: right, border: [0.0] };
     let found = system.solve(r, (until, 0.0), &threads, fields)?;
-    let (mut pressures, mut product) = (Bordered { field: fields.take(n)?, border: [0.0] }, fields.take(n)?);
-    fields::fill(&threads, &mut pressures.field, |_| [0.0]);
-    fields::fill(&threads, &mut product, |_| [0.0]);
+    let mut pressures = Bordered { field: fields.zeros(n, &threads)?, border: [0.0] };
+    let mut product = fields.zeros(n, &threads)?;
     found.add_to(&mut pressures, &mut product, &threads, fields);
     fields::fill(&threads, w, |i| [roots[i][0] * product[i][0]]);
     fields.give_of(none);

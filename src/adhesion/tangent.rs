@@ -22,17 +22,16 @@ use super::system::Linearised;
 use super::unknowns::{is_small, One};
 use crate::error::Result;
 use crate::methods::fgmres::{Bordered, Until};
-use crate::methods::fields::{self, Fields};
+use crate::methods::fields;
 use crate::progress::Monitor;
-use crate::threads::Threads;
 
 /// To what part of its right-hand side the linear system is solved, and where that does not decide.
 const LOOSE: f64 = 1e-3;
 const FIRM: f64 = 1e-5;
 const DIRECTIONS: [usize; 2] = [30, 90];
-/// On grids of more elements than `SMALL` a force is asked roughly first, and answered where the sum of y is this part of the sum of |y|, and no g as far
+/// On grids of more elements than `ROUGHLY_FIRST` a force is asked roughly first, and answered where the sum of y is this part of the sum of |y|, and no g as far
 /// below 0: that takes half as many directions.
-const SMALL: usize = 1024;
+const ROUGHLY_FIRST: usize = 1024;
 const ROUGH: (f64, usize) = (0.03, 18);
 const BEYOND_DOUBT: f64 = 0.3;
 /// A linear system is solved if its residual is at most this factor of what was asked for: round-off.
@@ -43,7 +42,7 @@ const NEAR: f64 = 0.05;
 const CLOSING: f64 = -0.05;
 
 /// The tangent.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Tangent {
     /// dF/dapproach, per area of an element.
     stiffness: f64,
@@ -75,8 +74,8 @@ fn tangent(level: &mut Level, (part, most): (f64, usize), monitor: &mut Monitor<
     let mut stiffness = fields.take_of(n)?;
     stiffnesses(level, |_, e| e.max(0.0), &mut stiffness);
     let mut system = Linearised::new(level, &stiffness, false, &mut fields)?;
-    let (mut known, mut first, mut made, mut is_solved) = (None::<(Bordered<1>, Vec<One>)>, None, 0, false);
-    while !is_solved && made < most {
+    let (mut known, mut first, mut made) = (None::<(Bordered<1>, Vec<One>)>, None, 0);
+    let (y, product, is_solved) = loop {
         let mut right = fields.take(n)?;
         fields::fill(&threads, &mut right, |i| {
             let solved = known.as_ref().map_or(0.0, |(y, product)| system.row(i, y.field[i][0], product[i][0]));
@@ -87,18 +86,18 @@ fn tangent(level: &mut Level, (part, most): (f64, usize), monitor: &mut Monitor<
         let until = Until { target, most: at_once.min(most - made) };
         let r = Bordered { field: right, border: [0.0] };
         let found = system.solve(r, (until, 0.0), &threads, &mut fields)?;
-        is_solved = found.left * norm <= SLACK * target;
+        let is_solved = found.left * norm <= SLACK * target;
         made += found.directions.len().max(1);
         let (mut y, mut product) = match known {
             Some(known) => known,
-            None => {
-                (Bordered { field: zeros(n, &mut fields, &threads)?, border: [0.0] }, zeros(n, &mut fields, &threads)?)
-            }
+            None => (Bordered { field: fields.zeros(n, &threads)?, border: [0.0] }, fields.zeros(n, &threads)?),
         };
         found.add_to(&mut y, &mut product, &threads, &mut fields);
+        if is_solved || made >= most {
+            break (y, product, is_solved);
+        }
         known = Some((y, product));
-    }
-    let Some((y, product)) = known else { return Ok(Tangent::default()) };
+    };
     let (contact, a0) = (&system.level.now.contact, system.level.self_influence());
     let [sum, all] = fields::sum(&threads, n, |i| {
         let (y, g) = (y.field[i][0], 1.0 - product[i][0]);
@@ -111,13 +110,6 @@ fn tangent(level: &mut Level, (part, most): (f64, usize), monitor: &mut Monitor<
     level.fields = fields;
     level.count_products(monitor);
     Ok(Tangent { stiffness: sum, all, closing: -opening, is_solved })
-}
-
-/// A field of zeros.
-fn zeros(n: usize, fields: &mut Fields<1>, threads: &Threads) -> Result<Vec<One>> {
-    let mut field = fields.take(n)?;
-    fields::fill(threads, &mut field, |_| [0.0]);
-    Ok(field)
 }
 
 /// The tangent, solved again more firmly unless it is clear.
@@ -153,7 +145,7 @@ pub fn is_stable(level: &mut Level, by_force: bool, monitor: &mut Monitor<'_>) -
     if is_all_in_contact(level) {
         return Ok(true);
     }
-    if by_force && level.now.u.len() > SMALL {
+    if by_force && level.now.u.len() > ROUGHLY_FIRST {
         let found = tangent(level, ROUGH, monitor)?;
         if found.is_solved && found.stiffness > BEYOND_DOUBT * found.all && found.closing > -BEYOND_DOUBT {
             return Ok(true);

@@ -65,7 +65,7 @@ pub struct PlasticLayer {
 
 impl FrictionLaw {
     /// Of one part that falls, at once.
-    pub fn new(fall: Fall, (kinetic, falling): (f64, f64), half_speed: f64, speed: f64) -> FrictionLaw {
+    pub const fn new(fall: Fall, (kinetic, falling): (f64, f64), half_speed: f64, speed: f64) -> FrictionLaw {
         let (falling, half_speed) = ([falling, 0.0], [half_speed, 1.0]);
         FrictionLaw {
             fall,

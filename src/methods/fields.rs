@@ -97,6 +97,13 @@ impl<const K: usize> Fields<K> {
         Ok(field)
     }
 
+    /// A field of zeros.
+    pub fn zeros<T: Stored>(&mut self, n: usize, threads: &Threads) -> Result<Vec<[T; K]>> {
+        let mut field = self.take_of(n)?;
+        fill(threads, &mut field, |_| [T::zero(); K]);
+        Ok(field)
+    }
+
     /// Takes a field of some precision back.
     pub fn give_of<T: Stored>(&mut self, field: Vec<[T; K]>) {
         T::of_pool(self).push(field);

@@ -64,16 +64,7 @@ pub const PRINTED: [(f64, usize); 50] = [
 ];
 
 /// From .3 to .18 at once.
-pub const FALLS: FrictionLaw = FrictionLaw {
-    fall: Fall::Exponential,
-    kinetic: 0.18,
-    falling: [0.12, 0.0],
-    half_speed: [100.0, 1.0],
-    speed: 45_000.0,
-    time_step: 1.0,
-    memory_distance: 0.0,
-    memory_speed: 0.0,
-};
+pub const FALLS: FrictionLaw = FrictionLaw::new(Fall::Exponential, (0.18, 0.12), 100.0, 45_000.0);
 
 /// A cylinder on 92 x 1 elements, friction that falls from .3 to .18 at once.
 pub struct Cylinder {
@@ -131,6 +122,24 @@ pub fn part(report: &Report) -> f64 {
 pub const ROLLING: (Motion, f64) = (Motion::SteadyRolling, -0.0009999);
 
 pub const STEP: (Motion, f64) = (Motion::TransientRolling, -0.001);
+
+/// Carter's problem: `Fx/(.3 N)` and elements that stick.
+#[test]
+fn steady_and_transient_rolling_without_memory_are_those_of_contact() {
+    let cylinder = Cylinder::new();
+    let mut solver = solver(&cylinder.grid);
+    let report = cylinder.step_to(1e-8, &mut solver, ROLLING, Branch::Near);
+    assert!((part(&report) - 0.5941).abs() <= 5e-5, "{report:?}");
+    assert_eq!(report.certificate.stick_count, 45);
+    let report = cylinder.step_to(1e-8, &mut solver, STEP, Branch::Near);
+    println!("{} {:?}", part(&report), report);
+    // Three solutions: from below, from what is carried, from above.
+    let found = [(0.5977, 77), (0.5941, 45), (0.5703, 34)];
+    let is_one = |(force, sticks): &(f64, usize)| {
+        (part(&report) - force).abs() <= 1e-4 && report.certificate.stick_count == *sticks
+    };
+    assert!(found.iter().any(is_one), "{report:?}");
+}
 
 #[test]
 fn a_step_has_the_solutions_from_below_and_from_above() {

@@ -58,8 +58,8 @@ impl RadialSystem<'_> {
             if !self.forces.given[k] {
                 continue;
             }
-            let (mut nothing, mut column, mut y) = (fields.take(n)?, fields.take(n)?, fields.take(n)?);
-            fields::fill(&self.problem.threads().clone(), &mut nothing, |_| [0.0; 2]);
+            let nothing = fields.zeros(n, &self.problem.threads().clone())?;
+            let (mut column, mut y) = (fields.take(n)?, fields.take(n)?);
             self.apply((&nothing, e), &nothing, &mut column);
             self.precondition(&column, &mut y);
             [nothing, column].into_iter().for_each(|field| fields.give(field));
@@ -170,9 +170,8 @@ pub fn step(
     let found = fgmres::solve(&mut system, r, (Until { target, most }, weight), &threads, fields)?;
     let RadialSystem { scratch, along, border: [x, y], .. } = system;
     [scratch, along, x, y].into_iter().filter(|field| !field.is_empty()).for_each(|field| fields.give(field));
-    let (mut gained, mut product) = (Bordered { field: fields.take(n)?, border: [0.0; 2] }, fields.take(n)?);
-    fields::fill(&threads, &mut gained.field, |_| [0.0; 2]);
-    fields::fill(&threads, &mut product, |_| [0.0; 2]);
+    let mut gained = Bordered { field: fields.zeros(n, &threads)?, border: [0.0; 2] };
+    let mut product = fields.zeros(n, &threads)?;
     found.add_to(&mut gained, &mut product, &threads, fields);
     problem.update = problem.rms_of(fields::dot(&threads, &gained.field, &gained.field));
     fields::add_all(&threads, &mut state.q, &[(1.0, &gained.field)]);

@@ -110,13 +110,13 @@ impl FindForce {
         if self.is_near {
             return self.run_along(level, (state, set), goal, finest, monitor);
         }
-        let before = monitor.count.cycles;
+        let (before, mean) = (monitor.count.cycles, mean(&state.h));
         let mut rounding = if state.u_is == Freshness::Exact { 0.0 } else { ROUNDING };
         for _ in 0..MOST {
             let most = goal.max_cycles.saturating_sub(monitor.count.cycles - before);
             let residual = goal.tolerance.max(self.tolerance.unwrap_or(LOOSE));
             let inner = Goal { tolerance: residual, max_cycles: most.min(at_once), ..*goal };
-            let (end, found) = self.run_force(level, (state, set), &inner, finest, monitor)?;
+            let (end, found) = self.run_force(level, (state, set), (&inner, mean), finest, monitor)?;
             let is_enough = found.off() <= f64::max(rounding, ENOUGH * goal.tolerance);
             let goes_on = end == End::Met || end == End::Limit && most > at_once;
             if !goes_on || is_enough && residual <= f64::max(rounding, goal.tolerance) {
@@ -147,17 +147,16 @@ impl FindForce {
         Ok(End::Stagnated)
     }
 
-    /// Solves by the force that p carries; finds its approach.
+    /// Solves by the force that p carries; finds its approach. `mean`: that of h.
     fn run_force<S: AdmissibleSet>(
         &mut self,
         level: &mut Level,
         (state, set): (&mut State, S),
-        goal: &Goal,
+        (goal, mean): (&Goal, f64),
         finest: usize,
         monitor: &mut Monitor<'_>,
     ) -> Result<(End, Found)> {
-        let (prescribed, u_is) = (state.load, state.u_is);
-        let wanted = state.approach;
+        let (prescribed, wanted, u_is) = (state.load, state.approach, state.u_is);
         let force = in_blocks(state.p.iter().copied()) * state.grid.element_area();
         state.load = Load::Force(force);
         let end = level.run(state, set, (u_is, None), goal, finest, monitor);
@@ -167,7 +166,7 @@ impl FindForce {
         let approach = self.approach_of(state);
         state.approach = wanted;
         let size = norm_of_distance(state) / (state.contact_count() as f64).sqrt();
-        let mean = Some(mean(&state.h)).filter(|mean| mean.is_finite() && wanted < *mean);
+        let mean = Some(mean).filter(|mean| mean.is_finite() && wanted < *mean);
         Ok((end, Found { wanted, force, approach, residual: goal.tolerance, size, mean }))
     }
 
@@ -261,7 +260,7 @@ impl FindForce {
         }
         if keeps {
             let Found { approach, residual, .. } = *found;
-            self.before = Known { p: std::mem::take(&mut self.before.p), force, approach, residual };
+            (self.before.force, self.before.approach, self.before.residual) = (force, approach, residual);
         }
         if is_first && many && next > force {
             let more = (next - force) / (n as f64 * state.grid.element_area());
