@@ -23,10 +23,15 @@ struct Below {
 }
 
 impl State {
-    /// Starts on the bearing area, if displacements decide about few elements only.
-    pub fn start_on_bearing_area<S: AdmissibleSet>(&mut self, set: S, self_influence: f64, threads: &Threads) -> bool {
+    /// Starts on the bearing area, if displacements decide about few elements only. Returns the most that pressures displace there.
+    pub fn start_on_bearing_area<S: AdmissibleSet>(
+        &mut self,
+        set: S,
+        self_influence: f64,
+        threads: &Threads,
+    ) -> Option<f64> {
         if !S::LIMITED {
-            return false;
+            return None;
         }
         let (low, high) = match self.load {
             Load::Approach(approach) => (approach, approach),
@@ -37,13 +42,13 @@ impl State {
         let undecided = self.h.iter().filter(|&h| low - reach <= *h && *h <= high + reach).count();
         // Of one element alone nothing is at its limit.
         if held.count == 0 || !(undecided as f64 <= UNDECIDED * held.count as f64) {
-            return false;
+            return None;
         }
         self.u.fill(0.0);
         self.press_below(set, (low, high), held.limits);
         (self.u_is, self.approach) = (Freshness::Stale, high);
         self.carry_force(set, threads);
-        true
+        Some(reach)
     }
 
     /// Two depths, with the limits of so much pressure between, as near to each other as displacements let them be known.
