@@ -147,10 +147,9 @@ impl Table {
     }
 }
 
-/// Nodes s and weights times the function: panels of ten points on six radians at most, doubling from where a stiff layer begins to be one. Gauss's rule
-/// leaves `(10!)^4 2^21/(21 (20!)^3) 3^20 = 4e-15` of an amplitude that is G1/G2 times a stiff layer's integral and more.
+/// Nodes s and weights times the function: panels of ten points on eight radians at most, doubling from where a stiff layer begins to be one.
 fn hankel(mu: f64, faded: &dyn Fn(f64) -> f64, rho: f64) -> Vec<(f64, f64)> {
-    let (widest, rule) = (f64::min(0.5, 6.0 / rho), gauss(10));
+    let (widest, rule) = (f64::min(0.5, 8.0 / rho), gauss(10));
     let (mut nodes, mut low, mut width) = (Vec::new(), 0.0, f64::min(widest, 0.02 / mu.max(1.0)));
     while low < 22.0 {
         nodes.extend(rule.iter().map(|(x, w)| {

@@ -93,14 +93,12 @@ impl Methods {
             if i > 0 {
                 self.hand_over(stage, task)?;
             } else {
-                match self.take_over(stage, task, (from, survey))? {
-                    Beginning::Solved => return Ok(Outcome::Converged),
-                    Beginning::GoOn => {}
-                    Beginning::FromNothing => {
-                        if self.start(stage, task, from, error_ratio)? == Beginning::Solved {
-                            return Ok(Outcome::Converged);
-                        }
-                    }
+                let mut beginning = self.take_over(stage, task, (from, survey))?;
+                if beginning == Beginning::FromNothing {
+                    beginning = self.start(stage, task, from, error_ratio)?;
+                }
+                if beginning == Beginning::Solved {
+                    return Ok(Outcome::Converged);
                 }
             }
             let is_last = Some(&stage) == stages.last();
@@ -133,11 +131,10 @@ impl Methods {
         (from, survey): (Start, Option<Survey>),
     ) -> Result<Beginning> {
         let Some(survey) = survey else { return Ok(Beginning::FromNothing) };
-        let (state, set) = (&mut *task.state, task.set);
-        if !task.goal.by_update() && task.goal.holds(&survey, 0.0, set) && state.carries(&task.problem.threads) {
-            task.monitor.survey = Some(survey);
+        if !task.goal.by_update() && is_solved(task, survey) {
             return Ok(Beginning::Solved);
         }
+        let (state, set) = (&mut *task.state, task.set);
         let violation = survey.violation(set);
         let on_coarser_grids = matches!(stage, Stage::Direct | Stage::ProjectedCg) && !S::FIXED;
         if on_coarser_grids && !(violation <= WORTHLESS) {
@@ -184,8 +181,12 @@ impl Methods {
                     task.state.unload();
                 }
                 match task.state.start_on_bearing_area(task.set, self_influence, threads) {
-                    Some(most) if most <= HIDDEN * task.state.approach.abs() && is_answer(task)? => {
-                        return Ok(Beginning::Solved);
+                    Some(most) if most <= HIDDEN * task.state.approach.abs() => {
+                        task.refresh()?;
+                        task.count_products();
+                        if is_solved(task, task.survey()) {
+                            return Ok(Beginning::Solved);
+                        }
                     }
                     Some(_) => {}
                     None => self.projected_cg.start(task)?,
@@ -254,16 +255,13 @@ impl Methods {
     }
 }
 
-/// Whether the state is the answer, by a fresh product.
-fn is_answer<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<bool> {
-    task.refresh()?;
-    task.count_products();
-    let survey = task.survey();
+/// Whether the state that was surveyed satisfies the goal before any step; then the monitor has the survey.
+fn is_solved<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, survey: Survey) -> bool {
     let holds = task.goal.holds(&survey, 0.0, task.set) && task.carries();
     if holds {
         task.monitor.survey = Some(survey);
     }
-    Ok(holds)
+    holds
 }
 
 /// Cycles up to which a method may go on before the next takes over, of which so many are done: a part of those that are left, so that every method of the list

@@ -43,7 +43,6 @@ mod heat;
 mod hertz;
 mod influence;
 mod layer;
-mod limit_without_displacements;
 mod limits_that_differ;
 mod line_contact;
 mod line_scans;
