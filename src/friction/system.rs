@@ -8,7 +8,7 @@
 //! preconditioned by `y = M r;  dc = S^-1 (sum y - f);  z = y - Y dc` with `Y_k = M P e_k` and `S_jk = sum (Y_k)_j`.
 
 use super::forces::{sum_of, Forces};
-use super::plane::{add, plus, Vector};
+use super::plane::{add, dot, plus, Vector};
 use super::problem::Problem;
 use super::tangent::Tangent;
 use crate::error::Result;
@@ -84,11 +84,11 @@ impl<'a> TangentSystem<'a> {
         Ok(Bordered { field: z, border })
     }
 
-    /// dc, for what sums have too much.
+    /// dc, for what sums have too much: 0, not round-off, where the creepage is given, which may be smaller than that.
     pub fn creepages(&self, too_much: Vector) -> Vector {
         let rest = self.forces.only_given(too_much);
         let [upper, lower] = self.inverse;
-        [upper[0] * rest[0] + upper[1] * rest[1], lower[0] * rest[0] + lower[1] * rest[1]]
+        self.forces.only_given([dot(upper, rest), dot(lower, rest)])
     }
 
     /// `z -= Y dc`.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use contact_normal::friction::Request;
+use contact_normal::friction::{dense, Request};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Coefficient, Friction, Motion, Prescribed, Previous};
 use contact_normal::solver::Outcome;
@@ -10,7 +10,7 @@ use contact_normal::solver::Outcome;
 use super::conditions::disc;
 use super::steady::rolling;
 use super::steady_scenes::{ellipse, NU};
-use super::support::{residual, run, solver};
+use super::support::{residual, run, solver, tangential};
 
 fn with_forces(parts: [f64; 2], spin: f64, g: &[f64], grid: &Grid) -> Friction<'static> {
     let carried = g.iter().sum::<f64>() * grid.element_area();
@@ -121,6 +121,33 @@ fn a_force_beside_a_creepage_of_another_order_is_met() {
                 assert!(left <= 1.001e-6, "{motion:?}, {creepage}, {part}: {left}");
                 assert!((report.force[1] - part * carried).abs() <= 1e-6 * carried, "{motion:?}, {creepage}, {part}");
             }
+        }
+    }
+}
+
+/// On one element a step along x keeps the directions apart: the slip in x is that of the given creepage, however large the creepages are that
+/// the force in y takes on the way.
+#[test]
+fn a_given_creepage_is_as_it_is_beside_a_force() {
+    let (grid, g) = disc(24, |x, y| (x, y) == (9, 9));
+    let (bound, k) = (g[9 * 24 + 9], 9 * 24 + 9);
+    for (creepage, part) in [(1e-13, 0.0), (1e-15, 0.5), (-1e-17, -0.2)] {
+        let prescribed = [Prescribed::Creepage(creepage), Prescribed::Force(part * bound * grid.element_area())];
+        for before in [[0.3, 0.2], [-0.1, 0.6]] {
+            let [x, y] = before.map(|part| vec![part * bound; grid.len()]);
+            let friction = Friction { prescribed, previous: Previous::Given([&x, &y]), ..rolling([0.0; 2], 0.0) };
+            let (_, solution) = run(&mut solver(&grid, NU), &g, &friction, 1e-3);
+            let (mut here, mut ahead) = (vec![[0.0; 2]; grid.len()], vec![[0.0; 2]; grid.len()]);
+            dense::apply(&tangential(&grid, NU), &grid, (0.0, 0.0), &solution.traction, &mut here);
+            dense::apply(&tangential(&grid, NU), &grid, (1.0, 0.0), &solution.traction, &mut ahead);
+            let rigid = friction.distance(&grid) * creepage;
+            let (displaced, slip) = (here[k][0] - ahead[k][0], solution.slip[k][0]);
+            // Sums of one term.
+            let apart = (slip - (rigid + displaced)).abs();
+            assert!(
+                apart <= 1e-14 * rigid.abs().max(displaced.abs()),
+                "{creepage:e}: {slip:e}, {rigid:e} + {displaced:e}"
+            );
         }
     }
 }
