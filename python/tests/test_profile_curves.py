@@ -76,6 +76,35 @@ class Profiles(unittest.TestCase):
         twice = profiles.Profile(np.insert(plain.y, 180, plain.y[180] - 2e-5), np.insert(plain.z, 180, plain.z[180] + 1e-6), "wheel")
         self.assertEqual(len(twice.curve().y), len(plain.curve().y))
         self.assertLess(np.abs(np.diff(twice.curve().at(twice.curve().between(7))[3][1200:])).max(), 1e-4)
+        # The same numbers twice, once or at all points.
+        for often in (np.where(np.arange(len(plain.y)) == 150, 2, 1), 2):
+            same = profiles.Profile(np.repeat(plain.y, often), np.repeat(plain.z, often), "wheel").curve()
+            self.assertTrue(np.array_equal(same.y, plain.curve().y) and np.array_equal(same.z, plain.curve().z))
+
+    def test_points_out_of_order_and_far_off_are_refused(self):
+        plain = rail()
+        k = int(np.argmin(np.abs(plain.y + 14.6)))
+        for y, z in ((plain.y[k - 1] - 2e-3, plain.z[k - 1]), (plain.y[k], 99.0)):
+            with self.subTest(y=y, z=z), self.assertRaisesRegex(ValueError, "out of order, or far off, at y = "):
+                profiles.Profile(np.insert(plain.y, k, y), np.insert(plain.z, k, z), "rail").curve()
+        for z in (9999.0, -9999.0):
+            with self.assertRaisesRegex(ValueError, "stands? for 'not measured'"):
+                profiles.Profile(plain.y, np.where(np.arange(len(plain.z)) == k, z, plain.z), "rail")
+        # A face, and a rim below the tread, end a profile.
+        self.assertEqual(len(wheel().curve().y), len(wheel().y))
+
+    def test_spikes_are_told(self):
+        plain = wheel()
+        k = int(np.argmin(np.abs(plain.y)))
+        for height in (1.0, -0.05):
+            dusty = profiles.Profile(plain.y, plain.z + height * (np.arange(len(plain.z)) == k), "wheel", "tread")
+            self.assertEqual(list(dusty.spikes()), [k])
+            with self.assertWarnsRegex(UserWarning, f"tread has a spike at y = {plain.y[k]:.6g}"):
+                dusty.curve()
+        noise = np.random.default_rng(3).normal(size=len(plain.z))
+        for scale in (0.0, 0.005, 0.02):
+            self.assertEqual(len(profiles.Profile(plain.y, plain.z + scale * noise, "wheel").spikes()), 0)
+        self.assertEqual(len(rail().spikes()), 0)
 
     def test_turned_profiles_are_refused_by_the_argument_that_turns_them(self):
         for kind, made in (("wheel", wheel()), ("rail", rail())):

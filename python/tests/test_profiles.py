@@ -147,7 +147,9 @@ class Contact(unittest.TestCase):
             both[1].press(1e3, 0.4, 0.4, **STEEL)
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            both[0].press(5e3, 0.4, 0.4, **STEEL)
+            pressed = both[0].press(5e3, 0.4, 0.4, **STEEL)
+        with self.assertRaisesRegex(TypeError, r"gap, result = point.press\("):
+            both[0].force_on_wheel(pressed)
 
     def test_a_wheel_beside_its_rail_is_refused(self):
         with self.assertRaisesRegex(ValueError, "the right wheel is nowhere above its rail"):

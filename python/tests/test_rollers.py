@@ -51,6 +51,9 @@ class Gaps(unittest.TestCase):
                 wrong()
         with self.assertRaisesRegex(TypeError, "give either drop or crown_radii"):
             rollers.gap((1, 1), (4, 4), (6.0,), drop=rollers.no_drop(1.0), crown_radii=(5.0,))
+        for drop in (0.1, [0.1]):
+            with self.assertRaisesRegex(TypeError, "drop has a number; it must be a function of places y"):
+                rollers.gap((1, 1), (4, 4), (6.0,), drop=drop)
 
     def test_a_radius_of_zero_is_refused(self):
         for name, radii, crown in (("radii", (0.0, 1.0), ()), ("radii", (np.inf, -0.0), ()), ("crown_radii", (6.0, 5.0), (1.0, 0.0))):

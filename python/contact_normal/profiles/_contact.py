@@ -19,6 +19,9 @@ _BETWEEN = 6
 _SECTIONS, _PARTS = 9, 32
 # Steps of the search of a roll, in which each has about 1.6 times the digits of the one before.
 _ROLLS = 40
+# What to look at.
+_BESIDE = ("look at both by plot(): they are in mm, y grows to the field side and z downwards, and one is a wheel, the other a rail; then at the gauge and "
+           "the distance of the flange backs")
 
 
 def _lowest(pair: Pair, t: Any) -> tuple[Doubles, Doubles, Doubles]:
@@ -97,7 +100,7 @@ def contact_points(
     pair = _pair(track, wheelset, position, side)
     minima = _minima(pair)
     if not minima:
-        raise ValueError(f"the {side} wheel is nowhere above its rail: position.y is {position.y}, the gauge {track.gauge}")
+        raise ValueError(f"the {side} wheel is nowhere above its rail: position.y is {position.y}, the gauge {track.gauge}; {_BESIDE}")
     if position.z is None:
         lowered = minima[0][0]
         pair = dataclasses.replace(pair, position=dataclasses.replace(pair.position, z=lowered))
@@ -123,7 +126,7 @@ def settled(track: Track, wheelset: Wheelset, y: float = 0.0, yaw: float = 0.0) 
         position = Position(y, None, roll, yaw)
         left, right = (_minima(_pair(track, wheelset, position, side)) for side in ("left", "right"))
         if not (left and right):
-            raise ValueError(f"y is {y}: one wheel is nowhere above its rail")
+            raise ValueError(f"y is {y}: one wheel is nowhere above its rail; {_BESIDE}")
         return left[0][0], right[0][0]
 
     # A roll lowers the right wheel and lifts the left one by half of the distance of the wheels: the first guess of the slope.

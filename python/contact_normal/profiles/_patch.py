@@ -237,6 +237,8 @@ class ContactPoint:
 
     def force_on_wheel(self, result: Result) -> tuple[float, float, float]:
         """The force of a result on the wheel, in N: forward, to the right, downwards."""
+        if isinstance(result, tuple):
+            raise TypeError("result is a tuple; it must be a Result, the second one of what press(...) returns: gap, result = point.press(...)")
         x, y = result.tangential_force
         found = np.array([x, y, result.force]) @ self._axes()
         return float(found[0]), float(found[1] if self._pair.side == "right" else -found[1]), float(found[2])

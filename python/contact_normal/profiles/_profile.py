@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -20,8 +21,17 @@ if TYPE_CHECKING:
 # Steeper faces are cut: z is needed as a function of y. Flanges are at most 75 degrees.
 STEEPEST = np.deg2rad(85.0)
 
+# No profile is so large, in mm: what is further from the median stands for "not measured".
+_FAR = 500.0
+
 # Points closer than this, in mm, count as one: their directions are round-off of a file of eight digits.
 CLOSEST = 1e-3
+
+# Behind a face the next points lie up or down. Where one of so many lies mainly beside it, the profile goes on: the points are out of order.
+_BEHIND = 5
+
+# A spike leaves the line through its neighbours by this length, in mm, and by so many times as much as most of so many points around it.
+_SPIKE, _TIMES, _AROUND = 0.03, 10.0, 12
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -54,6 +64,10 @@ class Profile(Short):
             raise ValueError(f"y and z have shapes {y.shape} and {z.shape}; they must be rows of at least 4 points")
         if not (np.isfinite(y).all() and np.isfinite(z).all()):
             raise ValueError(f"{self._title()} has points that are not finite")
+        far = np.flatnonzero((np.abs(y - np.median(y)) > _FAR) | (np.abs(z - np.median(z)) > _FAR))
+        if len(far):
+            raise ValueError(f"{self._title()} has a point y = {y[far[0]]:g}, z = {z[far[0]]:g}, more than {_FAR:g} mm from the others: does it stand "
+                             "for 'not measured'? Leave such points out; a profile is in mm (scale=)")
         object.__setattr__(self, "y", y)
         object.__setattr__(self, "z", z)
         self._check_orientation()
@@ -107,26 +121,58 @@ class Profile(Short):
 
     def _usable(self) -> Any:
         """Indices of the points that a curve goes through: from the tread or the top to the first steep face on either side."""
-        middle = int(np.argmin(self.z))
+        apart = [0]
+        for k in range(1, len(self.y)):
+            if np.hypot(self.y[k] - self.y[apart[-1]], self.z[k] - self.z[apart[-1]]) >= CLOSEST:
+                apart.append(k)
+        y, z = self.y[apart], self.z[apart]
+        middle = int(np.argmin(z))
         if self.kind == "wheel":
-            middle = int(np.argmin(np.abs(self.y - 0.5 * (self.y[np.argmax(self.z)] + self.y[-1]))))
+            middle = int(np.argmin(np.abs(y - 0.5 * (y[np.argmax(z)] + y[-1]))))
         # A face is steep where y + z/tan or y - z/tan does not grow.
         flat = 1.0 / np.tan(STEEPEST)
-        first, last = 0, len(self.y) - 1
+        first, last = 0, len(y) - 1
         for sign in (flat, -flat):
-            one, other = growing(self.y + sign * self.z, middle)
+            one, other = growing(y + sign * z, middle)
             first, last = max(first, one), min(last, other)
-        kept = [first]
-        for k in range(first + 1, last + 1):
-            if np.hypot(self.y[k] - self.y[kept[-1]], self.z[k] - self.z[kept[-1]]) >= CLOSEST:
-                kept.append(k)
-        return np.array(kept)
+        for end, beyond in ((first, np.arange(first - 1, -1, -1)), (last, np.arange(last + 1, len(y)))):
+            self._check_face(y, z, end, beyond[:_BEHIND])
+        return np.array(apart[first : last + 1])
+
+    def _check_face(self, y: Doubles, z: Doubles, end: int, beyond: Any) -> None:
+        """Refuses an end at which there is no steep face: behind it the profile goes on."""
+        out = y[beyond] - y[end] if len(beyond) and beyond[0] > end else y[end] - y[beyond]
+        if (out > np.abs(z[beyond] - z[end])).any():
+            raise ValueError(f"{self._title()} has a point out of order, or far off, at y = {y[beyond[0]]:.6g}, z = {z[beyond[0]]:.6g}, beside "
+                             f"y = {y[end]:.6g}, z = {z[end]:.6g}; from point to point y must grow but at steep faces, behind which the profile ends: "
+                             "sort the points, or leave this one out")
+
+    def spikes(self) -> Any:
+        """Indices of points that stand out by themselves, as dust or a fault of a measurement does: from the line through its neighbours such a point
+        is further than .03 mm, and than ten times the median of the points around, and both neighbours lean to the other side."""
+        chosen = self._usable()
+        y, z = self.y[chosen], self.z[chosen]
+        if len(y) < _AROUND:
+            return chosen[:0]
+        weight = (y[1:-1] - y[:-2]) / (y[2:] - y[:-2])
+        off = z[1:-1] - (1.0 - weight) * z[:-2] - weight * z[2:]
+        found = []
+        for k in range(1, len(off) - 1):
+            around = np.abs(off[max(0, k - _AROUND // 2) : k + _AROUND // 2 + 1])
+            stands_out = abs(off[k]) > max(_SPIKE, _TIMES * float(np.median(around)))
+            if stands_out and max(off[k - 1] / off[k], off[k + 1] / off[k]) < -0.2:
+                found.append(k + 1)
+        return chosen[found]
 
     def curve(self) -> Curve:
-        """The smooth curve through the points, without vertical faces: natural cubic splines over the length of the polygon."""
+        """The smooth curve through the points, without vertical faces: natural cubic splines over the length of the polygon. Warns of `spikes`."""
         chosen = self._usable()
         if len(chosen) < 4:
-            raise ValueError(f"{self._title()} has {len(chosen)} points between its steep faces; at least 4 are needed")
+            raise ValueError(f"{self._title()} has {len(chosen)} points between its steep faces; at least 4 are needed. A profile is in mm, its points "
+                             "in the order in which one walks along it")
+        for k in self.spikes():
+            warnings.warn(f"{self._title()} has a spike at y = {self.y[k]:.6g}, z = {self.z[k]:.6g}: if it is dust or a fault, leave this point out",
+                          stacklevel=3)
         return Curve(self.y[chosen], self.z[chosen])
 
     def plot(self, axes: Axes | None = None) -> Axes:
