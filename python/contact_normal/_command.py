@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import sys
+import warnings
 from collections.abc import Sequence
 
 from . import _command_bill, _command_prices, _command_replay, _command_solve, _command_table
@@ -34,6 +36,9 @@ def parser() -> argparse.ArgumentParser:
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for module in (_command_solve, _command_prices, _command_bill, _command_table, _command_replay):
         module.add(commands)
+    for command in commands.choices.values():
+        # Older versions of argparse take -1e-6 for an option.
+        command._negative_number_matcher = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
     return top
 
 
@@ -47,7 +52,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     given = parser().parse_args(arguments)
     try:
-        code = int(given.run(given))
+        with warnings.catch_warnings():
+            warnings.showwarning = lambda message, *place, **more: print(f"contact-normal: {message}", file=sys.stderr)
+            code = int(given.run(given))
         sys.stdout.flush()
         return code
     except BrokenPipeError:

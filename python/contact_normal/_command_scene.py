@@ -29,6 +29,8 @@ def add_scene(command: argparse.ArgumentParser) -> None:
     surface.add_argument("--variable", metavar="NAME", help="which array of an .npz or .nc file")
     surface.add_argument("--dx", type=float, help="element size along a row; by default what the file says")
     surface.add_argument("--dy", type=float, help="element size across rows; by default what the file says, else dx")
+    surface.add_argument("--axes", choices=("yx", "xy"), help="what the indices of the array are: yx (default): [iy, ix]; xy: [ix, iy]")
+    surface.add_argument("--top-first", action="store_true", help="the first row is that of the largest y, as in an image")
     surface.add_argument("--hole", type=float, metavar="VALUE", help="elements with this value have no surface, as those with NaN")
     surface.add_argument("--units", nargs=2, metavar=("LENGTH", "FORCE"), help="names for output, as: --units m N; they change no number")
     bodies = command.add_argument_group("bodies: one modulus; one value, or one for each body")
@@ -74,6 +76,8 @@ def gap_of(given: argparse.Namespace) -> Gap:
         heights = found_faults.removed
     if given.level:
         heights = level(heights, given.level)
+    # A field that is one period of its surface is levelled first.
+    heights = dataclasses.replace(heights, period=given.period if "period" in given else None)
     if heights.holes.all():
         raise ValueError(f"{given.file} has no element with a surface")
     if given.gap:
@@ -88,6 +92,10 @@ def _heights_of(given: argparse.Namespace) -> Heights:
         said.update(dx=given.dx, dy=given.dx if given.dy is None else given.dy)
     if given.units:
         said["units"] = tuple(given.units)
+    if given.axes:
+        said["axes"] = given.axes
+    if given.top_first:
+        said["top_first"] = True
     try:
         heights = read(given.file, given.variable, **said)
     except TypeError as error:
@@ -100,7 +108,7 @@ def _heights_of(given: argparse.Namespace) -> Heights:
         raise ValueError(f"{given.file}: {error}") from error
     if heights.units and not given.units:
         print(f"lengths in {heights.units[0]}, as {given.file} says: moduli and load must be in units that go with it", file=sys.stderr)
-    return dataclasses.replace(heights, period=given.period if "period" in given else None)
+    return dataclasses.replace(heights, period=None)
 
 
 def scene_arguments(given: argparse.Namespace) -> dict[str, Any]:

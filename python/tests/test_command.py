@@ -118,6 +118,29 @@ class Commands(unittest.TestCase):
         self.assertFalse(level["contact"][3, 50])
         self.assertAlmostEqual(level["pressure"].max() / plain["pressure"].max(), 1.0, delta=1e-2)
 
+    def test_a_tilted_period_is_levelled_first(self):
+        wave = np.cos(2 * np.pi * np.arange(32) / 32)[None, :] + np.zeros((16, 1))
+        scene = ("--dx", "1", "--force", "10", "--e-star", "100", "--period", "xy")
+        np.save(self.npy, wave)
+        plain = self.solved(self.npy, *scene, "--level", "plane")
+        np.save(self.npy, wave + 0.3 * np.arange(16)[:, None])
+        np.testing.assert_allclose(self.solved(self.npy, *scene, "--level", "plane")["pressure"], plain["pressure"], atol=1e-5)
+
+    def test_arrays_of_instruments(self):
+        turned = HEIGHTS + 1e-3 * X[None, :] + 2e-3 * Y[:, None]
+        np.save(self.npy, turned)
+        plain = self.solved(self.npy, *BALL)["pressure"]
+        np.save(self.npy, turned[::-1].T)
+        # The first index is that of x, and y falls along the second one.
+        np.testing.assert_array_equal(self.solved(self.npy, *BALL, "--axes", "xy", "--top-first")["pressure"], plain)
+
+    def test_negative_numbers_may_have_exponents(self):
+        np.save(self.npy, np.where(np.arange(MX) == 0, -3.5e38, HEIGHTS))
+        for value in ("-3.5e38", "-3.5e+38"):
+            self.assertEqual(called("solve", self.npy, *BALL, "--hole", value)[0], 0)
+        code, _, told = called("solve", self.npy, *BALL, "--hole", "-9999e-3")
+        self.assertEqual((code, "contact-normal: no element has the value -9.999" in told), (0, True), told)
+
     def test_holes_have_no_surface(self):
         inside = np.zeros((MY, MX), dtype=bool)
         inside[17, 30] = True  # the top of the ball

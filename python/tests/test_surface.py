@@ -1,6 +1,7 @@
 """From heights to a gap: each step against what is known of it, and what a mistake costs."""
 
 import unittest
+import warnings
 from unittest import mock
 
 import numpy as np
@@ -213,6 +214,13 @@ class Levels(unittest.TestCase):
         self.assertEqual(surface.border_jumps(surface.heights(steps, 1, 1))[0], 0.0)
         # Of two rows of steps one is a jump of 1, as is that across the border: 1 over the root of 1/3.
         self.assertAlmostEqual(surface.border_jumps(surface.heights(steps, 1, 1))[1], np.sqrt(3.0), delta=1e-12)
+        # Without a pair across the border, or inside, there is no ratio, and no warning.
+        holes = np.where(np.arange(5) == 4, np.nan, rough()[:5, :5])
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            jump_x, jump_y = surface.border_jumps(surface.heights(holes, 1, 1))
+            self.assertTrue(np.isnan(surface.border_jumps(surface.heights(np.ones((1, 5)), 1, 1))[1]))
+        self.assertTrue(np.isnan(jump_x) and jump_y > 0.0)
         tilted = rough() + 0.2 * np.arange(64)
         jump_x, jump_y = surface.border_jumps(surface.heights(tilted, 1, 1))
         self.assertGreater(jump_x, 10.0)

@@ -110,6 +110,47 @@ class Files(unittest.TestCase):
             with self.assertRaisesRegex(ImportError, "xarray and netCDF4: pip install"):
                 surface.read(self.folder / "a.nc")
 
+    def test_points_with_holes_are_no_map(self):
+        x, y = (one.ravel() for one in np.meshgrid(np.arange(8) * 0.5, np.arange(6) * 0.5))
+        kept = np.arange(48) != 17
+        np.savetxt(self.folder / "points.txt", np.stack([x, y, np.sin(x + y)], axis=1)[kept])
+        with self.assertRaisesRegex(ValueError, "has x, y and z of 47 points"):
+            surface.read(self.folder / "points.txt", dx=1, dy=1)
+        np.savetxt(self.folder / "narrow.txt", rough(64)[:, :3])
+        self.assertEqual(surface.read(self.folder / "narrow.txt", dx=1, dy=1).z.shape, (64, 3))
+
+    def test_decimal_commas_are_named(self):
+        for name, text in (("a.txt", "0,5 0,7\n1,5 1,7\n"), ("b.csv", "0,5\t0,7\n1,5\t1,7\n")):
+            (self.folder / name).write_text(text)
+            with self.assertRaisesRegex(ValueError, "decimal commas need semicolons between the numbers"):
+                surface.read(self.folder / name, dx=1, dy=1)
+        (self.folder / "c.csv").write_text("0.5,0.7\nx,1.7\n")
+        with self.assertRaisesRegex(ValueError, "could not convert") as raised:
+            surface.read(self.folder / "c.csv", dx=1, dy=1)
+        self.assertNotIn("decimal commas", str(raised.exception))
+
+    def test_an_instruments_file_may_not_say_its_size(self):
+        def topography(path, physical_sizes=None):
+            if physical_sizes is None:
+                raise KeyError("`physical_sizes` could not be extracted from file")
+            return mock.Mock(dim=2, is_uniform=True, physical_sizes=physical_sizes, is_periodic=False, unit=None, heights=lambda: rough(16)[:5])
+
+        with mock.patch.dict(sys.modules, {"SurfaceTopography": mock.Mock(read_topography=topography)}):
+            for given in ({"size": (10.0, 32.0)}, {"dx": 2.0, "dy": 2.0}, {"span": (8.0, 30.0)}):
+                made = surface.read(self.folder / "a.asc", **given)
+                self.assertEqual((made.dx, made.dy, made.z.shape), (2.0, 2.0, (16, 5)))
+            with self.assertRaisesRegex(TypeError, "does not say the size of an element: give size, the lengths of the field, or dx and dy"):
+                surface.read(self.folder / "a.asc")
+        broken = mock.Mock(read_topography=mock.Mock(side_effect=RuntimeError("tried A:\n no\n\ntried B")))
+        with mock.patch.dict(sys.modules, {"SurfaceTopography": broken}), self.assertRaises(ValueError) as raised:
+            surface.read(self.folder / "a.gsf", dx=1, dy=1)
+        self.assertIn("a.gsf is no file of heights that SurfaceTopography reads: RuntimeError, tried A:", str(raised.exception))
+        self.assertEqual(len(str(raised.exception).splitlines()), 1)
+
+    def test_a_fill_value_that_no_element_has_is_told(self):
+        with self.assertWarnsRegex(UserWarning, "no element has the value -9998 that stands for 'not measured'"):
+            surface.heights(np.where(np.eye(4) > 0, -9999.0, 1.0), 1, 1, fill=-9998)
+
     def test_a_topography_has_x_first(self):
         z = rough(16)[:5]
         topography = mock.Mock(dim=2, is_uniform=True, physical_sizes=(1.0, 2.0), is_periodic=True, unit="um", heights=lambda: z)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -196,7 +197,7 @@ def heights(
     top_first : bool
         Whether the first row is that of the largest y, as in an image.
     fill : float, optional
-        A value that stands for "not measured". `faults` finds it if you do not know it.
+        A value that stands for "not measured", in the unit of the array. `faults` finds it if you do not know it. A warning tells if no element has it.
     period : {"x", "y", "xy"}, optional
         Directions in which the surface repeats itself.
     units : (str, str), optional
@@ -219,5 +220,9 @@ def heights(
         y_falls = not y_falls
     z = z[:: -1 if y_falls else 1, :: -1 if x_falls else 1]
     if fill is not None:
-        z = np.where(z == number("fill", fill), np.nan, z)
+        filled = z == number("fill", fill)
+        if not filled.any():
+            warnings.warn(f"no element has the value {fill!r} that stands for 'not measured': the heights are from {np.nanmin(z):g} to {np.nanmax(z):g}"
+                          if np.isfinite(z).any() else f"no element has the value {fill!r}: none was measured", stacklevel=2)
+        z = np.where(filled, np.nan, z)
     return Heights(np.ascontiguousarray(z), one, other, period, checked(units))

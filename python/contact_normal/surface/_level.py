@@ -115,14 +115,20 @@ def level(heights: Heights, kind: str = "plane") -> Heights:
 def border_jumps(heights: Heights) -> tuple[float, float]:
     """How much larger steps across the border are than steps inside, in x and in y, as ratios of root mean squares.
 
-    About 1 where a surface repeats itself with the grid as its period; much larger where it does not, or where a tilt is left.
+    About 1 where a surface repeats itself with the grid as its period; much larger where it does not, or where a tilt is left. NaN: no two neighbours
+    inside, or across the border, were both measured.
     """
 
     refuse_others(heights=heights)
 
+    def mean_square(steps: Doubles) -> float:
+        known = steps[np.isfinite(steps)]
+        return float(np.mean(known**2)) if known.size else float("nan")
+
     def ratio(z: Doubles) -> float:
-        steps = np.diff(z, axis=1)
-        inside, across = np.nanmean(steps**2), np.nanmean((z[:, 0] - z[:, -1]) ** 2)
-        return float(np.sqrt(across / inside)) if inside > 0.0 else (0.0 if across == 0.0 else float("inf"))
+        inside, across = mean_square(np.diff(z, axis=1)), mean_square(z[:, 0] - z[:, -1])
+        if inside == 0.0:
+            return float("inf") if across > 0.0 else across
+        return float(np.sqrt(across / inside))
 
     return ratio(heights.z), ratio(heights.z.T)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import os
+import re
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -57,7 +58,7 @@ def from_topography(topography: Any, **given: Any) -> Heights:
     said: dict[str, Any] = {"size": tuple(float(length) for length in topography.physical_sizes), "axes": "xy"}
     if topography.is_periodic:
         said["period"] = "xy"
-    if "dx" in given:
+    if _SIZES & set(given):
         del said["size"]
     return heights(topography.heights(), **{**said, **_with_unit(unit, given)})
 
@@ -92,11 +93,31 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
 
         dataset = netcdf(path)
         return from_xarray(dataset[_chosen(variable, list(dataset.data_vars), path)], **given)
+    return from_topography(_of_instrument(path, end, bool(_SIZES & set(given))), **given)
+
+
+# How the size of an element is given.
+_SIZES = {"dx", "dy", "size", "span", "x", "y"}
+
+
+def _of_instrument(path: str | os.PathLike[str], end: str, is_sized: bool) -> Any:
+    """The topography of an instrument's file; `is_sized`: the caller says how large it is."""
     try:
         read_topography = importlib.import_module("SurfaceTopography").read_topography
     except ImportError as error:
         raise ImportError(f"{error}; files {end or 'without an end'} need SurfaceTopography: pip install 'contact-normal[surface]'") from error
-    return from_topography(read_topography(os.fspath(path)), **given)
+    try:
+        return read_topography(os.fspath(path))
+    except OSError:
+        raise
+    except Exception as error:  # of that package: it has its own for each format
+        if "physical_sizes" not in str(error):
+            first = next(iter(str(error).splitlines()), "")
+            raise ValueError(f"{path} is no file of heights that SurfaceTopography reads: {type(error).__name__}, {first}") from error
+        if not is_sized:
+            raise TypeError(f"{path} does not say the size of an element: give size, the lengths of the field, or dx and dy") from error
+    # What the caller gives takes the place of these sizes.
+    return read_topography(os.fspath(path), physical_sizes=(1.0, 1.0))
 
 
 def _of_numpy(path: str | os.PathLike[str], variable: str | None) -> Any:
@@ -128,8 +149,9 @@ def _of_text(path: str | os.PathLike[str], end: str) -> Any:
     try:
         values = np.loadtxt(lines, delimiter=delimiter, ndmin=2)
     except ValueError as error:
-        raise ValueError(f"{path}: {error}; it must hold numbers alone, a row of the grid a line, separated by {_BETWEEN[delimiter]}; "
-                         "put # before other lines, and nan where nothing was measured") from error
+        commas = "decimal commas need semicolons between the numbers; " if _has_decimal_commas(lines, delimiter) else ""
+        raise ValueError(f"{path}: {error}, lines with # and empty ones not counted; it must hold numbers alone, a row of the grid a line, separated by "
+                         f"{_BETWEEN[delimiter]}; {commas}put # before other lines, and nan where nothing was measured") from error
     if _are_points(values):
         raise ValueError(f"{path} has x, y and z of {len(values)} points; it must hold a row of the grid a line: reshape the third column, "
                          "and give x and y to surface.heights")
@@ -139,12 +161,18 @@ def _of_text(path: str | os.PathLike[str], end: str) -> Any:
 _BETWEEN = {None: "spaces", ",": "commas", ";": "semicolons"}
 
 
+def _has_decimal_commas(lines: list[str], delimiter: str | None) -> bool:
+    """Whether some line has words parted by blanks, in which a comma stands for the decimal point."""
+    words = [word for line in lines[:9] for word in line.split()]
+    return delimiter != ";" and len(words) > len(lines[:9]) and any(re.fullmatch(r"[-+]?\d*,\d+([eE][-+]?\d+)?,?", word) for word in words)
+
+
 def _are_points(values: Any) -> bool:
-    """Whether three columns are x, y and z: the first two name each place of a grid once."""
+    """Whether three columns are x, y and z: the first two name most places of a grid, each once."""
     if values.shape[1] != 3 or len(values) < 4 or not np.isfinite(values[:, :2]).all():
         return False
     counts = [len(np.unique(values[:, k])) for k in range(2)]
-    return counts[0] * counts[1] == len(values) == len(np.unique(values[:, :2], axis=0)) and min(counts) > 1
+    return min(counts) > 1 and 2 * len(values) >= counts[0] * counts[1] and len(np.unique(values[:, :2], axis=0)) == len(values)
 
 
 def _chosen(name: str | None, names: list[Any], path: str | os.PathLike[str]) -> Any:
