@@ -229,6 +229,11 @@ class Loaded(unittest.TestCase):
 
 
 class Creepages(unittest.TestCase):
+    def test_a_speed_in_metres_is_told(self):
+        point = profiles.contact_points(TRACK, WHEELSET)[0]
+        with self.assertWarnsRegex(UserWarning, "speeds are in mm/s"):
+            point.creepages(30.0, pitch_rate=65.0)
+
     def test_of_a_cone_that_rolls_straight_ahead(self):
         point = profiles.contact_points(TRACK, WHEELSET)[0]
         xi, eta, phi = point.creepages(20e3)

@@ -233,7 +233,10 @@ class ContactPoint:
         axle_speed = np.array([speed, sign * number("lateral_speed", lateral_speed), number("vertical_speed", vertical_speed)])
         place = np.array([self._x, *(float(value) for value in pair.rail.at(self._on_rail)[:2])])
         slip = axle_speed + np.cross(spin, place - pair.axle())
-        return float(slip @ ex / speed), float(slip @ ey / speed), float(spin @ np.cross(ex, ey) / speed)
+        xi, eta, phi = float(slip @ ex / speed), float(slip @ ey / speed), float(spin @ np.cross(ex, ey) / speed)
+        if max(abs(xi), abs(eta)) > 1.0:
+            warnings.warn(f"the creepages are {xi:.3g} and {eta:.3g}, parts of the speed: speeds are in mm/s and rates in rad/s", stacklevel=2)
+        return xi, eta, phi
 
     def force_on_wheel(self, result: Result) -> tuple[float, float, float]:
         """The force of a result on the wheel, in N: forward, to the right, downwards."""
