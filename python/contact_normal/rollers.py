@@ -167,7 +167,7 @@ def gap(
     curvature = sum(1.0 / radius for radius in radii)
     if not curvature > 0.0:
         raise ValueError(f"radii are {radii}: their curvatures add up to {curvature}; the sum must be positive")
-    drops = [drop] if callable(drop) or np.ndim(drop) == 0 else list(drop)
+    drops: list[Any] = list(drop) if isinstance(drop, (list, tuple)) else [drop]
     if not all(callable(one) for one in drops):
         raise TypeError("drop has a number; it must be a function of places y, as rollers.crown(...) returns, or one for each body")
     if drops and len(crown_radii):
