@@ -95,9 +95,12 @@ impl Operators {
         self.prepare(of)
     }
 
-    /// Whether the product with p needs the operator for any p.
-    pub fn needs_whole(of: MadeOf<'_>, p: &[f64]) -> bool {
-        of.grid.len() > SUMMED && of.reach_of(p).is_none()
+    /// The operator for any p, if the product with p needs it.
+    pub fn whole_if_needed(&mut self, of: MadeOf<'_>, p: &[f64]) -> Result<Option<Arc<Operator<f64>>>> {
+        match of.grid.len() > SUMMED && of.reach_of(p).is_none() {
+            true => Ok(Some(self.whole(of)?.clone())),
+            false => Ok(None),
+        }
     }
 
     /// `u = A p`.
@@ -113,15 +116,20 @@ impl Operators {
         }
         // It is taken out for the time of the product.
         let mut workspace = self.workspace.take();
-        let operator = match of.reach_of(p) {
-            Some(reach) => self.part(reach, of)?,
-            None => &**self.whole(of)?,
-        };
+        let operator = self.get(of.reach_of(p), of)?;
         let fitting = fit(&mut workspace, operator)?;
         operator.apply(p, u, fitting);
         fitting.rest();
         self.workspace = workspace;
         Ok(())
+    }
+
+    /// The operator of a reach; none: that for any p.
+    fn get(&mut self, reach: Option<Reach>, of: MadeOf<'_>) -> Result<&Operator<f64>> {
+        match reach {
+            Some(reach) => self.part(reach, of),
+            None => Ok(&**self.whole(of)?),
+        }
     }
 
     /// The operator of a reach.

@@ -172,10 +172,16 @@ impl Solver {
         Ok(())
     }
 
+    /// What the tractions of full slip displace, on the elements of the last solve.
+    pub fn full_displacement(&self) -> f64 {
+        let displaced = self.levels.first().map_or(0.0, |level| level.problem.displaced_by_bounds());
+        self.scales.own_displacement([displaced, 0.0])[0]
+    }
+
     /// Refuses slips that dwarf what tractions displace, and the reverse: products of their ratios are no numbers.
     fn check_range(&self) -> Result<()> {
         let problem = &self.levels[0].problem;
-        let (slip, displaced) = (problem.rms_rigid(), problem.operators.self_influence * problem.rms_bound());
+        let (slip, displaced) = (problem.rms_rigid(), problem.displaced_by_bounds());
         let is_far = |slip: f64| !(slip / displaced < LARGEST_RATIO);
         if displaced > 0.0
             && (is_far(slip) || is_far(problem.rms_slip()) || slip > 0.0 && !(slip / displaced > LEAST_RATIO))

@@ -12,6 +12,7 @@ use std::ops::Range;
 
 use super::find_force::FindForce;
 use super::level::Level;
+use super::level_task::LevelTask;
 use super::End;
 use crate::blocks;
 use crate::contact::{AdmissibleSet, Freshness, Problem, State, Survey};
@@ -216,16 +217,16 @@ impl CoarseGrids {
         };
         let goal = Goal { criterion: Criterion::Residual, tolerance: goal.tolerance.max(enough), max_cycles };
         let Coarse { level, state, limits, .. } = &mut self.grids[l];
-        let (set, finest) = (S::within(limits), self.finest);
-        let end = if FindForce::serves::<S>(level, state, &goal) {
-            state.u_is = displacement;
-            let goal = &Goal { max_cycles: max_cycles.max(FORCE_ITERATIONS), ..goal };
+        let mut task = LevelTask { level, state, set: S::within(limits), whole: None, finest: self.finest, monitor };
+        let end = if FindForce::serves(&task, &goal) {
+            task.state.u_is = displacement;
+            let goal = Goal { max_cycles: max_cycles.max(FORCE_ITERATIONS), ..goal };
             self.find_force.begin();
-            self.find_force.run(level, (state, set), (goal, COARSE_ITERATIONS), finest, monitor)?
+            self.find_force.run(&mut task, &goal, COARSE_ITERATIONS)?
         } else {
-            level.run(state, set, (displacement, None), &goal, finest, monitor)?
+            task.run(displacement, None, &goal)?
         };
-        level.take_displacements(state);
+        task.level.take_displacements(task.state);
         Ok(end)
     }
 

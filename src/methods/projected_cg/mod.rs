@@ -13,6 +13,7 @@ mod formulas;
 mod inner;
 mod iteration;
 mod level;
+mod level_task;
 mod limits;
 mod mean_gap;
 mod part;
