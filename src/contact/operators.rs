@@ -13,11 +13,11 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::values::presses;
-use crate::bounding_box::{bounding_box, Part};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::operator::{even_periods, Needs, Operator, Reach, SetUp, Workspace};
+use crate::rectangle::Rectangle;
 use crate::threads::Threads;
 
 /// On grids of at most so many elements products are summed: nothing is set up for them. A cold call of one element with a table of its
@@ -167,7 +167,7 @@ impl MadeOf<'_> {
             return None;
         }
         let Grid { mx, my, .. } = *self.grid;
-        let (x, y) = loaded(p, self.grid, self.threads)?;
+        let Rectangle { x, y } = loaded(p, self.grid, self.threads)?;
         // Few lengths are transformed fast: a contact area that moves in steps keeps its operator for many of them.
         let farthest = |loaded: Range<usize>, m: usize| loaded.end.max(m - loaded.start).max(m.div_ceil(2) + 1) - 1;
         let periods = |x: usize, y: usize| even_periods(self.coefficients, self.grid, (2 * x, 2 * y));
@@ -190,9 +190,9 @@ fn fit<'a>(
     Ok(&mut workspace.insert(fitting).1)
 }
 
-/// The columns and rows outside of which p is 0; none where it is 0 everywhere.
-fn loaded(p: &[f64], grid: &Grid, threads: &Threads) -> Option<Part> {
-    bounding_box(p, grid, threads, presses, |p| *p != 0.0)
+/// The rectangle outside of which p is 0; none where it is 0 everywhere.
+fn loaded(p: &[f64], grid: &Grid, threads: &Threads) -> Option<Rectangle> {
+    Rectangle::around_values(p, grid, threads, presses, |p| *p != 0.0)
 }
 
 #[cfg(test)]

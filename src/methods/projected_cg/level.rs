@@ -4,18 +4,19 @@ use super::inner::{in_either, Inner, MadeOf};
 use super::part::{enter, leave};
 use super::punches::Punches;
 use super::scaling::Scaling;
-use super::Window;
+use super::window;
 use crate::contact::{AdmissibleSet, Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::operator::Precision;
 use crate::operator::{reserve, Operator};
+use crate::rectangle::Rectangle;
 use crate::threads::Threads;
 
 /// The iteration on a window.
 struct Windowed {
-    window: Window,
+    window: Rectangle,
     inner: Inner,
     /// Of the last iteration.
     units: Scaling,
@@ -36,7 +37,7 @@ pub struct Level {
     /// Of the window's pressures, in its units, while a scene has limits.
     limits: Vec<f64>,
     /// The window that the next one is to be like, if it serves; none: it is chosen by itself.
-    current: Option<Window>,
+    current: Option<Rectangle>,
 }
 
 impl Level {
@@ -92,12 +93,12 @@ impl Level {
     }
 
     /// The window of the last iteration.
-    pub fn current_window(&self) -> Option<Window> {
+    pub fn current_window(&self) -> Option<Rectangle> {
         self.current.clone()
     }
 
     /// The next window is chosen as after an iteration on this one.
-    pub fn go_back_to(&mut self, window: Option<Window>) {
+    pub fn go_back_to(&mut self, window: Option<Rectangle>) {
         self.current = window;
     }
 
@@ -114,7 +115,7 @@ impl Level {
         (state, set): (&mut State, S),
         displacement: Freshness,
         whole: Option<&Operator<f64>>,
-        work: impl FnOnce(&mut Inner, &Window, &Scaling, &mut State, S::Within<'_>) -> R,
+        work: impl FnOnce(&mut Inner, &Rectangle, &Scaling, &mut State, S::Within<'_>) -> R,
     ) -> Result<R> {
         let mut limits = std::mem::take(&mut self.limits);
         let threads = &self.threads.clone();
@@ -157,17 +158,17 @@ impl Level {
     }
 
     /// The window that an iteration from `state` works on.
-    pub fn window(&self, state: &State) -> Window {
+    pub fn window(&self, state: &State) -> Rectangle {
         match self.influence.depends_on_place() {
-            false => Window::around(state, self.current.as_ref(), self.influence.is_even(&self.grid), &self.threads),
-            true => Window::full(&self.grid),
+            false => window::around(state, self.current.as_ref(), self.influence.is_even(&self.grid), &self.threads),
+            true => Rectangle::full(&self.grid),
         }
     }
 
     /// Whether contact fills less than half of a window that is not the whole grid: elements outside may enter.
     pub fn is_scattered(&self, state: &State) -> bool {
         let window = self.window(state);
-        !window.is_full(&self.grid) && 2 * state.contact_count() < window.elements()
+        !window.is_full(&self.grid) && 2 * state.contact_count() < window.count()
     }
 
     fn choose_window(&mut self, state: &State, whole: Option<&Operator<f64>>) -> Result<&mut Windowed> {

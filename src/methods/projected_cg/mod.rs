@@ -37,4 +37,3 @@ pub use preconditioner::Preconditioner;
 pub use predictor::Predictor;
 pub use step::ProjectedCg;
 pub use vectors::Iteration;
-pub use window::Window;

@@ -11,13 +11,14 @@ use super::find_force::FindForce;
 use super::level::Level;
 use super::level_task::LevelTask;
 use super::predictor::Predictor;
-use super::{End, Window};
+use super::End;
 use crate::contact::{norm_of_distance, residual_norm, AdmissibleSet, Freshness, Problem, State};
 use crate::error::Result;
 use crate::memory::{release, reserve, rests};
 use crate::methods::{Change, Policy, Step, Task};
 use crate::operator::{Operator, Precision};
 use crate::progress::Goal;
+use crate::rectangle::Rectangle;
 use crate::scene::Load;
 use crate::threads::Threads;
 
@@ -83,22 +84,22 @@ impl ProjectedCg {
     }
 
     /// A copy of what a step in time goes on from, beside the last solution itself.
-    pub fn last(&self) -> Result<(Predictor, Option<Window>)> {
+    pub fn last(&self) -> Result<(Predictor, Option<Rectangle>)> {
         Ok((self.predictor.copy()?, self.finest.current_window()))
     }
 
     /// The window of the last iteration.
-    pub fn current_window(&self) -> Option<Window> {
+    pub fn current_window(&self) -> Option<Rectangle> {
         self.finest.current_window()
     }
 
     /// The next one is chosen as after an iteration on this one.
-    pub fn go_back_to(&mut self, window: Option<Window>) {
+    pub fn go_back_to(&mut self, window: Option<Rectangle>) {
         self.finest.go_back_to(window);
     }
 
     /// A step in time goes on from there.
-    pub fn go_back(&mut self, (predictor, window): (Predictor, Option<Window>)) {
+    pub fn go_back(&mut self, (predictor, window): (Predictor, Option<Rectangle>)) {
         self.predictor = predictor;
         self.finest.go_back_to(window);
     }
