@@ -68,8 +68,6 @@ pub struct Problem {
     pub offset: Vector,
     /// How much of a creepage reaches each element; none: all of it.
     pub weights: Vec<Vector>,
-    /// In steady rolling: what the slip by spin gains a step ahead.
-    pub ahead: Vector,
     /// The scale of residuals.
     pub scale: Scale,
     /// A.
@@ -139,7 +137,6 @@ impl Problem {
             slip: blank(n, [f64::NAN; 2], FIELDS)?,
             offset: [0.0; 2],
             weights: Vec::new(),
-            ahead: [0.0; 2],
             scale: Scale::SlipOrDisplacement,
             extension: None,
             operators,
@@ -194,6 +191,11 @@ impl Problem {
     /// rms over C of g.
     pub fn rms_bound(&self) -> f64 {
         self.rms_bound
+    }
+
+    /// The order of what tractions of the size of the bounds displace.
+    pub fn displaced_by_bounds(&self) -> f64 {
+        self.operators.self_influence * self.rms_bound
     }
 
     /// `s = w + u` of element i.

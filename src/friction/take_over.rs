@@ -1,24 +1,22 @@
 //! The start of a solve: bounds, rigid slip and tractions.
 
 use super::certificate::is_on_circle;
+use super::displaced::displaced;
 use super::excess::Excess;
 use super::levels::Level;
-use super::plane::{add, square, Vector};
+use super::plane::{add, Vector};
 use super::problem::{Problem, Scale, State};
 use super::request::{before, Request, Start};
 use super::scales::Scales;
 use super::solution::{Solution, EXTERIOR};
 use super::solver::Solver;
 use super::sweep::{Rolling, Sweep};
-use super::window::{displaced, Window};
 use crate::effects::{Coefficient, Friction, Motion, Prescribed, Previous};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::{blank, collected, unwritten, zeros};
 use crate::methods::fields;
-
-/// Where more than this part of C slips after the step before, Newton's method is the faster one for the next step.
-const MOSTLY_SLIP: f64 = 0.8;
+use crate::rectangle::Rectangle;
 
 /// Rigid slips may be so many times what tractions displace: single precision ends at 1e38.
 pub(super) const LARGEST_RATIO: f64 = 1e30;
@@ -36,7 +34,7 @@ const FIELDS: &str = "tangential fields";
 
 impl Solver {
     /// The largest bound of the elements of a window.
-    pub(super) fn largest_bound(&self, window: Window, bound: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
+    pub(super) fn largest_bound(&self, window: &Rectangle, bound: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
         let rows = window.grid(&self.grid).my;
         let threads = self.threads.suited_to(self.grid.len());
         let of_row = |iy: usize| window.row(&self.grid, iy).map(&bound).fold(0.0, f64::max);
@@ -63,26 +61,25 @@ impl Solver {
         Ok(())
     }
 
-    /// g, w, and for rolling the tractions to start from; refuses slips out of range. Returns whether most of C slipped before.
+    /// g, w, and for rolling the tractions to start from; refuses slips out of range.
     pub(super) fn begin(
         &mut self,
         request: &Request<'_>,
         from_rest: bool,
-        window: Window,
+        window: &Rectangle,
         bound: impl Fn(usize) -> f64 + Sync + Send,
-    ) -> Result<bool> {
-        let had_slip = self.take_over(request, from_rest, window, bound)?;
-        self.check_range()?;
-        Ok(had_slip)
+    ) -> Result<()> {
+        self.take_over(request, from_rest, window, bound)?;
+        self.check_range()
     }
 
     fn take_over(
         &mut self,
         request: &Request<'_>,
         from_rest: bool,
-        window: Window,
+        window: &Rectangle,
         bound: impl Fn(usize) -> f64 + Sync + Send,
-    ) -> Result<bool> {
+    ) -> Result<()> {
         let Request { friction, start, .. } = *request;
         let (grid, kept, scales) = (&self.grid, &self.before, self.scales);
         let Level { problem, state, .. } = &mut self.levels[0];
@@ -105,7 +102,7 @@ impl Solver {
                     .for_each(|(q, i)| *q = in_range(before(friction, kept, i), &scales));
             });
         }
-        take_step(problem, friction, grid, (&scales, self.offset));
+        take_step(problem, friction, (&scales, self.offset));
         let found = |k: usize| matches!(friction.prescribed[k], Prescribed::Force(_));
         (problem.given, problem.update) = (0.0, 0.0);
         problem.bound_changed();
@@ -116,21 +113,19 @@ impl Solver {
             self.leave(friction)?;
         }
         if from_rest && matches!(start, Start::Before) {
-            return Ok(false);
+            return Ok(());
         }
         self.start_from(request, window);
         let Level { problem, state, .. } = &mut self.levels[0];
-        let slipped = problem.contact().filter(|&i| square(state.q[i]).sqrt() >= 0.999 * problem.bound[i]).count();
-        let mostly = slipped as f64 > MOSTLY_SLIP * problem.count() as f64;
         problem.refresh(state);
         if let Start::Given(_) = request.start {
             problem.offset = [0, 1].map(|k| if found(k) { creepage_of(problem, state, k) } else { 0.0 });
         }
-        Ok(mostly)
+        Ok(())
     }
 
     /// The tractions and the offset to start from, where they are not those before the step.
-    fn start_from(&mut self, request: &Request<'_>, window: Window) {
+    fn start_from(&mut self, request: &Request<'_>, window: &Rectangle) {
         let scales = self.scales;
         let Level { problem, state, .. } = &mut self.levels[0];
         match request.start {
@@ -172,10 +167,16 @@ impl Solver {
         Ok(())
     }
 
+    /// What the tractions of full slip displace, on the elements of the last solve.
+    pub fn full_displacement(&self) -> f64 {
+        let displaced = self.levels.first().map_or(0.0, |level| level.problem.displaced_by_bounds());
+        self.scales.own_displacement([displaced, 0.0])[0]
+    }
+
     /// Refuses slips that dwarf what tractions displace, and the reverse: products of their ratios are no numbers.
     fn check_range(&self) -> Result<()> {
         let problem = &self.levels[0].problem;
-        let (slip, displaced) = (problem.rms_rigid(), problem.operators.self_influence * problem.rms_bound());
+        let (slip, displaced) = (problem.rms_rigid(), problem.displaced_by_bounds());
         let is_far = |slip: f64| !(slip / displaced < LARGEST_RATIO);
         if displaced > 0.0
             && (is_far(slip) || is_far(problem.rms_slip()) || slip > 0.0 && !(slip / displaced > LEAST_RATIO))
@@ -190,8 +191,8 @@ impl Solver {
     }
 }
 
-/// Where creepages that are to be found start, what residuals are compared with, and what the slip by spin gains; `last` creepages found.
-fn take_step(problem: &mut Problem, friction: &Friction<'_>, grid: &Grid, (scales, last): (&Scales, Vector)) {
+/// Where creepages that are to be found start, and what residuals are compared with; `last`: the creepages found last.
+fn take_step(problem: &mut Problem, friction: &Friction<'_>, (scales, last): (&Scales, Vector)) {
     // A warm start of steady rolling starts from the last creepages, too.
     let is_warm = friction.motion == Motion::SteadyRolling && friction.previous == Previous::Kept;
     let found = |k: usize| matches!(friction.prescribed[k], Prescribed::Force(_));
@@ -201,14 +202,13 @@ fn take_step(problem: &mut Problem, friction: &Friction<'_>, grid: &Grid, (scale
         Motion::SteadyRolling if found(0) || found(1) => Scale::SlipOrDisplacement,
         _ => Scale::Slip,
     };
-    problem.ahead = scales.displacement(spin_ahead(friction, grid));
 }
 
 /// The weights of creepages, and what the compliance of a layer is beyond its least, on the elements of a window.
 fn take_weights_and_layer(
     problem: &mut Problem,
     friction: &Friction<'_>,
-    (grid, window): (&Grid, Window),
+    (grid, window): (&Grid, &Rectangle),
     scales: &Scales,
 ) -> Result<()> {
     let width = problem.grid.mx;
@@ -251,13 +251,4 @@ fn creepage_of(problem: &Problem, state: &State, k: usize) -> f64 {
 /// Tractions in the units of the iterations; in steady rolling they are only where these start.
 fn in_range(q: Vector, scales: &Scales) -> Vector {
     q.map(|q| scales.traction(q).clamp(-LARGEST_BEFORE, LARGEST_BEFORE))
-}
-
-/// The change of the slip by spin over one step of steady rolling.
-fn spin_ahead(friction: &Friction<'_>, grid: &Grid) -> Vector {
-    let (distance, (sine, cosine)) = (friction.distance(grid), friction.rolling_direction.sin_cos());
-    match friction.motion {
-        Motion::SteadyRolling => [-sine, cosine].map(|part| friction.spin * distance * distance * part),
-        _ => [0.0; 2],
-    }
 }

@@ -230,7 +230,6 @@ impl Methods {
 
     /// Lets go of the operator, which gets other coefficients: nothing is solved before [`renew`](Self::renew).
     pub fn forget_operator(&mut self) {
-        self.projected_cg.forget_operator();
         self.multigrid = None;
     }
 

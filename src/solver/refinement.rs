@@ -47,7 +47,7 @@ pub struct Refinement {
 /// Elements in the longer direction of a grid that a history begins with, at least.
 const LEAST_OF_HISTORY: usize = 16;
 
-/// How a solve on one grid went: it is solved, or `stop` and words say what kept it from that.
+/// The solve on one grid: solved, or the outcome, the reason, and what was found by then.
 type OnGrid = std::result::Result<Solved, (Outcome, String, Option<Solved>)>;
 
 /// Solves on the grid of `scene`, then on finer ones with twice (4, 8 times) the elements in both directions, each from
@@ -117,13 +117,13 @@ pub fn solve_to_accuracy(
     Ok(Refinement::of(best, stop, why, began.elapsed().as_secs_f64()))
 }
 
-/// Doublings of the coarsest grid that the history begins with: two halvings, where enough elements are left.
+/// The coarsest grid of the history, in doublings of the scene's: two halvings where enough elements are left.
 fn first_of_history(grid: &Grid) -> i32 {
     let elements = grid.mx.max(grid.my);
     -[4, 2].into_iter().filter(|parts| elements / parts >= LEAST_OF_HISTORY).count().try_into().unwrap_or(0)
 }
 
-/// Of the last solution and one that was not finished: that of the smaller estimated errors, what its residual may hide included.
+/// The better of the last solution and an unfinished one, by their estimated errors. These include what the residual may hide.
 fn better(last: Option<Solved>, unfinished: Option<Solved>, accuracy: &Accuracy) -> Option<Solved> {
     let worst = |solved: &Option<Solved>| {
         let excesses = solved.as_ref().map(|solved| accuracy.excesses(&solved.outlook));
@@ -143,7 +143,7 @@ impl Refinement {
             let reason = format!("{why}; nothing was solved");
             return Refinement { stop, reason, solver: None, report: Report::default(), reached: None, seconds };
         };
-        // Without contact there is nothing to be off.
+        // Without contact the result is exact.
         let without = report.measures.contact_count == 0 && stop == Outcome::Converged;
         let reached = outlook.relative(Quantity::Force).or(without.then_some(0.0));
         let number = reached.map_or("not known".into(), |reached| format!("{reached:.2e}"));
@@ -197,7 +197,7 @@ fn on_grid(
         other => other,
     };
     let (mut solver, lowest) = Solver::for_scene(scene, options).map_err(said)?;
-    // Without a callback the elements that were given are the surface.
+    // Without a callback the surface jumps between the given elements only.
     solver.problem.exact_edges = surface.is_none() && doublings >= 0;
     let mut is_late = false;
     let mut watch = |told: &Progress| {

@@ -12,8 +12,7 @@
 //! *Approach of a force.* A mean of e over C, with weights of the sum 1, is the approach of the solution but for the product of two errors: that
 //! of p, and that of the weights as pressures of a flat punch on C. The change of p with the force is such a pressure.
 //!
-//! *Start of a force.* p is extrapolated along its change with the force. For the first larger force a uniform pressure is added instead. It displaces
-//! nothing. Elements then leave C, which is faster than entering it.
+//! *Start of a force.* p is extrapolated along its change with the force.
 //!
 //! *Near the force* p moves along its change in each step by approach (module `along`).
 //!
@@ -21,13 +20,13 @@
 //! approaches as means over C and no extrapolation: 152 in the median, 10 of 100 take more than 300.
 
 use super::deflation::Last;
-use super::level::Level;
+use super::level_task::LevelTask;
 use super::mean_gap::Found;
 use super::End;
 use crate::contact::{norm_of_distance, AdmissibleSet, Freshness, State};
 use crate::error::Result;
 use crate::memory::{computed, reserve};
-use crate::progress::{Goal, Monitor};
+use crate::progress::Goal;
 use crate::scene::Load;
 use crate::sums::{in_blocks, mean};
 
@@ -38,18 +37,12 @@ const PART: f64 = 0.3;
 /// change.
 const FURTHEST: f64 = 2.0;
 const FURTHEST_P: f64 = 4.0;
-/// A force is near if m has to change by this part of its last change at most, and by so much.
-const NEAR: (f64, f64) = (0.3, 0.5);
-/// The approach may be off by this part of the tolerance, beside the residual.
-const ENOUGH: f64 = 0.5;
-/// Forces at most, and iterations at most along the change of p, unless these have brought the residual to this part.
+/// A force is near if m has to change by this part of its last change at most. Without steps along the change of p 64 lines near full contact take 1.2
+/// times the products.
+const NEAR: f64 = 0.3;
+/// Forces at most, and iterations at most along the change of p.
 const MOST: usize = 20;
 const ALONG: u64 = 40;
-const BROUGHT: f64 = 0.1;
-/// What u of single precision leaves of the residual, and of the approach.
-const ROUNDING: f64 = 1e-6;
-/// A part of the elements in C from which on a uniform pressure is added.
-const MANY: f64 = 0.25;
 
 /// Pressures of a force, and its approach to a residual.
 #[derive(Default)]
@@ -78,10 +71,10 @@ pub(super) struct FindForce {
 
 impl FindForce {
     /// Whether the force is to be found for the approach.
-    pub(super) fn serves<S: AdmissibleSet>(level: &Level, state: &State, goal: &Goal) -> bool {
-        let by_approach = matches!(state.load, Load::Approach(_));
-        let presses = || in_blocks(state.p.iter().copied()) > 0.0;
-        by_approach && !S::FIXED && !S::LIMITED && !goal.by_update() && level.is_mean_free_line() && presses()
+    pub(super) fn serves<S: AdmissibleSet>(task: &LevelTask<'_, '_, S>, goal: &Goal) -> bool {
+        let by_approach = matches!(task.state.load, Load::Approach(_));
+        let presses = || in_blocks(task.state.p.iter().copied()) > 0.0;
+        by_approach && !S::FIXED && !S::LIMITED && !goal.by_update() && task.level.is_mean_free_line() && presses()
     }
 
     /// Another grid, or another solve.
@@ -101,33 +94,28 @@ impl FindForce {
     /// Solves by approach as by several forces, with at most `at_once` iterations for each.
     pub(super) fn run<S: AdmissibleSet>(
         &mut self,
-        level: &mut Level,
-        (state, set): (&mut State, S),
-        (goal, at_once): (&Goal, u64),
-        finest: usize,
-        monitor: &mut Monitor<'_>,
+        task: &mut LevelTask<'_, '_, S>,
+        goal: &Goal,
+        at_once: u64,
     ) -> Result<End> {
         if self.is_near {
-            return self.run_along(level, (state, set), goal, finest, monitor);
+            return self.run_along(task, goal);
         }
-        let (before, mean) = (monitor.count.cycles, mean(&state.h));
-        let mut rounding = if state.u_is == Freshness::Exact { 0.0 } else { ROUNDING };
+        let (before, mean) = (task.monitor.count.cycles, mean(&task.state.h));
         for _ in 0..MOST {
-            let most = goal.max_cycles.saturating_sub(monitor.count.cycles - before);
+            let most = goal.max_cycles.saturating_sub(task.monitor.count.cycles - before);
             let residual = goal.tolerance.max(self.tolerance.unwrap_or(LOOSE));
             let inner = Goal { tolerance: residual, max_cycles: most.min(at_once), ..*goal };
-            let (end, found) = self.run_force(level, (state, set), (&inner, mean), finest, monitor)?;
-            let is_enough = found.off() <= f64::max(rounding, ENOUGH * goal.tolerance);
+            let (end, found) = self.run_force(task, &inner, mean)?;
+            let is_enough = found.off() <= goal.tolerance;
             let goes_on = end == End::Met || end == End::Limit && most > at_once;
-            if !goes_on || is_enough && residual <= f64::max(rounding, goal.tolerance) {
+            if !goes_on || is_enough && residual <= goal.tolerance {
                 self.tolerance = Some(goal.tolerance);
                 return Ok(end);
             }
-            rounding = ROUNDING;
             if end == End::Met && self.goes_along(&found) {
                 let along = Goal { max_cycles: most.min(ALONG), ..*goal };
-                let end = self.run_along(level, (state, set), &along, finest, monitor)?;
-                self.is_near |= end == End::Limit && monitor.count.residual < BROUGHT * residual;
+                let end = self.run_along(task, &along)?;
                 self.has_failed = !self.is_near;
                 if !matches!(end, End::Stagnated | End::Breakdown) {
                     return Ok(end);
@@ -138,8 +126,8 @@ impl FindForce {
             } else if end == End::Met && residual > goal.tolerance && found.may_be_loose() {
                 self.tolerance = Some(LOOSE * residual);
             } else {
-                self.tolerance = Some(residual.min(PART * found.off()).max(ROUNDING));
-                if !self.change(state, &found)? {
+                self.tolerance = Some(residual.min(PART * found.off()));
+                if !self.change(task.state, &found)? {
                     return Ok(End::Stagnated);
                 }
             }
@@ -150,19 +138,19 @@ impl FindForce {
     /// Solves by the force that p carries; finds its approach. `mean`: that of h.
     fn run_force<S: AdmissibleSet>(
         &mut self,
-        level: &mut Level,
-        (state, set): (&mut State, S),
-        (goal, mean): (&Goal, f64),
-        finest: usize,
-        monitor: &mut Monitor<'_>,
+        task: &mut LevelTask<'_, '_, S>,
+        goal: &Goal,
+        mean: f64,
     ) -> Result<(End, Found)> {
+        let state = &mut *task.state;
         let (prescribed, wanted, u_is) = (state.load, state.approach, state.u_is);
         let force = in_blocks(state.p.iter().copied()) * state.grid.element_area();
         state.load = Load::Force(force);
-        let end = level.run(state, set, (u_is, None), goal, finest, monitor);
+        let end = task.run(u_is, None, goal);
+        let state = &mut *task.state;
         (state.load, state.u_is) = (prescribed, Freshness::Stale);
         let end = end?;
-        level.take_displacements(state);
+        task.level.take_displacements(state);
         let approach = self.approach_of(state);
         state.approach = wanted;
         let size = norm_of_distance(state) / (state.contact_count() as f64).sqrt();
@@ -174,8 +162,7 @@ impl FindForce {
     fn goes_along(&self, found: &Found) -> bool {
         let Known { p, approach, .. } = &self.before;
         let (m, missing) = (found.m(found.approach), found.m(found.wanted) - found.m(found.approach));
-        let is_near = missing.abs() <= NEAR.0 * (m - found.m(*approach)).abs();
-        let is_near = is_near && (found.mean.is_none() || missing.abs() < NEAR.1);
+        let is_near = missing.abs() <= NEAR * (m - found.m(*approach)).abs();
         !p.is_empty() && !self.has_failed && !found.is_full() && is_near && self.clearness(found) > 1.0
     }
 
@@ -206,18 +193,12 @@ impl FindForce {
     }
 
     /// Iterates by approach, along the change of p in each step. p is as before where that fails.
-    fn run_along<S: AdmissibleSet>(
-        &mut self,
-        level: &mut Level,
-        (state, set): (&mut State, S),
-        goal: &Goal,
-        finest: usize,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<End> {
+    fn run_along<S: AdmissibleSet>(&mut self, task: &mut LevelTask<'_, '_, S>, goal: &Goal) -> Result<End> {
         // A fresh u is of double precision, others of single.
-        let start = computed(state.p.iter().copied(), "pressures by approach")?;
+        let start = computed(task.state.p.iter().copied(), "pressures by approach")?;
         let last = Last { p: &self.before.p, u: None };
-        let end = level.run(state, set, (state.u_is, Some(last)), goal, finest, monitor)?;
+        let end = task.run(task.state.u_is, Some(last), goal)?;
+        let state = &mut *task.state;
         state.u_is = Freshness::Stale;
         self.is_near = end == End::Met;
         if matches!(end, End::Stagnated | End::Breakdown) {
@@ -249,7 +230,6 @@ impl FindForce {
         let (n, is_first) = (state.p.len(), self.before.p.is_empty());
         let by = Some((next - force) / (force - self.before.force)).filter(|by| by.abs() <= FURTHEST_P);
         let by = if is_first { 0.0 } else { by.unwrap_or(0.0) };
-        let many = MANY * (n as f64) < state.contact_count() as f64;
         let keeps = is_first || found.off() > found.residual * self.clearness(found).min(1.0);
         reserve(&mut self.before.p, n, "pressures of the force before")?;
         self.before.p.resize(n, 0.0);
@@ -261,13 +241,6 @@ impl FindForce {
         if keeps {
             let Found { approach, residual, .. } = *found;
             (self.before.force, self.before.approach, self.before.residual) = (force, approach, residual);
-        }
-        if is_first && many && next > force {
-            let more = (next - force) / (n as f64 * state.grid.element_area());
-            state.p.iter_mut().for_each(|p| *p += more);
-            state.contact.fill(true);
-            state.u_is = Freshness::Near;
-            return Ok(true);
         }
         let carried = in_blocks(state.p.iter().copied()) * state.grid.element_area();
         if !(carried > 0.0 && carried.is_finite()) {

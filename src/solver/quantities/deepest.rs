@@ -3,11 +3,11 @@
 //! The largest value of a depth is first taken at depths that grow by a ratio, from a quarter of an element to the length of what is loaded.
 //! Then parabolas through the three best depths find the largest one (successive parabolic interpolation; Brent 1973, chapter 5).
 
-use crate::bounding_box::bounding_box;
 use crate::error::Result;
 use crate::friction::Vector;
 use crate::grid::Grid;
 use crate::memory::collected;
+use crate::rectangle::Rectangle;
 use crate::scene::Patches;
 use crate::stress::{subsurface_stress, Body, Depth, Loads, Wanted, MOST_SLENDER};
 use crate::threads::Threads;
@@ -79,21 +79,20 @@ impl<'a> Surface<'a> {
         threads: &Threads,
     ) -> Result<Option<Surface<'a>>> {
         let presses = |p: &f64| *p != 0.0;
-        let loaded = bounding_box(pressure, &grid, threads, |row| row.iter().any(presses), presses);
+        let loaded = Rectangle::around_values(pressure, &grid, threads, |row| row.iter().any(presses), presses);
         let Some(loaded) = loaded else { return Ok(None) };
         let whole = periodic || patches.is_some();
-        let (columns, rows) = if whole { (0..grid.mx, 0..grid.my) } else { loaded };
+        let part = if whole { Rectangle::full(&grid) } else { loaded };
         let cut = |value: &dyn Fn(usize) -> f64| {
-            let (first, width) = (rows.start * grid.mx + columns.start, columns.len());
+            let (first, width) = (part.row(&grid, 0).start, part.x.len());
             let of_part = |k: usize| value(first + k / width * grid.mx + k % width);
-            collected((0..width * rows.len()).map(of_part), "loads of a largest stress")
+            collected((0..part.count()).map(of_part), "loads of a largest stress")
         };
         let tractions = match tractions {
             Some(q) => Some([cut(&|i| q[i][0])?, cut(&|i| q[i][1])?]),
             None => None,
         };
-        let part = Grid { mx: columns.len(), my: rows.len(), ..grid };
-        Ok(Some(Surface { grid: part, periodic, pressure: cut(&|i| pressure[i])?, tractions, patches }))
+        Ok(Some(Surface { grid: part.grid(&grid), periodic, pressure: cut(&|i| pressure[i])?, tractions, patches }))
     }
 
     /// The same as body 2 has it: tractions are opposite.

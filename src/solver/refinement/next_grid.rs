@@ -44,7 +44,7 @@ pub(super) struct Past {
     pub grid: Grid,
     /// Elements across the contact area.
     pub across: (usize, usize),
-    /// And so many are enough for all that is asked for.
+    /// How many of them suffice for all targets.
     pub enough: usize,
     /// The errors over their targets, where known.
     pub excesses: Vec<Option<Falling>>,
@@ -67,7 +67,7 @@ pub(super) enum Next {
     Limit(String),
 }
 
-/// Without a limit of the caller's.
+/// Elements of a grid at most, unless the caller sets a limit.
 pub(super) const MOST_ELEMENTS: u64 = 4096 * 4096;
 /// Elements that a grid can have at all.
 const ALL_ELEMENTS: u64 = i32::MAX as u64;
@@ -75,12 +75,12 @@ const ALL_ELEMENTS: u64 = i32::MAX as u64;
 pub(super) const ROUND_OFF: f64 = 1e-13;
 /// Residuals below this are not asked for.
 const LEAST_TOLERANCE: f64 = 1e-12;
-/// The residual, relative to the target of the force, and of the largest pressure: what it adds to the error does not count.
+/// The tolerance relative to the target of the force, and of the largest pressure: the residual then adds little to the error.
 const TOLERANCE_PER_TARGET: f64 = 0.1;
 const TOLERANCE_PER_PRESSURE: f64 = 0.01;
 /// Grids with fewer elements in the longer direction need not have an estimate.
 const SMALL_GRID: usize = 32;
-/// Grids with more that have none, and grids without contact, before it is given up.
+/// The search ends after so many larger grids without an estimate, or so many grids without contact.
 const MOST_WITHOUT: usize = 3;
 /// Predictions over more doublings are not worth much, and a grid in between costs 1/64 of the last.
 const MOST_DOUBLINGS: u32 = 3;
@@ -153,14 +153,14 @@ pub(super) fn require_target(target: f64) -> Result<()> {
 }
 
 impl Accuracy {
-    /// The errors that it speaks of, over their targets.
+    /// The errors that have targets, relative to these.
     pub(super) fn excesses(&self, outlook: &Outlook) -> Vec<Option<Falling>> {
         let of =
             |(quantity, target): (Quantity, f64)| outlook.falling(quantity).and_then(|falling| falling.over(target));
         self.wanted().map(of).collect()
     }
 
-    /// Refuses what makes no sense.
+    /// Refuses targets and limits out of range.
     pub fn check(&self) -> Result<()> {
         for (quantity, target) in Quantity::ALL.into_iter().zip(self.targets) {
             match quantity {
@@ -178,7 +178,7 @@ impl Accuracy {
         self.check_limits()
     }
 
-    /// The same of the limits alone.
+    /// Refuses limits out of range.
     pub(super) fn check_limits(&self) -> Result<()> {
         let seconds = self.max_seconds;
         require(
@@ -201,7 +201,7 @@ impl Accuracy {
         Quantity::ALL.into_iter().zip(self.targets).filter(|(_, target)| *target > 0.0)
     }
 
-    /// The tolerance that it takes, at most that of the caller.
+    /// The tolerance that the targets need, at most the caller's.
     pub(super) fn tolerance(&self, at_most: f64) -> f64 {
         let of = |(quantity, target): (Quantity, f64)| tolerance_for(quantity, target);
         self.wanted().map(of).fold(at_most, f64::min).max(LEAST_TOLERANCE)
@@ -245,7 +245,7 @@ impl Accuracy {
         }
     }
 
-    /// Doublings that the estimates ask for, and the elements across the contact; one if there are no estimates.
+    /// Doublings that the estimates and the elements across the contact ask for; one without estimates.
     fn doublings(&self, past: &Past) -> u32 {
         let across = past.across.0.min(past.across.1);
         if across == 0 || past.worst().is_none() {
@@ -287,7 +287,7 @@ impl Accuracy {
     }
 }
 
-/// The residual that leaves of a target what it is.
+/// The tolerance at which the residual adds little to an error of this target.
 pub(super) fn tolerance_for(quantity: Quantity, target: f64) -> f64 {
     let part = if quantity.is_local() { TOLERANCE_PER_PRESSURE } else { TOLERANCE_PER_TARGET };
     part * target
