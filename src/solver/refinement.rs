@@ -44,9 +44,6 @@ pub struct Refinement {
     pub seconds: f64,
 }
 
-/// Elements in the longer direction of a grid that a history begins with, at least.
-const LEAST_OF_HISTORY: usize = 16;
-
 /// How a solve on one grid went: it is solved, or `stop` and words say what kept it from that.
 type OnGrid = std::result::Result<Solved, (Outcome, String, Option<Solved>)>;
 
@@ -71,7 +68,7 @@ pub fn solve_to_accuracy(
     let mut history = History::of(accuracy.wanted().map(|(quantity, _)| quantity), scene);
     let wanted = history.wanted();
     wanted.iter().try_for_each(|quantity| quantity.check(scene))?;
-    let mut doublings = if history.needs_coarser() { first_of_history(&scene.grid) } else { 0 };
+    let mut doublings = if history.needs_coarser() { first_of_history(&scene.grid, history.least(scene)) } else { 0 };
     let (mut without_estimate, mut without_contact) = (0, 0);
     let (stop, why) = loop {
         let (entered, is_first) = (began.elapsed().as_secs_f64(), best.is_none());
@@ -95,7 +92,7 @@ pub fn solve_to_accuracy(
             Err(error) => return Err(error),
         };
         let now = began.elapsed().as_secs_f64();
-        let past = Past::of(&solved, accuracy, (now - entered, now), before.as_ref());
+        let past = Past::of((&solved, history.is_believed()), accuracy, (now - entered, now), before.as_ref());
         let no_contact = solved.report.measures.contact_count == 0;
         if doublings < 0 {
             doublings += 1;
@@ -118,9 +115,9 @@ pub fn solve_to_accuracy(
 }
 
 /// Doublings of the coarsest grid that the history begins with: two halvings, where enough elements are left.
-fn first_of_history(grid: &Grid) -> i32 {
+fn first_of_history(grid: &Grid, least: usize) -> i32 {
     let elements = grid.mx.max(grid.my);
-    -[4, 2].into_iter().filter(|parts| elements / parts >= LEAST_OF_HISTORY).count().try_into().unwrap_or(0)
+    -[4, 2].into_iter().filter(|parts| elements / parts >= least).count().try_into().unwrap_or(0)
 }
 
 /// Of the last solution and one that was not finished: that of the smaller estimated errors, what its residual may hide included.

@@ -8,6 +8,7 @@ fn past(excess: Option<Falling>) -> Past {
         across: (40, 33),
         enough: 32,
         excesses: vec![excess],
+        is_believed: true,
         bytes: 100,
         seconds: 1.0,
         exponent: SECONDS_EXPONENT,
@@ -46,6 +47,15 @@ fn there_are_enough_elements_across_the_contact() {
         assert_eq!(accuracy.next(&past), Next::Refine(doublings), "{across:?}");
     }
     assert_eq!(accuracy.end(&past(by_four(0.9)), 0, 0).map(|end| end.0), Some(Outcome::Converged));
+}
+
+/// Of one change, which may be lucky, the next grid follows, and no end.
+#[test]
+fn an_error_of_too_few_grids_ends_no_search() {
+    let accuracy = Accuracy::new(1e-4);
+    let past = Past { is_believed: false, ..past(by_four(0.5)) };
+    assert!(accuracy.end(&past, 0, 0).is_none());
+    assert_eq!(accuracy.next(&past), Next::Refine(1));
 }
 
 #[test]
