@@ -50,6 +50,8 @@ pub(super) struct Past {
     pub excesses: Vec<Option<Falling>>,
     /// Whether there are grids enough to believe them.
     pub is_believed: bool,
+    /// Whether they are predicted over several doublings: not of largest stresses, whose order three grids hardly tell.
+    pub leaps: bool,
     /// Bytes held by its solver.
     pub bytes: u64,
     /// Seconds that it took: undeformed distance, set-up and solve.
@@ -111,6 +113,7 @@ impl Past {
             enough: accuracy.wanted().map(|(quantity, _)| quantity.enough_across()).max().unwrap_or(1),
             excesses: accuracy.excesses(&solved.outlook),
             is_believed,
+            leaps: !accuracy.wanted().any(|(quantity, _)| quantity.is_stress()),
             bytes: solved.report.bytes,
             seconds: seconds.0,
             exponent: exponent.clamp(EXPONENTS.0, EXPONENTS.1),
@@ -253,10 +256,10 @@ impl Accuracy {
         }
     }
 
-    /// Doublings that the estimates ask for, and the elements across the contact; one if there are no estimates.
+    /// Doublings that the estimates ask for, and the elements across the contact; one if nothing is predicted.
     fn doublings(&self, past: &Past) -> u32 {
         let across = past.across.0.min(past.across.1);
-        if across == 0 || past.worst().is_none() {
+        if across == 0 || !past.leaps || past.worst().is_none() {
             return 1;
         }
         let enough = |k: u32| across.saturating_mul(1 << k) >= past.enough;
