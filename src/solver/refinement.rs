@@ -114,9 +114,10 @@ pub fn solve_to_accuracy(
     Ok(Refinement::of(best, stop, why, began.elapsed().as_secs_f64()))
 }
 
-/// Doublings of the coarsest grid that the history begins with: two halvings, where enough elements are left.
+/// Doublings of the coarsest grid that the history begins with: two halvings, where enough elements are left in the shorter direction.
 fn first_of_history(grid: &Grid, least: usize) -> i32 {
-    let elements = grid.mx.max(grid.my);
+    // A grid of four rows tells nothing. A line has one.
+    let elements = if grid.mx.min(grid.my) == 1 { grid.mx.max(grid.my) } else { grid.mx.min(grid.my) };
     -[4, 2].into_iter().filter(|parts| elements / parts >= least).count().try_into().unwrap_or(0)
 }
 

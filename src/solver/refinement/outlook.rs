@@ -6,7 +6,7 @@ use crate::solver::falling::Falling;
 use crate::solver::quantities::{Course, Lack, Quantity, Value};
 use crate::solver::{Report, Solver};
 
-/// Elements in the longer direction of a grid that a history begins with, at least.
+/// Elements in the shorter direction of a grid that a history begins with, at least.
 const LEAST: usize = 16;
 
 /// The relative errors of a solution, where they are known.
@@ -64,7 +64,7 @@ impl History {
         self.courses.iter().any(|course| !course.quantity().has_estimate())
     }
 
-    /// Elements in the longer direction of the grid that it begins with, at least: fewer where three grids are needed of what lies below the surface.
+    /// Elements in the shorter direction of the grid that it begins with, at least: fewer where three grids are needed of what lies below the surface.
     pub fn least(&self, scene: &Scene<'_>) -> usize {
         let is_steep = scene.friction.is_some() || scene.pressure_limit.is_some();
         let of_several = || self.courses.iter().map(Course::quantity).filter(|quantity| !quantity.has_estimate());
