@@ -44,9 +44,6 @@ pub struct Refinement {
     pub seconds: f64,
 }
 
-/// Elements in the longer direction of a grid that a history begins with, at least.
-const LEAST_OF_HISTORY: usize = 16;
-
 /// The solve on one grid: solved, or the outcome, the reason, and what was found by then.
 type OnGrid = std::result::Result<Solved, (Outcome, String, Option<Solved>)>;
 
@@ -71,7 +68,7 @@ pub fn solve_to_accuracy(
     let mut history = History::of(accuracy.wanted().map(|(quantity, _)| quantity), scene);
     let wanted = history.wanted();
     wanted.iter().try_for_each(|quantity| quantity.check(scene))?;
-    let mut doublings = if history.needs_coarser() { first_of_history(&scene.grid) } else { 0 };
+    let mut doublings = if history.needs_coarser() { first_of_history(&scene.grid, history.least(scene)) } else { 0 };
     let (mut without_estimate, mut without_contact) = (0, 0);
     let (stop, why) = loop {
         let (entered, is_first) = (began.elapsed().as_secs_f64(), best.is_none());
@@ -95,7 +92,7 @@ pub fn solve_to_accuracy(
             Err(error) => return Err(error),
         };
         let now = began.elapsed().as_secs_f64();
-        let past = Past::of(&solved, accuracy, (now - entered, now), before.as_ref());
+        let past = Past::of((&solved, history.is_believed()), accuracy, (now - entered, now), before.as_ref());
         let no_contact = solved.report.measures.contact_count == 0;
         if doublings < 0 {
             doublings += 1;
@@ -117,10 +114,11 @@ pub fn solve_to_accuracy(
     Ok(Refinement::of(best, stop, why, began.elapsed().as_secs_f64()))
 }
 
-/// The coarsest grid of the history, in doublings of the scene's: two halvings where enough elements are left.
-fn first_of_history(grid: &Grid) -> i32 {
-    let elements = grid.mx.max(grid.my);
-    -[4, 2].into_iter().filter(|parts| elements / parts >= LEAST_OF_HISTORY).count().try_into().unwrap_or(0)
+/// The coarsest grid of the history, in doublings of the scene's: two halvings where enough elements are left in the shorter direction.
+fn first_of_history(grid: &Grid, least: usize) -> i32 {
+    // A grid of four rows tells nothing. A line has one.
+    let elements = if grid.mx.min(grid.my) == 1 { grid.mx.max(grid.my) } else { grid.mx.min(grid.my) };
+    -[4, 2].into_iter().filter(|parts| elements / parts >= least).count().try_into().unwrap_or(0)
 }
 
 /// The better of the last solution and an unfinished one, by their estimated errors. These include what the residual may hide.

@@ -19,23 +19,39 @@ const FIRST: f64 = 0.25;
 /// Parabolas at most, and how near they come to the depth, relative to it.
 const PARABOLAS: usize = 8;
 const NEAR: f64 = 1e-3;
+/// The depths next to the surface, in the longer side of an element: the first ones of those that are looked at.
+pub const CLOSE: [f64; 7] = [
+    0.0,
+    FIRST,
+    FIRST * RATIO,
+    FIRST * RATIO * RATIO,
+    FIRST * RATIO * RATIO * RATIO,
+    FIRST * RATIO * RATIO * RATIO * RATIO,
+    FIRST * RATIO * RATIO * RATIO * RATIO * RATIO,
+];
 
 /// A largest value, and its depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Peak {
     pub value: f64,
     pub depth: f64,
-    /// The largest value at the surface; 0: not known.
-    pub at_surface: f64,
-    /// Whether it lies within an element of the surface: single pressures make it.
-    pub is_near: bool,
+    /// The same in the longer side of an element.
+    pub elements: f64,
+    /// The largest values at the depths [`CLOSE`] to the surface; 0: not known.
+    pub close: [f64; CLOSE.len()],
 }
 
 impl Peak {
     /// The larger of both.
     pub fn or(self, other: Peak) -> Peak {
         let larger = if other.value > self.value { other } else { self };
-        Peak { at_surface: self.at_surface.max(other.at_surface), ..larger }
+        let close = std::array::from_fn(|k| self.close[k].max(other.close[k]));
+        Peak { close, ..larger }
+    }
+
+    /// Whether it lies within an element of the surface: single pressures make it.
+    pub fn is_near(&self) -> bool {
+        self.elements < 1.0
     }
 }
 
@@ -117,6 +133,8 @@ impl<'a> Surface<'a> {
         depths.extend(std::iter::successors(Some(first), |z| Some(z * RATIO)).take_while(|z| *z < RATIO * extent));
         let of = |depths: &[f64]| self.largest(stress, poisson_ratio, depths, threads);
         let mut known = of(&depths)?;
+        let at = |k: usize| known.get(k).or(known.last()).map_or(0.0, |peak| peak.value);
+        let close = if slender { [0.0; CLOSE.len()] } else { std::array::from_fn(at) };
         for _ in 0..PARABOLAS {
             let best = (0..known.len()).max_by(|a, b| known[*a].value.total_cmp(&known[*b].value)).unwrap_or(0);
             if best == 0 || best + 1 == known.len() {
@@ -130,8 +148,7 @@ impl<'a> Surface<'a> {
             known.insert(at, of(&[z])?[0]);
         }
         let largest = known.iter().copied().fold(Peak::default(), Peak::or);
-        let at_surface = known.first().filter(|peak| peak.depth == 0.0).map_or(0.0, |peak| peak.value);
-        Ok(Peak { at_surface, is_near: largest.depth < long, ..largest })
+        Ok(Peak { elements: largest.depth / long, close, ..largest })
     }
 
     fn largest(&self, stress: Stress, poisson_ratio: f64, depths: &[f64], threads: &Threads) -> Result<Vec<Peak>> {

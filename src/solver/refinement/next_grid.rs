@@ -48,6 +48,10 @@ pub(super) struct Past {
     pub enough: usize,
     /// The errors over their targets, where known.
     pub excesses: Vec<Option<Falling>>,
+    /// Whether there are grids enough to believe them.
+    pub is_believed: bool,
+    /// Whether they are predicted over several doublings: not of largest stresses, whose order three grids hardly tell.
+    pub leaps: bool,
     /// Bytes held by its solver.
     pub bytes: u64,
     /// Seconds that it took: undeformed distance, set-up and solve.
@@ -91,7 +95,12 @@ const WORTH_A_TRY: f64 = 1.2;
 
 impl Past {
     /// `seconds`: of this grid, and since the first was begun.
-    pub fn of(solved: &Solved, accuracy: &Accuracy, seconds: (f64, f64), before: Option<&Past>) -> Past {
+    pub fn of(
+        (solved, is_believed): (&Solved, bool),
+        accuracy: &Accuracy,
+        seconds: (f64, f64),
+        before: Option<&Past>,
+    ) -> Past {
         let problem = &solved.solver.problem;
         let seen = before.map(|before| {
             let ratio = problem.grid.len() as f64 / before.grid.len() as f64;
@@ -103,6 +112,8 @@ impl Past {
             across: across(solved.solver.state(), problem.coefficients.repeats(&problem.grid)),
             enough: accuracy.wanted().map(|(quantity, _)| quantity.enough_across()).max().unwrap_or(1),
             excesses: accuracy.excesses(&solved.outlook),
+            is_believed,
+            leaps: !accuracy.wanted().any(|(quantity, _)| quantity.is_stress()),
             bytes: solved.report.bytes,
             seconds: seconds.0,
             exponent: exponent.clamp(EXPONENTS.0, EXPONENTS.1),
@@ -223,7 +234,7 @@ impl Accuracy {
         if least < ROUND_OFF {
             return Some((Outcome::Stagnated, format!("target is {least:e}, below round-off")));
         }
-        if past.is_resolved() && past.worst().is_some_and(|worst| worst <= 1.0) {
+        if past.is_resolved() && past.is_believed && past.worst().is_some_and(|worst| worst <= 1.0) {
             return Some((Outcome::Converged, "the target is met".into()));
         }
         if without_contact == MOST_WITHOUT {
@@ -248,7 +259,7 @@ impl Accuracy {
     /// Doublings that the estimates and the elements across the contact ask for; one without estimates.
     fn doublings(&self, past: &Past) -> u32 {
         let across = past.across.0.min(past.across.1);
-        if across == 0 || past.worst().is_none() {
+        if across == 0 || !past.leaps || past.worst().is_none() {
             return 1;
         }
         let enough = |k: u32| across.saturating_mul(1 << k) >= past.enough;
