@@ -1,5 +1,6 @@
 //! Accuracy instead of a grid: finer and finer grids until the estimated errors are small enough.
 
+mod accuracy;
 mod next_grid;
 mod outlook;
 mod price;
@@ -9,7 +10,7 @@ mod solved;
 
 use std::time::Instant;
 
-pub use next_grid::Accuracy;
+pub use accuracy::Accuracy;
 pub use price_list::{cost_of_accuracy, Obstacle, Price};
 
 use super::quantities::{values, Quantity};

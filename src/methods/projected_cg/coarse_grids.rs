@@ -33,8 +33,7 @@ use crate::threads::Threads;
 const COARSEST: usize = 8;
 /// Residual on the coarsest grid: its discretisation error is larger.
 const COARSEST_TOLERANCE: f64 = 1e-3;
-/// Iterations at most on the coarsest grid, and on those between it and the finest, which begin with a step without direction. With 3 or 4 the finest grid
-/// needs no fewer; with 5 all products together are 1.02 to 1.1 times as many.
+/// Iterations at most on the coarsest grid, and on those between. With 3 to 5 of these all products together are as many, or up to 1.1 times as many.
 const COARSEST_ITERATIONS: u64 = 50;
 const COARSE_ITERATIONS: u64 = 2;
 /// Where elements are at their limit: on 48 scenes (`examples/pressure_limits`) 4, 5, 6, 8 take at most 6.0, 3.2, 3.3, 3.6 times the
