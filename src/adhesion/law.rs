@@ -115,6 +115,16 @@ impl Attraction {
         w * self.law.work_left(self.ranges(e))
     }
 
+    /// The distance at which the exponential law has the traction sigma; infinite where it has none.
+    #[inline]
+    pub fn distance_of(&self, w: f64, sigma: f64) -> f64 {
+        if sigma > 0.0 {
+            -self.range * (sigma * self.range / w).ln()
+        } else {
+            f64::INFINITY
+        }
+    }
+
     /// kappa: what a range has to be, as the largest stiffness times what an element displaces itself by. Above 1 one element alone snaps.
     pub fn resolution(&self, work: f64, self_influence: f64) -> f64 {
         self.law.steepness() * work / self.range / self.range * self_influence

@@ -4,7 +4,8 @@
 //! in C  e = 0,      outside  p = -sigma(e)
 //! ```
 //!
-//! There is no line search: where steps fail descent takes over ([`robust`](super::robust)).
+//! Far from the solution the exponential law is linearised at the mean of e and of the distance that -p belongs to: from e alone the tangent of a steep
+//! law reaches too far. There is no line search: where steps fail descent takes over ([`robust`](super::robust)).
 //!
 //! A cautious step takes a part of the slope of the attraction alone, as long as elements enter or leave the contact, and wherever a whole one went wrong:
 //! between the step of Newton's method and that of descent, which takes none. Steps then hardly jump from one state of an element to another. A sphere whose
@@ -14,6 +15,7 @@
 //! A warm start keeps the last contact area in its first step. A change of the approach lifts e in all of C, and the natural map, which knows
 //! the compliance of one element only, would release the inside.
 
+use super::law::Law;
 use super::level::Level;
 use super::system::{Linearised, Short};
 use super::unknowns::{is_small, Measured};
@@ -25,10 +27,12 @@ use crate::progress::Monitor;
 
 /// Steps at most.
 const MOST_STEPS: u64 = 20;
-/// Above this residual the linear system of a step is solved to `FAR`, below to `NEAR`.
+/// Above this residual a step linearises at the mean distance, and its linear system is solved to `FAR`; below to `NEAR`.
 const CLOSE: f64 = 2e-2;
 const FAR: f64 = 0.2;
 const NEAR: f64 = 0.1;
+/// The mean distance lies within so many ranges of e.
+const WITHIN: f64 = 3.0;
 /// Directions of a linear solve at most: what takes more is a system that is nearly singular. On large grids they are `IN_MEMORY` at first, and twice as
 /// many after each solve that they are too few for.
 const DIRECTIONS: usize = 30;
@@ -153,22 +157,36 @@ fn take_step(level: &mut Level, Goal { wanted, pace, .. }: Goal, is_far: bool, m
     Ok(is_enough)
 }
 
-/// s a0 outside the contact area of now.
-pub fn stiffnesses<T: Real>(level: &Level, stiffness: &mut [[T; 1]]) {
+/// s a0 outside the contact area of now, `place(i, e)` being the distance at which element i is linearised.
+pub fn stiffnesses<T: Real>(level: &Level, place: impl Fn(usize, f64) -> f64 + Sync + Send, stiffness: &mut [[T; 1]]) {
     let (surface, now, a0) = (&level.surface, &level.now, level.self_influence());
     fields::fill(&level.problem.threads, stiffness, |i| {
         let e = surface.distance(i, now);
         if now.contact[i] || !e.is_finite() {
             return [T::zero()];
         }
-        [T::of((surface.attraction.stiffness(surface.work_at(i), e.max(0.0)) * a0).min(STIFFEST))]
+        [T::of((surface.attraction.stiffness(surface.work_at(i), place(i, e)) * a0).min(STIFFEST))]
     });
 }
 
 /// s, and the right-hand side, of the contact area of now.
 fn linearise(level: &Level, pace: Pace, is_far: bool, stiffness: &mut [Short], right: &mut [[f64; 1]]) {
     let (surface, now, a0, threads) = (&level.surface, &level.now, level.self_influence(), &level.problem.threads);
-    stiffnesses(level, stiffness);
+    let range = surface.attraction.range;
+    let at_mean = is_far && pace == Pace::Bold && surface.attraction.law == Law::Exponential;
+    // The distance at which element i is linearised.
+    let place = |i: usize, e: f64| {
+        let e = e.max(0.0);
+        match at_mean {
+            false => e,
+            true => {
+                let of_pressure = surface.attraction.distance_of(surface.work_at(i), -now.p.field[i][0]);
+                let of_pressure = if of_pressure.is_finite() { of_pressure.max(0.0) } else { e };
+                (0.5 * (e + of_pressure.clamp(e - WITHIN * range, e + WITHIN * range))).max(0.0)
+            }
+        }
+    };
+    stiffnesses(level, place, stiffness);
     if is_far && pace == Pace::Cautious {
         fields::scale(threads, stiffness, CAUTIOUS);
     }
@@ -181,7 +199,7 @@ fn linearise(level: &Level, pace: Pace, is_far: bool, stiffness: &mut [Short], r
         if !e.is_finite() {
             return [-p];
         }
-        let at = e.max(0.0);
+        let at = place(i, e);
         [-(p + surface.traction(i, at) - f64::from(stiffness[i][0]) / a0 * (e - at))]
     });
 }

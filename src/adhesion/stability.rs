@@ -31,7 +31,7 @@ pub fn stability(level: &mut Level, monitor: &mut Monitor<'_>) -> Result<f64> {
     let (n, threads) = (level.now.u.len(), level.problem.threads.clone());
     let mut fields = std::mem::take(&mut level.fields);
     let mut roots = fields.take(n)?;
-    stiffnesses(level, &mut roots);
+    stiffnesses(level, |_, e| e.max(0.0), &mut roots);
     let a0 = level.self_influence();
     fields::map(&threads, &mut roots, |_, s| s.map(|s| (s / a0).sqrt()));
     let lambda = largest_eigenvalue(level, &roots, &threads, &mut fields)?;

@@ -72,7 +72,7 @@ fn tangent(level: &mut Level, (part, most): (f64, usize), monitor: &mut Monitor<
     let at_once = if is_small(n) { most } else { IN_MEMORY - 1 };
     let mut fields = std::mem::take(&mut level.fields);
     let mut stiffness = fields.take_of(n)?;
-    stiffnesses(level, &mut stiffness);
+    stiffnesses(level, |_, e| e.max(0.0), &mut stiffness);
     let mut system = Linearised::new(level, &stiffness, false, &mut fields)?;
     let (mut known, mut first, mut made) = (None::<(Bordered<1>, Vec<One>)>, None, 0);
     let (y, product, is_solved) = loop {

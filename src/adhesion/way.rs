@@ -25,8 +25,9 @@ const EASY: u64 = 6;
 const GROWTH: f64 = 1.5;
 /// The first step after a snap is this part of others.
 const AFTER_SNAP: f64 = 0.25;
-/// The contact has snapped where this part of it changes, and so many elements more.
+/// The contact has snapped where this part of it changes, and so many elements more; in one small step.
 const SNAPPED: (f64, f64) = (0.5, 8.0);
+const SNAPPED_CLOSE: (f64, f64) = (0.25, 4.0);
 
 /// Goes from state to state on one grid.
 pub struct Walker<'a, 'm, 'c> {
@@ -75,7 +76,8 @@ impl Way {
 
     /// Whether so many elements in contact are those of another branch.
     fn is_snap(&self, count: usize) -> bool {
-        self.count.abs_diff(count) as f64 > SNAPPED.0 * self.count as f64 + SNAPPED.1
+        let (part, few) = if self.is_close { SNAPPED_CLOSE } else { SNAPPED };
+        self.count.abs_diff(count) as f64 > part * self.count as f64 + few
     }
 }
 
