@@ -4,13 +4,20 @@
 //! start of the next grid: q per area in C, interpolated between the centres of those in C, and back into the disc;
 //!                         where all that it is interpolated from slip, g times the direction of q/g; in steady rolling g times q/g
 //! ```
+//!
+//! In steady rolling what slips far turns against its slip: with d the q/g that is interpolated, s = w + u with w of the finer grid and u
+//! interpolated, and k = |s|/(a0 g), it starts from `d - 0.3 k^2 s/|s|`, back into the disc. Where spin dominates the slip turns from
+//! element to element, and coarse tractions do not show it; where little slips s is the difference of large numbers.
 
 use super::certificate::ON_THE_CIRCLE;
-use super::plane::{onto_disc, plus, square, Vector};
+use super::plane::{add, onto_disc, plus, square, Vector};
 use super::problem::{Problem, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{collected, zeros};
+
+/// How much what slips turns against its slip.
+const TURNING: f64 = 0.3;
 
 /// Elements of a grid that make one of the next coarser.
 pub fn children(fine: &Grid, coarse: &Grid) -> usize {
@@ -54,14 +61,18 @@ pub fn interpolate((coarse, from_state): (&Problem, &State), (fine, state): (&mu
                 if !(bound > 0.0) || weight == 0.0 {
                     continue;
                 }
-                mean.add(weight, bound, shares[k], from_state.q[k]);
+                mean.add(weight, bound, shares[k], from_state.q[k], from_state.u[k]);
             }
         }
         if mean.weights == 0.0 {
             return [0.0; 2];
         }
         let direction = mean.direction();
-        if is_rolling || mean.all_slip {
+        if is_rolling && mean.any_slip {
+            let s = plus(add(fine.slip[i], fine.weighted(i, fine.offset)), shorter / mean.weights, mean.displaced);
+            let stiff = fine.operators.self_influence * g;
+            onto_disc(turned_against(direction, s, stiff).map(|v| g * v), g)
+        } else if is_rolling || mean.all_slip {
             onto_disc(direction.map(|v| g * v), g)
         } else {
             onto_disc(mean.traction.map(|v| v / mean.weights), g)
@@ -80,23 +91,27 @@ struct Mean {
     direction: Vector,
     /// Of q, for what it carries.
     traction: Vector,
+    /// Of u.
+    displaced: Vector,
     weights: f64,
     all_slip: bool,
+    any_slip: bool,
 }
 
 impl Default for Mean {
     fn default() -> Mean {
         let none = [0.0; 2];
-        Mean { direction: none, traction: none, weights: 0.0, all_slip: true }
+        Mean { direction: none, traction: none, displaced: none, weights: 0.0, all_slip: true, any_slip: false }
     }
 }
 
 impl Mean {
-    fn add(&mut self, weight: f64, bound: f64, share: f64, q: Vector) {
+    fn add(&mut self, weight: f64, bound: f64, share: f64, q: Vector, u: Vector) {
         let slips = square(q).sqrt() >= ON_THE_CIRCLE * bound;
-        self.all_slip &= slips;
+        (self.all_slip, self.any_slip) = (self.all_slip && slips, self.any_slip || slips);
         self.direction = plus(self.direction, weight / bound, q);
         self.traction = plus(self.traction, weight * share, q);
+        self.displaced = plus(self.displaced, weight, u);
         self.weights += weight;
     }
 
@@ -106,6 +121,19 @@ impl Mean {
         let by = if self.all_slip && length > 0.0 { length } else { self.weights };
         self.direction.map(|v| v / by)
     }
+}
+
+/// `d - TURNING k^2 s/|s|` with k = |s|/stiff, back into the disc of radius 1; k may be infinite.
+fn turned_against(d: Vector, s: Vector, stiff: f64) -> Vector {
+    let length = s[0].hypot(s[1]);
+    if length == 0.0 {
+        return onto_disc(d, 1.0);
+    }
+    let weight = TURNING * (length / stiff).powi(2);
+    let (share, rest) = (1.0 / (1.0 + 1.0 / weight), 1.0 / (1.0 + weight));
+    let turned = plus(d.map(|v| rest * v), -share, s.map(|s| s / length));
+    let by = square(turned).sqrt().max(rest);
+    turned.map(|v| v / by)
 }
 
 /// Of each fine place the two coarse ones between which its centre lies, with their weights.

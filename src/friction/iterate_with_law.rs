@@ -48,14 +48,14 @@ impl Solver {
     pub(super) fn iterate_with_law(
         &mut self,
         request: &Request<'_>,
-        (window, forces, nested): (&Rectangle, Forces, bool),
+        (window, forces, began): (&Rectangle, Forces, (bool, bool)),
         watch: &mut dyn FnMut(&Grid, f64) -> bool,
         report: &mut Report,
     ) -> Result<Outcome> {
         let friction = request.friction;
         if forces.any() && !request.is_cancelled {
             let first = Request { tolerance: request.tolerance.max(FIRST), ..*request };
-            let end = self.iterate(&first, forces, (nested, false), watch, report)?;
+            let end = self.iterate(&first, forces, began, watch, report)?;
             if end == Outcome::Cancelled {
                 let Level { problem, state, .. } = &self.levels[0];
                 report.certificate = Certificate::of(problem, state);
@@ -79,20 +79,20 @@ impl Solver {
             return Ok(Outcome::Cancelled);
         }
         if friction.branch != Branch::Near {
-            return self.in_turns((request, nested), (&mut march, true), watch, report);
+            return self.in_turns((request, began), (&mut march, true), watch, report);
         }
         let outcome = self.nearest(request, (&mut march, forces, forces.any()), watch, report)?;
         if outcome != Outcome::Stagnated || forces.any() || report.products >= request.limit as f64 {
             return Ok(outcome);
         }
-        self.alternate(request, &mut march, watch, report)
+        self.alternate((request, began.1), &mut march, watch, report)
     }
 
     /// Where Newton's method has found no solution: the turns of the branch LOW as far as [`NEARER`] and Newton's method from there, if that finds none the
     /// next turns, ten times as far, and so on. The best state of all where none of them ends.
     fn alternate(
         &mut self,
-        request: &Request<'_>,
+        (request, had_slip): (&Request<'_>, bool),
         march: &mut March,
         watch: &mut dyn FnMut(&Grid, f64) -> bool,
         report: &mut Report,
@@ -100,7 +100,7 @@ impl Solver {
         let (mut best, mut aim, mut begins) = (self.keep(report)?, NEARER.max(request.tolerance), true);
         loop {
             let turns = Request { tolerance: aim, ..*request };
-            let turned = self.in_turns((&turns, false), (march, begins), watch, report)?;
+            let turned = self.in_turns((&turns, (false, had_slip)), (march, begins), watch, report)?;
             let kept = self.keep(report)?;
             let is_open = |end: Outcome, report: &Report| match end {
                 Outcome::Converged => !(report.certificate.residual < request.tolerance),
@@ -168,7 +168,7 @@ impl Solver {
     /// that there are.
     fn in_turns(
         &mut self,
-        (request, nested): (&Request<'_>, bool),
+        (request, (nested, had_slip)): (&Request<'_>, (bool, bool)),
         (march, begins): (&mut March, bool),
         watch: &mut dyn FnMut(&Grid, f64) -> bool,
         report: &mut Report,
@@ -182,7 +182,7 @@ impl Solver {
         let (outcome, residual) = loop {
             let limit = most.saturating_sub(report.products.ceil() as u64).max(1);
             let turn = Request { tolerance: turns.inner(request.tolerance), limit, ..*request };
-            let begin = (nested && turns.made == 0, turns.made > 0);
+            let begin = (nested && turns.made == 0, had_slip || turns.made > 0);
             let end = self.iterate(&turn, Forces::NONE, begin, watch, report)?;
             let left = branch::renew(&mut self.levels[0], march, &mut best)?;
             let mut ended = match turns.end(left, request.tolerance) {

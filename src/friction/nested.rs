@@ -69,11 +69,11 @@ impl Way {
     }
 }
 
-/// Solves the finest of `levels`; `nested`: from the coarsest on. `newton_first`: the finest grid without gradients.
+/// Solves the finest of `levels`; `nested`: from the coarsest on. `mostly_slips`: of the step before.
 pub fn solve(
     levels: &mut [Level],
     forces: Forces,
-    (nested, newton_first): (bool, bool),
+    (nested, mostly_slips): (bool, bool),
     tolerance: f64,
     work: &mut Work<'_>,
 ) -> Result<Outcome> {
@@ -100,7 +100,7 @@ pub fn solve(
             problem.refresh_to(state, tolerance);
         }
     }
-    one(&mut levels[0], (forces, forces.any() || newton_first), tolerance, 1.0, work)
+    one(&mut levels[0], (forces, forces.any() || mostly_slips), tolerance, 1.0, work)
 }
 
 /// The ways to solve a grid, in turns, with the products of each at most. `slips`: by given forces, and nearly all of it.

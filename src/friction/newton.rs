@@ -29,8 +29,12 @@ use crate::progress::Outcome;
 /// The inner residual relative to that of the step.
 const INNER: f64 = 0.15;
 const INNER_ROLLING: f64 = 0.35;
-/// The last step need not be solved further than to this part of the tolerance: what starts the next one does the rest.
+/// The last step need not be solved further than to this part of the tolerance, and what starts the next one does the rest, from
+/// residuals below that part of it.
 const ENOUGH: f64 = 0.9;
+const NEAR: f64 = 1.5;
+/// But always to this part.
+const LEAST_GAIN: f64 = 0.5;
 /// Below this residual fresh displacements are round-off: the certificate is tried from here on, whatever the tolerance, for what is not fresh hides more.
 const ROUND_OFF: f64 = 1e-15;
 /// It and rho are cut by this when steps bring nothing, down to the least.
@@ -49,6 +53,8 @@ const TIMES_WORSE: u32 = 2;
 /// Steps without the residual falling to this part of its least.
 const PATIENCE: u32 = 4;
 const PROGRESS: f64 = 0.7;
+/// Coarser grids are left where q exceeds its bounds by so many times the tolerance: the next one cuts it off.
+const COARSE_EXCESS: f64 = 10.0;
 /// Steps at most where nothing is certified.
 const MOST_STEPS: u64 = 60;
 /// Cuts without progress after which the steps end.
@@ -142,7 +148,8 @@ impl Tried {
 
     /// Whether it is to be tried.
     fn is_near(&self, measures: Measures, missing: f64, tolerance: f64) -> bool {
-        largest([measures.residual, measures.excess, missing]) < tolerance
+        let part = if self.is_by_step() { NEAR } else { 1.0 };
+        measures.residual < part * tolerance && measures.excess.max(missing) < tolerance
     }
 }
 
@@ -172,7 +179,8 @@ pub fn solve(
         }
         let measures = tangent.predict(problem, state, rho);
         let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
-        let worst = largest([measures.residual, measures.excess, missing]);
+        let excess = if certified { measures.excess } else { measures.excess / COARSE_EXCESS };
+        let worst = largest([measures.residual, excess, missing]);
         if !worst.is_finite() {
             return Ok(unloaded(problem, state));
         }
@@ -195,7 +203,7 @@ pub fn solve(
             return Ok(Outcome::IterationLimit);
         }
         iterations += 1;
-        let enough = course.inner.max(ENOUGH * tolerance / worst).min(1.0);
+        let enough = course.inner.max((ENOUGH * tolerance / worst).min(LEAST_GAIN));
         let most = if course.factor < 1.0 { all_directions(problem) } else { DIRECTIONS }.min(left as usize);
         let effort = Effort { inner: enough, most, left: measures.residual, length: course.length() };
         step(problem, state, tangent, (of_step, effort), fields)?;

@@ -68,6 +68,8 @@ pub struct Problem {
     pub offset: Vector,
     /// How much of a creepage reaches each element; none: all of it.
     pub weights: Vec<Vector>,
+    /// In steady rolling: what the slip by spin gains a step ahead.
+    pub ahead: Vector,
     /// The scale of residuals.
     pub scale: Scale,
     /// A.
@@ -137,6 +139,7 @@ impl Problem {
             slip: blank(n, [f64::NAN; 2], FIELDS)?,
             offset: [0.0; 2],
             weights: Vec::new(),
+            ahead: [0.0; 2],
             scale: Scale::SlipOrDisplacement,
             extension: None,
             operators,

@@ -205,10 +205,10 @@ impl Solver {
         let bound = |i: usize| request.bound(i);
         let from_rest = report.from_rest;
         self.set_up(window, rolling)?;
-        self.begin(request, from_rest, window, bound)?;
+        let mut had_slip = self.begin(request, from_rest, window, bound)?;
         if request.friction.has_law() {
             let nested = from_rest && !request.start.is_again();
-            let end = self.iterate_with_law(request, (window, forces, nested), watch, report)?;
+            let end = self.iterate_with_law(request, (window, forces, (nested, had_slip)), watch, report)?;
             [report.update, _] = self.scales.own_traction([self.levels[0].problem.update, 0.0]);
             return Ok(end);
         }
@@ -221,13 +221,13 @@ impl Solver {
             }
             is_worth_something = near.is_worth_something;
             if !is_worth_something {
-                self.begin(&Request { start: Start::Before, ..*request }, from_rest, window, bound)?;
+                had_slip = self.begin(&Request { start: Start::Before, ..*request }, from_rest, window, bound)?;
             }
         }
         let nested = from_rest && !is_worth_something && !request.start.is_again();
         let end = match request.is_cancelled {
             true => Outcome::Cancelled,
-            false => self.iterate(request, forces, (nested, false), watch, report)?,
+            false => self.iterate(request, forces, (nested, had_slip), watch, report)?,
         };
         let Level { problem, state, .. } = &self.levels[0];
         report.certificate = Certificate::of(problem, state);
@@ -235,13 +235,12 @@ impl Solver {
         Ok(end)
     }
 
-    /// Iterates on the grids of the window, from what the finest holds: `nested`, from the coarsest on; `newton_first`, without gradients. The report gets what
-    /// that took and found.
+    /// Iterates on the grids of the window, from what the finest holds. The report gets what that took and found.
     pub(super) fn iterate(
         &mut self,
         request: &Request<'_>,
         forces: Forces,
-        (nested, newton_first): (bool, bool),
+        (nested, had_slip): (bool, bool),
         watch: &mut dyn FnMut(&Grid, f64) -> bool,
         report: &mut Report,
     ) -> Result<Outcome> {
@@ -250,7 +249,7 @@ impl Solver {
         let compared = nested && request.estimates && request.friction.motion == Motion::SteadyRolling;
         let mut work =
             Work { products: 0.0, limit: request.limit, coarse: if compared { COUNTS } else { COARSE }, watch };
-        let end = nested::solve(&mut self.levels, forces, (nested, newton_first), request.tolerance, &mut work)?;
+        let end = nested::solve(&mut self.levels, forces, (nested, had_slip), request.tolerance, &mut work)?;
         report.products += work.products;
         let own = |(force, creepage)| (scales.own_force(force), scales.own_creepage(creepage));
         report.coarser = self.levels.get(1).filter(|_| compared).map(|level| own(level.found()));

@@ -1,12 +1,12 @@
 //! One step of Newton's method (see [`newton`](super::newton)).
 //!
-//! It starts with the way to the circles and what the preconditioner says, so that forces that are given are met:
+//! It starts with the way to the circles and a part of what the preconditioner says, so that forces that are given are met:
 //!
 //! ```text
-//! x0 = g n - q on slip,   z1 = M P(-s),   less Y dc where sum(q + x0 + z1) is not F/(dx dy)
+//! x0 = g n - q on slip,   z1 = theta M P(-s),   theta = 1 - 1/5/(1 + D/(10 a0)),   less Y dc where sum(q + x0 + z1) is not F/(dx dy)
 //! ```
 //!
-//! One product serves x0 and z1; flexible GMRES does the rest.
+//! Where the curvature D dominates M is near the inverse of the system, and theta near 1. One product serves x0 and z1; flexible GMRES does the rest.
 //! Where x0 is short there is nothing to start with: all products are GMRES'.
 
 use super::certificate::{is_on_circle, scale};
@@ -19,6 +19,10 @@ use crate::error::Result;
 use crate::methods::fgmres::{self, Bordered, Until};
 use crate::methods::fields::{self, Fields};
 use crate::threads::Threads;
+
+/// theta where nothing slips, and how fast it comes to 1 with D.
+const LEAST_THETA: f64 = 0.8;
+const TURNED: f64 = 0.1;
 
 /// The way to the circles is short where it displaces less than this part of what the linear solve leaves, and is less than this part of the
 /// residual beside the bounds; and where the slips of elements inside their circles are less than this part of what is projected. (Slips of 1e10 times
@@ -88,7 +92,11 @@ impl Start {
         let (n, threads, tangent) = (state.q.len(), system.problem.threads().clone(), system.tangent);
         let mut along = fields.take(n)?;
         system.precondition_field(&tangent.projected, &mut along);
-        let bound = &system.problem.bound;
+        let (a0, bound) = (system.problem.operators.self_influence, &system.problem.bound);
+        fields::map(&threads, &mut along, |i, z| {
+            let theta = 1.0 - (1.0 - LEAST_THETA) / (1.0 + TURNED * tangent.curvature[i] / a0);
+            z.map(|z| theta * z)
+        });
         let mut gained = fields.take(n)?;
         fields::fill(&threads, &mut gained, |i| add(to_the_circle(tangent, bound, state, i), along[i]));
         let mut by = [0.0; 2];

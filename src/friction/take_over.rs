@@ -4,7 +4,7 @@ use super::certificate::is_on_circle;
 use super::displaced::displaced;
 use super::excess::Excess;
 use super::levels::Level;
-use super::plane::{add, Vector};
+use super::plane::{add, square, Vector};
 use super::problem::{Problem, Scale, State};
 use super::request::{before, Request, Start};
 use super::scales::Scales;
@@ -17,6 +17,9 @@ use crate::grid::Grid;
 use crate::memory::{blank, collected, unwritten, zeros};
 use crate::methods::fields;
 use crate::rectangle::Rectangle;
+
+/// Where more than this part of C slips after the step before, Newton's method is the faster one for the next step.
+const MOSTLY_SLIP: f64 = 0.8;
 
 /// Rigid slips may be so many times what tractions displace: single precision ends at 1e38.
 pub(super) const LARGEST_RATIO: f64 = 1e30;
@@ -61,16 +64,17 @@ impl Solver {
         Ok(())
     }
 
-    /// g, w, and for rolling the tractions to start from; refuses slips out of range.
+    /// g, w, and for rolling the tractions to start from; refuses slips out of range. Returns whether most of C slipped before.
     pub(super) fn begin(
         &mut self,
         request: &Request<'_>,
         from_rest: bool,
         window: &Rectangle,
         bound: impl Fn(usize) -> f64 + Sync + Send,
-    ) -> Result<()> {
-        self.take_over(request, from_rest, window, bound)?;
-        self.check_range()
+    ) -> Result<bool> {
+        let had_slip = self.take_over(request, from_rest, window, bound)?;
+        self.check_range()?;
+        Ok(had_slip)
     }
 
     fn take_over(
@@ -79,7 +83,7 @@ impl Solver {
         from_rest: bool,
         window: &Rectangle,
         bound: impl Fn(usize) -> f64 + Sync + Send,
-    ) -> Result<()> {
+    ) -> Result<bool> {
         let Request { friction, start, .. } = *request;
         let (grid, kept, scales) = (&self.grid, &self.before, self.scales);
         let Level { problem, state, .. } = &mut self.levels[0];
@@ -102,7 +106,7 @@ impl Solver {
                     .for_each(|(q, i)| *q = in_range(before(friction, kept, i), &scales));
             });
         }
-        take_step(problem, friction, (&scales, self.offset));
+        take_step(problem, friction, grid, (&scales, self.offset));
         let found = |k: usize| matches!(friction.prescribed[k], Prescribed::Force(_));
         (problem.given, problem.update) = (0.0, 0.0);
         problem.bound_changed();
@@ -113,15 +117,17 @@ impl Solver {
             self.leave(friction)?;
         }
         if from_rest && matches!(start, Start::Before) {
-            return Ok(());
+            return Ok(false);
         }
         self.start_from(request, window);
         let Level { problem, state, .. } = &mut self.levels[0];
+        let slipped = problem.contact().filter(|&i| square(state.q[i]).sqrt() >= 0.999 * problem.bound[i]).count();
+        let mostly = slipped as f64 > MOSTLY_SLIP * problem.count() as f64;
         problem.refresh(state);
         if let Start::Given(_) = request.start {
             problem.offset = [0, 1].map(|k| if found(k) { creepage_of(problem, state, k) } else { 0.0 });
         }
-        Ok(())
+        Ok(mostly)
     }
 
     /// The tractions and the offset to start from, where they are not those before the step.
@@ -191,8 +197,8 @@ impl Solver {
     }
 }
 
-/// Where creepages that are to be found start, and what residuals are compared with; `last`: the creepages found last.
-fn take_step(problem: &mut Problem, friction: &Friction<'_>, (scales, last): (&Scales, Vector)) {
+/// Where creepages that are to be found start, what residuals are compared with, and what the slip by spin gains; `last` creepages found.
+fn take_step(problem: &mut Problem, friction: &Friction<'_>, grid: &Grid, (scales, last): (&Scales, Vector)) {
     // A warm start of steady rolling starts from the last creepages, too.
     let is_warm = friction.motion == Motion::SteadyRolling && friction.previous == Previous::Kept;
     let found = |k: usize| matches!(friction.prescribed[k], Prescribed::Force(_));
@@ -202,6 +208,7 @@ fn take_step(problem: &mut Problem, friction: &Friction<'_>, (scales, last): (&S
         Motion::SteadyRolling if found(0) || found(1) => Scale::SlipOrDisplacement,
         _ => Scale::Slip,
     };
+    problem.ahead = scales.displacement(spin_ahead(friction, grid));
 }
 
 /// The weights of creepages, and what the compliance of a layer is beyond its least, on the elements of a window.
@@ -251,4 +258,13 @@ fn creepage_of(problem: &Problem, state: &State, k: usize) -> f64 {
 /// Tractions in the units of the iterations; in steady rolling they are only where these start.
 fn in_range(q: Vector, scales: &Scales) -> Vector {
     q.map(|q| scales.traction(q).clamp(-LARGEST_BEFORE, LARGEST_BEFORE))
+}
+
+/// The change of the slip by spin over one step of steady rolling.
+fn spin_ahead(friction: &Friction<'_>, grid: &Grid) -> Vector {
+    let (distance, (sine, cosine)) = (friction.distance(grid), friction.rolling_direction.sin_cos());
+    match friction.motion {
+        Motion::SteadyRolling => [-sine, cosine].map(|part| friction.spin * distance * distance * part),
+        _ => [0.0; 2],
+    }
 }

@@ -31,7 +31,7 @@ use crate::threads::Threads;
 
 /// The coarsest grid has at most this many elements in each direction.
 const COARSEST: usize = 8;
-/// Residual on the coarsest grid: its discretisation error is larger.
+/// Where the coarsest grid is solved well enough: its elements are larger than that is small.
 const COARSEST_TOLERANCE: f64 = 1e-3;
 /// Iterations at most on the coarsest grid, and on those between. With 3 to 5 of these all products together are as many, or up to 1.1 times as many.
 const COARSEST_ITERATIONS: u64 = 50;

@@ -43,6 +43,15 @@ impl Terms<2, 0, 2> for Residual {
     }
 }
 
+/// (r, d) of the deflation direction d, and (r, r).
+impl Terms<2, 1, 2> for Residual {
+    #[inline(always)]
+    fn of<S: Simd>(&self, [h, u]: [Vector<S>; 2], [d]: [Vector<S>; 1]) -> [Vector<S>; 2] {
+        let r = self.approach - h - u;
+        [r * d, r * r]
+    }
+}
+
 /// The sums of t, z, q, and (z, q).
 #[derive(Clone, Copy)]
 pub(super) struct Conjugate;
@@ -188,8 +197,8 @@ impl Becomes<0, 2> for Moved {
     }
 }
 
-/// Step (4.1), [`AdmissibleSet::leaves`] in vectors: elements that this move takes beyond a bound, and those that the forecast step leaves next to nothing of
-/// their pressure, or of what is left to their limit. A second form, because the pass that moves p lists them as well.
+/// Step (4.1): elements that this move takes beyond a bound, and those that the forecast step leaves next to nothing of their pressure, or of what is
+/// left to their limit.
 #[derive(Clone, Copy)]
 pub(super) struct Leaving<Set> {
     pub(super) moved: Moved,
@@ -240,7 +249,7 @@ impl Becomes<1, 3> for MovedU<'_> {
     }
 }
 
-/// Step (4.2), [`AdmissibleSet::enters`] in vectors: elements outside C that enter it. The pass that moves u lists them.
+/// Step (4.2): elements outside C that enter it.
 #[derive(Clone, Copy)]
 pub(super) struct Entering<'a> {
     pub(super) approach: f64,

@@ -4,7 +4,7 @@
 /// forecasts, each the last alpha.
 pub(super) const FIRST_FORECAST: f64 = 0.9;
 const FORECASTS: (f64, f64) = (0.3, 1.0);
-/// A forecast that is off by more than this factor holds nobody back.
+/// A forecast that alpha is further away from than by this factor was worth nothing.
 const FAR_OFF: f64 = 3.0;
 
 /// The step lengths and slopes that an iteration leaves to the next.

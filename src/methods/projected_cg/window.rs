@@ -21,7 +21,7 @@ const PART: usize = 64;
 /// A window of more than this part of the grid is not worth its own operator. With 0.6 steps in time on ellipse 64 and 256 and on both wheel-rail
 /// contacts took 1.1 to 1.2 times as long, cold calls 1.0 to 1.35; with 0.95 as long.
 const WORTHWHILE: f64 = 0.85;
-/// A window stays while contact spans more than this part of it. If it always stayed, steps in time would take 1.7 times the work.
+/// A window stays while contact spans more than this part of it.
 const FILLED: f64 = 0.3;
 /// Windows are not worth it on grids of fewer elements.
 const SMALLEST_GRID: usize = 64 * 64;
