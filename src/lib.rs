@@ -58,7 +58,7 @@
 //! | [`visco`] | Prony series of bodies that relax, and their step in time |
 //! | [`analytic`] | the Hertz solution |
 //! | `powers` | numbers as powers of two and what is near 1, where products would leave the range of numbers |
-//! | `blocks`, `bounding_box` | passes over a grid, by all threads and in vectors |
+//! | `blocks`, `rectangle` | passes over a grid, by all threads and in vectors; a part of a grid |
 //! | [`threads`], and of the same crate, `par`, `memory` and `sums` | the pool, memory by the size of the grid, sums in a fixed order |
 //! | [`ffi`] | the C ABI, translation only |
 
@@ -68,7 +68,6 @@
 pub mod adhesion;
 pub mod analytic;
 mod blocks;
-mod bounding_box;
 pub mod contact;
 pub mod effects;
 pub mod error;
@@ -82,6 +81,7 @@ pub mod methods;
 pub mod operator;
 mod powers;
 pub mod progress;
+mod rectangle;
 pub mod scene;
 pub mod solver;
 pub mod stress;

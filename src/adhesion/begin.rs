@@ -1,14 +1,12 @@
 //! Solves from nothing. A force that pulls, or none, is met on a stable branch: down from a state of more force.
 
 use super::level::MakeFrozen;
-use super::levels::prolong;
 use super::majorise::Descent;
-use super::nested::{self, coarse_goal};
-use super::newton::{newton, End, Goal};
+use super::nested;
+use super::newton::{End, Goal};
 use super::place::{Met, Place, Walk};
 use super::request::Start;
 use super::solver::{pulls, Solver};
-use super::tangent::is_stable;
 use super::unknowns::Unknowns;
 use super::way::Walker;
 use crate::error::{Error, Result};
@@ -49,7 +47,9 @@ impl Solver {
         // Down the stable branch of the finest grid.
         let unloaded = Goal { wanted: Some(0.0), ..goal };
         let ended = nested::solve(&mut self.levels, unloaded, (start, make), monitor)?;
-        match self.down_all_ways(goal, (ended.is_in_contact(), make), monitor)? {
+        let walk = self.down_all_ways(goal, (ended.is_in_contact(), make), monitor)?;
+        let walk = self.hold_pull_off(walk, goal, (start, make), monitor)?;
+        match walk {
             Walk::Found => Ok(Descent::By(End::Solved)),
             Walk::Interrupted => Ok(Descent::By(End::Interrupted)),
             Walk::Least { sum, approach } => {
@@ -272,40 +272,5 @@ impl Solver {
             wanted * area,
             -most * area
         )))
-    }
-
-    /// Down the stable branch on the coarsest grid, which costs little, and then from grid to grid by the force. False where that does not end on the
-    /// stable branch.
-    fn is_found_from_coarse(
-        &mut self,
-        goal: Goal,
-        (start, make): (Start, MakeFrozen<'_>),
-        monitor: &mut Monitor<'_>,
-    ) -> Result<bool> {
-        let last = self.levels.len() - 1;
-        if last == 0 {
-            return Ok(false);
-        }
-        let coarse = coarse_goal(&self.levels, last, goal);
-        let unloaded = Goal { wanted: Some(0.0), ..coarse };
-        self.levels[last].fields = std::mem::take(&mut self.levels[0].fields);
-        monitor.enter_grid();
-        let ended = nested::solve(&mut self.levels[last..], unloaded, (start, make), monitor)?;
-        let is_found = ended.end == Descent::By(End::Solved)
-            && Walker::new(&mut self.levels[last], coarse, make, monitor).walk(None)? == Walk::Found;
-        if !is_found {
-            return Ok(false);
-        }
-        for l in (0..last).rev() {
-            let (fine, below) = self.levels.split_at_mut(l + 1);
-            prolong(&mut below[0], &mut fine[l])?;
-            let goal = coarse_goal(&self.levels, l, goal);
-            monitor.enter_grid();
-            let (end, _) = newton(&mut self.levels[l], goal, false, monitor)?;
-            if end != End::Solved {
-                return Ok(false);
-            }
-        }
-        is_stable(&mut self.levels[0], true, monitor)
     }
 }

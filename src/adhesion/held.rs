@@ -1,10 +1,17 @@
 //! The stable state of a force. An equilibrium of a force may be an unstable one: then the stable one lies on the side of the larger approach.
 
-use super::newton::{newton, End};
+use super::level::MakeFrozen;
+use super::levels::prolong;
+use super::majorise::Descent;
+use super::nested::{self, coarse_goal};
+use super::newton::{newton, End, Goal};
 use super::place::{Place, Walk};
+use super::request::Start;
+use super::solver::Solver;
 use super::tangent::is_stable;
 use super::way::Walker;
 use crate::error::Result;
+use crate::progress::Monitor;
 
 /// Secants at most, between two states.
 const SECANTS: u32 = 40;
@@ -15,6 +22,8 @@ const MOST_STEPS: u32 = 80;
 const GROWTH: f64 = 1.5;
 /// The first step up, as a part of the length of the contact.
 const STEP: f64 = 0.02;
+/// A pull is hardly more than the strongest one that was found if it is less than this factor of that.
+const HARDLY: f64 = 1.02;
 
 impl Walker<'_, '_, '_> {
     /// Takes an equilibrium of the force that is wanted, which the level holds, if it is stable, or looks for the stable one above.
@@ -24,11 +33,17 @@ impl Walker<'_, '_, '_> {
             return Ok(Walk::Found);
         }
         log::debug!("adhesion: an equilibrium at an approach of {:e} is not stable", self.level.now.approach());
+        self.climb(wanted)
+    }
+
+    /// Up from what the level holds, whose sum is the one that is wanted or less, to the stable state of the wanted one.
+    pub fn climb(&mut self, mut sum_low: f64) -> Result<Walk> {
+        let Some(wanted) = self.goal.wanted else { return Ok(Walk::Lost) };
         let mut step = self.first_step(STEP)?;
         if !(step > 0.0) {
             return Ok(Walk::Lost);
         }
-        let (mut low, mut sum_low) = (self.level.now.approach(), wanted);
+        let mut low = self.level.now.approach();
         for _ in 0..MOST_STEPS {
             let approach = low + step;
             let Some(sum) = self.solve_at(approach)? else { break };
@@ -69,5 +84,68 @@ impl Walker<'_, '_, '_> {
             }
         }
         Ok(Walk::Lost)
+    }
+}
+
+impl Solver {
+    /// Down the stable branch on the coarsest grid, which costs little, and then from grid to grid by the force. False where that does not end on the
+    /// stable branch.
+    pub(super) fn is_found_from_coarse(
+        &mut self,
+        goal: Goal,
+        (start, make): (Start, MakeFrozen<'_>),
+        monitor: &mut Monitor<'_>,
+    ) -> Result<bool> {
+        let last = self.levels.len() - 1;
+        if last == 0 {
+            return Ok(false);
+        }
+        let coarse = coarse_goal(&self.levels, last, goal);
+        let unloaded = Goal { wanted: Some(0.0), ..coarse };
+        self.levels[last].fields = std::mem::take(&mut self.levels[0].fields);
+        monitor.enter_grid();
+        let ended = nested::solve(&mut self.levels[last..], unloaded, (start, make), monitor)?;
+        let is_found = ended.end == Descent::By(End::Solved)
+            && Walker::new(&mut self.levels[last], coarse, make, monitor).walk(None)? == Walk::Found;
+        if !is_found {
+            return Ok(false);
+        }
+        for l in (0..last).rev() {
+            let (fine, below) = self.levels.split_at_mut(l + 1);
+            prolong(&mut below[0], &mut fine[l])?;
+            let goal = coarse_goal(&self.levels, l, goal);
+            monitor.enter_grid();
+            let (end, _) = newton(&mut self.levels[l], goal, false, monitor)?;
+            if end != End::Solved {
+                return Ok(false);
+            }
+        }
+        is_stable(&mut self.levels[0], true, monitor)
+    }
+
+    /// A pull that is hardly more than the strongest one on the ways to it, `known`. The ways of a pull-off have other steps, which no force ends, and elements that
+    /// are coarse for the range part one after the other: where such a way has found more the pull is held above its end.
+    pub(super) fn hold_pull_off(
+        &mut self,
+        known: Walk,
+        goal: Goal,
+        (start, make): (Start, MakeFrozen<'_>),
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Walk> {
+        let Some(wanted) =
+            goal.wanted.filter(|wanted| matches!(known, Walk::Least { sum, .. } if *wanted > HARDLY * sum))
+        else {
+            return Ok(known);
+        };
+        let unloaded = Goal { wanted: Some(0.0), ..goal };
+        let ended = nested::solve(&mut self.levels, unloaded, (start, make), monitor)?;
+        let pull_off = Goal { wanted: None, ..goal };
+        let walk = self.down_all_ways(pull_off, (ended.is_in_contact(), make), monitor)?;
+        match (walk, known) {
+            (Walk::Least { sum, .. }, _) if sum <= wanted => self.walker(goal, make, monitor).climb(sum),
+            (Walk::Least { sum, .. }, Walk::Least { sum: least, .. }) if sum < least => Ok(walk),
+            (Walk::Interrupted, _) => Ok(walk),
+            _ => Ok(known),
+        }
     }
 }

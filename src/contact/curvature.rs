@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::direction::{shortest_run, Direction};
 use super::{each_jump, Jump, Outline, Problem, State};
-use crate::bounding_box::bounding_box;
+use crate::rectangle::Rectangle;
 
 /// Rows of the contact area that are looked at, at least: the means over more of them are the same.
 const ROWS: usize = 32;
@@ -207,7 +207,8 @@ fn jumps(problem: &Problem, state: &State, repeats: (bool, bool)) -> (f64, [f64;
             short += lines * up.abs() / (run * run) as f64;
         }
     };
-    let touching = bounding_box(contact, grid, &problem.threads, |row| row.contains(&true), |inside| *inside);
+    let touching =
+        Rectangle::around_values(contact, grid, &problem.threads, |row| row.contains(&true), |inside| *inside);
     if let Some(part) = touching {
         each_jump((grid, &part), repeats, (|i: usize| state.h[i], false), |i, j| contact[i] || contact[j], visit);
     }

@@ -33,16 +33,31 @@ pub fn truncate<S: AdmissibleSet>(state: &mut State, set: S, threads: &Threads) 
         }
         for i in row {
             if state.contact[i] && set.leaves(i, state.p[i]) {
-                if S::LIMITED && state.p[i] > 0.0 {
-                    (state.at_limit[i], state.reached_limit) = (true, true);
-                }
-                state.p[i] = set.project(i, state.p[i]);
-                state.contact[i] = false;
+                leave(state, set, i, state.p[i] > 0.0);
                 changed += 1;
             }
         }
     }
     changed
+}
+
+/// Element i leaves C for its limit or for p = 0. Returns what its pressure gains.
+pub fn leave<S: AdmissibleSet>(state: &mut State, set: S, i: usize, for_limit: bool) -> f64 {
+    let (before, at_limit) = (state.p[i], S::LIMITED && for_limit);
+    if at_limit {
+        (state.at_limit[i], state.reached_limit) = (true, true);
+    }
+    state.p[i] = if at_limit { set.limit(i) } else { 0.0 };
+    state.contact[i] = false;
+    state.p[i] - before
+}
+
+/// Element i enters C, from its limit or from the exterior area.
+pub fn enter<S: AdmissibleSet>(state: &mut State, i: usize) {
+    state.contact[i] = true;
+    if S::LIMITED {
+        state.at_limit[i] = false;
+    }
 }
 
 /// Whether one of some elements leaves. All of them, which the compiler can vectorise.
@@ -62,10 +77,7 @@ pub fn admit<S: AdmissibleSet>(state: &mut State, set: S) -> usize {
     for i in 0..state.p.len() {
         let at_limit = S::LIMITED && state.at_limit[i];
         if !state.contact[i] && set.enters(at_limit, state.deformed_distance(i)) {
-            state.contact[i] = true;
-            if at_limit {
-                state.at_limit[i] = false;
-            }
+            enter::<S>(state, i);
             changed += 1;
         }
     }

@@ -8,8 +8,8 @@
 use std::ops::Range;
 
 use super::direction::Direction;
-use crate::bounding_box::Part;
 use crate::grid::Grid;
+use crate::rectangle::Rectangle;
 
 /// Lines that are looked at, at least.
 const LINES: usize = 32;
@@ -45,14 +45,14 @@ pub struct Jump {
 
 /// Visits the jumps between neighbours that are wanted, of which one lies in `part` of the grid. Of many lines some are looked at, unless `all`.
 pub fn each_jump(
-    (grid, part): (&Grid, &Part),
+    (grid, part): (&Grid, &Rectangle),
     repeats: (bool, bool),
     (value, all): (impl Fn(usize) -> f64, bool),
     is_wanted: impl Fn(usize, usize) -> bool,
     mut visit: impl FnMut(Jump),
 ) {
     let [x, y] = Direction::both(grid, repeats);
-    for (along, across, numbers, places) in [(x, y, &part.1, &part.0), (y, x, &part.0, &part.1)] {
+    for (along, across, numbers, places) in [(x, y, &part.y, &part.x), (y, x, &part.x, &part.y)] {
         // A jump needs four different centres.
         if along.m < 4 {
             continue;
@@ -71,7 +71,7 @@ pub fn each_jump(
 
 /// Sum over the jumps J, in all lines, of `|J|` times the part of an element that is uncertain times `weight(i, j)` of the two elements.
 pub fn at_jumps(
-    part: (&Grid, &Part),
+    part: (&Grid, &Rectangle),
     repeats: (bool, bool),
     value: impl Fn(usize) -> f64,
     weight: impl Fn(usize, usize) -> f64,

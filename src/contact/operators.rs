@@ -13,11 +13,11 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::values::presses;
-use crate::bounding_box::{bounding_box, Part};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::operator::{even_periods, Needs, Operator, Reach, SetUp, Workspace};
+use crate::rectangle::Rectangle;
 use crate::threads::Threads;
 
 /// On grids of at most so many elements products are summed: nothing is set up for them. A cold call of one element with a table of its
@@ -95,9 +95,12 @@ impl Operators {
         self.prepare(of)
     }
 
-    /// Whether the product with p needs the operator for any p.
-    pub fn needs_whole(of: MadeOf<'_>, p: &[f64]) -> bool {
-        of.grid.len() > SUMMED && of.reach_of(p).is_none()
+    /// The operator for any p, if the product with p needs it.
+    pub fn whole_if_needed(&mut self, of: MadeOf<'_>, p: &[f64]) -> Result<Option<Arc<Operator<f64>>>> {
+        match of.grid.len() > SUMMED && of.reach_of(p).is_none() {
+            true => Ok(Some(self.whole(of)?.clone())),
+            false => Ok(None),
+        }
     }
 
     /// `u = A p`.
@@ -113,15 +116,20 @@ impl Operators {
         }
         // It is taken out for the time of the product.
         let mut workspace = self.workspace.take();
-        let operator = match of.reach_of(p) {
-            Some(reach) => self.part(reach, of)?,
-            None => &**self.whole(of)?,
-        };
+        let operator = self.get(of.reach_of(p), of)?;
         let fitting = fit(&mut workspace, operator)?;
         operator.apply(p, u, fitting);
         fitting.rest();
         self.workspace = workspace;
         Ok(())
+    }
+
+    /// The operator of a reach; none: that for any p.
+    fn get(&mut self, reach: Option<Reach>, of: MadeOf<'_>) -> Result<&Operator<f64>> {
+        match reach {
+            Some(reach) => self.part(reach, of),
+            None => Ok(&**self.whole(of)?),
+        }
     }
 
     /// The operator of a reach.
@@ -159,7 +167,7 @@ impl MadeOf<'_> {
             return None;
         }
         let Grid { mx, my, .. } = *self.grid;
-        let (x, y) = loaded(p, self.grid, self.threads)?;
+        let Rectangle { x, y } = loaded(p, self.grid, self.threads)?;
         // Few lengths are transformed fast: a contact area that moves in steps keeps its operator for many of them.
         let farthest = |loaded: Range<usize>, m: usize| loaded.end.max(m - loaded.start).max(m.div_ceil(2) + 1) - 1;
         let periods = |x: usize, y: usize| even_periods(self.coefficients, self.grid, (2 * x, 2 * y));
@@ -182,9 +190,9 @@ fn fit<'a>(
     Ok(&mut workspace.insert(fitting).1)
 }
 
-/// The columns and rows outside of which p is 0; none where it is 0 everywhere.
-fn loaded(p: &[f64], grid: &Grid, threads: &Threads) -> Option<Part> {
-    bounding_box(p, grid, threads, presses, |p| *p != 0.0)
+/// The rectangle outside of which p is 0; none where it is 0 everywhere.
+fn loaded(p: &[f64], grid: &Grid, threads: &Threads) -> Option<Rectangle> {
+    Rectangle::around_values(p, grid, threads, presses, |p| *p != 0.0)
 }
 
 #[cfg(test)]

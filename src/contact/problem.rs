@@ -87,10 +87,10 @@ impl Problem {
         operators.renew(MadeOf { coefficients, grid, threads })
     }
 
-    /// Whether the product with p needs the operator for any p.
-    pub fn needs_operator(&self, p: &[f64]) -> bool {
-        let Problem { coefficients, grid, threads, .. } = self;
-        Operators::needs_whole(MadeOf { coefficients, grid, threads }, p)
+    /// A for any p, if the product with p needs that.
+    pub fn operator_if_needed(&mut self, p: &[f64]) -> Result<Option<Arc<Operator<f64>>>> {
+        let Problem { coefficients, grid, threads, operators, .. } = self;
+        operators.whole_if_needed(MadeOf { coefficients, grid, threads }, p)
     }
 
     /// A for any p, set up when that is first asked for.

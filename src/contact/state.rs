@@ -237,8 +237,7 @@ impl State {
         None
     }
 
-    /// The largest distance of coarser grids, in place of larger ones: far above what any approach closes, and no number that rules a mean.
-    /// `lowest`: the least of h.
+    /// Cap on h for coarser grids: out of reach of any contact, yet too small to dominate a mean. `lowest`: the least of h.
     pub fn out_of_reach(&self, lowest: f64, self_influence: f64) -> f64 {
         let lowest = Some(lowest).filter(|h| h.is_finite()).unwrap_or(0.0);
         let depth = match self.load {

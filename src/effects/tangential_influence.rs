@@ -4,19 +4,19 @@ use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
 use crate::memory::collected;
 
-/// Tangential influence coefficients of the caller's own: three tables over offsets `-cx..cx-1` by `-cy..cy-1`, x fastest, laid out as the
-/// table of the normal coefficients. Axx and Ayy must be even in both directions, Axy odd in both; in steady rolling in y alone, for bodies that relax: they
-/// are softer behind. Or `by_row`: see `tangential_rows.rs`.
+/// The caller's own tangential influence coefficients: three tables over offsets `-cx..cx-1` by `-cy..cy-1`, x fastest, laid out as the table of the
+/// normal coefficients. Axx and Ayy must be even in both directions, Axy odd in both. In steady rolling only y needs this symmetry: bodies that relax
+/// are softer behind. With `by_row` there is a table for each loaded row (`tangential_rows.rs`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TangentialInfluence<'a> {
-    /// Elements of the grid that they were made for.
+    /// Columns of the grid that the tables were made for.
     pub cx: usize,
-    /// And in y; of tables per loaded row the number of rows.
+    /// Its rows.
     pub cy: usize,
     /// Whether there is a table for each loaded row: `[cy][cy][2 cx]` of the loaded row, the row, and the offset in x.
     pub by_row: bool,
-    /// Axx, Ayy, Axy: displacements in x by tractions in x, in y by those in y, and of one by the other; of tables per loaded row in x by
-    /// tractions in y.
+    /// Axx, Ayy and Axy: the displacement in x by a traction in x, in y by one in y, and across. In tables per loaded row Axy is the displacement in
+    /// x by a traction in y.
     pub coefficients: [&'a [f64]; 3],
     /// Of unlike bodies Axz and Ayz: displacements in x and in y by a unit pressure. Tractions displace along the normal by
     /// `-(Axz qx + Ayz qy)`.
@@ -32,7 +32,7 @@ type AtOffset = ((i64, i64), f64);
 #[derive(Clone, Copy)]
 struct Symmetry {
     name: &'static str,
-    /// The sign that it takes where x, where y changes its own.
+    /// The factor of a value where x changes its sign, and where y does.
     in_x: f64,
     in_y: f64,
     rule: &'static str,
@@ -40,12 +40,12 @@ struct Symmetry {
 
 const OWN: &str = "xx and yy must be even in x and in y, xy odd in both";
 const IN_STEADY_ROLLING: &str = "in steady rolling xx and yy must be even in y, xy odd in y";
-/// The condition on a number that all tables are multiplied by.
+/// The rule for `scale`.
 pub(super) const SCALE: &str = "coefficients are scaled by a positive, finite number";
 
 const CROSS: &str = "xz must be odd in x and even in y, yz even in x and odd in y";
 
-/// Of the components xx, yy, xy, xz, yz.
+/// The symmetries of xx, yy, xy, xz and yz.
 const SYMMETRIES: [Symmetry; 5] = [
     Symmetry { name: "friction->influence[0] (xx)", in_x: 1.0, in_y: 1.0, rule: OWN },
     Symmetry { name: "friction->influence[1] (yy)", in_x: 1.0, in_y: 1.0, rule: OWN },
@@ -90,8 +90,8 @@ impl TangentialInfluence<'_> {
         self.cross.is_none() && (0..self.cy as i64).any(|ky| (0..self.cx as i64).any(|kx| differ(kx, ky)))
     }
 
-    /// Refuses tables that do not reach the offsets of a grid, and what no coefficients of a half-space's kind are; `is_steady`: of steady rolling, which
-    /// has none but the change in a step, and no side of x that is like the other.
+    /// Refuses tables that do not reach the offsets of a grid, and coefficients without the signs and the symmetries of elastic bodies. `is_steady`:
+    /// the bodies roll steadily, and coefficients need no symmetry in x.
     pub(super) fn check(&self, grid: &Grid, is_steady: bool) -> Result<()> {
         require(self.scale > 0.0 && self.scale.is_finite(), "friction->influence->scale", self.scale, SCALE)?;
         for (name, c, m) in [("cx", self.cx, grid.mx), ("cy", self.cy, grid.my)] {
@@ -117,7 +117,7 @@ impl TangentialInfluence<'_> {
         tables().try_for_each(|(values, symmetry)| self.check_symmetry(values, (symmetry, in_x_too), largest))
     }
 
-    /// Those of one component: each offset and its mirrors, `in_x_too` or in y alone.
+    /// Compares the values of one component at each offset and at its mirror images: in y, and with `in_x_too` in x.
     fn check_symmetry(&self, values: &[f64], (symmetry, in_x_too): (Symmetry, bool), largest: f64) -> Result<()> {
         let Symmetry { in_x, in_y, .. } = symmetry;
         let (cx, width) = (self.cx, 2 * self.cx);
@@ -147,7 +147,7 @@ impl TangentialInfluence<'_> {
         Ok(())
     }
 
-    /// Why these are refused: one of four values at mirrored offsets that is no number, or two that differ.
+    /// The refusal: of four values at mirrored offsets one is not finite, or two differ.
     fn uneven_at(
         &self,
         all: &[AtOffset; 4],
@@ -164,7 +164,7 @@ impl TangentialInfluence<'_> {
     }
 }
 
-/// A copy of the caller's tables: those of a solver.
+/// A solver's copy of the caller's tables.
 #[derive(Clone, Debug)]
 pub struct KeptInfluence {
     cx: usize,
@@ -176,7 +176,7 @@ pub struct KeptInfluence {
 }
 
 impl KeptInfluence {
-    /// Of tables that have the sizes that they say.
+    /// Copies tables, whose sizes are checked.
     pub fn new(of: &TangentialInfluence<'_>) -> Result<KeptInfluence> {
         let copy = |values: &[f64]| collected(values.iter().copied(), "the tangential influence coefficients");
         let [xx, yy, xy] = of.coefficients;
@@ -206,7 +206,7 @@ impl KeptInfluence {
         }
     }
 
-    /// Whether these are the same, but for row -cy and column -cx, which nobody reads.
+    /// Whether these tables are equal. Row -cy and column -cx do not count: no product reads them.
     pub fn is(&self, other: &TangentialInfluence<'_>) -> bool {
         let kept = self.view();
         let (cx, cy, width) = (self.cx, self.cy, 2 * self.cx);

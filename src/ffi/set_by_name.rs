@@ -141,10 +141,10 @@ fn all<'a>(names: impl Iterator<Item = &'a str>) -> String {
     format!("there are {}", names.collect::<Vec<_>>().join(", "))
 }
 
-/// At most so many names are all told.
+/// Up to so many names are listed in full.
 const FEW: usize = 20;
 
-/// Which names there are; of many those that are nearly as `name`.
+/// Lists the names; of many only those similar to `name`.
 fn said<'a>(name: &str, names: impl Iterator<Item = &'a str>) -> String {
     let names: Vec<&str> = names.collect();
     let given = name.to_uppercase();
@@ -160,7 +160,7 @@ fn said<'a>(name: &str, names: impl Iterator<Item = &'a str>) -> String {
     }
 }
 
-/// Letters to change, leave out or put in between two texts.
+/// The Levenshtein distance: letters to change, to leave out or to insert.
 fn distance(one: &str, other: &str) -> usize {
     let other: Vec<char> = other.chars().collect();
     let mut row: Vec<usize> = (0..=other.len()).collect();

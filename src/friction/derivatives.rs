@@ -20,7 +20,7 @@ impl Solver {
     /// See [`Report::sensitivities`](super::Report::sensitivities): the pressures are held.
     pub(super) fn sensitivities(&mut self, friction: &Friction<'_>) -> Result<[[f64; 3]; 3]> {
         let mut derivatives = [[0.0; 3]; 3];
-        let (Some(window), Some(level)) = (self.window, self.levels.first_mut()) else { return Ok(derivatives) };
+        let (Some(window), Some(level)) = (&self.window, self.levels.first_mut()) else { return Ok(derivatives) };
         for by in 0..3 {
             let Memory { tangent, fields, .. } = &mut level.memory;
             if by == 0 {
@@ -47,7 +47,7 @@ impl Solver {
     /// How the tractions of the last result change with its pressures, by `dp`, and with the slip that is not theirs: `change` is dw on entry and
     /// dq on return. All on the whole grid.
     pub fn change(&mut self, friction: &Friction<'_>, dp: &[f64], change: &mut [Vector]) -> Result<()> {
-        let (Some(window), Some(level)) = (self.window, self.levels.first_mut()) else {
+        let (Some(window), Some(level)) = (&self.window, self.levels.first_mut()) else {
             change.fill([0.0; 2]);
             return Ok(());
         };

@@ -10,12 +10,12 @@ use super::request::Request;
 use super::shift::{Goal, Memory};
 use super::solution::Report;
 use super::solver::Solver;
-use super::window::Window;
 use crate::effects::Branch;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::collected;
 use crate::progress::Outcome;
+use crate::rectangle::Rectangle;
 
 /// Products in vain are kept back for the end of a solve, and of one in turns.
 const KEPT_BACK: u64 = 3;
@@ -48,7 +48,7 @@ impl Solver {
     pub(super) fn iterate_with_law(
         &mut self,
         request: &Request<'_>,
-        (window, forces, began): (Window, Forces, (bool, bool)),
+        (window, forces, began): (&Rectangle, Forces, (bool, bool)),
         watch: &mut dyn FnMut(&Grid, f64) -> bool,
         report: &mut Report,
     ) -> Result<Outcome> {

@@ -31,6 +31,7 @@ pub mod dense;
 mod derivatives;
 mod disc;
 mod discs;
+mod displaced;
 mod downhill;
 mod excess;
 mod forces;
@@ -68,7 +69,6 @@ mod take_over;
 mod tangent;
 mod toeplitz;
 mod unit;
-mod window;
 mod with_law;
 
 pub use certificate::Certificate;

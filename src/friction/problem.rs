@@ -196,6 +196,11 @@ impl Problem {
         self.rms_bound
     }
 
+    /// The order of what tractions of the size of the bounds displace.
+    pub fn displaced_by_bounds(&self) -> f64 {
+        self.operators.self_influence * self.rms_bound
+    }
+
     /// `s = w + u` of element i.
     #[inline]
     pub fn slip_at(&self, i: usize, u: &[Vector]) -> Vector {

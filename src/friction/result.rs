@@ -5,24 +5,17 @@ use super::levels::Level;
 use super::plane::{against, length, Vector};
 use super::solution::{resultant, Report, Solution, EXTERIOR, SLIP, STICK};
 use super::solver::Solver;
-use super::window::Window;
 use crate::effects::{Friction, Prescribed};
 use crate::sums::in_blocks;
 
 impl Solver {
     /// The result on the whole grid, and what is to be said of it.
-    pub(super) fn write(
-        &mut self,
-        friction: &Friction<'_>,
-        pressure: &[f64],
-        window: Option<Window>,
-        report: &mut Report,
-    ) {
+    pub(super) fn write(&mut self, friction: &Friction<'_>, pressure: &[f64], report: &mut Report) {
         let Solution { traction, slip, stick_slip, .. } = &mut self.solution;
         let (grid, scales, threads) = (self.grid, self.scales, self.threads.suited_to(self.grid.len()));
         let distance = friction.distance(&grid);
         let mut offset = [0.0; 2];
-        if let (Some(window), Some(Level { problem, state, .. })) = (window, self.levels.first()) {
+        if let (Some(window), Some(Level { problem, state, .. })) = (&self.window, self.levels.first()) {
             offset = scales.own_displacement(problem.offset);
             self.offset = offset;
             // The elements in contact of a row.

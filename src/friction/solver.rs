@@ -1,6 +1,7 @@
 //! The solve of a tangential problem: the box around C, the rigid slip, nested iteration, hand-over, the result.
 
 use super::certificate::Certificate;
+use super::displaced::Displaced;
 use super::forces::Forces;
 use super::law::Particle;
 use super::levels::{levels, Level};
@@ -11,7 +12,6 @@ use super::request::{before, Request, Start};
 use super::scales::Scales;
 use super::solution::{Report, Solution};
 use super::sweep::Rolling;
-use super::window::{Displaced, Window};
 use super::Tangential;
 use crate::effects::{Coefficient, Friction, Motion, Previous};
 use crate::error::{invalid, Result};
@@ -19,6 +19,7 @@ use crate::grid::Grid;
 use crate::memory::keep;
 use crate::methods::fields;
 use crate::progress::Outcome;
+use crate::rectangle::Rectangle;
 use crate::threads::Threads;
 
 /// A start that leaves more than this residual is worth less than the coarser grids.
@@ -46,7 +47,7 @@ pub struct Solver {
     pub(super) offset: Vector,
     pub(super) has_solution: bool,
     /// The box of the last solve.
-    pub(super) window: Option<Window>,
+    pub(super) window: Option<Rectangle>,
     /// Sums of each row, while a result is summed up.
     pub(super) sums: Vec<[f64; 3]>,
 }
@@ -158,12 +159,11 @@ impl Solver {
             distance: self.scales.length(friction.distance(&self.grid)),
             by: friction.elements_rolled(&self.grid),
         });
-        let window = Window::around(&self.grid, &self.threads.for_a_pass(self.grid.len()), |i| {
-            pressure[i] > 0.0 || rolling.is_none() && before(friction, kept, i) != [0.0; 2]
-        })?;
+        let counts = |i: usize| pressure[i] > 0.0 || rolling.is_none() && before(friction, kept, i) != [0.0; 2];
+        let window = Rectangle::around(&self.grid, &self.threads, |mut elements| elements.any(counts), counts);
         let mut end = Outcome::Converged;
         let mut report = Report { from_rest, ..Report::default() };
-        if let Some(window) = window {
+        if let Some(window) = &window {
             let by = if friction.motion == Motion::Shift { (0.0, 0.0) } else { friction.elements_rolled(&self.grid) };
             self.tangential.check_reach(&window.grid(&self.grid), by)?;
             self.scales.fit(self.largest_bound(window, bound));
@@ -180,7 +180,7 @@ impl Solver {
             report.products += self.take_products();
         }
         let march = self.march(friction, pressure)?;
-        self.write(friction, pressure, window, &mut report);
+        self.write(friction, pressure, &mut report);
         self.write_particles(march);
         report.missing = self.missing(friction, &report);
         self.has_solution = true;
@@ -196,7 +196,7 @@ impl Solver {
     /// Solves in a window, in the solver's units. The report gets the certificate, and what that took.
     fn solve_in(
         &mut self,
-        (window, rolling): (Window, Option<Rolling>),
+        (window, rolling): (&Rectangle, Option<Rolling>),
         request: &Request<'_>,
         forces: Forces,
         watch: &mut dyn FnMut(&Grid, f64) -> bool,
@@ -270,14 +270,14 @@ impl Solver {
     }
 
     /// Operators of a window.
-    fn set_up(&mut self, window: Window, rolling: Option<Rolling>) -> Result<()> {
+    fn set_up(&mut self, window: &Rectangle, rolling: Option<Rolling>) -> Result<()> {
         let grid = self.scales.grid(&window.grid(&self.grid));
-        let first = self.scaled.rows().map(|_| window.y.0);
+        let first = self.scaled.rows().map(|_| window.y.start);
         if self.levels.first().is_some_and(|level| level.problem.suits(&grid, first, rolling)) {
             return Ok(());
         }
         self.levels.clear();
-        let tangential = self.scaled.of_run(window.y.0, grid.my);
+        let tangential = self.scaled.of_run(window.y.start, grid.my);
         self.levels = levels(&tangential, grid, rolling, self.single, &self.threads)?;
         Ok(())
     }

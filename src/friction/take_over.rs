@@ -1,6 +1,7 @@
 //! The start of a solve: bounds, rigid slip and tractions.
 
 use super::certificate::is_on_circle;
+use super::displaced::displaced;
 use super::excess::Excess;
 use super::levels::Level;
 use super::plane::{add, square, Vector};
@@ -10,12 +11,12 @@ use super::scales::Scales;
 use super::solution::{Solution, EXTERIOR};
 use super::solver::Solver;
 use super::sweep::{Rolling, Sweep};
-use super::window::{displaced, Window};
 use crate::effects::{Coefficient, Friction, Motion, Prescribed, Previous};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::{blank, collected, unwritten, zeros};
 use crate::methods::fields;
+use crate::rectangle::Rectangle;
 
 /// Where more than this part of C slips after the step before, Newton's method is the faster one for the next step.
 const MOSTLY_SLIP: f64 = 0.8;
@@ -36,7 +37,7 @@ const FIELDS: &str = "tangential fields";
 
 impl Solver {
     /// The largest bound of the elements of a window.
-    pub(super) fn largest_bound(&self, window: Window, bound: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
+    pub(super) fn largest_bound(&self, window: &Rectangle, bound: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
         let rows = window.grid(&self.grid).my;
         let threads = self.threads.suited_to(self.grid.len());
         let of_row = |iy: usize| window.row(&self.grid, iy).map(&bound).fold(0.0, f64::max);
@@ -68,7 +69,7 @@ impl Solver {
         &mut self,
         request: &Request<'_>,
         from_rest: bool,
-        window: Window,
+        window: &Rectangle,
         bound: impl Fn(usize) -> f64 + Sync + Send,
     ) -> Result<bool> {
         let had_slip = self.take_over(request, from_rest, window, bound)?;
@@ -80,7 +81,7 @@ impl Solver {
         &mut self,
         request: &Request<'_>,
         from_rest: bool,
-        window: Window,
+        window: &Rectangle,
         bound: impl Fn(usize) -> f64 + Sync + Send,
     ) -> Result<bool> {
         let Request { friction, start, .. } = *request;
@@ -130,7 +131,7 @@ impl Solver {
     }
 
     /// The tractions and the offset to start from, where they are not those before the step.
-    fn start_from(&mut self, request: &Request<'_>, window: Window) {
+    fn start_from(&mut self, request: &Request<'_>, window: &Rectangle) {
         let scales = self.scales;
         let Level { problem, state, .. } = &mut self.levels[0];
         match request.start {
@@ -172,10 +173,16 @@ impl Solver {
         Ok(())
     }
 
+    /// What the tractions of full slip displace, on the elements of the last solve.
+    pub fn full_displacement(&self) -> f64 {
+        let displaced = self.levels.first().map_or(0.0, |level| level.problem.displaced_by_bounds());
+        self.scales.own_displacement([displaced, 0.0])[0]
+    }
+
     /// Refuses slips that dwarf what tractions displace, and the reverse: products of their ratios are no numbers.
     fn check_range(&self) -> Result<()> {
         let problem = &self.levels[0].problem;
-        let (slip, displaced) = (problem.rms_rigid(), problem.operators.self_influence * problem.rms_bound());
+        let (slip, displaced) = (problem.rms_rigid(), problem.displaced_by_bounds());
         let is_far = |slip: f64| !(slip / displaced < LARGEST_RATIO);
         if displaced > 0.0
             && (is_far(slip) || is_far(problem.rms_slip()) || slip > 0.0 && !(slip / displaced > LEAST_RATIO))
@@ -208,7 +215,7 @@ fn take_step(problem: &mut Problem, friction: &Friction<'_>, grid: &Grid, (scale
 fn take_weights_and_layer(
     problem: &mut Problem,
     friction: &Friction<'_>,
-    (grid, window): (&Grid, Window),
+    (grid, window): (&Grid, &Rectangle),
     scales: &Scales,
 ) -> Result<()> {
     let width = problem.grid.mx;

@@ -35,8 +35,8 @@ pub(super) fn periods(coefficients: &Coefficients, grid: &Grid, reach: Reach) ->
     }
 }
 
-/// Periods of at least `least` for products by even coefficients, where these do not repeat themselves. Rows and columns go through stages of our
-/// own together or not at all; the periods are the same on a machine without vectors, where they do not.
+/// Periods of at least `least` for products by even coefficients, in directions without a period of the scene. Either both rows and columns go
+/// through our own FFT stages or none of them. A machine without vectors has no such stages, but the same periods.
 pub(crate) fn even_periods(coefficients: &Coefficients, grid: &Grid, least: (usize, usize)) -> (usize, usize) {
     let repeats = coefficients.repeats(grid);
     let periods = |length: fn(usize) -> usize| {

@@ -4,7 +4,8 @@
 use std::mem::MaybeUninit;
 
 use super::adhesive_friction::check_alike;
-use super::methods::{self, Methods};
+use super::methods::Methods;
+use super::stages;
 use super::take_over::{is_without_contact, take_distance};
 use super::{check, Criterion, Guess, InitialGuess, Method, Options, ProgressCallback, Report, Solver};
 use crate::adhesion::{self, Frozen, Request, Surfaces};
@@ -45,7 +46,7 @@ impl Frozen for Plain {
         let mut own = Monitor::new(Some(&mut tell), Vec::new(), false);
         let goal = Goal { criterion: Criterion::Residual, tolerance, max_cycles };
         let mut task = Task { problem, state, lowest, set: NonNegative, goal, monitor: &mut own };
-        let stages = methods::stages::<NonNegative>(Method::Auto, true, false);
+        let stages = stages::stages::<NonNegative>(Method::Auto, true, false);
         self.0.solve(&mut task, (Start::Given, Some(survey)), stages, 0.0)
     }
 

@@ -9,13 +9,12 @@
 
 use super::creepage_trials::{Place, Trials};
 use super::tangential_turn::{sharper, TangentialTurn, ROUND_OFF};
-use super::turns::Turns;
-use super::{Options, Solver};
+use super::turns::InTurns;
 use crate::contact::Survey;
 use crate::effects::Coefficient;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::friction::{dot, length, Vector};
-use crate::progress::{Monitor, Outcome};
+use crate::progress::Outcome;
 use crate::scene::{Load, Prescribed, Scene};
 
 /// Where forces miss less than this part of mu N tractions by force are tried with the same pressures, by so many products.
@@ -29,6 +28,9 @@ const BEHIND: f64 = 64.0;
 /// Where turns by force leave more than that part of mu N only the far one is: before full slip pressures carry at most some thousandths more.
 const BEYOND: f64 = 1e-2;
 const FAR: f64 = 1e6;
+/// Creepages that are looked for, times the length rolled, are at most so many times what full slip displaces: far beyond full slip, and as far
+/// from those that a solve refuses, 1e30 times, whatever the pressures of a turn.
+const FARTHEST: f64 = 1e20;
 
 /// The directions in which forces are given.
 fn given(scene: &Scene<'_>) -> [bool; 2] {
@@ -36,68 +38,54 @@ fn given(scene: &Scene<'_>) -> [bool; 2] {
     prescribed.map(|prescribed| matches!(prescribed, Prescribed::Force(_)))
 }
 
-impl Solver {
+impl InTurns<'_, '_, '_> {
     /// Ends turns by force, which ended with `stop`, with creepages where that is to be tried.
-    pub(super) fn meet_by_creepages(
-        &mut self,
-        turns: &mut Turns<'_>,
-        (scene, options): (&Scene<'_>, &Options),
-        stop: Outcome,
-        cycles: &mut usize,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Outcome> {
+    pub(super) fn meet_by_creepages(&mut self, stop: Outcome) -> Result<Outcome> {
         let tried =
             |friction: &&mut TangentialTurn<'_>| friction.is_near() || stop == Outcome::Stagnated && friction.by_force;
-        let Some(friction) = turns.friction.as_mut().filter(tried) else { return Ok(stop) };
+        let Some(friction) = self.turns.friction.as_mut().filter(tried) else { return Ok(stop) };
         let is_refused = friction.is_refused();
         if stop == Outcome::Cancelled
             || stop == Outcome::Converged && !is_refused
-            || is_refused && carries_always(scene)
+            || is_refused && carries_always(self.scene)
         {
             return Ok(stop);
         }
         let Some(from) = place(friction) else { return Ok(stop) };
-        let normal = monitor.survey.as_ref().map_or(f64::INFINITY, Survey::relative_residual);
+        let normal = self.monitor.survey.as_ref().map_or(f64::INFINITY, Survey::relative_residual);
         let is_done = stop == Outcome::IterationLimit || normal < ROUND_OFF;
         if stop != Outcome::Converged && friction.is_at_round_off() && is_done {
             return Ok(stop);
         }
         friction.by_force = false;
-        if stop == Outcome::Converged && from.missing() <= options.tolerance {
+        if stop == Outcome::Converged && from.missing() <= self.options.tolerance {
             friction.accept(from.missing());
             return Ok(stop);
         }
         log::info!("turns by force leave {:e} of mu N, turns with creepages go on", from.missing());
         let mut refusal = friction.take_refusal();
         let is_beyond = refusal.is_some() && from.missing() > BEYOND;
-        let places = if is_beyond { &[FAR] } else { &ABOUT[..] };
-        let (from, mut end) = self.look_about(turns, (scene, options), (from, places), cycles, monitor)?;
+        let parts = if is_beyond { &[FAR] } else { &ABOUT[..] };
+        let (from, mut end) = self.look_about(from, parts)?;
         if let (Some(from), Outcome::Converged) = (from, end) {
             refusal = None;
-            end = self.bracket(turns, (scene, options), from, cycles, monitor)?;
+            end = self.bracket(from)?;
         } else if end == Outcome::Converged && refusal.is_none() {
             end = Outcome::Stagnated;
         }
-        if let Some(friction) = turns.friction.as_mut().filter(|_| end == Outcome::Converged) {
-            friction.refuse_by(refusal);
-        }
-        if let Some(friction) = &mut turns.friction {
+        if let Some(friction) = &mut self.turns.friction {
+            if end == Outcome::Converged {
+                friction.refuse_by(refusal);
+            }
             friction.held = None;
         }
         Ok(end)
     }
 
     /// A place that reaches the force, among those about the creepages of turns by force; none is found, or the search ends otherwise than by convergence.
-    fn look_about(
-        &mut self,
-        turns: &mut Turns<'_>,
-        of: (&Scene<'_>, &Options),
-        (from, parts): (Place, &[f64]),
-        cycles: &mut usize,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<(Option<Place>, Outcome)> {
-        let given = given(of.0);
-        let wanted = turns.friction.as_ref().map_or([0.0; 2], TangentialTurn::wanted);
+    fn look_about(&mut self, from: Place, parts: &[f64]) -> Result<(Option<Place>, Outcome)> {
+        let given = given(self.scene);
+        let wanted = self.turns.friction.as_ref().map_or([0.0; 2], TangentialTurn::wanted);
         let along = [0, 1].map(|k| if given[k] { from.creepage[k] } else { 0.0 });
         // Without a creepage all parts are the same.
         let parts = if length(along) > 0.0 { parts } else { &parts[..1] };
@@ -106,13 +94,13 @@ impl Solver {
             let is_far = *part >= BEHIND && given == [true; 2] && length(wanted) > 0.0;
             let against = wanted.map(|force| -force / length(wanted) * length(along));
             let held = if is_far { against } else { along }.map(|c| part * c);
-            let end = self.turns_with(turns, of, held, cycles, monitor)?;
+            let end = self.turns_with(held)?;
             if end != Outcome::Converged && end != Outcome::Stagnated {
                 return Ok((None, end));
             }
             // All of it is reached, or more.
-            let reaches = |at: &Place| at.missing() <= of.1.tolerance || dot(at.excess, wanted) >= 0.0;
-            let found = turns.friction.as_ref().and_then(place).filter(|_| end == Outcome::Converged);
+            let reaches = |at: &Place| at.missing() <= self.options.tolerance || dot(at.excess, wanted) >= 0.0;
+            let found = self.turns.friction.as_ref().and_then(place).filter(|_| end == Outcome::Converged);
             if let Some(place) = found.filter(reaches) {
                 return Ok((Some(place), end));
             }
@@ -121,22 +109,14 @@ impl Solver {
     }
 
     /// The creepages of the force, from a place on.
-    fn bracket(
-        &mut self,
-        turns: &mut Turns<'_>,
-        of: (&Scene<'_>, &Options),
-        from: Place,
-        cycles: &mut usize,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Outcome> {
-        let (scene, options) = of;
-        let scale = turns.friction.as_ref().map_or(0.0, TangentialTurn::largest_slip);
-        let (mut found, mut trials) = (from, Trials::new(from, given(scene), scale));
+    fn bracket(&mut self, from: Place) -> Result<Outcome> {
+        let scale = self.turns.friction.as_ref().map_or(0.0, TangentialTurn::largest_slip);
+        let (mut found, mut trials) = (from, Trials::new(from, given(self.scene), scale));
         for _ in 0..MOST_TRIALS {
-            if found.missing() <= options.tolerance {
+            if found.missing() <= self.options.tolerance {
                 return Ok(Outcome::Converged);
             }
-            if found.missing() < CLOSE && self.finish(turns, (scene, options), monitor)? {
+            if found.missing() < CLOSE && self.finish()? {
                 return Ok(Outcome::Converged);
             }
             let next = trials.next(found);
@@ -144,11 +124,11 @@ impl Solver {
             if next == found.creepage {
                 break;
             }
-            let end = self.turns_with(turns, of, next, cycles, monitor)?;
+            let end = self.turns_with(next)?;
             if end != Outcome::Converged {
                 return Ok(end);
             }
-            found = match turns.friction.as_ref().and_then(place) {
+            found = match self.turns.friction.as_ref().and_then(place) {
                 Some(found) => found,
                 None => break,
             };
@@ -156,37 +136,30 @@ impl Solver {
         // The best is what a solve returns that does not converge.
         let best = trials.best();
         if found.missing() > best.missing() {
-            self.turns_with(turns, of, best.creepage, cycles, monitor)?;
+            self.turns_with(best.creepage)?;
         }
         Ok(Outcome::Stagnated)
     }
 
-    /// Turns with creepages that are held. Those of a search that are beyond the range of slips find nothing: the caller did not give them.
-    fn turns_with(
-        &mut self,
-        turns: &mut Turns<'_>,
-        (scene, options): (&Scene<'_>, &Options),
-        creepage: Vector,
-        cycles: &mut usize,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Outcome> {
-        if let Some(friction) = &mut turns.friction {
-            friction.held = Some(creepage);
+    /// Turns with creepages that are held. Those that are too far find nothing: the caller did not give them.
+    fn turns_with(&mut self, creepage: Vector) -> Result<Outcome> {
+        let Some(friction) = &mut self.turns.friction else { return Ok(Outcome::Stagnated) };
+        if !(length(creepage) <= FARTHEST * friction.full_displacement()) {
+            return Ok(Outcome::Stagnated);
         }
-        match self.turn_about(turns, (scene, &sharper(options)), (Outcome::Converged, false), cycles, monitor) {
-            Err(Error::InvalidArgument(_)) => Ok(Outcome::Stagnated),
-            end => end,
-        }
+        friction.held = Some(creepage);
+        self.turn_about(&sharper(self.options), (Outcome::Converged, false))
     }
 
     /// Tractions by force with the pressures that were found last: whether both problems are solved so.
-    fn finish(&mut self, turns: &mut Turns<'_>, of: (&Scene<'_>, &Options), monitor: &mut Monitor<'_>) -> Result<bool> {
+    fn finish(&mut self) -> Result<bool> {
+        let InTurns { solver, turns, monitor, .. } = self;
         if let Some(friction) = &mut turns.friction {
             (friction.held, friction.most) = (None, FINISH);
         }
-        let end = turns.solve(true, Outcome::Converged, &self.state, monitor)?;
-        let (distance, change) = turns.distance(&self.state);
-        let holds = self.holds_with((distance, change.unwrap_or(0.0)), of, monitor);
+        let end = turns.solve(true, Outcome::Converged, &solver.state, monitor)?;
+        let (distance, change) = turns.distance(&solver.state);
+        let holds = solver.holds_with((distance, change.unwrap_or(0.0)), (self.scene, self.options), monitor);
         let is_refused = turns.friction.as_mut().is_some_and(|friction| {
             friction.most = usize::MAX;
             friction.take_refusal().is_some()

@@ -7,7 +7,7 @@ use crate::error::{invalid, Error, Result};
 use crate::scene::{Load, Scene};
 
 impl SetUp {
-    /// Refuses to work where the last table could not be set.
+    /// Refuses a solve after a table could not be set.
     pub fn check_table(&self) -> Result<()> {
         if self.lacks_table {
             return invalid("influence could not be set the last time: set it again".into());
@@ -15,7 +15,7 @@ impl SetUp {
         Ok(())
     }
 
-    /// Refuses a scene, whose distance and load are checked, and options that are not those of the set-up, or not solved together.
+    /// Refuses a scene or options that differ from the set-up, and effects that are not solved together. Distance and load are checked already.
     pub fn check(&self, scene: &Scene<'_>, options: &Options, problem: &Problem) -> Result<()> {
         self.check_options(options)?;
         scene.check_free_load(options.is_fixed())?;
@@ -45,7 +45,7 @@ impl SetUp {
             return invalid(difference);
         }
         effects::check_effects(scene)?;
-        // Own coefficients know no bodies.
+        // With own coefficients bodies do not count.
         if !problem.given {
             effects::check_bodies(scene)?;
         }
@@ -85,7 +85,7 @@ impl SetUp {
     }
 }
 
-/// Refuses a guess that is none, or that is missing.
+/// Refuses a guess that is missing, too short or not finite.
 pub fn guess(scene: &Scene<'_>, options: &Options, guess: Option<Guess<'_>>) -> Result<()> {
     let grid = &scene.grid;
     let fixed = options.is_fixed();
@@ -135,7 +135,7 @@ pub fn range(
         let on_contact = h.iter().zip(fixed.contact).filter(|(h, inside)| **inside && h.is_finite());
         on_contact.fold(0.0, |largest: f64, (h, _)| largest.max(of(*h).abs()))
     };
-    // With a prescribed force the approach is a mean of distances, whatever they are measured from.
+    // With a prescribed force the approach is a mean of distances, which may have any offset.
     let (pressure, displacement, farthest) = match scene.load {
         Load::Approach(approach) => {
             let depth = match fixed {

@@ -5,14 +5,15 @@ use super::Solver;
 use crate::contact::State;
 use crate::effects;
 use crate::error::Result;
-use crate::methods::projected_cg::{Predictor, Window};
+use crate::methods::projected_cg::Predictor;
 use crate::progress::LedgerRow;
+use crate::rectangle::Rectangle;
 use crate::scene::Scene;
 
 /// A copy of the last result, and of what a step in time goes on from.
 pub struct Kept {
     state: State,
-    before: (Predictor, Option<Window>),
+    before: (Predictor, Option<Rectangle>),
     ledger: Vec<LedgerRow>,
 }
 

@@ -1,10 +1,11 @@
-//! Which methods solve a scene, in which order, each handing over to the next when it stalls; and how each starts from nothing.
+//! The methods of a solver: each hands over to the next of the list ([`stages`](super::stages)) when it stalls; and how each starts from nothing.
 
 use super::best::Best;
 use super::estimates;
 use super::iterate::iterate;
 use super::nested::FullMultigrid;
-use super::options::{Method, Options};
+use super::options::Options;
+use super::stages::{share, Stage};
 use crate::contact::{admit, AdmissibleSet, Freshness, Problem, State, Survey};
 use crate::error::{Error, Result};
 use crate::methods::direct::Direct;
@@ -21,14 +22,6 @@ const WORTHLESS: f64 = 0.3;
 /// where the certificate holds.
 const HIDDEN: f64 = 8.0 * f64::EPSILON;
 
-/// The part of the cycles left that a method has before the next one takes over, and how many it has at least. AUTO of a plain scene: 400, 240, 144, and the rest
-/// of 1000 for NORM, which ends on every area of contact.
-const SHARE: f64 = 0.4;
-const LEAST_SHARE: u64 = 60;
-/// The cycles of PROJECTED_CG with limits at most. Most scenes with limits take fewer; where it takes more it mostly goes round in circles, and the
-/// projected Newton method goes on from its best iterate.
-const LIMITED_SHARE: u64 = 100;
-
 /// The methods of a solver, set up when they are first asked for and kept.
 pub struct Methods {
     pub projected_cg: ProjectedCg,
@@ -38,17 +31,6 @@ pub struct Methods {
     norm: Norm,
     pub best: Best,
     shape: CycleShape,
-}
-
-/// A method of the list.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
-    Direct,
-    ProjectedCg,
-    VCycles,
-    FullMultigrid,
-    ProjectedNewton,
-    Norm,
 }
 
 /// How a solve goes on from its start.
@@ -230,7 +212,6 @@ impl Methods {
 
     /// Lets go of the operator, which gets other coefficients: nothing is solved before [`renew`](Self::renew).
     pub fn forget_operator(&mut self) {
-        self.projected_cg.forget_operator();
         self.multigrid = None;
     }
 
@@ -264,14 +245,6 @@ fn is_solved<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, survey: Survey) -> bo
     holds
 }
 
-/// Cycles up to which a method may go on before the next takes over, of which so many are done: a part of those that are left, so that every method of the list
-/// has its turn.
-fn share<S: AdmissibleSet>(stage: Stage, done: u64, most: u64) -> u64 {
-    let left = most.saturating_sub(done);
-    let share = left.min(LEAST_SHARE.max((SHARE * left as f64) as u64));
-    done + if S::LIMITED && stage == Stage::ProjectedCg { share.min(LIMITED_SHARE) } else { share }
-}
-
 /// Whether `p'Ap < 0`: where an iteration diverges by an indefinite A, p is all of such a direction.
 fn has_negative_energy(problem: &mut Problem, state: &mut State) -> Result<bool> {
     problem.displace(&state.p, &mut state.u)?;
@@ -287,28 +260,5 @@ fn set_up_multigrid<'a>(
     match multigrid {
         Some(multigrid) => Ok(multigrid),
         none => Ok(none.insert(FullMultigrid::new(problem, shape)?)),
-    }
-}
-
-/// The methods that solve a scene, first to last. `multigrid`: whether V-cycles solve all its effects.
-pub fn stages<S: AdmissibleSet>(method: Method, symmetric: bool, multigrid: bool) -> &'static [Stage] {
-    use Stage::{Direct, FullMultigrid, Norm, ProjectedCg, ProjectedNewton, VCycles};
-    match method {
-        Method::Norm => &[Norm],
-        // Around limits V-cycles may go round in circles.
-        Method::Multigrid if S::LIMITED && symmetric => &[VCycles, ProjectedNewton],
-        Method::FullMultigrid if S::LIMITED && symmetric => &[FullMultigrid, ProjectedNewton],
-        Method::Multigrid => &[VCycles],
-        Method::FullMultigrid => &[FullMultigrid],
-        Method::ProjectedCg if S::FIXED => &[ProjectedCg],
-        Method::ProjectedCg => &[Direct, ProjectedCg],
-        Method::Auto => match (symmetric, S::FIXED, multigrid) {
-            (true, true, _) => &[ProjectedCg, Norm],
-            (true, false, _) if S::LIMITED => &[Direct, ProjectedCg, ProjectedNewton, Norm],
-            (true, false, true) => &[Direct, ProjectedCg, FullMultigrid, ProjectedNewton, Norm],
-            (true, false, false) => &[Direct, ProjectedCg, ProjectedNewton, Norm],
-            (false, _, true) => &[FullMultigrid, Norm],
-            (false, _, false) => &[Norm],
-        },
     }
 }

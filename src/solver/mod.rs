@@ -33,6 +33,7 @@ mod own_tables;
 mod quantities;
 mod refinement;
 mod report;
+mod stages;
 mod step;
 mod take_over;
 mod tangential;
@@ -56,7 +57,7 @@ pub use bill::{effects_bill, BillOptions, BillRow, Neglected, Omission, Verdict}
 pub use falling::Falling;
 pub use friction_batch::{solve_friction_batch, Ended, Entry, RUN};
 pub use linear::Stiffness;
-pub use options::{ActiveSet, InitialGuess, Method, Options};
+pub use options::{ActiveSet, Guess, InitialGuess, Method, Options};
 pub use quantities::{quantities, Lack, Quantity, QuantityRow};
 pub use refinement::{cost_of_accuracy, solve_to_accuracy, Accuracy, Obstacle, Price, Refinement, SurfaceCallback};
 pub use report::{Halving, Limit, Report};
@@ -74,15 +75,6 @@ use beside::Beside;
 use compressible::Compressible;
 use methods::Methods;
 use tangential::Tangent;
-
-/// Pressures and contact area to start from.
-#[derive(Clone, Copy, Debug)]
-pub struct Guess<'a> {
-    /// Pressures, `[my][mx]`; negative ones and those outside the contact area count as 0 (with a free contact area).
-    pub pressure: &'a [f64],
-    /// Contact area.
-    pub contact: &'a [bool],
-}
 
 /// Operators and grids for many solves on one grid and one pair of bodies. One thread at a time.
 ///

@@ -1,6 +1,6 @@
 //! The normal problem of a scene, on the set of pressures that it allows.
 
-use super::methods;
+use super::stages;
 use super::take_over;
 use super::{Guess, InitialGuess, Options, Solver};
 use crate::contact::{AdmissibleSet, Fixed, NonNegative, Survey};
@@ -86,7 +86,7 @@ impl Solver {
     ) -> Result<(Outcome, f64)> {
         let Solver { problem, state, methods, set_up, has_result, .. } = self;
         let multigrid = set_up.without_multigrid.is_none();
-        let stages = methods::stages::<S>(options.method, problem.symmetric, multigrid);
+        let stages = stages::stages::<S>(options.method, problem.symmetric, multigrid);
         // The last result is gone from here on, unless this solve comes to an end.
         let solved = std::mem::replace(has_result, false);
         if options.initial_guess != InitialGuess::Previous || !solved {

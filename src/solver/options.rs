@@ -43,6 +43,15 @@ pub enum InitialGuess {
     Previous,
 }
 
+/// Pressures and contact area to start from.
+#[derive(Clone, Copy, Debug)]
+pub struct Guess<'a> {
+    /// Pressures, `[my][mx]`; negative ones and those outside the contact area count as 0 (with a free contact area).
+    pub pressure: &'a [f64],
+    /// Contact area.
+    pub contact: &'a [bool],
+}
+
 /// How a scene is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {

@@ -1,5 +1,6 @@
 //! Accuracy instead of a grid: finer and finer grids until the estimated errors are small enough.
 
+mod accuracy;
 mod next_grid;
 mod outlook;
 mod price;
@@ -9,7 +10,7 @@ mod solved;
 
 use std::time::Instant;
 
-pub use next_grid::Accuracy;
+pub use accuracy::Accuracy;
 pub use price_list::{cost_of_accuracy, Obstacle, Price};
 
 use super::quantities::{values, Quantity};
@@ -44,10 +45,7 @@ pub struct Refinement {
     pub seconds: f64,
 }
 
-/// Elements in the longer direction of a grid that a history begins with, at least.
-const LEAST_OF_HISTORY: usize = 16;
-
-/// How a solve on one grid went: it is solved, or `stop` and words say what kept it from that.
+/// The solve on one grid: solved, or the outcome, the reason, and what was found by then.
 type OnGrid = std::result::Result<Solved, (Outcome, String, Option<Solved>)>;
 
 /// Solves on the grid of `scene`, then on finer ones with twice (4, 8 times) the elements in both directions, each from
@@ -71,7 +69,7 @@ pub fn solve_to_accuracy(
     let mut history = History::of(accuracy.wanted().map(|(quantity, _)| quantity), scene);
     let wanted = history.wanted();
     wanted.iter().try_for_each(|quantity| quantity.check(scene))?;
-    let mut doublings = if history.needs_coarser() { first_of_history(&scene.grid) } else { 0 };
+    let mut doublings = if history.needs_coarser() { first_of_history(&scene.grid, history.least(scene)) } else { 0 };
     let (mut without_estimate, mut without_contact) = (0, 0);
     let (stop, why) = loop {
         let (entered, is_first) = (began.elapsed().as_secs_f64(), best.is_none());
@@ -95,7 +93,7 @@ pub fn solve_to_accuracy(
             Err(error) => return Err(error),
         };
         let now = began.elapsed().as_secs_f64();
-        let past = Past::of(&solved, accuracy, (now - entered, now), before.as_ref());
+        let past = Past::of((&solved, history.is_believed()), accuracy, (now - entered, now), before.as_ref());
         let no_contact = solved.report.measures.contact_count == 0;
         if doublings < 0 {
             doublings += 1;
@@ -117,13 +115,14 @@ pub fn solve_to_accuracy(
     Ok(Refinement::of(best, stop, why, began.elapsed().as_secs_f64()))
 }
 
-/// Doublings of the coarsest grid that the history begins with: two halvings, where enough elements are left.
-fn first_of_history(grid: &Grid) -> i32 {
-    let elements = grid.mx.max(grid.my);
-    -[4, 2].into_iter().filter(|parts| elements / parts >= LEAST_OF_HISTORY).count().try_into().unwrap_or(0)
+/// The coarsest grid of the history, in doublings of the scene's: two halvings where enough elements are left in the shorter direction.
+fn first_of_history(grid: &Grid, least: usize) -> i32 {
+    // A grid of four rows tells nothing. A line has one.
+    let elements = if grid.mx.min(grid.my) == 1 { grid.mx.max(grid.my) } else { grid.mx.min(grid.my) };
+    -[4, 2].into_iter().filter(|parts| elements / parts >= least).count().try_into().unwrap_or(0)
 }
 
-/// Of the last solution and one that was not finished: that of the smaller estimated errors, what its residual may hide included.
+/// The better of the last solution and an unfinished one, by their estimated errors. These include what the residual may hide.
 fn better(last: Option<Solved>, unfinished: Option<Solved>, accuracy: &Accuracy) -> Option<Solved> {
     let worst = |solved: &Option<Solved>| {
         let excesses = solved.as_ref().map(|solved| accuracy.excesses(&solved.outlook));
@@ -143,7 +142,7 @@ impl Refinement {
             let reason = format!("{why}; nothing was solved");
             return Refinement { stop, reason, solver: None, report: Report::default(), reached: None, seconds };
         };
-        // Without contact there is nothing to be off.
+        // Without contact the result is exact.
         let without = report.measures.contact_count == 0 && stop == Outcome::Converged;
         let reached = outlook.relative(Quantity::Force).or(without.then_some(0.0));
         let number = reached.map_or("not known".into(), |reached| format!("{reached:.2e}"));
@@ -197,7 +196,7 @@ fn on_grid(
         other => other,
     };
     let (mut solver, lowest) = Solver::for_scene(scene, options).map_err(said)?;
-    // Without a callback the elements that were given are the surface.
+    // Without a callback the surface jumps between the given elements only.
     solver.problem.exact_edges = surface.is_none() && doublings >= 0;
     let mut is_late = false;
     let mut watch = |told: &Progress| {

@@ -3,7 +3,7 @@
 use super::beside::Beside;
 use super::tangential::{Tangent, Turn};
 use super::tangential_turn::TangentialTurn;
-use super::turns::Turns;
+use super::turns::{InTurns, Turns};
 use super::{Options, Solver};
 use crate::effects::{self, Continues};
 use crate::error::{invalid, Error, Result};
@@ -79,7 +79,7 @@ impl Solver {
         });
         let others = effects::coupled(scene, &mut beside.histories)?;
         let mut turns = Turns { friction, others, distances: &mut beside.distances };
-        let solved = self.take_turns(&mut turns, (scene, options), stop, monitor).and_then(|stop| {
+        let solved = InTurns::new(self, &mut turns, (scene, options), monitor).solve(stop).and_then(|stop| {
             self.add_derivatives(&mut turns, scene, monitor)?;
             Ok(stop)
         });

@@ -11,10 +11,10 @@ use crate::progress::{Goal, Monitor};
 use crate::scene::{Load, Scene};
 use crate::threads::Threads;
 
-/// A guess whose residual is larger than this, relative to `h - approach` over C, is no guess: p = 0 has 1.
+/// A guess with a larger residual, relative to `h - approach` over C, is discarded: p = 0 has a residual of 1.
 const WORSE_THAN_NONE: f64 = 1e3;
 
-/// A force that lacks less than this part of the greatest one is that one: the round-off of its sum.
+/// A force within this part of the greatest one counts as the greatest: the sum of the limits has this round-off.
 const FULL: f64 = 1e-12;
 
 /// Takes over the undeformed distance: a copy, for a callback may change the caller's.
@@ -25,8 +25,8 @@ pub fn take_distance(state: &mut State, given: &[f64], threads: &Threads) {
     });
 }
 
-/// Takes over the load and the start; the undeformed distance is there: then u is A p, or there is nothing. `solved`: whether `state` holds the
-/// solution before. Returns a survey, too, where there is something.
+/// Takes over the load and the start; the state has the undeformed distance already. Afterwards u is A p, or the start is nothing. `solved`: whether
+/// `state` holds the last solution. Returns the survey of a start that is not nothing.
 pub fn take_over<S: AdmissibleSet>(
     problem: &mut Problem,
     state: &mut State,
@@ -144,7 +144,7 @@ fn clean<S: AdmissibleSet>(state: &mut State, set: S) {
     state.project(set);
 }
 
-/// p carries the prescribed force, and u = A p; without a product where u is that of pressures that are only to be scaled. Returns whether it is.
+/// Makes p carry the prescribed force, and u = A p. Where u is exact both are scaled, without a product. Returns whether they were.
 fn balance<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -> Result<bool> {
     if state.u_is != Freshness::Exact {
         problem.refresh(state, set)?;
@@ -163,8 +163,8 @@ fn balance<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -
     Ok(factor != Some(1.0))
 }
 
-/// Whether a prescribed force is as much as all elements carry at their limit, but for round-off: then they are there, and no iteration finds it, for what
-/// is left of the force to an element in contact is round-off.
+/// Whether a prescribed force is the greatest that the limits allow, but for round-off. Then all elements are at their limit. No iteration finds
+/// that: what an element in contact would carry is round-off.
 pub fn fills_limits<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -> Result<bool> {
     let Load::Force(force) = state.load else { return Ok(false) };
     if !S::LIMITED {
@@ -181,8 +181,8 @@ pub fn fills_limits<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, 
     Ok(true)
 }
 
-/// By approach, with two periods: the survey of p at its limit everywhere, if that solves the problem; then the state has it. Such a p displaces nothing where
-/// the limit is the same, and no direction leads there: the energy is a straight line along it.
+/// By approach, with two periods: puts all p at their limits and returns the survey, if that solves the problem. A uniform p displaces nothing there.
+/// The energy is linear along it, so that no search direction leads to it.
 pub fn full_at_limits<S: AdmissibleSet>(
     problem: &mut Problem,
     state: &mut State,
@@ -235,8 +235,8 @@ pub fn is_without_contact(state: &mut State, lowest: f64, fixed: bool) -> bool {
     nothing
 }
 
-/// Whether a given contact area on a surface that is even there is to carry no force: then p = 0 solves the problem. No iteration finds it: relative to
-/// distances that are 0, no residual is small.
+/// Whether a given contact area, on which the surface is even, is to carry no force: then p = 0 solves the problem. No iteration finds that: the
+/// distances are 0, and no residual is small relative to them.
 pub fn is_even_without_force<S: AdmissibleSet>(state: &mut State) -> bool {
     if !S::FIXED || state.load != Load::Force(0.0) {
         return false;

@@ -181,6 +181,11 @@ impl Tangent {
         (self.solver.excess(friction, found), self.solver.offset())
     }
 
+    /// What the tractions of full slip displace, by the pressures of the last result.
+    pub fn full_displacement(&self) -> f64 {
+        self.solver.full_displacement()
+    }
+
     /// Adds what the last tractions displace along the normal to an undeformed distance: nothing where bodies are alike.
     pub fn displace(&mut self, distance: &mut [f64]) {
         if let (Some(unlike), Some(solution)) = (&mut self.unlike, self.solver.solution()) {

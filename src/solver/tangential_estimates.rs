@@ -30,6 +30,7 @@ use super::estimates::Parts;
 use crate::contact::{at_ends, at_jumps, Curvature, Outline, Problem, State};
 use crate::effects::Coefficient;
 use crate::friction::{Report, Solution, Vector, SLIP};
+use crate::rectangle::Rectangle;
 use crate::scene::{Friction, Load, Motion, Prescribed};
 
 /// Of the bend, relative to the depth, the part by which forces of a shift are off.
@@ -157,8 +158,7 @@ impl Solved<'_> {
             }
         };
         let value = |i: usize| mu[i];
-        let whole = (0..grid.mx, 0..grid.my);
         let repeats = problem.coefficients.repeats(grid);
-        at_jumps((grid, &whole), repeats, value, weight) * grid.element_area()
+        at_jumps((grid, &Rectangle::full(grid)), repeats, value, weight) * grid.element_area()
     }
 }

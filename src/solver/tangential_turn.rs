@@ -108,6 +108,11 @@ impl<'a> TangentialTurn<'a> {
         slips.fold(0.0, |largest: f64, slip| largest.max(length(*slip)))
     }
 
+    /// What the tractions of full slip displace, by the pressures of the last result.
+    pub fn full_displacement(&self) -> f64 {
+        self.tangent.full_displacement()
+    }
+
     /// The forces that were found are those that are given, to the tolerance.
     pub fn accept(&mut self, missing: f64) {
         self.refusal = None;

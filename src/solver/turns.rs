@@ -74,62 +74,64 @@ impl<'a> Turns<'a> {
     }
 }
 
-impl Solver {
+/// A scene that is solved in turns.
+pub(super) struct InTurns<'s, 't, 'm> {
+    pub(super) solver: &'s mut Solver,
+    pub(super) turns: &'s mut Turns<'t>,
+    pub(super) scene: &'s Scene<'s>,
+    pub(super) options: &'s Options,
+    pub(super) monitor: &'s mut Monitor<'m>,
+    /// Of the normal problem so far.
+    cycles: usize,
+}
+
+impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
+    /// Of which the normal problem is solved.
+    pub(super) fn new(
+        solver: &'s mut Solver,
+        turns: &'s mut Turns<'t>,
+        (scene, options): (&'s Scene<'s>, &'s Options),
+        monitor: &'s mut Monitor<'m>,
+    ) -> InTurns<'s, 't, 'm> {
+        InTurns { solver, turns, scene, options, monitor, cycles: 0 }
+    }
+
     /// Both problems of unlike bodies, and whatever else displaces the undeformed distance, are solved in turns until the certificate of the
     /// normal one holds with what was found last (Panagiotopoulos 1975); then what displaces nothing. The normal problem ended with `stop`.
-    pub(super) fn take_turns(
-        &mut self,
-        turns: &mut Turns<'_>,
-        (scene, options): (&Scene<'_>, &Options),
-        stop: Outcome,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Outcome> {
-        if options.initial_guess != InitialGuess::Previous {
+    pub(super) fn solve(mut self, stop: Outcome) -> Result<Outcome> {
+        if self.options.initial_guess != InitialGuess::Previous {
             // Turns go on from each other, not from what was solved before.
-            self.methods.projected_cg.forget_solutions();
+            self.solver.methods.projected_cg.forget_solutions();
         }
-        let stop = match turns.displace() {
-            true => self.meet(turns, (scene, options), stop, monitor)?,
+        let stop = match self.turns.displace() {
+            true => self.meet(stop)?,
             false => stop,
         };
-        let stop = turns.solve(false, stop, &self.state, monitor)?;
-        turns.all().try_for_each(|coupled| coupled.refuse())?;
+        let stop = self.turns.solve(false, stop, &self.solver.state, self.monitor)?;
+        self.turns.all().try_for_each(|coupled| coupled.refuse())?;
         Ok(stop)
     }
 
     /// The turns with what displaces.
-    fn meet(
-        &mut self,
-        turns: &mut Turns<'_>,
-        (scene, options): (&Scene<'_>, &Options),
-        mut stop: Outcome,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Outcome> {
-        turns.distances.take(&self.state.h)?;
-        let mut cycles = 0;
-        stop = self.turn_about(turns, (scene, options), (stop, true), &mut cycles, monitor)?;
-        self.meet_by_creepages(turns, (scene, options), stop, &mut cycles, monitor)
+    fn meet(&mut self, stop: Outcome) -> Result<Outcome> {
+        self.turns.distances.take(&self.solver.state.h)?;
+        let stop = self.turn_about(self.options, (stop, true))?;
+        self.meet_by_creepages(stop)
     }
 
     /// The same once, as friction says: by force, or with creepages that are held. The normal problem ended with `stop`; `is_met`: with the distances that
-    /// the state has. `cycles`: of the normal problem so far.
-    pub(super) fn turn_about(
-        &mut self,
-        turns: &mut Turns<'_>,
-        (scene, options): (&Scene<'_>, &Options),
-        (mut stop, is_met): (Outcome, bool),
-        cycles: &mut usize,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Outcome> {
+    /// the state has.
+    pub(super) fn turn_about(&mut self, options: &Options, (mut stop, is_met): (Outcome, bool)) -> Result<Outcome> {
         let again = Options { initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*options };
         let mut extrapolation = Extrapolation::new();
         for solved in 0..=MOST_TURNS {
-            let so_far = turns.solve(true, stop, &self.state, monitor)?;
-            let (distance, change) = turns.distance(&self.state);
+            let InTurns { solver, turns, .. } = self;
+            let so_far = turns.solve(true, stop, &solver.state, self.monitor)?;
+            let (distance, change) = turns.distance(&solver.state);
             // Without a displacement the normal problem stays solved.
             let Some(change) = change.or((solved == 0 && !is_met).then_some(0.0)) else { return Ok(so_far) };
-            extrapolation.turn(&self.state.h, distance, change)?;
-            let holds = self.holds_with((distance, change), (scene, options), monitor);
+            extrapolation.turn(&solver.state.h, distance, change)?;
+            let holds = solver.holds_with((distance, change), (self.scene, options), self.monitor);
             // What a turn had not enough products for goes on in the next one.
             let is_done = turns.friction.as_ref().is_none_or(TangentialTurn::is_at_round_off);
             let goes_on = stop == Outcome::Converged && so_far == Outcome::IterationLimit && !is_done;
@@ -140,24 +142,32 @@ impl Solver {
                 break;
             }
             // The work of all turns together is bounded by what the caller said.
-            let left = options.max_cycles.saturating_sub(*cycles);
+            let left = options.max_cycles.saturating_sub(self.cycles);
             if left == 0 || !turns.that(true).all(|coupled| coupled.has_work_left()) {
                 return Ok(Outcome::IterationLimit);
             }
-            monitor.ledger.rows.pop();
-            monitor.enter_grid();
             extrapolation.extrapolate(&mut turns.distances.displaced);
-            let distance = &turns.distances.displaced[..];
-            let displaced = (&Scene { undeformed_distance: distance, ..scene.clone() }, lowest(distance));
-            let again = Options { max_cycles: left, ..again };
-            (stop, _) = self.solve_normal(displaced, &again, None, monitor)?;
-            stop = self.meet_compressed(displaced, &again, None, monitor, stop)?;
-            *cycles += monitor.count.cycles as usize;
+            stop = self.solve_displaced(&Options { max_cycles: left, ..again })?;
         }
         log::info!("the normal problem and what displaces its distance do not agree after {MOST_TURNS} turns");
         Ok(Outcome::Stagnated)
     }
 
+    /// The normal problem once more, with the displaced distance.
+    fn solve_displaced(&mut self, options: &Options) -> Result<Outcome> {
+        let InTurns { solver, monitor, .. } = self;
+        monitor.ledger.rows.pop();
+        monitor.enter_grid();
+        let distance = &self.turns.distances.displaced[..];
+        let displaced = (&Scene { undeformed_distance: distance, ..self.scene.clone() }, lowest(distance));
+        let (stop, _) = solver.solve_normal(displaced, options, None, monitor)?;
+        let stop = solver.meet_compressed(displaced, options, None, monitor, stop)?;
+        self.cycles += monitor.count.cycles as usize;
+        Ok(stop)
+    }
+}
+
+impl Solver {
     /// Takes the normal certificate of the pressures with the distance that was made last, which changed it by `change`: that is reported.
     /// Says whether it holds.
     pub(super) fn holds_with(

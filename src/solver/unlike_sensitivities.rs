@@ -12,8 +12,8 @@
 //! on a contact area that is given, with the undeformed distance L dq. One after the other they make a map `dp -> M dp + b`, whose fixed point
 //! the least residual over the directions so far finds (Eisenstat, Elman and Schultz 1983): each turn brings it nearer by 4 to 30 times.
 
-use super::methods;
 use super::options::Method;
+use super::stages;
 use super::tangential::{Tangent, Turn};
 use super::unlike_bodies::UnlikeBodies;
 use super::Solver;
@@ -177,7 +177,7 @@ impl Linear<'_> {
         let max_cycles = turn.options.max_cycles as u64;
         let goal = Goal { criterion: Criterion::Residual, tolerance: NORMAL, max_cycles };
         let mut own = Monitor::silent();
-        let stages = methods::stages::<Fixed>(Method::Auto, problem.symmetric, set_up.without_multigrid.is_none());
+        let stages = stages::stages::<Fixed>(Method::Auto, problem.symmetric, set_up.without_multigrid.is_none());
         let mut task = Task { problem, state, lowest: 0.0, set: Fixed, goal, monitor: &mut own };
         methods.projected_cg.forget_windows();
         methods.solve(&mut task, (Start::Given, Some(survey)), stages, 0.0)?;

@@ -48,6 +48,27 @@ fn a_bill_is_the_same_on_a_busy_machine() {
     }
 }
 
+/// A largest stress is found with its depth: a bill of both chooses the grids of a bill of one, and has its values to the last bit. 128 x 128 elements:
+/// with two stresses 64 x 64 would be the last grid.
+#[test]
+fn the_depth_of_a_largest_stress_costs_nothing_beside_it() {
+    let grid = grid(128);
+    let mut h = vec![0.0; grid.len()];
+    paraboloid(&grid, &mut h);
+    let plain = Scene::new(grid, &h, ALIKE, Load::Approach(0.04));
+    let scene = Scene { layer: Some(Layer::Uniform(0.003)), ..plain };
+    let of = |wanted: &[Quantity]| -> Vec<BillRow> {
+        let (_, rows) =
+            effects_bill(&scene, &Options::default(), &BillOptions::new(1e-2), wanted, None).expect("a bill");
+        rows.into_iter().filter(|row| row.quantity == Quantity::MaxVonMises).collect()
+    };
+    let (one, both) = (of(&[Quantity::MaxVonMises]), of(&[Quantity::MaxVonMises, Quantity::VonMisesDepth]));
+    assert_eq!((one.len(), both.len()), (1, 1));
+    assert_eq!((one[0].value, one[0].change, one[0].error), (both[0].value, both[0].change, both[0].error));
+    let two = of(&[Quantity::MaxVonMises, Quantity::MaxShear]);
+    assert_ne!(one[0].value, two[0].value, "a second stress takes a grid");
+}
+
 /// A loose target takes half of the products of a tight one, or less: of the tangential problem, whose iterations tell none, too.
 #[test]
 fn products_with_friction_are_those_of_each_target() {

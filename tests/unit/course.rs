@@ -2,14 +2,21 @@
 
 use super::*;
 use crate::grid::Grid;
-use crate::scene::{Bodies, Load};
+use crate::scene::{Bodies, Friction, Load};
+
+fn rolling() -> Friction<'static> {
+    Friction { motion: Motion::SteadyRolling, ..Friction::new(0.3) }
+}
 
 fn course(quantity: Quantity, peaks: &[(f64, f64, f64)]) -> Course {
     let grid = Grid::new(8, 8, 1.0, 1.0).expect("a grid");
     let scene = Scene::new(grid, &[], Bodies::same(1.0, 0.3), Load::Approach(1.0));
     let mut course = Course::of(quantity, &scene);
     for (k, &(value, depth, at_surface)) in peaks.iter().enumerate() {
-        let peak = Peak { value, depth, at_surface, is_near: depth == 0.0 };
+        let mut close = [0.0; CLOSE.len()];
+        close[0] = at_surface;
+        let elements = if depth == 0.0 { 0.0 } else { 10.0 };
+        let peak = Peak { value, depth, elements, close };
         let value = if quantity == Quantity::VonMisesDepth { depth } else { value };
         course.add(k as i32, Value { value, peak: Some(peak), counted: 0.0 }, 0.0);
     }
@@ -44,6 +51,76 @@ fn only_a_stress_at_the_surface_may_be_infinite() {
     assert!(course(Quantity::MaxShear, &grows(0.0)).falling(false).is_none());
     let error = course(Quantity::MaxShear, &grows(0.2)).falling(false).expect("an error").now();
     assert!((0.1..0.4).contains(&error), "{error}");
+}
+
+/// The largest one has settled ten elements and more below the surface; two elements below it another one grows.
+#[test]
+fn a_stress_some_elements_below_the_surface_is_followed_too() {
+    let grid = Grid::new(8, 8, 1.0, 1.0).expect("a grid");
+    let scene = Scene::new(grid, &[], Bodies::same(1.0, 0.3), Load::Approach(1.0));
+    let error = |grows: f64, elements: f64| {
+        let mut course = Course::of(Quantity::MaxShear, &scene);
+        for k in 0..3 {
+            let mut close = [0.0; CLOSE.len()];
+            // Of limit 1.2.
+            close[5] = 1.2 - grows * 0.5f64.powi(k).sqrt();
+            let peak = Peak { value: 1.0, depth: 1.0, elements: elements * 2f64.powi(k), close };
+            course.add(k, Value { value: 1.0, peak: Some(peak), counted: 0.0 }, 0.0);
+        }
+        course.falling(false).expect("an error").now()
+    };
+    assert!((error(0.5, 5.0) - 0.2).abs() < 1e-9, "{}", error(0.5, 5.0));
+    assert_eq!(error(-0.5, 5.0), 0.0);
+    // As deep as the largest one itself on the grid before.
+    assert_eq!(error(0.5, 0.5), 0.0);
+}
+
+/// Next to the surface changes are those of the root of the elements, however small the last of them is.
+#[test]
+fn a_largest_stress_within_an_element_is_not_believed_to_settle_at_once() {
+    let near = [(0.8, 0.0, 0.8), (0.9, 0.0, 0.9), (0.901, 0.0, 0.901)];
+    let error = course(Quantity::MaxShear, &near).falling(false).expect("an error").now();
+    assert!((0.049..0.2).contains(&error), "{error}");
+}
+
+/// One change may be lucky: of tractions, and of stresses beside them or at a limit.
+#[test]
+fn three_grids_are_needed_where_tractions_or_pressures_end_steeply() {
+    let grid = Grid::new(8, 8, 1.0, 1.0).expect("a grid");
+    let scene = Scene::new(grid, &[], Bodies::same(1.0, 0.3), Load::Approach(1.0));
+    let friction = Scene { friction: Some(rolling()), ..scene.clone() };
+    let is_believed = |quantity: Quantity, scene: &Scene<'_>, limit: bool| {
+        let mut course = Course::of(quantity, scene);
+        [0, 1, 2].map(|k| {
+            course.add(k, Value::from(1.0), 0.0);
+            if limit {
+                course.reaches_limit();
+            }
+            course.is_believed()
+        })
+    };
+    assert_eq!(is_believed(Quantity::MaxShear, &scene, false), [true; 3]);
+    assert_eq!(is_believed(Quantity::MaxShear, &scene, true), [false, false, true]);
+    assert_eq!(is_believed(Quantity::MaxShear, &friction, false), [false, false, true]);
+    assert_eq!(is_believed(Quantity::SpinMoment, &friction, false), [false, false, true]);
+    assert_eq!(is_believed(Quantity::MeanGap, &friction, true), [true; 3]);
+}
+
+/// Creepages that change by -154 and -99: of first order where bodies are alike; changes of unlike ones fall no faster on the way to the end.
+#[test]
+fn steady_rolling_of_unlike_bodies_is_slow() {
+    let grid = Grid::new(8, 8, 1.0, 1.0).expect("a grid");
+    let error = |nu: f64| {
+        let bodies = Bodies { shear_modulus: [1.0, 2.0], poisson_ratio: [0.3, nu] };
+        let scene = Scene { friction: Some(rolling()), ..Scene::new(grid, &[], bodies, Load::Approach(1.0)) };
+        let mut course = Course::of(Quantity::Creepage, &scene);
+        for (k, value) in [3608.0, 3454.0, 3355.0].into_iter().enumerate() {
+            course.add(k as i32, Value::from(value), 0.0);
+        }
+        course.falling(false).expect("an error").now()
+    };
+    assert!((error(0.1) - 99.0).abs() < 1e-9, "{}", error(0.1));
+    assert!((178.0..179.0).contains(&error(0.25)), "{}", error(0.25));
 }
 
 /// Three grids agree on an area of 1828 elements by chance: its outline is uncertain all the same.

@@ -8,6 +8,8 @@ fn past(excess: Option<Falling>) -> Past {
         across: (40, 33),
         enough: 32,
         excesses: vec![excess],
+        is_believed: true,
+        leaps: true,
         bytes: 100,
         seconds: 1.0,
         exponent: SECONDS_EXPONENT,
@@ -46,6 +48,22 @@ fn there_are_enough_elements_across_the_contact() {
         assert_eq!(accuracy.next(&past), Next::Refine(doublings), "{across:?}");
     }
     assert_eq!(accuracy.end(&past(by_four(0.9)), 0, 0).map(|end| end.0), Some(Outcome::Converged));
+}
+
+#[test]
+fn largest_stresses_take_one_doubling_after_the_other() {
+    let accuracy = Accuracy::new(1e-4);
+    assert_eq!(accuracy.next(&past(by_four(100.0))), Next::Refine(3));
+    assert_eq!(accuracy.next(&Past { leaps: false, ..past(by_four(100.0)) }), Next::Refine(1));
+}
+
+/// Of one change, which may be lucky, the next grid follows, and no end.
+#[test]
+fn an_error_of_too_few_grids_ends_no_search() {
+    let accuracy = Accuracy::new(1e-4);
+    let past = Past { is_believed: false, ..past(by_four(0.5)) };
+    assert!(accuracy.end(&past, 0, 0).is_none());
+    assert_eq!(accuracy.next(&past), Next::Refine(1));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Products by operators of a part of the grid, beside plain sums.
 
-use super::{loaded, MadeOf, Operator, Operators};
+use super::{loaded, MadeOf, Operator, Operators, Rectangle};
 use crate::grid::Grid;
 use crate::influence::{Coefficients, HalfSpace, Layer, Table};
 use crate::threads::Threads;
@@ -164,7 +164,7 @@ fn what_is_loaded_is_found() {
     for (name, columns, rows, _) in cases() {
         assert_eq!(
             loaded(&pressures(&grid, columns.clone(), rows.clone()), &grid, &Threads::One),
-            Some((columns, rows)),
+            Some(Rectangle { x: columns, y: rows }),
             "{name}"
         );
     }

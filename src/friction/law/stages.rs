@@ -174,8 +174,7 @@ fn iterate(
 
 /// Whether creepages run away from a force that no creepage meets.
 fn is_far(problem: &Problem) -> bool {
-    let displaced = problem.operators.self_influence * problem.rms_bound();
-    !(problem.rms_rigid() / displaced < LARGEST_RATIO)
+    !(problem.rms_rigid() / problem.displaced_by_bounds() < LARGEST_RATIO)
 }
 
 /// rho of a Newton step, from that of a step for bounds that stand still.

@@ -13,10 +13,10 @@ use super::formulas::{Moved, Residual, StepSums};
 use super::scaling::Scaling;
 use super::step_sums::Step;
 use super::vectors::Iteration;
-use super::Window;
 use crate::contact::State;
 use crate::error::Result;
 use crate::operator::fft::Real;
+use crate::rectangle::Rectangle;
 use crate::sums::Sums;
 
 /// A change carries force if its sum is at least this part of the sum of its absolute values; rolling moves pressures without any.
@@ -33,7 +33,7 @@ impl<T: Real> Iteration<T> {
         &mut self,
         state: &State,
         last: Option<Last<'_>>,
-        (window, mx): (&Window, usize),
+        (window, mx): (&Rectangle, usize),
         units: &Scaling,
     ) -> Result<u64> {
         self.deflation.forget();
@@ -66,7 +66,7 @@ impl<T: Real> Iteration<T> {
     }
 
     /// d: the change of p from `last` on C; w = A d by a product.
-    fn displace_change(&mut self, state: &State, last: &[f64], (window, mx): (&Window, usize), units: &Scaling) {
+    fn displace_change(&mut self, state: &State, last: &[f64], (window, mx): (&Rectangle, usize), units: &Scaling) {
         let width = window.x.len();
         for (i, d) in self.deflation.d.iter_mut().enumerate() {
             let whole = (window.y.start + i / width) * mx + window.x.start + i % width;

@@ -3,7 +3,7 @@
 use super::formulas::{Entering, Leaving, Moved, MovedU};
 use super::step_sums::Update;
 use super::vectors::Iteration;
-use crate::contact::{AdmissibleSet, State};
+use crate::contact::{enter, leave, AdmissibleSet, State};
 use crate::operator::fft::Real;
 
 impl<T: Real> Iteration<T> {
@@ -34,7 +34,9 @@ impl<T: Real> Iteration<T> {
         let before = self.truncation.count();
         let (t, truncation) = (&mut self.t, &mut self.truncation);
         self.segments.change_listed(|i| {
-            truncation.push(i, leave(state, set, i, t[i] > T::zero()));
+            let (to, rises) = (state.p[i], t[i] > T::zero());
+            let for_limit = S::LIMITED && (to > set.limit(i) || to >= 0.0 && rises);
+            truncation.push(i, leave(state, set, i, for_limit));
             t[i] = T::zero();
             true
         });
@@ -70,27 +72,13 @@ impl<T: Real> Iteration<T> {
         let wait = some_may_wait && self.limits.waits(h, u, at_limit, state.approach);
         let mut entered = 0;
         self.segments.change_listed(|i| {
-            let enters = !(wait && at_limit[i]);
+            let enters = !(wait && state.at_limit[i]);
             if enters {
-                (contact[i], entered) = (true, entered + 1);
-                if limited {
-                    at_limit[i] = false;
-                }
+                enter::<S>(state, i);
+                entered += 1;
             }
             enters
         });
         entered
     }
-}
-
-/// Element i leaves C for a bound; `rises`: its pressure does. Returns what it gains.
-fn leave<S: AdmissibleSet>(state: &mut State, set: S, i: usize, rises: bool) -> f64 {
-    let to = state.p[i];
-    let at_limit = S::LIMITED && (to > set.limit(i) || to >= 0.0 && rises);
-    if at_limit {
-        (state.at_limit[i], state.reached_limit) = (true, true);
-    }
-    state.p[i] = if at_limit { set.limit(i) } else { 0.0 };
-    state.contact[i] = false;
-    state.p[i] - to
 }

@@ -21,13 +21,13 @@
 //! approaches as means over C and no extrapolation: 152 in the median, 10 of 100 take more than 300.
 
 use super::deflation::Last;
-use super::level::Level;
+use super::level_task::LevelTask;
 use super::mean_gap::Found;
 use super::End;
 use crate::contact::{norm_of_distance, AdmissibleSet, Freshness, State};
 use crate::error::Result;
 use crate::memory::{computed, reserve};
-use crate::progress::{Goal, Monitor};
+use crate::progress::Goal;
 use crate::scene::Load;
 use crate::sums::{in_blocks, mean};
 
@@ -78,10 +78,10 @@ pub(super) struct FindForce {
 
 impl FindForce {
     /// Whether the force is to be found for the approach.
-    pub(super) fn serves<S: AdmissibleSet>(level: &Level, state: &State, goal: &Goal) -> bool {
-        let by_approach = matches!(state.load, Load::Approach(_));
-        let presses = || in_blocks(state.p.iter().copied()) > 0.0;
-        by_approach && !S::FIXED && !S::LIMITED && !goal.by_update() && level.is_mean_free_line() && presses()
+    pub(super) fn serves<S: AdmissibleSet>(task: &LevelTask<'_, '_, S>, goal: &Goal) -> bool {
+        let by_approach = matches!(task.state.load, Load::Approach(_));
+        let presses = || in_blocks(task.state.p.iter().copied()) > 0.0;
+        by_approach && !S::FIXED && !S::LIMITED && !goal.by_update() && task.level.is_mean_free_line() && presses()
     }
 
     /// Another grid, or another solve.
@@ -101,22 +101,20 @@ impl FindForce {
     /// Solves by approach as by several forces, with at most `at_once` iterations for each.
     pub(super) fn run<S: AdmissibleSet>(
         &mut self,
-        level: &mut Level,
-        (state, set): (&mut State, S),
-        (goal, at_once): (&Goal, u64),
-        finest: usize,
-        monitor: &mut Monitor<'_>,
+        task: &mut LevelTask<'_, '_, S>,
+        goal: &Goal,
+        at_once: u64,
     ) -> Result<End> {
         if self.is_near {
-            return self.run_along(level, (state, set), goal, finest, monitor);
+            return self.run_along(task, goal);
         }
-        let (before, mean) = (monitor.count.cycles, mean(&state.h));
-        let mut rounding = if state.u_is == Freshness::Exact { 0.0 } else { ROUNDING };
+        let (before, mean) = (task.monitor.count.cycles, mean(&task.state.h));
+        let mut rounding = if task.state.u_is == Freshness::Exact { 0.0 } else { ROUNDING };
         for _ in 0..MOST {
-            let most = goal.max_cycles.saturating_sub(monitor.count.cycles - before);
+            let most = goal.max_cycles.saturating_sub(task.monitor.count.cycles - before);
             let residual = goal.tolerance.max(self.tolerance.unwrap_or(LOOSE));
             let inner = Goal { tolerance: residual, max_cycles: most.min(at_once), ..*goal };
-            let (end, found) = self.run_force(level, (state, set), (&inner, mean), finest, monitor)?;
+            let (end, found) = self.run_force(task, &inner, mean)?;
             let is_enough = found.off() <= f64::max(rounding, ENOUGH * goal.tolerance);
             let goes_on = end == End::Met || end == End::Limit && most > at_once;
             if !goes_on || is_enough && residual <= f64::max(rounding, goal.tolerance) {
@@ -126,8 +124,8 @@ impl FindForce {
             rounding = ROUNDING;
             if end == End::Met && self.goes_along(&found) {
                 let along = Goal { max_cycles: most.min(ALONG), ..*goal };
-                let end = self.run_along(level, (state, set), &along, finest, monitor)?;
-                self.is_near |= end == End::Limit && monitor.count.residual < BROUGHT * residual;
+                let end = self.run_along(task, &along)?;
+                self.is_near |= end == End::Limit && task.monitor.count.residual < BROUGHT * residual;
                 self.has_failed = !self.is_near;
                 if !matches!(end, End::Stagnated | End::Breakdown) {
                     return Ok(end);
@@ -139,7 +137,7 @@ impl FindForce {
                 self.tolerance = Some(LOOSE * residual);
             } else {
                 self.tolerance = Some(residual.min(PART * found.off()).max(ROUNDING));
-                if !self.change(state, &found)? {
+                if !self.change(task.state, &found)? {
                     return Ok(End::Stagnated);
                 }
             }
@@ -150,19 +148,19 @@ impl FindForce {
     /// Solves by the force that p carries; finds its approach. `mean`: that of h.
     fn run_force<S: AdmissibleSet>(
         &mut self,
-        level: &mut Level,
-        (state, set): (&mut State, S),
-        (goal, mean): (&Goal, f64),
-        finest: usize,
-        monitor: &mut Monitor<'_>,
+        task: &mut LevelTask<'_, '_, S>,
+        goal: &Goal,
+        mean: f64,
     ) -> Result<(End, Found)> {
+        let state = &mut *task.state;
         let (prescribed, wanted, u_is) = (state.load, state.approach, state.u_is);
         let force = in_blocks(state.p.iter().copied()) * state.grid.element_area();
         state.load = Load::Force(force);
-        let end = level.run(state, set, (u_is, None), goal, finest, monitor);
+        let end = task.run(u_is, None, goal);
+        let state = &mut *task.state;
         (state.load, state.u_is) = (prescribed, Freshness::Stale);
         let end = end?;
-        level.take_displacements(state);
+        task.level.take_displacements(state);
         let approach = self.approach_of(state);
         state.approach = wanted;
         let size = norm_of_distance(state) / (state.contact_count() as f64).sqrt();
@@ -206,18 +204,12 @@ impl FindForce {
     }
 
     /// Iterates by approach, along the change of p in each step. p is as before where that fails.
-    fn run_along<S: AdmissibleSet>(
-        &mut self,
-        level: &mut Level,
-        (state, set): (&mut State, S),
-        goal: &Goal,
-        finest: usize,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<End> {
+    fn run_along<S: AdmissibleSet>(&mut self, task: &mut LevelTask<'_, '_, S>, goal: &Goal) -> Result<End> {
         // A fresh u is of double precision, others of single.
-        let start = computed(state.p.iter().copied(), "pressures by approach")?;
+        let start = computed(task.state.p.iter().copied(), "pressures by approach")?;
         let last = Last { p: &self.before.p, u: None };
-        let end = level.run(state, set, (state.u_is, Some(last)), goal, finest, monitor)?;
+        let end = task.run(task.state.u_is, Some(last), goal)?;
+        let state = &mut *task.state;
         state.u_is = Freshness::Stale;
         self.is_near = end == End::Met;
         if matches!(end, End::Stagnated | End::Breakdown) {

@@ -1,25 +1,22 @@
 //! The iteration of one grid, on the window around its contact area.
 
-use std::sync::Arc;
-
-use super::deflation::Last;
 use super::inner::{in_either, Inner, MadeOf};
 use super::part::{enter, leave};
 use super::punches::Punches;
 use super::scaling::Scaling;
-use super::{Cycle, End, Window};
+use super::window;
 use crate::contact::{AdmissibleSet, Freshness, State};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::operator::Precision;
 use crate::operator::{reserve, Operator};
-use crate::progress::{Goal, Monitor};
+use crate::rectangle::Rectangle;
 use crate::threads::Threads;
 
 /// The iteration on a window.
 struct Windowed {
-    window: Window,
+    window: Rectangle,
     inner: Inner,
     /// Of the last iteration.
     units: Scaling,
@@ -33,8 +30,6 @@ struct Windowed {
 pub struct Level {
     grid: Grid,
     influence: Coefficients,
-    /// Of the whole grid, in double precision, if there is one.
-    operator: Option<Arc<Operator<f64>>>,
     precision: Precision,
     threads: Threads,
     /// None before the first iteration.
@@ -42,7 +37,7 @@ pub struct Level {
     /// Of the window's pressures, in its units, while a scene has limits.
     limits: Vec<f64>,
     /// The window that the next one is to be like, if it serves; none: it is chosen by itself.
-    current: Option<Window>,
+    current: Option<Rectangle>,
 }
 
 impl Level {
@@ -51,7 +46,6 @@ impl Level {
         Level {
             grid,
             influence,
-            operator: None,
             precision,
             threads: threads.clone(),
             windowed: None,
@@ -60,24 +54,14 @@ impl Level {
         }
     }
 
-    /// Whether the next window is the whole grid, and its operator is not here.
-    pub fn needs_operator(&self, state: &State) -> bool {
-        self.operator.is_none() && self.window(state).is_full(&self.grid)
-    }
-
-    /// Where the window is the whole grid, its operator need not be set up anew.
-    pub fn lend(&mut self, operator: Arc<Operator<f64>>) {
-        self.operator = Some(operator);
-    }
-
-    /// Lets go of the operator of the whole grid.
-    pub fn forget_operator(&mut self) {
-        self.operator = None;
+    /// Whether the next window is the whole grid.
+    pub fn fills_grid(&self, state: &State) -> bool {
+        self.window(state).is_full(&self.grid)
     }
 
     /// Takes other coefficients on the same grid. What the window holds is kept for them, and follows when it is needed.
     pub fn renew(&mut self, influence: Coefficients) {
-        (self.influence, self.operator) = (influence, None);
+        self.influence = influence;
         if let Some(windowed) = &mut self.windowed {
             windowed.is_current = false;
         }
@@ -86,6 +70,11 @@ impl Level {
     /// The influence of an element on itself.
     pub fn self_influence(&self) -> f64 {
         self.influence.self_influence()
+    }
+
+    /// The threads of its passes.
+    pub fn threads(&self) -> &Threads {
+        &self.threads
     }
 
     /// The coefficients of this grid.
@@ -104,12 +93,12 @@ impl Level {
     }
 
     /// The window of the last iteration.
-    pub fn current_window(&self) -> Option<Window> {
+    pub fn current_window(&self) -> Option<Rectangle> {
         self.current.clone()
     }
 
     /// The next window is chosen as after an iteration on this one.
-    pub fn go_back_to(&mut self, window: Option<Window>) {
+    pub fn go_back_to(&mut self, window: Option<Rectangle>) {
         self.current = window;
     }
 
@@ -119,65 +108,18 @@ impl Level {
         self.influence.bytes() + self.windowed.as_ref().map_or(0, windowed)
     }
 
-    /// Iterates on the window around the contact area. Outside it u is not known afterwards.
-    pub fn run<S: AdmissibleSet>(
+    /// Works on the part of `state` in the window around the contact area; takes p, C and the approach from there. `whole`: the
+    /// operator of the whole grid, where there is one.
+    pub(super) fn on_window<S: AdmissibleSet, R>(
         &mut self,
-        state: &mut State,
-        set: S,
-        (mut displacement, last): (Freshness, Option<Last<'_>>),
-        goal: &Goal,
-        finest: usize,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<End> {
-        if displacement != Freshness::Exact {
-            state.carry_force(set, &self.threads);
-            if displacement == Freshness::Near && !state.has_displacements() {
-                displacement = Freshness::Stale;
-            }
-        }
-        let (whole, is_mean_free) = (self.grid, self.influence.is_mean_free());
-        self.on_window(state, set, displacement, |inner, window, units, state, set| {
-            let work = state.grid.len() as f64 / finest as f64;
-            if displacement == Freshness::Near {
-                in_either!(inner, inner => inner.correct(state, set));
-            }
-            if displacement != Freshness::Exact {
-                in_either!(inner, inner => inner.displace(state));
-                monitor.count_products(1, work);
-            }
-            let products = in_either!(inner, inner => inner.deflate_by_change(state, last, (window, whole.mx), units))?;
-            monitor.count_products(products, work);
-            let after_cycle = |cycle: &Cycle| {
-                monitor.count_products(cycle.products, work);
-                monitor.count.active_set_steps += 1;
-                monitor.cycle_done(&whole, cycle.changes, cycle.update / units.pressure(), cycle.residual)
-            };
-            Ok(in_either!(inner, inner => inner.run(state, set, (goal, is_mean_free), after_cycle)))
-        })?
-    }
-
-    /// Improves p where u is near A p and known in all of the contact area, without a product; u is not known afterwards.
-    pub fn correct<S: AdmissibleSet>(&mut self, state: &mut State, set: S) -> Result<()> {
-        state.carry_force(set, &self.threads);
-        if !state.has_displacements() {
-            return Ok(());
-        }
-        self.on_window(state, set, Freshness::Near, |inner, _, _, state, set| {
-            in_either!(inner, inner => inner.correct(state, set));
-        })
-    }
-
-    /// Works on the part of `state` in the window around the contact area; takes p, C and the approach from there.
-    fn on_window<S: AdmissibleSet, R>(
-        &mut self,
-        state: &mut State,
-        set: S,
+        (state, set): (&mut State, S),
         displacement: Freshness,
-        work: impl FnOnce(&mut Inner, &Window, &Scaling, &mut State, S::Within<'_>) -> R,
+        whole: Option<&Operator<f64>>,
+        work: impl FnOnce(&mut Inner, &Rectangle, &Scaling, &mut State, S::Within<'_>) -> R,
     ) -> Result<R> {
         let mut limits = std::mem::take(&mut self.limits);
         let threads = &self.threads.clone();
-        let Windowed { window, inner, units, part, .. } = self.choose_window(state)?;
+        let Windowed { window, inner, units, part, .. } = self.choose_window(state, whole)?;
         let grid = window.grid(&state.grid);
         in_either!(inner, inner => inner.wake(grid.len()));
         if S::LIMITED {
@@ -216,20 +158,20 @@ impl Level {
     }
 
     /// The window that an iteration from `state` works on.
-    pub fn window(&self, state: &State) -> Window {
+    pub fn window(&self, state: &State) -> Rectangle {
         match self.influence.depends_on_place() {
-            false => Window::around(state, self.current.as_ref(), self.influence.is_even(&self.grid), &self.threads),
-            true => Window::full(&self.grid),
+            false => window::around(state, self.current.as_ref(), self.influence.is_even(&self.grid), &self.threads),
+            true => Rectangle::full(&self.grid),
         }
     }
 
     /// Whether contact fills less than half of a window that is not the whole grid: elements outside may enter.
     pub fn is_scattered(&self, state: &State) -> bool {
         let window = self.window(state);
-        !window.is_full(&self.grid) && 2 * state.contact_count() < window.elements()
+        !window.is_full(&self.grid) && 2 * state.contact_count() < window.count()
     }
 
-    fn choose_window(&mut self, state: &State) -> Result<&mut Windowed> {
+    fn choose_window(&mut self, state: &State, whole: Option<&Operator<f64>>) -> Result<&mut Windowed> {
         let window = self.window(state);
         self.current = Some(window.clone());
         let grid = window.grid(&self.grid);
@@ -243,7 +185,7 @@ impl Level {
             Some(|| State::at_rest(grid, (state.load, state.approach), &self.threads))
         };
         // The operator of a window depends on its size only.
-        let whole = self.operator.as_deref().filter(|_| window.is_full(&self.grid));
+        let whole = whole.filter(|_| window.is_full(&self.grid));
         let threads = &self.threads.suited_to(grid.len());
         let made_of = MadeOf { influence: &self.influence, factor: units.influence, whole, threads };
         let serves = |windowed: &Windowed| {

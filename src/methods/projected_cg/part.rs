@@ -1,16 +1,16 @@
 //! The window's part of a state: how the iteration gets it, in units of its own, and gives it back.
 
 use super::scaling::Scaling;
-use super::Window;
 use crate::contact::{AdmissibleSet, Freshness, State};
 use crate::error::Result;
 use crate::memory::{rest, wake};
 use crate::operator::reserve;
+use crate::rectangle::Rectangle;
 use crate::threads::Threads;
 
 /// `part` becomes the window's part of a state, in the iteration's units. One array after the other: what has been extracted rests.
 pub(super) fn enter<S: AdmissibleSet>(
-    (window, units): (&Window, &Scaling),
+    (window, units): (&Rectangle, &Scaling),
     state: &mut State,
     part: &mut State,
     displacement: Freshness,
@@ -51,7 +51,7 @@ pub(super) fn enter<S: AdmissibleSet>(
 
 /// The state takes p, C and the approach from the window's part of it.
 pub(super) fn leave<S: AdmissibleSet>(
-    (window, units): (&Window, &Scaling),
+    (window, units): (&Rectangle, &Scaling),
     part: &mut State,
     state: &mut State,
     threads: &Threads,

@@ -9,11 +9,11 @@ use std::mem::{swap, take};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::deflation::Last;
-use super::Window;
 use crate::contact::{presses, Freshness, State};
 use crate::error::Result;
 use crate::memory::keep;
 use crate::operator::zeros;
+use crate::rectangle::Rectangle;
 use crate::scene::Load;
 use crate::sums::Sums;
 use crate::threads::Threads;
@@ -61,7 +61,7 @@ impl Predictor {
     pub fn predict(
         &mut self,
         state: &mut State,
-        window: impl FnOnce(&State) -> Window,
+        window: impl FnOnce(&State) -> Rectangle,
         threads: &Threads,
     ) -> Result<Freshness> {
         let is_of_others = take(&mut self.is_of_others);
@@ -96,7 +96,7 @@ impl Predictor {
                 }
             },
         );
-        let Window { x, y: rows } = window(state);
+        let Rectangle { x, y: rows } = window(state);
         let part = rows.start * mx..rows.end * mx;
         threads.for_each_plain_row(
             &mut state.u[part.clone()],

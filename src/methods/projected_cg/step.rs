@@ -4,17 +4,21 @@
 //!
 //! A solve from nothing begins on the coarser grids (`coarse_grids`), a step in time from what the last ones found (`predictor`).
 
+use std::sync::Arc;
+
 use super::coarse_grids::CoarseGrids;
 use super::find_force::FindForce;
 use super::level::Level;
+use super::level_task::LevelTask;
 use super::predictor::Predictor;
-use super::{End, Window};
+use super::End;
 use crate::contact::{norm_of_distance, residual_norm, AdmissibleSet, Freshness, Problem, State};
 use crate::error::Result;
 use crate::memory::{release, reserve, rests};
 use crate::methods::{Change, Policy, Step, Task};
-use crate::operator::Precision;
+use crate::operator::{Operator, Precision};
 use crate::progress::Goal;
+use crate::rectangle::Rectangle;
 use crate::scene::Load;
 use crate::threads::Threads;
 
@@ -80,29 +84,24 @@ impl ProjectedCg {
     }
 
     /// A copy of what a step in time goes on from, beside the last solution itself.
-    pub fn last(&self) -> Result<(Predictor, Option<Window>)> {
+    pub fn last(&self) -> Result<(Predictor, Option<Rectangle>)> {
         Ok((self.predictor.copy()?, self.finest.current_window()))
     }
 
     /// The window of the last iteration.
-    pub fn current_window(&self) -> Option<Window> {
+    pub fn current_window(&self) -> Option<Rectangle> {
         self.finest.current_window()
     }
 
     /// The next one is chosen as after an iteration on this one.
-    pub fn go_back_to(&mut self, window: Option<Window>) {
+    pub fn go_back_to(&mut self, window: Option<Rectangle>) {
         self.finest.go_back_to(window);
     }
 
     /// A step in time goes on from there.
-    pub fn go_back(&mut self, (predictor, window): (Predictor, Option<Window>)) {
+    pub fn go_back(&mut self, (predictor, window): (Predictor, Option<Rectangle>)) {
         self.predictor = predictor;
         self.finest.go_back_to(window);
-    }
-
-    /// Lets go of the problem's operator.
-    pub fn forget_operator(&mut self) {
-        self.finest.forget_operator();
     }
 
     /// The problem has other coefficients: memory and plans are kept for them, and what is not computed here follows when it is needed.
@@ -135,8 +134,8 @@ impl ProjectedCg {
             release();
         }
         if noisy {
-            self.lend_operator(task.problem, task.state)?;
-            self.finest.correct(task.state, task.set)?;
+            let whole = self.whole_operator(task.problem, task.state)?;
+            self.on_finest(task, whole.as_deref()).correct()?;
             self.finest.rest();
             task.refresh()?;
             task.count_products();
@@ -163,12 +162,22 @@ impl ProjectedCg {
         self.predictor = Predictor::default();
     }
 
-    /// Where the window is the whole grid it needs the operator in single precision: a copy of the problem's, if that is needed anyway.
-    fn lend_operator(&mut self, problem: &mut Problem, state: &State) -> Result<()> {
-        if self.finest.needs_operator(state) && problem.needs_operator(&state.p) {
-            self.finest.lend(problem.operator()?.clone());
+    /// The problem's operator for any p, where the window is the whole grid and the problem needs that operator anyway: the window's one is a copy of it.
+    fn whole_operator(&self, problem: &mut Problem, state: &State) -> Result<Option<Arc<Operator<f64>>>> {
+        match self.finest.fills_grid(state) {
+            true => problem.operator_if_needed(&state.p),
+            false => Ok(None),
         }
-        Ok(())
+    }
+
+    /// The task on the finest grid.
+    fn on_finest<'a, 'm, S: AdmissibleSet>(
+        &'a mut self,
+        task: &'a mut Task<'_, 'm, S>,
+        whole: Option<&'a Operator<f64>>,
+    ) -> LevelTask<'a, 'm, S> {
+        let Task { problem, state, set, monitor, .. } = task;
+        LevelTask { level: &mut self.finest, state, set: *set, whole, finest: problem.grid.len(), monitor }
     }
 
     /// The update of the last step, as far as it proves anything: not where u was of single precision, or a correction was deferred.
@@ -222,14 +231,15 @@ impl<S: AdmissibleSet> Step<S> for ProjectedCg {
         let tolerance = if looks { tolerance.max(LOOK) } else { tolerance };
         let inner = Goal { tolerance, max_cycles, ..*goal };
         let by_approach = self.predicted && matches!(state.load, Load::Approach(_));
-        self.lend_operator(problem, state)?;
+        let whole = self.whole_operator(problem, state)?;
         let last = Some(self.predictor.last()).filter(|_| by_approach && was == Freshness::Exact);
-        let end = if FindForce::serves::<S>(&self.finest, state, &inner) {
-            let inner =
-                Goal { max_cycles: goal.max_cycles.saturating_sub(monitor.count.cycles).min(4 * ROUND), ..inner };
-            self.find_force.run(&mut self.finest, (state, *set), (&inner, u64::MAX), problem.grid.len(), monitor)?
+        let (level, whole, finest) = (&mut self.finest, whole.as_deref(), problem.grid.len());
+        let mut on_finest = LevelTask { level, state, set: *set, whole, finest, monitor };
+        let end = if FindForce::serves(&on_finest, &inner) {
+            let max_cycles = goal.max_cycles.saturating_sub(on_finest.monitor.count.cycles).min(4 * ROUND);
+            self.find_force.run(&mut on_finest, &Goal { max_cycles, ..inner }, u64::MAX)?
         } else {
-            self.finest.run(state, *set, (was, last), &inner, problem.grid.len(), monitor)?
+            on_finest.run(was, last, &inner)?
         };
         self.finest.rest();
         state.u_is = Freshness::Stale;

@@ -27,12 +27,13 @@ pub fn effort(scene: &Scene<'_>, found: &OnGrid, wanted: &[Quantity]) -> f64 {
     let normal = found.work_units - found.tangential;
     let stress =
         STRESS * if scene.friction.is_some() { WITH_TRACTIONS } else { 1.0 } * if repeats { REPEATED } else { 1.0 };
-    let of = |quantity: &Quantity| match quantity {
-        Quantity::MaxVonMises | Quantity::VonMisesDepth | Quantity::MaxShear => stress,
-        Quantity::Stiffness => STIFFNESS,
-        _ => 0.0,
-    };
-    let each = NORMAL * normal + TANGENTIAL * found.tangential + unlike + wanted.iter().map(of).sum::<f64>();
+    let once =
+        |any_of: &[Quantity], effort: f64| if wanted.iter().any(|of| any_of.contains(of)) { effort } else { 0.0 };
+    // A largest stress is found with its depth.
+    let values = once(&[Quantity::MaxVonMises, Quantity::VonMisesDepth], stress)
+        + once(&[Quantity::MaxShear], stress)
+        + once(&[Quantity::Stiffness], STIFFNESS);
+    let each = NORMAL * normal + TANGENTIAL * found.tangential + unlike + values;
     let whole = [(true, SOLVE), (repeats, PERIOD), (scene.coating.is_some(), COATING)];
     let whole: f64 = whole.into_iter().filter(|(has, _)| *has).map(|(_, effort)| effort).sum();
     whole + each * scene.grid.len() as f64

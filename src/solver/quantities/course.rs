@@ -3,16 +3,20 @@
 //! All but pressures and stresses at the surface are integrals of what is solved for, or lie below it: they converge, however slowly. Where their changes do not
 //! fall yet, a row of changes that fall slowly bounds the rest ([`Sequence::slow`]).
 //!
-//! *Largest stresses.* A stress at the surface converges as the root of the elements where tractions or pressures end steeply, one below it with their
-//! square. While the elements are coarse the largest one lies below, and no change from grid to grid tells that the one at the surface overtakes it. So both
-//! are followed: the largest stress is off by what the one at the surface is predicted to exceed it, too, and its depth by the whole of it.
+//! *Largest stresses.* Where tractions or pressures end steeply the stress converges as the root of the elements, at the surface and so many elements below
+//! it; elsewhere with their square. While the elements are coarse the largest one lies deep, and no change from grid to grid tells that another one close to
+//! the surface overtakes it. So those at some depths, which are counted in elements, are followed, too: the largest stress is off by what one of them is
+//! predicted to exceed it, and its depth by the whole of it.
+//!
+//! *Lucky changes.* Of two grids there is one change, which may be small by chance. Tractions have such changes often, and so have stresses at the ends of
+//! tractions and of limits: their errors are believed from three grids on ([`Course::is_believed`]).
 
-use super::deepest::Peak;
+use super::deepest::{Peak, CLOSE};
 use super::{Quantity, Sequence};
 use crate::scene::{Motion, Scene};
 use crate::solver::falling::Falling;
 
-/// A ratio by which changes of a sum fall with a doubling at least, and those of a stress at the surface.
+/// A ratio by which changes of a sum fall with a doubling at least, and those of a stress close to the surface.
 pub const SUM: f64 = 2.0 / 3.0;
 const SURFACE: f64 = 0.75;
 /// Elements by which an area is off at least, over the root of their number: the outline of a circle of n elements has `3.5 sqrt(n)`, of which grids of twice
@@ -41,10 +45,14 @@ pub struct Course {
     quantity: Quantity,
     /// Steady rolling: of first order in the step of the tractions, and irregular.
     rolls: bool,
+    /// The same of unlike bodies: slower on coarse grids.
+    is_slow: bool,
+    /// Whether single changes may be lucky.
+    is_steep: bool,
     values: Sequence,
-    /// Of a largest stress: itself, and the largest one at the surface.
+    /// Of a largest stress: itself, and those close to the surface.
     stress: Sequence,
-    surface: Sequence,
+    close: [Sequence; CLOSE.len()],
     last: Option<Peak>,
     /// What counting elements leaves uncertain of an area.
     least: f64,
@@ -54,8 +62,18 @@ impl Course {
     /// Of which no grid is solved yet.
     pub fn of(quantity: Quantity, scene: &Scene<'_>) -> Course {
         let rolls = scene.friction.is_some_and(|friction| friction.motion == Motion::SteadyRolling);
-        let [values, stress, surface] = std::array::from_fn(|_| Sequence::default());
-        Course { quantity, rolls: rolls && quantity.is_tangential(), values, stress, surface, last: None, least: 0.0 }
+        let rolls = rolls && quantity.is_tangential();
+        Course {
+            quantity,
+            rolls,
+            is_slow: rolls && scene.bodies.unlike() != 0.0,
+            is_steep: scene.friction.is_some() && (quantity.is_tangential() || quantity.is_stress()),
+            values: Sequence::default(),
+            stress: Sequence::default(),
+            close: std::array::from_fn(|_| Sequence::default()),
+            last: None,
+            least: 0.0,
+        }
     }
 
     /// Which.
@@ -70,8 +88,20 @@ impl Course {
         self.least = if found.counted > 0.0 { OUTLINE * found.value.abs() / found.counted.sqrt() } else { 0.0 };
         if let Some(peak) = found.peak {
             self.stress.add(doublings, peak.value, residual * peak.value);
-            self.surface.add(doublings, peak.at_surface, residual * peak.at_surface);
+            for (course, value) in self.close.iter_mut().zip(peak.close) {
+                course.add(doublings, value, residual * value);
+            }
         }
+    }
+
+    /// Elements are at their limit: pressures end steeply there.
+    pub fn reaches_limit(&mut self) {
+        self.is_steep |= self.quantity.is_stress();
+    }
+
+    /// Whether there are grids enough for a search to end with its error.
+    pub fn is_believed(&self) -> bool {
+        !self.is_steep || self.len() > 2
     }
 
     /// Grids so far.
@@ -95,6 +125,7 @@ impl Course {
             (_, Some(peak)) => self.of_stress(peak),
             _ => {
                 let known = if self.rolls { self.values.of_first_order() } else { self.values.falling() };
+                let known = if self.is_slow { larger(known, self.values.slow(SUM)) } else { known };
                 let found = known.or(self.values.slow(SUM))?;
                 Some(Falling { by_two: found.by_two + (self.least - found.now()).max(0.0), ..found })
             }
@@ -103,35 +134,47 @@ impl Course {
 
     /// Of the largest stress as if it stayed where it is. Below the surface a stress is a mean of what acts there: it converges.
     fn of_peak(&self, peak: Peak) -> Option<Falling> {
-        let falling = self.stress.falling();
-        if peak.is_near {
-            falling
+        let (falling, slow) = (self.stress.falling(), self.stress.slow(SURFACE));
+        if peak.is_near() {
+            falling.and(larger(falling, slow))
         } else {
-            falling.or(self.stress.slow(SURFACE))
+            falling.or(slow)
         }
     }
 
-    /// By how much the stress at the surface will exceed the largest one, its error included; negative: it stays below.
-    fn overtakes(&self, peak: Peak, error: f64) -> Option<f64> {
-        Some(peak.at_surface + self.surface.slow(SURFACE)?.now() - peak.value - error)
+    /// By how much a stress close to the surface will exceed the largest one, its error included; negative: all stay below. Those that fall are slopes of the
+    /// largest one, and so are those that were as deep as that one is.
+    fn overtakes(&self, peak: Peak, error: f64) -> f64 {
+        let predicted = |(depth, stress): (&f64, &Sequence)| {
+            let (change, doublings) = stress.last_change()?;
+            let is_own = *depth > 0.0 && depth * 2f64.powi(doublings) > peak.elements;
+            let rest = stress.slow(SURFACE).filter(|_| change > 0.0 && !is_own)?;
+            Some(stress.value()? + rest.now())
+        };
+        let largest = CLOSE.iter().zip(&self.close).filter_map(predicted).fold(f64::NEG_INFINITY, f64::max);
+        largest - peak.value - error
     }
 
     fn of_stress(&self, peak: Peak) -> Option<Falling> {
         let own = self.of_peak(peak)?;
-        let more = match peak.is_near {
-            // It is that one.
-            true => self.surface.slow(SURFACE)?.now() - own.now(),
-            false => self.overtakes(peak, own.now())?,
-        };
+        let more = self.overtakes(peak, own.now());
         Some(Falling { by_two: own.by_two + more.max(0.0), ..own })
     }
 
     fn of_depth(&self, peak: Peak) -> Option<Falling> {
         let own = self.values.falling().or(self.values.slow(SUM))?;
-        let stress = self.of_peak(peak).filter(|_| !peak.is_near);
-        let rises = stress.is_some_and(|stress| self.overtakes(peak, -stress.now()).is_some_and(|more| more > 0.0));
+        let stress = self.of_peak(peak).filter(|_| !peak.is_near());
+        let rises = stress.is_some_and(|stress| self.overtakes(peak, -stress.now()) > 0.0);
         let more = if rises { peak.depth - own.now() } else { 0.0 };
         Some(Falling { by_two: own.by_two + more.max(0.0), ..own })
+    }
+}
+
+/// The larger one of two errors, on this grid.
+fn larger(a: Option<Falling>, b: Option<Falling>) -> Option<Falling> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(if a.now() < b.now() { b } else { a }),
+        _ => a.or(b),
     }
 }
 

@@ -3,11 +3,11 @@
 //! The largest value of a depth is first taken at depths that grow by a ratio, from a quarter of an element to the length of what is loaded.
 //! Then parabolas through the three best depths find the largest one (successive parabolic interpolation; Brent 1973, chapter 5).
 
-use crate::bounding_box::bounding_box;
 use crate::error::Result;
 use crate::friction::Vector;
 use crate::grid::Grid;
 use crate::memory::collected;
+use crate::rectangle::Rectangle;
 use crate::scene::Patches;
 use crate::stress::{subsurface_stress, Body, Depth, Loads, Wanted, MOST_SLENDER};
 use crate::threads::Threads;
@@ -19,23 +19,39 @@ const FIRST: f64 = 0.25;
 /// Parabolas at most, and how near they come to the depth, relative to it.
 const PARABOLAS: usize = 8;
 const NEAR: f64 = 1e-3;
+/// The depths next to the surface, in the longer side of an element: the first ones of those that are looked at.
+pub const CLOSE: [f64; 7] = [
+    0.0,
+    FIRST,
+    FIRST * RATIO,
+    FIRST * RATIO * RATIO,
+    FIRST * RATIO * RATIO * RATIO,
+    FIRST * RATIO * RATIO * RATIO * RATIO,
+    FIRST * RATIO * RATIO * RATIO * RATIO * RATIO,
+];
 
 /// A largest value, and its depth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Peak {
     pub value: f64,
     pub depth: f64,
-    /// The largest value at the surface; 0: not known.
-    pub at_surface: f64,
-    /// Whether it lies within an element of the surface: single pressures make it.
-    pub is_near: bool,
+    /// The same in the longer side of an element.
+    pub elements: f64,
+    /// The largest values at the depths [`CLOSE`] to the surface; 0: not known.
+    pub close: [f64; CLOSE.len()],
 }
 
 impl Peak {
     /// The larger of both.
     pub fn or(self, other: Peak) -> Peak {
         let larger = if other.value > self.value { other } else { self };
-        Peak { at_surface: self.at_surface.max(other.at_surface), ..larger }
+        let close = std::array::from_fn(|k| self.close[k].max(other.close[k]));
+        Peak { close, ..larger }
+    }
+
+    /// Whether it lies within an element of the surface: single pressures make it.
+    pub fn is_near(&self) -> bool {
+        self.elements < 1.0
     }
 }
 
@@ -79,21 +95,20 @@ impl<'a> Surface<'a> {
         threads: &Threads,
     ) -> Result<Option<Surface<'a>>> {
         let presses = |p: &f64| *p != 0.0;
-        let loaded = bounding_box(pressure, &grid, threads, |row| row.iter().any(presses), presses);
+        let loaded = Rectangle::around_values(pressure, &grid, threads, |row| row.iter().any(presses), presses);
         let Some(loaded) = loaded else { return Ok(None) };
         let whole = periodic || patches.is_some();
-        let (columns, rows) = if whole { (0..grid.mx, 0..grid.my) } else { loaded };
+        let part = if whole { Rectangle::full(&grid) } else { loaded };
         let cut = |value: &dyn Fn(usize) -> f64| {
-            let (first, width) = (rows.start * grid.mx + columns.start, columns.len());
+            let (first, width) = (part.row(&grid, 0).start, part.x.len());
             let of_part = |k: usize| value(first + k / width * grid.mx + k % width);
-            collected((0..width * rows.len()).map(of_part), "loads of a largest stress")
+            collected((0..part.count()).map(of_part), "loads of a largest stress")
         };
         let tractions = match tractions {
             Some(q) => Some([cut(&|i| q[i][0])?, cut(&|i| q[i][1])?]),
             None => None,
         };
-        let part = Grid { mx: columns.len(), my: rows.len(), ..grid };
-        Ok(Some(Surface { grid: part, periodic, pressure: cut(&|i| pressure[i])?, tractions, patches }))
+        Ok(Some(Surface { grid: part.grid(&grid), periodic, pressure: cut(&|i| pressure[i])?, tractions, patches }))
     }
 
     /// The same as body 2 has it: tractions are opposite.
@@ -118,6 +133,8 @@ impl<'a> Surface<'a> {
         depths.extend(std::iter::successors(Some(first), |z| Some(z * RATIO)).take_while(|z| *z < RATIO * extent));
         let of = |depths: &[f64]| self.largest(stress, poisson_ratio, depths, threads);
         let mut known = of(&depths)?;
+        let at = |k: usize| known.get(k).or(known.last()).map_or(0.0, |peak| peak.value);
+        let close = if slender { [0.0; CLOSE.len()] } else { std::array::from_fn(at) };
         for _ in 0..PARABOLAS {
             let best = (0..known.len()).max_by(|a, b| known[*a].value.total_cmp(&known[*b].value)).unwrap_or(0);
             if best == 0 || best + 1 == known.len() {
@@ -131,8 +148,7 @@ impl<'a> Surface<'a> {
             known.insert(at, of(&[z])?[0]);
         }
         let largest = known.iter().copied().fold(Peak::default(), Peak::or);
-        let at_surface = known.first().filter(|peak| peak.depth == 0.0).map_or(0.0, |peak| peak.value);
-        Ok(Peak { at_surface, is_near: largest.depth < long, ..largest })
+        Ok(Peak { elements: largest.depth / long, close, ..largest })
     }
 
     fn largest(&self, stress: Stress, poisson_ratio: f64, depths: &[f64], threads: &Threads) -> Result<Vec<Peak>> {

@@ -103,6 +103,7 @@ impl Quantity {
             Quantity::Force => 6,
             Quantity::MaxPressure => 12,
             area if area.is_area() => 32,
+            stress if stress.is_stress() => 10,
             _ => 16,
         }
     }
@@ -113,9 +114,13 @@ impl Quantity {
         matches!(self, TangentialForce | Creepage | SpinMoment | StickArea)
     }
 
+    /// Whether it is a largest stress, or where that is.
+    pub fn is_stress(self) -> bool {
+        matches!(self, Quantity::MaxVonMises | Quantity::VonMisesDepth | Quantity::MaxShear)
+    }
+
     /// Whether it follows from single pressures, not from sums of them.
     pub fn is_local(self) -> bool {
-        use Quantity::{MaxPressure, MaxShear, MaxVonMises, VonMisesDepth};
-        matches!(self, MaxPressure | MaxVonMises | VonMisesDepth | MaxShear)
+        self == Quantity::MaxPressure || self.is_stress()
     }
 }

@@ -46,6 +46,11 @@ impl Sequence {
         self.points.last().map(|point| point.hidden)
     }
 
+    /// The last change, and its doublings.
+    pub fn last_change(&self) -> Option<(f64, i32)> {
+        self.changes().last().map(|change| (change.by, change.doublings))
+    }
+
     /// Grids so far.
     pub fn len(&self) -> usize {
         self.points.len()

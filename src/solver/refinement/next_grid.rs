@@ -2,41 +2,13 @@
 
 use std::fmt;
 
-use super::outlook::{across, Outlook};
+use super::accuracy::{Accuracy, ALL_ELEMENTS, MOST_ELEMENTS, ROUND_OFF};
+use super::outlook::across;
 use super::solved::Solved;
-use crate::error::{invalid, require, Result};
 use crate::grid::Grid;
 use crate::progress::Outcome;
 use crate::solver::estimates::SECONDS_EXPONENT;
 use crate::solver::falling::Falling;
-use crate::solver::quantities::Quantity;
-
-/// The accuracy that is asked for, and what it may cost.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Accuracy {
-    /// Relative errors of the quantities, by their [numbers](Quantity::number); 0: not asked for.
-    pub targets: [f64; Quantity::ALL.len()],
-    /// Seconds for all grids together; 0: no limit. A solve that takes longer than predicted is stopped.
-    pub max_seconds: f64,
-    /// Bytes that the solver of a grid may hold, with that of the grid before it; 0: no limit.
-    pub max_bytes: u64,
-    /// Elements of a grid; 0: 4096 x 4096.
-    pub max_elements: u64,
-}
-
-impl Accuracy {
-    /// A target of the force (of the approach when the force is prescribed); no limits but the number of elements.
-    pub fn new(target: f64) -> Accuracy {
-        let none = Accuracy { targets: [0.0; Quantity::ALL.len()], max_seconds: 0.0, max_bytes: 0, max_elements: 0 };
-        none.with(Quantity::Force, target)
-    }
-
-    /// The same with a target of another quantity.
-    pub fn with(mut self, quantity: Quantity, target: f64) -> Accuracy {
-        self.targets[quantity.number()] = target;
-        self
-    }
-}
 
 /// The results of the last grid.
 #[derive(Clone, Debug)]
@@ -44,10 +16,14 @@ pub(super) struct Past {
     pub grid: Grid,
     /// Elements across the contact area.
     pub across: (usize, usize),
-    /// And so many are enough for all that is asked for.
+    /// How many of them suffice for all targets.
     pub enough: usize,
     /// The errors over their targets, where known.
     pub excesses: Vec<Option<Falling>>,
+    /// Whether there are grids enough to believe them.
+    pub is_believed: bool,
+    /// Whether they are predicted over several doublings: not of largest stresses, whose order three grids hardly tell.
+    pub leaps: bool,
     /// Bytes held by its solver.
     pub bytes: u64,
     /// Seconds that it took: undeformed distance, set-up and solve.
@@ -67,20 +43,9 @@ pub(super) enum Next {
     Limit(String),
 }
 
-/// Without a limit of the caller's.
-pub(super) const MOST_ELEMENTS: u64 = 4096 * 4096;
-/// Elements that a grid can have at all.
-const ALL_ELEMENTS: u64 = i32::MAX as u64;
-/// Below this no estimate means anything: some hundred units of round-off.
-pub(super) const ROUND_OFF: f64 = 1e-13;
-/// Residuals below this are not asked for.
-const LEAST_TOLERANCE: f64 = 1e-12;
-/// The residual, relative to the target of the force, and of the largest pressure: what it adds to the error does not count.
-const TOLERANCE_PER_TARGET: f64 = 0.1;
-const TOLERANCE_PER_PRESSURE: f64 = 0.01;
 /// Grids with fewer elements in the longer direction need not have an estimate.
 const SMALL_GRID: usize = 32;
-/// Grids with more that have none, and grids without contact, before it is given up.
+/// The search ends after so many larger grids without an estimate, or so many grids without contact.
 const MOST_WITHOUT: usize = 3;
 /// Predictions over more doublings are not worth much, and a grid in between costs 1/64 of the last.
 const MOST_DOUBLINGS: u32 = 3;
@@ -91,7 +56,12 @@ const WORTH_A_TRY: f64 = 1.2;
 
 impl Past {
     /// `seconds`: of this grid, and since the first was begun.
-    pub fn of(solved: &Solved, accuracy: &Accuracy, seconds: (f64, f64), before: Option<&Past>) -> Past {
+    pub fn of(
+        (solved, is_believed): (&Solved, bool),
+        accuracy: &Accuracy,
+        seconds: (f64, f64),
+        before: Option<&Past>,
+    ) -> Past {
         let problem = &solved.solver.problem;
         let seen = before.map(|before| {
             let ratio = problem.grid.len() as f64 / before.grid.len() as f64;
@@ -103,6 +73,8 @@ impl Past {
             across: across(solved.solver.state(), problem.coefficients.repeats(&problem.grid)),
             enough: accuracy.wanted().map(|(quantity, _)| quantity.enough_across()).max().unwrap_or(1),
             excesses: accuracy.excesses(&solved.outlook),
+            is_believed,
+            leaps: !accuracy.wanted().any(|(quantity, _)| quantity.is_stress()),
             bytes: solved.report.bytes,
             seconds: seconds.0,
             exponent: exponent.clamp(EXPONENTS.0, EXPONENTS.1),
@@ -142,76 +114,7 @@ impl fmt::Display for Past {
     }
 }
 
-/// Refuses a relative error that says nothing: p = 0 has an error of 1.
-pub(super) fn require_target(target: f64) -> Result<()> {
-    require(
-        target > 0.0 && target < 1.0,
-        "target",
-        target,
-        "it must lie between 0 and 1: a relative error of 1 is that of p = 0",
-    )
-}
-
 impl Accuracy {
-    /// The errors that it speaks of, over their targets.
-    pub(super) fn excesses(&self, outlook: &Outlook) -> Vec<Option<Falling>> {
-        let of =
-            |(quantity, target): (Quantity, f64)| outlook.falling(quantity).and_then(|falling| falling.over(target));
-        self.wanted().map(of).collect()
-    }
-
-    /// Refuses what makes no sense.
-    pub fn check(&self) -> Result<()> {
-        for (quantity, target) in Quantity::ALL.into_iter().zip(self.targets) {
-            match quantity {
-                Quantity::Force if self.targets.iter().all(|target| *target == 0.0) => require_target(target)?,
-                _ => {
-                    let name = match quantity {
-                        Quantity::Force => "target".into(),
-                        other => format!("{}_target", other.name()),
-                    };
-                    let rule = "it must lie between 0 and 1, or be 0 for none";
-                    require((0.0..1.0).contains(&target), &name, target, rule)?;
-                }
-            }
-        }
-        self.check_limits()
-    }
-
-    /// The same of the limits alone.
-    pub(super) fn check_limits(&self) -> Result<()> {
-        let seconds = self.max_seconds;
-        require(
-            seconds >= 0.0 && seconds.is_finite(),
-            "max_seconds",
-            seconds,
-            "it must be positive, or 0 for no limit",
-        )?;
-        if self.max_elements > ALL_ELEMENTS {
-            return invalid(format!(
-                "max_elements is {}; a grid has at most {ALL_ELEMENTS} elements",
-                self.max_elements
-            ));
-        }
-        Ok(())
-    }
-
-    /// The targets.
-    pub(super) fn wanted(&self) -> impl Iterator<Item = (Quantity, f64)> + '_ {
-        Quantity::ALL.into_iter().zip(self.targets).filter(|(_, target)| *target > 0.0)
-    }
-
-    /// The tolerance that it takes, at most that of the caller.
-    pub(super) fn tolerance(&self, at_most: f64) -> f64 {
-        let of = |(quantity, target): (Quantity, f64)| tolerance_for(quantity, target);
-        self.wanted().map(of).fold(at_most, f64::min).max(LEAST_TOLERANCE)
-    }
-
-    /// Whether the time is over.
-    pub(super) fn is_late(&self, elapsed: f64) -> bool {
-        self.max_seconds > 0.0 && elapsed > self.max_seconds
-    }
-
     /// Whether and why it ends here.
     pub(super) fn end(
         &self,
@@ -223,7 +126,7 @@ impl Accuracy {
         if least < ROUND_OFF {
             return Some((Outcome::Stagnated, format!("target is {least:e}, below round-off")));
         }
-        if past.is_resolved() && past.worst().is_some_and(|worst| worst <= 1.0) {
+        if past.is_resolved() && past.is_believed && past.worst().is_some_and(|worst| worst <= 1.0) {
             return Some((Outcome::Converged, "the target is met".into()));
         }
         if without_contact == MOST_WITHOUT {
@@ -245,10 +148,10 @@ impl Accuracy {
         }
     }
 
-    /// Doublings that the estimates ask for, and the elements across the contact; one if there are no estimates.
+    /// Doublings that the estimates and the elements across the contact ask for; one without estimates.
     fn doublings(&self, past: &Past) -> u32 {
         let across = past.across.0.min(past.across.1);
-        if across == 0 || past.worst().is_none() {
+        if across == 0 || !past.leaps || past.worst().is_none() {
             return 1;
         }
         let enough = |k: u32| across.saturating_mul(1 << k) >= past.enough;
@@ -285,12 +188,6 @@ impl Accuracy {
         }
         None
     }
-}
-
-/// The residual that leaves of a target what it is.
-pub(super) fn tolerance_for(quantity: Quantity, target: f64) -> f64 {
-    let part = if quantity.is_local() { TOLERANCE_PER_PRESSURE } else { TOLERANCE_PER_TARGET };
-    part * target
 }
 
 #[cfg(test)]

@@ -6,6 +6,9 @@ use crate::solver::falling::Falling;
 use crate::solver::quantities::{Course, Lack, Quantity, Value};
 use crate::solver::{Report, Solver};
 
+/// Elements in the shorter direction of a grid that a history begins with, at least.
+const LEAST: usize = 16;
+
 /// The relative errors of a solution, where they are known.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Outlook {
@@ -61,6 +64,22 @@ impl History {
         self.courses.iter().any(|course| !course.quantity().has_estimate())
     }
 
+    /// Elements in the shorter direction of the grid that it begins with, at least: fewer where three grids are needed of what lies below the surface.
+    pub fn least(&self, scene: &Scene<'_>) -> usize {
+        let is_steep = scene.friction.is_some() || scene.pressure_limit.is_some();
+        let of_several = || self.courses.iter().map(Course::quantity).filter(|quantity| !quantity.has_estimate());
+        if is_steep && of_several().all(Quantity::is_stress) {
+            LEAST / 2
+        } else {
+            LEAST
+        }
+    }
+
+    /// Whether there are grids enough for each error.
+    pub fn is_believed(&self) -> bool {
+        self.courses.iter().all(Course::is_believed)
+    }
+
     /// Which.
     pub fn wanted(&self) -> Vec<Quantity> {
         self.courses.iter().map(Course::quantity).collect()
@@ -71,6 +90,9 @@ impl History {
         for (course, value) in self.courses.iter_mut().zip(&values.of) {
             let Ok(found) = *value else { continue };
             course.add(doublings, found, values.residual);
+            if values.lack_estimates {
+                course.reaches_limit();
+            }
             // The values of one grid stay.
             if !course.quantity().has_estimate() || values.lack_estimates {
                 let falling = course.falling(values.lack_estimates);

@@ -1,6 +1,6 @@
 //! One row of the price list, from samples.
 
-use super::next_grid::{tolerance_for, MOST_ELEMENTS, ROUND_OFF};
+use super::accuracy::{tolerance_for, MOST_ELEMENTS, ROUND_OFF};
 use super::sample::Sample;
 use super::Accuracy;
 use crate::grid::Grid;

@@ -5,7 +5,7 @@
 
 use std::time::Instant;
 
-use super::next_grid::{require_target, tolerance_for};
+use super::accuracy::{require_target, tolerance_for};
 use super::outlook::History;
 use super::price::{price, Counted, ACROSS};
 pub use super::price::{Obstacle, Price};

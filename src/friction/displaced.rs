@@ -1,0 +1,73 @@
+//! Products between the centres of the elements of a window.
+
+use super::plane::Vector;
+use super::row_product::RowProduct;
+use super::row_tables::RowTables;
+use super::toeplitz::Toeplitz;
+use super::Tangential;
+use crate::error::{invalid, Result};
+use crate::grid::Grid;
+use crate::threads::Threads;
+use toeplitz::Memory;
+
+/// `A q` at places between the centres.
+pub struct Displaced {
+    by: (f64, f64),
+    grid: Grid,
+    /// The first row, of tables per loaded row.
+    first: Option<usize>,
+    product: Product,
+}
+
+enum Product {
+    Toeplitz(Box<Toeplitz<f64>>, Memory<f64>),
+    ByRow(Box<RowProduct>),
+}
+
+impl Displaced {
+    /// The displacements.
+    pub fn apply(&mut self, q: &[Vector], u: &mut [Vector]) {
+        match &mut self.product {
+            Product::Toeplitz(operator, workspace) => operator.apply(q, 1.0, u, workspace),
+            Product::ByRow(product) => product.apply(q, u),
+        }
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        match &self.product {
+            Product::Toeplitz(operator, workspace) => {
+                operator.bytes() + workspace.bytes() + workspace.bytes_of_pieces()
+            }
+            Product::ByRow(product) => product.bytes(),
+        }
+    }
+}
+
+/// Products displaced by so many elements, set up where they are not there.
+pub fn displaced<'a>(
+    kept: &'a mut Option<Displaced>,
+    tangential: &Tangential,
+    grid: Grid,
+    by: (f64, f64),
+    threads: &Threads,
+) -> Result<&'a mut Displaced> {
+    let (rows, threads) = (tangential.rows(), &threads.suited_to(grid.len()));
+    let first = rows.map(RowTables::first);
+    if !kept.as_ref().is_some_and(|kept| kept.by == by && kept.grid == grid && kept.first == first) {
+        *kept = None;
+        let product = match rows {
+            Some(rows) => Product::ByRow(Box::new(RowProduct::displaced(tangential, rows, &grid, by.0, threads)?)),
+            None => {
+                let operator = Box::new(Toeplitz::displaced(tangential, &grid, by, threads)?);
+                let workspace = operator.workspace()?;
+                Product::Toeplitz(operator, workspace)
+            }
+        };
+        *kept = Some(Displaced { by, grid, first, product });
+    }
+    match kept {
+        Some(kept) => Ok(kept),
+        None => invalid("no displaced operator".into()),
+    }
+}

@@ -1,0 +1,119 @@
+//! The accuracy that is asked for, and what it may cost.
+
+use super::outlook::Outlook;
+use crate::error::{invalid, require, Result};
+use crate::solver::falling::Falling;
+use crate::solver::quantities::Quantity;
+
+/// Elements of a grid at most, unless the caller sets a limit.
+pub(super) const MOST_ELEMENTS: u64 = 4096 * 4096;
+/// Elements that a grid can have at all.
+pub(super) const ALL_ELEMENTS: u64 = i32::MAX as u64;
+/// Below this no estimate means anything: some hundred units of round-off.
+pub(super) const ROUND_OFF: f64 = 1e-13;
+/// Residuals below this are not asked for.
+const LEAST_TOLERANCE: f64 = 1e-12;
+/// The tolerance relative to the target of the force, and of the largest pressure: the residual then adds little to the error.
+const TOLERANCE_PER_TARGET: f64 = 0.1;
+const TOLERANCE_PER_PRESSURE: f64 = 0.01;
+/// The accuracy that is asked for, and what it may cost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Accuracy {
+    /// Relative errors of the quantities, by their [numbers](Quantity::number); 0: not asked for.
+    pub targets: [f64; Quantity::ALL.len()],
+    /// Seconds for all grids together; 0: no limit. A solve that takes longer than predicted is stopped.
+    pub max_seconds: f64,
+    /// Bytes that the solver of a grid may hold, with that of the grid before it; 0: no limit.
+    pub max_bytes: u64,
+    /// Elements of a grid; 0: 4096 x 4096.
+    pub max_elements: u64,
+}
+
+impl Accuracy {
+    /// A target of the force (of the approach when the force is prescribed); no limits but the number of elements.
+    pub fn new(target: f64) -> Accuracy {
+        let none = Accuracy { targets: [0.0; Quantity::ALL.len()], max_seconds: 0.0, max_bytes: 0, max_elements: 0 };
+        none.with(Quantity::Force, target)
+    }
+
+    /// The same with a target of another quantity.
+    pub fn with(mut self, quantity: Quantity, target: f64) -> Accuracy {
+        self.targets[quantity.number()] = target;
+        self
+    }
+
+    /// The errors that have targets, relative to these.
+    pub(super) fn excesses(&self, outlook: &Outlook) -> Vec<Option<Falling>> {
+        let of =
+            |(quantity, target): (Quantity, f64)| outlook.falling(quantity).and_then(|falling| falling.over(target));
+        self.wanted().map(of).collect()
+    }
+
+    /// Refuses targets and limits out of range.
+    pub fn check(&self) -> Result<()> {
+        for (quantity, target) in Quantity::ALL.into_iter().zip(self.targets) {
+            match quantity {
+                Quantity::Force if self.targets.iter().all(|target| *target == 0.0) => require_target(target)?,
+                _ => {
+                    let name = match quantity {
+                        Quantity::Force => "target".into(),
+                        other => format!("{}_target", other.name()),
+                    };
+                    let rule = "it must lie between 0 and 1, or be 0 for none";
+                    require((0.0..1.0).contains(&target), &name, target, rule)?;
+                }
+            }
+        }
+        self.check_limits()
+    }
+
+    /// Refuses limits out of range.
+    pub(super) fn check_limits(&self) -> Result<()> {
+        let seconds = self.max_seconds;
+        require(
+            seconds >= 0.0 && seconds.is_finite(),
+            "max_seconds",
+            seconds,
+            "it must be positive, or 0 for no limit",
+        )?;
+        if self.max_elements > ALL_ELEMENTS {
+            return invalid(format!(
+                "max_elements is {}; a grid has at most {ALL_ELEMENTS} elements",
+                self.max_elements
+            ));
+        }
+        Ok(())
+    }
+
+    /// The targets.
+    pub(super) fn wanted(&self) -> impl Iterator<Item = (Quantity, f64)> + '_ {
+        Quantity::ALL.into_iter().zip(self.targets).filter(|(_, target)| *target > 0.0)
+    }
+
+    /// The tolerance that the targets need, at most the caller's.
+    pub(super) fn tolerance(&self, at_most: f64) -> f64 {
+        let of = |(quantity, target): (Quantity, f64)| tolerance_for(quantity, target);
+        self.wanted().map(of).fold(at_most, f64::min).max(LEAST_TOLERANCE)
+    }
+
+    /// Whether the time is over.
+    pub(super) fn is_late(&self, elapsed: f64) -> bool {
+        self.max_seconds > 0.0 && elapsed > self.max_seconds
+    }
+}
+
+/// Refuses a relative error that says nothing: p = 0 has an error of 1.
+pub(super) fn require_target(target: f64) -> Result<()> {
+    require(
+        target > 0.0 && target < 1.0,
+        "target",
+        target,
+        "it must lie between 0 and 1: a relative error of 1 is that of p = 0",
+    )
+}
+
+/// The tolerance at which the residual adds little to an error of this target.
+pub(super) fn tolerance_for(quantity: Quantity, target: f64) -> f64 {
+    let part = if quantity.is_local() { TOLERANCE_PER_PRESSURE } else { TOLERANCE_PER_TARGET };
+    part * target
+}
