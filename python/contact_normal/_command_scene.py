@@ -77,7 +77,7 @@ def gap_of(given: argparse.Namespace) -> Gap:
     if given.level:
         heights = level(heights, given.level)
     # A field that is one period of its surface is levelled first.
-    heights = dataclasses.replace(heights, period=given.period if "period" in given else None)
+    heights = dataclasses.replace(heights, period=getattr(given, "period", None))
     if heights.holes.all():
         raise ValueError(f"{given.file} has no element with a surface")
     if given.gap:
@@ -86,8 +86,10 @@ def gap_of(given: argparse.Namespace) -> Gap:
 
 
 def _heights_of(given: argparse.Namespace) -> Heights:
-    """What the file holds, with what the options say of it."""
-    said: dict[str, Any] = {"fill": given.hole} if given.hole is not None else {}
+    """What the file holds, with what the options say of it, as a surface without a period."""
+    said: dict[str, Any] = {"period": None}
+    if given.hole is not None:
+        said["fill"] = given.hole
     if given.dx is not None:
         said.update(dx=given.dx, dy=given.dx if given.dy is None else given.dy)
     if given.units:
@@ -108,7 +110,7 @@ def _heights_of(given: argparse.Namespace) -> Heights:
         raise ValueError(f"{given.file}: {error}") from error
     if heights.units and not given.units:
         print(f"lengths in {heights.units[0]}, as {given.file} says: moduli and load must be in units that go with it", file=sys.stderr)
-    return dataclasses.replace(heights, period=None)
+    return heights
 
 
 def scene_arguments(given: argparse.Namespace) -> dict[str, Any]:

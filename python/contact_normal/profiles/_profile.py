@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -121,9 +122,9 @@ class Profile(Short):
 
     def _usable(self) -> Any:
         """Indices of the points that a curve goes through: from the tread or the top to the first steep face on either side."""
-        apart = [0]
-        for k in range(1, len(self.y)):
-            if np.hypot(self.y[k] - self.y[apart[-1]], self.z[k] - self.z[apart[-1]]) >= CLOSEST:
+        points, apart = list(zip(self.y.tolist(), self.z.tolist())), [0]
+        for k, point in enumerate(points):
+            if math.dist(point, points[apart[-1]]) >= CLOSEST:
                 apart.append(k)
         y, z = self.y[apart], self.z[apart]
         middle = int(np.argmin(z))
@@ -135,14 +136,15 @@ class Profile(Short):
         for sign in (flat, -flat):
             one, other = growing(y + sign * z, middle)
             first, last = max(first, one), min(last, other)
-        for end, beyond in ((first, np.arange(first - 1, -1, -1)), (last, np.arange(last + 1, len(y)))):
-            self._check_face(y, z, end, beyond[:_BEHIND])
+        self._check_face(y, z, first, -1)
+        self._check_face(y, z, last, 1)
         return np.array(apart[first : last + 1])
 
-    def _check_face(self, y: Doubles, z: Doubles, end: int, beyond: Any) -> None:
-        """Refuses an end at which there is no steep face: behind it the profile goes on."""
-        out = y[beyond] - y[end] if len(beyond) and beyond[0] > end else y[end] - y[beyond]
-        if (out > np.abs(z[beyond] - z[end])).any():
+    def _check_face(self, y: Doubles, z: Doubles, end: int, way: int) -> None:
+        """Refuses an end at which there is no steep face: behind it, that way (1 or -1) along the points, the profile goes on."""
+        beyond = end + way * np.arange(1, _BEHIND + 1)
+        beyond = beyond[(beyond >= 0) & (beyond < len(y))]
+        if (way * (y[beyond] - y[end]) > np.abs(z[beyond] - z[end])).any():
             raise ValueError(f"{self._title()} has a point out of order, or far off, at y = {y[beyond[0]]:.6g}, z = {z[beyond[0]]:.6g}, beside "
                              f"y = {y[end]:.6g}, z = {z[end]:.6g}; from point to point y must grow but at steep faces, behind which the profile ends: "
                              "sort the points, or leave this one out")
@@ -150,16 +152,20 @@ class Profile(Short):
     def spikes(self) -> Any:
         """Indices of points that stand out by themselves, as dust or a fault of a measurement does: from the line through its neighbours such a point
         is further than .03 mm, and than ten times the median of the points around, and both neighbours lean to the other side."""
-        chosen = self._usable()
+        return self._spikes(self._usable())
+
+    def _spikes(self, chosen: Any) -> Any:
+        """Those among the points that are chosen."""
         y, z = self.y[chosen], self.z[chosen]
         if len(y) < _AROUND:
             return chosen[:0]
         weight = (y[1:-1] - y[:-2]) / (y[2:] - y[:-2])
         off = z[1:-1] - (1.0 - weight) * z[:-2] - weight * z[2:]
         found = []
-        for k in range(1, len(off) - 1):
+        # Few points are so far off: medians are taken of these alone, since curves are made again in each step of a search.
+        for k in np.flatnonzero(np.abs(off[1:-1]) > _SPIKE) + 1:
             around = np.abs(off[max(0, k - _AROUND // 2) : k + _AROUND // 2 + 1])
-            stands_out = abs(off[k]) > max(_SPIKE, _TIMES * float(np.median(around)))
+            stands_out = abs(off[k]) > _TIMES * float(np.median(around))
             if stands_out and max(off[k - 1] / off[k], off[k + 1] / off[k]) < -0.2:
                 found.append(k + 1)
         return chosen[found]
@@ -170,7 +176,7 @@ class Profile(Short):
         if len(chosen) < 4:
             raise ValueError(f"{self._title()} has {len(chosen)} points between its steep faces; at least 4 are needed. A profile is in mm, its points "
                              "in the order in which one walks along it")
-        for k in self.spikes():
+        for k in self._spikes(chosen):
             warnings.warn(f"{self._title()} has a spike at y = {self.y[k]:.6g}, z = {self.z[k]:.6g}: if it is dust or a fault, leave this point out",
                           stacklevel=3)
         return Curve(self.y[chosen], self.z[chosen])

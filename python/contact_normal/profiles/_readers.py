@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from .._arguments import number
+from .._decimal_commas import has_decimal_commas
 from ._profile import Profile
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
@@ -76,17 +77,6 @@ def read(
         raise ValueError(f"{error}{hint}") from None
 
 
-def _has_decimal_commas(lines: list[str]) -> bool:
-    """Whether commas are decimal points: no line has a point, and of those with commas each has at least two words, none with several commas."""
-    words = [re.findall(r"(?<!\S)[-+.,\d]\S*", line.replace(";", " ")) for line in lines if "," in line]
-    return bool(words) and not any("." in line for line in lines) and all(len(one) > 1 and max(map(_commas, one)) == 1 for one in words)
-
-
-def _commas(word: str) -> int:
-    """Commas of a word, 2 for those that are not between digits: such commas part columns."""
-    return word.count(",") if re.fullmatch(r"[-+]?\d*(,\d+)?([eEdD][-+]?\d+)?", word) else 2
-
-
 def _words(line: str, commas: bool) -> list[str]:
     """The columns of a line, parted by blanks, semicolons and, where they are no decimal points, commas."""
     return (line.replace(",", ".") if commas else line.replace(",", " ")).replace(";", " ").split()
@@ -109,7 +99,7 @@ def _table(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) ->
 def _columns(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) -> tuple[np.ndarray, int]:
     """Two columns of the lines that begin with numbers, and how many columns all of them have."""
     lines = [line for line in text.splitlines() if re.match(r"\s*[-+]?[.,]?\d", line)]
-    commas, rows, width = _has_decimal_commas(lines), [], 0
+    commas, rows, width = has_decimal_commas(lines), [], 0
     for line in lines:
         words = _words(line, commas)
         if len(words) <= max(columns) or not all(re.fullmatch(_NUMBER, words[column]) for column in (0, *columns)):

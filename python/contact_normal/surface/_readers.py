@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import importlib
 import os
-import re
 import zipfile
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from .._decimal_commas import has_decimal_commas
 from .._units import same_length
 from ._heights import Heights, heights
 
@@ -149,7 +149,7 @@ def _of_text(path: str | os.PathLike[str], end: str) -> Any:
     try:
         values = np.loadtxt(lines, delimiter=delimiter, ndmin=2)
     except ValueError as error:
-        commas = "decimal commas need semicolons between the numbers; " if _has_decimal_commas(lines, delimiter) else ""
+        commas = "decimal commas need semicolons between the numbers; " if has_decimal_commas(lines) else ""
         raise ValueError(f"{path}: {error}, lines with # and empty ones not counted; it must hold numbers alone, a row of the grid a line, separated by "
                          f"{_BETWEEN[delimiter]}; {commas}put # before other lines, and nan where nothing was measured") from error
     if _are_points(values):
@@ -159,12 +159,6 @@ def _of_text(path: str | os.PathLike[str], end: str) -> Any:
 
 
 _BETWEEN = {None: "spaces", ",": "commas", ";": "semicolons"}
-
-
-def _has_decimal_commas(lines: list[str], delimiter: str | None) -> bool:
-    """Whether some line has words parted by blanks, in which a comma stands for the decimal point."""
-    words = [word for line in lines[:9] for word in line.split()]
-    return delimiter != ";" and len(words) > len(lines[:9]) and any(re.fullmatch(r"[-+]?\d*,\d+([eE][-+]?\d+)?,?", word) for word in words)
 
 
 def _are_points(values: Any) -> bool:
