@@ -44,12 +44,8 @@ impl Solver {
         if self.is_found_from_coarse(goal, (start, make), monitor)? {
             return Ok(Descent::By(End::Solved));
         }
-        // Down the stable branch of the finest grid.
-        let unloaded = Goal { wanted: Some(0.0), ..goal };
-        let ended = nested::solve(&mut self.levels, unloaded, (start, make), monitor)?;
-        let walk = self.down_all_ways(goal, (ended.is_in_contact(), make), monitor)?;
-        let walk = self.hold_pull_off(walk, goal, (start, make), monitor)?;
-        match walk {
+        let walk = self.down_from_no_load(goal, (start, make), monitor)?;
+        match self.hold_pull_off(walk, goal, (start, make), monitor)? {
             Walk::Found => Ok(Descent::By(End::Solved)),
             Walk::Interrupted => Ok(Descent::By(End::Interrupted)),
             Walk::Least { sum, approach } => {
@@ -179,6 +175,18 @@ impl Solver {
             }
         }
         Ok(false)
+    }
+
+    /// Down the stable branch of the finest grid, from its state without a load.
+    pub(super) fn down_from_no_load(
+        &mut self,
+        goal: Goal,
+        (start, make): (Start, MakeFrozen<'_>),
+        monitor: &mut Monitor<'_>,
+    ) -> Result<Walk> {
+        let unloaded = Goal { wanted: Some(0.0), ..goal };
+        let ended = nested::solve(&mut self.levels, unloaded, (start, make), monitor)?;
+        self.down_all_ways(goal, (ended.is_in_contact(), make), monitor)
     }
 
     /// Down the stable branch: from what the finest grid holds, if it is a state to go down from, and from bodies that are pressed together. The

@@ -137,10 +137,7 @@ impl Solver {
         else {
             return Ok(known);
         };
-        let unloaded = Goal { wanted: Some(0.0), ..goal };
-        let ended = nested::solve(&mut self.levels, unloaded, (start, make), monitor)?;
-        let pull_off = Goal { wanted: None, ..goal };
-        let walk = self.down_all_ways(pull_off, (ended.is_in_contact(), make), monitor)?;
+        let walk = self.down_from_no_load(Goal { wanted: None, ..goal }, (start, make), monitor)?;
         match (walk, known) {
             (Walk::Least { sum, .. }, _) if sum <= wanted => self.walker(goal, make, monitor).climb(sum),
             (Walk::Least { sum, .. }, Walk::Least { sum: least, .. }) if sum < least => Ok(walk),

@@ -141,7 +141,7 @@ fn all<'a>(names: impl Iterator<Item = &'a str>) -> String {
     format!("there are {}", names.collect::<Vec<_>>().join(", "))
 }
 
-/// Up to so many names are listed in full.
+/// A message lists all names if there are no more than these.
 const FEW: usize = 20;
 
 /// Lists the names; of many only those similar to `name`.

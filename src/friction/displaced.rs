@@ -44,7 +44,7 @@ impl Displaced {
     }
 }
 
-/// Products displaced by so many elements, set up where they are not there.
+/// The product at places `by` elements beside the centres. It is kept, and set up anew for other places, another grid or another first row.
 pub fn displaced<'a>(
     kept: &'a mut Option<Displaced>,
     tangential: &Tangential,

@@ -28,8 +28,8 @@ const BEHIND: f64 = 64.0;
 /// Where turns by force leave more than that part of mu N only the far one is: before full slip pressures carry at most some thousandths more.
 const BEYOND: f64 = 1e-2;
 const FAR: f64 = 1e6;
-/// Creepages that are looked for, times the length rolled, are at most so many times what full slip displaces: far beyond full slip, and as far
-/// from those that a solve refuses, 1e30 times, whatever the pressures of a turn.
+/// The search tries creepages, times the length rolled, up to this factor times the displacement of full slip. All elements slip long before. A solve
+/// refuses 1e30 times that displacement, and the pressures of a turn change it by less than the factor between.
 const FARTHEST: f64 = 1e20;
 
 /// The directions in which forces are given.

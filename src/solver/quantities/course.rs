@@ -3,10 +3,10 @@
 //! All but pressures and stresses at the surface are integrals of what is solved for, or lie below it: they converge, however slowly. Where their changes do not
 //! fall yet, a row of changes that fall slowly bounds the rest ([`Sequence::slow`]).
 //!
-//! *Largest stresses.* Where tractions or pressures end steeply the stress converges as the root of the elements, at the surface and so many elements below
-//! it; elsewhere with their square. While the elements are coarse the largest one lies deep, and no change from grid to grid tells that another one close to
-//! the surface overtakes it. So those at some depths, which are counted in elements, are followed, too: the largest stress is off by what one of them is
-//! predicted to exceed it, and its depth by the whole of it.
+//! *Largest stresses.* Where tractions or pressures end steeply, stresses at the surface and some elements below it converge as the root of the elements.
+//! Elsewhere stresses converge with their square. On coarse elements the largest stress lies deep. Its changes from grid to grid do not tell that another one,
+//! close to the surface, will exceed it. So stresses at some depths, counted in elements, are followed, too. The error of the largest stress includes the
+//! predicted excess of each of them; if there is one, the error of the depth is the whole depth.
 //!
 //! *Lucky changes.* Of two grids there is one change, which may be small by chance. Tractions have such changes often, and so have stresses at the ends of
 //! tractions and of limits: their errors are believed from three grids on ([`Course::is_believed`]).
@@ -94,7 +94,7 @@ impl Course {
         }
     }
 
-    /// Elements are at their limit: pressures end steeply there.
+    /// Elements are at their limit, or attract each other: pressures end steeply there.
     pub fn reaches_limit(&mut self) {
         self.is_steep |= self.quantity.is_stress();
     }

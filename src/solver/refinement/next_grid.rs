@@ -45,7 +45,7 @@ pub(super) enum Next {
 
 /// Grids with fewer elements in the longer direction need not have an estimate.
 const SMALL_GRID: usize = 32;
-/// The search ends after so many larger grids without an estimate, or so many grids without contact.
+/// The search ends after this many larger grids without an estimate, or this many grids without contact.
 const MOST_WITHOUT: usize = 3;
 /// Predictions over more doublings are not worth much, and a grid in between costs 1/64 of the last.
 const MOST_DOUBLINGS: u32 = 3;

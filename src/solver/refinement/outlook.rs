@@ -1,10 +1,12 @@
 //! Forecasts for finer grids from a solution.
 
 use crate::contact::State;
+use crate::rectangle::Rectangle;
 use crate::scene::{Load, Scene};
 use crate::solver::falling::Falling;
 use crate::solver::quantities::{Course, Lack, Quantity, Value};
 use crate::solver::{Report, Solver};
+use crate::threads::Threads;
 
 /// Elements in the shorter direction of a grid that a history begins with, at least.
 const LEAST: usize = 16;
@@ -114,17 +116,8 @@ pub struct Values {
 
 /// Elements across the contact area, along x and y; as many as need be in a direction in which it repeats itself without an end.
 pub fn across(state: &State, repeats: (bool, bool)) -> (usize, usize) {
-    let (mx, my) = (state.grid.mx, state.grid.my);
-    let (mut columns, mut rows) = ((mx, 0), (my, 0));
-    for (y, row) in state.contact.chunks_exact(mx).enumerate() {
-        let Some(first) = row.iter().position(|&inside| inside) else { continue };
-        let last = row.iter().rposition(|&inside| inside).unwrap_or(first);
-        columns = (columns.0.min(first), columns.1.max(last + 1));
-        rows = (rows.0.min(y), rows.1.max(y + 1));
-    }
-    let span = |(start, end): (usize, usize), m: usize, repeats: bool| match end.saturating_sub(start) {
-        all if all == m && repeats => usize::MAX,
-        some => some,
-    };
-    (span(columns, mx, repeats.0), span(rows, my, repeats.1))
+    let State { grid, contact, .. } = state;
+    let touching = Rectangle::around_values(contact, grid, &Threads::One, |row| row.contains(&true), |inside| *inside);
+    let span = |count: usize, m: usize, repeats: bool| if count == m && repeats { usize::MAX } else { count };
+    touching.map_or((0, 0), |Rectangle { x, y }| (span(x.len(), grid.mx, repeats.0), span(y.len(), grid.my, repeats.1)))
 }
