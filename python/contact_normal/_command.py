@@ -37,8 +37,8 @@ def parser() -> argparse.ArgumentParser:
     for module in (_command_solve, _command_prices, _command_bill, _command_table, _command_replay):
         module.add(commands)
     for command in commands.choices.values():
-        # Older versions of argparse take -1e-6 for an option.
-        command._negative_number_matcher = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
+        # Older versions of argparse take -1e-6 for an option, and all take -1:1:3 for one.
+        command._negative_number_matcher = re.compile(r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?([:,].*)?$")
     return top
 
 

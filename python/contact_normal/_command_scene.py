@@ -65,6 +65,9 @@ def effects_of(given: argparse.Namespace) -> dict[str, Any]:
 def gap_of(given: argparse.Namespace) -> Gap:
     """The undeformed distance that the options name."""
     if given.gap and Gap.is_in(given.file):
+        for name in ("dx", "dy", "axes", "top_first", "variable", "hole", "faults", "level"):
+            if getattr(given, name) not in (None, False):
+                raise ValueError(f"{given.file} is a gap with the sizes of its elements, as Gap.write makes it: --{name.replace('_', '-')} does not go with it")
         found = Gap.read(given.file)
         return dataclasses.replace(found, units=tuple(given.units) if given.units else None)
     if not given.gap and Path(given.file).is_file() and Gap.is_in(given.file):

@@ -47,6 +47,8 @@ def axis(name: str, text: str) -> list[float]:
 def run(given: argparse.Namespace) -> int:
     """Computes the table; 1 if an entry stopped early."""
     axes: dict[str, Any] = {name: axis(name, getattr(given, name)) for name in _DEFAULTS}
+    if given.workers < 0:
+        raise ValueError(f"--workers is {given.workers}; it must be 0, for one process a core, or more")
     progress = sys.stderr.isatty() if given.progress is None else given.progress
     table = creep_force_table(given.file, **axes, elements=given.elements, tolerance=given.tolerance, workers=given.workers,
                               progress=progress)

@@ -141,6 +141,27 @@ class Commands(unittest.TestCase):
         code, _, told = called("solve", self.npy, *BALL, "--hole", "-9999e-3")
         self.assertEqual((code, "contact-normal: no element has the value -9.999" in told), (0, True), told)
 
+    def test_lists_of_negative_numbers(self):
+        code, out, told = called("creep-table", "--xi", "0,1", "--eta", "-1,0,1", "--elements", "9")
+        self.assertEqual((code, len(out.splitlines())), (0, 7), told)
+        code, _, told = called("creep-table", "--xi", "-1:1:3")
+        self.assertEqual((code, "xi begins with -1.0" in told), (3, True), told)
+        code, _, told = called("creep-table", "--workers", "-1")
+        self.assertEqual((code, "--workers is -1" in told), (3, True), told)
+
+    def test_nothing_is_lost_or_left_out_without_a_word(self):
+        code, _, told = called("solve", self.npy, *BALL, "-o", self.npy.with_suffix(".npz"))
+        self.assertEqual(code, 0, told)
+        np.savez(self.folder / "two.npz", z=HEIGHTS)
+        before = (self.folder / "two.npz").read_bytes()
+        code, _, told = called("solve", self.folder / "two.npz", *BALL, "-o", self.folder / "two.npz")
+        self.assertEqual((code, "would be lost" in told), (3, True), told)
+        self.assertEqual((self.folder / "two.npz").read_bytes(), before)
+        Gap(HEIGHTS.max() - HEIGHTS, DX, DY).write(self.folder / "gap.txt")
+        for option in (("--dx", "5"), ("--level", "plane"), ("--faults",), ("--hole", "3"), ("--axes", "xy"), ("--top-first",), ("--variable", "z")):
+            code, _, told = called("solve", self.folder / "gap.txt", "--gap", *option, "--force", FORCE, *STEEL)
+            self.assertEqual((code, f"{option[0]} does not go with it" in told), (3, True), told)
+
     def test_holes_have_no_surface(self):
         inside = np.zeros((MY, MX), dtype=bool)
         inside[17, 30] = True  # the top of the ball

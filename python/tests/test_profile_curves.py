@@ -1,6 +1,7 @@
 """Profiles: their orientation, their places, smooth curves through them, and the files that hold them."""
 
 import tempfile
+import tracemalloc
 import unittest
 from pathlib import Path
 
@@ -127,6 +128,25 @@ class Profiles(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "wheel is a rail"):
             profiles.Wheelset(rail()).tread()
 
+    def test_a_tread_without_a_flange_is_no_profile_upside_down(self):
+        y = np.linspace(-30.0, 60.0, 181)
+        # A chamfer of 5 mm at its outer end.
+        z = -y / 20.0 - np.maximum(y - 55.0, 0.0)
+        tread = profiles.Profile(y, z, "wheel")
+        self.assertEqual(len(tread.curve().y), 181)
+
+    def test_profiles_of_many_points_are_smoothed_in_little_memory(self):
+        y = np.linspace(-30.0, 60.0, 20001)
+        tread = profiles.Profile(y, -y / 20.0 + 0.01 * np.sin(2 * np.pi * y / 0.5), "wheel")
+        tracemalloc.start()
+        smooth = tread.smoothed(2.0)
+        _, most = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+        # Lists of numbers of Python take 32 bytes each.
+        self.assertLess(most, 20001 * 1000)
+        inner = slice(2000, -2000)
+        self.assertLess(np.abs(smooth.z + y / 20.0)[inner].max(), 0.01 / (1.0 + 4.0**4) * 1.02)
+
     def test_smoothing_takes_short_waves_and_leaves_long_ones(self):
         made, length = wheel(0.0), 10.0
         inner = (made.y > -20.0) & (made.y < 45.0)
@@ -195,6 +215,17 @@ class Files(unittest.TestCase):
             profiles.read(self.written("b.txt", rows))
         with self.assertRaisesRegex(ValueError, r"has 0 points in the columns \(0, 1\)"):
             profiles.read(self.written("c.whl", head))
+
+    def test_encodings_and_lines_that_are_no_points(self):
+        rows = [f"{y:.4f} {0.002 * y * y:.5f}" for y in np.linspace(-40.0, 40.0, 81)]
+        text, path = "\n".join(rows), Path(self.folder.name, "a.txt")
+        for data in (text.encode("utf-8-sig"), text.encode("utf-16"), text.replace("\n", "\r\n").encode(), f"81\n{text}\n2 of 3".encode()):
+            path.write_bytes(data)
+            self.assertEqual(len(profiles.read(path, "rail").y), 81)
+        for line in ("-20.0000-19.12345", "-20.0 *****", "-20.0 1.2.3"):
+            path.write_text("\n".join([*rows[:20], line, *rows[21:]]))
+            with self.assertRaisesRegex(ValueError, "among its points"):
+                profiles.read(path, "rail")
 
     def test_a_column_that_counts_is_named_before_a_turn(self):
         for kind, made in (("wheel", wheel()), ("rail", rail())):

@@ -82,6 +82,15 @@ class Arrays(unittest.TestCase):
 
 
 class Faults(unittest.TestCase):
+    def test_fill_values_are_those_of_the_array(self):
+        z = np.array([[0.5, -9999.9, 0.7], [0.1, 1e20, 0.3]], dtype=np.float32)
+        for value, place in ((-9999.9, [0, 1]), (1e20, [1, 1])):
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                self.assertEqual(np.argwhere(surface.heights(z, 1, 1, fill=value).holes).tolist(), [place])
+                # Holes without a number need no name.
+                surface.heights(np.where(z > 1.0, np.nan, z), 1, 1, fill=np.nan)
+
     def test_fill_values_are_found(self):
         z = 1e-6 * rough()
         where = np.zeros(z.shape, dtype=bool)

@@ -119,6 +119,40 @@ class Files(unittest.TestCase):
         np.savetxt(self.folder / "narrow.txt", rough(64)[:, :3])
         self.assertEqual(surface.read(self.folder / "narrow.txt", dx=1, dy=1).z.shape, (64, 3))
 
+    def test_lists_of_points_in_any_order_are_no_map(self):
+        x, y = (one.ravel() for one in np.meshgrid(np.arange(9) * 0.5, np.arange(7) * 0.3))
+        z, random = np.sin(x + y * y), np.random.default_rng(3)
+        moved, some = x + random.normal(0, 1e-4, x.size), random.permutation(63)[:25]
+        lists = {
+            "z x y": (z, x, y), "x z y": (x, z, y), "with an intensity": (x, y, z, random.normal(size=63)), "numbered": (np.arange(63.0), x, y, z),
+            "of a stage": (moved, y, z), "twice": [np.append(one, one[5]) for one in (x, y, z)], "a part": (x[some], y[some], z[some]),
+            "a line": (np.arange(9) * 0.5, np.sin(np.arange(9.0))),
+        }
+        for name, columns in lists.items():
+            with self.subTest(name):
+                np.savetxt(self.folder / "points.txt", np.stack(columns, axis=1))
+                with self.assertRaisesRegex(ValueError, "a list of points|x, y and z of"):
+                    surface.read(self.folder / "points.txt", dx=1, dy=1)
+
+    def test_coordinates_beside_the_heights_are_told(self):
+        heights = rough(12)
+        for name, table, which in (
+            ("both", np.block([[np.zeros((1, 1)), np.arange(12)[None] * 0.5], [np.arange(12)[:, None] * 0.3, heights]]), "line"),
+            ("a line", np.vstack([np.arange(12) * 0.5, heights]), "line"), ("a column", np.column_stack([np.arange(12), heights]), "column"),
+        ):
+            with self.subTest(name):
+                np.savetxt(self.folder / "table.txt", table)
+                with self.assertRaisesRegex(ValueError, f"has coordinates in its first {which}"):
+                    surface.read(self.folder / "table.txt", dx=1, dy=1)
+        # A wedge rises evenly everywhere.
+        np.savetxt(self.folder / "wedge.txt", np.add.outer(np.arange(12.0), np.arange(9.0)))
+        self.assertEqual(surface.read(self.folder / "wedge.txt", dx=1, dy=1).z.shape, (12, 9))
+
+    def test_decimal_commas_between_commas_are_told(self):
+        (self.folder / "d.csv").write_text("0,1257,-0,0321,1,5\n0,5,0,7,0,3\n")
+        with self.assertRaisesRegex(ValueError, "begin with zeros between its commas"):
+            surface.read(self.folder / "d.csv", dx=1, dy=1)
+
     def test_decimal_commas_are_named(self):
         for name, text in (("a.txt", "0,5 0,7\n1,5 1,7\n"), ("b.csv", "0,5\t0,7\n1,5\t1,7\n")):
             (self.folder / name).write_text(text)

@@ -13,6 +13,7 @@ import numpy as np
 from .._arguments import number, real
 from .._short import Short
 from ._curve import Curve, growing
+from ._pentadiagonal import solve
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,6 +25,9 @@ STEEPEST = np.deg2rad(85.0)
 
 # No profile is so large, in mm: what is further from the median stands for "not measured".
 _FAR = 500.0
+
+# A flange is higher than that above the tread, in mm.
+_FLANGE = 12.0
 
 # Points closer than this, in mm, count as one: their directions are round-off of a file of eight digits.
 CLOSEST = 1e-3
@@ -82,6 +86,9 @@ class Profile(Short):
             raise ValueError(f"{self._title()} begins at the larger y; its points must be in the order of growing y: reversed()")
         above, below = np.median(self.z) - self.z.min(), self.z.max() - np.median(self.z)
         if self.kind == "wheel":
+            # A tread alone, without a flange, tells nothing: a chamfer may be its lowest place or its highest one.
+            if max(above, below) < _FLANGE:
+                return
             if above > below:
                 raise ValueError(f"{self._title()} has its flange at the smallest z; z must grow downwards: upside_down=True")
             if self.y[np.argmax(self.z)] > 0.5 * (self.y[0] + self.y[-1]):
@@ -109,15 +116,21 @@ class Profile(Short):
             raise ValueError(f"wave_length is {length}; it must be positive")
         chosen = self._usable()
         y, z, d = self.y[chosen], self.z[chosen], np.diff(self.y[chosen])
-        # (W + c Q R^-1 Q') f = W z, where f'' = R^-1 Q' f at the inner points, and W holds the length of each.
-        q = np.zeros((len(y), len(y) - 2))
-        k = np.arange(len(y) - 2)
-        q[k, k], q[k + 1, k], q[k + 2, k] = 1.0 / d[:-1], -1.0 / d[:-1] - 1.0 / d[1:], 1.0 / d[1:]
-        r = np.diag((d[:-1] + d[1:]) / 3.0) + np.diag(d[1:-1] / 6.0, 1) + np.diag(d[1:-1] / 6.0, -1)
-        weights = np.convolve(np.concatenate([d[:1], d, d[-1:]]), [0.5, 0.5], "valid")
-        stiffness = (length / (2.0 * np.pi)) ** 4 * q @ np.linalg.solve(r, q.T)
+        # f = z - c W^-1 Q g with (R + c Q' W^-1 Q) g = Q' z, where g = f'' = R^-1 Q' f at the inner points, and W holds the length of each.
+        before, after = 1.0 / d[:-1], 1.0 / d[1:]
+        at = -before - after
+        w = 1.0 / np.convolve(np.concatenate([d[:1], d, d[-1:]]), [0.5, 0.5], "valid")
+        c = (length / (2.0 * np.pi)) ** 4
+        diagonal = (d[:-1] + d[1:]) / 3.0 + c * (before**2 * w[:-2] + at**2 * w[1:-1] + after**2 * w[2:])
+        first = d[1:-1] / 6.0 + c * (at[:-1] * before[1:] * w[1:-2] + after[:-1] * at[1:] * w[2:-1])
+        second = c * after[:-2] * before[2:] * w[2:-2]
+        bend = solve(diagonal, first, second, before * z[:-2] + at * z[1:-1] + after * z[2:])
+        spread = np.zeros(len(z))
+        spread[:-2] += before * bend
+        spread[1:-1] += at * bend
+        spread[2:] += after * bend
         smooth = self.z.copy()
-        smooth[chosen] = np.linalg.solve(np.diag(weights) + stiffness, weights * z)
+        smooth[chosen] = z - c * w * spread
         return dataclasses.replace(self, z=smooth)
 
     def _usable(self) -> Any:

@@ -5,6 +5,7 @@ Each reader was written from the public description of its format, and from the 
 
 from __future__ import annotations
 
+import codecs
 import os
 import re
 from pathlib import Path
@@ -36,7 +37,7 @@ def read(
     ----------
     path : str or path
         `.prr` and `.prw` are read as SIMPACK's rails and wheels; `.ban` and `.whl` as MiniProf's, which are columns of numbers below lines
-        `NAME=value`; all other files as columns of numbers. Lines that do not begin with a number are skipped.
+        `NAME=value`; all other files as columns of numbers. Lines that do not begin with a number are skipped; others among the points must be points.
     kind : {"wheel", "rail"}, optional
         What it is; by default what the end of the file's name says.
     columns : (int, int)
@@ -62,7 +63,7 @@ def read(
     kind = _KINDS.get(end) if kind is None else kind
     if kind is None:
         raise ValueError(f'{path}: kind is not known; give kind="wheel" or kind="rail"')
-    text = Path(path).read_text(encoding="latin-1")
+    text = _text(path)
     points, in_mm, hint = _simpack(text, path) if end in (".prr", ".prw") else _table(text, columns, path)
     y, z = points.T * (in_mm * number("scale", scale))
     if mirror:
@@ -75,6 +76,14 @@ def read(
         return Profile(np.ascontiguousarray(y), np.ascontiguousarray(z), kind, Path(path).name)
     except ValueError as error:
         raise ValueError(f"{error}{hint}") from None
+
+
+def _text(path: str | os.PathLike[str]) -> str:
+    """The text of a file, in the encoding that its first bytes name; else any byte is a character."""
+    data = Path(path).read_bytes()
+    marks = {codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
+    named = [encoding for mark, encoding in marks.items() if data.startswith(mark)]
+    return data.decode(named[0] if named else "latin-1", errors="replace")
 
 
 def _words(line: str, commas: bool) -> list[str]:
@@ -99,11 +108,17 @@ def _table(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) ->
 def _columns(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) -> tuple[np.ndarray, int]:
     """Two columns of the lines that begin with numbers, and how many columns all of them have."""
     lines = [line for line in text.splitlines() if re.match(r"\s*[-+]?[.,]?\d", line)]
-    commas, rows, width = has_decimal_commas(lines), [], 0
+    rows: list[list[float]] = []
+    commas, width, other = has_decimal_commas(lines), 0, ""
     for line in lines:
         words = _words(line, commas)
         if len(words) <= max(columns) or not all(re.fullmatch(_NUMBER, words[column]) for column in (0, *columns)):
+            # Titles, counts and dates stand before all points, or behind them.
+            other = line.strip() if rows and not other else other
             continue
+        if other:
+            raise ValueError(f"{path} has a line {other[:60]!r} among its points that begins with a number and has none in the columns {columns}: "
+                             "do columns run into each other? Mend it, or put # before it")
         rows.append([float(re.sub("[dD]", "e", words[column])) for column in columns])
         width = min(width or len(words), len(words))
     if len(rows) < 4:

@@ -220,8 +220,12 @@ def heights(
         y_falls = not y_falls
     z = z[:: -1 if y_falls else 1, :: -1 if x_falls else 1]
     if fill is not None:
-        filled = z == number("fill", fill)
-        if not filled.any():
+        # As the array holds it: in single precision -9999.9 is another number.
+        own = getattr(values, "dtype", np.dtype(float))
+        as_held = float(own.type(number("fill", fill))) if own.kind == "f" else fill
+        filled = z == as_held
+        # What is no number, or infinite, is a hole already.
+        if np.isfinite(as_held) and not filled.any():
             warnings.warn(f"no element has the value {fill!r} that stands for 'not measured': the heights are from {np.nanmin(z):g} to {np.nanmax(z):g}"
                           if np.isfinite(z).any() else f"no element has the value {fill!r}: none was measured", stacklevel=2)
         z = np.where(filled, np.nan, z)

@@ -13,6 +13,8 @@ import numpy as np
 from .._decimal_commas import has_decimal_commas
 from .._units import same_length
 from ._heights import Heights, heights
+from ._not_a_map import has_cut_decimals
+from ._not_a_map import why as why_no_map
 
 
 def from_xarray(array: Any, **given: Any) -> Heights:
@@ -152,21 +154,14 @@ def _of_text(path: str | os.PathLike[str], end: str) -> Any:
         commas = "decimal commas need semicolons between the numbers; " if has_decimal_commas(lines) else ""
         raise ValueError(f"{path}: {error}, lines with # and empty ones not counted; it must hold numbers alone, a row of the grid a line, separated by "
                          f"{_BETWEEN[delimiter]}; {commas}put # before other lines, and nan where nothing was measured") from error
-    if _are_points(values):
-        raise ValueError(f"{path} has x, y and z of {len(values)} points; it must hold a row of the grid a line: reshape the third column, "
-                         "and give x and y to surface.heights")
+    if delimiter == "," and has_cut_decimals(lines):
+        raise ValueError(f"{path} has numbers that begin with zeros between its commas: decimal commas need semicolons between the numbers")
+    if reason := why_no_map(values):
+        raise ValueError(f"{path} {reason}")
     return values
 
 
 _BETWEEN = {None: "spaces", ",": "commas", ";": "semicolons"}
-
-
-def _are_points(values: Any) -> bool:
-    """Whether three columns are x, y and z: the first two name most places of a grid, each once."""
-    if values.shape[1] != 3 or len(values) < 4 or not np.isfinite(values[:, :2]).all():
-        return False
-    counts = [len(np.unique(values[:, k])) for k in range(2)]
-    return min(counts) > 1 and 2 * len(values) >= counts[0] * counts[1] and len(np.unique(values[:, :2], axis=0)) == len(values)
 
 
 def _chosen(name: str | None, names: list[Any], path: str | os.PathLike[str]) -> Any:
