@@ -1,5 +1,5 @@
 """Stresses below the surface: under a ball, under a sliding ball, and under a wheel on a rail, with where each is largest.
-`python3 subsurface.py wheel_rail_case.txt [pictures]`: the folder of pictures gets stress_depth.png, stress_sliding.png and
+`python3 subsurface.py [wheel_rail_case.txt [pictures]]`: the folder of pictures gets stress_depth.png, stress_sliding.png and
 stress_wheel_rail.png, those of docs/stress.md."""
 
 import sys
@@ -11,6 +11,7 @@ import contact_normal as cn
 
 STEEL = dict(shear_modulus=82000.0, poisson_ratio=0.3)  # N/mm2
 M, D, RADIUS = 129, 0.02, 50.0
+CASE = Path(__file__).resolve().parent.parent / "data/wheel_rail/y4_82kN.txt"
 
 
 def ball():
@@ -39,7 +40,7 @@ def say(name, stress, unit):
         print(f"{name}: largest {what} {at['value'] / unit:.3f} p0 at x = {at['x']:.2f}, y = {at['y']:.2f}, z = {at['z']:.2f} mm")
 
 
-def main(case, folder=None):
+def main(case=CASE, folder=None):
     rolled = ball()
     p0, depths = rolled.report["max_pressure"], np.linspace(0.0, 1.2, 61)
     a = cn.hertz(0.5 / RADIUS, 0.5 / RADIUS, force=1000.0, **STEEL).semi_axis_x

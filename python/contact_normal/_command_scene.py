@@ -93,6 +93,8 @@ def _heights_of(given: argparse.Namespace) -> Heights:
     said: dict[str, Any] = {"period": None}
     if given.hole is not None:
         said["fill"] = given.hole
+    if given.dy is not None and given.dx is None:
+        raise ValueError("--dy goes with --dx: both are the sizes of an element")
     if given.dx is not None:
         said.update(dx=given.dx, dy=given.dx if given.dy is None else given.dy)
     if given.units:

@@ -34,8 +34,8 @@ def checked(units: Any) -> Units:
 
 
 def same_length(one: str, other: str) -> bool:
-    """Whether two names are of one unit of length."""
-    return _latin(one) == _latin(other)
+    """Whether two names are of one unit of length: symbols, or words as NetCDF's conventions have them."""
+    return _symbol(one) == _symbol(other)
 
 
 class WithUnits:
@@ -51,6 +51,12 @@ class WithUnits:
     @units.setter
     def units(self, units: Any) -> None:
         self._units = checked(units)
+
+
+def _symbol(name: str) -> str:
+    """The symbol of a unit of length that is named by a word, in British or American English, one or several."""
+    word = re.fullmatch(r"(nano|micro|milli|centi|)met(?:er|re)s?|(micron)s?", name.strip().lower())
+    return {"nano": "nm", "micro": "um", "milli": "mm", "centi": "cm", "": "m", None: "um"}[word[1]] if word else _latin(name.strip())
 
 
 def _latin(name: str) -> str:

@@ -50,6 +50,10 @@ def _several(name: str, radii: Any) -> tuple[float, ...]:
     return found
 
 
+# Axes that are further from parallel are no rollers': the gap grows by tilt y.
+_STEEPEST = 0.3
+
+
 def circle(x: Any, radius: float) -> Doubles:
     """How far a circle of a radius has left its tangent at a distance x: exact, not a parabola; inf beyond the radius. A negative radius is a
     hollow."""
@@ -58,8 +62,8 @@ def circle(x: Any, radius: float) -> Doubles:
         return np.zeros_like(x)
     inside = np.abs(x) <= r
     # r - sqrt(r^2 - x^2) without cancellation.
-    left = np.where(inside, x**2 / (r + np.sqrt(np.maximum(r**2 - x**2, 0.0))), np.inf)
-    return np.asarray(np.copysign(left, radius))
+    left = x**2 / (r + np.sqrt(np.maximum(r**2 - x**2, 0.0)))
+    return np.where(inside, np.copysign(left, radius), np.inf)
 
 
 def no_drop(length: float) -> Drop:
@@ -174,5 +178,7 @@ def gap(
         raise TypeError("give either drop or crown_radii")
     across = sum((circle(x, radius) for radius in radii), np.zeros(mx))
     along = sum([*(np.asarray(one(y)) for one in drops), *(circle(y, radius) for radius in crown_radii)], np.zeros(my))
-    h = across[None, :] + (along + number("tilt", tilt) * y)[:, None]
+    if abs(number("tilt", tilt)) >= _STEEPEST:
+        raise ValueError(f"tilt is {tilt}; it is an angle in rad, and must be below {_STEEPEST:g}")
+    h = across[None, :] + (along + tilt * y)[:, None]
     return Gap(np.ascontiguousarray(h), dx, dy, units=units)

@@ -162,6 +162,10 @@ class Commands(unittest.TestCase):
             code, _, told = called("solve", self.folder / "gap.txt", "--gap", *option, "--force", FORCE, *STEEL)
             self.assertEqual((code, f"{option[0]} does not go with it" in told), (3, True), told)
 
+    def test_one_size_of_an_element_is_not_enough(self):
+        code, _, told = called("solve", self.npy, "--dy", DY, "--force", FORCE, *STEEL)
+        self.assertEqual((code, "--dy goes with --dx" in told), (3, True), told)
+
     def test_holes_have_no_surface(self):
         inside = np.zeros((MY, MX), dtype=bool)
         inside[17, 30] = True  # the top of the ball

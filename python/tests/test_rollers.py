@@ -21,6 +21,13 @@ class Gaps(unittest.TestCase):
         # No surface beyond a roller.
         self.assertTrue(np.isinf(rollers.gap((14.0, 1.0), (14, 1), (6.0,)).h[0, [0, -1]]).all())
 
+    def test_beyond_a_hollow_there_is_no_surface(self):
+        gap = rollers.gap((2.0, 20.0), (4, 20), (6.0,), crown_radii=(11.0, -9.0))
+        np.testing.assert_array_equal(np.isposinf(gap.h[:, 0]), np.abs(np.arange(20) - 9.5) > 9.0)
+        self.assertTrue(np.isposinf(rollers.gap((20.0, 4.0), (20, 10), (6.0, -6.1)).h[0, [0, -1]]).all())
+        with self.assertRaisesRegex(ValueError, "tilt is 2.0; it is an angle in rad"):
+            rollers.gap((2.0, 10.0), (20, 10), (6.0,), tilt=2.0)
+
     def test_profiles(self):
         y = np.array([-8.0, -7.0, -3.0, 0.0, 2.0, 6.5])
         np.testing.assert_array_equal(rollers.no_drop(LENGTH)(y), [np.inf, 0, 0, 0, 0, 0])

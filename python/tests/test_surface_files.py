@@ -61,6 +61,16 @@ class Files(unittest.TestCase):
             surface.from_xarray(array("um", "mm"))
         with self.assertRaisesRegex(ValueError, "lengths are in mm in the file"):
             surface.from_xarray(array("mm", "mm"), units=("m", "N"))
+        # Words of NetCDF's conventions.
+        self.assertEqual(surface.from_xarray(array("micrometers", "\u00b5m")).units, ("micrometers", "N"))
+        for one, other in (("meter", "m"), ("Metres", "m"), ("microns", "um"), ("millimetre", "mm"), ("nanometers", "nm")):
+            surface.from_xarray(array(one, other))
+        with self.assertWarnsRegex(UserWarning, "heights in um, x in no unit"):
+            surface.from_xarray(array("um", None))
+        uneven = array(None, "mm")
+        uneven.coords["y"].attrs["units"] = "m"
+        with self.assertRaisesRegex(ValueError, "x is in mm, and y in m"):
+            surface.from_xarray(uneven)
         plain = DataArray(np.eye(4), ("a", "b"), None, None)
         plain.coords = {}
         self.assertEqual(surface.from_xarray(plain, dx=1e-6, dy=2e-6).dy, 2e-6)

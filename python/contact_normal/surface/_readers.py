@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import os
+import warnings
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -38,6 +39,11 @@ def from_xarray(array: Any, **given: Any) -> Heights:
     for name, unit in ((x, said[1]), (y, said[2])):
         if said[0] and unit and not same_length(str(said[0]), str(unit)):
             raise ValueError(f"the heights are in {said[0]}, and {name} in {unit}: convert one of them")
+    if said[1] and said[2] and not same_length(str(said[1]), str(said[2])):
+        raise ValueError(f"{x} is in {said[1]}, and {y} in {said[2]}: convert one of them")
+    if any(said) and not all(said):
+        names = ", ".join(f"{name} in {unit}" if unit else f"{name} in no unit" for name, unit in zip(("heights", x, y), said))
+        warnings.warn(f"the file has {names}: all of them are taken to be in one unit", stacklevel=2)
     unit = said[0] if all(said) else None
     return heights(ordered.values, x=ordered[x].values, y=ordered[y].values, **_with_unit(unit, given))
 
