@@ -3,6 +3,7 @@
 import tempfile
 import tracemalloc
 import unittest
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -134,6 +135,20 @@ class Profiles(unittest.TestCase):
         z = -y / 20.0 - np.maximum(y - 55.0, 0.0)
         tread = profiles.Profile(y, z, "wheel")
         self.assertEqual(len(tread.curve().y), 181)
+
+    def test_noise_is_told(self):
+        y = np.linspace(-40.0, 40.0, 801)
+        noise = np.random.default_rng(2).normal(0.0, 1e-3, 801)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            profiles.Profile(y, 0.002 * y**2, "rail").curve()
+            # Digits of a hundredth of a micrometre.
+            profiles.Profile(y, np.round(0.002 * y**2, 5), "rail").curve()
+            profiles.Profile(y, 0.002 * y**2 + noise, "rail").smoothed(4.0).curve()
+        with self.assertWarnsRegex(UserWarning, "noise of the points"):
+            profiles.Profile(y, 0.002 * y**2 + noise, "rail").curve()
+        with self.assertRaisesRegex(ValueError, "gauge_height is -3"):
+            profiles.Track(rail(), gauge_height=-3.0)
 
     def test_profiles_of_many_points_are_smoothed_in_little_memory(self):
         y = np.linspace(-30.0, 60.0, 20001)

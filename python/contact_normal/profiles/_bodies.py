@@ -86,7 +86,8 @@ class Track:
             raise ValueError(f"gauge is {self.gauge}; it must be larger than the rail is wide, {width:.4g} mm: lengths are in mm")
         if not abs(number("inclination", self.inclination)) <= _STEEPEST:
             raise ValueError(f"inclination is {self.inclination}; it is an angle in rad of at most {_STEEPEST}, as 1/40")
-        number("gauge_height", self.gauge_height)
+        if not number("gauge_height", self.gauge_height) >= 0.0:
+            raise ValueError(f"gauge_height is {self.gauge_height}; it must not be negative: it is measured downwards from the top of the rail")
 
     def placed(self) -> Profile:
         """The right rail in its place: its top at z = 0, its gauge point at half of the gauge."""
