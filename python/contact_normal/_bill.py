@@ -191,6 +191,7 @@ def what_matters(
     """
     scene, struct = scene_and_options(h, dx, dy, given)
     wanted, found = numbers("quantities", quantities), ctypes.c_int32(0)
+    scene.bodies.know_all(quantities)
     goal, both = relative("target", target), int(flag("pairs", pairs))
 
     def ask(room: int, rows: object) -> None:

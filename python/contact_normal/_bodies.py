@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,6 +30,16 @@ class Bodies(NamedTuple):
         """Refuses bodies that are known by E* alone."""
         if not self.poisson_is_known:
             raise TypeError(f"poisson_ratio is needed with e_star: {what} depends on it")
+
+    def know_all(self, quantities: Iterable[str]) -> None:
+        """Refuses largest stresses of bodies that are known by E* alone."""
+        for name in quantities:
+            if name in _STRESSES:
+                self.needs_poisson(name)
+
+
+# Quantities that depend on the Poisson ratio.
+_STRESSES = {"max_von_mises", "von_mises_depth", "max_shear"}
 
 
 def bodies(shear_modulus: Any, poisson_ratio: Any, young_modulus: Any, e_star: Any) -> Bodies:

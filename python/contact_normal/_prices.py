@@ -189,6 +189,7 @@ def cost_of_accuracy(
         h, dx, dy, shape, corner, effects, approach=approach, force=force, mean_pressure=mean_pressure, shear_modulus=shear_modulus,
         poisson_ratio=poisson_ratio, young_modulus=young_modulus, e_star=e_star,
     )
+    scene.bodies.know_all([quantity])
     accuracy = limits(max_seconds, max_bytes, max_elements, surface)
     errors = doubles("targets", targets, dimensions="n")
     n = len(errors)

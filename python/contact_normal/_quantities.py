@@ -160,6 +160,7 @@ def quantities(
     """
     scene, struct = scene_and_options(h, dx, dy, given)
     wanted, grids = numbers("names", names), integer("coarser", coarser)
+    scene.bodies.know_all(names)
     room = max(1, len(wanted) * (max(0, grids) + 1))
     rows, written = (QuantityRow * room)(initialised("quantity_row")), ctypes.c_int32(0)
     status, message = called(

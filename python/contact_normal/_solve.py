@@ -276,6 +276,7 @@ def solve_to_accuracy(
     accuracy.max_pressure_target = relative("max_pressure_target", max_pressure_target)
     accuracy.contact_area_target = relative("contact_area_target", contact_area_target)
     set_targets(accuracy, targets)
+    scene.bodies.know_all(targets or ())
     ledger = Outputs((0, 0))
 
     def find(address: Any) -> int:

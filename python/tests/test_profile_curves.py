@@ -135,6 +135,9 @@ class Profiles(unittest.TestCase):
         z = -y / 20.0 - np.maximum(y - 55.0, 0.0)
         tread = profiles.Profile(y, z, "wheel")
         self.assertEqual(len(tread.curve().y), 181)
+        for turned in ((y, -z), (y, z[::-1])):
+            with self.assertRaisesRegex(ValueError, "no flange, and its tread is lower on the field side"):
+                profiles.Profile(*turned, "wheel")
 
     def test_noise_is_told(self):
         y = np.linspace(-40.0, 40.0, 801)

@@ -135,6 +135,15 @@ class Bodies(unittest.TestCase):
             for modulus in ("young_modulus", "e_star"):
                 with self.assertRaisesRegex(cn.ContactNormalError, r"poisson_ratio\[0\]"):
                     cn.solve(H, DX, DY, force=1.0, poisson_ratio=nu, **{modulus: 1.0})
+        h, by = np.add.outer(np.arange(-7.5, 8.0) ** 2, np.arange(-7.5, 8.0) ** 2) / 50.0, {"approach": 0.1, "e_star": 1.0}
+        for call in (
+            lambda: cn.quantities(h, 1.0, 1.0, names=["force", "max_shear"], **by),
+            lambda: cn.cost_of_accuracy(h, 1.0, 1.0, targets=(0.1,), quantity="max_von_mises", **by),
+            lambda: cn.solve_to_accuracy(h, 1.0, 1.0, target=0.1, targets={"von_mises_depth": 0.1}, **by),
+            lambda: cn.what_matters(h, 1.0, 1.0, quantities=["max_shear"], period="x", **by),
+        ):
+            with self.assertRaisesRegex(TypeError, "poisson_ratio is needed with e_star: (max_shear|max_von_mises|von_mises_depth) depends on it"):
+                call()
         with self.assertRaisesRegex(TypeError, "poisson_ratio is needed with e_star: a stress"):
             solve(e_star=G).subsurface([0.1])
 

@@ -32,6 +32,9 @@ _ROUGH = 0.1
 # A flange is higher than that above the tread, in mm.
 _FLANGE = 12.0
 
+# Treads are lower on the side of the flange, unless they are level to this, in mm.
+_LEVEL = 0.05
+
 # Points closer than this, in mm, count as one: their directions are round-off of a file of eight digits.
 CLOSEST = 1e-3
 
@@ -89,8 +92,12 @@ class Profile(Short):
             raise ValueError(f"{self._title()} begins at the larger y; its points must be in the order of growing y: reversed()")
         above, below = np.median(self.z) - self.z.min(), self.z.max() - np.median(self.z)
         if self.kind == "wheel":
-            # A tread alone, without a flange, tells nothing: a chamfer may be its lowest place or its highest one.
+            # A tread alone, without a flange, may have a chamfer as its lowest place or its highest one; its radius grows to the flange.
             if max(above, below) < _FLANGE:
+                inner = self.y < 0.5 * (self.y[0] + self.y[-1])
+                if inner.any() and not inner.all() and self.z[~inner].mean() > self.z[inner].mean() + _LEVEL:
+                    raise ValueError(f"{self._title()} has no flange, and its tread is lower on the field side: upside_down=True if z grows upwards, "
+                                     "mirror=True if y grows to the middle of the track")
                 return
             if above > below:
                 raise ValueError(f"{self._title()} has its flange at the smallest z; z must grow downwards: upside_down=True")
