@@ -21,12 +21,11 @@ impl Rectangle {
         Rectangle { x: 0..grid.mx, y: 0..grid.my }
     }
 
-    /// The smallest one outside of which nothing counts: `any` looks at some elements of a row together, `counts` at one. None where nothing does.
+    /// The smallest one outside of which nothing counts. `any`: whether one of some elements of a row does. None where nothing does.
     pub fn around(
         grid: &Grid,
         threads: &Threads,
         any: impl Fn(Range<usize>) -> bool + Sync + Send,
-        counts: impl Fn(usize) -> bool + Sync + Send,
     ) -> Option<Rectangle> {
         let mx = grid.mx;
         blocks::fold(
@@ -34,20 +33,19 @@ impl Rectangle {
             threads,
             None,
             #[inline(always)]
-            |block| in_rows(block.start / mx..block.end / mx, mx, &any, &counts),
+            |block| in_rows(block.start / mx..block.end / mx, mx, &any),
             Rectangle::joined,
         )
     }
 
-    /// That of values, of which `any` looks at some and `counts` at one.
+    /// That of values.
     pub fn around_values<A: Sync>(
         values: &[A],
         grid: &Grid,
         threads: &Threads,
         any: impl Fn(&[A]) -> bool + Sync + Send,
-        counts: impl Fn(&A) -> bool + Sync + Send,
     ) -> Option<Rectangle> {
-        Rectangle::around(grid, threads, |elements| any(&values[elements]), |i| counts(&values[i]))
+        Rectangle::around(grid, threads, |elements| any(&values[elements]))
     }
 
     /// The smallest one that holds both.
@@ -119,7 +117,6 @@ fn in_rows(
     Range { start: mut first, end: mut behind }: Range<usize>,
     mx: usize,
     any: &impl Fn(Range<usize>) -> bool,
-    counts: &impl Fn(usize) -> bool,
 ) -> Option<Rectangle> {
     let row = |y: usize| y * mx..(y + 1) * mx;
     while first < behind && !any(row(first)) {
@@ -135,11 +132,37 @@ fn in_rows(
     for Range { start: of_row, end: next_row } in (first..behind).map(row) {
         // Only what lies outside the columns so far is looked at.
         if any(of_row..of_row + start) {
-            start = (0..mx).find(|x| counts(of_row + x)).unwrap_or(start);
+            start = first_of(of_row..of_row + start, any) - of_row;
         }
         if any(of_row + end..next_row) {
-            end = (0..mx).rfind(|x| counts(of_row + x)).map_or(end, |last| last + 1);
+            end = last_of(of_row + end..next_row, any) + 1 - of_row;
         }
     }
     Some(Rectangle { x: start..end, y: first..behind })
+}
+
+/// The first of some elements that counts, by halves. One of them does.
+#[inline(always)]
+fn first_of(Range { mut start, mut end }: Range<usize>, any: &impl Fn(Range<usize>) -> bool) -> usize {
+    while end - start > 1 {
+        let middle = (start + end) / 2;
+        match any(start..middle) {
+            true => end = middle,
+            false => start = middle,
+        }
+    }
+    start
+}
+
+/// The last of some elements that counts, likewise.
+#[inline(always)]
+fn last_of(Range { mut start, mut end }: Range<usize>, any: &impl Fn(Range<usize>) -> bool) -> usize {
+    while end - start > 1 {
+        let middle = (start + end) / 2;
+        match any(middle..end) {
+            true => start = middle,
+            false => end = middle,
+        }
+    }
+    start
 }

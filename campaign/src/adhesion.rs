@@ -247,7 +247,22 @@ fn certify(case: &Case, load: Load, found: &Found) -> Verdict {
         let details = || format!("{what} {:e}: {}", ratio(value, most), case.describe());
         verdict.unless(value <= most, "the conditions of adhesion hold", details);
     }
+    if matches!(load, Load::Approach(_)) && count as usize == found.p.len() {
+        verdict.add(mean_distance(case, approach, &operator, (distances / n).sqrt()));
+    }
     verdict.add(forces(case, load, found));
+    verdict
+}
+
+/// Of bodies in full contact: where a uniform pressure displaces nothing, the approach is the mean of the distances, whatever the pressures are.
+fn mean_distance(case: &Case, approach: f64, operator: &Operator, rms: f64) -> Verdict {
+    let (mut verdict, n) = (Verdict::default(), case.h.len());
+    let displaced = operator.displace(&vec![1.0; n]);
+    if displaced.iter().all(|u| u.abs() <= 1e-9 * operator.diagonal()) {
+        let mean = case.h.iter().map(|h| h - approach).sum::<f64>() / n as f64;
+        let allowed = TOLERANCE * rms + 16.0 * f64::EPSILON * approach.abs();
+        verdict.unless(mean.abs() <= allowed, "not all touch above the mean distance", || case.describe());
+    }
     verdict
 }
 

@@ -128,6 +128,7 @@ impl Case {
         let kappa = if random.chance(0.9) { random.decades(0.02, 0.5) } else { random.decades(0.5, 2.0) };
         let range = (steepness(law, smear) * surface.work * operator.diagonal() / kappa).sqrt();
         let load = load(random, &surface, range);
+        let load = if effects.period == Some((true, true)) { below_mean(&surface.h, load) } else { load };
         let is_line = grid.len() == 1 || grid.my == 1;
         let friction = (alike && !is_line && friction_goes(&effects) && random.chance(0.5)).then(|| {
             (random.pick(&[0.0, 0.3, 1.0]), random.pick(&[0.0, 0.5]) * surface.work / range, random.decades(0.01, 10.0))
@@ -184,6 +185,17 @@ fn load(random: &mut Random, surface: &Surface, range: f64) -> Load {
         0 | 1 => Load::Approach(lowest + random.between(-2.0, 2.0) * range + random.pick(&[0.0, 0.3]) * surface.height),
         2 => Load::Force(surface.force * random.pick(&[0.0, 0.1, 1.0, 3.0])),
         _ => Load::Force(-surface.force * random.decades(0.01, 3.0)),
+    }
+}
+
+/// With two periods some approaches lie on the way from the first touch to the mean distance, which waves leave. Numbers of their own: other scenes stay
+/// the same.
+fn below_mean(h: &[f64], load: Load) -> Load {
+    let mut random = Random::new(h.iter().fold(h.len() as u64, |seed, h| seed.rotate_left(5) ^ h.to_bits()));
+    let (mean, lowest) = (h.iter().sum::<f64>() / h.len() as f64, h.iter().copied().fold(f64::INFINITY, f64::min));
+    match random.chance(0.4) && mean.is_finite() {
+        true => Load::Approach(lowest + random.pick(&[-0.5, 0.3, 0.9, 0.99, 0.999]) * (mean - lowest)),
+        false => load,
     }
 }
 

@@ -118,7 +118,7 @@ class Bill(list[BillRow]):
         lines = [f"{'without':{width}}{'quantity':18}{'change':>10}{'+-':>10}{'seconds':>11}{'saved':>11}  verdict at {self.target:g}"]
         for name, row in zip(names, self):
             value = abs(row.value)
-            error = f"{row.error / value:10.2g}" if row.error >= 0 and value else f"{row.lack:>10}"
+            error = f"{row.error / value:10.2g}" if row.error >= 0 and value else f" {row.lack:>9}"
             saved = row.seconds - row.seconds_without
             lines.append(
                 f"{name:{width}}{row.quantity:18}{row.relative:10.2g}{error}{row.seconds:11.2g}{saved:11.2g}  {row.verdict}"

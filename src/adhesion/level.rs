@@ -36,6 +36,9 @@ pub type Still = (Box<dyn Frozen>, State);
 /// Makes what solves frozen problems on a grid.
 pub type MakeFrozen<'a> = &'a dyn Fn(&contact::Problem) -> Result<Box<dyn Frozen>>;
 
+/// Contact opens where elements press by less than this part of the range of pressures.
+const OPENED: f64 = 0.01;
+
 /// M, the inverse of a circulant near A. Residuals are not continued beside C, where rows of their own tell what they are: a sphere of Tabor's
 /// parameter 3 on 256 x 256 elements takes 18 to 21 products so, and 30 to 47 with the normal problem's extension. In single precision: it only
 /// has to be near.
@@ -105,7 +108,26 @@ impl Level {
     /// Measures what is known now; C is that of the natural map unless it `is_kept`.
     pub fn measure(&mut self, is_kept: bool, wanted: Option<f64>) -> Measured {
         let of_element = (self.self_influence(), self.problem.round_off());
-        measure(&self.surface, &mut self.now, of_element, (is_kept, wanted), &self.problem.threads)
+        let is_mean_free = wanted.is_none() && self.is_mean_free();
+        measure(&self.surface, &mut self.now, of_element, (is_kept, wanted, is_mean_free), &self.problem.threads)
+    }
+
+    /// Whether a uniform pressure displaces nothing.
+    pub fn is_mean_free(&self) -> bool {
+        self.problem.coefficients.is_mean_free()
+    }
+
+    /// Lowers all pressures, which displaces nothing, until those leave the contact that press least by the natural map.
+    pub fn open(&mut self) {
+        let (surface, a0, n) = (&self.surface, self.self_influence(), self.now.u.len());
+        let pressing = |i: usize| {
+            let e = surface.distance(i, &self.now);
+            self.now.p.field[i][0] + surface.traction(i, e) - e / a0
+        };
+        let widen = |(least, most): (f64, f64), value: f64| (least.min(value), most.max(value));
+        let (least, most) = (0..n).map(pressing).fold((f64::INFINITY, f64::NEG_INFINITY), widen);
+        let by = least + OPENED * (most - least);
+        fields::map(&self.problem.threads, &mut self.now.p.field, |_, [p]| [p - by]);
     }
 
     /// u = A p by a fresh product.

@@ -8,6 +8,7 @@ use super::request::Start;
 use super::robust::{self, Ended, BETWEEN};
 use crate::error::Result;
 use crate::progress::Monitor;
+use crate::sums::mean;
 
 /// Coarser grids are solved to this: what they leave wrong costs more on the finest.
 pub const COARSE: f64 = 1e-2;
@@ -17,6 +18,8 @@ const FROM_APART: u64 = 12;
 /// From contact: an approach of so many ranges more, in so many steps.
 const DEEPER: f64 = 4.0;
 const DEEPER_STEPS: u32 = 4;
+/// And with two periods no further than this part of the way to the mean distance.
+const SHUT: f64 = 0.9;
 
 /// Solves the finest of `levels` from nothing.
 pub fn solve(
@@ -111,6 +114,9 @@ fn from_contact(
 ) -> Result<Ended> {
     let apart = (crate::contact::lowest(&level.surface.h) - approach).max(0.0);
     let deeper = Some(apart + DEEPER * level.surface.attraction.range).filter(|by| by.is_finite()).unwrap_or(0.0);
+    // No pressure brings bodies nearer than their mean distance where waves leave it.
+    let room = if level.is_mean_free() { SHUT * (mean(&level.surface.h) - approach).max(0.0) } else { f64::INFINITY };
+    let deeper = deeper.min(room);
     level.now.p.border = [approach + deeper];
     let first = Goal { tolerance: goal.tolerance.max(COARSE), certified: false, ..goal };
     descend(level, first, Steps { most: FIRST, from_none: true, make }, monitor)?;

@@ -116,8 +116,8 @@ pub fn measures(level: &Level, measured: &Measured) -> Measures {
         let q = contact_pressure(level, i).abs();
         [if q > 0.0 { q * e } else { 0.0 }, (now.p.field[i][0] * now.u[i][0]).abs(), a0 * q * q]
     });
-    let largest = fields::largest(threads, now.u.len(), |i| now.p.field[i][0]);
-    let least = -fields::largest(threads, now.u.len(), |i| -now.p.field[i][0]);
+    let widen = |(least, largest): (f64, f64), [p]: &[f64; 1]| (least.min(*p), largest.max(*p));
+    let (least, largest) = now.p.field.iter().fold((f64::INFINITY, f64::NEG_INFINITY), widen);
     let area = grid.element_area();
     Measures {
         certificate: Certificate {

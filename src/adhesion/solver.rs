@@ -60,7 +60,8 @@ impl Solver {
     /// The contact pressure q of element i, and its attraction sigma, of a state that was found here.
     pub fn split(&self, state: &contact::State, i: usize) -> (f64, f64) {
         let sigma = self.finest().surface.traction(i, state.h[i] - state.approach + state.u[i]);
-        (if state.contact[i] { state.p[i] + sigma } else { 0.0 }, sigma)
+        // The residual may leave it a little below 0.
+        (if state.contact[i] { (state.p[i] + sigma).max(0.0) } else { 0.0 }, sigma)
     }
 
     /// Bytes held.

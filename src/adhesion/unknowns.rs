@@ -187,6 +187,8 @@ pub struct Measured {
     pub changed: usize,
     /// The sum of p.
     pub pressures: f64,
+    /// The mean of `h - approach` where all elements touch and a uniform pressure displaces nothing: e has that mean, whatever p is. 0 elsewhere.
+    pub opening: f64,
 }
 
 impl Measured {
@@ -211,19 +213,19 @@ fn largest<const K: usize>(values: [f64; K]) -> f64 {
 }
 
 /// Takes C from the natural map q - e/a0 > 0, unless it `is_kept`, and measures. `round_off`: of displacements, per unit of pressure; `wanted`: the
-/// sum of p where the force is given.
+/// sum of p where the force is given; `is_mean_free`: whether the approach is given, and a uniform pressure displaces nothing.
 pub fn measure(
     surface: &Surface,
     unknowns: &mut Unknowns,
     (self_influence, round_off): (f64, f64),
-    (is_kept, wanted): (bool, Option<f64>),
+    (is_kept, wanted, is_mean_free): (bool, Option<f64>, bool),
     threads: &Threads,
 ) -> Measured {
     let Unknowns { p, u, contact } = unknowns;
     let (p, approach, u) = (&p.field, p.border[0], &*u);
-    let [ee, dd, count, off, pp, pc, sum, all, qc, repulsion, changed] =
+    let [ee, dd, count, off, pp, pc, sum, all, qc, repulsion, changed, distances] =
         fields::over(threads, contact.chunks_mut(fields::BLOCK), |first, contact| {
-            let mut sums = [0.0; 11];
+            let mut sums = [0.0; 12];
             for (k, inside) in contact.iter_mut().enumerate() {
                 let i = first + k;
                 let ([p], e) = (p[i], surface.h[i] - approach + u[i][0]);
@@ -236,7 +238,7 @@ pub fn measure(
                     let d = surface.h[i] - approach;
                     (sums[0], sums[1], sums[2], sums[5]) =
                         (sums[0] + e * e, sums[1] + d * d, sums[2] + 1.0, sums[5] + p * p);
-                    (sums[8], sums[9]) = (sums[8] + q * q, sums[9] + q.abs());
+                    (sums[8], sums[9], sums[11]) = (sums[8] + q * q, sums[9] + q.abs(), sums[11] + d);
                 } else {
                     sums[3] += q * q;
                 }
@@ -253,8 +255,10 @@ pub fn measure(
     let noise = ROUND_OFF * approach.abs() + round_off * (pc.max(qc) / n).sqrt();
     let [of_e, of_d] = [ee, dd].map(|squares| (squares / n).sqrt());
     let fits = noise.is_finite() && of_d <= noise && of_e <= noise;
+    let opening = if is_mean_free && count as usize == u.len() { distances / n } else { 0.0 };
+    let opening = if opening.abs() <= ROUND_OFF * approach.abs() { 0.0 } else { opening };
     Measured {
-        distance: if fits { 0.0 } else { ratio(of_e, scale) },
+        distance: if fits { 0.0 } else { ratio(of_e, scale) }.max(ratio(opening.abs(), of_d)),
         penetration,
         violation: if fits && penetration <= noise { 0.0 } else { ratio(penetration, scale) },
         law: ratio(off.sqrt(), pp.max(part).sqrt().max(nothing)),
@@ -262,6 +266,7 @@ pub fn measure(
         count: count as usize,
         changed: changed as usize,
         pressures: sum,
+        opening,
     }
 }
 

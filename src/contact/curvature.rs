@@ -207,8 +207,7 @@ fn jumps(problem: &Problem, state: &State, repeats: (bool, bool)) -> (f64, [f64;
             short += lines * up.abs() / (run * run) as f64;
         }
     };
-    let touching =
-        Rectangle::around_values(contact, grid, &problem.threads, |row| row.contains(&true), |inside| *inside);
+    let touching = Rectangle::around_values(contact, grid, &problem.threads, |row| row.contains(&true));
     if let Some(part) = touching {
         each_jump((grid, &part), repeats, (|i: usize| state.h[i], false), |i, j| contact[i] || contact[j], visit);
     }

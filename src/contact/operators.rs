@@ -192,7 +192,7 @@ fn fit<'a>(
 
 /// The rectangle outside of which p is 0; none where it is 0 everywhere.
 fn loaded(p: &[f64], grid: &Grid, threads: &Threads) -> Option<Rectangle> {
-    Rectangle::around_values(p, grid, threads, presses, |p| *p != 0.0)
+    Rectangle::around_values(p, grid, threads, presses)
 }
 
 #[cfg(test)]

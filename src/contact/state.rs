@@ -13,6 +13,8 @@ use crate::scene::Load;
 use crate::sums::{sum_where, Sums};
 use crate::threads::Threads;
 
+/// Factors of a force nearer to 1 are rounding.
+const SCALED: f64 = 4.0 * f64::EPSILON;
 /// Undeformed distances of more than so many times the approach are no part of a contact.
 const OUT_OF_REACH: f64 = 1e6;
 
@@ -123,7 +125,9 @@ impl State {
 
     /// Elements in contact.
     pub fn contact_count(&self) -> usize {
-        self.contact.iter().filter(|&&inside| inside).count()
+        // Sums of bytes, of which the compiler makes vectors.
+        let count = |part: &[bool]| part.iter().map(|&inside| u8::from(inside)).sum::<u8>();
+        self.contact.chunks(u8::MAX.into()).map(|part| usize::from(count(part))).sum()
     }
 
     /// Whether element i is in contact, free or at its limit.
@@ -218,6 +222,8 @@ impl State {
         let factor = force / carried;
         // Both push or both pull.
         if carried != 0.0 && factor.is_finite() && factor > 0.0 {
+            // What was scaled to the force once carries it but for the rounding of the sum.
+            let factor = if (factor - 1.0).abs() <= SCALED { 1.0 } else { factor };
             if factor != 1.0 {
                 threads.for_a_pass(self.p.len()).for_each_plain_row(&mut self.p, self.grid.mx, |_, row| {
                     row.iter_mut().for_each(|p| *p *= factor);
@@ -251,16 +257,18 @@ impl State {
     /// With a prescribed force: the approach that fits best, the mean of h + u over the contact area.
     pub fn fit_approach(&mut self, threads: &Threads) {
         if let Load::Force(_) = self.load {
+            // Seen from one of its own elements: the mean of equal distances is that distance, to the last digit.
+            let own = self.rows_with_contact().flatten().find(|&i| self.contact[i]).map_or(0.0, |i| self.h[i]);
             let (sum, count) = blocks::fold(
                 &self.grid,
                 threads,
                 (0.0, 0),
                 #[inline(always)]
-                |block| sum_where(&self.h[block.clone()], &self.u[block.clone()], &self.contact[block]),
+                |block| sum_where((&self.h[block.clone()], own), &self.u[block.clone()], &self.contact[block]),
                 |(sum, count), (of_block, count_of_block)| (sum + of_block, count + count_of_block),
             );
             if count > 0 {
-                self.approach = sum / count as f64;
+                self.approach = own + sum / count as f64;
             } else if self.has_limited() {
                 // Nothing is in elastic contact: the least approach that holds all elements at their limit.
                 let held = (0..self.h.len()).filter(|&i| self.at_limit[i]).map(|i| self.h[i] + self.u[i]);

@@ -65,7 +65,10 @@ pub(super) fn of(scene: &Scene<'_>, options: &Options, report: &Report, state: &
     }
     // A contact area that is given has neither a border that it may grow beyond nor an estimate.
     let is_free = options.active_set == ActiveSet::Free;
-    let pressing = report.adhesion.map_or(measures.force, |found| found.repulsive_force);
+    // Of an area that is given some elements may pull.
+    let of_given = || state.p.iter().filter(|p| **p > 0.0).sum::<f64>() * grid.element_area();
+    let of_bodies = || if is_free { measures.force } else { of_given() };
+    let pressing = report.adhesion.map_or_else(of_bodies, |found| found.repulsive_force);
     let is_spike = measures.max_pressure * grid.element_area() > 0.5 * pressing;
     let found = [
         (CONTACT_NORMAL_WARNING_BORDER, is_free && measures.edge_count > 0 && is_at_border(scene, state)),

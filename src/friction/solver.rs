@@ -160,7 +160,7 @@ impl Solver {
             by: friction.elements_rolled(&self.grid),
         });
         let counts = |i: usize| pressure[i] > 0.0 || rolling.is_none() && before(friction, kept, i) != [0.0; 2];
-        let window = Rectangle::around(&self.grid, &self.threads, |mut elements| elements.any(counts), counts);
+        let window = Rectangle::around(&self.grid, &self.threads, |mut elements| elements.any(counts));
         let mut end = Outcome::Converged;
         let mut report = Report { from_rest, ..Report::default() };
         if let Some(window) = &window {

@@ -187,10 +187,13 @@ impl Solver {
         if displaced > 0.0
             && (is_far(slip) || is_far(problem.rms_slip()) || slip > 0.0 && !(slip / displaced > LEAST_RATIO))
         {
-            let [slip, displaced] = self.scales.own_displacement([slip.max(problem.rms_slip()), displaced]);
+            // In the scene's units what is beyond the range of numbers has no number.
+            let own = self.scales.own_displacement([slip.max(problem.rms_slip()), displaced]);
+            let [slip, displaced] =
+                own.map(|length| if length.is_finite() { format!("{length:e}") } else { "1e308 or more".into() });
             let rule = "choose a smaller motion, coefficients of friction or shear moduli of another order";
             return invalid(format!(
-                "slips are of order {slip:e}, displacements by friction of order {displaced:e}, more than 1e30 times or less than 1e-60 times that; {rule}"
+                "slips are of order {slip}, displacements by friction of order {displaced}, more than 1e30 times or less than 1e-60 times that; {rule}"
             ));
         }
         Ok(())

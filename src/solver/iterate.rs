@@ -34,8 +34,11 @@ pub fn iterate<S: AdmissibleSet>(
             break;
         }
         // 2. p = 0 in E. 3. A step of the method on C.
+        let products = task.monitor.count.matrix_products;
         let change = step(method, task)?;
-        if change.gives_up && task.state.u_is != Freshness::Exact {
+        // Without a product nothing is certified: u may be that of earlier solutions, combined.
+        let is_certain = task.state.u_is == Freshness::Exact && task.monitor.count.matrix_products > products;
+        if change.gives_up && !is_certain {
             return Ok(Outcome::Stagnated);
         }
 
@@ -60,8 +63,9 @@ pub fn iterate<S: AdmissibleSet>(
         // 5. Go on if C has changed. 6. Go on if the accuracy is not reached.
         if task.state.u_is == Freshness::Exact && goal.holds(&survey, change.update, set) && task.carries() {
             chatter += u32::from(changes > 0);
-            // After a while the certificate decides, although elements still change sides.
-            if changes == 0 || policy.exchanged_by_loop && chatter > policy.chatter {
+            // Where bodies fit but for round-off, that alone makes elements change sides. And after a while the certificate decides, although they do.
+            let fits = survey.residual == 0.0 && survey.violation == 0.0;
+            if changes == 0 || fits || policy.exchanged_by_loop && chatter > policy.chatter {
                 task.monitor.survey = Some(last);
                 return Ok(Outcome::Converged);
             }

@@ -93,6 +93,39 @@ fn one_element_that_carries_more_than_half() {
     assert_eq!(seen, [true; 2]);
 }
 
+/// Of an area that is given elements may pull, and the force is less than what one of them presses.
+#[test]
+fn an_area_that_pulls_has_no_spike() {
+    let surface = ball(0.0);
+    let mut contact: Vec<i32> = surface.iter().map(|h| i32::from(*h < 0.02)).collect();
+    let (mut p, mut report) = (vec![0.0; M * M], contact_normal_report::default());
+    let scene = contact_normal_scene {
+        undeformed_distance: surface.as_ptr(),
+        load: CONTACT_NORMAL_PRESCRIBED_APPROACH,
+        approach: 0.008,
+        mx: M as i32,
+        my: M as i32,
+        dx: D,
+        dy: D,
+        shear_modulus: [82000.0; 2],
+        poisson_ratio: [0.28; 2],
+        ..Default::default()
+    };
+    let options = contact_normal_options { active_set: CONTACT_NORMAL_ACTIVE_SET_FIXED, ..Default::default() };
+    let mut fields =
+        contact_normal_fields { pressure: p.as_mut_ptr(), contact: contact.as_mut_ptr(), ..Default::default() };
+    // SAFETY: structs with their arrays.
+    let status = unsafe { contact_normal_solve(&scene, &options, &mut fields, &mut report) };
+    assert_eq!(status, CONTACT_NORMAL_OK, "{}", last_error());
+    let largest = report.normal.max_pressure * D * D;
+    assert!(
+        report.normal.min_pressure < 0.0 && largest > 0.5 * report.normal.force,
+        "{largest} {}",
+        report.normal.force
+    );
+    assert_eq!(report.warnings & CONTACT_NORMAL_WARNING_SPIKE, 0);
+}
+
 /// Elements at their limit are in contact, too.
 #[test]
 fn elements_at_their_limit_reach_the_border() {

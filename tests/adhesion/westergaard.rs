@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
-use contact_normal::adhesion::Law;
+use contact_normal::adhesion::{Law, Start};
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Load, Period, Scene};
+use contact_normal::scene::{Adhesion, Load, Period, Scene};
 use contact_normal::solver::{self, Options, Outcome};
 
 use super::support::{adhesion, bodies};
@@ -68,4 +68,39 @@ fn width(n: usize, pressure: f64, range: f64) -> f64 {
     assert_eq!(outcome, Outcome::Converged, "{n} {pressure}");
     println!("{n} {pressure}: {} products, {:.1} work", report.count.matrix_products, report.count.work_units);
     0.5 * report.measures.contact_count as f64 * d
+}
+
+/// Displacements have no mean, so the gap has that of `h - approach`: as long as this is positive some elements are apart, whatever the start is. A uniform
+/// pressure displaces nothing, and pressures of any size would hide the gap.
+#[test]
+fn not_all_touch_above_the_mean_distance() {
+    for ((n, my), law) in [
+        ((16, 1), Law::Exponential),
+        ((64, 1), Law::Dugdale(0.25)),
+        ((64, 16), Law::Cubic),
+        ((344, 1), Law::VanDerWaals),
+    ] {
+        let d = 1.0 / n as f64;
+        let grid = Grid::new(n, my, d, d).expect("a grid");
+        let of = |i: usize| DEPTH * (1.0 - (2.0 * PI * ((i % n) as f64 + 0.5) * d).cos());
+        let h: Vec<f64> = (0..n * my).map(of).collect();
+        for start in [Start::Auto, Start::Contact, Start::Apart] {
+            for part in [-0.5, 0.3, 0.9, 0.99, 0.999] {
+                let attraction = Adhesion { start, ..adhesion(law, 0.3 * DEPTH * DEPTH * n as f64 / 64.0, 0.0) };
+                let plain = Scene::new(grid, &h, bodies(1.0), Load::Approach(part * DEPTH));
+                let scene = Scene { adhesion: Some(attraction), period: Some(Period { x: true, y: true }), ..plain };
+                let what = format!("{n} x {my} {law:?} {start:?} {part}");
+                let (solver, outcome, _) = solver::solve(&scene, &Options::default()).expect("a solve");
+                assert_eq!(outcome, Outcome::Converged, "{what}");
+                let state = solver.state();
+                assert!(state.contact.contains(&false), "{what}");
+                // The amplitude of the pressure that flattens the wave is pi E* D/L.
+                let largest = state.p.iter().fold(0.0, |largest: f64, p| largest.max(p.abs()));
+                assert!(largest < 30.0 * PI * DEPTH, "{what}: {largest}");
+                let gaps: f64 = state.u.iter().zip(&h).map(|(u, h)| h - part * DEPTH + u).sum();
+                let expected = (1.0 - part) * DEPTH * h.len() as f64;
+                assert!((gaps / expected - 1.0).abs() < 1e-9, "{what}: {gaps} {expected}");
+            }
+        }
+    }
 }

@@ -192,18 +192,28 @@ fn approaches_near_full_contact_are_solved() {
 /// p is the mean pressure, and nothing is displaced: what remains of h - approach is round-off, relative to which no residual is small.
 #[test]
 fn flat_on_flat_with_two_periods_ends() {
-    for (mx, my) in [(25, 25), (60, 60), (100, 100), (120, 90), (311, 3), (997, 1)] {
-        let (grid, h) = (Grid::new(mx, my, 1.0, 1.0).unwrap(), vec![0.0; mx * my]);
-        for pressure in [1e-3, 0.7, 1e3] {
+    let grids = [(13, 1), (22, 33), (25, 25), (60, 60), (100, 100), (120, 90), (311, 3), (997, 1)];
+    for ((mx, my), height) in grids.into_iter().flat_map(|m| [0.0, 1.0 / 3.0, 0.001, -1e3].map(|height| (m, height))) {
+        let (grid, h) = (Grid::new(mx, my, 1.0, 1.0).unwrap(), vec![height; mx * my]);
+        for pressure in [1e-3, 0.00456, 0.7, 43.2, 1e3] {
             let load = Load::Force(pressure * (mx * my) as f64);
             let scene = Scene { period: Some(BOTH), ..Scene::new(grid, &h, bodies(), load) };
-            for method in [Method::Auto, Method::Norm, Method::ProjectedCg] {
+            // Alone the methods may rest on a plane of another datum without an end.
+            let all = [Method::Auto, Method::Norm, Method::ProjectedCg];
+            for &method in if height == 0.0 && mx > 22 { &all[..] } else { &all[..1] } {
                 let (solver, stop, report) = solve(&scene, &Options { method, ..Options::default() }).unwrap();
-                let what = format!("{mx} x {my}, pressure {pressure}, {method:?}");
+                let what = format!("{mx} x {my} at {height}, pressure {pressure}, {method:?}");
                 assert_eq!(stop, Outcome::Converged, "{what}");
                 let off = solver.state().p.iter().fold(0.0, |off: f64, p| off.max((p / pressure - 1.0).abs()));
                 assert!(off <= 1e-10, "{what}: off by {off}");
-                let most = if method == Method::Norm { 400.0 } else { 20.0 };
+                // Of 3000 such scenes on other planes than 0 half took 6 or less, 99 of 100 less than 29, one 73.
+                let most = if method == Method::Norm {
+                    400.0
+                } else if height == 0.0 {
+                    20.0
+                } else {
+                    80.0
+                };
                 assert!(report.count.work_units <= most, "{what}: {} work units", report.count.work_units);
             }
         }

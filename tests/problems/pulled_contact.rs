@@ -124,3 +124,32 @@ fn an_even_contact_area_without_force_has_no_pressures() {
         assert_eq!(report.measures.contact_count, contact.iter().filter(|inside| **inside).count());
     }
 }
+
+/// With two periods waves leave the mean of the distances: on an area that is given an approach above it presses, and one below it pulls.
+#[test]
+fn an_area_with_two_periods_takes_approaches_beyond_the_mean() {
+    let grid = Grid::new(16, 12, 1.0, 1.0).unwrap();
+    let (h, contact) = bonded(&grid);
+    let pressure = vec![0.0; h.len()];
+    let mean = h.iter().sum::<f64>() / h.len() as f64;
+    for method in [Method::Auto, Method::Norm] {
+        for approach in [mean + 0.5, mean - 0.5] {
+            let plain = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(approach));
+            let scene = Scene { period: Some(Period { x: true, y: true }), ..plain };
+            let mut solver = Solver::new(&scene, &fixed(method)).unwrap();
+            let guess = Some(Guess { pressure: &pressure, contact: &contact });
+            let (stop, _) = solver.solve(&scene, &fixed(method), guess, None).unwrap();
+            assert_eq!(stop, Outcome::Converged, "{method:?} {approach}");
+            let (p, mut u) = (&solver.state().p, vec![0.0; h.len()]);
+            dense::apply(&scene.coefficients().unwrap(), &grid, p, &mut u);
+            for i in (0..h.len()).filter(|i| contact[*i]) {
+                // The tolerance of 1e-9 in the rms, and the square root of the elements.
+                assert!(
+                    (h[i] - approach + u[i]).abs() <= 1e-9 * 14.0 * 3.0,
+                    "{method:?} {approach}: {}",
+                    h[i] - approach + u[i]
+                );
+            }
+        }
+    }
+}

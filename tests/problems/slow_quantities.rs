@@ -2,7 +2,7 @@
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, PressureLimit, Scene};
-use contact_normal::solver::{quantities, Lack, Options, Quantity, QuantityRow};
+use contact_normal::solver::{quantities, solve_to_accuracy, Accuracy, Lack, Options, Outcome, Quantity, QuantityRow};
 
 type Surface = fn(f64, f64) -> f64;
 
@@ -51,6 +51,11 @@ fn ellipse(x: f64, y: f64) -> f64 {
     0.6 * (c * x + s * y).powi(2) + 2.2 * (c * y - s * x).powi(2)
 }
 
+/// A roller along y whose ends begin at 0.3.
+fn rounded_ends(x: f64, y: f64) -> f64 {
+    2.0 * x * x + 0.2 * y * y + 30.0 * (y.abs() - 0.3).max(0.0).powi(2)
+}
+
 fn scene<'a>(bodies: Bodies, load: Load) -> Scene<'a> {
     Scene::new(Grid { mx: 1, my: 1, dx: 1.0, dy: 1.0 }, &[], bodies, load)
 }
@@ -94,4 +99,24 @@ fn steady_rolling_of_unlike_bodies() {
     }
     let row = last(&scene, 64, fourth_power, (Quantity::TangentialForce, 2));
     assert!(row.error.is_some(), "{row:?}");
+}
+
+/// The pressure has a peak where the ends begin, and the largest stress lies an element below it. On 64 x 64 elements that stress is 10 % off and has changed by
+/// 2 %; the peak itself has no estimate there.
+#[test]
+fn a_search_for_the_stress_below_a_peak_resolves_the_peak() {
+    let (target, load) = (0.03, Load::Approach(0.14));
+    let (grid, h) = on(16, rounded_ends);
+    let scene = Scene { grid, undeformed_distance: &h, ..scene(Bodies::same(0.7, 0.3), load) };
+    let mut surface = |grid: &Grid, out: &mut [f64]| {
+        out.copy_from_slice(&on(grid.mx, rounded_ends).1);
+        false
+    };
+    let accuracy = Accuracy::new(0.5).with(Quantity::MaxVonMises, target);
+    let found = solve_to_accuracy(&scene, &Options::default(), &accuracy, Some(&mut surface), None).expect("a search");
+    assert_eq!(found.stop, Outcome::Converged, "{}", found.reason);
+    let m = found.solver.expect("a solver").grid().mx;
+    let of = |m: usize| last(&scene, m, rounded_ends, (Quantity::MaxVonMises, 0)).value.expect("a value");
+    let truth = of(2 * m);
+    assert!((of(m) - truth).abs() <= target * truth, "{m} elements: {} for {truth}", of(m));
 }

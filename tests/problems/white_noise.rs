@@ -99,16 +99,29 @@ fn the_product_of_this_test_is_a_convolution() {
 }
 
 /// Work units of the solve, whose conditions are checked.
-fn work_units(m: usize, border: usize, approach: f64, h: &[f64]) -> f64 {
+fn work_units(m: usize, border: usize, load: Load, h: &[f64]) -> f64 {
     let grid = Grid::new(m, m, 1.0, 1.0).unwrap();
-    let scene = Scene::new(grid, h, Bodies::same(1.0, 0.0), Load::Approach(approach));
-    let what = format!("{m} x {m}, border {border}, approach {approach}");
+    let scene = Scene::new(grid, h, Bodies::same(1.0, 0.0), load);
+    let what = format!("{m} x {m}, border {border}, {load:?}");
     let (solver, stop, report) = solve(&scene, &Options::default()).unwrap();
     assert_eq!(stop, Outcome::Converged, "{what}");
     let p = &solver.state().p;
     let u = displacements(m, p);
-    assert_conditions(h, approach, p, &u, &what);
+    assert_conditions(h, report.measures.approach, p, &u, &what);
+    if let Load::Force(force) = load {
+        assert!((p.iter().sum::<f64>() / force - 1.0).abs() < 1e-11, "{what}");
+    }
     report.count.work_units
+}
+
+/// Parts of E* per element, up to where nearly all touch. Measured: 13 to 24.
+#[test]
+fn white_noise_by_force_takes_at_most_40_work_units() {
+    for (seed, part) in [1e-4, 1e-3, 0.01, 0.1, 0.5].into_iter().enumerate() {
+        let (m, h) = (256, noise(256, 0, seed as u64));
+        let work = work_units(m, 0, Load::Force(part * (m * m) as f64), &h);
+        assert!(work <= 40.0, "{part}: {work} work units");
+    }
 }
 
 /// Measured: 12 to 47. Where pressures were not scaled to the least energy after large truncations, 19 of these 66 stopped at the
@@ -122,7 +135,7 @@ fn white_noise_by_approach_takes_at_most_80_work_units() {
                     continue;
                 }
                 let h = noise(m, border, (m + border) as u64 + (approach * 1000.0) as u64);
-                let work = work_units(m, border, approach, &h);
+                let work = work_units(m, border, Load::Approach(approach), &h);
                 assert!(work <= 80.0, "{m} x {m}, border {border}, approach {approach}: {work} work units");
             }
         }

@@ -40,7 +40,7 @@ fn the_box_is_that_of_all_that_counts() {
         for count in [0, 1, 2, 5] {
             let mut values = vec![0u8; grid.len()];
             (0..count).for_each(|_| values[below(grid.len())] = 1);
-            let found = Rectangle::around_values(&values, &grid, &threads, |row| row.contains(&1), |value| *value == 1);
+            let found = Rectangle::around_values(&values, &grid, &threads, |row| row.contains(&1));
             let those = || (0..grid.len()).filter(|&i| values[i] == 1);
             let range = |of: &dyn Fn(usize) -> usize| Some(those().map(of).min()?..those().map(of).max()? + 1);
             let expected = range(&|i| i % grid.mx).zip(range(&|i| i / grid.mx)).map(|(x, y)| Rectangle { x, y });

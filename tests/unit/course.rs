@@ -106,6 +106,24 @@ fn three_grids_are_needed_where_tractions_or_pressures_end_steeply() {
     assert_eq!(is_believed(Quantity::MeanGap, &friction, true), [true; 3]);
 }
 
+/// Of a stress some elements below the surface, unless that is deep.
+#[test]
+fn a_stress_below_a_pressure_that_is_not_resolved_is_not_believed() {
+    let grid = Grid::new(8, 8, 1.0, 1.0).expect("a grid");
+    let scene = Scene::new(grid, &[], Bodies::same(1.0, 0.3), Load::Approach(1.0));
+    let is_believed = |elements: f64, is_known: bool| {
+        let mut course = Course::of(Quantity::MaxVonMises, &scene);
+        let peak = Peak { value: 1.0, depth: 1.0, elements, close: [0.0; CLOSE.len()] };
+        course.add(0, Value { value: 1.0, peak: Some(peak), counted: 0.0 }, 0.0);
+        course.below_known_pressure(is_known);
+        course.is_believed()
+    };
+    assert_eq!(
+        [(1.0, true), (1.0, false), (10.0, false)].map(|(at, known)| is_believed(at, known)),
+        [true, false, true]
+    );
+}
+
 /// Creepages that change by -154 and -99: of first order where bodies are alike; changes of unlike ones fall no faster on the way to the end.
 #[test]
 fn steady_rolling_of_unlike_bodies_is_slow() {

@@ -60,7 +60,7 @@ fn by(arch: pulp::Arch, n: usize) -> Vec<Vec<u64>> {
         sums::<1, 0, 1>(arch, block, ([p], []), Carried),
     ];
     for update in &UPDATES {
-        found.push(sums::<2, 2, 1>(arch, block, ([h, u], [q, z]), Distance(update)));
+        found.push(sums::<2, 2, 1>(arch, block, ([h, u], [q, z]), Distance { update, approach: 0.1 }));
         found.push(sums::<3, 3, 2>(arch, block, ([h, u, p], [q, z, t]), work(update)));
     }
     for forecast in [None, Some(0.9)] {
@@ -251,8 +251,9 @@ fn sums_of_a_step_are_what_they_say() {
     for update in &UPDATES {
         let moved = |i: usize, w: f64, repair: f64| u[i] + update.alpha * q(i) + w + repair;
         let is_corrected = f64::from(u8::from(update.is_corrected));
-        let distance = |i: usize| [h[i] + update.factor * moved(i, 0.0, is_corrected * d(i))];
-        check(block.sum([a, b], [of_q, of_d], Distance(update)), plain(contact, distance), "a mean distance");
+        let distance = |i: usize| [update.factor * moved(i, 0.0, is_corrected * d(i)) - depth(i)];
+        let formula = Distance { update, approach: 0.1 };
+        check(block.sum([a, b], [of_q, of_d], formula), plain(contact, distance), "a mean distance");
         let work = |i: usize| [p[i] * depth(i), p[i] * moved(i, update.gamma * t(i), is_corrected * d(i))];
         let formula = WorkAndEnergy { approach: 0.1, update };
         check(block.sum([a, b, c], [of_q, of_d, of_t], formula), plain(contact, work), "work and energy");

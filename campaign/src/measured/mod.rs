@@ -33,9 +33,10 @@ pub fn case(seed: u64) -> Case {
     let modulus = if random.chance(0.2) { 10f64.powi(random.integer(0, 16) as i32 - 6) } else { 1.0 };
     let second = if random.chance(0.5) { f64::INFINITY } else { modulus * random.decades(0.1, 10.0) };
     let (shear_modulus, poisson_ratio) = ([modulus, second], [random.between(0.0, 0.5), 0.3]);
-    let (name, mut h) = surface(random, &grid);
+    let (mut name, mut h) = surface(random, &grid);
     let height = grid.dx * random.decades(1e-4, 1.0);
     h.iter_mut().for_each(|h| *h *= height);
+    name += datum(&mut Random::new(seed ^ 0x00da_7a5e), height, &mut h);
     let c = compliance(shear_modulus, poisson_ratio);
     let mut effects = effects::make(random, &kinds, &grid, c);
     if is_coated(random, &grid, &effects) {
@@ -62,6 +63,20 @@ pub fn case(seed: u64) -> Case {
         how,
         through_handle,
         is_measured: true,
+    }
+}
+
+/// Some heights are above another level than their own, and some are all the same. Returns what it is called.
+fn datum(random: &mut Random, height: f64, h: &mut [f64]) -> &'static str {
+    let (is_other, is_flat) = (random.chance(0.1), random.chance(0.02));
+    let level = if is_other || is_flat { height * random.pick(&[1.0 / 3.0, -1.0, 30.0, 1e3]) } else { 0.0 };
+    for h in h.iter_mut().filter(|h| h.is_finite()) {
+        *h = if is_flat { level } else { *h + level };
+    }
+    match (is_other, is_flat) {
+        (_, true) => " flattened",
+        (true, false) => " above a datum",
+        _ => "",
     }
 }
 

@@ -82,10 +82,10 @@ impl<const K: usize> Sums<K> {
     }
 }
 
-/// The sum of `a + b` where it `counts`, and in how many places it does. Several at a time: that the compiler can vectorise.
+/// The sum of `a - from + b` where it `counts`, and in how many places it does. Several at a time: that the compiler can vectorise.
 #[inline(always)]
-pub fn sum_where(a: &[f64], b: &[f64], counts: &[bool]) -> (f64, u64) {
-    let term = |a: f64, b: f64, counts: bool| if counts { a + b } else { 0.0 };
+pub fn sum_where((a, from): (&[f64], f64), b: &[f64], counts: &[bool]) -> (f64, u64) {
+    let term = |a: f64, b: f64, counts: bool| if counts { a - from + b } else { 0.0 };
     let (a, rest_of_a) = pulp::as_arrays::<WIDE, f64>(a);
     let (b, rest_of_b) = pulp::as_arrays::<WIDE, f64>(b);
     let (lanes, rest) = pulp::as_arrays::<WIDE, bool>(counts);

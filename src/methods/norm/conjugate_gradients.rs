@@ -49,7 +49,8 @@ pub fn conjugate_gradients<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, works
     let mut rr: f64 = dot(r, r);
     let mut update = 0.0;
     let noise = noise(state, (0..n).filter(|&i| contact[i]), &state.u);
-    let aim = stop.residual.max(f64::EPSILON * norm_of_distance(state));
+    // Of bodies that fit but for round-off there are no distances.
+    let aim = stop.residual.max(f64::EPSILON * norm_of_distance(state).max(rr.sqrt()));
     for _ in 0..stop.iterations {
         if !(rr.sqrt() > aim) {
             break;

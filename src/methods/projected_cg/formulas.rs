@@ -9,15 +9,19 @@ use crate::contact::AdmissibleSet;
 /// An element was held back if the forecast step leaves it this part of its pressure at most: single precision's rounding.
 pub(super) const HELD_BACK: f64 = 1e-6;
 
-/// The sum of `h + u`, u as `update` will leave it but for w.
+/// The sum of `h - approach + u`, u as `update` will leave it but for w.
 #[derive(Clone, Copy)]
-pub(super) struct Distance<'a>(pub(super) &'a Update);
+pub(super) struct Distance<'a> {
+    pub(super) update: &'a Update,
+    /// Of the last iteration: the mean of equal distances is that distance, to the last digit.
+    pub(super) approach: f64,
+}
 
 impl Terms<2, 2, 1> for Distance<'_> {
     #[inline(always)]
     fn of<S: Simd>(&self, [h, u]: [Vector<S>; 2], [q, z]: [Vector<S>; 2]) -> [Vector<S>; 1] {
-        let u = u + self.0.alpha * q;
-        [h + self.0.factor * if self.0.is_corrected { u + z } else { u }]
+        let u = u + self.update.alpha * q;
+        [h - self.approach + self.update.factor * if self.update.is_corrected { u + z } else { u }]
     }
 }
 

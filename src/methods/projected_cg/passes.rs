@@ -33,10 +33,10 @@ impl<T: Real> Iteration<T> {
         let [sum] = self.segments.sum(
             &state.contact,
             #[inline(always)]
-            |block| block.sum([&state.h, &state.u], [q, z], Distance(update)),
+            |block| block.sum([&state.h, &state.u], [q, z], Distance { update, approach: state.approach }),
         );
         if self.segments.count() > 0 {
-            state.approach = sum / self.segments.count() as f64 + self.limits.shift;
+            state.approach += sum / self.segments.count() as f64 + self.limits.shift;
         }
     }
 

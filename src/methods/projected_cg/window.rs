@@ -67,7 +67,7 @@ fn serves(window: &Rectangle, area: &Rectangle, grid: &Grid) -> bool {
 /// The smallest rectangle that holds the contact area, and what is at its limit; none when it is empty.
 fn area(state: &State, threads: &Threads) -> Option<Rectangle> {
     let any = |row: &[bool]| row.iter().fold(false, |any, inside| any | inside);
-    let around = |elements: &[bool]| Rectangle::around_values(elements, &state.grid, threads, any, |inside| *inside);
+    let around = |elements: &[bool]| Rectangle::around_values(elements, &state.grid, threads, any);
     let free = around(&state.contact);
     let at_limit = if state.at_limit.is_empty() { None } else { around(&state.at_limit) };
     Rectangle::joined(free, at_limit)

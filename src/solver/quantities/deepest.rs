@@ -3,6 +3,7 @@
 //! The largest value of a depth is first taken at depths that grow by a ratio, from a quarter of an element to the length of what is loaded.
 //! Then parabolas through the three best depths find the largest one (successive parabolic interpolation; Brent 1973, chapter 5).
 
+use crate::contact::presses;
 use crate::error::Result;
 use crate::friction::Vector;
 use crate::grid::Grid;
@@ -94,8 +95,7 @@ impl<'a> Surface<'a> {
         patches: Option<Patches<'a>>,
         threads: &Threads,
     ) -> Result<Option<Surface<'a>>> {
-        let presses = |p: &f64| *p != 0.0;
-        let loaded = Rectangle::around_values(pressure, &grid, threads, |row| row.iter().any(presses), presses);
+        let loaded = Rectangle::around_values(pressure, &grid, threads, presses);
         let Some(loaded) = loaded else { return Ok(None) };
         let whole = periodic || patches.is_some();
         let part = if whole { Rectangle::full(&grid) } else { loaded };

@@ -92,6 +92,7 @@ impl History {
         for (course, value) in self.courses.iter_mut().zip(&values.of) {
             let Ok(found) = *value else { continue };
             course.add(doublings, found, values.residual);
+            course.below_known_pressure(values.lack_estimates || outlook.falling(Quantity::MaxPressure).is_some());
             if values.lack_estimates {
                 course.reaches_limit();
             }
@@ -117,7 +118,7 @@ pub struct Values {
 /// Elements across the contact area, along x and y; as many as need be in a direction in which it repeats itself without an end.
 pub fn across(state: &State, repeats: (bool, bool)) -> (usize, usize) {
     let State { grid, contact, .. } = state;
-    let touching = Rectangle::around_values(contact, grid, &Threads::One, |row| row.contains(&true), |inside| *inside);
+    let touching = Rectangle::around_values(contact, grid, &Threads::One, |row| row.contains(&true));
     let span = |count: usize, m: usize, repeats: bool| if count == m && repeats { usize::MAX } else { count };
     touching.map_or((0, 0), |Rectangle { x, y }| (span(x.len(), grid.mx, repeats.0), span(y.len(), grid.my, repeats.1)))
 }

@@ -85,8 +85,8 @@ pub fn cost_of_accuracy(
         if loosen(scene, &loose, (&mut samples, left), (&mut surface, &mut progress))? == Outcome::Cancelled {
             return Ok((Outcome::Cancelled, list(&samples)));
         }
-        // Where one grid has no estimate the error follows from three, and from four if two changes happen to be alike.
-        let has_error = |last: &Sample| last.falling().is_some() || samples.len() > 3;
+        // Where one grid has no estimate the error follows from three, and from four if two changes happen to be alike. A search believes no fewer.
+        let has_error = |last: &Sample| last.falling().is_some() && history.is_believed() || samples.len() > 3;
         let is_known = |last: &Sample| last.across >= ACROSS && has_error(last) || last.cost.elements > UNRESOLVED;
         let over = began.elapsed().as_secs_f64() + next > most;
         if samples.last().is_some_and(is_known) && over || scaled(&scene.grid, doublings).is_err() {

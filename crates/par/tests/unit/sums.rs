@@ -44,7 +44,7 @@ fn sums_where_it_counts() {
         let a: Vec<f64> = (0..n).map(|i| if i % 3 == 1 { i as f64 } else { f64::INFINITY }).collect();
         let b: Vec<f64> = (0..n).map(|i| (7 * i % 11) as f64).collect();
         let those = || (0..n).filter(|i| i % 3 == 1);
-        let expected = (those().map(|i| a[i] + b[i]).sum(), those().count() as u64);
-        assert_eq!(sum_where(&a, &b, &counts), expected, "{n} values");
+        let expected = (those().map(|i| a[i] - 3.0 + b[i]).sum(), those().count() as u64);
+        assert_eq!(sum_where((&a, 3.0), &b, &counts), expected, "{n} values");
     }
 }
