@@ -94,19 +94,6 @@ impl<'a> TangentialTurn<'a> {
         self.refusal = refusal;
     }
 
-    /// A refusal with the largest force of creepages that were looked through; it exceeds the one that is given by `excess` times mu N.
-    pub fn with_largest(&self, refusal: Error, excess: Option<f64>) -> Error {
-        let carried = self.found.as_ref().map_or(0.0, |found| found.carried);
-        let wanted = length(self.wanted());
-        match (refusal, excess) {
-            (Error::Infeasible(_), Some(excess)) if excess.is_finite() => Error::Infeasible(format!(
-                "the tangential force is {wanted}; of the creepages that were looked through none reaches more than {}",
-                wanted + excess * carried
-            )),
-            (refusal, _) => refusal,
-        }
-    }
-
     /// The forces that are given, 0 where none is.
     pub fn wanted(&self) -> Vector {
         self.turn.friction.prescribed.map(|prescribed| match prescribed {

@@ -103,30 +103,3 @@ fn below_round_off_the_best_is_returned() {
         }
     }
 }
-
-/// A flat soft punch on a rigid body: before all slips it carries up to .9 % more than in full slip. What a creepage carries is no force that cannot be.
-#[test]
-fn forces_between_full_slip_and_the_largest_are_found() {
-    for (m, mu, motion) in [((11, 5), 1.0, Motion::SteadyRolling), ((11, 25), 2.0, Motion::Shift)] {
-        let (grid, h) = (Grid::new(m.0, m.1, 1.0, 1.0).unwrap(), vec![0.0; m.0 * m.1]);
-        let bodies = Bodies { shear_modulus: [1.0, f64::INFINITY], poisson_ratio: [0.0; 2] };
-        let force = |x: Prescribed| {
-            let friction = Friction { motion, prescribed: [x, Prescribed::Creepage(0.0)], ..Friction::new(mu) };
-            let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, Load::Approach(0.2)) };
-            let (solver, outcome, _) = solve(&scene, &Options::default())?;
-            assert_eq!(outcome, Outcome::Converged, "{m:?} {x:?}");
-            Ok::<f64, Error>(solver.friction().map_or(0.0, |found| found.traction.iter().map(|q| q[0]).sum()))
-        };
-        let of = |creepage: f64| force(Prescribed::Creepage(-creepage)).unwrap();
-        let (full, largest) = (of(1e4), (0..30).map(|k| of(0.02 * 1.2f64.powi(k))).fold(0.0, f64::max));
-        assert!(largest > 1.002 * full, "{m:?}: {largest} {full}");
-        for part in [0.1, 0.5, 0.9] {
-            let wanted = full + part * (largest - full);
-            let found = force(Prescribed::Force(wanted)).unwrap_or_else(|error| panic!("{m:?} {part}: {error}"));
-            assert!((found / wanted - 1.0).abs() <= 1e-6, "{m:?} {part}: {found} {wanted}");
-        }
-        let Err(Error::Infeasible(message)) = force(Prescribed::Force(1.001 * largest)) else { panic!("{m:?}") };
-        let most: f64 = message.rsplit(' ').next().unwrap().parse().unwrap();
-        assert!((most / largest - 1.0).abs() <= 1e-4, "{message}: {largest}");
-    }
-}
