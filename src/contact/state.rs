@@ -13,8 +13,6 @@ use crate::scene::Load;
 use crate::sums::{sum_where, Sums};
 use crate::threads::Threads;
 
-/// Factors of a force nearer to 1 are rounding.
-const SCALED: f64 = 4.0 * f64::EPSILON;
 /// Undeformed distances of more than so many times the approach are no part of a contact.
 const OUT_OF_REACH: f64 = 1e6;
 
@@ -222,8 +220,6 @@ impl State {
         let factor = force / carried;
         // Both push or both pull.
         if carried != 0.0 && factor.is_finite() && factor > 0.0 {
-            // What was scaled to the force once carries it but for the rounding of the sum.
-            let factor = if (factor - 1.0).abs() <= SCALED { 1.0 } else { factor };
             if factor != 1.0 {
                 threads.for_a_pass(self.p.len()).for_each_plain_row(&mut self.p, self.grid.mx, |_, row| {
                     row.iter_mut().for_each(|p| *p *= factor);

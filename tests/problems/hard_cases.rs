@@ -580,10 +580,12 @@ fn time_steps_begin_with_what_the_last_ones_changed() {
                 assert!(warm < 0.8 * cold, "step {step}: {warm} work units, {cold} from nothing");
             }
         }
-        // The same once more: nothing is left to do, and no product is needed to see that.
+        // The same once more: nothing is left to do, and no product is needed to see that; by force one is, unless the sum of p is the force to the last
+        // digit.
         let scene = Scene::new(grid, &h, rigid_on(3.0), load(4));
         let (stop, report) = solver.solve(&scene, &next, None, None).unwrap();
-        assert_eq!((stop, report.count.cycles, report.count.matrix_products), (Outcome::Converged, 0, 0));
+        assert_eq!((stop, report.count.cycles), (Outcome::Converged, 0));
+        assert!(report.count.matrix_products <= u64::from(by_force), "{} products", report.count.matrix_products);
         assert!(report.measures.certificate.residual <= 1e-6);
     }
 }
