@@ -200,7 +200,8 @@ fn flat_on_flat_with_two_periods_ends() {
             let scene = Scene { period: Some(BOTH), ..Scene::new(grid, &h, bodies(), load) };
             // Alone the methods may rest on a plane of another datum without an end.
             let all = [Method::Auto, Method::Norm, Method::ProjectedCg];
-            for &method in if height == 0.0 && mx > 22 { &all[..] } else { &all[..1] } {
+            let is_plain = height == 0.0 && mx > 22 && [1e-3, 0.7, 1e3].contains(&pressure);
+            for &method in if is_plain { &all[..] } else { &all[..1] } {
                 let (solver, stop, report) = solve(&scene, &Options { method, ..Options::default() }).unwrap();
                 let what = format!("{mx} x {my} at {height}, pressure {pressure}, {method:?}");
                 assert_eq!(stop, Outcome::Converged, "{what}");
