@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import unittest
 from typing import Any
 
@@ -39,6 +40,19 @@ class Adhesion(unittest.TestCase):
         self.assertGreater(found.report["stiffness"], 0)
         with self.assertRaisesRegex(contact_normal.ContactNormalError, "pull-off force"):
             solve(force=-1.8)
+
+    def test_a_pull_that_is_not_reached_says_what_it_lacks(self) -> None:
+        told = 0
+        for cycles in (2, 3, 4, 6):
+            found = solve(force=-1.4, max_cycles=cycles)
+            self.assertIn(found.status, (contact_normal.OK, contact_normal.ITERATION_LIMIT))
+            lack = abs(found.pressure.sum() * D * D / -1.4 - 1)
+            said = re.search(r"the force is off by (\S+) of the one that is given", found.message)
+            self.assertEqual(said is not None, lack > 1e-6, (found.message, lack))
+            if said:
+                self.assertAlmostEqual(float(said[1]) / lack, 1.0, places=6)
+                told += 1
+        self.assertGreater(told, 0)
 
     def test_the_pull_off_is_between_jkr_and_dmt(self) -> None:
         found = contact_normal.pull_off(H, D, D, e_star=0.75, adhesion=STICKY)

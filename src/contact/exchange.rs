@@ -41,6 +41,11 @@ pub fn truncate<S: AdmissibleSet>(state: &mut State, set: S, threads: &Threads) 
     changed
 }
 
+/// Whether no element of C leaves it.
+pub fn all_stay<S: AdmissibleSet>(state: &State, set: S) -> bool {
+    S::FIXED || !some_leaves(set, &state.p, &state.contact, 0..state.p.len())
+}
+
 /// Element i leaves C for its limit or for p = 0. Returns what its pressure gains.
 pub fn leave<S: AdmissibleSet>(state: &mut State, set: S, i: usize, for_limit: bool) -> f64 {
     let (before, at_limit) = (state.p[i], S::LIMITED && for_limit);

@@ -23,7 +23,7 @@ pub use admissible::{AdmissibleSet, Fixed, NonNegative};
 pub use certificate::{norm_of_distance, relative, residual_norm, Certificate, Survey};
 pub use curvature::Curvature;
 pub use ends::at_ends;
-pub use exchange::{admit, enter, leave, truncate};
+pub use exchange::{admit, all_stay, enter, leave, truncate};
 pub use guard::ExchangeGuard;
 pub use jumps::{at_jumps, each_jump, Jump};
 pub use outline::Outline;

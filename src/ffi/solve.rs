@@ -14,7 +14,7 @@ use super::warnings::advice_on_law;
 use super::watcher::{watched, why, Watcher};
 use crate::contact::State;
 use crate::effects;
-use crate::scene::Scene;
+use crate::scene::{Load, Scene};
 use crate::solver::{ActiveSet, InitialGuess, Method, Neglected, Options, Outcome, ProgressCallback, Report, Solver};
 
 /// Solves one scene. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.1.
@@ -162,7 +162,7 @@ pub(super) fn run(
     let warnings = outputs.warnings(scene, options, &report, solver.state());
     outputs.write_fields(solver, options.active_set == ActiveSet::Fixed);
     outputs.write_report(&report, solver.ledger(), warnings)?;
-    let message = || explain(stop, &report, options.method, Some(solver.state()));
+    let message = || explain(stop, &report, options.method, Some(solver.state())) + &lack_of_force(scene.load, &report);
     Ok(Conclusion { warnings, ..Conclusion::of(stop, message) })
 }
 
@@ -187,6 +187,16 @@ pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Opt
         message += &report.friction.map_or_else(String::new, |found| advice_on_law(found.law_slope));
     }
     message
+}
+
+/// By how much the force of a result is not the one that is given, where that is more than the tolerance: bodies that pull too little.
+fn lack_of_force(load: Load, report: &Report) -> String {
+    let Load::Force(force) = load else { return String::new() };
+    let lack = (report.measures.force / force - 1.0).abs();
+    match lack > report.tolerance && lack.is_finite() {
+        true => format!("; the force is off by {lack:e} of the one that is given"),
+        false => String::new(),
+    }
 }
 
 /// The point that a solve without further progress has reached, as far as its result proves it.

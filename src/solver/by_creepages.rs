@@ -5,8 +5,10 @@
 //! known to carry too much and too little where one force is given.
 //!
 //! *Forces beyond full slip.* Near full slip forces need not fall as creepages grow: what the pressures carry changes more. So creepages about
-//! those of turns by force are looked through for one that reaches the force. A force is refused where none of them does.
+//! those of turns by force are looked through for one that reaches the force, and the largest force among them is approached (module
+//! [`creepage_peak`](super::creepage_peak)). A force is refused where none of them does.
 
+use super::creepage_peak::Peak;
 use super::creepage_trials::{Place, Trials};
 use super::tangential_turn::{sharper, TangentialTurn, ROUND_OFF};
 use super::turns::InTurns;
@@ -25,8 +27,9 @@ const MOST_TRIALS: u32 = 30;
 /// Creepages that are looked through, relative to those of turns by force; of two forces those from BEHIND on lie straight against them.
 const ABOUT: [f64; 14] = [1.0, 1.3, 2.0, 4.0, 16.0, 64.0, 256.0, 1e3, 1e4, FAR, 0.75, 0.5, 0.25, 0.1];
 const BEHIND: f64 = 64.0;
-/// Where turns by force leave more than that part of mu N only the far one is: before full slip pressures carry at most some thousandths more.
-const BEYOND: f64 = 1e-2;
+/// Where turns by force leave more than that part of mu N only the far one is: before full slip pressures carry at most some hundredths more (0.9 % on
+/// a flat punch of mu = 1 or 2 on a rigid body).
+const BEYOND: f64 = 3e-2;
 const FAR: f64 = 1e6;
 /// The search tries creepages, times the length rolled, up to this factor times the displacement of full slip. All elements slip long before. A solve
 /// refuses 1e30 times that displacement, and the pressures of a turn change it by less than the factor between.
@@ -66,7 +69,8 @@ impl InTurns<'_, '_, '_> {
         let mut refusal = friction.take_refusal();
         let is_beyond = refusal.is_some() && from.missing() > BEYOND;
         let parts = if is_beyond { &[FAR] } else { &ABOUT[..] };
-        let (from, mut end) = self.look_about(from, parts)?;
+        let mut peak = Peak::default();
+        let (from, mut end) = self.look_about(from, parts, &mut peak)?;
         if let (Some(from), Outcome::Converged) = (from, end) {
             refusal = None;
             end = self.bracket(from)?;
@@ -75,7 +79,7 @@ impl InTurns<'_, '_, '_> {
         }
         if let Some(friction) = &mut self.turns.friction {
             if end == Outcome::Converged {
-                friction.refuse_by(refusal);
+                friction.refuse_by(refusal.map(|refusal| friction.with_largest(refusal, peak.largest())));
             }
             friction.held = None;
         }
@@ -83,15 +87,16 @@ impl InTurns<'_, '_, '_> {
     }
 
     /// A place that reaches the force, among those about the creepages of turns by force; none is found, or the search ends otherwise than by convergence.
-    fn look_about(&mut self, from: Place, parts: &[f64]) -> Result<(Option<Place>, Outcome)> {
+    fn look_about(&mut self, from: Place, parts: &[f64], peak: &mut Peak) -> Result<(Option<Place>, Outcome)> {
         let given = given(self.scene);
         let wanted = self.turns.friction.as_ref().map_or([0.0; 2], TangentialTurn::wanted);
         let along = [0, 1].map(|k| if given[k] { from.creepage[k] } else { 0.0 });
         // Without a creepage all parts are the same.
         let parts = if length(along) > 0.0 { parts } else { &parts[..1] };
-        for part in parts {
+        let (has_peak, mut parts) = (parts.len() > 1 && given != [true; 2], parts.iter().copied());
+        while let Some(part) = parts.next().or_else(|| if has_peak { peak.next() } else { None }) {
             // Far away both forces lie against the creepages.
-            let is_far = *part >= BEHIND && given == [true; 2] && length(wanted) > 0.0;
+            let is_far = part >= BEHIND && given == [true; 2] && length(wanted) > 0.0;
             let against = wanted.map(|force| -force / length(wanted) * length(along));
             let held = if is_far { against } else { along }.map(|c| part * c);
             let end = self.turns_with(held)?;
@@ -104,6 +109,7 @@ impl InTurns<'_, '_, '_> {
             if let Some(place) = found.filter(reaches) {
                 return Ok((Some(place), end));
             }
+            peak.add(part, found.map_or(f64::NEG_INFINITY, |place| dot(place.excess, wanted) / length(wanted)));
         }
         Ok((None, Outcome::Converged))
     }

@@ -13,7 +13,7 @@
 //! The order of (4.1) and (4.2) matters: with the product before the truncation the loop cycles for ever.
 
 use super::best::Best;
-use crate::contact::{admit, truncate, AdmissibleSet, Freshness, Survey};
+use crate::contact::{admit, all_stay, truncate, AdmissibleSet, Freshness, Survey};
 use crate::error::{Error, Result};
 use crate::methods::{Change, Step, Task};
 use crate::progress::Outcome;
@@ -63,8 +63,8 @@ pub fn iterate<S: AdmissibleSet>(
         // 5. Go on if C has changed. 6. Go on if the accuracy is not reached.
         if task.state.u_is == Freshness::Exact && goal.holds(&survey, change.update, set) && task.carries() {
             chatter += u32::from(changes > 0);
-            // Where bodies fit but for round-off, that alone makes elements change sides. And after a while the certificate decides, although they do.
-            let fits = survey.residual == 0.0 && survey.violation == 0.0;
+            // Where bodies fit but for round-off, that alone makes elements enter. And after a while the certificate decides, although elements change.
+            let fits = survey.residual == 0.0 && survey.violation == 0.0 && all_stay(task.state, set);
             if changes == 0 || fits || policy.exchanged_by_loop && chatter > policy.chatter {
                 task.monitor.survey = Some(last);
                 return Ok(Outcome::Converged);

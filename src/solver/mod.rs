@@ -13,6 +13,7 @@ mod by_creepages;
 mod check;
 mod compressible;
 mod compression;
+mod creepage_peak;
 mod creepage_trials;
 mod errors;
 mod estimates;

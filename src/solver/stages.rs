@@ -3,7 +3,7 @@
 use super::options::Method;
 use crate::contact::AdmissibleSet;
 
-/// The part of the cycles left that a method has before the next one takes over, and how many it has at least. AUTO of a plain scene: 400, 240, 144, and the rest
+/// The part of the cycles left that a method has before the next one takes over, and how many it has at least, if these are no more than half. AUTO of a plain scene: 400, 240, 144, and the rest
 /// of 1000 for NORM, which ends on every area of contact.
 const SHARE: f64 = 0.4;
 const LEAST_SHARE: u64 = 60;
@@ -26,7 +26,7 @@ pub enum Stage {
 /// has its turn.
 pub fn share<S: AdmissibleSet>(stage: Stage, done: u64, most: u64) -> u64 {
     let left = most.saturating_sub(done);
-    let share = left.min(LEAST_SHARE.max((SHARE * left as f64) as u64));
+    let share = LEAST_SHARE.min(left / 2).max((SHARE * left as f64) as u64);
     done + if S::LIMITED && stage == Stage::ProjectedCg { share.min(LIMITED_SHARE) } else { share }
 }
 
@@ -52,3 +52,7 @@ pub fn stages<S: AdmissibleSet>(method: Method, symmetric: bool, multigrid: bool
         },
     }
 }
+
+#[cfg(test)]
+#[path = "../../tests/unit/stages.rs"]
+mod tests;

@@ -27,10 +27,6 @@ pub struct TangentialTurn<'a> {
     refusal: Option<Error>,
 }
 
-/// One turn makes this part of the products that are left; a few are made as they are. What is not solved then is gone on with by the next turn.
-const TURN: f64 = 0.6;
-const FEW: usize = 50;
-
 /// Residuals below that cannot be made much smaller.
 pub const ROUND_OFF: f64 = 1e-11;
 /// Turns by a force of more than that part of mu N make this part of the products: turns with creepages can follow.
@@ -94,6 +90,19 @@ impl<'a> TangentialTurn<'a> {
         self.refusal = refusal;
     }
 
+    /// A refusal with the largest force of creepages that were looked through; it exceeds the one that is given by `excess` times mu N.
+    pub fn with_largest(&self, refusal: Error, excess: Option<f64>) -> Error {
+        let carried = self.found.as_ref().map_or(0.0, |found| found.carried);
+        let wanted = length(self.wanted());
+        match (refusal, excess) {
+            (Error::Infeasible(_), Some(excess)) if excess.is_finite() => Error::Infeasible(format!(
+                "the tangential force is {wanted}; of the creepages that were looked through none reaches more than {}",
+                wanted + excess * carried
+            )),
+            (refusal, _) => refusal,
+        }
+    }
+
     /// The forces that are given, 0 where none is.
     pub fn wanted(&self) -> Vector {
         self.turn.friction.prescribed.map(|prescribed| match prescribed {
@@ -122,9 +131,7 @@ impl<'a> TangentialTurn<'a> {
 
 impl Coupled for TangentialTurn<'_> {
     fn solve(&mut self, stop: Outcome, state: &State, monitor: &mut Monitor<'_>) -> Result<Outcome> {
-        let left = self.left();
-        let of_turn = if self.displaces() { (TURN * left as f64).ceil() as usize } else { left };
-        let rest = Options { max_cycles: of_turn.max(FEW).min(left).min(self.most), ..*self.turn.options };
+        let rest = Options { max_cycles: self.left().min(self.most), ..*self.turn.options };
         let rest = if self.held.is_some() { sharper(&rest) } else { rest };
         let turn = Turn { options: &rest, ..self.turn };
         let start = match self.held {

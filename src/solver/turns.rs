@@ -132,10 +132,7 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
             let Some(change) = change.or((solved == 0 && !is_met).then_some(0.0)) else { return Ok(so_far) };
             extrapolation.turn(&solver.state.h, distance, change)?;
             let holds = solver.holds_with((distance, change), (self.scene, options), self.monitor);
-            // What a turn had not enough products for goes on in the next one.
-            let is_done = turns.friction.as_ref().is_none_or(TangentialTurn::is_at_round_off);
-            let goes_on = stop == Outcome::Converged && so_far == Outcome::IterationLimit && !is_done;
-            if !goes_on && (holds || so_far != Outcome::Converged) {
+            if holds || so_far != Outcome::Converged {
                 return Ok(so_far);
             }
             if solved == MOST_TURNS {

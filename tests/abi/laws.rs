@@ -98,6 +98,40 @@ fn a_steep_law_is_certified_or_named() {
     assert!(refused + limited > 0 && limited > 0, "{refused} {limited}");
 }
 
+/// A force that is not reached: the message says what the tractions lack, relative to mu N.
+#[test]
+fn a_force_that_is_missed_says_by_how_much() {
+    let (n, mut told) = (MX * MY, 0);
+    for part in [1.0, 0.4] {
+        let mut call = Call::new();
+        call.scene.known.shear_modulus[1] = part * call.scene.known.shear_modulus[0];
+        assert_eq!(call.run(Through::Solve, null_mut()).0, CONTACT_NORMAL_OK);
+        let mu = call.use_friction().coefficient;
+        let wanted = 0.6 * mu * call.report.known.normal.force;
+        let friction = call.use_friction();
+        friction.prescribed = [CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE; 2];
+        friction.force = [wanted, 0.0];
+        let mut q = vec![0.0; 2 * n];
+        call.fields.known.traction = [q.as_mut_ptr(), q[n..].as_mut_ptr()];
+        for max_cycles in [1, 2, 3, 5, 8] {
+            call.options.known.max_cycles = max_cycles;
+            let (status, message) = call.run(Through::Solve, null_mut());
+            assert!(status == CONTACT_NORMAL_OK || status == CONTACT_NORMAL_ITERATION_LIMIT, "{message}");
+            let area = call.scene.known.dx * call.scene.known.dy;
+            let force = |k: usize| q[k * n..(k + 1) * n].iter().sum::<f64>() * area;
+            let missing = (force(0) - wanted).hypot(force(1)) / (mu * call.report.known.normal.force);
+            let Some((_, rest)) = message.split_once("the tangential force is off by ") else {
+                assert!(missing <= 1.01e-6, "{max_cycles}: {missing:e}, {message}");
+                continue;
+            };
+            let said: f64 = rest.split(' ').next().unwrap().parse().unwrap();
+            assert!((said - missing).abs() <= 1e-9 + 1e-6 * missing, "{max_cycles}: {missing:e}, {message}");
+            told += 1;
+        }
+    }
+    assert!(told > 0, "each force was reached");
+}
+
 /// Two shifts over a layer that hardens: by a handle that continues, and by what the caller hands on, they are the same.
 #[test]
 fn a_handle_carries_what_the_caller_would_hand_on() {

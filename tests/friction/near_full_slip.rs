@@ -128,3 +128,58 @@ fn one_element_alone_sticks() {
     // They took 7800, and two were not solved; 7020 now, all with the certificate of the normal problem.
     assert!(products <= 7500.0, "{products} products");
 }
+
+/// Lines by both forces whose first turn takes 260 to 540 products: a turn that was cut short began anew, and 1000 were too few.
+#[test]
+fn long_turns_of_lines_are_not_cut_short() {
+    let bodies = |stiff: f64, poisson: f64| Bodies { shear_modulus: [1.0, stiff], poisson_ratio: [poisson, 0.3] };
+    let transient = (215, 299.270_669_485_209_74, 215.0, 0.140_927_177_130_651_95 + 0.5, bodies(10.0, 0.1));
+    let shift = (5735, 98_765.961_959_088_56, 557_793.685_396_328_8, 0.5 + 0.5, bodies(3.0, 0.0));
+    for ((m, dy, curvature, from, bodies), force, mu, part, motion) in [
+        (transient, 3_165.743_445_392_161_4, 0.023_676_168_167_126_872, 0.99, Motion::TransientRolling),
+        (shift, 2_373.982_529_859_903_5, 0.0721, 0.9, Motion::Shift),
+        (shift, 2_373.982_529_859_903_5, 0.0722, 0.9, Motion::Shift),
+    ] {
+        let at = |k: usize| (k as f64 - 0.5 * m as f64 + from - 0.5).powi(2) / curvature;
+        let lowest = (0..m).map(at).fold(f64::INFINITY, f64::min);
+        let h: Vec<f64> = (0..m).map(|k| at(k) - lowest).collect();
+        let grid = Grid::new(m, 1, 1.0, dy).unwrap();
+        let wanted = [part * mu * force, 0.2 * (1.0 - part) * mu * force];
+        let friction = Friction { motion, prescribed: wanted.map(Prescribed::Force), ..Friction::new(mu) };
+        let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, Load::Force(force)) };
+        let (_, outcome, report) = solve(&scene, &Options::default()).unwrap();
+        let found = report.friction.unwrap();
+        assert_eq!(outcome, Outcome::Converged, "{m} {mu}: {found:?}");
+        let off = (found.force[0] - wanted[0]).hypot(found.force[1] - wanted[1]);
+        assert!(off <= 1e-6 * found.carried, "{m} {mu}: {found:?}");
+    }
+}
+
+/// All products of the tangential problem, those of all grids, turns and creepages, are as many as the caller said, and those of a linear solve that had begun.
+#[test]
+fn products_are_bounded_by_the_cycles_that_a_caller_allows() {
+    const MORE: f64 = 30.0;
+    let (mut limited, mut most) = (0, 0.0);
+    for (m, shift) in [(9, 0.3), (22, 0.0), (31, 0.3)] {
+        let (grid, h) = ellipse(m, shift);
+        for (motion, mu, part) in MOTIONS.into_iter().flat_map(|m| [(m, 0.2, 0.5), (m, 0.02, 0.98), (m, 1e-4, 0.999)]) {
+            for (k, bodies) in [NEARLY_RIGID, Bodies::same(1.0, 0.3)].into_iter().enumerate() {
+                let prescribed = [0.9 * part, 0.3 * part].map(|part| Prescribed::Force(part * mu * 0.3));
+                let friction = Friction { motion, prescribed, spin: 1e-3 * mu, ..Friction::new(mu) };
+                let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, Load::Force(0.3)) };
+                for max_cycles in [3, 10, 40, 120] {
+                    let options = Options { max_cycles, ..Options::default() };
+                    let what = format!("{m} {motion:?} {mu} {part} {k} {max_cycles}");
+                    let (_, outcome, report) = solve(&scene, &options).unwrap_or_else(|why| panic!("{what}: {why}"));
+                    let found = report.friction.unwrap();
+                    assert!(found.products <= max_cycles as f64 + MORE, "{what}: {} products", found.products);
+                    assert!(report.count.cycles <= max_cycles as u64, "{what}: {} cycles", report.count.cycles);
+                    most = f64::max(most, found.products - max_cycles as f64);
+                    limited += u32::from(outcome == Outcome::IterationLimit);
+                }
+            }
+        }
+    }
+    println!("{limited} were limited, {most} products more at most");
+    assert!(limited > 20, "{limited} solves were limited");
+}

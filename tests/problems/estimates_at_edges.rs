@@ -7,7 +7,9 @@ use std::f64::consts::PI;
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, Period, PressureLimit, Scene};
-use contact_normal::solver::{solve, solve_to_accuracy, Accuracy, Options, Outcome, Report};
+use contact_normal::solver::{
+    cost_of_accuracy, solve, solve_to_accuracy, Accuracy, Options, Outcome, Quantity, Report,
+};
 
 use crate::support::run;
 
@@ -94,6 +96,34 @@ fn an_accuracy_is_kept_by_a_punch_whose_edges_fall_between_elements() {
             assert_eq!(found.stop, Outcome::Converged, "{n} {target}: {}", found.reason);
             let error = (found.report.measures.force / force - 1.0).abs();
             assert!(error <= target, "{n} {side} {target}: {error}, {}", found.reason);
+        }
+    }
+}
+
+/// The grid of each row has the accuracy of that row.
+#[test]
+fn price_lists_of_a_punch_whose_edges_fall_between_elements_name_grids_that_do() {
+    let force = 2.0 * HALF * SQUARE * APPROACH;
+    let targets = [3e-2, 1e-2, 5e-3];
+    for (n, side, off) in [(8, 1.957_788, [0.0, 0.0]), (10, 2.2, [0.013, -0.017]), (20, 1.9, [-0.004, 0.011])] {
+        let mut surface = |grid: &Grid, h: &mut [f64]| {
+            h.copy_from_slice(&at_centres(grid, off, &square));
+            false
+        };
+        let grid = Grid::new(n, n, side / n as f64, side / n as f64).unwrap();
+        let scene = Scene::new(grid, &[], UNIT, Load::Approach(APPROACH));
+        let (options, wanted) = (Options::default(), (Quantity::Force, &targets[..]));
+        let accuracy = Accuracy::new(targets[0]);
+        let (stop, rows) = cost_of_accuracy(&scene, &options, &accuracy, wanted, Some(&mut surface), None).unwrap();
+        assert_eq!(stop, Outcome::Converged);
+        for row in rows {
+            let grid = row.grid.expect("a grid");
+            // The tolerance, a tenth of the target, counts beside what the grid leaves.
+            assert!(row.obstacle.is_none() && row.error <= 1.1 * row.target, "{n} {side}: {row:?}");
+            let h = at_centres(&grid, off, &square);
+            let (_, report) = run(&Scene::new(grid, &h, UNIT, Load::Approach(APPROACH)), &options);
+            let error = (report.measures.force / force - 1.0).abs();
+            assert!(error <= row.target, "{n} {side}: {error}, {row:?}");
         }
     }
 }

@@ -19,8 +19,8 @@ fn line_scans_with_periods_end() {
                 let (solver, by_force) = auto(&scene, &what);
                 let approach = solver.state().approach;
                 let (_, by_approach) = auto(&Scene { load: Load::Approach(approach), ..scene }, &what);
-                let most = if period.x { 90 } else { 80 };
-                for (cycles, most) in [(by_force.count.cycles, 80), (by_approach.count.cycles, most)] {
+                let most = if period.x { 90 } else { 60 };
+                for (cycles, most) in [(by_force.count.cycles, 60), (by_approach.count.cycles, most)] {
                     assert!(cycles <= most, "{what}: {cycles} iterations");
                 }
             }

@@ -42,6 +42,7 @@ mod hard_cases;
 mod heat;
 mod hertz;
 mod influence;
+mod kinds_of_surfaces;
 mod layer;
 mod limits_that_differ;
 mod line_contact;

@@ -148,6 +148,27 @@ fn checkerboards_of_limits_carry_nearly_the_greatest_force() {
     }
 }
 
+/// A flat plane fits a flat plane whatever carries the force evenly, but no element may be above its limit.
+#[test]
+fn flat_planes_do_not_end_above_a_limit() {
+    let grid = Grid::new(8, 8, 1.0, 1.0).unwrap();
+    let (h, mut limits) = (vec![0.25; 64], vec![10.0; 64]);
+    limits[27] = 0.5;
+    for method in [Method::Auto, Method::Norm, Method::ProjectedCg] {
+        let scene = Scene {
+            pressure_limit: Some(PressureLimit::PerElement(&limits)),
+            period: Some(Period { x: true, y: true }),
+            ..Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(64.0))
+        };
+        let (solver, stop, report) = solve(&scene, &Options { method, ..Options::default() }).unwrap();
+        assert_eq!(stop, Outcome::Converged, "{method:?}");
+        let p = &solver.state().p;
+        assert!((0..64).all(|i| (0.0..=limits[i]).contains(&p[i])), "{method:?}: {p:?}");
+        assert!(p[27] == 0.5 && (p.iter().sum::<f64>() / 64.0 - 1.0).abs() <= 1e-14, "{method:?}");
+        assert!(report.measures.certificate.residual > 0.0, "{method:?}: others carry what element 27 does not");
+    }
+}
+
 #[test]
 fn with_a_layer_and_with_a_period() {
     let grid = Grid::new(32, 24, 0.05, 0.05).unwrap();
