@@ -168,9 +168,11 @@ def gap(
     dx, dy = lx / mx, ly / my
     x, y = centres(mx, dx), centres(my, dy)
     radii, crown_radii = _several("radii", radii), _several("crown_radii", crown_radii)
-    curvature = sum(1.0 / radius for radius in radii)
-    if not curvature > 0.0:
-        raise ValueError(f"radii are {radii}: their curvatures add up to {curvature}; the sum must be positive")
+    for name, several in (("radii", radii), ("crown_radii", crown_radii)):
+        curvature = sum(1.0 / radius for radius in several)
+        # Straight rollers have no curvature along their axes.
+        if curvature < 0.0 or (curvature == 0.0 and name == "radii"):
+            raise ValueError(f"{name} are {several}: their curvatures add up to {curvature}; the sum must be positive")
     drops: list[Any] = list(drop) if isinstance(drop, (list, tuple)) else [drop]
     if not all(callable(one) for one in drops):
         raise TypeError("drop has a number; it must be a function of places y, as rollers.crown(...) returns, or one for each body")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .._arguments import number
 from ._bodies import Position, Track, Wheelset
 from ._patch import ContactPoint, Pair
 
@@ -97,6 +98,8 @@ def contact_points(
     ValueError
         If the wheel is nowhere above the rail.
     """
+    if not number("within", within) >= 0.0:
+        raise ValueError(f"within is {within}; it must not be negative")
     pair = _pair(track, wheelset, position, side)
     minima = _minima(pair)
     if not minima:

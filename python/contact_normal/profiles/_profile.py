@@ -32,6 +32,9 @@ _ROUGH = 0.1
 # A flange is higher than that above the tread, in mm.
 _FLANGE = 12.0
 
+# From a point to the next one no profile goes back by this part of its width.
+_BACKWARDS = 0.3
+
 # Treads are lower on the side of the flange, unless they are level to this, in mm.
 _LEVEL = 0.05
 
@@ -86,14 +89,21 @@ class Profile(Short):
     def _title(self) -> str:
         return self.name or f"the {self.kind}"
 
+    def has_flange(self) -> bool:
+        """Whether these are points of a wheel with its flange, not of the tread alone."""
+        return self.kind == "wheel" and bool(max(np.median(self.z) - self.z.min(), self.z.max() - np.median(self.z)) >= _FLANGE)
+
     def _check_orientation(self) -> None:
         """Refuses a profile that is upside down, reversed or mirrored: contact would be somewhere, and wrong."""
         if self.y[0] > self.y[-1]:
             raise ValueError(f"{self._title()} begins at the larger y; its points must be in the order of growing y: reversed()")
+        k = int(np.argmin(np.diff(self.y)))
+        if self.y[k] - self.y[k + 1] > _BACKWARDS * (self.y[-1] - self.y[0]):
+            raise ValueError(f"{self._title()} goes back from y = {self.y[k]:.6g} to y = {self.y[k + 1]:.6g}: are these two profiles? Give one of them")
         above, below = np.median(self.z) - self.z.min(), self.z.max() - np.median(self.z)
         if self.kind == "wheel":
             # A tread alone, without a flange, may have a chamfer as its lowest place or its highest one; its radius grows to the flange.
-            if max(above, below) < _FLANGE:
+            if not self.has_flange():
                 inner = self.y < 0.5 * (self.y[0] + self.y[-1])
                 if inner.any() and not inner.all() and self.z[~inner].mean() > self.z[inner].mean() + _LEVEL:
                     raise ValueError(f"{self._title()} has no flange, and its tread is lower on the field side: upside_down=True if z grows upwards, "
@@ -124,6 +134,8 @@ class Profile(Short):
         length = number("wave_length", wave_length)
         if not length > 0.0:
             raise ValueError(f"wave_length is {length}; it must be positive")
+        if not length < 0.5 * float(np.ptp(self.y)):
+            raise ValueError(f"wave_length is {length}; it must be less than half of the width of {self._title()}, {np.ptp(self.y):.4g} mm")
         chosen = self._usable()
         y, z = self.y.copy(), self.z.copy()
         y[chosen], z[chosen] = smoothing_splines(np.stack([y[chosen], z[chosen]]), length)
