@@ -16,7 +16,7 @@ def scaled(made, factor):
 
 class Units(unittest.TestCase):
     def refused(self, make, text):
-        with self.assertRaisesRegex(ValueError, text + ".* all in mm"):
+        with self.assertRaisesRegex(ValueError, text + ".* lengths are in mm"):
             make()
 
     def test_a_wheelset_has_one_unit(self):

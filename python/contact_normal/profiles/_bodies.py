@@ -26,7 +26,7 @@ _HEIGHT_OVER_GAUGE = 0.002
 _TREAD = 20.0
 _BACK, _BACK_OF_TREAD = 40.0, 120.0
 
-_UNITS = "profiles, gauges and radii are all in mm; profiles.read takes scale=, as 25.4 for a file in inches"
+_UNITS = "lengths are in mm, those of profiles, gauges and radii; profiles.read takes scale=, as 25.4 for a file in inches"
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,8 @@ import numpy as np
 from .._decimal_commas import has_decimal_commas
 from .._units import same_length
 from ._heights import Heights, heights
-from ._not_a_map import has_cut_decimals
+from ._lattice import lattice_of
+from ._not_a_map import doubt, has_cut_decimals
 from ._not_a_map import why as why_no_map
 
 
@@ -77,7 +78,7 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     Parameters
     ----------
     path : str or path
-        `.npy`; `.npz`; `.txt`, `.dat` and `.csv` as numbers, a row of the grid a line; `.nc` as NetCDF, by the package xarray; all others, as `.x3p`, `.sur`, `.opd` and
+        `.npy`; `.npz`; `.txt`, `.dat` and `.csv` as numbers, a row of the grid a line, or x, y and z of each place of a grid, in any order; `.nc` as NetCDF, by the package xarray; all others, as `.x3p`, `.sur`, `.opd` and
         `.gwy`, by the package SurfaceTopography. Heights and coordinates must be in one unit of length.
     variable : str, optional
         Which array of a file that has several.
@@ -95,7 +96,15 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     if end in (".npy", ".npz"):
         return heights(_of_numpy(path, variable), **given)
     if end in (".txt", ".dat", ".csv"):
-        return heights(_of_text(path, end), **given)
+        values = _of_text(path, end)
+        lattice = None if _SIZES & set(given) else lattice_of(values)
+        if lattice is not None:
+            return heights(lattice.z, x=lattice.x, y=lattice.y, **given)
+        if reason := why_no_map(values):
+            raise ValueError(f"{path} {reason}")
+        if reason := doubt(values):
+            warnings.warn(f"{path} {reason}", stacklevel=2)
+        return heights(values, **given)
     if end == ".nc":
         from .._netcdf import read as netcdf
 
@@ -162,8 +171,6 @@ def _of_text(path: str | os.PathLike[str], end: str) -> Any:
                          f"{_BETWEEN[delimiter]}; {commas}put # before other lines, and nan where nothing was measured") from error
     if delimiter == "," and has_cut_decimals(lines):
         raise ValueError(f"{path} has numbers that begin with zeros between its commas: decimal commas need semicolons between the numbers")
-    if reason := why_no_map(values):
-        raise ValueError(f"{path} {reason}")
     return values
 
 
