@@ -1,9 +1,12 @@
 """Lists of points: on their grid where they are one, refused with advice elsewhere; and tilts that are large beside the roughness."""
 
+import sys
 import tempfile
 import unittest
 import warnings
 from pathlib import Path
+from types import SimpleNamespace
+from unittest import mock
 
 import numpy as np
 
@@ -37,6 +40,9 @@ class Lists(unittest.TestCase):
                 self.assert_grid(self.read(*columns))
             # A plane over x and y has even levels, too.
             np.testing.assert_allclose(self.read(x, y, 0.1 * x).z, np.tile(0.1 * self.x, (7, 1)))
+        self.path = self.path.with_suffix(".xyz")
+        self.assert_grid(self.read(*(one[order] for one in (x, y, z))))
+        self.path = self.path.with_suffix(".txt")
         colours = self.random.integers(0, 255, (3, 63)).astype(float)
         with self.assertWarnsRegex(UserWarning, "of 6 columns, numbers 1 and 2 are read as x and y, and number 3 as the heights"):
             self.assert_grid(self.read(x, y, z, *colours))
@@ -55,6 +61,14 @@ class Lists(unittest.TestCase):
             self.read(x, y, z, dx=0.5, dy=0.25)
         with self.assertRaisesRegex(ValueError, "x is not evenly spaced"):
             self.read(x + 0.004 * (x == self.x[4]), y, z)
+
+    def test_a_list_is_no_map_of_an_instrument(self):
+        x, y, z = (one[:40] for one in self.columns)
+        points = SimpleNamespace(dim=2, is_uniform=True, is_periodic=False, unit=None, physical_sizes=(1.0, 1.0),
+                                 heights=lambda: np.stack([x, y, z]))
+        with mock.patch.dict(sys.modules, {"SurfaceTopography": mock.Mock(read_topography=lambda *_, **__: points)}):
+            with self.assertRaisesRegex(ValueError, "a.asc has x, y and z of 40 points"):
+                surface.read(self.path.with_name("a.asc"), dx=0.5, dy=0.25)
 
     def test_a_narrow_map_is_told(self):
         with self.assertWarnsRegex(UserWarning, "is read as a map of 60 x 3 heights"):

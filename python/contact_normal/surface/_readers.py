@@ -14,7 +14,7 @@ import numpy as np
 from .._decimal_commas import has_decimal_commas
 from .._units import same_length
 from ._heights import Heights, heights
-from ._lattice import lattice_of
+from ._lattice import Lattice, lattice_of
 from ._not_a_map import doubt, has_cut_decimals
 from ._not_a_map import why as why_no_map
 
@@ -110,7 +110,29 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
 
         dataset = netcdf(path)
         return from_xarray(dataset[_chosen(variable, list(dataset.data_vars), path)], **given)
-    return from_topography(_of_instrument(path, end, bool(_SIZES & set(given))), **given)
+    if end == ".xyz" and not _SIZES & set(given):
+        lattice = _of_points(path)
+        if lattice is not None:
+            return heights(lattice.z, x=lattice.x, y=lattice.y, **given)
+    topography = _of_instrument(path, end, bool(_SIZES & set(given)))
+    if end in _TEXTS and getattr(topography, "dim", 2) == 2:
+        # Its arrays have x as the first index.
+        values = np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan)
+        if reason := why_no_map(values.T) or why_no_map(values):
+            raise ValueError(f"{path} {reason}")
+    return from_topography(topography, **given)
+
+
+# Texts that SurfaceTopography reads as maps, whatever they hold.
+_TEXTS = ".asc", ".xyz", ".tsv"
+
+
+def _of_points(path: str | os.PathLike[str]) -> Lattice | None:
+    """The grid of a list of points that has no header, if it is one."""
+    try:
+        return lattice_of(_of_text(path, ".txt"))
+    except ValueError:
+        return None
 
 
 # How the size of an element is given.
