@@ -52,6 +52,15 @@ class Arguments(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "within"):
                 profiles.contact_points(TRACK, WHEELSET, within=within)
 
+    def test_angles_are_in_radians_and_a_position_is_no_number(self):
+        for name in ("roll", "yaw"):
+            with self.assertRaisesRegex(ValueError, f"{name} is 2.0; it is an angle in rad"):
+                profiles.Position(**{name: 2.0})
+        for given, text in (((TRACK, WHEELSET, 4.0), r"position is a float; it must be a Position, as profiles.Position\(y=4.0\)"),
+                            ((WHEELSET, TRACK), "track is a Wheelset; it must be a Track"), ((TRACK, wheel()), "wheelset is a Profile; it must be a Wheelset")):
+            with self.assertRaisesRegex(TypeError, text):
+                profiles.contact_points(*given)
+
     def test_waves_are_shorter_than_the_profile(self):
         with self.assertRaisesRegex(ValueError, "wave_length is 100.0; it must be less than half of the width of a cone, 130 mm"):
             wheel().smoothed(100.0)

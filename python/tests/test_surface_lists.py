@@ -19,7 +19,7 @@ class Lists(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.path = Path(folder.name, "points.txt")
         self.x, self.y = np.arange(9) * 0.5 - 2.0, np.arange(7) * 0.25 + 1.0
-        self.z = np.sin(self.x[None, :] + self.y[:, None] ** 2)
+        self.z = 0.1 * np.sin(self.x[None, :] + self.y[:, None] ** 2)
         self.columns = [one.ravel() for one in (*np.meshgrid(self.x, self.y), self.z)]
         self.random = np.random.default_rng(5)
 
@@ -76,6 +76,18 @@ class Lists(unittest.TestCase):
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             self.read(*self.random.normal(size=(12, 60)), dx=1, dy=1)
+
+
+class Units(unittest.TestCase):
+    def test_heights_in_another_unit_than_the_elements_are_told(self):
+        nanometres = 5.0 * np.random.default_rng(1).normal(size=(64, 64))
+        with self.assertWarnsRegex(UserWarning, "half of the slopes in x are steeper than 6[12]: heights and sizes of elements must be in one unit"):
+            surface.heights(nanometres, size=(5.0, 5.0))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            surface.heights(nanometres, size=(5e3, 5e3))
+            # A fifth of the elements is a fill value.
+            surface.heights(np.where(np.arange(64) % 5 == 0, -9999.0, nanometres), size=(5e3, 5e3))
 
 
 class Tilts(unittest.TestCase):

@@ -14,7 +14,7 @@ from ._profile import Profile
 if TYPE_CHECKING:
     from .._arguments import Doubles
 
-# Rails are inclined by 1/20 or less, in rad: larger numbers are 40 for 1/40, or degrees.
+# Rails are inclined by 1/20 or less, and wheelsets yaw less, in rad: larger numbers are 40 for 1/40, or degrees.
 _STEEPEST = 0.5
 
 # Lengths are in mm of one scale, a model's too. A gauge is 6 to 20 times as large as a rail is wide, where it is in the same unit, and so on.
@@ -54,6 +54,9 @@ class Position:
             number(name, getattr(self, name))
         if self.z is not None:
             number("z", self.z)
+        for name in ("roll", "yaw"):
+            if not abs(getattr(self, name)) <= _STEEPEST:
+                raise ValueError(f"{name} is {getattr(self, name)}; it is an angle in rad of at most {_STEEPEST}")
 
     def seen_from(self, side: str) -> Position:
         """The same, mirrored for the left side, so that y grows outwards."""
