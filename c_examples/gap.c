@@ -43,12 +43,14 @@ int main(int argc, char **argv)
     contact_normal_options options;
     contact_normal_fields fields;
     contact_normal_report report;
-    double *h, *p;
+    double *h, *p, force;
     int32_t *contact;
+    char *end = NULL;
     int i, count, holes = 0, ok;
 
-    if (argc < 3) {
-        fprintf(stderr, "usage: %s gap.txt force [file]\n", argv[0]);
+    force = argc > 2 ? strtod(argv[2], &end) : 0.0;
+    if (argc < 3 || end == argv[2] || *end != '\0') {
+        fprintf(stderr, "usage: %s gap.txt force [file]\nforce is a number, in N\n", argv[0]);
         return EXIT_FAILURE;
     }
     contact_normal_scene_init(&scene);
@@ -59,7 +61,7 @@ int main(int argc, char **argv)
     if (h == NULL) return EXIT_FAILURE;
     count = (int)(scene.mx * scene.my);
     for (i = 0; i < count; i++) holes += h[i] > 1e300;
-    scene.force = strtod(argv[2], NULL);
+    scene.force = force;
     scene.shear_modulus[0] = scene.shear_modulus[1] = 82000.0;
     scene.poisson_ratio[0] = scene.poisson_ratio[1] = 0.28;
     options.tolerance = 1e-9;

@@ -3,6 +3,7 @@
 ! bodies of steel.
 program gap
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t
+  use, intrinsic :: iso_fortran_env, only: error_unit
   use contact_normal
   implicit none
   integer(c_int32_t) :: mx, my
@@ -42,12 +43,19 @@ contains
   ! Two lines that begin with "#", "mx my dx dy", and one distance per element, x first; "inf" is no surface.
   subroutine read_gap()
     character(1000) :: name
-    integer :: unit, ix, iy
-    if (command_argument_count() < 2) error stop "usage: gap gap.txt force [file for the arrays]"
+    integer :: unit, ix, iy, failed
     call get_command_argument(2, name)
-    read (name, *) force
+    read (name, *, iostat=failed) force
+    if (failed /= 0 .or. scan(trim(adjustl(name)), ',;/ ') > 0) then
+      write (error_unit, '(a)') "usage: gap gap.txt force [file for the arrays]", "force is a number, in N"
+      stop 1
+    end if
     call get_command_argument(1, name)
-    open (newunit=unit, file=trim(name), action="read", status="old")
+    open (newunit=unit, file=trim(name), action="read", status="old", iostat=failed)
+    if (failed /= 0) then
+      write (error_unit, '(2a)') trim(name), ": cannot be read"
+      stop 1
+    end if
     read (unit, '(/)')
     read (unit, *) mx, my, dx, dy
     allocate (h(mx, my))
@@ -63,7 +71,7 @@ contains
     integer(c_int32_t), intent(in) :: status
     if (status == CONTACT_NORMAL_OK) return
     print '(4a)', contact_normal_status_text(status), ": ", contact_normal_last_error_message()
-    error stop 1
+    stop 1
   end subroutine
 
   ! "mx my dx dy approach", then "h p contact" of each element.

@@ -3,6 +3,7 @@
 ! Usage: wheel_rail data/wheel_rail/y0_10kN.txt [file for the arrays]
 program wheel_rail
   use, intrinsic :: iso_c_binding, only: c_double, c_int32_t
+  use, intrinsic :: iso_fortran_env, only: error_unit
   use contact_normal
   implicit none
   integer(c_int32_t) :: mx, my, itcg, ierror
@@ -38,10 +39,13 @@ contains
 
   subroutine read_case()
     character(1000) :: name
-    integer :: unit, ix, iy
-    if (command_argument_count() < 1) error stop "usage: wheel_rail data/wheel_rail/y0_10kN.txt [file for the arrays]"
+    integer :: unit, ix, iy, failed
     call get_command_argument(1, name)
-    open (newunit=unit, file=trim(name), action="read", status="old")
+    open (newunit=unit, file=trim(name), action="read", status="old", iostat=failed)
+    if (failed /= 0) then
+      write (error_unit, '(a)') "usage: wheel_rail data/wheel_rail/y0_10kN.txt [file for the arrays]"
+      stop 1
+    end if
     read (unit, '(//)')
     read (unit, *) mx, my, dx, dy, approach, force, shear_modulus, poisson_ratio
     allocate (h(mx, my), reference(mx, my), in_contact(mx, my))
@@ -57,7 +61,7 @@ contains
     integer(c_int32_t), intent(in) :: status
     if (status == CONTACT_NORMAL_OK) return
     print '(4a)', contact_normal_status_text(status), ": ", contact_normal_last_error_message()
-    error stop 1
+    stop 1
   end subroutine
 
   ! "mx my dx dy approach", then "h p contact" of each element.

@@ -45,8 +45,17 @@ def _several(name: str, radii: Any) -> tuple[float, ...]:
     if np.ndim(radii) != 1:
         raise TypeError(f"{name} is {radii!r}; it must have one radius for each body: inf for a flat one")
     found = tuple(number(name, radius) for radius in radii)
-    if not all(found):
-        raise ValueError(f"{name} are {found}; none may be 0: inf is a flat body")
+    if not all(found) or any(map(np.isnan, found)):
+        raise ValueError(f"{name} are {found}; none may be 0 or nan: inf is a flat body")
+    return found
+
+
+def _dropped(drop: Drop, y: Doubles) -> Doubles:
+    """The drop at places y, checked: it may be a function of the caller."""
+    found = np.asarray(drop(y), dtype=np.float64)
+    if found.shape not in ((), y.shape) or np.isnan(found).any():
+        what = f"nan at y = {y[np.isnan(found)][0]:g}" if found.shape == y.shape else f"the shape {found.shape}"
+        raise ValueError(f"drop has {what}; it must be a number for each of {len(y)} places y, and inf where there is no surface")
     return found
 
 
@@ -168,17 +177,19 @@ def gap(
     dx, dy = lx / mx, ly / my
     x, y = centres(mx, dx), centres(my, dy)
     radii, crown_radii = _several("radii", radii), _several("crown_radii", crown_radii)
-    curvature = sum(1.0 / radius for radius in radii)
-    if not curvature > 0.0:
-        raise ValueError(f"radii are {radii}: their curvatures add up to {curvature}; the sum must be positive")
+    for name, several in (("radii", radii), ("crown_radii", crown_radii)):
+        curvature = sum(1.0 / radius for radius in several)
+        # Straight rollers have no curvature along their axes.
+        if curvature < 0.0 or (curvature == 0.0 and name == "radii"):
+            raise ValueError(f"{name} are {several}: their curvatures add up to {curvature}; the sum must be positive")
     drops: list[Any] = list(drop) if isinstance(drop, (list, tuple)) else [drop]
     if not all(callable(one) for one in drops):
         raise TypeError("drop has a number; it must be a function of places y, as rollers.crown(...) returns, or one for each body")
     if drops and len(crown_radii):
         raise TypeError("give either drop or crown_radii")
     across = sum((circle(x, radius) for radius in radii), np.zeros(mx))
-    along = sum([*(np.asarray(one(y)) for one in drops), *(circle(y, radius) for radius in crown_radii)], np.zeros(my))
-    if abs(number("tilt", tilt)) >= _STEEPEST:
+    along = sum([*(_dropped(one, y) for one in drops), *(circle(y, radius) for radius in crown_radii)], np.zeros(my))
+    if not abs(number("tilt", tilt)) < _STEEPEST:
         raise ValueError(f"tilt is {tilt}; it is an angle in rad, and must be below {_STEEPEST:g}")
     h = across[None, :] + (along + tilt * y)[:, None]
     return Gap(np.ascontiguousarray(h), dx, dy, units=units)

@@ -163,7 +163,7 @@ class Profiles(unittest.TestCase):
         # Lists of numbers of Python take 32 bytes each.
         self.assertLess(most, 20001 * 1000)
         inner = slice(2000, -2000)
-        self.assertLess(np.abs(smooth.z + y / 20.0)[inner].max(), 0.01 / (1.0 + 4.0**4) * 1.02)
+        self.assertLess(np.abs(smooth.z + smooth.y / 20.0)[inner].max(), 0.01 / (1.0 + 4.0**4) * 1.02)
 
     def test_smoothing_takes_short_waves_and_leaves_long_ones(self):
         made, length = wheel(0.0), 10.0

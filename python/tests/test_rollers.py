@@ -22,8 +22,9 @@ class Gaps(unittest.TestCase):
         self.assertTrue(np.isinf(rollers.gap((14.0, 1.0), (14, 1), (6.0,)).h[0, [0, -1]]).all())
 
     def test_beyond_a_hollow_there_is_no_surface(self):
-        gap = rollers.gap((2.0, 20.0), (4, 20), (6.0,), crown_radii=(11.0, -9.0))
-        np.testing.assert_array_equal(np.isposinf(gap.h[:, 0]), np.abs(np.arange(20) - 9.5) > 9.0)
+        gap = rollers.gap((2.0, 20.0), (4, 20), (6.0,), crown_radii=(8.0, -9.0))
+        np.testing.assert_array_equal(np.isposinf(gap.h[:, 0]), np.abs(np.arange(20) - 9.5) > 8.0)
+        self.assertEqual(rollers.circle(9.5, -9.0), np.inf)
         self.assertTrue(np.isposinf(rollers.gap((20.0, 4.0), (20, 10), (6.0, -6.1)).h[0, [0, -1]]).all())
         with self.assertRaisesRegex(ValueError, "tilt is 2.0; it is an angle in rad"):
             rollers.gap((2.0, 10.0), (20, 10), (6.0,), tilt=2.0)
@@ -48,6 +49,11 @@ class Gaps(unittest.TestCase):
         for wrong, message in (
             (lambda: rollers.gap((1, 1), (4, 4), (6.0, -5.0)), "their curvatures add up to"),
             (lambda: rollers.gap((1, 1), (4, 4), (np.inf,)), "their curvatures add up to 0.0"),
+            (lambda: rollers.gap((1, 1), (4, 4), (6.0,), crown_radii=(6.0, -5.0)), r"crown_radii are \(6.0, -5.0\): their curvatures add up to -0.03"),
+            (lambda: rollers.gap((1, 1), (4, 4), (6.0, np.nan)), r"radii are \(6.0, nan\); none may be 0 or nan"),
+            (lambda: rollers.gap((1, 1), (4, 4), (6.0,), tilt=np.nan), "tilt is nan"),
+            (lambda: rollers.gap((1, 1), (4, 4), (6.0,), drop=lambda y: np.zeros(3)), r"drop has the shape \(3,\); it must be a number for each of 4 places"),
+            (lambda: rollers.gap((1, 1), (4, 4), (6.0,), drop=lambda y: np.where(y > 0.2, np.nan, 0.0)), "drop has nan at y = 0.375"),
             (lambda: rollers.gap((1, 1), (4, 0), (6.0,)), "elements are 4 and 0"),
             (lambda: rollers.gap((0, 1), (4, 4), (6.0,)), r"size\[0\] is 0.0; it must be positive"),
             (lambda: rollers.iso_16281(40.0, 12.0), "lengths of up to 2.5 times the diameter, 30.0"),

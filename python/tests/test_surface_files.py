@@ -127,7 +127,8 @@ class Files(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "has x, y and z of 47 points"):
             surface.read(self.folder / "points.txt", dx=1, dy=1)
         np.savetxt(self.folder / "narrow.txt", rough(64)[:, :3])
-        self.assertEqual(surface.read(self.folder / "narrow.txt", dx=1, dy=1).z.shape, (64, 3))
+        with self.assertWarnsRegex(UserWarning, "a map of 64 x 3"):
+            self.assertEqual(surface.read(self.folder / "narrow.txt", dx=1, dy=1).z.shape, (64, 3))
 
     def test_lists_of_points_in_any_order_are_no_map(self):
         x, y = (one.ravel() for one in np.meshgrid(np.arange(9) * 0.5, np.arange(7) * 0.3))

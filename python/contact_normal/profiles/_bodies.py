@@ -14,8 +14,19 @@ from ._profile import Profile
 if TYPE_CHECKING:
     from .._arguments import Doubles
 
-# Rails are inclined by 1/20 or less, in rad: larger numbers are 40 for 1/40, or degrees.
+# Rails are inclined by 1/20 or less, and wheelsets yaw less, in rad: larger numbers are 40 for 1/40, or degrees.
 _STEEPEST = 0.5
+
+# Lengths are in mm of one scale, a model's too. A gauge is 6 to 20 times as large as a rail is wide, where it is in the same unit, and so on.
+_GAUGE_OVER_RAIL = 3.5
+_BACKS_OVER_WHEEL = (2.0, 80.0)
+_RADIUS_OVER_WHEEL = 0.8
+_HEIGHT_OVER_GAUGE = 0.002
+# The origin of z is on the tread to this, in mm; and the back so far from the smallest y of a profile with a flange, and without.
+_TREAD = 20.0
+_BACK, _BACK_OF_TREAD = 40.0, 120.0
+
+_UNITS = "lengths are in mm, those of profiles, gauges and radii; profiles.read takes scale=, as 25.4 for a file in inches"
 
 
 @dataclass(frozen=True)
@@ -43,6 +54,9 @@ class Position:
             number(name, getattr(self, name))
         if self.z is not None:
             number("z", self.z)
+        for name in ("roll", "yaw"):
+            if not abs(getattr(self, name)) <= _STEEPEST:
+                raise ValueError(f"{name} is {getattr(self, name)}; it is an angle in rad of at most {_STEEPEST}")
 
     def seen_from(self, side: str) -> Position:
         """The same, mirrored for the left side, so that y grows outwards."""
@@ -82,12 +96,15 @@ class Track:
     def __post_init__(self) -> None:
         _refuse_unless("rail", self.rail)
         width = float(np.ptp(self.rail.y))
-        if not number("gauge", self.gauge) > width:
-            raise ValueError(f"gauge is {self.gauge}; it must be larger than the rail is wide, {width:.4g} mm: lengths are in mm")
+        if not number("gauge", self.gauge) > _GAUGE_OVER_RAIL * width:
+            raise ValueError(f"gauge is {self.gauge}; it must be larger than {_GAUGE_OVER_RAIL} times the width of the rail, {width:.4g}: {_UNITS}")
         if not abs(number("inclination", self.inclination)) <= _STEEPEST:
             raise ValueError(f"inclination is {self.inclination}; it is an angle in rad of at most {_STEEPEST}, as 1/40")
-        if not number("gauge_height", self.gauge_height) >= 0.0:
-            raise ValueError(f"gauge_height is {self.gauge_height}; it must not be negative: it is measured downwards from the top of the rail")
+        if not number("gauge_height", self.gauge_height) > 0.0:
+            raise ValueError(f"gauge_height is {self.gauge_height}; it must be positive: it is measured downwards from the top of the rail")
+        if self.gauge_height < _HEIGHT_OVER_GAUGE * self.gauge:
+            raise ValueError(f"gauge_height is {self.gauge_height}; beside a gauge of {self.gauge} it must be at least {_HEIGHT_OVER_GAUGE * self.gauge:.2g}, "
+                             f"as 14 mm: {_UNITS}")
 
     def placed(self) -> Profile:
         """The right rail in its place: its top at z = 0, its gauge point at half of the gauge."""
@@ -126,12 +143,28 @@ class Wheelset:
 
     def __post_init__(self) -> None:
         _refuse_unless("wheel", self.wheel)
-        above = float(np.ptp(self.wheel.z))
-        if not number("radius", self.radius) > above:
-            raise ValueError(f"radius is {self.radius}; it must be larger than the profile is high, {above:.4g} mm: lengths are in mm")
-        width = float(np.ptp(self.wheel.y))
-        if not number("flange_back", self.flange_back) > width:
-            raise ValueError(f"flange_back is {self.flange_back}; it must be larger than the wheel is wide, {width:.4g} mm: lengths are in mm")
+        number("radius", self.radius)
+        number("flange_back", self.flange_back)
+        width, low, high = float(np.ptp(self.wheel.y)), *_BACKS_OVER_WHEEL
+        if not max(_RADIUS_OVER_WHEEL * width, float(np.ptp(self.wheel.z))) < self.radius:
+            raise ValueError(f"radius is {self.radius}; it must be larger than {_RADIUS_OVER_WHEEL} times the width of the wheel, {width:.4g}, and than its "
+                             f"height: {_UNITS}")
+        if not low * width < self.flange_back < high * width:
+            raise ValueError(f"flange_back is {self.flange_back}; it must be {low:g} to {high:g} times as large as the wheel is wide, {width:.4g}: {_UNITS}")
+        tread = self.wheel.z[self.wheel.y >= 0.5 * (self.wheel.y[0] + self.wheel.y[-1])]
+        if tread.min() > _TREAD or tread.max() < -_TREAD:
+            raise ValueError(f"the tread of the wheel has z = {tread.min():.4g} to {tread.max():.4g}, and radius is that at z = 0: wheel.moved(z=...) puts the "
+                             "origin on the tread")
+        self._check_back()
+
+    def _check_back(self) -> None:
+        """Refuses a back that is not where the profile ends, at the flange."""
+        if self.flange_back_at is None:
+            return
+        at, end = number("flange_back_at", self.flange_back_at), float(self.wheel.y.min())
+        farthest = _BACK if self.wheel.has_flange() else _BACK_OF_TREAD
+        if not end - farthest <= at <= end + _BACK:
+            raise ValueError(f"flange_back_at is {at:g}; it is the y of the back in the profile, whose smallest y is {end:.4g}: {_UNITS}")
 
     @property
     def origin(self) -> float:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .._arguments import number
 from ._bodies import Position, Track, Wheelset
 from ._patch import ContactPoint, Pair
 
@@ -19,6 +20,8 @@ _BETWEEN = 6
 _SECTIONS, _PARTS = 9, 32
 # Steps of the search of a roll, in which each has about 1.6 times the digits of the one before.
 _ROLLS = 40
+# How these are made.
+_AS = {Track: "rail", Wheelset: "wheel", Position: "y=4.0"}
 # What to look at.
 _BESIDE = ("look at both by plot(): they are in mm, y grows to the field side and z downwards, and one is a wheel, the other a rail; then at the gauge and "
            "the distance of the flange backs")
@@ -65,6 +68,9 @@ def _minima(pair: Pair) -> list[tuple[float, float]]:
 
 
 def _pair(track: Track, wheelset: Wheelset, position: Position, side: str) -> Pair:
+    for name, given, kind in (("track", track, Track), ("wheelset", wheelset, Wheelset), ("position", position, Position)):
+        if not isinstance(given, kind):
+            raise TypeError(f"{name} is a {type(given).__name__}; it must be a {kind.__name__}, as profiles.{kind.__name__}({_AS[kind]})")
     seen = position.seen_from(side)
     height = dataclasses.replace(seen, z=0.0 if seen.z is None else seen.z)
     return Pair(track.placed().curve(), wheelset.tread(), wheelset.radius, height, side)
@@ -97,6 +103,8 @@ def contact_points(
     ValueError
         If the wheel is nowhere above the rail.
     """
+    if not number("within", within) >= 0.0:
+        raise ValueError(f"within is {within}; it must not be negative")
     pair = _pair(track, wheelset, position, side)
     minima = _minima(pair)
     if not minima:

@@ -10,6 +10,7 @@ import numpy as np
 
 from .._arguments import number
 from .._gap import Gap
+from . import _sampling
 from ._bodies import Position
 from ._curve import Curve
 
@@ -168,7 +169,8 @@ class ContactPoint:
             Element sizes, in mm.
         depth : float
             First guess of the approach, in mm. The grid is made anew until `depth` is 1 to 1.5 times the approach that is found.
-            A warning tells if the wheel would also touch at another place, which is not in the grid.
+            A warning tells if the wheel would also touch at another place, which is not in the grid, and if the points of the profiles are too few or
+            too noisy to tell the pressures to 5 %.
         friction : dict, optional
             As that of `contact_normal.solve`. Its spin is about the contact point.
         **scene
@@ -187,6 +189,8 @@ class ContactPoint:
             # A grid that is too small finds a larger approach than there is.
             depth = _RESERVE * approach
         self._warn_of_others(gap, approach)
+        bodies = _sampling.Body("rail", self._pair.rail, self._on_rail), _sampling.Body("wheel", self._pair.tread, self._on_wheel)
+        _sampling.warn(bodies, gap.y, result, stacklevel=2)
         if friction is not None:
             centre = (-gap.middle[0], -gap.middle[1])
             result = gap.solve(force=force, friction={"spin_centre": centre, **friction}, **scene)

@@ -13,7 +13,7 @@ import numpy as np
 from .._arguments import number, real
 from .._short import Short
 from ._curve import Curve, growing
-from ._pentadiagonal import solve
+from ._smoothing import smoothing_splines
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -31,6 +31,9 @@ _ROUGH = 0.1
 
 # A flange is higher than that above the tread, in mm.
 _FLANGE = 12.0
+
+# From a point to the next one no profile goes back by this part of its width.
+_BACKWARDS = 0.3
 
 # Treads are lower on the side of the flange, unless they are level to this, in mm.
 _LEVEL = 0.05
@@ -86,14 +89,21 @@ class Profile(Short):
     def _title(self) -> str:
         return self.name or f"the {self.kind}"
 
+    def has_flange(self) -> bool:
+        """Whether these are points of a wheel with its flange, not of the tread alone."""
+        return self.kind == "wheel" and bool(max(np.median(self.z) - self.z.min(), self.z.max() - np.median(self.z)) >= _FLANGE)
+
     def _check_orientation(self) -> None:
         """Refuses a profile that is upside down, reversed or mirrored: contact would be somewhere, and wrong."""
         if self.y[0] > self.y[-1]:
             raise ValueError(f"{self._title()} begins at the larger y; its points must be in the order of growing y: reversed()")
+        k = int(np.argmin(np.diff(self.y)))
+        if self.y[k] - self.y[k + 1] > _BACKWARDS * (self.y[-1] - self.y[0]):
+            raise ValueError(f"{self._title()} goes back from y = {self.y[k]:.6g} to y = {self.y[k + 1]:.6g}: are these two profiles? Give one of them")
         above, below = np.median(self.z) - self.z.min(), self.z.max() - np.median(self.z)
         if self.kind == "wheel":
             # A tread alone, without a flange, may have a chamfer as its lowest place or its highest one; its radius grows to the flange.
-            if max(above, below) < _FLANGE:
+            if not self.has_flange():
                 inner = self.y < 0.5 * (self.y[0] + self.y[-1])
                 if inner.any() and not inner.all() and self.z[~inner].mean() > self.z[inner].mean() + _LEVEL:
                     raise ValueError(f"{self._title()} has no flange, and its tread is lower on the field side: upside_down=True if z grows upwards, "
@@ -118,30 +128,39 @@ class Profile(Short):
     def smoothed(self, wave_length: float) -> Profile:
         """Without waves shorter than a length in mm, for measured profiles, whose noise would become contact.
 
-        z is the smoothing spline of Reinsch (1967): a wave of length L keeps 1/(1 + (wave_length/L)^4) of its height. y does not change. Steep faces,
-        which `curve` cuts, are not smoothed.
+        y and z over the length of the polygon become the smoothing splines of Reinsch (1967): a wave of length L keeps 1/(1 + (wave_length/L)^4) of its
+        height. Steep faces, which `curve` cuts, are not smoothed.
         """
         length = number("wave_length", wave_length)
         if not length > 0.0:
             raise ValueError(f"wave_length is {length}; it must be positive")
+        if not length < 0.5 * float(np.ptp(self.y)):
+            raise ValueError(f"wave_length is {length}; it must be less than half of the width of {self._title()}, {np.ptp(self.y):.4g} mm")
         chosen = self._usable()
-        y, z, d = self.y[chosen], self.z[chosen], np.diff(self.y[chosen])
-        # f = z - c W^-1 Q g with (R + c Q' W^-1 Q) g = Q' z, where g = f'' = R^-1 Q' f at the inner points, and W holds the length of each.
-        before, after = 1.0 / d[:-1], 1.0 / d[1:]
-        at = -before - after
-        w = 1.0 / np.convolve(np.concatenate([d[:1], d, d[-1:]]), [0.5, 0.5], "valid")
-        c = (length / (2.0 * np.pi)) ** 4
-        diagonal = (d[:-1] + d[1:]) / 3.0 + c * (before**2 * w[:-2] + at**2 * w[1:-1] + after**2 * w[2:])
-        first = d[1:-1] / 6.0 + c * (at[:-1] * before[1:] * w[1:-2] + after[:-1] * at[1:] * w[2:-1])
-        second = c * after[:-2] * before[2:] * w[2:-2]
-        bend = solve(diagonal, first, second, before * z[:-2] + at * z[1:-1] + after * z[2:])
-        spread = np.zeros(len(z))
-        spread[:-2] += before * bend
-        spread[1:-1] += at * bend
-        spread[2:] += after * bend
-        smooth = self.z.copy()
-        smooth[chosen] = z - c * w * spread
-        return dataclasses.replace(self, z=smooth)
+        y, z = self.y.copy(), self.z.copy()
+        y[chosen], z[chosen] = smoothing_splines(np.stack([y[chosen], z[chosen]]), length)
+        return dataclasses.replace(self, y=y, z=z)
+
+    def thinned(self, step: float) -> Profile:
+        """With fewer points: the mean of each `step` in mm along the profile, for scans whose points are closer to each other than their noise.
+
+        The points are taken in their order. A step ends before the first point that is further than `step` from the one it began with; it should be some
+        times the noise, and at most a tenth of the contact. Both end points stay.
+        """
+        length = number("step", step)
+        if not length > 0.0:
+            raise ValueError(f"step is {length}; it must be positive")
+        points, begins = list(zip(self.y.tolist(), self.z.tolist())), [0, 1]
+        for k, point in enumerate(points[1:-1], 1):
+            if math.dist(point, points[begins[-1]]) > length:
+                begins.append(k)
+        # The last step is as long as the others or longer: its mean does not come close to the end.
+        begins = [*(begins[:-1] if len(begins) > 2 else begins), len(points) - 1]
+        counts = np.diff([*begins, len(points)])
+        y, z = (np.add.reduceat(values, begins) / counts for values in (self.y, self.z))
+        if len(y) < 4:
+            raise ValueError(f"step is {length}; it leaves {len(y)} points of {self._title()}, at least 4 are needed: a profile is in mm")
+        return dataclasses.replace(self, y=y, z=z)
 
     def _usable(self) -> Any:
         """Indices of the points that a curve goes through: from the tread or the top to the first steep face on either side."""
@@ -170,7 +189,8 @@ class Profile(Short):
         if (way * (y[beyond] - y[end]) > np.abs(z[beyond] - z[end])).any():
             raise ValueError(f"{self._title()} has a point out of order, or far off, at y = {y[beyond[0]]:.6g}, z = {z[beyond[0]]:.6g}, beside "
                              f"y = {y[end]:.6g}, z = {z[end]:.6g}; from point to point y must grow but at steep faces, behind which the profile ends: "
-                             "sort the points, or leave this one out")
+                             "sort the points, or leave this one out; where points are closer to each other than their noise, thinned(step) takes the mean of "
+                             "each step in mm")
 
     def spikes(self) -> Any:
         """Indices of points that stand out by themselves, as dust or a fault of a measurement does: from the line through its neighbours such a point

@@ -7,16 +7,16 @@ from __future__ import annotations
 
 import codecs
 import os
-import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from .._arguments import number
-from .._decimal_commas import has_decimal_commas
+from .._arguments import integer, number
+from ._columns import columns_of
 from ._profile import Profile
+from ._simpack import points_of
 
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
 # Kinds by the ends of file names; .ban is Danish for a track.
 _KINDS = {".prr": "rail", ".prw": "wheel", ".ban": "rail", ".whl": "wheel"}
 _UPSIDE_DOWN = ".ban", ".whl"
@@ -63,9 +63,15 @@ def read(
     kind = _KINDS.get(end) if kind is None else kind
     if kind is None:
         raise ValueError(f'{path}: kind is not known; give kind="wheel" or kind="rail"')
-    text = _text(path)
-    points, in_mm, hint = _simpack(text, path) if end in (".prr", ".prw") else _table(text, columns, path)
-    y, z = points.T * (in_mm * number("scale", scale))
+    if not 0.0 < number("scale", scale) < float("inf"):
+        raise ValueError(f"scale is {scale}; it must be positive, the millimetres in the unit of the file")
+    text, hint = _text(path), ""
+    if end in (".prr", ".prw"):
+        points, in_mm = points_of(text, kind, path)
+        scale = scale * in_mm
+    else:
+        points, hint = _table(text, _checked(columns), path)
+    y, z = points.T * scale
     if mirror:
         y = -y
     if (end in _UPSIDE_DOWN) if upside_down is None else upside_down:
@@ -86,14 +92,19 @@ def _text(path: str | os.PathLike[str]) -> str:
     return data.decode(named[0] if named else "latin-1", errors="replace")
 
 
-def _words(line: str, commas: bool) -> list[str]:
-    """The columns of a line, parted by blanks, semicolons and, where they are no decimal points, commas."""
-    return (line.replace(",", ".") if commas else line.replace(",", " ")).replace(";", " ").split()
+def _checked(columns: Any) -> tuple[int, int]:
+    """Two columns."""
+    if isinstance(columns, str) or np.ndim(columns) != 1 or len(columns) != 2:
+        raise TypeError(f"columns is {columns!r}; it must be two numbers, those of y and z, counted from 0")
+    first, second = (integer(f"columns[{k}]", column) for k, column in enumerate(columns))
+    if first == second or min(first, second) < 0:
+        raise ValueError(f"columns is {columns!r}; it must be two different numbers, those of y and z, counted from 0")
+    return first, second
 
 
-def _table(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) -> tuple[np.ndarray, float, str]:
-    """The points of a file of columns, mm, and a hint for a profile that is refused. A column without coordinates is refused as y: it might pass as one."""
-    points, width = _columns(text, columns, path)
+def _table(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) -> tuple[np.ndarray, str]:
+    """The points of a file of columns, and a hint for a profile that is refused. A column without coordinates is refused as y: it might pass as one."""
+    points, width = columns_of(text, columns, path)
     y, first, name = points[:, 0], columns[0], Path(path).name
     others = f"; y and z are other columns: columns=({first + 1}, {first + 2})?" if width > first + 2 else ""
     if width > 2 and y[0] in (0.0, 1.0) and (np.diff(y) == 1.0).all():
@@ -102,56 +113,4 @@ def _table(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) ->
     if (y == y[0]).all():
         raise ValueError(f"column {first} of {name} is {y[0]:g} in every line{others}")
     hint = f"; or give columns=(y, z): the file has {width}" if width > 2 and not name.lower().endswith(_UPSIDE_DOWN) else ""
-    return points, 1.0, hint
-
-
-def _columns(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) -> tuple[np.ndarray, int]:
-    """Two columns of the lines that begin with numbers, and how many columns all of them have."""
-    lines = [line for line in text.splitlines() if re.match(r"\s*[-+]?[.,]?\d", line)]
-    rows: list[list[float]] = []
-    commas, width, other = has_decimal_commas(lines), 0, ""
-    for line in lines:
-        words = _words(line, commas)
-        if len(words) <= max(columns) or not all(re.fullmatch(_NUMBER, words[column]) for column in (0, *columns)):
-            # Titles, counts and dates stand before all points, or behind them.
-            other = line.strip() if rows and not other else other
-            continue
-        if other:
-            raise ValueError(f"{path} has a line {other[:60]!r} among its points that begins with a number and has none in the columns {columns}: "
-                             "do columns run into each other? Mend it, or put # before it")
-        rows.append([float(re.sub("[dD]", "e", words[column])) for column in columns])
-        width = min(width or len(words), len(words))
-    if len(rows) < 4:
-        raise ValueError(f"{path} has {len(rows)} points in the columns {columns}; at least 4 are needed")
-    return np.array(rows), width
-
-
-def _simpack(text: str, path: str | os.PathLike[str]) -> tuple[np.ndarray, float, str]:
-    """The points of a .prr or .prw file, moved, rotated, mirrored and reversed as its header says, the mm in its unit, and no hint."""
-    text = "\n".join(line.split("!")[0] for line in text.splitlines())
-    found = re.search(r"point\.begin(.*?)point\.end", text, re.DOTALL)
-    if not found:
-        raise ValueError(f"{path} has no points between point.begin and point.end")
-    points, _ = _columns(found.group(1), (0, 1), path)
-    said = dict(re.findall(rf"^\s*([\w.]+)\s*=\s*({_NUMBER})\s*$", text[: found.start()], re.MULTILINE))
-
-    def value(name: str, default: float) -> float:
-        return float(re.sub("[dD]", "e", said.get(name, str(default))))
-
-    y, z = points[:, 0] + value("shift.y", 0.0), points[:, 1] + value("shift.z", 0.0)
-    angle = value("rotate", 0.0) / value("units.ang.f", 1.0)
-    y, z = np.cos(angle) * y - np.sin(angle) * z, np.sin(angle) * y + np.cos(angle) * z
-    inside = np.ones(len(y), dtype=bool)
-    # Bounds count where the lower one is below the upper one.
-    for values, axis in ((y, "y"), (z, "z")):
-        low, high = value(f"bound.{axis}.min", 1.0), value(f"bound.{axis}.max", 0.0)
-        if low < high:
-            inside &= (values >= low) & (values <= high)
-    y, z = y[inside], z[inside]
-    if value("mirror.y", 0.0):
-        y = -y
-    if value("mirror.z", 0.0):
-        z = -z
-    if value("inversion", 0.0):
-        y, z = y[::-1], z[::-1]
-    return np.column_stack([y, z]), 1000.0 / value("units.len.f", 1000.0), ""
+    return points, hint

@@ -11,24 +11,41 @@ import numpy as np
 _EVEN = 0.01
 
 # Lists have few columns and many lines.
-_COLUMNS, _LINES = 4, 8
+_COLUMNS, _MANY, _LINES = 4, 8, 8
+
+# Maps of few columns are strips; of so many times as many lines there are hardly any.
+_LONG = 25
+
+_INSTEAD = ("others must be interpolated on a grid (scipy.interpolate.griddata) and given to surface.heights. If this is a strip of heights, give "
+            "numpy.loadtxt(file) to surface.heights")
 
 
 def why(values: Any) -> str | None:
     """Why these numbers are no map, if they are none."""
     lines, columns = values.shape
     if _are_points(values):
-        return (f"has x, y and z of {lines} points; it must hold a row of the grid a line: reshape the third column, and give x and y to "
-                "surface.heights")
-    if 1 < columns <= _COLUMNS and lines >= max(_LINES, 2 * columns + 1):
-        for k in range(columns):
-            if _rises_evenly(values[:, k]) or _has_even_levels(values[:, k]):
-                return (f"has {lines} lines of {columns} numbers, of which number {k + 1} is a coordinate or a count: a list of points; it must hold a row of "
-                        "the grid a line: reshape the column of the heights, and give x and y to surface.heights")
+        return (f"has x, y and z of {lines} points, which are read where they are each place of a grid once, and no size is given; {_INSTEAD}")
+    if 1 < columns <= _MANY and lines >= max(_LINES, 2 * columns + 1):
+        found = [k for k in range(columns) if rises_evenly(values[:, k]) or _has_even_levels(values[:, k])]
+        # Strips of heights of few digits have even levels, too: of many columns two must be coordinates.
+        if len(found) > (columns > _COLUMNS):
+            return (f"has {lines} lines of {columns} numbers, of which number {found[0] + 1} is a coordinate or a count: a list of points. Lists are read where "
+                    f"their points are each place of a grid once, and no size is given; {_INSTEAD}")
+    if 1 < columns <= _COLUMNS and lines >= _LONG * columns:
+        return (f"has {lines} lines of {columns} numbers: a list of points, it seems. Lists are read where their points are each place of a grid once, and no "
+                f"size is given; {_INSTEAD}")
     if min(lines, columns) > _COLUMNS:
         for name, rows in (("line", values), ("column", values.T)):
-            if _rises_evenly(rows[0, 1:]) and not any(map(_rises_evenly, rows[1:, 1:])):
+            if rises_evenly(rows[0, 1:]) and not any(map(rises_evenly, rows[1:, 1:])):
                 return f"has coordinates in its first {name}; it must hold heights alone: leave that {name} out, and give dx and dy"
+    return None
+
+
+def doubt(values: Any) -> str | None:
+    """What may be wrong with a map of few columns, for a warning."""
+    lines, columns = values.shape
+    if lines >= _LINES and (columns <= _COLUMNS or (columns <= _MANY and lines >= 8 * columns)):
+        return f"is read as a map of {lines} x {columns} heights, a row of the grid a line, and not as a list of points"
     return None
 
 
@@ -37,23 +54,32 @@ def has_cut_decimals(lines: list[str]) -> bool:
     return any(re.search(r"(^|,)\s*0\d+\s*(,|$)", line) for line in lines)
 
 
-def _rises_evenly(values: Any) -> bool:
+def rises_evenly(values: Any) -> bool:
     """Whether steps are all the same, and not 0."""
     steps = np.diff(values)
     mean = steps.mean() if len(steps) > 2 else 0.0
     return bool(mean != 0.0 and (np.abs(steps - mean) <= _EVEN * abs(mean)).all())
 
 
+def levels(values: Any) -> tuple[Any, Any]:
+    """Values that are close together are one level: the levels, rising, and that of each value. None where a value is not finite."""
+    if not np.isfinite(values).all() or np.ptp(values) == 0.0:
+        return np.zeros(0), np.zeros(0, dtype=int)
+    order = np.argsort(values, kind="stable")
+    between = np.diff(values[order])
+    parts = np.split(order, np.flatnonzero(between > 0.1 * between.max()) + 1)
+    which = np.empty(len(values), dtype=int)
+    for k, part in enumerate(parts):
+        which[part] = k
+    return np.array([values[part].mean() for part in parts]), which
+
+
 def _has_even_levels(values: Any) -> bool:
     """Whether these are few values with even steps between, each several times."""
-    if not np.isfinite(values).all() or np.ptp(values) == 0.0:
+    places, which = levels(values)
+    if not (len(places) > 2 and len(values) >= 2 * len(places) and rises_evenly(places)):
         return False
-    ordered = np.sort(values)
-    between = np.diff(ordered)
-    parts = np.split(ordered, np.flatnonzero(between > 0.1 * between.max()) + 1)
-    levels = np.array([part.mean() for part in parts])
-    spread = max(float(np.ptp(part)) for part in parts)
-    return bool(len(levels) > 2 and len(values) >= 2 * len(levels) and _rises_evenly(levels) and spread <= _EVEN * between.max())
+    return bool(np.abs(values - places[which]).max() <= _EVEN * np.diff(places).mean())
 
 
 def _are_points(values: Any) -> bool:

@@ -98,6 +98,16 @@ def _tilted(gap: Gap, tilt: Doubles) -> Gap:
     return dataclasses.replace(gap, h=h - h.min())
 
 
+def _start(gap: Gap) -> Doubles:
+    """The slopes of the least-squares plane, where this plane is most of the undeformed distance; else 0, and the body rests as it lies."""
+    iy, ix = np.nonzero(np.isfinite(gap.h))
+    if len(iy) < 3:
+        return np.zeros(2)
+    h, terms = gap.h[iy, ix], np.stack([gap.x[ix], gap.y[iy], np.ones(len(iy))], axis=1)
+    plane = np.linalg.lstsq(terms, h, rcond=None)[0]
+    return np.asarray(plane[:2] if 2.0 * np.ptp(h - terms @ plane) < np.ptp(h) else np.zeros(2))
+
+
 def _centre(gap: Gap, result: Result) -> Doubles:
     """Centre of the pressures, in coordinates of the gap."""
     weights = result.pressure / result.pressure.sum()
@@ -143,9 +153,10 @@ def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolera
         result = _tilted(gap, tilt).solve(force=force, **scene)
         return result, _centre(gap, result) - aim
 
-    tilt = np.zeros(2)
+    tilt = _start(gap)
     result, off = solved(tilt)
-    trial = _TRIAL * max(result.approach, 1e-3 * float(np.ptp(gap.h[np.isfinite(gap.h)]))) / sizes
+    begun = _tilted(gap, tilt).h
+    trial = _TRIAL * max(result.approach, 1e-3 * float(np.ptp(begun[np.isfinite(begun)]))) / sizes
     slopes = np.empty((2, 2))
     for k in range(2):
         step = np.where(np.arange(2) == k, trial * -np.sign(off + 1e-300), 0.0)

@@ -14,7 +14,8 @@ import numpy as np
 from .._decimal_commas import has_decimal_commas
 from .._units import same_length
 from ._heights import Heights, heights
-from ._not_a_map import has_cut_decimals
+from ._lattice import Lattice, lattice_of
+from ._not_a_map import doubt, has_cut_decimals
 from ._not_a_map import why as why_no_map
 
 
@@ -77,7 +78,7 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     Parameters
     ----------
     path : str or path
-        `.npy`; `.npz`; `.txt`, `.dat` and `.csv` as numbers, a row of the grid a line; `.nc` as NetCDF, by the package xarray; all others, as `.x3p`, `.sur`, `.opd` and
+        `.npy`; `.npz`; `.txt`, `.dat` and `.csv` as numbers, a row of the grid a line, or x, y and z of each place of a grid, in any order; `.nc` as NetCDF, by the package xarray; all others, as `.x3p`, `.sur`, `.opd` and
         `.gwy`, by the package SurfaceTopography. Heights and coordinates must be in one unit of length.
     variable : str, optional
         Which array of a file that has several.
@@ -95,13 +96,43 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     if end in (".npy", ".npz"):
         return heights(_of_numpy(path, variable), **given)
     if end in (".txt", ".dat", ".csv"):
-        return heights(_of_text(path, end), **given)
+        values = _of_text(path, end)
+        lattice = None if _SIZES & set(given) else lattice_of(values)
+        if lattice is not None:
+            return heights(lattice.z, x=lattice.x, y=lattice.y, **given)
+        if reason := why_no_map(values):
+            raise ValueError(f"{path} {reason}")
+        if reason := doubt(values):
+            warnings.warn(f"{path} {reason}", stacklevel=2)
+        return heights(values, **given)
     if end == ".nc":
         from .._netcdf import read as netcdf
 
         dataset = netcdf(path)
         return from_xarray(dataset[_chosen(variable, list(dataset.data_vars), path)], **given)
-    return from_topography(_of_instrument(path, end, bool(_SIZES & set(given))), **given)
+    if end == ".xyz" and not _SIZES & set(given):
+        lattice = _of_points(path)
+        if lattice is not None:
+            return heights(lattice.z, x=lattice.x, y=lattice.y, **given)
+    topography = _of_instrument(path, end, bool(_SIZES & set(given)))
+    if end in _TEXTS and getattr(topography, "dim", 2) == 2:
+        # Its arrays have x as the first index.
+        values = np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan)
+        if reason := why_no_map(values.T) or why_no_map(values):
+            raise ValueError(f"{path} {reason}")
+    return from_topography(topography, **given)
+
+
+# Texts that SurfaceTopography reads as maps, whatever they hold.
+_TEXTS = ".asc", ".xyz", ".tsv"
+
+
+def _of_points(path: str | os.PathLike[str]) -> Lattice | None:
+    """The grid of a list of points that has no header, if it is one."""
+    try:
+        return lattice_of(_of_text(path, ".txt"))
+    except ValueError:
+        return None
 
 
 # How the size of an element is given.
@@ -162,8 +193,6 @@ def _of_text(path: str | os.PathLike[str], end: str) -> Any:
                          f"{_BETWEEN[delimiter]}; {commas}put # before other lines, and nan where nothing was measured") from error
     if delimiter == "," and has_cut_decimals(lines):
         raise ValueError(f"{path} has numbers that begin with zeros between its commas: decimal commas need semicolons between the numbers")
-    if reason := why_no_map(values):
-        raise ValueError(f"{path} {reason}")
     return values
 
 

@@ -1,0 +1,62 @@
+"""Columns of numbers in a text: which of its lines are points of a profile."""
+
+from __future__ import annotations
+
+import os
+import re
+
+import numpy as np
+
+from .._decimal_commas import has_decimal_commas
+
+NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
+
+# Lines that may be points: they begin with a number, or with what stands for one that does not fit or is not known.
+_BEGINS = re.compile(r"\s*(?:[-+]?[.,]?\d|\*|[-+]?(?:nan|inf)\b)", re.IGNORECASE)
+# These have letters that no number has: titles.
+_LETTERS = re.compile(r"[^\W\d_]")
+_NO_TITLE = re.compile(r"nan|inf|(?<=[\d.])[eEdD](?=[-+\d])", re.IGNORECASE)
+# So many lines of numbers, counts and dates, may stand before and behind the points.
+_OTHERS = 2
+
+
+def to_number(word: str) -> float:
+    """The number of a word that `NUMBER` matches; Fortran's D is an exponent."""
+    return float(re.sub("[dD]", "e", word))
+
+
+def columns_of(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) -> tuple[np.ndarray, int]:
+    """Two columns of the lines that are points, and how many columns all of these have.
+
+    Titles, counts and dates stand before all points, or behind them. Lines of numbers that lack one of the columns are refused among the points, and,
+    where there are several, everywhere: they are points that cannot be read.
+    """
+    lines = [line for line in text.splitlines() if _BEGINS.match(line)]
+    rows: list[list[float]] = []
+    commas, width, others, among = has_decimal_commas(lines), 0, list[str](), ""
+    behind = ""
+    for line in lines:
+        words = _words(line, commas)
+        if len(words) > max(columns) and all(re.fullmatch(NUMBER, words[column]) for column in (0, *columns)):
+            among = among or behind
+            rows.append([to_number(words[column]) for column in columns])
+            width = min(width or len(words), len(words))
+            continue
+        if rows:
+            behind = behind or line.strip()
+        if not _LETTERS.search(_NO_TITLE.sub("", line)):
+            others.append(line.strip())
+    if among:
+        raise ValueError(f"{path} has a line {among[:60]!r} among its points that has no numbers in the columns {columns}: do columns run into each other, or "
+                         "was nothing measured there? Mend it, leave it out, or put # before it")
+    if rows and len(others) > _OTHERS:
+        raise ValueError(f"{path} has {len(others)} lines of numbers beside its {len(rows)} points, as {others[0][:60]!r}, that have no numbers in the columns "
+                         f"{columns}: do columns run into each other? Mend them, leave them out, or put # before them")
+    if len(rows) < 4:
+        raise ValueError(f"{path} has {len(rows)} points in the columns {columns}; at least 4 are needed")
+    return np.array(rows), width
+
+
+def _words(line: str, commas: bool) -> list[str]:
+    """The columns of a line, parted by blanks, semicolons and, where they are no decimal points, commas."""
+    return (line.replace(",", ".") if commas else line.replace(",", " ")).replace(";", " ").split()

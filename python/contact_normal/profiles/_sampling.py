@@ -1,0 +1,92 @@
+"""How far the points of a profile determine the pressures: their noise, the digits of the file, and how many there are."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ._curve import Curve
+
+if TYPE_CHECKING:
+    from .._arguments import Doubles
+    from .._result import Result
+
+# Places across the contact at which curves are compared.
+_PLACES = 256
+
+# A warning tells of more than this part of the largest pressure.
+_TOLD = 0.05
+
+# Fewer points than this within the contact are few; more are noisy where they leave pressures open.
+_FEW = 8
+
+
+@dataclass(frozen=True)
+class Body:
+    """A body of a contact: the curve of its profile, and the t of the contact point on it."""
+
+    name: str
+    curve: Curve
+    t: float
+
+
+def warn(bodies: tuple[Body, ...], y: Doubles, result: Result, stacklevel: int) -> None:
+    """Warns if pressures depend on which points of the profiles are taken.
+
+    Without every other point a curve differs by some e2, and with each fourth one by e4. Between points that are dense enough e4 is several times e2, and
+    the error of all points is some e2^2/e4; errors that are noise stay as they are. They are looked at as pressures: a wave cos(k y) of the
+    undeformed distance needs E* k/2 of its height. E* is that of F = 4/3 E* a d, Hertz's force of an approach d and a contact of the area pi a^2.
+
+    Parameters
+    ----------
+    y : ndarray, (my,)
+        Places of the rows of elements, from the contact point.
+    """
+    rows = y[result.contact.any(axis=1)]
+    if not (len(rows) and result.approach > 0.0 and result.max_pressure > 0.0):
+        return
+    step = y[1] - y[0] if len(y) > 1 else 0.0
+    along = np.linspace(rows[0] - step, rows[-1] + step, _PLACES)
+    e_star = 0.75 * result.force / (result.approach * np.sqrt(result.contact.sum() * result.dx * result.dy / np.pi))
+    parts = [_open_pressure(body, along, e_star) / result.max_pressure for body in bodies]
+    part = float(np.hypot.reduce(parts))
+    if part > _TOLD:
+        body = bodies[int(np.argmax(parts))]
+        inside = int(((body.curve.t > body.t + along[0]) & (body.curve.t < body.t + along[-1])).sum())
+        width = f"The {body.name} has {inside} of its points across the contact, which is {along[-1] - along[0]:.2g} mm wide"
+        cure = "give more points" if inside < _FEW else "noise, or few decimals, which smoothed(wave_length) removes, with 2 to 5 mm in most cases"
+        amount = f"{part:.0%}" if part < 1.0 else "100 % or more"
+        warnings.warn(f"pressures are uncertain by some {amount}: so much they depend on which points of the profiles are taken. {width}: {cure}",
+                      stacklevel=stacklevel + 1)
+
+
+def _open_pressure(body: Body, along: Doubles, e_star: float) -> float:
+    """The root mean square of the pressures that the choice of points leaves open."""
+
+    def of_every(every: int) -> float:
+        return sum(_pressure(_difference(body, along, start, every), along, e_star) for start in range(every)) / every
+
+    second = of_every(2)
+    return second * min(1.0, second / of_every(4)) if second > 0.0 else 0.0
+
+
+def _difference(body: Body, along: Doubles, start: int, every: int) -> Doubles:
+    """How far the curve of the points `start`, `start + every`, ... and both ends lies off that of all, along the normal."""
+    curve, last = body.curve, len(body.curve.y) - 1
+    chosen = np.unique(np.concatenate([[0], np.arange(start, last, every), [last]]))
+    coarse = Curve(curve.y[chosen], curve.z[chosen])
+    y, z, dy, dz = curve.at(np.clip(body.t + along, curve.t[0], curve.t[-1]))
+    at = coarse.where(y, near=float(np.interp(y[len(y) // 2], coarse.y, coarse.t)))
+    off = (coarse.at(np.where(np.isnan(at), 0.0, at))[1] - z) * dy / np.hypot(dy, dz)
+    return np.where(np.isnan(at), 0.0, off)
+
+
+def _pressure(off: Doubles, along: Doubles, e_star: float) -> float:
+    """Root mean square of the pressures that flatten these heights, less their line: they are continued as a mirror shows them."""
+    level = off - np.polyval(np.polyfit(along, off, 1), along)
+    both = np.concatenate([level, level[::-1]])
+    k = 2.0 * np.pi * np.fft.rfftfreq(len(both), along[1] - along[0])
+    return float(np.sqrt(np.mean(np.fft.irfft(0.5 * e_star * k * np.fft.rfft(both)) ** 2)))

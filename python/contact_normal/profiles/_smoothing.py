@@ -1,0 +1,42 @@
+"""The smoothing splines of Reinsch (1967) through the points of a curve, in a time in proportion to their number."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ._pentadiagonal import solve
+
+if TYPE_CHECKING:
+    from .._arguments import Doubles
+
+
+def smoothing_splines(places: Doubles, wave_length: float) -> Doubles:
+    """The points of a curve without waves that are shorter than a length: each coordinate is smoothed over the length of the polygon.
+
+    Coordinates alone, z over y, would bend a steep face, whose slope changes fast.
+
+    Parameters
+    ----------
+    places : ndarray, (2, n)
+        The points, in their order; none of them twice.
+    """
+    d = np.hypot(*np.diff(places))
+    # f = z - c W^-1 Q g with (R + c Q' W^-1 Q) g = Q' z, where g = f'' = R^-1 Q' f at the inner points, and W holds the length of each.
+    before, after = 1.0 / d[:-1], 1.0 / d[1:]
+    at = -before - after
+    w = 1.0 / np.convolve(np.concatenate([d[:1], d, d[-1:]]), [0.5, 0.5], "valid")
+    c = (wave_length / (2.0 * np.pi)) ** 4
+    diagonal = (d[:-1] + d[1:]) / 3.0 + c * (before**2 * w[:-2] + at**2 * w[1:-1] + after**2 * w[2:])
+    first = d[1:-1] / 6.0 + c * (at[:-1] * before[1:] * w[1:-2] + after[:-1] * at[1:] * w[2:-1])
+    second = c * after[:-2] * before[2:] * w[2:-2]
+    smooth = places.copy()
+    for values in smooth:
+        bend = solve(diagonal, first, second, before * values[:-2] + at * values[1:-1] + after * values[2:])
+        spread = np.zeros(len(values))
+        spread[:-2] += before * bend
+        spread[1:-1] += at * bend
+        spread[2:] += after * bend
+        values -= c * w * spread
+    return smooth

@@ -1,0 +1,104 @@
+"""Points of profiles: dense and noisy ones, few of them, and files of few decimals."""
+
+import unittest
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+from contact_normal import profiles
+from test_profiles import HEAD, STEEL, rail
+
+ARCS = Path(__file__).resolve().parents[2] / "data" / "profiles"
+
+
+def scanned(made, count, noise, seed):
+    """Points of a scan: so many along the curve, with noise in y and z, sorted by y."""
+    curve, rng = made.curve(), np.random.default_rng(seed)
+    y, z, _, _ = curve.at(np.linspace(0.0, curve.t[-1], count))
+    y, z = y + noise * rng.normal(size=count), z + noise * rng.normal(size=count)
+    order = np.argsort(y)
+    return profiles.Profile(y[order], z[order], made.kind)
+
+
+def pressed(track_rail, tread):
+    track, wheelset = profiles.Track(track_rail), profiles.Wheelset(tread, 460.0)
+    return profiles.contact_points(track, wheelset, profiles.Position(y=4.0))[0].press(10e3, 0.4, 0.4, **STEEL)[1]
+
+
+class Thinned(unittest.TestCase):
+    def test_a_dense_scan_becomes_a_curve(self):
+        dense = scanned(rail(), 20000, 0.01, 1)
+        with self.assertRaisesRegex(ValueError, r"closer to each other than their noise, thinned\(step\) takes the mean of each step"):
+            dense.curve()
+        thin = dense.thinned(0.5).smoothed(8.0)
+        self.assertLess(len(thin.y), 400)
+        at = np.linspace(-30.0, 30.0, 101)
+        curve = thin.curve()
+        z = curve.at(curve.where(at, near=curve.t[len(curve.t) // 2]))[1]
+        # The mean of 50 to 100 points, and of an arc of 0.5 mm, which leaves its tangent by 0.5^2/(24 HEAD).
+        np.testing.assert_allclose(z, HEAD - np.sqrt(HEAD**2 - at**2), atol=0.003)
+
+    def test_steps_are_means_and_both_ends_stay(self):
+        y = np.arange(0.0, 40.0, 0.125)
+        z = 0.01 * (y - 20.0) ** 2
+        thin = profiles.Profile(y, z, "rail").thinned(1.05)
+        self.assertEqual((thin.y[0], thin.y[-1], thin.z[0], thin.z[-1]), (y[0], y[-1], z[0], z[-1]))
+        # Where the rail is level, a step of 1.05 mm has the first point and the eight within 1 mm behind it.
+        steps = np.diff(thin.y)[15:25]
+        np.testing.assert_allclose(steps, 1.125, atol=1e-12)
+        k = int(np.argmin(thin.z))
+        chosen = np.abs(y - thin.y[k]) <= 0.5 + 1e-9
+        self.assertEqual(chosen.sum(), 9)
+        self.assertAlmostEqual(thin.z[k], z[chosen].mean(), delta=1e-15)
+        self.assertGreater(np.diff(thin.y)[[0, -1]].min(), 0.5)
+        for step, text in ((0.0, "step is 0.0; it must be positive"), (300.0, "it leaves 3 points of the rail")):
+            with self.assertRaisesRegex(ValueError, text):
+                profiles.Profile(y, z, "rail").thinned(step)
+
+    def test_smoothing_leaves_a_steep_face_where_it_is(self):
+        # A head of 30 mm beside corners of 13 mm, down to 80 degrees: the face of the gauge.
+        angle = np.deg2rad(np.linspace(-80.0, 80.0, 801))
+        y, z = 13.0 * np.sin(angle) + 15.0 * np.sign(angle), 13.0 - 13.0 * np.cos(angle)
+        y, z = (np.concatenate([v[:400], np.linspace(v[399], v[401], 101)[1:-1], v[401:]]) for v in (y, z))
+        smooth = profiles.Profile(y, z, "rail").smoothed(3.0)
+        off = np.hypot(np.abs(smooth.y) - 15.0, 13.0 - smooth.z) - 13.0
+        corner = np.abs(y) > 18.0
+        # At an end the spline is straight: the arc moves by about (3/(2 pi))^2/13.
+        self.assertLess(np.abs(off[corner]).max(), 1.5 * (3.0 / (2.0 * np.pi)) ** 2 / 13.0)
+
+
+class Uncertain(unittest.TestCase):
+    def setUp(self):
+        self.rail, self.wheel = profiles.read(ARCS / "arcs.prr"), profiles.read(ARCS / "arcs.prw")
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.largest = pressed(self.rail, self.wheel).max_pressure
+
+    def each(self, change):
+        return change(self.rail), change(self.wheel)
+
+    def test_few_decimals_are_told(self):
+        coarse = self.each(lambda one: profiles.Profile(one.y.round(3), one.z.round(3), one.kind))
+        with self.assertWarnsRegex(UserWarning, r"pressures are uncertain by some \d+%: .* has 1\d of its points across .*smoothed\(wave_length\) removes"):
+            largest = pressed(*coarse).max_pressure
+        self.assertGreater(largest / self.largest, 1.05)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            smooth = pressed(*(one.smoothed(4.0) for one in coarse)).max_pressure
+        self.assertAlmostEqual(smooth / self.largest, 1.0, delta=0.01)
+
+    def test_few_points_are_told(self):
+        few = self.each(lambda one: profiles.Profile(one.y[::25], one.z[::25], one.kind))
+        with self.assertWarnsRegex(UserWarning, "pressures are uncertain by .* of its points across the contact, .*: give more points"):
+            self.assertGreater(abs(pressed(*few).max_pressure / self.largest - 1.0), 0.05)
+
+    def test_half_of_many_points_is_enough(self):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            largest = pressed(*self.each(lambda one: profiles.Profile(one.y[::2], one.z[::2], one.kind))).max_pressure
+        self.assertAlmostEqual(largest / self.largest, 1.0, delta=0.02)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,146 @@
+"""Profiles in other units, files that are not read as meant, and arguments out of their range."""
+
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+from contact_normal import profiles
+from test_profiles import TRACK, WHEELSET, rail, wheel
+
+
+def scaled(made, factor):
+    return profiles.Profile(made.y * factor, made.z * factor, made.kind)
+
+
+class Units(unittest.TestCase):
+    def refused(self, make, text):
+        with self.assertRaisesRegex(ValueError, text + ".* lengths are in mm"):
+            make()
+
+    def test_a_wheelset_has_one_unit(self):
+        for factor in (25.4, 10.0, 1000.0):
+            with self.subTest(factor=factor):
+                self.refused(lambda f=factor: profiles.Wheelset(wheel(), 460.0, flange_back=1360.0 / f), "flange_back is ")
+                self.refused(lambda f=factor: profiles.Wheelset(wheel(), 460.0 / f), "radius is ")
+                self.refused(lambda f=factor: profiles.Wheelset(scaled(wheel(), 1.0 / f), flange_back_at=-70.0), "flange_back is ")
+        self.refused(lambda: profiles.Wheelset(wheel(), flange_back_at=-7.0), "flange_back_at is -7; it is the y of the back")
+        self.refused(lambda: profiles.Wheelset(wheel().moved(y=70.0), flange_back_at=-70.0), "flange_back_at is -70; .* smallest y is 0:")
+        # A tread from y = -20 has its back 50 mm beside; and a model is to its scale.
+        tread = wheel().y > -20.0
+        profiles.Wheelset(profiles.Profile(wheel().y[tread], wheel().z[tread], "wheel"), flange_back_at=-70.0)
+        profiles.Wheelset(scaled(wheel(), 1.0 / 87.0), 460.0 / 87.0, 1360.0 / 87.0)
+
+    def test_a_track_has_one_unit(self):
+        for factor in (25.4, 10.0, 1000.0):
+            with self.subTest(factor=factor):
+                self.refused(lambda f=factor: profiles.Track(rail(), gauge=1435.0 / f), "gauge is ")
+                self.refused(lambda f=factor: profiles.Track(rail(), gauge_height=14.0 / f), "gauge_height is ")
+        profiles.Track(scaled(rail(), 1.0 / 87.0), 16.5, 14.0 / 87.0)
+        with self.assertRaisesRegex(ValueError, "gauge_height is 0.0; it must be positive"):
+            profiles.Track(rail(), gauge_height=0.0)
+
+    def test_heights_from_the_axle_are_told(self):
+        with self.assertRaisesRegex(ValueError, r"the tread of the wheel has z = 457 to 460.2, and radius is that at z = 0"):
+            profiles.Wheelset(wheel().moved(z=460.0), 460.0)
+
+
+class Arguments(unittest.TestCase):
+    def test_within_is_a_length(self):
+        for within in (-1.0, float("nan")):
+            with self.assertRaisesRegex(ValueError, "within"):
+                profiles.contact_points(TRACK, WHEELSET, within=within)
+
+    def test_angles_are_in_radians_and_a_position_is_no_number(self):
+        for name in ("roll", "yaw"):
+            with self.assertRaisesRegex(ValueError, f"{name} is 2.0; it is an angle in rad"):
+                profiles.Position(**{name: 2.0})
+        for given, text in (((TRACK, WHEELSET, 4.0), r"position is a float; it must be a Position, as profiles.Position\(y=4.0\)"),
+                            ((WHEELSET, TRACK), "track is a Wheelset; it must be a Track"), ((TRACK, wheel()), "wheelset is a Profile; it must be a Wheelset")):
+            with self.assertRaisesRegex(TypeError, text):
+                profiles.contact_points(*given)
+
+    def test_waves_are_shorter_than_the_profile(self):
+        with self.assertRaisesRegex(ValueError, "wave_length is 100.0; it must be less than half of the width of a cone, 130 mm"):
+            wheel().smoothed(100.0)
+
+    def test_two_profiles_are_told(self):
+        made = rail()
+        with self.assertRaisesRegex(ValueError, "goes back from y = .* to y = .*: are these two profiles"):
+            profiles.Profile(np.tile(made.y, 2), np.tile(made.z, 2), "rail")
+
+
+class Files(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = Path(folder.name, "points.txt")
+        self.rows = [f"{y:.4f} {0.002 * y * y:.5f}" for y in np.linspace(-40.0, 40.0, 81)]
+
+    def read(self, lines, **given):
+        self.path.write_text("\n".join(lines))
+        return profiles.read(self.path, "rail", **given)
+
+    def test_points_that_run_together_are_told_wherever_they_stand(self):
+        glued = [row.replace(" ", "") for row in self.rows]
+        for lines in ([*glued[:20], *self.rows[20:]], [*self.rows[:60], *glued[60:]], [f"{k:.4f} ****" for k in range(-40, -30)] + self.rows[10:]):
+            with self.assertRaisesRegex(ValueError, r"has \d+ lines of numbers beside its \d+ points, as '-?\d+"):
+                self.read(lines)
+        for line in ("nan 1.0", "**** 1.0", "-20.0 nan"):
+            with self.assertRaisesRegex(ValueError, "among its points"):
+                self.read([*self.rows[:20], line, *self.rows[21:]])
+        # Titles, a count and a date are none.
+        titles = ["*** a rail ***", "2 cuts, of which the first", "81", "12.05.2023 10:11"]
+        self.assertEqual(len(self.read([*titles, *self.rows, "81 points"]).y), 81)
+
+    def test_columns_and_scale(self):
+        for columns, error, text in (((0,), TypeError, "it must be two numbers"), ((0.0, 1.0), TypeError, r"columns\[0\] is 0.0; it must be an integer"),
+                                     ("01", TypeError, "columns is '01'; it must be two"), ((1, 1), ValueError, "two different"),
+                                     ((0, -1), ValueError, "counted from 0")):
+            with self.subTest(columns=columns), self.assertRaisesRegex(error, text):
+                self.read(self.rows, columns=columns)
+        for scale in (0.0, -1.0, float("nan"), float("inf")):
+            with self.assertRaisesRegex(ValueError, "scale"):
+                self.read(self.rows, scale=scale)
+
+
+class Simpack(unittest.TestCase):
+    def read(self, header, kind="rail", before=""):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "a.prr" if kind == "rail" else "a.prw")
+            points = "\n".join(f"{y!r} {z!r}" for y, z in zip(self.made.y.tolist(), self.made.z.tolist()))
+            path.write_text(f"{before}\nspline.begin\n{header}\nPOINT.BEGIN\n{points}\nPoint.End\nspline.end\n")
+            return profiles.read(path)
+
+    def setUp(self):
+        made = rail(inner=80.0)
+        self.made = made
+
+    def test_names_in_any_case_and_numbers_with_remarks(self):
+        for header in ("MIRROR.Y = 1\ninversion = 1", "mirror.y = '1'\ninversion=1", "mirror.y = 1 ;\ninversion = 1 # yes", "mirror.y = 1 // yes\nInversion = 1"):
+            with self.subTest(header=header):
+                np.testing.assert_array_equal(self.read(header).y, -self.made.y[::-1])
+
+    def test_what_is_no_number_is_refused(self):
+        for value in ("$_MIRROR", "1/40", "1 + 1", "true"):
+            with self.assertRaisesRegex(ValueError, r"rotate = .* in its header; it must be a number: expressions"):
+                self.read(f"rotate = {value}")
+        # Texts and other names are of no account.
+        self.read("comment = 'a rail'\nfile = x\nversion = one")
+
+    def test_units_bounds_and_kinds(self):
+        for name in ("units.len.f", "units.ang.f"):
+            with self.assertRaisesRegex(ValueError, f"{name} = 0 in its header; it must be positive"):
+                self.read(f"{name} = 0")
+        with self.assertRaisesRegex(ValueError, "has 0 points within its bounds"):
+            self.read("bound.y.min = 300\nbound.y.max = 600")
+        with self.assertRaisesRegex(ValueError, 'says type = 1, a wheel: kind="wheel"'):
+            self.read("", before="header.begin\n type = 1\nheader.end")
+        self.read("type = 1", before="header.begin\n type = 0\nheader.end")
+        with self.assertWarnsRegex(UserWarning, "approx.smooth = 0.5 in its header, which is not obeyed"):
+            self.read("approx.smooth = 0.5")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,107 @@
+"""Lists of points: on their grid where they are one, refused with advice elsewhere; and tilts that are large beside the roughness."""
+
+import sys
+import tempfile
+import unittest
+import warnings
+from pathlib import Path
+from types import SimpleNamespace
+from unittest import mock
+
+import numpy as np
+
+from contact_normal import surface
+
+
+class Lists(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = Path(folder.name, "points.txt")
+        self.x, self.y = np.arange(9) * 0.5 - 2.0, np.arange(7) * 0.25 + 1.0
+        self.z = 0.1 * np.sin(self.x[None, :] + self.y[:, None] ** 2)
+        self.columns = [one.ravel() for one in (*np.meshgrid(self.x, self.y), self.z)]
+        self.random = np.random.default_rng(5)
+
+    def read(self, *columns, **given):
+        np.savetxt(self.path, np.stack(columns, axis=1))
+        return surface.read(self.path, **given)
+
+    def assert_grid(self, found):
+        np.testing.assert_allclose(found.z, self.z, rtol=1e-15)
+        self.assertEqual((found.dx, found.dy), (0.5, 0.25))
+
+    def test_a_full_grid_is_read_in_any_order(self):
+        x, y, z = self.columns
+        order = self.random.permutation(63)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            for columns in ((x, y, z), (x[order], y[order], z[order]), (z[order], x[order], y[order]), (np.arange(63.0), x, y, z)):
+                self.assert_grid(self.read(*columns))
+            # A plane over x and y has even levels, too.
+            np.testing.assert_allclose(self.read(x, y, 0.1 * x).z, np.tile(0.1 * self.x, (7, 1)))
+        self.path = self.path.with_suffix(".xyz")
+        self.assert_grid(self.read(*(one[order] for one in (x, y, z))))
+        self.path = self.path.with_suffix(".txt")
+        colours = self.random.integers(0, 255, (3, 63)).astype(float)
+        with self.assertWarnsRegex(UserWarning, "of 6 columns, numbers 1 and 2 are read as x and y, and number 3 as the heights"):
+            self.assert_grid(self.read(x, y, z, *colours))
+        stage = self.random.normal(0.0, 1e-4, 63)
+        self.assertAlmostEqual(self.read(x + stage, y, z).dx, 0.5, delta=1e-4)
+
+    def test_others_are_refused(self):
+        x, y, z = self.columns
+        for name, columns in (
+            ("a part", (x[:40], y[:40], z[:40])), ("indices beside them", (np.round(x * 2), np.round(y * 4), x, y, z)),
+            ("scattered", self.random.random((3, 200))), ("a line", (np.cumsum(self.random.random(200)), self.random.normal(size=200))),
+        ):
+            with self.subTest(name), self.assertRaisesRegex(ValueError, "points.*each place of a grid once.*griddata"):
+                self.read(*columns)
+        with self.assertRaisesRegex(ValueError, "and no size is given"):
+            self.read(x, y, z, dx=0.5, dy=0.25)
+        with self.assertRaisesRegex(ValueError, "x is not evenly spaced"):
+            self.read(x + 0.004 * (x == self.x[4]), y, z)
+
+    def test_a_list_is_no_map_of_an_instrument(self):
+        x, y, z = (one[:40] for one in self.columns)
+        points = SimpleNamespace(dim=2, is_uniform=True, is_periodic=False, unit=None, physical_sizes=(1.0, 1.0),
+                                 heights=lambda: np.stack([x, y, z]))
+        with mock.patch.dict(sys.modules, {"SurfaceTopography": mock.Mock(read_topography=lambda *_, **__: points)}):
+            with self.assertRaisesRegex(ValueError, "a.asc has x, y and z of 40 points"):
+                surface.read(self.path.with_name("a.asc"), dx=0.5, dy=0.25)
+
+    def test_a_narrow_map_is_told(self):
+        with self.assertWarnsRegex(UserWarning, "is read as a map of 60 x 3 heights"):
+            self.assertEqual(self.read(*self.random.normal(size=(3, 60)), dx=1, dy=1).z.shape, (60, 3))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.read(*self.random.normal(size=(12, 60)), dx=1, dy=1)
+
+
+class Units(unittest.TestCase):
+    def test_heights_in_another_unit_than_the_elements_are_told(self):
+        nanometres = 5.0 * np.random.default_rng(1).normal(size=(64, 64))
+        with self.assertWarnsRegex(UserWarning, "half of the slopes in x are steeper than 6[12]: heights and sizes of elements must be in one unit"):
+            surface.heights(nanometres, size=(5.0, 5.0))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            surface.heights(nanometres, size=(5e3, 5e3))
+            # A fifth of the elements is a fill value.
+            surface.heights(np.where(np.arange(64) % 5 == 0, -9999.0, nanometres), size=(5e3, 5e3))
+
+
+class Tilts(unittest.TestCase):
+    def test_a_tilt_of_100_times_the_roughness_is_balanced(self):
+        rough, u = 1e-3 * self.random.normal(size=(32, 32)), np.linspace(-0.48, 0.48, 32)
+        level = surface.balance(surface.gap(surface.heights(rough, 0.03, 0.03)), 10.0, young_modulus=210e3, poisson_ratio=0.3)
+        tilted = surface.gap(surface.heights(rough + 0.2 * u[None, :] - 0.1 * u[:, None], 0.03, 0.03))
+        found = surface.balance(tilted, 10.0, young_modulus=210e3, poisson_ratio=0.3)
+        # The same body: the tilts differ by what was added, to the tolerance of the centre of the pressures, 1e-4 of the grid.
+        slope = u[1] - u[0]
+        np.testing.assert_allclose(np.subtract(found.tilt, level.tilt), (-0.2 * slope / 0.03, 0.1 * slope / 0.03), atol=1e-5)
+
+    random = np.random.default_rng(7)
+
+
+if __name__ == "__main__":
+    unittest.main()
