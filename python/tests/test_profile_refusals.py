@@ -46,6 +46,13 @@ class Units(unittest.TestCase):
             profiles.Wheelset(wheel().moved(z=460.0), 460.0)
 
 
+class Moduli(unittest.TestCase):
+    def test_those_in_gpa_are_refused(self):
+        point = profiles.contact_points(profiles.Track(rail()), profiles.Wheelset(wheel(), 460.0), profiles.Position(y=4.0))[0]
+        with self.assertRaisesRegex(ValueError, "moduli in N/mm2"):
+            point.press(80e3, 0.4, 0.4, shear_modulus=82.0, poisson_ratio=0.28)
+
+
 class Arguments(unittest.TestCase):
     def test_within_is_a_length(self):
         for within in (-1.0, float("nan")):

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 _STEPS = 8
 # A grid is made for the approach times the second number, and made anew if it was made for more than the first one.
 _LOOSE, _RESERVE = 1.5, 1.1
+# Of the rolling radius: nothing approaches by more, unless units are mixed.
+_DEEPEST = 0.05
 # The grid of a patch has at most this many elements on each side of the contact point; the first one that is tried.
 _FARTHEST = 1024
 _LEAST = 8
@@ -181,6 +183,9 @@ class ContactPoint:
             gap = self.gap(dx, dy, depth)
             result = gap.solve(force=force, **scene)
             approach = result.approach - float(gap.h.min())
+            if approach > _DEEPEST * self.rolling_radius:
+                raise ValueError(f"wheel and rail approach by {approach:.3g} mm, more than {_DEEPEST:g} of the rolling radius: "
+                                 "forces are in N, moduli in N/mm2")
             if not approach > depth:
                 # Once is enough: a smaller grid may lack a second patch that carried a part of the force.
                 if not may_shrink or not depth > _LOOSE * approach > 0.0:
