@@ -67,21 +67,20 @@ pub struct Level {
     inverse: Option<Inverse>,
     /// Of frozen problems, on small grids: made when first needed.
     pub frozen: Option<Still>,
-    /// Bytes of all that a descent held, at most.
+    /// Bytes of what solves frozen problems. On a large grid of all that a descent held, at most.
     pub of_descents: usize,
 }
 
 impl Level {
-    /// A grid, a product on which takes `work` of one on the finest.
+    /// A grid with these unknowns, a product on which takes `work` of one on the finest.
     pub fn new(
         (grid, coefficients): (Grid, Coefficients),
         operator: Arc<Operator<f64>>,
-        work: f64,
+        (now, work): (Unknowns, f64),
         threads: &Threads,
     ) -> Result<Level> {
         let threads = &threads.suited_to(grid.len());
         let problem = contact::Problem::with_operator(grid, coefficients, operator, 1.0, threads)?;
-        let n = grid.len();
         let unit = problem.self_influence().log2().round().exp2();
         let inverse = match Preconditioner::new(&problem.coefficients, 1.0 / unit, &grid, threads)? {
             None => None,
@@ -91,7 +90,7 @@ impl Level {
             problem,
             work,
             surface: Surface::default(),
-            now: Unknowns::new(n, threads)?,
+            now,
             good: Pressures::default(),
             fields: Fields::touched_by(threads),
             inverse,
@@ -167,9 +166,12 @@ impl Level {
 
     /// Takes it back.
     pub fn give_frozen(&mut self, still: Still) {
-        let bytes = self.fields.bytes() + still.0.bytes() + still.1.bytes();
-        self.of_descents = self.of_descents.max(bytes);
-        self.frozen = Some(still).filter(|_| is_small(self.now.u.len()));
+        let bytes = still.0.bytes() + still.1.bytes();
+        if is_small(self.now.u.len()) {
+            (self.of_descents, self.frozen) = (bytes, Some(still));
+        } else {
+            self.of_descents = self.of_descents.max(self.fields.bytes() + bytes);
+        }
     }
 
     /// Bytes held, or needed by a descent.
@@ -177,6 +179,10 @@ impl Level {
         let inverse = self.inverse.as_ref().map_or(0, |inverse| inverse.m.bytes() + inverse.workspace.bytes());
         let surface = size_of_val(&self.surface.h[..]) + size_of_val(&self.surface.works[..]);
         let unknowns = self.now.bytes() + self.good.bytes();
-        self.problem.bytes() + inverse + surface + unknowns + self.fields.bytes().max(self.of_descents)
+        // On a large grid a descent is in the room of linear solves.
+        let fields = self.fields.bytes();
+        let working =
+            if is_small(self.problem.grid.len()) { fields + self.of_descents } else { fields.max(self.of_descents) };
+        self.problem.bytes() + inverse + surface + unknowns + working
     }
 }

@@ -150,13 +150,16 @@ impl Solver {
                 Box::new(adhesion::Solver::new(*grid, coefficients, operator, threads)?)
             }
         };
-        let h = std::mem::take(&mut self.state.h);
+        // Products of adhesion have memory of their own.
+        self.problem.rest();
+        let State { h, p, u, .. } = &mut self.state;
+        solver.lend([h, p, u].map(std::mem::take));
         let state = &self.state;
         let from = match guess {
-            _ if goes_on => {
-                Some(adhesion::State { pressure: &state.p, contact: &state.contact, approach: state.approach })
+            _ if goes_on => Some(adhesion::State { pressure: None, contact: &state.contact, approach: state.approach }),
+            Some(Guess { pressure, contact }) => {
+                Some(adhesion::State { pressure: Some(pressure), contact, approach: lowest })
             }
-            Some(guess) => Some(adhesion::State { pressure: guess.pressure, contact: guess.contact, approach: lowest }),
             None => None,
         };
         let (work, works) = match adhesion.work {
@@ -164,7 +167,6 @@ impl Solver {
             Work::PerElement(works) => (0.0, Some(works)),
         };
         let surfaces = Surfaces { law: adhesion.law, range: adhesion.range, work, works };
-        solver.lend(h);
         let request = Request {
             surfaces,
             load: scene.load,
@@ -180,11 +182,10 @@ impl Solver {
             Ok(Box::new(Plain(Methods::new(problem, options)?)))
         };
         let outcome = solver.solve(&request, &make, monitor);
-        self.state.h = solver.give_back();
+        let found = &mut self.state;
+        [found.h, found.p, found.u] = solver.give_back();
         if outcome.is_ok() {
             let (state, found) = (&mut self.state, solver.finest());
-            state.p.copy_from_slice(found.now.p.field.as_flattened());
-            state.u.copy_from_slice(found.now.u.as_flattened());
             state.contact.copy_from_slice(&found.now.contact);
             state.at_limit.fill(false);
             (state.load, state.approach, state.reached_limit) = (scene.load, found.now.approach(), false);
