@@ -49,6 +49,7 @@ impl Solver {
 
     /// Takes the undeformed distances of the next solve, and pressures and displacements of any value.
     pub fn lend(&mut self, [h, p, u]: [Vec<f64>; 3]) {
+        // Collected in the memory that they have.
         let ones = |values: Vec<f64>| values.into_iter().map(|value| [value]).collect();
         let Level { surface, now, .. } = &mut self.levels[0];
         (surface.h, now.p.field, now.u) = (h, ones(p), ones(u));
@@ -70,7 +71,8 @@ impl Solver {
 
     /// Bytes held, beside what was lent, and the operator of the finest grid.
     pub fn bytes(&self) -> usize {
-        self.levels.iter().map(Level::bytes).sum::<usize>() - self.levels[0].problem.bytes_of_operator()
+        let at_work = self.levels.iter().map(Level::bytes_at_work).max().unwrap_or(0);
+        self.levels.iter().map(Level::bytes).sum::<usize>() + at_work - self.levels[0].problem.bytes_of_operator()
     }
 
     /// Solves, with the arrays that were [lent](Solver::lend). The finest grid then has what was found, with u = A p by a fresh product.

@@ -29,6 +29,7 @@ const HALVINGS: u32 = 60;
 /// `1 - lambda`, at the state of now.
 pub fn stability(level: &mut Level, monitor: &mut Monitor<'_>) -> Result<f64> {
     let (n, threads) = (level.now.u.len(), level.problem.threads.clone());
+    level.clear_fields(0);
     let mut fields = std::mem::take(&mut level.fields);
     let mut roots = fields.take_of(n)?;
     stiffnesses(level, |_, e| e.max(0.0), &mut roots);
@@ -36,6 +37,7 @@ pub fn stability(level: &mut Level, monitor: &mut Monitor<'_>) -> Result<f64> {
     let lambda = largest_eigenvalue(level, &roots, &threads, &mut fields)?;
     fields.give_of(roots);
     level.fields = fields;
+    level.clear_fields(0);
     level.count_products(monitor);
     Ok(1.0 - lambda)
 }

@@ -56,7 +56,7 @@ impl<'a> Linearised<'a> {
         if by_force {
             let n = stiffness.len();
             let (mut column, mut preconditioned) = (fields.take_of(n)?, fields.take_of(n)?);
-            fields::fill(&system.level.problem.threads, &mut column, |i| [(a0 * system.column_at(i)) as f32]);
+            fields::fill(&system.level.problem.threads, &mut column, |i| [system.column_at(i) as f32]);
             system.precondition_field(&column, &mut preconditioned);
             fields.give_of(column);
             let sum = system.sum(&preconditioned);
@@ -66,12 +66,12 @@ impl<'a> Linearised<'a> {
         Ok(system)
     }
 
-    /// Element i of the column of the system that belongs to the approach.
+    /// Element i of the column of the system that belongs to the approach, times a0.
     pub fn column_at(&self, i: usize) -> f64 {
         if self.level.now.contact[i] {
-            -1.0 / self.a0
+            -1.0
         } else {
-            f64::from(self.stiffness[i][0]) / self.a0
+            f64::from(self.stiffness[i][0])
         }
     }
 
@@ -131,9 +131,7 @@ impl<'a> Linearised<'a> {
         fields::add_all(&self.level.problem.threads, &mut z, &[(-by, &self.column)]);
         Ok(Bordered { field: z, border: [by * self.a0] })
     }
-}
 
-impl Linearised<'_> {
     /// A z.
     fn displaced(&mut self, z: &[Short], fields: &mut Fields<1>) -> Result<Vec<One>> {
         let mut displaced = fields.take(z.len())?;

@@ -74,23 +74,20 @@ fn tangent(level: &mut Level, (part, most): (f64, usize), monitor: &mut Monitor<
     let right = |system: &Linearised<'_>, i: usize| -system.column_at(i);
     let Solution { y, product, is_solved } =
         solve_in_parts(&mut system, right, Effort { part, most, at_once: AT_ONCE }, &mut fields)?;
+    // y times a0, which single precision holds whatever the units are.
     let (contact, a0) = (&system.level.now.contact, system.level.self_influence());
     let [sum, all] = fields::sum(&threads, n, |i| {
-        let (y, g) = (f64::from(y[i][0]), 1.0 - a0 * f64::from(product[i][0]));
-        let left = if contact[i] { y * g } else { -g * (y + f64::from(stiffness[i][0]) / a0 * g) };
+        let (y, s, g) = (f64::from(y[i][0]), f64::from(stiffness[i][0]), 1.0 - f64::from(product[i][0]));
+        let left = if contact[i] { y * g } else { -g * (y + s * g) };
         [y + left, y.abs()]
     });
-    let opening =
-        fields::largest(
-            &threads,
-            n,
-            |i| if stiffness[i][0] > 0.0 { a0 * f64::from(product[i][0]) - 1.0 } else { -1.0 },
-        );
+    let opens = |i: usize| if stiffness[i][0] > 0.0 { f64::from(product[i][0]) - 1.0 } else { -1.0 };
+    let opening = fields::largest(&threads, n, opens);
     fields.give_of(stiffness);
     [y, product].into_iter().for_each(|field| fields.give_of(field));
     level.fields = fields;
     level.count_products(monitor);
-    Ok(Tangent { stiffness: sum, all, closing: -opening, is_solved })
+    Ok(Tangent { stiffness: sum / a0, all: all / a0, closing: -opening, is_solved })
 }
 
 /// The tangent, solved again more firmly unless it is clear.

@@ -152,11 +152,10 @@ impl Solver {
         };
         // Products of adhesion have memory of their own.
         self.problem.rest();
-        let State { h, p, u, .. } = &mut self.state;
-        solver.lend([h, p, u].map(std::mem::take));
-        let state = &self.state;
+        let lent = Lent::new(&mut solver, &mut self.state);
+        let (contact, approach) = (&lent.state.contact[..], lent.state.approach);
         let from = match guess {
-            _ if goes_on => Some(adhesion::State { pressure: None, contact: &state.contact, approach: state.approach }),
+            _ if goes_on => Some(adhesion::State { pressure: None, contact, approach }),
             Some(Guess { pressure, contact }) => {
                 Some(adhesion::State { pressure: Some(pressure), contact, approach: lowest })
             }
@@ -181,9 +180,8 @@ impl Solver {
         let make = |problem: &contact::Problem| -> Result<Box<dyn Frozen>> {
             Ok(Box::new(Plain(Methods::new(problem, options)?)))
         };
-        let outcome = solver.solve(&request, &make, monitor);
-        let found = &mut self.state;
-        [found.h, found.p, found.u] = solver.give_back();
+        let outcome = lent.solver.solve(&request, &make, monitor);
+        drop(lent);
         if outcome.is_ok() {
             let (state, found) = (&mut self.state, solver.finest());
             state.contact.copy_from_slice(&found.now.contact);
@@ -193,6 +191,28 @@ impl Solver {
         }
         self.adhesion = Some(solver);
         outcome
+    }
+}
+
+/// The arrays of a state in the hands of a solver of adhesion. The state has them again whatever happens, so that the next solve works.
+struct Lent<'a> {
+    solver: &'a mut adhesion::Solver,
+    state: &'a mut State,
+}
+
+impl<'a> Lent<'a> {
+    fn new(solver: &'a mut adhesion::Solver, state: &'a mut State) -> Lent<'a> {
+        state.u_is = Freshness::Stale;
+        let State { h, p, u, .. } = &mut *state;
+        solver.lend([h, p, u].map(std::mem::take));
+        Lent { solver, state }
+    }
+}
+
+impl Drop for Lent<'_> {
+    fn drop(&mut self) {
+        let State { h, p, u, .. } = &mut *self.state;
+        [*h, *p, *u] = self.solver.give_back();
     }
 }
 

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use contact_normal::adhesion::Law;
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Load, Period, Scene};
+use contact_normal::scene::{Adhesion, Load, Period, Scene};
 use contact_normal::solver::{self, Options, Outcome};
 
 use super::certificate::{displacements, traction, worst};
@@ -120,7 +120,8 @@ fn rough_surfaces_take_200_bytes_an_element() {
         let grid = Grid::new(n, n, 1.0 / n as f64, 1.0 / n as f64).expect("a grid");
         let (h, full) = rough(n, &mut Draw(3), 0.8);
         let work = part * full;
-        let own = adhesion(Law::Exponential, work, range_of_kappa(Law::Exponential, work, grid.dx, 1.0, 0.25));
+        let range = range_of_kappa(Law::Exponential, work, grid.dx, 1.0, 0.25);
+        let own = Adhesion { stiffness: true, stability: true, ..adhesion(Law::Exponential, work, range) };
         let period = Some(Period { x: true, y: true });
         let scene = Scene { adhesion: Some(own), period, ..Scene::new(grid, &h, bodies(1.0), Load::Force(force)) };
         let (_, outcome, report) = solver::solve(&scene, &Options::default()).expect("a solve");
