@@ -67,21 +67,20 @@ pub struct Level {
     inverse: Option<Inverse>,
     /// Of frozen problems, on small grids: made when first needed.
     pub frozen: Option<Still>,
-    /// Bytes of all that a descent held, at most.
-    pub of_descents: usize,
+    /// On a large grid: bytes of fields, and of what solves frozen problems, at most.
+    at_most: usize,
 }
 
 impl Level {
-    /// A grid, a product on which takes `work` of one on the finest.
+    /// A grid with these unknowns, a product on which takes `work` of one on the finest.
     pub fn new(
         (grid, coefficients): (Grid, Coefficients),
         operator: Arc<Operator<f64>>,
-        work: f64,
+        (now, work): (Unknowns, f64),
         threads: &Threads,
     ) -> Result<Level> {
         let threads = &threads.suited_to(grid.len());
         let problem = contact::Problem::with_operator(grid, coefficients, operator, 1.0, threads)?;
-        let n = grid.len();
         let unit = problem.self_influence().log2().round().exp2();
         let inverse = match Preconditioner::new(&problem.coefficients, 1.0 / unit, &grid, threads)? {
             None => None,
@@ -91,12 +90,12 @@ impl Level {
             problem,
             work,
             surface: Surface::default(),
-            now: Unknowns::new(n, threads)?,
+            now,
             good: Pressures::default(),
             fields: Fields::touched_by(threads),
             inverse,
             frozen: None,
-            of_descents: 0,
+            at_most: 0,
         })
     }
 
@@ -158,25 +157,40 @@ impl Level {
         if let Some(still) = self.frozen.take() {
             return Ok(still);
         }
-        if !is_small(self.now.u.len()) {
-            self.fields = Fields::touched_by(&self.problem.threads);
-        }
+        self.clear_fields(0);
         let state = State::new(self.problem.grid, (Load::Approach(0.0), 0.0), &self.problem.threads)?;
         Ok((make(&self.problem)?, state))
     }
 
     /// Takes it back.
     pub fn give_frozen(&mut self, still: Still) {
-        let bytes = self.fields.bytes() + still.0.bytes() + still.1.bytes();
-        self.of_descents = self.of_descents.max(bytes);
+        self.clear_fields(bytes_of(&still));
         self.frozen = Some(still).filter(|_| is_small(self.now.u.len()));
     }
 
-    /// Bytes held, or needed by a descent.
+    /// On a large grid gives the memory of fields back, beside which so many bytes were held: descent, Newton's method and Lanczos' iteration need one
+    /// another's fields only in part.
+    pub fn clear_fields(&mut self, beside: usize) {
+        if !is_small(self.now.u.len()) {
+            self.at_most = self.at_most.max(self.fields.bytes() + beside);
+            self.fields = Fields::touched_by(&self.problem.threads);
+        }
+    }
+
+    /// Bytes held, beside those of the work.
     pub fn bytes(&self) -> usize {
         let inverse = self.inverse.as_ref().map_or(0, |inverse| inverse.m.bytes() + inverse.workspace.bytes());
         let surface = size_of_val(&self.surface.h[..]) + size_of_val(&self.surface.works[..]);
         let unknowns = self.now.bytes() + self.good.bytes();
-        self.problem.bytes() + inverse + surface + unknowns + self.fields.bytes().max(self.of_descents)
+        self.problem.bytes() + inverse + surface + unknowns + self.frozen.as_ref().map_or(0, bytes_of)
     }
+
+    /// Bytes of linear solves and of descents, at most: one grid is at work at a time.
+    pub fn bytes_at_work(&self) -> usize {
+        self.fields.bytes().max(self.at_most)
+    }
+}
+
+fn bytes_of((frozen, state): &Still) -> usize {
+    frozen.bytes() + state.bytes()
 }

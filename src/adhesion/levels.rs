@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::law::{Attraction, Law};
 use super::level::Level;
+use super::unknowns::{is_small, Unknowns};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
@@ -41,7 +42,8 @@ pub fn levels(
 ) -> Result<Vec<Level>> {
     let below = || std::iter::successors(coarsen(&grid, COARSEST), |grid| coarsen(grid, COARSEST));
     let mut levels = sparse(1 + below().count(), "the grids of adhesion")?;
-    levels.push(Level::new((grid, coefficients.clone()), operator, 1.0, threads)?);
+    let lent = Unknowns::without_fields(grid.len(), threads)?;
+    levels.push(Level::new((grid, coefficients.clone()), operator, (lent, 1.0), threads)?);
     let (mut fine, mut coefficients) = (grid, coefficients.clone());
     for coarse in below() {
         coefficients = coefficients.coarsen(&fine, &coarse)?;
@@ -49,7 +51,8 @@ pub fn levels(
         let threads = &threads.suited_to(fine.len());
         let operator = Arc::new(Operator::new(&coefficients, &fine, threads)?);
         let work = fine.len() as f64 / grid.len() as f64;
-        levels.push(Level::new((fine, coefficients.clone()), operator, work, threads)?);
+        let now = Unknowns::new(fine.len(), threads)?;
+        levels.push(Level::new((fine, coefficients.clone()), operator, (now, work), threads)?);
     }
     Ok(levels)
 }
@@ -98,6 +101,10 @@ pub fn take_surfaces(levels: &mut [Level], given: Surfaces<'_>) -> Result<()> {
 /// solves.
 pub fn prolong(coarse: &mut Level, fine: &mut Level) -> Result<()> {
     fine.fields = std::mem::take(&mut coarse.fields);
+    fine.fields.leave_smaller(fine.now.u.len());
+    if !is_small(fine.now.u.len()) {
+        coarse.problem.rest();
+    }
     let (from, to) = (coarse.problem.grid, fine.problem.grid);
     let (pressures, h) = (coarse.now.p.field.as_flattened(), &fine.surface.h);
     fine.problem.threads.for_each_plain_row(fine.now.p.field.as_flattened_mut(), to.mx, |y, row| {

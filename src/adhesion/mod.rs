@@ -11,7 +11,7 @@
 //! |---|---|
 //! | `law` | the laws of attraction |
 //! | `unknowns`, `level`, `levels` | the unknowns of one grid and how well the conditions hold; operator and preconditioner; all grids |
-//! | `newton`, `system` | semismooth Newton with flexible GMRES, bordered where the force is given |
+//! | `newton`, `system`, `parts` | semismooth Newton with flexible GMRES, bordered where the force is given; linear systems that are solved firmly |
 //! | `majorise`, `robust` | descent by contact problems whose attraction stands still, and Newton's method with that behind it |
 //! | `nested` | nested iteration; the starts from contact and from apart |
 //! | `pull`, `way`, `place`, `held` | the way down to the pull-off, its steps, and states on it; the stable state of a force |
@@ -27,6 +27,7 @@ mod levels;
 mod majorise;
 mod nested;
 mod newton;
+mod parts;
 mod place;
 mod pull;
 mod report;

@@ -20,7 +20,7 @@
 
 use super::law::Law;
 use super::level::Level;
-use super::system::{Linearised, Short};
+use super::system::{Linearised, Short, PRODUCTS};
 use super::unknowns::{is_small, Measured};
 use crate::error::Result;
 use crate::methods::fgmres::{Bordered, Until};
@@ -36,10 +36,12 @@ const FAR: f64 = 0.2;
 const NEAR: f64 = 0.1;
 /// The mean distance lies within so many ranges of e.
 const WITHIN: f64 = 3.0;
-/// Directions of a linear solve at most: what takes more is a system that is nearly singular. On large grids they are `IN_MEMORY` at first, and twice as
-/// many after each solve that they are too few for.
+/// Directions of a linear solve at most: what takes more is a system that is nearly singular. On grids that are not small they are `IN_MEMORY`; on those of more
+/// than `LARGE` elements `AT_FIRST`, and twice as many after each solve that they are too few for.
 const DIRECTIONS: usize = 30;
-pub const IN_MEMORY: usize = 6;
+pub const IN_MEMORY: usize = 2 * PRODUCTS;
+const LARGE: usize = 1 << 16;
+const AT_FIRST: usize = 6;
 /// The part of the slope that a cautious step takes.
 const CAUTIOUS: f64 = 0.7;
 /// A whole step went wrong if the residual has risen by this factor: steps from one edge of a smeared law to the other may go on for ever.
@@ -99,7 +101,11 @@ impl Goal {
 pub fn newton(level: &mut Level, goal: Goal, keeps: bool, monitor: &mut Monitor<'_>) -> Result<(End, Measured)> {
     let mut measured = Measured::default();
     let (mut last, mut whole_below) = (f64::INFINITY, f64::INFINITY);
-    let mut directions = if is_small(level.now.u.len()) { DIRECTIONS } else { IN_MEMORY };
+    let (mut directions, most) = match level.now.u.len() {
+        n if is_small(n) => (DIRECTIONS, DIRECTIONS),
+        n if n <= LARGE => (IN_MEMORY, IN_MEMORY),
+        _ => (AT_FIRST, IN_MEMORY),
+    };
     for step in 0..=MOST_CAUTIOUS {
         measured = level.measure(keeps && step == 0, goal.wanted);
         if measured.opening > 0.0 {
@@ -133,7 +139,7 @@ pub fn newton(level: &mut Level, goal: Goal, keeps: bool, monitor: &mut Monitor<
             residual > CLOSE || goal.pace == Pace::Cautious && (measured.changed > 0 || residual > whole_below);
         last = if is_far { f64::INFINITY } else { residual };
         if !take_step(level, goal, is_far, directions)? {
-            directions = (2 * directions).min(DIRECTIONS);
+            directions = (2 * directions).min(most);
         }
         level.count_products(monitor);
         monitor.cycle_done(&level.problem.grid, 0, 0.0, worst);
@@ -156,7 +162,7 @@ fn take_step(level: &mut Level, Goal { wanted, pace, .. }: Goal, is_far: bool, m
     let until = Until { target: norm * if is_far { FAR } else { NEAR }, most };
     let mut system = Linearised::new(level, &stiffness, wanted.is_some(), &mut fields)?;
     let found = system.solve(r, (until, weight), &threads, &mut fields)?;
-    let is_enough = found.directions.len() < most;
+    let is_enough = found.count < most;
     system.give(&mut fields);
     found.add_to(&mut level.now.p, &mut level.now.u, &threads, &mut fields);
     fields.give_of(stiffness);

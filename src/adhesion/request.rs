@@ -18,8 +18,8 @@ pub enum Start {
 /// A state to go on from.
 #[derive(Clone, Copy, Debug)]
 pub struct State<'a> {
-    /// Total pressures.
-    pub pressure: &'a [f64],
+    /// Total pressures; none: those that were lent.
+    pub pressure: Option<&'a [f64]>,
     /// The contact area.
     pub contact: &'a [bool],
     /// The approach, where the force is given.

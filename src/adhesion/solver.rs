@@ -47,14 +47,19 @@ impl Solver {
         &self.levels[0]
     }
 
-    /// Takes the undeformed distances of the next solve.
-    pub fn lend(&mut self, h: Vec<f64>) {
-        self.levels[0].surface.h = h;
+    /// Takes the undeformed distances of the next solve, and pressures and displacements of any value.
+    pub fn lend(&mut self, [h, p, u]: [Vec<f64>; 3]) {
+        // Collected in the memory that they have.
+        let ones = |values: Vec<f64>| values.into_iter().map(|value| [value]).collect();
+        let Level { surface, now, .. } = &mut self.levels[0];
+        (surface.h, now.p.field, now.u) = (h, ones(p), ones(u));
     }
 
-    /// Gives them back.
-    pub fn give_back(&mut self) -> Vec<f64> {
-        std::mem::take(&mut self.levels[0].surface.h)
+    /// Gives them back: total pressures and their displacements, if a solve has ended well.
+    pub fn give_back(&mut self) -> [Vec<f64>; 3] {
+        let Level { surface, now, .. } = &mut self.levels[0];
+        let [p, u] = [&mut now.p.field, &mut now.u].map(|values| std::mem::take(values).into_flattened());
+        [std::mem::take(&mut surface.h), p, u]
     }
 
     /// The contact pressure q of element i, and its attraction sigma, of a state that was found here.
@@ -64,12 +69,13 @@ impl Solver {
         (if state.contact[i] { (state.p[i] + sigma).max(0.0) } else { 0.0 }, sigma)
     }
 
-    /// Bytes held.
+    /// Bytes held, beside what was lent, and the operator of the finest grid.
     pub fn bytes(&self) -> usize {
-        self.levels.iter().map(Level::bytes).sum()
+        let at_work = self.levels.iter().map(Level::bytes_at_work).max().unwrap_or(0);
+        self.levels.iter().map(Level::bytes).sum::<usize>() + at_work - self.levels[0].problem.bytes_of_operator()
     }
 
-    /// Solves, with the undeformed distances that were [lent](Solver::lend). The finest grid then has what was found, with u = A p by a fresh product.
+    /// Solves, with the arrays that were [lent](Solver::lend). The finest grid then has what was found, with u = A p by a fresh product.
     pub fn solve(
         &mut self,
         request: &Request<'_>,
@@ -111,7 +117,9 @@ impl Solver {
         monitor: &mut Monitor<'_>,
     ) -> Result<Descent> {
         let level = &mut self.levels[0];
-        level.now.p.field.as_flattened_mut().copy_from_slice(state.pressure);
+        if let Some(pressure) = state.pressure {
+            level.now.p.field.as_flattened_mut().copy_from_slice(pressure);
+        }
         level.now.contact.copy_from_slice(state.contact);
         if goal.wanted.is_some() {
             level.now.p.border = [state.approach];

@@ -9,10 +9,10 @@
 
 use super::level::Level;
 use super::newton::stiffnesses;
-use super::system::Linearised;
+use super::parts::{solve_in_parts, Effort, Solution};
+use super::system::{Linearised, Short};
 use super::unknowns::One;
 use crate::error::Result;
-use crate::methods::fgmres::{Bordered, Until};
 use crate::methods::fields::{self, Fields};
 use crate::progress::Monitor;
 use crate::threads::Threads;
@@ -20,42 +20,42 @@ use crate::threads::Threads;
 /// Steps of Lanczos' iteration at most, and the change of lambda at which it ends.
 const MOST_STEPS: usize = 20;
 const ENOUGH: f64 = 1e-4;
-/// Each linear system is solved to this part of its right-hand side: lambda, a Rayleigh quotient, is off by its square.
-const INNER: f64 = 1e-3;
-const DIRECTIONS: usize = 60;
+/// Each linear system is solved to this part of its right-hand side: lambda, a Rayleigh quotient, is off by its square. On large grids the vectors of
+/// Lanczos' iteration take the memory of many directions.
+const INNER: Effort = Effort { part: 1e-3, most: 60, at_once: 8 };
 /// Halvings of the interval in which an eigenvalue lies.
 const HALVINGS: u32 = 60;
 
 /// `1 - lambda`, at the state of now.
 pub fn stability(level: &mut Level, monitor: &mut Monitor<'_>) -> Result<f64> {
     let (n, threads) = (level.now.u.len(), level.problem.threads.clone());
+    level.clear_fields(0);
     let mut fields = std::mem::take(&mut level.fields);
-    let mut roots = fields.take(n)?;
+    let mut roots = fields.take_of(n)?;
     stiffnesses(level, |_, e| e.max(0.0), &mut roots);
-    let a0 = level.self_influence();
-    fields::map(&threads, &mut roots, |_, s| s.map(|s| (s / a0).sqrt()));
+    fields::map(&threads, &mut roots, |_, s: Short| s.map(f32::sqrt));
     let lambda = largest_eigenvalue(level, &roots, &threads, &mut fields)?;
-    fields.give(roots);
+    fields.give_of(roots);
     level.fields = fields;
+    level.clear_fields(0);
     level.count_products(monitor);
     Ok(1.0 - lambda)
 }
 
-/// Lanczos' iteration.
-fn largest_eigenvalue(level: &mut Level, roots: &[One], threads: &Threads, fields: &mut Fields<1>) -> Result<f64> {
+/// Lanczos' iteration. `roots`: those of s a0.
+fn largest_eigenvalue(level: &mut Level, roots: &[Short], threads: &Threads, fields: &mut Fields<1>) -> Result<f64> {
     let n = roots.len();
     let norm = fields::dot(threads, roots, roots).sqrt();
     if !(norm > 0.0) {
         return Ok(0.0);
     }
     let (mut v, mut before) = (fields.take(n)?, fields.take(n)?);
-    fields::fill(threads, &mut v, |i| [roots[i][0] / norm]);
+    fields::fill(threads, &mut v, |i| [f64::from(roots[i][0]) / norm]);
     fields::fill(threads, &mut before, |_| [0.0]);
     let (mut diagonal, mut beside) = (Vec::with_capacity(MOST_STEPS), Vec::with_capacity(MOST_STEPS));
     let (mut lambda, mut last) = (0.0, 0.0);
     for _ in 0..MOST_STEPS {
-        let mut w = fields.take(n)?;
-        apply(level, roots, &v, &mut w, fields)?;
+        let mut w = apply(level, roots, &v, fields)?;
         let along = fields::dot(threads, &w, &v);
         fields::add_all(threads, &mut w, &[(-along, &v), (-last, &before)]);
         diagonal.push(along);
@@ -76,23 +76,18 @@ fn largest_eigenvalue(level: &mut Level, roots: &[One], threads: &Threads, field
     Ok(lambda)
 }
 
-/// `w = sqrt(s) A~ sqrt(s) v`.
-fn apply(level: &mut Level, roots: &[One], v: &[One], w: &mut [One], fields: &mut Fields<1>) -> Result<()> {
+/// `sqrt(s) A~ sqrt(s) v`.
+fn apply(level: &mut Level, roots: &[Short], v: &[One], fields: &mut Fields<1>) -> Result<Vec<One>> {
     let (n, threads) = (roots.len(), level.problem.threads.clone());
-    let (none, mut right) = (fields.zeros(n, &threads)?, fields.take(n)?);
-    fields::fill(&threads, &mut right, |i| [roots[i][0] * v[i][0]]);
-    let until = Until { target: INNER * fields::dot(&threads, &right, &right).sqrt(), most: DIRECTIONS };
+    let none = fields.zeros(n, &threads)?;
     // Without attraction that changes: outside dp = sqrt(s) v, in contact no change of the distance.
     let mut system = Linearised::new(level, &none, false, fields)?;
-    let r = Bordered { field: right, border: [0.0] };
-    let found = system.solve(r, (until, 0.0), &threads, fields)?;
-    let mut pressures = Bordered { field: fields.zeros(n, &threads)?, border: [0.0] };
-    let mut product = fields.zeros(n, &threads)?;
-    found.add_to(&mut pressures, &mut product, &threads, fields);
-    fields::fill(&threads, w, |i| [roots[i][0] * product[i][0]]);
-    fields.give_of(none);
-    [pressures.field, product].into_iter().for_each(|field| fields.give(field));
-    Ok(())
+    let right = |_: &Linearised<'_>, i: usize| f64::from(roots[i][0]) * v[i][0];
+    let Solution { y, product, .. } = solve_in_parts(&mut system, right, INNER, fields)?;
+    let mut w = fields.take(n)?;
+    fields::fill(&threads, &mut w, |i| [f64::from(roots[i][0]) * f64::from(product[i][0])]);
+    [y, product, none].into_iter().for_each(|field| fields.give_of(field));
+    Ok(w)
 }
 
 /// The largest eigenvalue of a symmetric tridiagonal matrix, by Sturm's count of those above a number.

@@ -9,17 +9,23 @@
 //! preconditioned by `M (a0 y)` on C and `y/(1 - min(s a0, 1/2))` outside, bordered where the force is given:
 //! `da = (sum z - y_F)/sum Y`, `z -= Y da`, with Y the preconditioned column of da.
 //!
+//! On large grids preconditioned vectors are not kept, and products as long as they are few: the preconditioner is the same for all directions.
+//!
 //! Vectors are stored in single precision, [`Short`]: a linear solve ends at a tenth of its right-hand side. So are the s a0, which are of the
 //! order of 1.
 
 use super::level::Level;
+use super::unknowns::{is_small, One};
 use crate::error::Result;
-use crate::methods::fgmres::{self, Bordered, Combination, Direction, System, Turned, Until};
+use crate::methods::fgmres::{self, Bordered, Combination, Direction, Kept, System, Turned, Until};
 use crate::methods::fields::{self, Fields};
 use crate::threads::Threads;
 
 /// The diagonal of a row outside C is never taken for less: where elements snap alone the row tells nothing.
 const LEAST_DIAGONAL: f64 = 0.5;
+
+/// Products that are kept on large grids. Twice as many vectors of the basis take the same memory.
+pub const PRODUCTS: usize = 11;
 
 /// A number per element in single precision.
 pub type Short = [f32; 1];
@@ -29,6 +35,8 @@ pub struct Linearised<'a> {
     pub level: &'a mut Level,
     /// s a0; 0 on C.
     pub stiffness: &'a [Short],
+    /// The influence of an element on itself.
+    a0: f64,
     /// a0 Y, where the force is given.
     column: Vec<Short>,
     /// 1/sum a0 Y; 0 where there is none.
@@ -43,12 +51,12 @@ impl<'a> Linearised<'a> {
         by_force: bool,
         fields: &mut Fields<1>,
     ) -> Result<Linearised<'a>> {
-        let mut system = Linearised { level, stiffness, column: Vec::new(), inverse: 0.0 };
+        let a0 = level.self_influence();
+        let mut system = Linearised { level, stiffness, a0, column: Vec::new(), inverse: 0.0 };
         if by_force {
             let n = stiffness.len();
             let (mut column, mut preconditioned) = (fields.take_of(n)?, fields.take_of(n)?);
-            let a0 = system.level.self_influence();
-            fields::fill(&system.level.problem.threads, &mut column, |i| [(a0 * system.column_at(i)) as f32]);
+            fields::fill(&system.level.problem.threads, &mut column, |i| [system.column_at(i) as f32]);
             system.precondition_field(&column, &mut preconditioned);
             fields.give_of(column);
             let sum = system.sum(&preconditioned);
@@ -58,18 +66,17 @@ impl<'a> Linearised<'a> {
         Ok(system)
     }
 
-    /// Element i of the column of the system that belongs to the approach.
+    /// Element i of the column of the system that belongs to the approach, times a0.
     pub fn column_at(&self, i: usize) -> f64 {
         if self.level.now.contact[i] {
-            -1.0 / self.level.self_influence()
+            -1.0
         } else {
-            f64::from(self.stiffness[i][0]) / self.level.self_influence()
+            f64::from(self.stiffness[i][0])
         }
     }
 
-    /// Row i of the system for pressures y and their displacements, the approach standing still.
+    /// Row i of the system for pressures y and their displacements in units of a0, the approach standing still.
     pub fn row(&self, i: usize, y: f64, displaced: f64) -> f64 {
-        let displaced = displaced / self.level.self_influence();
         if self.level.now.contact[i] {
             displaced
         } else {
@@ -93,7 +100,7 @@ impl<'a> Linearised<'a> {
         fields: &mut Fields<1>,
     ) -> Result<Combination<1, f32>> {
         let found = fgmres::solve(self, r, until, threads, fields)?;
-        Ok(Combination { unit: self.level.self_influence(), ..found })
+        Ok(Combination { unit: self.a0, ..found })
     }
 
     fn by_force(&self) -> bool {
@@ -122,29 +129,59 @@ impl<'a> Linearised<'a> {
         }
         let by = (self.sum(&z) - r.border[0]) * self.inverse;
         fields::add_all(&self.level.problem.threads, &mut z, &[(-by, &self.column)]);
-        Ok(Bordered { field: z, border: [by * self.level.self_influence()] })
+        Ok(Bordered { field: z, border: [by * self.a0] })
+    }
+
+    /// A z.
+    fn displaced(&mut self, z: &[Short], fields: &mut Fields<1>) -> Result<Vec<One>> {
+        let mut displaced = fields.take(z.len())?;
+        let problem = &mut self.level.problem;
+        fields::fill(&problem.threads, &mut displaced, |i| z[i].map(f64::from));
+        problem.displace_in_place(displaced.as_flattened_mut())?;
+        Ok(displaced)
     }
 }
 
 impl System<1, f32> for Linearised<'_> {
     fn direction(&mut self, v: &Bordered<1, f32>, fields: &mut Fields<1>) -> Result<Turned<1, f32>> {
         let z = self.precondition(v, fields)?;
-        let (n, threads) = (z.field.len(), &self.level.problem.threads);
-        let (mut displaced, mut double) = (fields.take(n)?, fields.take(n)?);
-        fields::fill(threads, &mut double, |i| z.field[i].map(f64::from));
-        self.level.problem.displace(double.as_flattened(), displaced.as_flattened_mut())?;
-        fields.give(double);
+        let n = z.field.len();
+        let displaced = self.displaced(&z.field, fields)?;
         let (mut row, mut product) = (fields.take_of(n)?, fields.take_of(n)?);
-        let (contact, a0, by) = (&self.level.now.contact, self.level.self_influence(), z.border[0]);
-        let (stiffness, field) = (self.stiffness, &z.field);
-        fields::fill(&self.level.problem.threads, &mut row, |i| {
+        let (contact, a0, by) = (&self.level.now.contact, self.a0, z.border[0]);
+        let (stiffness, field, threads) = (self.stiffness, &z.field, &self.level.problem.threads);
+        fields::fill_both(threads, (&mut row, &mut product), |i| {
             let change = (displaced[i][0] - by) / a0;
             let outside = || f64::from(field[i][0]) - f64::from(stiffness[i][0]) * change;
-            [(if contact[i] { change } else { outside() }) as f32]
+            let row = if contact[i] { change } else { outside() };
+            [[row as f32], [(displaced[i][0] / a0) as f32]]
         });
-        fields::fill(&self.level.problem.threads, &mut product, |i| [(displaced[i][0] / a0) as f32]);
         fields.give(displaced);
         let border = if self.by_force() { [self.sum(&z.field)] } else { [0.0] };
         Ok((Direction { z, product }, Bordered { field: row, border }))
+    }
+
+    fn kept(&self) -> Kept {
+        match is_small(self.stiffness.len()) {
+            true => Kept::All,
+            false => Kept::Products(PRODUCTS),
+        }
+    }
+
+    fn again(
+        &mut self,
+        v: &Bordered<1, f32>,
+        is_multiplied: bool,
+        fields: &mut Fields<1>,
+    ) -> Result<Direction<1, f32>> {
+        let z = self.precondition(v, fields)?;
+        let mut product = Vec::new();
+        if is_multiplied {
+            product = fields.take_of(z.field.len())?;
+            let (a0, displaced) = (self.a0, self.displaced(&z.field, fields)?);
+            fields::fill(&self.level.problem.threads, &mut product, |i| [(displaced[i][0] / a0) as f32]);
+            fields.give(displaced);
+        }
+        Ok(Direction { z, product })
     }
 }

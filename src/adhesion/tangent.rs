@@ -17,11 +17,10 @@
 
 use super::level::Level;
 use super::newton::{stiffnesses, IN_MEMORY};
+use super::parts::{solve_in_parts, Effort, Solution};
 use super::stability::stability;
 use super::system::Linearised;
-use super::unknowns::{is_small, One};
 use crate::error::Result;
-use crate::methods::fgmres::{Bordered, Until};
 use crate::methods::fields;
 use crate::progress::Monitor;
 
@@ -29,13 +28,13 @@ use crate::progress::Monitor;
 const LOOSE: f64 = 1e-3;
 const FIRM: f64 = 1e-5;
 const DIRECTIONS: [usize; 2] = [30, 90];
+/// On large grids so many directions at once: what is known of the tangent takes the memory of two.
+const AT_ONCE: usize = IN_MEMORY - 2;
 /// On grids of more elements than `ROUGHLY_FIRST` a force is asked roughly first, and answered where the sum of y is this part of the sum of |y|, and no g as far
 /// below 0: that takes half as many directions.
 const ROUGHLY_FIRST: usize = 1024;
 const ROUGH: (f64, usize) = (0.03, 18);
 const BEYOND_DOUBT: f64 = 0.3;
-/// A linear system is solved if its residual is at most this factor of what was asked for: round-off.
-const SLACK: f64 = 1.0 + 1e-6;
 /// The sum of y is near 0 below this part of the sum of |y|.
 const NEAR: f64 = 0.05;
 /// g beside a contact area is next to 0, and what is loosely solved may be below. At a saddle it is of the order of -1, and more if lambda is near 1.
@@ -65,51 +64,30 @@ impl Tangent {
     }
 }
 
-/// The tangent at the state of now. On large grids the linear system is solved again and again for what is left of its right-hand side.
+/// The tangent at the state of now.
 fn tangent(level: &mut Level, (part, most): (f64, usize), monitor: &mut Monitor<'_>) -> Result<Tangent> {
     let (n, threads) = (level.now.u.len(), level.problem.threads.clone());
-    // What is known takes the memory of one direction.
-    let at_once = if is_small(n) { most } else { IN_MEMORY - 1 };
     let mut fields = std::mem::take(&mut level.fields);
     let mut stiffness = fields.take_of(n)?;
     stiffnesses(level, |_, e| e.max(0.0), &mut stiffness);
     let mut system = Linearised::new(level, &stiffness, false, &mut fields)?;
-    let (mut known, mut first, mut made) = (None::<(Bordered<1>, Vec<One>)>, None, 0);
-    let (y, product, is_solved) = loop {
-        let mut right = fields.take(n)?;
-        fields::fill(&threads, &mut right, |i| {
-            let solved = known.as_ref().map_or(0.0, |(y, product)| system.row(i, y.field[i][0], product[i][0]));
-            [-system.column_at(i) - solved]
-        });
-        let norm = fields::dot(&threads, &right, &right).sqrt();
-        let target = part * *first.get_or_insert(norm);
-        let until = Until { target, most: at_once.min(most - made) };
-        let r = Bordered { field: right, border: [0.0] };
-        let found = system.solve(r, (until, 0.0), &threads, &mut fields)?;
-        let is_solved = found.left * norm <= SLACK * target;
-        made += found.directions.len().max(1);
-        let (mut y, mut product) = match known {
-            Some(known) => known,
-            None => (Bordered { field: fields.zeros(n, &threads)?, border: [0.0] }, fields.zeros(n, &threads)?),
-        };
-        found.add_to(&mut y, &mut product, &threads, &mut fields);
-        if is_solved || made >= most {
-            break (y, product, is_solved);
-        }
-        known = Some((y, product));
-    };
+    let right = |system: &Linearised<'_>, i: usize| -system.column_at(i);
+    let Solution { y, product, is_solved } =
+        solve_in_parts(&mut system, right, Effort { part, most, at_once: AT_ONCE }, &mut fields)?;
+    // y times a0, which single precision holds whatever the units are.
     let (contact, a0) = (&system.level.now.contact, system.level.self_influence());
     let [sum, all] = fields::sum(&threads, n, |i| {
-        let (y, g) = (y.field[i][0], 1.0 - product[i][0]);
-        let left = if contact[i] { y * g } else { -g * (y + f64::from(stiffness[i][0]) / a0 * g) };
+        let (y, s, g) = (f64::from(y[i][0]), f64::from(stiffness[i][0]), 1.0 - f64::from(product[i][0]));
+        let left = if contact[i] { y * g } else { -g * (y + s * g) };
         [y + left, y.abs()]
     });
-    let opening = fields::largest(&threads, n, |i| if stiffness[i][0] > 0.0 { product[i][0] - 1.0 } else { -1.0 });
+    let opens = |i: usize| if stiffness[i][0] > 0.0 { f64::from(product[i][0]) - 1.0 } else { -1.0 };
+    let opening = fields::largest(&threads, n, opens);
     fields.give_of(stiffness);
-    [y.field, product].into_iter().for_each(|field| fields.give(field));
+    [y, product].into_iter().for_each(|field| fields.give_of(field));
     level.fields = fields;
     level.count_products(monitor);
-    Ok(Tangent { stiffness: sum, all, closing: -opening, is_solved })
+    Ok(Tangent { stiffness: sum / a0, all: all / a0, closing: -opening, is_solved })
 }
 
 /// The tangent, solved again more firmly unless it is clear.

@@ -33,6 +33,14 @@ impl Unknowns {
         Ok(unknowns)
     }
 
+    /// Of n elements, nothing of which is in contact; the fields of pressures and displacements are still to come.
+    pub fn without_fields(n: usize, threads: &Threads) -> Result<Unknowns> {
+        let mut unknowns = Unknowns::default();
+        unwritten(&mut unknowns.contact, n, false, MEMORY, threads)?;
+        unknowns.contact.fill(false);
+        Ok(unknowns)
+    }
+
     /// Makes room for n elements, which hold anything.
     fn reserve(&mut self, n: usize, threads: &Threads) -> Result<()> {
         unwritten(&mut self.p.field, n, [f64::NAN], MEMORY, threads)?;
@@ -72,12 +80,12 @@ impl Unknowns {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.u.len() * (2 * size_of::<f64>() + 1)
+        size_of_val(&self.p.field[..]) + size_of_val(&self.u[..]) + self.contact.len()
     }
 }
 
 /// Grids of at most so many elements are small.
-const SMALL: usize = 1 << 16;
+const SMALL: usize = 1 << 15;
 
 /// Whether a grid of n elements is small: more memory is held there, to save products.
 pub fn is_small(n: usize) -> bool {

@@ -114,11 +114,35 @@ impl Operators {
             u.iter_mut().zip(matrix.chunks_exact(p.len())).for_each(|(u, row)| *u = dot(row));
             return Ok(());
         }
+        self.with_operator(of.reach_of(p), of, |operator, workspace| operator.apply(p, u, workspace))
+    }
+
+    /// `p = A p`.
+    pub fn displace_in_place(&mut self, of: MadeOf<'_>, p: &mut [f64]) -> Result<()> {
+        if p.len() <= SUMMED {
+            let given = p.to_vec();
+            return self.displace(of, &given, p);
+        }
+        if !p.chunks_exact(of.grid.mx).any(presses) {
+            p.fill(0.0);
+            return Ok(());
+        }
+        let reach = of.reach_of(p);
+        self.with_operator(reach, of, |operator, workspace| operator.apply_in_place(p, workspace))
+    }
+
+    /// A product, by the operator of a reach.
+    fn with_operator(
+        &mut self,
+        reach: Option<Reach>,
+        of: MadeOf<'_>,
+        multiply: impl FnOnce(&Operator<f64>, &mut Workspace<f64>),
+    ) -> Result<()> {
         // It is taken out for the time of the product.
         let mut workspace = self.workspace.take();
-        let operator = self.get(of.reach_of(p), of)?;
+        let operator = self.get(reach, of)?;
         let fitting = fit(&mut workspace, operator)?;
-        operator.apply(p, u, fitting);
+        multiply(operator, fitting);
         fitting.rest();
         self.workspace = workspace;
         Ok(())
@@ -145,9 +169,19 @@ impl Operators {
         Ok(&self.part.insert((part, true)).0)
     }
 
+    /// It is not needed for a while: the memory of products is given back.
+    pub fn rest(&mut self) {
+        self.workspace = None;
+    }
+
+    /// Bytes of the operator for any p.
+    pub fn bytes_of_whole(&self) -> usize {
+        self.whole.as_ref().map_or(0, |operator| operator.bytes())
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let whole = self.whole.as_ref().map_or(0, |operator| operator.bytes());
+        let whole = self.bytes_of_whole();
         let part = self.part.as_ref().map_or(0, |(part, _)| part.bytes());
         whole + part + self.workspace.as_ref().map_or(0, |(_, workspace)| workspace.bytes())
     }

@@ -136,6 +136,17 @@ impl Problem {
         Ok(())
     }
 
+    /// `p = A p`: the same numbers.
+    pub fn displace_in_place(&mut self, p: &mut [f64]) -> Result<()> {
+        let Problem { coefficients, grid, threads, operators, .. } = self;
+        operators.displace_in_place(MadeOf { coefficients, grid, threads }, p)?;
+        self.products += 1;
+        if self.coefficients.is_mean_free() {
+            remove_mean(p, &self.threads);
+        }
+        Ok(())
+    }
+
     /// p carries the prescribed force, u = A p by a fresh product, and the approach fits.
     pub fn refresh<S: AdmissibleSet>(&mut self, state: &mut State, set: S) -> Result<()> {
         state.carry_force(set, &self.threads);
@@ -148,6 +159,16 @@ impl Problem {
     /// Products since the last call.
     pub fn take_products(&mut self) -> u64 {
         std::mem::take(&mut self.products)
+    }
+
+    /// It is not needed for a while: the memory of products is given back.
+    pub fn rest(&mut self) {
+        self.operators.rest();
+    }
+
+    /// Bytes of the operator for any p.
+    pub fn bytes_of_operator(&self) -> usize {
+        self.operators.bytes_of_whole()
     }
 
     /// Bytes held.

@@ -2,6 +2,8 @@
 //! K is 2 if nothing else is said: tractions and creepages.
 //!
 //! `x = sum_j y_j z_j` with `z_j` the preconditioned vectors; the products of the z_j are kept, so that the product of x costs none.
+//! Where the preconditioner M is the same linear map for all directions they need not be kept: `x = M sum_j y_j v_j`, with the basis v that is kept
+//! anyway. Of many directions the products need not be kept, either: x has one product. A direction then takes a third of the memory ([`Kept`]).
 //!
 //! Vectors and their products are stored in the precision T, double if nothing else is said; sums and borders are always double. x and its product
 //! belong to each other to the precision T, and x is a step: what a step leaves wrong is a part of the step, and the steps become small.
@@ -32,20 +34,48 @@ pub struct Direction<const K: usize = 2, T = f64> {
 /// A direction, and `H` of it.
 pub type Turned<const K: usize, T> = (Direction<K, T>, Bordered<K, T>);
 
-/// The system `H x = r`.
-pub trait System<const K: usize = 2, T = f64> {
-    /// A preconditioned vector, its product with A, and `H` of it.
-    fn direction(&mut self, v: &Bordered<K, T>, fields: &mut Fields<K>) -> Result<Turned<K, T>>;
+/// What is kept of directions, beside the basis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kept {
+    /// Preconditioned vectors and their products.
+    All,
+    /// The products, if there are at most so many.
+    Products(usize),
 }
 
-/// The solution as a combination, `x = sum_j y_j z_j`.
+/// The system `H x = r`.
+pub trait System<const K: usize = 2, T: Stored = f64> {
+    /// A preconditioned vector, its product with A, and `H` of it.
+    fn direction(&mut self, v: &Bordered<K, T>, fields: &mut Fields<K>) -> Result<Turned<K, T>>;
+
+    /// What is kept of directions. All, unless the preconditioner is the same linear map for each of them.
+    fn kept(&self) -> Kept {
+        Kept::All
+    }
+
+    /// A preconditioned vector, with its product if that `is_multiplied`.
+    fn again(&mut self, v: &Bordered<K, T>, is_multiplied: bool, fields: &mut Fields<K>) -> Result<Direction<K, T>> {
+        let (mut direction, row) = self.direction(v, fields)?;
+        fields.give_of(row.field);
+        if !is_multiplied {
+            fields.give_of(std::mem::take(&mut direction.product));
+        }
+        Ok(direction)
+    }
+}
+
+/// The solution as sums of fields with factors.
 pub struct Combination<const K: usize = 2, T = f64> {
-    pub directions: Vec<Direction<K, T>>,
-    pub y: Vec<f64>,
+    /// The sum of these is x.
+    pub vectors: Vec<(f64, Bordered<K, T>)>,
+    /// The sum of these is the product of its field.
+    pub products: Vec<(f64, Vec<[T; K]>)>,
     /// Products are stored in this unit.
     pub unit: f64,
     /// The norm of what is left of r, relative to that of r.
     pub left: f64,
+    /// Directions.
+    pub count: usize,
 }
 
 /// The triangular system of the coefficients.
@@ -75,31 +105,72 @@ pub fn solve<const K: usize, T: Stored>(
 ) -> Result<Combination<K, T>> {
     let first = (passes::dot(threads, &r.field, &r.field) + weight * dot(&r.border, &r.border)).sqrt();
     let (mut norm, target) = (first, target.max(T::ROUND_OFF * first));
-    let mut found = Combination { directions: Vec::new(), y: Vec::new(), unit: 1.0, left: 1.0 };
     if !(norm > target) {
         fields.give(r.field);
-        return Ok(found);
+        return Ok(Combination { vectors: Vec::new(), products: Vec::new(), unit: 1.0, left: 1.0, count: 0 });
     }
     let field = T::stored(threads, r.field, 1.0 / norm, fields)?;
     let mut basis = vec![Bordered { field, border: r.border.map(|value| 1.0 / norm * value) }];
     let mut triangle = Triangle { rest: vec![norm], ..Triangle::default() };
-    while found.directions.len() < most && norm > target {
+    let (kept, mut directions) = (system.kept(), Vec::new());
+    while triangle.columns.len() < most && norm > target {
         let (direction, mut w) = system.direction(&basis[basis.len() - 1], fields)?;
         let (column, left) = orthogonalise(threads, &mut w, &basis, weight);
-        found.directions.push(direction);
+        directions.push(direction);
+        kept.forget(&mut directions, fields);
         let is_sound = triangle.add(column, left);
         scale(threads, &mut w, if left > 0.0 { 1.0 / left } else { 1.0 });
         basis.push(w);
         if !is_sound {
-            found.directions.pop().into_iter().for_each(|direction| direction.give(fields));
+            directions.pop().into_iter().for_each(|direction| direction.give(fields));
             break;
         }
-        norm = triangle.rest[found.directions.len()].abs();
+        norm = triangle.rest[triangle.columns.len()].abs();
     }
+    let y = triangle.solve();
+    let found = match kept {
+        Kept::All => Combination::of(directions, &y),
+        Kept::Products(_) => again(system, &basis, (directions, &y), threads, fields)?,
+    };
     basis.into_iter().for_each(|v| fields.give_of(v.field));
-    found.y = triangle.solve(found.directions.len());
-    found.left = norm / first;
-    Ok(found)
+    Ok(Combination { left: norm / first, ..found })
+}
+
+impl Kept {
+    /// Gives back what is not kept of directions, of which the last is new.
+    fn forget<const K: usize, T: Stored>(self, directions: &mut [Direction<K, T>], fields: &mut Fields<K>) {
+        let Kept::Products(most) = self else { return };
+        let count = directions.len();
+        if let Some(last) = directions.last_mut() {
+            fields.give_of(std::mem::take(&mut last.z.field));
+        }
+        if count > most {
+            let products = directions.iter_mut().map(|direction| std::mem::take(&mut direction.product));
+            products.filter(|product| !product.is_empty()).for_each(|product| fields.give_of(product));
+        }
+    }
+}
+
+/// The solution from the basis, by one more preconditioned vector, and one more product where they are not kept.
+fn again<const K: usize, T: Stored>(
+    system: &mut dyn System<K, T>,
+    basis: &[Bordered<K, T>],
+    (directions, y): (Vec<Direction<K, T>>, &[f64]),
+    threads: &Threads,
+    fields: &mut Fields<K>,
+) -> Result<Combination<K, T>> {
+    let mut sum = Bordered { field: fields.zeros(basis[0].field.len(), threads)?, border: [0.0; K] };
+    let terms: Vec<(f64, &[[T; K]])> = y.iter().zip(basis).map(|(y, v)| (*y, &v.field[..])).collect();
+    passes::add_all(threads, &mut sum.field, &terms);
+    sum.border = y.iter().zip(basis).fold(sum.border, |sum, (y, v)| plus(sum, *y, v.border));
+    let is_kept = directions.iter().all(|direction| !direction.product.is_empty());
+    let Direction { z, product } = system.again(&sum, !is_kept, fields)?;
+    fields.give_of(sum.field);
+    let products = match is_kept {
+        true => y.iter().copied().zip(directions.into_iter().map(|direction| direction.product)).collect(),
+        false => vec![(1.0, product)],
+    };
+    Ok(Combination { vectors: vec![(1.0, z)], products, unit: 1.0, left: 1.0, count: y.len() })
 }
 
 /// Takes from w what lies along the basis, as modified Gram and Schmidt do; returns the coefficients, and the norm of what is left.
@@ -130,26 +201,38 @@ fn scale<const K: usize, T: Stored>(threads: &Threads, v: &mut Bordered<K, T>, a
 
 impl<const K: usize, T: Stored> Direction<K, T> {
     /// Gives its fields back.
-    pub fn give(self, fields: &mut Fields<K>) {
-        fields.give_of(self.z.field);
-        fields.give_of(self.product);
+    fn give(self, fields: &mut Fields<K>) {
+        [self.z.field, self.product]
+            .into_iter()
+            .filter(|field| !field.is_empty())
+            .for_each(|field| fields.give_of(field));
     }
 }
 
 impl<const K: usize, T: Stored> Combination<K, T> {
-    /// Adds x to `to`, and the product of its field to `product`; gives the directions back.
-    pub fn add_to(self, to: &mut Bordered<K>, product: &mut [[f64; K]], threads: &Threads, fields: &mut Fields<K>) {
-        let Combination { directions, y, unit, .. } = self;
-        let terms = || y.iter().copied().zip(&directions);
-        let of_z: Vec<(f64, &[[T; K]])> = terms().map(|(y, direction)| (y, &direction.z.field[..])).collect();
-        let of_product: Vec<(f64, &[[T; K]])> =
-            terms().map(|(y, direction)| (unit * y, &direction.product[..])).collect();
-        passes::add_all(threads, &mut to.field, &of_z);
+    /// Of directions with these factors.
+    fn of(directions: Vec<Direction<K, T>>, y: &[f64]) -> Combination<K, T> {
+        let (vectors, products) =
+            directions.into_iter().zip(y).map(|(direction, y)| ((*y, direction.z), (*y, direction.product))).unzip();
+        Combination { vectors, products, unit: 1.0, left: 1.0, count: y.len() }
+    }
+
+    /// Adds x to `to`, and the product of its field to `product`; gives its fields back.
+    pub fn add_to<S: Stored>(
+        self,
+        to: &mut Bordered<K, S>,
+        product: &mut [[S; K]],
+        threads: &Threads,
+        fields: &mut Fields<K>,
+    ) {
+        let Combination { vectors, products, unit, .. } = self;
+        let of_x: Vec<(f64, &[[T; K]])> = vectors.iter().map(|(y, z)| (*y, &z.field[..])).collect();
+        let of_product: Vec<(f64, &[[T; K]])> = products.iter().map(|(y, product)| (unit * y, &product[..])).collect();
+        passes::add_all(threads, &mut to.field, &of_x);
         passes::add_all(threads, product, &of_product);
-        for (y, direction) in terms() {
-            to.border = plus(to.border, y, direction.z.border);
-        }
-        directions.into_iter().for_each(|direction| direction.give(fields));
+        to.border = vectors.iter().fold(to.border, |to, (y, z)| plus(to, *y, z.border));
+        let fields_of_x = vectors.into_iter().map(|(_, z)| z.field);
+        fields_of_x.chain(products.into_iter().map(|(_, product)| product)).for_each(|field| fields.give_of(field));
     }
 }
 
@@ -174,9 +257,9 @@ impl Triangle {
         true
     }
 
-    fn solve(&self, count: usize) -> Vec<f64> {
-        let mut y = self.rest[..count].to_vec();
-        for i in (0..count).rev() {
+    fn solve(&self) -> Vec<f64> {
+        let mut y = self.rest[..self.columns.len()].to_vec();
+        for i in (0..y.len()).rev() {
             y[i] /= self.columns[i][i];
             let value = y[i];
             (0..i).for_each(|j| y[j] -= self.columns[i][j] * value);

@@ -109,6 +109,12 @@ impl<const K: usize> Fields<K> {
         T::of_pool(self).push(field);
     }
 
+    /// Leaves fields of fewer elements than n: grown they would take the place of others.
+    pub fn leave_smaller(&mut self, n: usize) {
+        self.free.retain(|field| field.capacity() >= n);
+        self.single.retain(|field| field.capacity() >= n);
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         bytes_of(&self.free) + bytes_of(&self.single)
@@ -194,6 +200,19 @@ pub fn map<const K: usize, T: Real>(
 pub fn fill<const K: usize, T: Real>(threads: &Threads, to: &mut [[T; K]], f: impl Fn(usize) -> [T; K] + Sync + Send) {
     threads.for_each_plain_row(to, BLOCK, |k, to| {
         to.iter_mut().enumerate().for_each(|(i, to)| *to = f(k * BLOCK + i));
+    });
+}
+
+/// `(a, b) = f(i)` for each element i, in one pass.
+pub fn fill_both<const K: usize, T: Real>(
+    threads: &Threads,
+    (a, b): (&mut [[T; K]], &mut [[T; K]]),
+    f: impl Fn(usize) -> [[T; K]; 2] + Sync + Send,
+) {
+    threads.for_each_row_pair((a, BLOCK), (b, BLOCK), |k, a, b| {
+        for ((a, b), i) in a.iter_mut().zip(b).zip(k * BLOCK..) {
+            [*a, *b] = f(i);
+        }
     });
 }
 

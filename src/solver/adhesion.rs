@@ -150,13 +150,15 @@ impl Solver {
                 Box::new(adhesion::Solver::new(*grid, coefficients, operator, threads)?)
             }
         };
-        let h = std::mem::take(&mut self.state.h);
-        let state = &self.state;
+        // Products of adhesion have memory of their own.
+        self.problem.rest();
+        let lent = Lent::new(&mut solver, &mut self.state);
+        let (contact, approach) = (&lent.state.contact[..], lent.state.approach);
         let from = match guess {
-            _ if goes_on => {
-                Some(adhesion::State { pressure: &state.p, contact: &state.contact, approach: state.approach })
+            _ if goes_on => Some(adhesion::State { pressure: None, contact, approach }),
+            Some(Guess { pressure, contact }) => {
+                Some(adhesion::State { pressure: Some(pressure), contact, approach: lowest })
             }
-            Some(guess) => Some(adhesion::State { pressure: guess.pressure, contact: guess.contact, approach: lowest }),
             None => None,
         };
         let (work, works) = match adhesion.work {
@@ -164,7 +166,6 @@ impl Solver {
             Work::PerElement(works) => (0.0, Some(works)),
         };
         let surfaces = Surfaces { law: adhesion.law, range: adhesion.range, work, works };
-        solver.lend(h);
         let request = Request {
             surfaces,
             load: scene.load,
@@ -179,12 +180,10 @@ impl Solver {
         let make = |problem: &contact::Problem| -> Result<Box<dyn Frozen>> {
             Ok(Box::new(Plain(Methods::new(problem, options)?)))
         };
-        let outcome = solver.solve(&request, &make, monitor);
-        self.state.h = solver.give_back();
+        let outcome = lent.solver.solve(&request, &make, monitor);
+        drop(lent);
         if outcome.is_ok() {
             let (state, found) = (&mut self.state, solver.finest());
-            state.p.copy_from_slice(found.now.p.field.as_flattened());
-            state.u.copy_from_slice(found.now.u.as_flattened());
             state.contact.copy_from_slice(&found.now.contact);
             state.at_limit.fill(false);
             (state.load, state.approach, state.reached_limit) = (scene.load, found.now.approach(), false);
@@ -192,6 +191,28 @@ impl Solver {
         }
         self.adhesion = Some(solver);
         outcome
+    }
+}
+
+/// The arrays of a state in the hands of a solver of adhesion. The state has them again whatever happens, so that the next solve works.
+struct Lent<'a> {
+    solver: &'a mut adhesion::Solver,
+    state: &'a mut State,
+}
+
+impl<'a> Lent<'a> {
+    fn new(solver: &'a mut adhesion::Solver, state: &'a mut State) -> Lent<'a> {
+        state.u_is = Freshness::Stale;
+        let State { h, p, u, .. } = &mut *state;
+        solver.lend([h, p, u].map(std::mem::take));
+        Lent { solver, state }
+    }
+}
+
+impl Drop for Lent<'_> {
+    fn drop(&mut self) {
+        let State { h, p, u, .. } = &mut *self.state;
+        [*h, *p, *u] = self.solver.give_back();
     }
 }
 

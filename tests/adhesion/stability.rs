@@ -28,6 +28,13 @@ fn lambda_is_that_of_the_prototype() {
         println!("{approach}: lambda {} for {lambda}, {products} products", 1.0 - found);
         assert!((1.0 - found - lambda).abs() < 1e-2, "{approach}: {} {lambda}", 1.0 - found);
     }
+    // Larger grids solve their linear systems in parts.
+    let fine = Sphere::by_tabor(1.0, 192, 3.0);
+    for (approach, lambda) in [(0.4, 0.520), (-0.9, 0.700)] {
+        let (_, found, products) = solved(&fine, approach);
+        println!("192 x 192, {approach}: lambda {} for {lambda}, {products} products", 1.0 - found);
+        assert!((1.0 - found - lambda).abs() < 1e-2, "{approach}: {} {lambda}", 1.0 - found);
+    }
 }
 
 #[test]

@@ -4,6 +4,7 @@
 #[allow(dead_code)] // of the bad input, the call
 mod call;
 mod lack_of_memory;
+mod lack_of_memory_adhesion;
 mod lack_of_memory_line;
 mod lack_of_memory_stress;
 mod limited_memory;

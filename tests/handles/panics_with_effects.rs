@@ -3,10 +3,11 @@
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::sync::atomic::Ordering;
 
+use contact_normal::adhesion::{Law, Start};
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Kernel, RowTables};
 use contact_normal::panics::BLOCKS;
-use contact_normal::scene::{Bodies, Layer, Load, Patches, Scene};
+use contact_normal::scene::{Adhesion, Bodies, Layer, Load, Patches, Scene, Work};
 use contact_normal::solver::{Options, Outcome, Solver};
 
 #[test]
@@ -26,11 +27,21 @@ fn after_a_panic_the_next_solve_is_right_with_every_effect() {
     let layer = Some(Layer::PerElement(&compliances));
     let patches = Some(Patches { count: 2, patch: &patch, factors: &[1.0, 0.5, 0.5, 1.0] });
     let row_tables = Some(RowTables::new(12, 10, &values, &grid).unwrap());
+    let attraction = Adhesion {
+        law: Law::Exponential,
+        work: Work::Uniform(0.1),
+        range: 0.5,
+        start: Start::Auto,
+        stiffness: true,
+        stability: true,
+        shear_strength: 0.0,
+    };
     let scenes = [
         ("a layer", Scene { layer, ..plain.clone() }),
         ("patches", Scene { patches, ..plain.clone() }),
         ("row tables", Scene { row_tables: row_tables.clone(), ..plain.clone() }),
         ("all three", Scene { layer, patches, row_tables, ..plain.clone() }),
+        ("adhesion", Scene { adhesion: Some(attraction), ..plain.clone() }),
     ];
     std::panic::set_hook(Box::new(|_| {}));
     for (name, scene) in scenes {
