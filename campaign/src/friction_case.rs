@@ -135,19 +135,23 @@ impl Case {
     /// Why the forces may be refused, if they may: any force below mu N is reached by a creepage that is large enough.
     pub fn may_be_infeasible(&self) -> Option<&'static str> {
         let size = self.slide.force();
-        // Tractions change the pressures of unlike bodies: not their sum, where that is given.
-        let sum_is_given = matches!(self.place.load, Load::Force(_)) && self.slide.uniform;
         let much = self.has_much_friction();
         match () {
             // A force of 0 is met where nothing is carried.
             _ if size == 0.0 => None,
             _ if size >= self.carried * (1.0 - 1e-9) => Some("refused: a force of mu N or more"),
             _ if size >= self.carried * (1.0 - 1e-4) => Some("refused: a force of 0.9999 mu N or more"),
-            _ if !self.place.is_alike() && !sum_is_given && (size >= 0.8 * self.carried || much) => {
+            // Tractions change the pressures of unlike bodies: not their sum, where that is given.
+            _ if !self.carries_what_is_known() && (size >= 0.8 * self.carried || much) => {
                 Some("refused: a force on unlike bodies whose mu N the tractions change, of 0.8 of it or with mu > 1")
             }
             _ => None,
         }
+    }
+
+    /// Whether what the pressures carry is known before the solve.
+    pub fn carries_what_is_known(&self) -> bool {
+        self.place.is_alike() || matches!(self.place.load, Load::Force(_)) && self.slide.uniform
     }
 
     /// Whether a step of steady rolling is shorter than a tenth of the elements along it: such a step is refused.

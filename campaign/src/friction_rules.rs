@@ -8,6 +8,7 @@ use crate::friction_conditions::{conditions, is_monotone, length, Conditions, ON
 use crate::friction_found::{Before, Found};
 use crate::friction_place::Place;
 use crate::grid::Grid;
+use crate::refused_force::exceeded;
 use crate::rules;
 use crate::tangential::Operator;
 use crate::verdict::Verdict;
@@ -33,6 +34,12 @@ pub fn check(case: &Case, found: &Found, before: &Before) -> Verdict {
         broken.unless(!found.written, "friction refused leaves outputs alone", || format!("status {status}"));
         broken.unless(!found.message.is_empty(), "friction refused says why", || format!("status {status}"));
         let told = || format!("status {status}, {}", found.message);
+        if status == CONTACT_NORMAL_INFEASIBLE && !case.carries_what_is_known() {
+            let exceeded = exceeded(case);
+            broken.unless(exceeded.is_none(), "a force is refused if no creepage carries more", || {
+                format!("{:?} carry more, {}", exceeded, found.message)
+            });
+        }
         match (reason(case, status), case.normal_reason(status)) {
             (Some(why), _) | (_, Some(why)) => broken.verdict.excuse(why),
             _ => broken.unless(false, "friction is refused for a reason", told),

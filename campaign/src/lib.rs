@@ -43,6 +43,7 @@ mod measures;
 pub mod operator;
 pub mod own_tractions;
 pub mod random;
+pub mod refused_force;
 pub mod relaxing;
 pub mod replay;
 pub mod rules;

@@ -70,7 +70,8 @@ impl Slide {
         x.hypot(y)
     }
 
-    fn length(&self, grid: &Grid) -> f64 {
+    /// The length rolled in a step; 1 of a shift, whose creepages are lengths.
+    pub fn length(&self, grid: &Grid) -> f64 {
         match self.motion {
             CONTACT_NORMAL_MOTION_SHIFT => 1.0,
             _ if self.distance == 0.0 => grid.dx,

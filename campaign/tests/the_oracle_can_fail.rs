@@ -7,6 +7,7 @@ use campaign::friction_case::Case as Sliding;
 use campaign::friction_found::Found;
 use campaign::measured;
 use campaign::random::Random;
+use campaign::refused_force::exceeded;
 use campaign::rules;
 
 /// Spoils an answer of a case.
@@ -110,4 +111,28 @@ fn spoiled_answers_with_friction_are_found() {
         }
     }
     assert!(spoiled.iter().all(|count| *count >= 50), "{spoiled:?}");
+}
+
+/// A force of a part of mu N is carried by some creepage, so that a refusal of it would be found; of more than any creepage carries none is.
+#[test]
+fn refused_forces_that_creepages_carry_are_found() {
+    let (mut tried, mut found) = (0, 0);
+    for seed in 0..600 {
+        let Some(mut case) = campaign::friction::draw(&mut Random::new(seed)) else { continue };
+        let slide = &case.slide;
+        let is_one = slide.is_force(0) != slide.is_force(1) && slide.rigid.is_none() && slide.previous.is_none();
+        let is_usual = slide.uniform && (1e-4..1.0).contains(&slide.mu[0]) && case.carried > 0.0;
+        if !is_one || !is_usual || !case.stop.is_unhindered() {
+            continue;
+        }
+        let k = usize::from(case.slide.is_force(1));
+        // Spin and the other creepage turn tractions away.
+        (case.slide.spin, case.slide.amount) = (0.0, [0.0; 2]);
+        case.slide.amount[k] = 0.5 * case.carried;
+        found += usize::from(exceeded(&case).is_some());
+        case.slide.amount[k] = 2.0 * case.carried;
+        assert!(exceeded(&case).is_none(), "seed {seed}: {}", case.describe());
+        tried += 1;
+    }
+    assert!(tried >= 20 && 10 * found >= 9 * tried, "{found} of {tried}");
 }
