@@ -38,9 +38,10 @@ fn coefficients(random: &mut Random, n: usize, is_roller: bool) -> (Vec<f64>, bo
     ((0..n).map(|_| value(random)).collect(), false, usual)
 }
 
-/// A force over what friction carries: nothing, next to nothing, some of it, nearly all, more.
+/// A force over what friction carries: nothing, next to nothing, some of it, nearly all, more. Tractions of unlike bodies change that by some hundredths.
 fn part_of_friction(random: &mut Random) -> f64 {
     match random.uniform() {
+        u if u < 0.02 => random.between(0.99, 1.02),
         u if u < 0.05 => random.decades(1.0, 1e9),
         u if u < 0.15 => 0.0,
         u if u < 0.25 => random.decades(1e-9, 1e-3),
