@@ -29,7 +29,7 @@ pub fn run(random: &mut Random, is_measured: bool) -> Run {
         return Run { case, statuses, verdict };
     }
     let place = Place::random(random, is_measured);
-    let without = frictionless(&place, &Stop::unhindered(random));
+    let without = frictionless(&place, &Stop::sharp(random));
     if without.status < 0 {
         // More force than the limit carries: the normal campaign asks why.
         let case = Case::random(random, place, &without);
@@ -52,7 +52,7 @@ pub fn run(random: &mut Random, is_measured: bool) -> Run {
 /// A case alone, if its normal problem is one.
 pub fn draw(random: &mut Random) -> Option<Case> {
     let place = Place::random(random, false);
-    let without = frictionless(&place, &Stop::unhindered(random));
+    let without = frictionless(&place, &Stop::sharp(random));
     (without.status == CONTACT_NORMAL_OK).then(|| Case::random(random, place, &without))
 }
 

@@ -141,7 +141,10 @@ impl Case {
             // A force of 0 is met where nothing is carried.
             _ if size == 0.0 => None,
             _ if size >= self.carried * (1.0 - 1e-9) => Some("refused: a force of mu N or more"),
-            _ if size >= self.carried * (1.0 - 1e-4) => Some("refused: a force of 0.9999 mu N or more"),
+            // N is right to the tolerance.
+            _ if size >= self.carried * (1.0 - self.stop.tolerance.max(1e-4)) => {
+                Some("refused: a force of 0.9999 mu N or more")
+            }
             // Tractions change the pressures of unlike bodies: not their sum, where that is given.
             _ if !self.carries_what_is_known() && (size >= 0.8 * self.carried || much) => {
                 Some("refused: a force on unlike bodies whose mu N the tractions change, of 0.8 of it or with mu > 1")

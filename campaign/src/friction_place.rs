@@ -247,6 +247,11 @@ impl Stop {
         Stop { tolerance, precision, threads, max_cycles: 1000, cancel_at: None }
     }
 
+    /// The same to a tolerance that leaves no doubt about mu N.
+    pub fn sharp(random: &mut Random) -> Stop {
+        Stop { tolerance: 1e-8, ..Stop::unhindered(random) }
+    }
+
     pub fn is_unhindered(&self) -> bool {
         self.max_cycles == 1000 && self.cancel_at.is_none()
     }

@@ -28,7 +28,7 @@ struct Sequence<'a> {
 /// A sequence: the statuses of its calls, and what was not kept.
 pub fn run(random: &mut Random, is_measured: bool) -> (Case, Vec<i32>, Verdict) {
     let place = Place::random(random, is_measured);
-    let without = frictionless(&place, &Stop::unhindered(random));
+    let without = frictionless(&place, &Stop::sharp(random));
     if without.status < 0 {
         let (case, statuses) = (Case::random(random, place, &without), vec![without.status]);
         return (case, statuses, Verdict::excused("friction: no normal problem"));

@@ -56,7 +56,7 @@ pub fn run(random: &mut Random) -> Run {
         if own.chance(0.25) && place.effects.coating.is_none() && place.own.is_none() && place.surface != "roller" {
             place.take_tables(own);
         }
-        let without = frictionless(&place, &Stop::unhindered(random));
+        let without = frictionless(&place, &Stop::sharp(random));
         if without.status != CONTACT_NORMAL_OK || without.p.iter().all(|p| !(*p > 0.0)) {
             continue;
         }
