@@ -24,9 +24,8 @@ pub fn exceeded(case: &Case) -> Option<(f64, f64)> {
     if !stop.is_unhindered() || wanted == 0.0 {
         return None;
     }
-    let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
-    let displaced = largest(&mut frictionless(place, stop).u.into_iter());
-    let full = largest(&mut slide.mu.iter().copied()) * displaced / slide.length(&place.grid);
+    let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+    let full = largest(&slide.mu) * largest(&frictionless(place, stop).u) / slide.length(&place.grid);
     let mut trial = slide.clone();
     trial.prescribed[k] = CONTACT_NORMAL_PRESCRIBED_CREEPAGE;
     let most = wanted.abs() * (1.0 + MORE + 10.0 * stop.tolerance);

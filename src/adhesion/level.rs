@@ -168,8 +168,8 @@ impl Level {
         self.frozen = Some(still).filter(|_| is_small(self.now.u.len()));
     }
 
-    /// On a large grid gives the memory of fields back, beside which so many bytes were held: descent, Newton's method and Lanczos' iteration need one
-    /// another's fields only in part.
+    /// Gives the memory of the fields of a large grid back. `beside`: bytes that were held at the same time. Descent, Newton's method and Lanczos' iteration
+    /// follow each other, and none of them reads the fields of another.
     pub fn clear_fields(&mut self, beside: usize) {
         if !is_small(self.now.u.len()) {
             self.at_most = self.at_most.max(self.fields.bytes() + beside);

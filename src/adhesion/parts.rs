@@ -13,11 +13,11 @@ const SLACK: f64 = 1.0 + 1e-6;
 /// How firmly a system is solved.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// The residual is at most this part of the right-hand side.
+    /// A solve ends where the residual is at most this part of the right-hand side.
     pub part: f64,
-    /// Or so many directions are made.
+    /// It makes this number of directions at most.
     pub most: usize,
-    /// So many of them at once, on large grids.
+    /// A solve on a large grid keeps this number of directions at most, and then begins anew.
     pub at_once: usize,
 }
 

@@ -28,7 +28,7 @@ use crate::progress::Monitor;
 const LOOSE: f64 = 1e-3;
 const FIRM: f64 = 1e-5;
 const DIRECTIONS: [usize; 2] = [30, 90];
-/// On large grids so many directions at once: what is known of the tangent takes the memory of two.
+/// A solve on a large grid keeps this number of directions: y and its product take the memory of two more.
 const AT_ONCE: usize = IN_MEMORY - 2;
 /// On grids of more elements than `ROUGHLY_FIRST` a force is asked roughly first, and answered where the sum of y is this part of the sum of |y|, and no g as far
 /// below 0: that takes half as many directions.

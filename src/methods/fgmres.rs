@@ -34,12 +34,12 @@ pub struct Direction<const K: usize = 2, T = f64> {
 /// A direction, and `H` of it.
 pub type Turned<const K: usize, T> = (Direction<K, T>, Bordered<K, T>);
 
-/// What is kept of directions, beside the basis.
+/// The fields that a solve keeps of each direction, beside the basis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kept {
     /// Preconditioned vectors and their products.
     All,
-    /// The products, if there are at most so many.
+    /// The product alone, while there are no more directions than this number; nothing from then on.
     Products(usize),
 }
 
@@ -48,7 +48,7 @@ pub trait System<const K: usize = 2, T: Stored = f64> {
     /// A preconditioned vector, its product with A, and `H` of it.
     fn direction(&mut self, v: &Bordered<K, T>, fields: &mut Fields<K>) -> Result<Turned<K, T>>;
 
-    /// What is kept of directions. All, unless the preconditioner is the same linear map for each of them.
+    /// The fields that a solve keeps. A system may keep fewer than all if its preconditioner is the same linear map for each direction.
     fn kept(&self) -> Kept {
         Kept::All
     }

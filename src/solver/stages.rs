@@ -3,8 +3,8 @@
 use super::options::Method;
 use crate::contact::AdmissibleSet;
 
-/// The part of the cycles left that a method has before the next one takes over, and how many it has at least, if these are no more than half. AUTO of a plain scene: 400, 240, 144, and the rest
-/// of 1000 for NORM, which ends on every area of contact.
+/// A method has this part of the cycles that are left, then the next one takes over. It has at least LEAST_SHARE of them, or half of what is left. AUTO of a
+/// plain scene: 400, 240, 144, and the rest of 1000 for NORM, which ends on every area of contact.
 const SHARE: f64 = 0.4;
 const LEAST_SHARE: u64 = 60;
 /// The cycles of PROJECTED_CG with limits at most. Most scenes with limits take fewer; where it takes more it mostly goes round in circles, and the
