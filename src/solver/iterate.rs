@@ -46,14 +46,8 @@ pub fn iterate<S: AdmissibleSet>(
         let left = if policy.exchanged_by_loop { truncate(task.state, set, &task.problem.threads) } else { 0 };
         let mut survey = certify(task, &change, left)?;
         let violation = survey.violation(set);
-        let (mut entered, mut last) = (0, survey);
-        if policy.exchanged_by_loop && !S::FIXED && survey.violation > 0.0 {
-            entered = admit(task.state, set);
-            if entered > 0 {
-                last = task.survey();
-            }
-            survey = Survey { violation: survey.violation, ..last };
-        }
+        let (entered, last) = if policy.exchanged_by_loop { let_enter(task, survey) } else { (0, survey) };
+        survey = Survey { violation: survey.violation, ..last };
         let changes = change.changes + (left + entered) as u64;
         if policy.step_is_cycle {
             task.monitor.count.active_set_steps += 1;
@@ -115,6 +109,15 @@ fn certify<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, change: &Change, left: 
     }
     task.count_products();
     Ok(survey)
+}
+
+/// (4.2): how many elements enter C, and the survey with them.
+fn let_enter<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, survey: Survey) -> (usize, Survey) {
+    let penetrates = !S::FIXED && survey.violation > 0.0;
+    match if penetrates { admit(task.state, task.set) } else { 0 } {
+        0 => (0, survey),
+        entered => (entered, task.survey()),
+    }
 }
 
 #[cfg(test)]
