@@ -4,7 +4,7 @@
 use std::marker::PhantomData;
 use std::ops::Range;
 
-use crate::real::{Complex, Real};
+use crate::real::{Complex, Scalar};
 use par::threads::Threads;
 
 /// Columns in a block: of complex numbers four cache lines in double precision, two in single.
@@ -27,13 +27,13 @@ pub fn room_of_column(length: usize) -> usize {
 }
 
 /// The real and imaginary parts of complex values, in turns.
-pub fn parts<T: Real>(values: &[Complex<T>]) -> &[T] {
+pub fn parts<T: Scalar>(values: &[Complex<T>]) -> &[T] {
     // SAFETY: a Complex is two values of T in the order of C (`repr(C)`), so the slice holds twice as many of them.
     unsafe { std::slice::from_raw_parts(values.as_ptr().cast(), 2 * values.len()) }
 }
 
 /// The same, to be written.
-pub fn parts_mut<T: Real>(values: &mut [Complex<T>]) -> &mut [T] {
+pub fn parts_mut<T: Scalar>(values: &mut [Complex<T>]) -> &mut [T] {
     // SAFETY: as above; the values are borrowed mutably.
     unsafe { std::slice::from_raw_parts_mut(values.as_mut_ptr().cast(), 2 * values.len()) }
 }
@@ -69,7 +69,7 @@ pub struct Block<'a, T> {
 unsafe impl<T: Send> Send for Block<'_, T> {}
 
 /// The columns `columns` of the matrix `data`, `width` columns wide, in blocks of `count`; the last may have fewer.
-pub fn blocks_of<'a, T: Real>(
+pub fn blocks_of<'a, T: Scalar>(
     data: &'a mut [Complex<T>],
     width: usize,
     columns: Range<usize>,
@@ -81,7 +81,7 @@ pub fn blocks_of<'a, T: Real>(
 }
 
 /// Calls `work` on each block of columns of the matrix `data`, `width` columns wide, with the scratch of the thread that does it.
-pub fn for_each_block<T: Real, S: Send>(
+pub fn for_each_block<T: Scalar, S: Send>(
     data: &mut [Complex<T>],
     width: usize,
     threads: &Threads,
@@ -91,7 +91,7 @@ pub fn for_each_block<T: Real, S: Send>(
     threads.share(blocks_of(data, width, 0..width, BLOCK), scratch, |mut block, s| work(&mut block, s));
 }
 
-impl<'a, T: Real> Block<'a, T> {
+impl<'a, T: Scalar> Block<'a, T> {
     /// All columns of a matrix.
     pub fn of(data: &'a mut [Complex<T>], width: usize) -> Block<'a, T> {
         assert_eq!(data.len() % width, 0);

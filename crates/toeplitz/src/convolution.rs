@@ -16,7 +16,7 @@ use crate::fft::any_length::ColumnTransform;
 use crate::fft::lane_columns::LaneColumns;
 use crate::fft::lane_rows::LaneRows;
 use crate::lengths::have_stages;
-use crate::real::Real;
+use crate::passes::Real;
 use crate::rows::Rows;
 use crate::set_up::{SetUp, Transforms};
 use crate::set_up_lanes::LaneTransforms;

@@ -52,6 +52,7 @@ pub mod lengths;
 #[doc(hidden)]
 pub mod panics;
 mod parity;
+mod passes;
 pub mod plan;
 mod product;
 mod real;
@@ -68,8 +69,9 @@ mod workspace;
 
 pub use coefficients::{Coefficients, Even, EvenMatrix};
 pub use parity::{ParityMemory, ParityProduct, Term};
+pub use passes::Real;
 pub use product::{even_period, Product};
-pub use real::{Complex, Real};
+pub use real::Complex;
 pub use row_matrices::OfRows;
 pub use set_up::SetUp;
 pub use vector_product::{vector_period, VectorProduct};

@@ -9,7 +9,7 @@ use crate::coefficients::{Coefficients, Even};
 use crate::convolution::Convolution;
 use crate::fft::lane_rows::LaneRows;
 use crate::lengths::{good_length, have_stages, length_for_stages};
-use crate::real::Real;
+use crate::passes::Real;
 use crate::row_matrices::{OfRows, RowMatrices};
 use crate::rows::Rows;
 use crate::set_up::SetUp;

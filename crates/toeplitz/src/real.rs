@@ -10,8 +10,8 @@ pub use rustfft::num_complex::Complex;
 
 use crate::fft::lanes::Lanes;
 
-/// `f32` or `f64`.
-pub trait Real:
+/// `f32` or `f64`, as arithmetic takes them.
+pub trait Scalar:
     Value + Lanes + FftNum + Float + FromPrimitive + Default + std::iter::Sum + std::ops::AddAssign
 {
     /// The nearest value of this precision.
@@ -21,11 +21,11 @@ pub trait Real:
     }
 }
 
-impl Real for f32 {}
-impl Real for f64 {}
+impl Scalar for f32 {}
+impl Scalar for f64 {}
 
 /// `exp(-2 pi i k/n)`.
-pub(crate) fn twiddle<T: Real>(k: usize, n: usize) -> Complex<T> {
+pub(crate) fn twiddle<T: Scalar>(k: usize, n: usize) -> Complex<T> {
     let angle = -2.0 * PI * k as f64 / n as f64;
     Complex::new(T::of(angle.cos()), T::of(angle.sin()))
 }

@@ -6,7 +6,8 @@ use crate::block::{blocks_of, room_of_column, Block, BLOCK};
 use crate::fft::lane_rows::LaneRows;
 use crate::fft::row_transform::RowTransform;
 use crate::fft::stages::{before_a_line, from_a_line};
-use crate::real::{Complex, Real};
+use crate::passes::Real;
+use crate::real::Complex;
 use par::threads::Threads;
 use par::Result;
 

@@ -5,7 +5,8 @@
 use crate::coefficients::{Coefficients, Even, Parity};
 use crate::fft::any_length::ColumnTransform;
 use crate::fft::row_transform::RowTransform;
-use crate::real::{Complex, Real};
+use crate::passes::Real;
+use crate::real::Complex;
 use crate::set_up_columns::{fill_pairs, fill_period, gather, Parts, Scaled, PAIRS};
 use crate::symbol::SYMBOL;
 use par::memory::{keep, unwritten};

@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use crate::block::BLOCK;
 use crate::coefficients::Parity;
-use crate::real::{Complex, Real};
+use crate::passes::Real;
+use crate::real::Complex;
 
 /// Columns of complex numbers, or pairs of real ones, that are gathered at a time: the pairs of a block, whole cache lines.
 pub(crate) const PAIRS: usize = BLOCK / 2;

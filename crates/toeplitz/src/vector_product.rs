@@ -11,11 +11,13 @@ use std::ops::Range;
 
 use crate::block::{blocks_of, Block, BLOCK};
 use crate::coefficients::EvenMatrix;
-use crate::fft::lane_columns::{Blocks, LaneColumns};
+use crate::fft::column_pass::Blocks;
+use crate::fft::lane_columns::LaneColumns;
 use crate::fft::lane_rows::LaneRows;
 use crate::fft::stages::{before_a_line, from_a_line};
 use crate::lengths::length_for_stages;
-use crate::real::{Complex, Real};
+use crate::passes::Real;
+use crate::real::Complex;
 use crate::set_up::SetUp;
 use crate::set_up_lanes::LaneTransforms;
 use crate::vector_symbol::{factors, Place, VectorSymbol};

@@ -8,12 +8,12 @@
 
 use std::f64::consts::PI;
 
-use pulp::Simd;
-
 use crate::block::BLOCK;
-use crate::fft::lane_columns::{even_value, At, Blocks, EvenSymbol, Factor, LaneColumns};
-use crate::fft::lanes::{lane_count, Arithmetic, Parts, C};
-use crate::real::{Complex, Real};
+use crate::fft::column_pass::{Blocks, EvenSymbol};
+use crate::fft::factors::{ComplexMatrix, ComplexSymbol, Displaced, RealMatrix};
+use crate::fft::lane_columns::LaneColumns;
+use crate::passes::Real;
+use crate::real::Complex;
 use crate::symbol::{converted, SYMBOL};
 use par::memory::{keep, unwritten};
 use par::threads::Threads;
@@ -93,9 +93,13 @@ impl<T: Real> VectorSymbol<T> {
     /// Multiplies a block of columns of both components, which are coupled.
     pub fn multiply(&self, columns: &LaneColumns<T>, block: usize, of: Blocks<'_, T, 2>, memory: &mut [Complex<T>]) {
         let planes = [0, 1, 2].map(|plane| self.plane(block, plane));
-        match self.is_even {
-            true => self.multiply_by(columns, block, of, RealMatrix(planes), memory),
-            false => columns.multiply_all(of, &ComplexMatrix(planes), memory),
+        match (self.is_even, self.factors_of(block)) {
+            (true, None) => columns.multiply_all(of, &RealMatrix(planes), memory, T::by_matrix),
+            (true, Some(factors)) => {
+                let displaced = Displaced { of: RealMatrix(planes), factors };
+                columns.multiply_all(of, &displaced, memory, T::by_matrix_displaced);
+            }
+            (false, _) => columns.multiply_all(of, &ComplexMatrix(planes), memory, T::by_complex_matrix),
         }
     }
 
@@ -108,91 +112,18 @@ impl<T: Real> VectorSymbol<T> {
         memory: &mut [Complex<T>],
     ) {
         let plane = self.plane(block, component);
-        match self.is_even {
-            true => self.multiply_by(columns, block, of, EvenSymbol(plane), memory),
-            false => columns.multiply_all(of, &ComplexSymbol(plane), memory),
+        match (self.is_even, self.factors_of(block)) {
+            (true, None) => columns.multiply_all(of, &EvenSymbol(plane), memory, T::by_even),
+            (true, Some(factors)) => {
+                let displaced = Displaced { of: EvenSymbol(plane), factors };
+                columns.multiply_all(of, &displaced, memory, T::by_even_displaced);
+            }
+            (false, _) => columns.multiply_all(of, &ComplexSymbol(plane), memory, T::by_complex),
         }
     }
 
-    fn multiply_by<F: Factor<T, K>, const K: usize>(
-        &self,
-        columns: &LaneColumns<T>,
-        block: usize,
-        of: Blocks<'_, T, K>,
-        factor: F,
-        memory: &mut [Complex<T>],
-    ) {
-        match self.factors.chunks_exact(2 * BLOCK).nth(block) {
-            Some(factors) => columns.multiply_all(of, &Displaced { of: factor, factors }, memory),
-            None => columns.multiply_all(of, &factor, memory),
-        }
+    /// What the columns of a block are multiplied by, if they are displaced.
+    fn factors_of(&self, block: usize) -> Option<&[T]> {
+        self.factors.chunks_exact(2 * BLOCK).nth(block)
     }
-}
-
-/// xx, yy and xy of a block of columns, `[kept row][column]`.
-struct RealMatrix<'a, T>([&'a [T]; 3]);
-
-impl<T: Real> Factor<T, 2> for RealMatrix<'_, T> {
-    #[inline(always)]
-    fn times<S: Simd>(&self, a: Arithmetic<T, S>, at: At<'_>, [x, y]: [C<T, S>; 2]) -> [C<T, S>; 2] {
-        let [xx, yy, xy] = self.0;
-        let (xx, yy, xy) = (even_value::<T, S>(xx, at), even_value::<T, S>(yy, at), even_value::<T, S>(xy, at));
-        let (by_x, by_y) = (a.scale(x, xy), a.scale(y, xy));
-        let (x, y) = (a.scale(x, xx), a.scale(y, yy));
-        // A block that is kept as its mirror image has -xy.
-        if at.kept.step > 0 {
-            [a.add(x, by_y), a.add(y, by_x)]
-        } else {
-            [a.sub(x, by_y), a.sub(y, by_x)]
-        }
-    }
-}
-
-/// A symbol, and what its columns are multiplied by, `[part][column]`.
-struct Displaced<'a, T, F> {
-    of: F,
-    factors: &'a [T],
-}
-
-impl<T: Real, F: Factor<T, K>, const K: usize> Factor<T, K> for Displaced<'_, T, F> {
-    #[inline(always)]
-    fn times<S: Simd>(&self, a: Arithmetic<T, S>, at: At<'_>, x: [C<T, S>; K]) -> [C<T, S>; K] {
-        let by = complex_value::<T, S>(self.factors, 0, at.vector);
-        let mut values = self.of.times(a, at, x);
-        for value in &mut values {
-            *value = a.mul(*value, by);
-        }
-        values
-    }
-}
-
-/// Complex values of a block of columns, `[row][part][column]`.
-struct ComplexSymbol<'a, T>(&'a [T]);
-
-impl<T: Real> Factor<T, 1> for ComplexSymbol<'_, T> {
-    #[inline(always)]
-    fn times<S: Simd>(&self, a: Arithmetic<T, S>, at: At<'_>, [x]: [C<T, S>; 1]) -> [C<T, S>; 1] {
-        [a.mul(x, complex_value::<T, S>(self.0, at.row + at.q, at.vector))]
-    }
-}
-
-/// The same of xx, yy and xy.
-struct ComplexMatrix<'a, T>([&'a [T]; 3]);
-
-impl<T: Real> Factor<T, 2> for ComplexMatrix<'_, T> {
-    #[inline(always)]
-    fn times<S: Simd>(&self, a: Arithmetic<T, S>, at: At<'_>, [x, y]: [C<T, S>; 2]) -> [C<T, S>; 2] {
-        let ([xx, yy, xy], row) = (self.0, at.row + at.q);
-        let (xx, yy) = (complex_value::<T, S>(xx, row, at.vector), complex_value::<T, S>(yy, row, at.vector));
-        let xy = complex_value::<T, S>(xy, row, at.vector);
-        [a.add(a.mul(x, xx), a.mul(y, xy)), a.add(a.mul(y, yy), a.mul(x, xy))]
-    }
-}
-
-/// A vector of columns of a row of complex values, `[row][part][column]`.
-#[inline(always)]
-fn complex_value<T: Real, S: Simd>(values: &[T], row: usize, vector: usize) -> C<T, S> {
-    let per_part = BLOCK / lane_count::<T, S>();
-    let row = &T::vectors::<S>(values)[2 * per_part * row..][..2 * per_part];
-    Parts { re: row[vector], im: row[per_part + vector] }
 }

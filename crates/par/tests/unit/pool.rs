@@ -16,7 +16,7 @@ fn a_child_that_is_forked_while_a_pool_is_made_makes_its_own() {
         unsafe { libc::alarm(60) };
         let mut items = [0; 1];
         let pool = before.here().expect("threads");
-        pool.beside(&mut items, |item| *item += 1, || ());
+        pool.beside(&mut items, &|item| *item += 1, || ());
         Pool::release();
         drop((pool, before));
         // SAFETY: as above.

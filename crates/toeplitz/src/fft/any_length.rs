@@ -1,4 +1,4 @@
-//! Complex transforms of any length: the only file that asks the FFT crate for one.
+//! Complex transforms of any length, by the FFT crate.
 //!
 //! Each length has a planner of its own: the crate's makes a plan from parts of the plans before it, so that bits would depend on what was
 //! planned before.
@@ -7,10 +7,11 @@ use std::sync::Arc;
 
 use par::memory::{reserve, sparse};
 use par::Result;
-use rustfft::{Fft, FftPlanner};
+use rustfft::Fft;
 
+use crate::passes::Real;
 use crate::plan::{shared, Plan, PLAN};
-use crate::real::{Complex, Real};
+use crate::real::Complex;
 
 /// Values that the plans of a length take while they are made, both ways, relative to it: measured at all lengths up to 100000 in steps of 257 and
 /// at longer ones, up to 2.3 where all prime factors are small, and 16.5 for primes, which go through a transform of more than twice the length.
@@ -67,8 +68,8 @@ impl<T: Real> ColumnTransform<T> {
     /// A plan that nobody has made before.
     fn planned(n: usize) -> Result<ColumnTransform<T>> {
         drop(sparse::<Complex<T>>(room(n), PLAN)?);
-        let mut planner = FftPlanner::new();
-        Ok(ColumnTransform { forward: planner.plan_fft_forward(n), inverse: planner.plan_fft_inverse(n) })
+        let [forward, inverse] = T::plans(n);
+        Ok(ColumnTransform { forward, inverse })
     }
 
     /// Length of a column.

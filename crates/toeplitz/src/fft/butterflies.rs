@@ -4,11 +4,11 @@ use pulp::Simd;
 
 use crate::fft::lanes::{Arithmetic, C};
 use crate::lengths::LONGEST;
-use crate::real::Real;
+use crate::real::Scalar;
 
 /// The transform of the first `R` of x, in place.
 #[inline(always)]
-pub(crate) fn butterfly<T: Real, S: Simd, const R: usize>(a: Arithmetic<T, S>, x: &mut [C<T, S>; LONGEST]) {
+pub(crate) fn butterfly<T: Scalar, S: Simd, const R: usize>(a: Arithmetic<T, S>, x: &mut [C<T, S>; LONGEST]) {
     match R {
         2 => two(a, x),
         3 => three(a, x),
@@ -19,13 +19,13 @@ pub(crate) fn butterfly<T: Real, S: Simd, const R: usize>(a: Arithmetic<T, S>, x
 }
 
 #[inline(always)]
-fn two<T: Real, S: Simd>(a: Arithmetic<T, S>, x: &mut [C<T, S>; LONGEST]) {
+fn two<T: Scalar, S: Simd>(a: Arithmetic<T, S>, x: &mut [C<T, S>; LONGEST]) {
     (x[0], x[1]) = (a.add(x[0], x[1]), a.sub(x[0], x[1]));
 }
 
 /// With `s = sin(2 pi/3)`: `y_1, y_2 = x_0 - (x_1 + x_2)/2 -+ i s (x_1 - x_2)`.
 #[inline(always)]
-fn three<T: Real, S: Simd>(a: Arithmetic<T, S>, x: &mut [C<T, S>; LONGEST]) {
+fn three<T: Scalar, S: Simd>(a: Arithmetic<T, S>, x: &mut [C<T, S>; LONGEST]) {
     let (half, sine) = (a.splat(T::of(0.5)), a.splat(T::of(0.75f64.sqrt())));
     let (sum, difference) = (a.add(x[1], x[2]), a.scale(a.sub(x[1], x[2]), sine));
     let mean = a.sub(x[0], a.scale(sum, half));
@@ -34,7 +34,7 @@ fn three<T: Real, S: Simd>(a: Arithmetic<T, S>, x: &mut [C<T, S>; LONGEST]) {
 }
 
 #[inline(always)]
-fn four<T: Real, S: Simd>(a: Arithmetic<T, S>, x: &mut [C<T, S>; LONGEST]) {
+fn four<T: Scalar, S: Simd>(a: Arithmetic<T, S>, x: &mut [C<T, S>; LONGEST]) {
     let (even, odd) = (a.add(x[0], x[2]), a.add(x[1], x[3]));
     let (across, along) = (a.sub(x[0], x[2]), a.sub(x[1], x[3]));
     (x[0], x[2]) = (a.add(even, odd), a.sub(even, odd));
@@ -48,7 +48,7 @@ fn four<T: Real, S: Simd>(a: Arithmetic<T, S>, x: &mut [C<T, S>; LONGEST]) {
 /// y_2, y_3 = x_0 + c_2 (x_1 + x_4) + c_1 (x_2 + x_3) -+ i (s_2 (x_1 - x_4) - s_1 (x_2 - x_3))
 /// ```
 #[inline(always)]
-fn five<T: Real, S: Simd>(a: Arithmetic<T, S>, x: &mut [C<T, S>; LONGEST]) {
+fn five<T: Scalar, S: Simd>(a: Arithmetic<T, S>, x: &mut [C<T, S>; LONGEST]) {
     // (sqrt(5) -+ 1)/4 and sqrt((5 +- sqrt(5))/8).
     let root = 5f64.sqrt();
     let (c1, c2) = (a.splat(T::of((root - 1.0) / 4.0)), a.splat(T::of(-(root + 1.0) / 4.0)));

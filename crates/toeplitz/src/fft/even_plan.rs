@@ -10,10 +10,10 @@ use par::Result;
 
 use crate::fft::stage_plan::Stages;
 use crate::plan::{find, shared, Plan, PLAN};
-use crate::real::Real;
+use crate::real::Scalar;
 
 /// The stages of one length, and the order of S.
-pub struct EvenPlan<T: Real> {
+pub struct EvenPlan<T: Scalar> {
     pub(crate) stages: Stages<T>,
     /// Where S is kept, for each block of the last stage.
     pub(crate) kept: Vec<Kept>,
@@ -25,12 +25,12 @@ pub struct EvenPlan<T: Real> {
 
 /// The kept rows of a block: the first, and the step to the next.
 #[derive(Clone, Copy)]
-pub(crate) struct Kept {
+pub struct Kept {
     pub first: usize,
     pub step: isize,
 }
 
-impl<T: Real> EvenPlan<T> {
+impl<T: Scalar> EvenPlan<T> {
     /// That of a length. None where it has no stages.
     pub fn shared(length: usize) -> Result<Option<Arc<EvenPlan<T>>>> {
         // A known plan is found without an allocation.
@@ -50,7 +50,7 @@ impl<T: Real> EvenPlan<T> {
     }
 }
 
-impl<T: Real> Plan for EvenPlan<T> {
+impl<T: Scalar> Plan for EvenPlan<T> {
     fn bytes(&self) -> usize {
         let rows = size_of_val(&self.bins[..]) + size_of_val(&self.mirrored[..]);
         self.stages.bytes() + size_of_val(&self.kept[..]) + rows

@@ -8,7 +8,7 @@ use crate::block::{parts, parts_mut, Block, BLOCK};
 use crate::fft::lanes::{lane_count, Arithmetic, Parts};
 use crate::fft::row_plan::RowPlan;
 use crate::fft::stages::{inlined, Row};
-use crate::real::{Complex, Real};
+use crate::real::{Complex, Scalar};
 
 /// Lanes of the longest vector.
 const MOST: usize = BLOCK;
@@ -17,7 +17,7 @@ const FOUR: usize = 4;
 
 /// Four values of each row, `values(row)`, as four vectors.
 #[inline(always)]
-fn from_rows<T: Real, S: Simd>(simd: S, values: impl Fn(usize) -> [T; FOUR]) -> [T::Vector<S>; FOUR] {
+fn from_rows<T: Scalar, S: Simd>(simd: S, values: impl Fn(usize) -> [T; FOUR]) -> [T::Vector<S>; FOUR] {
     let (n, mut rows) = (lane_count::<T, S>(), [[T::zero(); FOUR]; MOST]);
     for (r, row) in rows.iter_mut().enumerate().take(n) {
         *row = values(r);
@@ -28,7 +28,7 @@ fn from_rows<T: Real, S: Simd>(simd: S, values: impl Fn(usize) -> [T; FOUR]) -> 
 
 /// Back again, to `write(row, values)`.
 #[inline(always)]
-fn to_rows<T: Real, S: Simd>(simd: S, vectors: [T::Vector<S>; FOUR], mut write: impl FnMut(usize, [T; FOUR])) {
+fn to_rows<T: Scalar, S: Simd>(simd: S, vectors: [T::Vector<S>; FOUR], mut write: impl FnMut(usize, [T; FOUR])) {
     let (n, mut rows) = (lane_count::<T, S>(), [[T::zero(); FOUR]; MOST]);
     T::vectors_mut::<S>(&mut rows.as_flattened_mut()[..FOUR * n]).copy_from_slice(&T::to_rows(simd, vectors));
     for (r, row) in rows.into_iter().enumerate().take(n) {
@@ -41,7 +41,7 @@ const PER_BLOCK: usize = BLOCK / FOUR;
 
 /// z of rows, zero beyond them.
 #[inline(always)]
-pub(crate) fn load<T: Real, S: Simd>(a: Arithmetic<T, S>, rows: &[T], width: usize, z: &mut [Row<T, S>]) {
+pub(crate) fn load<T: Scalar, S: Simd>(a: Arithmetic<T, S>, rows: &[T], width: usize, z: &mut [Row<T, S>]) {
     let count = rows.len() / width;
     let row = |r: usize| &rows[r.min(count - 1) * width..][..width];
     let mut fours: [&[[T; FOUR]]; MOST] = [&[]; MOST];
@@ -77,7 +77,7 @@ pub(crate) fn load<T: Real, S: Simd>(a: Arithmetic<T, S>, rows: &[T], width: usi
 
 /// X of all bins, of Z in the order of the stages.
 #[inline(always)]
-pub(crate) fn store_bins<T: Real, S: Simd>(
+pub(crate) fn store_bins<T: Scalar, S: Simd>(
     a: Arithmetic<T, S>,
     plan: &RowPlan<T>,
     z: &[Row<T, S>],
@@ -126,13 +126,13 @@ pub(crate) fn store_bins<T: Real, S: Simd>(
 
 /// w*.
 #[inline(always)]
-fn conjugate<T: Real>(w: Complex<T>) -> Complex<T> {
+fn conjugate<T: Scalar>(w: Complex<T>) -> Complex<T> {
     Complex::new(w.re, -w.im)
 }
 
 /// Z of all bins in the order of the stages, their real and imaginary parts swapped. Bins come from the front and from behind, four at a time.
 #[inline(always)]
-pub(crate) fn load_bins<T: Real, S: Simd>(
+pub(crate) fn load_bins<T: Scalar, S: Simd>(
     a: Arithmetic<T, S>,
     plan: &RowPlan<T>,
     bins: &Block<'_, T>,
@@ -181,7 +181,7 @@ pub(crate) fn load_bins<T: Real, S: Simd>(
 
 /// The first values of z as rows; its real and imaginary parts are swapped.
 #[inline(always)]
-pub(crate) fn store<T: Real, S: Simd>(a: Arithmetic<T, S>, z: &[Row<T, S>], rows: &mut [T], width: usize) {
+pub(crate) fn store<T: Scalar, S: Simd>(a: Arithmetic<T, S>, z: &[Row<T, S>], rows: &mut [T], width: usize) {
     let (whole, rest) = (width / FOUR, width % FOUR);
     let four = inlined(
         #[inline(always)]

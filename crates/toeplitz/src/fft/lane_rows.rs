@@ -13,15 +13,13 @@
 use std::sync::Arc;
 
 use par::Result;
-use pulp::{Simd, WithSimd};
 
 use crate::block::{Block, BLOCK};
-use crate::fft::lane_passes::{load, load_bins, store, store_bins};
-use crate::fft::lanes::{lane_count, Arithmetic};
+use crate::fft::row_pass::{Forward, Inverse, LaneCount};
 use crate::fft::row_plan::RowPlan;
-use crate::fft::stage_plan::Stages;
-use crate::fft::stages::{backwards, before_a_line, end, forward, of_radix, rows_of};
-use crate::real::{Complex, Real};
+use crate::fft::stages::before_a_line;
+use crate::passes::Real;
+use crate::real::Complex;
 
 /// Transforms of rows of one length.
 pub(crate) struct LaneRows<T: Real> {
@@ -74,86 +72,17 @@ impl<T: Real> LaneRows<T> {
     /// these even where there are fewer rows. What rows lack of their length is zero.
     pub fn forward(&self, rows: &[T], width: usize, bins: &mut Block<'_, T>, scratch: &mut [Complex<T>]) {
         assert!(self.fits(bins) && width <= 2 * self.plan.length() && rows.len() >= width);
-        self.arch.dispatch(Forward { plan: &self.plan, rows, width, bins, scratch });
+        T::rows_forward(self.arch, Forward { plan: &self.plan, rows, width, bins, scratch });
     }
 
     /// Bins of [`at_a_time`](Self::at_a_time) rows to the first values of as many rows as there are.
     pub fn inverse(&self, bins: &Block<'_, T>, rows: &mut [T], width: usize, scratch: &mut [Complex<T>]) {
         assert!(self.fits(bins) && width <= 2 * self.plan.length() && width > 0);
-        self.arch.dispatch(Inverse { plan: &self.plan, bins, rows, width, scratch });
+        T::rows_inverse(self.arch, Inverse { plan: &self.plan, bins, rows, width, scratch });
     }
 
     fn fits(&self, bins: &Block<'_, T>) -> bool {
         bins.rows() == self.blocks() && bins.columns() == self.lanes * BLOCK
-    }
-}
-
-/// Lanes of this machine's vectors; none where they are longer than a block.
-struct LaneCount<T>(std::marker::PhantomData<T>);
-
-impl<T: Real> WithSimd for LaneCount<T> {
-    type Output = Option<usize>;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        (S::F32_LANES <= BLOCK).then(lane_count::<T, S>)
-    }
-}
-
-struct Forward<'a, 'b, T: Real> {
-    plan: &'a RowPlan<T>,
-    rows: &'a [T],
-    width: usize,
-    bins: &'a mut Block<'b, T>,
-    scratch: &'a mut [Complex<T>],
-}
-
-impl<T: Real> WithSimd for Forward<'_, '_, T> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Forward { plan, rows, width, bins, scratch } = self;
-        let (a, h) = (Arithmetic::<T, S>::new(simd), plan.length());
-        let z = &mut rows_of::<T, S>(scratch)[..h];
-        load::<T, S>(a, rows, width, z);
-        let first = &plan.stages.first;
-        of_radix!(first.radix, forward, a, first, z);
-        plan.stages.forward_after_first(a, z);
-        store_bins::<T, S>(a, plan, z, bins);
-    }
-}
-
-struct Inverse<'a, 'b, T: Real> {
-    plan: &'a RowPlan<T>,
-    bins: &'a Block<'b, T>,
-    rows: &'a mut [T],
-    width: usize,
-    scratch: &'a mut [Complex<T>],
-}
-
-impl<T: Real> WithSimd for Inverse<'_, '_, T> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Inverse { plan, bins, rows, width, scratch } = self;
-        let (a, h) = (Arithmetic::<T, S>::new(simd), plan.length());
-        let z = &mut rows_of::<T, S>(scratch)[..h];
-        load_bins::<T, S>(a, plan, bins, z);
-        let Stages { middle, wide, part, last, first } = &plan.stages;
-        let (wide, near) = middle.split_at(*wide);
-        for z in z.chunks_exact_mut(*part) {
-            of_radix!(*last, end, a, z);
-            for stage in near.iter().rev() {
-                of_radix!(stage.radix, backwards, a, stage, z);
-            }
-        }
-        for stage in wide.iter().rev() {
-            of_radix!(stage.radix, backwards, a, stage, z);
-        }
-        of_radix!(first.radix, backwards, a, first, z);
-        store::<T, S>(a, z, rows, width);
     }
 }
 

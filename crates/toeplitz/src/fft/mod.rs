@@ -2,16 +2,20 @@
 
 pub(crate) mod any_length;
 pub(crate) mod butterflies;
+pub(crate) mod column_pass;
 pub(crate) mod even_plan;
+pub(crate) mod factors;
 pub(crate) mod lane_columns;
 pub(crate) mod lane_passes;
 pub(crate) mod lane_rows;
 pub(crate) mod lanes;
+pub(crate) mod row_pass;
 pub(crate) mod row_plan;
 pub mod row_transform;
 pub(crate) mod stage_plan;
 pub(crate) mod stages;
 
 pub use crate::lengths::{good_length, length_for_stages};
-pub use crate::real::{Complex, Real};
+pub use crate::passes::Real;
+pub use crate::real::Complex;
 pub use any_length::ColumnTransform;

@@ -8,10 +8,10 @@ use par::Result;
 use crate::block::BLOCK;
 use crate::fft::stage_plan::Stages;
 use crate::plan::{find, shared, Plan, PLAN};
-use crate::real::{twiddle, Complex, Real};
+use crate::real::{twiddle, Complex, Scalar};
 
 /// The stages of one length, and where they leave bins.
-pub struct RowPlan<T: Real> {
+pub struct RowPlan<T: Scalar> {
     pub(crate) stages: Stages<T>,
     /// The row in which the stages leave each bin 0 .. h (Z_h = Z_0).
     pub(crate) row_of: Vec<usize>,
@@ -19,13 +19,13 @@ pub struct RowPlan<T: Real> {
     pub(crate) twiddles: Vec<Complex<T>>,
 }
 
-impl<T: Real> Plan for RowPlan<T> {
+impl<T: Scalar> Plan for RowPlan<T> {
     fn bytes(&self) -> usize {
         self.stages.bytes() + size_of_val(&self.row_of[..]) + size_of_val(&self.twiddles[..])
     }
 }
 
-impl<T: Real> RowPlan<T> {
+impl<T: Scalar> RowPlan<T> {
     /// That of a length. None where n is odd, or h has no stages.
     pub fn shared(n: usize) -> Result<Option<Arc<RowPlan<T>>>> {
         // A known plan is found without an allocation.

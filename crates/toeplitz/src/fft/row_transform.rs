@@ -14,8 +14,9 @@ use std::sync::Arc;
 
 use crate::block::{parts, parts_mut};
 use crate::fft::any_length::{fit, scratch_of, ColumnTransform};
+use crate::passes::Real;
 use crate::plan::{shared, Plan, PLAN};
-use crate::real::{Complex, Real};
+use crate::real::Complex;
 use par::memory::collected;
 use par::Result;
 

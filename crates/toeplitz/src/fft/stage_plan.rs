@@ -8,7 +8,7 @@ use crate::fft::lanes::Arithmetic;
 use crate::fft::stages::{bytes_of_a_row, end, forward, of_radix, Row, Stage};
 use crate::lengths::radices;
 use crate::plan::PLAN;
-use crate::real::{twiddle, Real};
+use crate::real::{twiddle, Scalar};
 
 /// Rows of a vector (16 kB with AVX2, 32 kB with AVX-512) that the nearest cache holds beside what else is read.
 const NEAR: usize = 256;
@@ -16,7 +16,7 @@ const NEAR: usize = 256;
 const NEAREST_CACHE: usize = 1 << 15;
 
 /// The stages of one length.
-pub(crate) struct Stages<T: Real> {
+pub(crate) struct Stages<T: Scalar> {
     /// The first, and those in the middle.
     pub first: Stage<T>,
     pub middle: Vec<Stage<T>>,
@@ -27,7 +27,7 @@ pub(crate) struct Stages<T: Real> {
     pub last: usize,
 }
 
-impl<T: Real> Stages<T> {
+impl<T: Scalar> Stages<T> {
     /// Whether a length has stages: none have lengths of other factors than 2, 3 and 5, or of one stage.
     pub fn exist(length: usize) -> bool {
         radices(length).is_some()
@@ -107,7 +107,7 @@ impl<T: Real> Stages<T> {
 
 /// The stages in the middle that go over all rows, until what they leave are parts that the nearest cache holds, and the rows of these.
 /// A length that fits by itself is one part.
-fn near_parts<T: Real>(middle: &[Stage<T>], length: usize, after_first: usize) -> (usize, usize) {
+fn near_parts<T: Scalar>(middle: &[Stage<T>], length: usize, after_first: usize) -> (usize, usize) {
     if length * bytes_of_a_row::<T>() <= NEAREST_CACHE {
         return (0, length);
     }

@@ -21,19 +21,19 @@ use crate::block::parts_mut;
 use crate::fft::butterflies::butterfly;
 use crate::fft::lanes::{lane_count, Arithmetic, Lanes, Parts, C};
 use crate::lengths::LONGEST;
-use crate::real::{Complex, Real};
+use crate::real::{Complex, Scalar};
 
 /// One row of a vector of columns: the real and the imaginary parts.
 pub(crate) type Row<T, S> = [<T as Lanes>::Vector<S>; 2];
 
 /// Of one radix.
-pub(crate) struct Stage<T: Real> {
+pub(crate) struct Stage<T: Scalar> {
     pub radix: usize,
     /// `w^(q j)` of q = 1 .. R - 1 for j = 0, the same for j = 1 ..
     pub twiddles: Vec<Complex<T>>,
 }
 
-impl<T: Real> Stage<T> {
+impl<T: Scalar> Stage<T> {
     /// m.
     pub fn stride(&self) -> usize {
         self.twiddles.len() / (self.radix - 1)
@@ -57,7 +57,7 @@ pub(crate) fn from_a_line<T>(memory: &mut [Complex<T>]) -> &mut [Complex<T>] {
 
 /// Rows of vectors, from a line of the cache on.
 #[inline(always)]
-pub(crate) fn rows_of<T: Real, S: Simd>(memory: &mut [Complex<T>]) -> &mut [Row<T, S>] {
+pub(crate) fn rows_of<T: Scalar, S: Simd>(memory: &mut [Complex<T>]) -> &mut [Row<T, S>] {
     let values = parts_mut(from_a_line(memory));
     let whole = values.len() - values.len() % lane_count::<T, S>();
     pulp::as_arrays_mut::<2, _>(T::vectors_mut::<S>(&mut values[..whole])).0
@@ -70,13 +70,13 @@ pub(crate) fn inlined<F>(closure: F) -> F {
 }
 
 /// Bytes of a row on this machine.
-pub(crate) fn bytes_of_a_row<T: Real>() -> usize {
+pub(crate) fn bytes_of_a_row<T: Scalar>() -> usize {
     pulp::Arch::new().dispatch(BytesOfARow::<T>(PhantomData))
 }
 
 struct BytesOfARow<T>(PhantomData<T>);
 
-impl<T: Real> WithSimd for BytesOfARow<T> {
+impl<T: Scalar> WithSimd for BytesOfARow<T> {
     type Output = usize;
 
     #[inline(always)]
@@ -107,12 +107,12 @@ macro_rules! of_radix {
 pub(crate) use of_radix;
 
 #[inline(always)]
-pub(crate) fn get<T: Real, S: Simd>(row: &Row<T, S>) -> C<T, S> {
+pub(crate) fn get<T: Scalar, S: Simd>(row: &Row<T, S>) -> C<T, S> {
     Parts { re: row[0], im: row[1] }
 }
 
 #[inline(always)]
-pub(crate) fn put<T: Real, S: Simd>(row: &mut Row<T, S>, value: C<T, S>) {
+pub(crate) fn put<T: Scalar, S: Simd>(row: &mut Row<T, S>, value: C<T, S>) {
     (row[0], row[1]) = (value.re, value.im);
 }
 
@@ -130,7 +130,7 @@ pub(crate) fn cut<A, const R: usize>(rows: &mut [A], m: usize) -> [&mut [A]; LON
 
 /// The first stage, of rows that `load(row)` gives.
 #[inline(always)]
-pub(crate) fn first<T: Real, S: Simd, const R: usize>(
+pub(crate) fn first<T: Scalar, S: Simd, const R: usize>(
     a: Arithmetic<T, S>,
     stage: &Stage<T>,
     rows: &mut [Row<T, S>],
@@ -154,7 +154,11 @@ pub(crate) fn first<T: Real, S: Simd, const R: usize>(
 
 /// A stage forward.
 #[inline(always)]
-pub(crate) fn forward<T: Real, S: Simd, const R: usize>(a: Arithmetic<T, S>, stage: &Stage<T>, rows: &mut [Row<T, S>]) {
+pub(crate) fn forward<T: Scalar, S: Simd, const R: usize>(
+    a: Arithmetic<T, S>,
+    stage: &Stage<T>,
+    rows: &mut [Row<T, S>],
+) {
     let m = stage.stride();
     for rows in rows.chunks_exact_mut(R * m) {
         let rows = cut::<_, R>(rows, m);
@@ -175,7 +179,7 @@ pub(crate) fn forward<T: Real, S: Simd, const R: usize>(a: Arithmetic<T, S>, sta
 
 /// The last stage forward of K components, what `product(block of R rows, q, values)` makes of their values, and the first stage backwards.
 #[inline(always)]
-pub(crate) fn multiply<T: Real, S: Simd, const R: usize, const K: usize>(
+pub(crate) fn multiply<T: Scalar, S: Simd, const R: usize, const K: usize>(
     a: Arithmetic<T, S>,
     components: [&mut [Row<T, S>]; K],
     product: impl Fn(usize, usize, [C<T, S>; K]) -> [C<T, S>; K],
@@ -211,7 +215,7 @@ pub(crate) fn multiply<T: Real, S: Simd, const R: usize, const K: usize>(
 
 /// The last stage forward.
 #[inline(always)]
-pub(crate) fn end<T: Real, S: Simd, const R: usize>(a: Arithmetic<T, S>, rows: &mut [Row<T, S>]) {
+pub(crate) fn end<T: Scalar, S: Simd, const R: usize>(a: Arithmetic<T, S>, rows: &mut [Row<T, S>]) {
     for rows in rows.chunks_exact_mut(R) {
         let mut x = [get::<T, S>(&rows[0]); LONGEST];
         for k in 1..R {
@@ -226,7 +230,7 @@ pub(crate) fn end<T: Real, S: Simd, const R: usize>(a: Arithmetic<T, S>, rows: &
 
 /// Column j of the rows of a stage, backwards.
 #[inline(always)]
-fn column_backwards<T: Real, S: Simd, const R: usize>(
+fn column_backwards<T: Scalar, S: Simd, const R: usize>(
     a: Arithmetic<T, S>,
     stage: &Stage<T>,
     rows: &[&mut [Row<T, S>]; LONGEST],
@@ -243,7 +247,7 @@ fn column_backwards<T: Real, S: Simd, const R: usize>(
 
 /// A stage backwards.
 #[inline(always)]
-pub(crate) fn backwards<T: Real, S: Simd, const R: usize>(
+pub(crate) fn backwards<T: Scalar, S: Simd, const R: usize>(
     a: Arithmetic<T, S>,
     stage: &Stage<T>,
     rows: &mut [Row<T, S>],
@@ -262,7 +266,7 @@ pub(crate) fn backwards<T: Real, S: Simd, const R: usize>(
 
 /// The last stage backwards, to `store(row, value)`.
 #[inline(always)]
-pub(crate) fn last<T: Real, S: Simd, const R: usize>(
+pub(crate) fn last<T: Scalar, S: Simd, const R: usize>(
     a: Arithmetic<T, S>,
     stage: &Stage<T>,
     rows: &mut [Row<T, S>],

@@ -1,6 +1,7 @@
 //! Columns in lanes, by another implementation's transforms, rustfft's.
 
 use super::*;
+use crate::block::{parts, parts_mut};
 use crate::fft::any_length::ColumnTransform;
 use crate::fft::stages::before_a_line;
 

@@ -1,0 +1,82 @@
+//! The passes of [`LaneRows`](crate::fft::lane_rows::LaneRows).
+
+use pulp::{Simd, WithSimd};
+
+use crate::block::{Block, BLOCK};
+use crate::fft::lane_passes::{load, load_bins, store, store_bins};
+use crate::fft::lanes::{lane_count, Arithmetic};
+use crate::fft::row_plan::RowPlan;
+use crate::fft::stage_plan::Stages;
+use crate::fft::stages::{backwards, end, forward, of_radix, rows_of};
+use crate::real::{Complex, Scalar};
+
+/// Lanes of this machine's vectors; none where they are longer than a block.
+pub struct LaneCount<T>(pub std::marker::PhantomData<T>);
+
+impl<T: Scalar> WithSimd for LaneCount<T> {
+    type Output = Option<usize>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        (S::F32_LANES <= BLOCK).then(lane_count::<T, S>)
+    }
+}
+
+/// Rows to bins.
+pub struct Forward<'a, 'b, T: Scalar> {
+    pub plan: &'a RowPlan<T>,
+    pub rows: &'a [T],
+    pub width: usize,
+    pub bins: &'a mut Block<'b, T>,
+    pub scratch: &'a mut [Complex<T>],
+}
+
+impl<T: Scalar> WithSimd for Forward<'_, '_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Forward { plan, rows, width, bins, scratch } = self;
+        let (a, h) = (Arithmetic::<T, S>::new(simd), plan.length());
+        let z = &mut rows_of::<T, S>(scratch)[..h];
+        load::<T, S>(a, rows, width, z);
+        let first = &plan.stages.first;
+        of_radix!(first.radix, forward, a, first, z);
+        plan.stages.forward_after_first(a, z);
+        store_bins::<T, S>(a, plan, z, bins);
+    }
+}
+
+/// Bins to rows.
+pub struct Inverse<'a, 'b, T: Scalar> {
+    pub plan: &'a RowPlan<T>,
+    pub bins: &'a Block<'b, T>,
+    pub rows: &'a mut [T],
+    pub width: usize,
+    pub scratch: &'a mut [Complex<T>],
+}
+
+impl<T: Scalar> WithSimd for Inverse<'_, '_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Inverse { plan, bins, rows, width, scratch } = self;
+        let (a, h) = (Arithmetic::<T, S>::new(simd), plan.length());
+        let z = &mut rows_of::<T, S>(scratch)[..h];
+        load_bins::<T, S>(a, plan, bins, z);
+        let Stages { middle, wide, part, last, first } = &plan.stages;
+        let (wide, near) = middle.split_at(*wide);
+        for z in z.chunks_exact_mut(*part) {
+            of_radix!(*last, end, a, z);
+            for stage in near.iter().rev() {
+                of_radix!(stage.radix, backwards, a, stage, z);
+            }
+        }
+        for stage in wide.iter().rev() {
+            of_radix!(stage.radix, backwards, a, stage, z);
+        }
+        of_radix!(first.radix, backwards, a, first, z);
+        store::<T, S>(a, z, rows, width);
+    }
+}
