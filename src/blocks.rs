@@ -1,6 +1,6 @@
 //! A pass over a grid in blocks of rows, whose results are joined in order.
 //!
-//! The blocks do not depend on the number of threads: nor do the bits of what is joined.
+//! Neither the blocks nor the bits of the joined result depend on the number of threads.
 
 use std::array::from_fn;
 use std::ops::Range;
@@ -8,11 +8,11 @@ use std::ops::Range;
 use crate::grid::Grid;
 use crate::threads::Threads;
 
-/// Blocks at most, and elements of a block at least: each costs some work of its own.
+/// Most blocks, and least elements of a block: each has a fixed cost.
 const BLOCKS: usize = 64;
 const LEAST: usize = 1024;
 
-/// Joins what `work(elements)` returns for each block to `nothing`, in the order of the blocks.
+/// Joins the results of `work(elements)` for each block to `nothing`, in the order of the blocks.
 #[inline(always)]
 pub fn fold<A: Clone + Send>(
     grid: &Grid,

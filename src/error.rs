@@ -19,7 +19,7 @@ pub enum Error {
     /// The influence coefficients are not those of a positive definite operator.
     #[error("{0}")]
     NotPositiveDefinite(String),
-    /// The influence coefficients are not those that the solver has.
+    /// The influence coefficients differ from the solver's.
     #[error("{0}")]
     InfluenceChanged(String),
     /// Memory for the operators or the workspace could not be had.
@@ -41,7 +41,7 @@ pub(crate) fn invalid<T>(message: String) -> Result<T> {
     Err(Error::InvalidArgument(message))
 }
 
-/// Refuses a `value` that breaks `rule` (`holds` says whether it does not): NaN and infinities as such.
+/// Refuses a `value` for which `rule` does not hold (`holds` false), NaN and infinities as `NotFinite`.
 pub(crate) fn require(holds: bool, name: &str, value: f64, rule: &str) -> Result<()> {
     let message = || format!("{name} is {value}; {rule}");
     match (holds, value.is_finite()) {

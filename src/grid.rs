@@ -23,7 +23,7 @@ pub struct Grid {
 const MOST_ELEMENTS: usize = i32::MAX as usize;
 
 impl Grid {
-    /// The first size that is another one than that of the grid of a set-up; none if all are the same.
+    /// The first size that differs from the grid of a set-up, in words. None if all are the same.
     pub fn differs(&self, of_set_up: &Grid) -> Option<String> {
         let sizes = |grid: &Grid| [("mx", grid.mx as f64), ("my", grid.my as f64), ("dx", grid.dx), ("dy", grid.dy)];
         let pairs = sizes(self).into_iter().zip(sizes(of_set_up));
@@ -38,7 +38,7 @@ impl Grid {
         Ok(grid)
     }
 
-    /// Refuses sizes that are none: a grid may be made without [`new`](Self::new).
+    /// Checks the sizes. A caller may create a grid without [`new`](Self::new).
     pub fn check(&self) -> Result<()> {
         let Grid { mx, my, dx, dy } = *self;
         for (name, m) in [("mx", mx), ("my", my)] {
@@ -56,7 +56,7 @@ impl Grid {
         Ok(())
     }
 
-    /// Rows of each block, where work is cut into at most so many blocks of at least so many elements: whatever the number of threads.
+    /// Rows of each block, if work is divided into at most `most` blocks of at least `least` elements. It does not depend on the number of threads.
     pub(crate) fn rows_of_blocks(&self, most: usize, least: usize) -> usize {
         self.my.div_ceil(most).max(least / self.mx).min(self.my)
     }
@@ -76,7 +76,7 @@ impl Grid {
         self.dx * self.dy
     }
 
-    /// E* of half-spaces on which an element displaces itself by `self_influence`: at the centre of a uniformly loaded rectangle
+    /// E* of half-spaces whose coefficient of an element on itself is `self_influence`. At the centre of a uniformly loaded rectangle
     /// `E* A = (2/pi) (dx asinh(dy/dx) + dy asinh(dx/dy))` (Love).
     pub fn modulus(&self, self_influence: f64) -> f64 {
         let (dx, dy) = (self.dx, self.dy);
@@ -88,7 +88,7 @@ impl Grid {
         format!("element ({}, {})", i % self.mx, i / self.mx)
     }
 
-    /// The middle of element `i`, from the middle of the grid.
+    /// The centre of element `i`, relative to the centre of the grid.
     pub fn place(&self, i: usize) -> [f64; 2] {
         let from_middle = |k: usize, m: usize, d: f64| (k as f64 - 0.5 * (m as f64 - 1.0)) * d;
         [from_middle(i % self.mx, self.mx, self.dx), from_middle(i / self.mx, self.my, self.dy)]
@@ -99,8 +99,8 @@ impl Grid {
         iy * self.mx + ix
     }
 
-    /// The elements of a finer grid that element i of this one covers: up to 2 x 2, fewer at the end of an odd count or where one
-    /// direction is left alone.
+    /// The elements of a finer grid that element i of this one covers: up to 2 x 2. There are fewer at the end of an odd count, or if one
+    /// direction is not coarsened.
     pub fn children(&self, fine: &Grid, i: usize) -> impl Iterator<Item = usize> {
         let (columns, mx) = (children(fine.mx, self.mx, i % self.mx), fine.mx);
         children(fine.my, self.my, i / self.mx).flat_map(move |y| columns.clone().map(move |x| y * mx + x))
@@ -113,7 +113,7 @@ pub fn children(fine: usize, coarse: usize, i: usize) -> Range<usize> {
     factor * i..(factor * (i + 1)).min(fine)
 }
 
-/// Checks one value per element; the message names the first one that `require` refuses.
+/// Checks one value per element. The message names the first value that fails.
 pub(crate) fn check_values(
     name: &str,
     values: &[f64],

@@ -8,9 +8,9 @@
 //! e > 0,  p = 0    outside      (exterior area)
 //! ```
 //!
-//! A is dense, symmetric and block Toeplitz: `A_IJ` is the displacement at the centre of element I by a unit pressure on
-//! element J, for the elastic half-space the Boussinesq integral of `(1 - nu)/(pi G) / rho` over element J. It is a linear
-//! complementarity problem; the approach is given, or the force `sum of p dx dy` is and the approach is found.
+//! A is dense, symmetric and block Toeplitz. `A_IJ` is the displacement at the centre of element I by a unit pressure on
+//! element J. For the elastic half-space it is the Boussinesq integral of `(1 - nu)/(pi G) / rho` over element J. This is a linear
+//! complementarity problem. Either the approach is prescribed, or the force `sum of p dx dy` is prescribed and the approach is an unknown.
 //!
 //! The methods are those of J. Zhao, E.A.H. Vollebregt and C.W. Oosterlee, "A Full Multigrid Method for Linear
 //! Complementarity Problems arising from Elastic Normal Contact Problems" ("the paper"; its section and step numbers are
@@ -41,25 +41,25 @@
 //!
 //! Arrows point one way: `ffi -> solver -> methods -> contact, progress -> operator -> influence -> grid, error`.
 //!
-//! | module | what it holds |
+//! | module | contents |
 //! |---|---|
-//! | [`scene`] | what is simulated: bodies, undeformed distance, load, and the effects that it names |
-//! | [`effects`] | one file per effect, and the one list of them |
-//! | [`influence`] | kernels (half-space, periodic, the caller's tables) and the coefficients made of them |
+//! | [`scene`] | the problem: bodies, undeformed distance, load, and effects |
+//! | [`effects`] | one file per effect, and the list of effects |
+//! | [`influence`] | kernels (half-space, periodic, the caller's tables) and their coefficients |
 //! | [`operator`] | u = A p by FFT (of the crate `toeplitz`), and by direct summation |
 //! | [`contact`] | the unknowns, steps (4.1) and (4.2) on an admissible set, the guard against cycling, the certificate |
-//! | [`progress`] | what a loop has to reach, why it ended, what was counted, the ledger |
+//! | [`progress`] | the goal of a loop, why it ended, its counts, the ledger |
 //! | [`methods`] | NORM (section 3), V-cycles (section 4.2), projected conjugate gradients, a projected Newton method, the direct solve: each a step |
-//! | [`solver`] | THE loop (section 4.1), nested iteration (section 4.3), which methods in which order, the report |
+//! | [`solver`] | the loop (section 4.1), nested iteration (section 4.3), the choice of methods, the report |
 //! | [`friction`], [`adhesion`] | the tangential problem; attraction across the gap |
 //! | [`heat`] | flash temperature, from a flux of heat |
 //! | [`wear`] | frictional work and depth of wear, from tractions and slips |
 //! | [`stress`] | stresses below the surface, from pressures and tractions |
 //! | [`visco`] | Prony series of bodies that relax, and their step in time |
 //! | [`analytic`] | the Hertz solution |
-//! | `powers` | numbers as powers of two and what is near 1, where products would leave the range of numbers |
-//! | `blocks`, `rectangle` | passes over a grid, by all threads and in vectors; a part of a grid |
-//! | [`threads`], and of the same crate, `par`, `memory` and `sums` | the pool, memory by the size of the grid, sums in a fixed order |
+//! | `powers` | numbers as a power of two times a factor near 1, for products that would overflow or underflow |
+//! | `blocks`, `rectangle` | parallel, vectorised passes over a grid; a part of a grid |
+//! | [`threads`], and of the same crate, `par`, `memory` and `sums` | the pool, large arrays, sums in a fixed order |
 //! | [`ffi`] | the C ABI, translation only |
 
 #![warn(missing_docs)]
@@ -97,7 +97,7 @@ pub use toeplitz::panics;
 #[cfg(panic = "abort")]
 compile_error!("contact-normal turns panics into a status at the C boundary: build it with panic = \"unwind\"");
 
-/// The examples of what crates.io shows.
+/// Runs the examples of the readme on crates.io as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../packaging/crate.md")]
 struct Readme;

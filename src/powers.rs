@@ -1,18 +1,18 @@
-//! Powers of two: numbers are taken apart, so that nothing on the way to a result is beyond the range of numbers. A result that is a normal number
-//! has the bits that it has without powers.
+//! Numbers split into a mantissa and a power of two, so that no intermediate result leaves the range of double precision. A normal result
+//! has the same bits as without the split.
 
-/// A number > 0 as one near 1 and a power of two.
+/// Splits a number > 0 into one near 1 and a power of two.
 pub(crate) fn apart(value: f64) -> (f64, i32) {
     let power = value.log2().floor() as i32;
     (times_power(value, -power), power)
 }
 
-/// Times a power of two, which may be beyond the range of numbers itself.
+/// `value * 2^power`; the power of two itself may be out of range.
 pub(crate) fn times_power(value: f64, power: i32) -> f64 {
     PowerOfTwo::new(power).times(value)
 }
 
-/// A number, and the power of two that it is multiplied by: products are of any size.
+/// A number times a power of two: products have any size.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Scaled(pub f64, pub i32);
 
@@ -33,28 +33,28 @@ impl Scaled {
         Scaled(self.0 / other.0, self.1 - other.1)
     }
 
-    /// f of two of them, which is as large as they are: their sum, or the root of their squares.
+    /// A homogeneous function f of degree 1 of two numbers: their sum, or the root of their squares.
     pub(crate) fn with(self, other: Scaled, f: impl Fn(f64, f64) -> f64) -> Scaled {
         let power = [self, other].into_iter().filter(|one| one.0 != 0.0).map(|one| one.1).max().unwrap_or(0);
         Scaled(f(self.at(power), other.at(power)), power)
     }
 
-    /// As a multiple of a power of two.
+    /// The number over `2^power`.
     pub(crate) fn at(self, power: i32) -> f64 {
         times_power(self.0, self.1 - power)
     }
 
-    /// As a number, if it is one.
+    /// The number in double precision, 0 or infinite if it is out of range.
     pub(crate) fn value(self) -> f64 {
         self.at(0)
     }
 }
 
-/// A power of two as a product of three, each of which is a number.
+/// A power of two as a product of three, each in range.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PowerOfTwo([f64; 3]);
 
-/// Beyond, nothing is left of any number, or it is infinite.
+/// Largest power: numbers are 2^-1074 to 2^1024, so that 2^2200 times any is infinite, and 2^-2200 times any is 0.
 const MOST: i32 = 2200;
 
 impl PowerOfTwo {

@@ -21,7 +21,7 @@ impl Rectangle {
         Rectangle { x: 0..grid.mx, y: 0..grid.my }
     }
 
-    /// The smallest one outside of which nothing counts. `any`: whether one of some elements of a row does. None where nothing does.
+    /// The smallest rectangle with all elements that count. `any`: whether any of some elements of a row counts. None if no element does.
     pub fn around(
         grid: &Grid,
         threads: &Threads,
@@ -38,7 +38,7 @@ impl Rectangle {
         )
     }
 
-    /// That of values.
+    /// [`Rectangle::around`], by values.
     pub fn around_values<A: Sync>(
         values: &[A],
         grid: &Grid,
@@ -48,7 +48,7 @@ impl Rectangle {
         Rectangle::around(grid, threads, |elements| any(&values[elements]))
     }
 
-    /// The smallest one that holds both.
+    /// The smallest rectangle that holds both.
     pub fn joined(a: Option<Rectangle>, b: Option<Rectangle>) -> Option<Rectangle> {
         let join = |a: Range<usize>, b: Range<usize>| a.start.min(b.start)..a.end.max(b.end);
         match (a, b) {
@@ -67,25 +67,25 @@ impl Rectangle {
         self.x.len() * self.y.len()
     }
 
-    /// Its part of a grid.
+    /// The rectangle as a grid.
     pub fn grid(&self, grid: &Grid) -> Grid {
         Grid { mx: self.x.len(), my: self.y.len(), ..*grid }
     }
 
-    /// The elements of its row `iy`, on the whole grid.
+    /// The elements of the rectangle's row `iy`, on the whole grid.
     pub fn row(&self, grid: &Grid, iy: usize) -> Range<usize> {
         let start = (self.y.start + iy) * grid.mx;
         start + self.x.start..start + self.x.end
     }
 
-    /// Its elements in row `iy` of the whole grid: of each the index in the rectangle, and the column on the grid.
+    /// The elements in row `iy` of the whole grid: the index in the rectangle and the column on the grid of each.
     pub fn columns(&self, iy: usize) -> impl Iterator<Item = (usize, usize)> {
         let row = self.y.contains(&iy).then(|| (iy - self.y.start) * self.x.len());
         let columns = self.x.clone();
         row.into_iter().flat_map(move |first| (first..).zip(columns.clone()))
     }
 
-    /// Its elements: of each the index in the rectangle, and that on the whole grid.
+    /// The elements: the index in the rectangle and the index on the whole grid of each.
     pub fn elements<'a>(&'a self, grid: &'a Grid) -> impl Iterator<Item = (usize, usize)> + 'a {
         (0..).zip((0..self.y.len()).flat_map(move |iy| self.row(grid, iy)))
     }
@@ -111,7 +111,7 @@ impl Rectangle {
     }
 }
 
-/// The smallest one in some rows of `mx` elements each.
+/// The smallest rectangle in some rows of `mx` elements each.
 #[inline(always)]
 fn in_rows(
     Range { start: mut first, end: mut behind }: Range<usize>,
@@ -130,7 +130,7 @@ fn in_rows(
     }
     let (mut start, mut end) = (mx, 0);
     for Range { start: of_row, end: next_row } in (first..behind).map(row) {
-        // Only what lies outside the columns so far is looked at.
+        // Only elements outside the columns so far are tested.
         if any(of_row..of_row + start) {
             start = first_of(of_row..of_row + start, any) - of_row;
         }
@@ -141,7 +141,7 @@ fn in_rows(
     Some(Rectangle { x: start..end, y: first..behind })
 }
 
-/// The first of some elements that counts, by halves. One of them does.
+/// The first of some elements that counts, by bisection. At least one counts.
 #[inline(always)]
 fn first_of(Range { mut start, mut end }: Range<usize>, any: &impl Fn(Range<usize>) -> bool) -> usize {
     while end - start > 1 {
@@ -154,7 +154,7 @@ fn first_of(Range { mut start, mut end }: Range<usize>, any: &impl Fn(Range<usiz
     start
 }
 
-/// The last of some elements that counts, likewise.
+/// The last of some elements that counts, by bisection. At least one counts.
 #[inline(always)]
 fn last_of(Range { mut start, mut end }: Range<usize>, any: &impl Fn(Range<usize>) -> bool) -> usize {
     while end - start > 1 {

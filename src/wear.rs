@@ -1,17 +1,16 @@
-//! Wear: what friction does in each element, and how much material that takes off, from the tractions and slips of a solve.
+//! Wear: the frictional work in each element and the depth of wear, from the tractions and slips of a solve.
 //!
 //! ```text
 //! work  = -(q . s)                   frictional work of a step per area, an energy per area
 //! depth = K/H work  or  K/H p |s|    Archard 1953: volume = K/H times load times distance slid
 //! ```
 //!
-//! K is the wear coefficient (no unit), H the hardness (a pressure). Both forms are the same where the friction coefficient is the same
-//! everywhere: then K of the first is K of the second over mu. Tractions are those on body 1 and slips those of body 1 over body 2, so that friction
-//! has q against s.
+//! K is the wear coefficient (no unit), H the hardness (a pressure). For a uniform friction coefficient both forms are equivalent: K of the
+//! first is K of the second over mu. Tractions act on body 1, slips are those of body 1 over body 2, so q is opposite to s.
 //!
-//! Where bodies roll in +x a point of a surface passes through a row of elements, and spends dx/dq steps in each: what it loses is `passage`.
+//! If bodies roll in +x, a point of a surface passes through a row of elements and spends dx/dq steps in each: its loss is `passage`.
 //!
-//! All products are made of numbers near 1 and powers of two: a result that is a number is found, whatever the factors are, and others are refused.
+//! All products are of numbers near 1 and powers of two: a finite result is found for any factors, others are refused.
 
 use crate::effects::Coefficient;
 use crate::error::{finite, not_negative, positive, Error, Result};
@@ -20,10 +19,10 @@ use crate::memory::{collected, zeros};
 use crate::powers::Scaled;
 use crate::sums::in_blocks;
 
-/// Names its memory in messages.
+/// The name of this memory in messages.
 const FIELDS: &str = "the wear";
 
-/// The tractions and slips, and how easily the surface wears.
+/// The tractions and slips, and the wear coefficients of the surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Wear<'a> {
     /// The elements.
@@ -32,15 +31,15 @@ pub struct Wear<'a> {
     pub traction: [&'a [f64]; 2],
     /// s of body 1 over body 2 in a step, in x and y: a length.
     pub slip: [&'a [f64]; 2],
-    /// p: the depth is that of `p |s|`; none: that of the work.
+    /// p: the depth follows from `p |s|`; none: from the work.
     pub pressure: Option<&'a [f64]>,
     /// K.
     pub coefficient: Coefficient<'a>,
     /// H, a pressure; 1: `coefficient` is K/H.
     pub hardness: f64,
-    /// How many steps work and depth are those of.
+    /// The number of steps of work and depth.
     pub steps: f64,
-    /// dq, the length of a step that rolls along x; 0: nothing passes.
+    /// dq, the length of a step of rolling along x; 0: no passage.
     pub rolling_distance: f64,
 }
 
@@ -51,7 +50,7 @@ pub struct Worn {
     pub work: Vec<f64>,
     /// The depth of wear, a length.
     pub depth: Vec<f64>,
-    /// The depth that a point of the surface loses while it passes through the contact once, of each row; empty without a rolling distance.
+    /// The depth lost by a point of the surface in one passage through the contact, for each row; empty without a rolling distance.
     pub passage: Vec<f64>,
     /// The work of all elements, an energy.
     pub total_work: f64,
@@ -59,7 +58,7 @@ pub struct Worn {
     pub volume: f64,
     /// The largest depth.
     pub largest: f64,
-    /// Where that is: an element.
+    /// The element of the largest depth.
     pub at: usize,
 }
 
@@ -85,13 +84,13 @@ impl Wear<'_> {
         not_negative("rolling_distance", self.rolling_distance)
     }
 
-    /// Of a step at element i.
+    /// The work of a step at element i.
     fn work_at(&self, i: usize) -> Scaled {
         let [x, y] = [0, 1].map(|k| Scaled::of(self.traction[k][i]).times(Scaled::of(self.slip[k][i])));
         x.with(y, |x, y| -(x + y))
     }
 
-    /// Of a step at element i. An element that sticks has a work of either sign, of the size of the tolerance: nothing grows.
+    /// The depth of a step at element i, not negative: on stick the work has either sign and the size of the tolerance.
     fn depth_at(&self, i: usize) -> Scaled {
         let by = match self.pressure {
             None => self.work_at(i),
@@ -111,7 +110,7 @@ fn sum(terms: impl Iterator<Item = Scaled> + Clone) -> Scaled {
     Scaled(in_blocks(terms.map(|term| term.at(power))), power)
 }
 
-/// Refuses what is no number, by its name.
+/// Refuses values that are not finite, by their name.
 fn numbers<'a>(name: &str, values: impl IntoIterator<Item = &'a f64>) -> Result<()> {
     match values.into_iter().find(|value| !value.is_finite()) {
         Some(value) => {
@@ -124,7 +123,7 @@ fn numbers<'a>(name: &str, values: impl IntoIterator<Item = &'a f64>) -> Result<
 /// Frictional work and depth of wear of each element.
 ///
 /// # Errors
-/// `Invalid`, `NotFinite`: numbers out of their range, results out of the range of numbers, and arrays that have not one value per element.
+/// `Invalid`, `NotFinite`: numbers out of their range, results that overflow, and arrays without one value per element.
 /// `OutOfMemory`.
 pub fn frictional_wear(wear: &Wear<'_>) -> Result<Worn> {
     wear.check()?;

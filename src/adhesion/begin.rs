@@ -1,4 +1,4 @@
-//! Solves from nothing. A force that pulls, or none, is met on a stable branch: down from a state of more force.
+//! Solves without a start. A pull, or no force, is reached along a stable branch, down from a state of more force.
 
 use super::level::MakeFrozen;
 use super::majorise::Descent;
@@ -12,22 +12,22 @@ use super::way::Walker;
 use crate::error::{Error, Result};
 use crate::progress::Monitor;
 
-/// Bodies that no force holds are first pressed together by this part of all attraction.
+/// Without a state of less force, bodies are first pressed together by this part of the whole attraction.
 const PRESSED: f64 = 0.01;
-/// Bodies are pressed by this factor times the least force that is known, or times the last pressing force. There are this many ways at most.
+/// Pressing force over the least known force, or over the last pressing force, and most ways down from pressed bodies.
 const MORE: f64 = 10.0;
 const WAYS: u32 = 4;
-/// A way has found less force if that is below the least, a pull, times this factor.
+/// A way has found a stronger pull if it exceeds the strongest known by this factor.
 const LESS: f64 = 1.0 + 1e-6;
-/// The first way of a pull-off may take this factor times the cycles of a solve. Each of its states may take one part in this many of a solve's.
+/// The first way of a pull-off may take PULL_OFF times the cycles of a solve, each of its states 1/STATES of them.
 const PULL_OFF: u64 = 3;
 const STATES: u64 = 4;
-/// Where the way of a pull-off is lost, further ways begin below, so many at most. Each begin is looked for in so many steps. A step is this part of the length
-/// of the contact.
+/// If the way of a pull-off is lost, at most ANEW further ways begin below it. Each begin is sought in STEPS_BELOW steps of BELOW times
+/// the length of the contact.
 const ANEW: u32 = 4;
 const STEPS_BELOW: u32 = 6;
 const BELOW: f64 = 0.1;
-/// Each further way may take this factor times the cycles of the first way, and these cycles.
+/// Each further way may take TIMES times the cycles of the first way, plus AT_LEAST.
 const TIMES: u64 = 4;
 const AT_LEAST: u64 = 500;
 
@@ -64,7 +64,7 @@ impl Solver {
         }
     }
 
-    /// From nothing, by an approach, or a force that does not pull.
+    /// Solves without a start by an approach, or by a force that does not pull.
     fn begin_pressed(
         &mut self,
         goal: Goal,
@@ -85,7 +85,7 @@ impl Solver {
         }
         let mut found = Unknowns::default();
         found.copy_from(&self.levels[0].now)?;
-        // Bodies apart carry no force, too: what holds each other is looked for from above.
+        // Bodies apart carry no force either: a state of adhering bodies is sought from above.
         let walk = self.down_all_ways(goal, (false, make), monitor)?;
         if walk == Walk::Found {
             return Ok(Descent::By(End::Solved));
@@ -107,7 +107,7 @@ impl Solver {
         Walker::new(&mut self.levels[0], goal, make, monitor)
     }
 
-    /// Of the first way of a pull-off, which has many states: each may take a part of the cycles, and all together some times as many.
+    /// The walker of the first way of a pull-off, which has many states: see [`PULL_OFF`] and [`STATES`] for the cycles.
     fn first_walker<'a, 'm, 'c>(
         &'a mut self,
         goal: Goal,
@@ -124,8 +124,8 @@ impl Solver {
         Walker { each, ..self.walker(Goal { most, ..goal }, make, monitor) }
     }
 
-    /// The first way down. It may be lost where elements are too coarse for the range and snap one after the other. Then another way begins at a state below,
-    /// which is found from nothing. Returns the cycles of all ways, too.
+    /// The first way down. It may be lost if elements are too coarse for the range and snap one after the other. Then another way begins at a
+    /// state below, found without a start. Returns the cycles of all ways as well.
     fn walk_first(&mut self, goal: Goal, make: MakeFrozen<'_>, monitor: &mut Monitor<'_>) -> Result<(Walk, u64)> {
         let before = monitor.count.cycles;
         let mut ended = self.first_walker(goal, 0, make, monitor).walk(None)?;
@@ -154,7 +154,7 @@ impl Solver {
         Ok((ended, spent))
     }
 
-    /// Whether a state of bodies that touch is found below what the finest grid holds, from nothing.
+    /// Whether a state in contact is found below the state of the finest grid, without a start.
     fn is_found_below(
         &mut self,
         goal: Goal,
@@ -177,7 +177,7 @@ impl Solver {
         Ok(false)
     }
 
-    /// Down the stable branch of the finest grid, from its state without a load.
+    /// Follows the stable branch of the finest grid down from its state without a load.
     pub(super) fn down_from_no_load(
         &mut self,
         goal: Goal,
@@ -189,9 +189,9 @@ impl Solver {
         self.down_all_ways(goal, (ended.is_in_contact(), make), monitor)
     }
 
-    /// Down the stable branch: from what the finest grid holds, if it is a state to go down from, and from bodies that are pressed together. The
-    /// second is for bodies of which one asperity alone holds without a load, and for those that nothing holds then. More and more pressed, until no less
-    /// force is found. The finest grid then has the state of the least.
+    /// Follows the stable branch down from the finest grid's state, if `is_state`, and from bodies pressed together. The latter serves bodies
+    /// of which one asperity or none adheres without a load. The pressing force grows until no stronger pull is found. The finest grid then
+    /// has the state of the least force.
     pub(super) fn down_all_ways(
         &mut self,
         goal: Goal,
@@ -199,7 +199,7 @@ impl Solver {
         monitor: &mut Monitor<'_>,
     ) -> Result<Walk> {
         let (mut least, mut met, mut most) = (None::<Place>, None, goal.most);
-        // What is known of a way that is lost; how it ends without a least force.
+        // The last state of a lost way; the end without a least force.
         let (mut before_lost, mut without) = (None, Walk::Lost);
         if is_state {
             met = Some(Met::of(&self.levels[0]));
@@ -212,7 +212,7 @@ impl Solver {
                 }
                 ended => return Ok(ended),
             }
-            // Each further way takes at most some times as long.
+            // Each further way has a multiple of these cycles.
             let times = TIMES * spent + AT_LEAST;
             most = if goal.wanted.is_none() { times } else { most.min(times) };
         }
@@ -253,7 +253,7 @@ impl Solver {
         Ok(Walk::Least { sum: least.sum, approach: least.approach() })
     }
 
-    /// The force by which bodies are pressed first, where a state of the least force is known or none.
+    /// The first pressing force, by the state of the least force if one is known.
     fn first_pressing(&self, least: Option<&Place>, goal: Goal) -> f64 {
         match (least, goal.wanted.unwrap_or(0.0)) {
             (Some(least), _) => MORE * least.sum.abs(),

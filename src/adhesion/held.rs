@@ -1,4 +1,4 @@
-//! The stable state of a force. An equilibrium of a force may be an unstable one: then the stable one lies on the side of the larger approach.
+//! The stable state of a force. If an equilibrium of a force is unstable, the stable one lies at a larger approach.
 
 use super::level::MakeFrozen;
 use super::levels::prolong;
@@ -13,20 +13,20 @@ use super::way::Walker;
 use crate::error::Result;
 use crate::progress::Monitor;
 
-/// Secants at most, between two states.
+/// Most secant steps between two states.
 const SECANTS: u32 = 40;
-/// They keep this part of the way from both.
+/// Least distance of a secant step from both states, as a part of their distance.
 const END: f64 = 0.02;
-/// Steps up at most, and how they grow.
+/// Most steps of growing approach, and their growth.
 const MOST_STEPS: u32 = 80;
 const GROWTH: f64 = 1.5;
-/// The first step up, as a part of the length of the contact.
+/// The first of these steps, as a part of the length of the contact.
 const STEP: f64 = 0.02;
-/// A pull is hardly more than the strongest one that was found if it is less than this factor of that.
+/// A prescribed pull is searched on the branches of a pull-off if it is below this many times the strongest pull found.
 const HARDLY: f64 = 1.02;
 
 impl Walker<'_, '_, '_> {
-    /// Takes an equilibrium of the force that is wanted, which the level holds, if it is stable, or looks for the stable one above.
+    /// Keeps the level's equilibrium of the wanted force if it is stable. Otherwise climbs to the stable one.
     pub fn settle(&mut self) -> Result<Walk> {
         let Some(wanted) = self.goal.wanted else { return Ok(Walk::Found) };
         if is_stable(self.level, true, self.monitor)? {
@@ -36,7 +36,7 @@ impl Walker<'_, '_, '_> {
         self.climb(wanted)
     }
 
-    /// Up from what the level holds, whose sum is the one that is wanted or less, to the stable state of the wanted one.
+    /// Increases the approach from the level's state, whose sum is at most the wanted one, to the stable state of the wanted force.
     pub fn climb(&mut self, mut sum_low: f64) -> Result<Walk> {
         let Some(wanted) = self.goal.wanted else { return Ok(Walk::Lost) };
         let mut step = self.first_step(STEP)?;
@@ -57,7 +57,7 @@ impl Walker<'_, '_, '_> {
         Ok(self.lost())
     }
 
-    /// The state of the force that is wanted, between the `best` state of more force and one of less.
+    /// The state of the wanted force, between the `best` state of more force and a state of less.
     pub fn between(&mut self, best: &mut Place, (mut sum_low, mut low): (f64, f64)) -> Result<Walk> {
         let Some(wanted) = self.goal.wanted else { return Ok(Walk::Lost) };
         for secant in 0..SECANTS {
@@ -65,7 +65,7 @@ impl Walker<'_, '_, '_> {
                 return Ok(Walk::Interrupted);
             }
             let part = ((best.sum - wanted) / (best.sum - sum_low)).clamp(END, 1.0 - END);
-            // Now and then the middle: the secant may stand still near one end.
+            // Every third step bisects: secants may stall near one end.
             let part = if secant % 3 == 2 { 0.5 } else { part };
             let approach = best.approach() + part * (low - best.approach());
             self.level.now.copy_from(&best.at)?;
@@ -88,8 +88,8 @@ impl Walker<'_, '_, '_> {
 }
 
 impl Solver {
-    /// Down the stable branch on the coarsest grid, which costs little, and then from grid to grid by the force. False where that does not end on the
-    /// stable branch.
+    /// Follows the stable branch down on the coarsest grid, which is cheap, then solves for the force from grid to grid. Returns false if the result
+    /// is not on the stable branch.
     pub(super) fn is_found_from_coarse(
         &mut self,
         goal: Goal,
@@ -123,8 +123,9 @@ impl Solver {
         is_stable(&mut self.levels[0], true, monitor)
     }
 
-    /// A pull that is hardly more than the strongest one on the ways to it, `known`. The ways of a pull-off have other steps, which no force ends, and elements that
-    /// are coarse for the range part one after the other: where such a way has found more the pull is held above its end.
+    /// A pull slightly stronger than the strongest found on the way, `known`. If elements are coarse for the range, they separate one by one. A
+    /// pull-off takes different steps, because it does not stop at a force. If it finds a stronger pull, the prescribed pull has a state before its
+    /// end.
     pub(super) fn hold_pull_off(
         &mut self,
         known: Walk,

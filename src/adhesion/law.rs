@@ -34,7 +34,7 @@ pub enum Law {
 const EXPONENTIAL_REACH: f64 = 40.0;
 
 impl Law {
-    /// s(e) rho^2/w where it is largest: what a range has to be for an element to carry it depends on that.
+    /// The largest s(e) rho^2/w, which determines the shortest range that an element carries.
     pub fn steepness(self) -> f64 {
         match self {
             Law::Exponential => 1.0,
@@ -44,8 +44,7 @@ impl Law {
         }
     }
 
-    /// The shortest range that elements carry, which displace themselves by a0 under a unit pressure: the one at which
-    /// `kappa = s a0` is so much.
+    /// The shortest range that elements of self-influence a0 carry: the one with this `kappa = s a0`.
     pub fn shortest_range(self, work: f64, self_influence: f64, kappa: f64) -> f64 {
         (self.steepness() * work * self_influence / kappa).sqrt()
     }
@@ -97,7 +96,7 @@ pub struct Attraction {
 }
 
 impl Attraction {
-    /// sigma at a distance, which counts as 0 where it is negative; w: the work of adhesion there.
+    /// sigma at a distance, negative distances counting as 0; w: the work of adhesion there.
     #[inline]
     pub fn traction(&self, w: f64, e: f64) -> f64 {
         w / self.range * self.law.traction(self.ranges(e))
@@ -115,7 +114,7 @@ impl Attraction {
         w * self.law.work_left(self.ranges(e))
     }
 
-    /// The distance at which the exponential law has the traction sigma; infinite where it has none.
+    /// The distance at which the exponential law has the traction sigma; infinite if there is none.
     #[inline]
     pub fn distance_of(&self, w: f64, sigma: f64) -> f64 {
         if sigma > 0.0 {
@@ -125,7 +124,7 @@ impl Attraction {
         }
     }
 
-    /// kappa: what a range has to be, as the largest stiffness times what an element displaces itself by. Above 1 one element alone snaps.
+    /// kappa: the largest stiffness times an element's influence on itself. Above 1 a single element snaps.
     pub fn resolution(&self, work: f64, self_influence: f64) -> f64 {
         self.law.steepness() * work / self.range / self.range * self_influence
     }

@@ -1,4 +1,4 @@
-//! One grid: the operator, its preconditioner, the unknowns, and what solves the contact problem of an attraction that stands still.
+//! One grid: the operator, its preconditioner, the unknowns, and the solver of the contact problem with frozen attraction.
 
 use std::sync::Arc;
 
@@ -14,10 +14,9 @@ use crate::progress::{Monitor, Outcome};
 use crate::scene::Load;
 use crate::threads::Threads;
 
-/// Solves `e = h - approach + A q`, `q >= 0`, `e >= 0`, `q e = 0` from what a state holds: the contact problem that is left when the attraction
-/// stands still.
+/// Solves `e = h - approach + A q`, `q >= 0`, `e >= 0`, `q e = 0` from a state: the contact problem with frozen attraction.
 pub trait Frozen: Send + Sync {
-    /// To a tolerance of the residual, or until so many cycles are done.
+    /// Solves to a tolerance of the residual, or for a number of cycles.
     fn solve(
         &mut self,
         problem: &mut contact::Problem,
@@ -30,23 +29,22 @@ pub trait Frozen: Send + Sync {
     fn bytes(&self) -> usize;
 }
 
-/// The methods of frozen problems, and their state.
+/// The solver of frozen problems, and its state.
 pub type Still = (Box<dyn Frozen>, State);
 
-/// Makes what solves frozen problems on a grid.
+/// Makes the solver of frozen problems on a grid.
 pub type MakeFrozen<'a> = &'a dyn Fn(&contact::Problem) -> Result<Box<dyn Frozen>>;
 
-/// Contact opens where elements press by less than this part of the range of pressures.
+/// Part of the range of pressures below which elements leave the contact at an opening.
 const OPENED: f64 = 0.01;
 
-/// M, the inverse of a circulant near A. Residuals are not continued beside C, where rows of their own tell what they are: a sphere of Tabor's
-/// parameter 3 on 256 x 256 elements takes 18 to 21 products so, and 30 to 47 with the normal problem's extension. In single precision: it only
-/// has to be near.
+/// M, the inverse of a circulant near A, in single precision. Residuals are not extended beside C, where equations of their own determine
+/// them: a sphere of Tabor's parameter 3 on 256 x 256 elements takes 18 to 21 products, and 30 to 47 with the normal problem's extension.
 struct Inverse {
-    /// Of the coefficients over a power of two near a0: numbers near 1.
+    /// M of the coefficients over a power of two near a0, so that they are near 1.
     m: Preconditioner<f32>,
     workspace: Workspace<f32>,
-    /// That power of two: `a0 M` is this over it.
+    /// The power of two.
     unit: f64,
 }
 
@@ -54,20 +52,20 @@ struct Inverse {
 pub struct Level {
     /// Coefficients and products.
     pub problem: contact::Problem,
-    /// The work of a product, that on the finest grid being 1.
+    /// The work of a product, relative to the finest grid.
     pub work: f64,
     /// The surfaces.
     pub surface: Surface,
-    /// The unknowns now.
+    /// The present unknowns.
     pub now: Unknowns,
-    /// The last state from which descent has to go on.
+    /// The last state from which descent can continue.
     pub good: Pressures,
-    /// Fields of linear solves: of all grids, in the hands of the one that is at work.
+    /// Fields of linear solves, shared by all grids and held by the active one.
     pub fields: Fields<1>,
     inverse: Option<Inverse>,
-    /// Of frozen problems, on small grids: made when first needed.
+    /// The solver of frozen problems, on small grids: made when first needed.
     pub frozen: Option<Still>,
-    /// On a large grid: bytes of fields, and of what solves frozen problems, at most.
+    /// On a large grid: most bytes of fields and of the solver of frozen problems.
     at_most: usize,
 }
 
@@ -104,7 +102,7 @@ impl Level {
         self.problem.self_influence()
     }
 
-    /// Measures what is known now; C is that of the natural map unless it `is_kept`.
+    /// Measures the present unknowns. C is that of the natural map unless it `is_kept`.
     pub fn measure(&mut self, is_kept: bool, wanted: Option<f64>) -> Measured {
         let of_element = (self.self_influence(), self.problem.round_off());
         let is_mean_free = wanted.is_none() && self.is_mean_free();
@@ -116,7 +114,7 @@ impl Level {
         self.problem.coefficients.is_mean_free()
     }
 
-    /// Lowers all pressures, which displaces nothing, until those leave the contact that press least by the natural map.
+    /// Lowers all pressures by a constant, which displaces nothing, so that the elements that press least by the natural map leave the contact.
     pub fn open(&mut self) {
         let (surface, a0, n) = (&self.surface, self.self_influence(), self.now.u.len());
         let pressing = |i: usize| {
@@ -135,7 +133,7 @@ impl Level {
         problem.displace(now.p.field.as_flattened(), now.u.as_flattened_mut())
     }
 
-    /// `z = M (a0 y)` on C; outside anything.
+    /// `z = M (a0 y)` on C, undefined outside.
     pub fn precondition(&mut self, y: &[[f32; 1]], z: &mut [[f32; 1]]) {
         let a0 = self.problem.self_influence();
         let (contact, threads) = (&self.now.contact, &self.problem.threads);
@@ -152,7 +150,7 @@ impl Level {
         monitor.count_products(self.problem.take_products(), self.work);
     }
 
-    /// The state of frozen problems, with what solves them: on a large grid for one descent, in the room of linear solves.
+    /// The solver of frozen problems with its state. A large grid makes it for one descent, in place of the fields of linear solves.
     pub fn take_frozen(&mut self, make: MakeFrozen<'_>) -> Result<Still> {
         if let Some(still) = self.frozen.take() {
             return Ok(still);
@@ -162,14 +160,14 @@ impl Level {
         Ok((make(&self.problem)?, state))
     }
 
-    /// Takes it back.
+    /// Takes the solver of frozen problems back.
     pub fn give_frozen(&mut self, still: Still) {
         self.clear_fields(bytes_of(&still));
         self.frozen = Some(still).filter(|_| is_small(self.now.u.len()));
     }
 
-    /// Gives the memory of the fields of a large grid back. `beside`: bytes that were held at the same time. Descent, Newton's method and Lanczos' iteration
-    /// follow each other, and none of them reads the fields of another.
+    /// Frees the fields of a large grid. `beside`: bytes held at the same time. Descent, Newton's method and Lanczos' iteration follow each
+    /// other, and none of them reads the fields of another.
     pub fn clear_fields(&mut self, beside: usize) {
         if !is_small(self.now.u.len()) {
             self.at_most = self.at_most.max(self.fields.bytes() + beside);
@@ -177,7 +175,7 @@ impl Level {
         }
     }
 
-    /// Bytes held, beside those of the work.
+    /// Bytes held, without [`Level::bytes_at_work`].
     pub fn bytes(&self) -> usize {
         let inverse = self.inverse.as_ref().map_or(0, |inverse| inverse.m.bytes() + inverse.workspace.bytes());
         let surface = size_of_val(&self.surface.h[..]) + size_of_val(&self.surface.works[..]);
@@ -185,7 +183,7 @@ impl Level {
         self.problem.bytes() + inverse + surface + unknowns + self.frozen.as_ref().map_or(0, bytes_of)
     }
 
-    /// Bytes of linear solves and of descents, at most: one grid is at work at a time.
+    /// Most bytes of linear solves and of descents: one grid is active at a time.
     pub fn bytes_at_work(&self) -> usize {
         self.fields.bytes().max(self.at_most)
     }

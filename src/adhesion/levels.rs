@@ -1,4 +1,4 @@
-//! The grids of a nested iteration. Coarser ones keep the work of adhesion and get a longer range, one that their elements carry.
+//! The grids of a nested iteration. Coarser grids keep the work of adhesion and get a longer range that their elements resolve.
 
 use std::sync::Arc;
 
@@ -17,23 +17,23 @@ use crate::threads::Threads;
 /// The coarsest grid has at most this many elements in each direction.
 const COARSEST: usize = 31;
 const MEMORY: &str = "the surfaces of adhesion";
-/// `kappa = s a0` of the shortest range that elements carry.
+/// `kappa = s a0` of the shortest range that elements resolve.
 pub const CARRIED: f64 = 0.4;
 
-/// The inputs of a scene that the grids take over, beside undeformed distances.
+/// The inputs of a scene for all grids, except undeformed distances.
 #[derive(Clone, Copy, Debug)]
 pub struct Surfaces<'a> {
-    /// How the attraction falls with the distance.
+    /// The law of attraction by distance.
     pub law: Law,
-    /// rho; 0: the shortest that the elements carry.
+    /// rho. 0 means the shortest range that the elements resolve.
     pub range: f64,
-    /// w where it is the same everywhere.
+    /// w, if it is uniform.
     pub work: f64,
     /// w of each element.
     pub works: Option<&'a [f64]>,
 }
 
-/// The grids, finest first, of which the finest has this operator.
+/// The grids, finest first. The finest has the given operator.
 pub fn levels(
     grid: Grid,
     coefficients: &Coefficients,
@@ -57,7 +57,7 @@ pub fn levels(
     Ok(levels)
 }
 
-/// Takes the surfaces of a scene over to all grids. The finest has its undeformed distances.
+/// Copies the surfaces of a scene to all grids. The finest grid has its undeformed distances already.
 pub fn take_surfaces(levels: &mut [Level], given: Surfaces<'_>) -> Result<()> {
     let Surfaces { law, work, works, .. } = given;
     let largest = works.map_or(work, |works| works.iter().copied().fold(0.0, f64::max));
@@ -97,8 +97,8 @@ pub fn take_surfaces(levels: &mut [Level], given: Surfaces<'_>) -> Result<()> {
     Ok(())
 }
 
-/// The pressures of the next coarser grid, piecewise constant, their displacements by a fresh product, and the approach; and its fields of linear
-/// solves.
+/// Prolongs the pressures of the next coarser grid, piecewise constant, with displacements by a fresh product, the approach, and the fields of
+/// linear solves.
 pub fn prolong(coarse: &mut Level, fine: &mut Level) -> Result<()> {
     fine.fields = std::mem::take(&mut coarse.fields);
     fine.fields.leave_smaller(fine.now.u.len());

@@ -1,10 +1,10 @@
-//! Majorise-minimise: the attraction stands still, the contact problem that is left is solved, and again.
+//! Majorise-minimise: freezes the attraction, solves the contact problem, and repeats.
 //!
 //! ```text
 //! sigma_k = sigma(e);    e = h - approach - A sigma_k + A q,  q >= 0,  e >= 0,  q e = 0;    p = q - sigma_k
 //! ```
 //!
-//! W is convex, so that the energy with sigma_k lies above that of the law and touches it at the last state: every step goes downhill, whatever the
+//! W is convex, so that the energy with sigma_k lies above that of the law and touches it at the last state: every step lowers the energy for any
 //! attraction.
 
 use super::level::{Level, MakeFrozen, Still};
@@ -16,16 +16,16 @@ use crate::methods::fields::{self, BLOCK};
 use crate::progress::{Monitor, Outcome};
 use crate::scene::Load;
 
-/// A frozen problem is solved to this part of what the attraction is off, but at least to `LEAST`.
+/// Tolerance of a frozen problem, relative to the error of the attraction, at most `LEAST`.
 const PART: f64 = 0.05;
 const LEAST: f64 = 1e-2;
-/// And at most to this part of the tolerance.
+/// Least tolerance of a frozen problem, relative to the goal's.
 const ENOUGH: f64 = 0.5;
 
 /// How descent ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Descent {
-    /// As a loop of Newton's method.
+    /// By one of the ends of Newton's method.
     By(End),
     /// The force pulls more than all attraction holds: the bodies part.
     Parted,
@@ -34,15 +34,15 @@ pub enum Descent {
 /// How descent proceeds.
 #[derive(Clone, Copy)]
 pub struct Steps<'a> {
-    /// So many steps at most.
+    /// Most steps.
     pub most: u64,
-    /// Whether the first one begins without any attraction.
+    /// Whether the first step has no attraction.
     pub from_none: bool,
-    /// Makes what solves the frozen problems.
+    /// Makes the solver of frozen problems.
     pub make: MakeFrozen<'a>,
 }
 
-/// Goes down from what the level holds, whose contact area and u need not be those of its p.
+/// Descends from the level's state. Its contact area and u may be inconsistent with p.
 pub fn descend(
     level: &mut Level,
     goal: Goal,
@@ -87,7 +87,7 @@ fn descend_with(
     Ok((Descent::By(End::Failed), measured))
 }
 
-/// One step. False where no pressure carries the force.
+/// One step. False if no pressure carries the force.
 fn one(
     level: &mut Level,
     (frozen, state): &mut Still,

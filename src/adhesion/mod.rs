@@ -4,19 +4,19 @@
 //! e = h - approach + A p,    p = q - sigma(e),    q >= 0,  e >= 0,  q e = 0
 //! ```
 //!
-//! with total pressures p, which pull where they are negative, contact pressures q, and the attraction sigma. Stable states are local minima of
-//! `1/2 (p, A p) - sum W(e)`, less the work of a force that is given; there may be several, and a step of the load may snap from one to another.
+//! with total pressures p, contact pressures q, and the attraction sigma. Negative p pull. Stable states are local minima of
+//! `1/2 (p, A p) - sum W(e)`, minus the work of a prescribed force. There may be several, and a load step may snap from one to another.
 //!
 //! | module | what it holds |
 //! |---|---|
 //! | `law` | the laws of attraction |
-//! | `unknowns`, `level`, `levels` | the unknowns of one grid and how well the conditions hold; operator and preconditioner; all grids |
-//! | `newton`, `system`, `parts` | semismooth Newton with flexible GMRES, bordered where the force is given; linear systems that are solved firmly |
-//! | `majorise`, `robust` | descent by contact problems whose attraction stands still, and Newton's method with that behind it |
+//! | `unknowns`, `level`, `levels` | the unknowns of one grid and their residuals; operator and preconditioner; all grids |
+//! | `newton`, `system`, `parts` | semismooth Newton with flexible GMRES, bordered for a prescribed force; linear systems with a small tolerance |
+//! | `majorise`, `robust` | descent by contact problems with fixed attraction, and Newton's method with this descent as its fallback |
 //! | `nested` | nested iteration; the starts from contact and from apart |
-//! | `pull`, `way`, `place`, `held` | the way down to the pull-off, its steps, and states on it; the stable state of a force |
-//! | `stability`, `tangent` | how near a state is to a snap; how its force changes with the approach, and whether it is stable |
-//! | `begin` | the starts from nothing |
+//! | `pull`, `way`, `place`, `held` | continuation to the pull-off, its steps, and states on it; the stable state of a force |
+//! | `stability`, `tangent` | the distance of a state from a snap; dF/dapproach of a state, and its stability |
+//! | `begin` | the starts without a previous state |
 //! | `request`, `solver`, `report` | the whole solve |
 
 mod begin;

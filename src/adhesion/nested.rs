@@ -1,4 +1,5 @@
-//! Nested iteration: the coarsest grid first, each from what the one before it found. Their longer ranges have little hysteresis.
+//! Nested iteration: the coarsest grid first, each from the solution of the one before. The longer ranges of coarse grids have little
+//! hysteresis.
 
 use super::level::{Level, MakeFrozen};
 use super::levels::prolong;
@@ -10,18 +11,18 @@ use crate::error::Result;
 use crate::progress::Monitor;
 use crate::sums::mean;
 
-/// Coarser grids are solved to this: what they leave wrong costs more on the finest.
+/// Tolerance on coarser grids: larger errors cost more on the finest grid.
 pub const COARSE: f64 = 1e-2;
-/// Steps of descent with which the coarsest grid begins, and the finest where it begins apart.
+/// First steps of descent on the coarsest grid, and on the finest from bodies apart.
 const FIRST: u64 = 3;
 const FROM_APART: u64 = 12;
-/// From contact: an approach of so many ranges more, in so many steps.
+/// A start from contact: the additional approach in ranges, and its steps.
 const DEEPER: f64 = 4.0;
 const DEEPER_STEPS: u32 = 4;
-/// And with two periods no further than this part of the way to the mean distance.
+/// Largest additional approach with two periods, as a part of the way to the mean distance.
 const SHUT: f64 = 0.9;
 
-/// Solves the finest of `levels` from nothing.
+/// Solves the finest of `levels` without a start.
 pub fn solve(
     levels: &mut [Level],
     goal: Goal,
@@ -55,7 +56,7 @@ pub fn solve(
     one(levels, 0, goal, (start, make), monitor)
 }
 
-/// The goal of a coarser grid: its elements are larger, so that fewer pressures add up to the same force.
+/// The goal of a coarser grid. Its elements are larger, so the same force is a smaller sum of pressures.
 pub fn coarse_goal(levels: &[Level], l: usize, goal: Goal) -> Goal {
     let area = |l: usize| levels[l].problem.grid.element_area();
     let wanted = goal.wanted.map(|wanted| wanted * area(0) / area(l));
@@ -63,7 +64,7 @@ pub fn coarse_goal(levels: &[Level], l: usize, goal: Goal) -> Goal {
     Goal { tolerance, wanted, certified: l == 0, ..goal }
 }
 
-/// Solves one grid: the coarsest from nothing.
+/// Solves one grid, the coarsest without a start.
 fn one(
     levels: &mut [Level],
     l: usize,
@@ -84,7 +85,7 @@ fn one(
             return Ok(Ended { end, measured, is_lost: false });
         }
         if end == Descent::Parted {
-            // Without attraction nothing carries a force of 0. With it descent, from no pressures, is far cheaper than Newton's method.
+            // Without attraction no contact carries a force of 0. With attraction, descent from p = 0 is far cheaper than Newton's method.
             let steps = Steps { most: BETWEEN, from_none: false, make };
             let (end, measured) = descend(level, goal, steps, monitor)?;
             if end != Descent::By(End::Failed) {
@@ -95,7 +96,7 @@ fn one(
     robust::solve(level, goal, (false, make), monitor)
 }
 
-/// p = 0 at the approach that is given, or that of a first touch. Returns the approach.
+/// Sets p = 0 at the given approach, or at that of first touch. Returns the approach.
 fn begin(level: &mut Level, goal: Goal) -> f64 {
     level.now.unload(&level.problem.threads);
     if goal.wanted.is_some() {
@@ -105,7 +106,7 @@ fn begin(level: &mut Level, goal: Goal) -> f64 {
     level.now.approach()
 }
 
-/// From a larger approach down to the one that is given, so that what is in contact stays so.
+/// Solves from a larger approach down to the given one, so that elements in contact stay so.
 fn from_contact(
     level: &mut Level,
     goal: Goal,
@@ -114,7 +115,7 @@ fn from_contact(
 ) -> Result<Ended> {
     let apart = (crate::contact::lowest(&level.surface.h) - approach).max(0.0);
     let deeper = Some(apart + DEEPER * level.surface.attraction.range).filter(|by| by.is_finite()).unwrap_or(0.0);
-    // No pressure brings bodies nearer than their mean distance where waves leave it.
+    // With two periods no pressure brings bodies nearer than their mean distance.
     let room = if level.is_mean_free() { SHUT * (mean(&level.surface.h) - approach).max(0.0) } else { f64::INFINITY };
     let deeper = deeper.min(room);
     level.now.p.border = [approach + deeper];

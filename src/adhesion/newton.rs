@@ -4,19 +4,19 @@
 //! in C  e = 0,      outside  p = -sigma(e)
 //! ```
 //!
-//! Far from the solution the exponential law is linearised at the mean of e and of the distance that -p belongs to: from e alone the tangent of a steep
-//! law reaches too far. There is no line search: where steps fail descent takes over ([`robust`](super::robust)).
+//! Far from the solution the exponential law is linearised at the mean of e and of the distance whose attraction is -p: at e alone the tangent
+//! of a steep law overshoots. There is no line search: if steps fail, descent follows ([`robust`](super::robust)).
 //!
-//! A cautious step takes a part of the slope of the attraction alone, as long as elements enter or leave the contact, and wherever a whole one went wrong:
-//! between the step of Newton's method and that of descent, which takes none. Steps then hardly jump from one state of an element to another. A sphere whose
-//! elements are nearly unstable in their own springs (Tabor's parameter 3, 64 x 64 elements, kappa 0.92) is drawn off in steps of 0.1: bold steps fail
-//! at 18 of 20 of them, cautious ones at 9, with half the steps in all.
+//! A cautious step uses a part of the slope of the attraction, as long as elements enter or leave the contact, and after a full step failed. It
+//! lies between a Newton step and a step of descent, which uses no slope. Such steps seldom jump from one state of an element to another.
+//! Example: a sphere with nearly unstable elements (Tabor's parameter 3, 64 x 64 elements, kappa 0.92) is drawn off in steps of 0.1. Bold steps
+//! fail at 18 of 20 of these, cautious ones at 9, with half the number of steps.
 //!
-//! With two periods waves leave the mean of the distances. As long as the approach is below it, not all elements touch: where all do by the natural map,
-//! pressures are lowered until some leave.
+//! With two periods waves do not change the mean distance. As long as the approach is below it, not all elements touch: if all touch by the
+//! natural map, pressures are lowered until some leave.
 //!
-//! A warm start keeps the last contact area in its first step. A change of the approach lifts e in all of C, and the natural map, which knows
-//! the compliance of one element only, would release the inside.
+//! A warm start keeps the last contact area in its first step. A change of the approach raises e in all of C, and the natural map, based on the
+//! compliance of one element, would release the inside.
 
 use super::law::Law;
 use super::level::Level;
@@ -28,39 +28,39 @@ use crate::methods::fields;
 use crate::operator::fft::Real;
 use crate::progress::Monitor;
 
-/// Steps at most.
+/// Most steps.
 const MOST_STEPS: u64 = 20;
-/// Above this residual a step linearises at the mean distance, and its linear system is solved to `FAR`; below to `NEAR`.
+/// Above this residual a step linearises at the mean distance and solves its linear system to `FAR`, below to `NEAR`.
 const CLOSE: f64 = 2e-2;
 const FAR: f64 = 0.2;
 const NEAR: f64 = 0.1;
-/// The mean distance lies within so many ranges of e.
+/// Largest distance of the place of linearisation from e, in ranges.
 const WITHIN: f64 = 3.0;
-/// Directions of a linear solve at most: what takes more is a system that is nearly singular. On grids that are not small they are `IN_MEMORY`; on those of more
-/// than `LARGE` elements `AT_FIRST`, and twice as many after each solve that they are too few for.
+/// Most directions of a linear solve: systems that take more are nearly singular. Grids that are not small have `IN_MEMORY`, those of more than
+/// `LARGE` elements `AT_FIRST`, doubled after each solve for which they were too few.
 const DIRECTIONS: usize = 30;
 pub const IN_MEMORY: usize = 2 * PRODUCTS;
 const LARGE: usize = 1 << 16;
 const AT_FIRST: usize = 6;
-/// The part of the slope that a cautious step takes.
+/// The part of the slope in a cautious step.
 const CAUTIOUS: f64 = 0.7;
-/// A whole step went wrong if the residual has risen by this factor: steps from one edge of a smeared law to the other may go on for ever.
+/// Rise of the residual at which a full step counts as failed: steps between both edges of a smeared law may recur for ever.
 const RISEN: f64 = 2.0;
-/// The next one is tried below this part of the residual that it was tried at.
+/// The next full step is tried below this part of the residual of the failed one.
 const AGAIN: f64 = 0.1;
-/// Cautious steps at most, as long as they are close: next to a fold of the branch they are slow.
+/// Most cautious steps below [`CLOSE`]: next to a fold of the branch they converge slowly.
 const MOST_CAUTIOUS: u64 = 30;
-/// s a0 is never taken for more: it is stored in single precision.
+/// Largest s a0, which is stored in single precision.
 const STIFFEST: f64 = 1e30;
-/// A residual beyond that is a failure.
+/// Residual of a failure.
 const LOST: f64 = 1e12;
 
 /// How a loop ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// The measures are met; where it is asked for, with a fresh product.
+    /// The measures are met, with a fresh product if required.
     Solved,
-    /// No step brings more.
+    /// Steps make no more progress.
     Failed,
     /// The caller cancelled, or no cycle is left.
     Interrupted,
@@ -71,22 +71,22 @@ pub enum End {
 pub enum Pace {
     /// With the whole slope of the attraction.
     Bold,
-    /// With a part of it, until the contact area stands still.
+    /// With a part of it, until the contact area is constant.
     Cautious,
 }
 
 /// The goal of a loop on one grid.
 #[derive(Clone, Copy, Debug)]
 pub struct Goal {
-    /// Of the worst measure.
+    /// The tolerance of the worst measure.
     pub tolerance: f64,
-    /// The sum of p where the force is given.
+    /// The sum of p, if the force is given.
     pub wanted: Option<f64>,
-    /// Whether a fresh product has to confirm it.
+    /// Whether a fresh product has to confirm the measures.
     pub certified: bool,
-    /// Cycles on the finest grid at most.
+    /// Most cycles on the finest grid.
     pub most: u64,
-    /// How Newton's method steps.
+    /// The kind of Newton steps.
     pub pace: Pace,
 }
 
@@ -97,7 +97,7 @@ impl Goal {
     }
 }
 
-/// Iterates from what the level holds. `keeps`: the first step keeps its contact area.
+/// Iterates from the level's state. `keeps`: the first step keeps its contact area.
 pub fn newton(level: &mut Level, goal: Goal, keeps: bool, monitor: &mut Monitor<'_>) -> Result<(End, Measured)> {
     let mut measured = Measured::default();
     let (mut last, mut whole_below) = (f64::INFINITY, f64::INFINITY);
@@ -147,7 +147,7 @@ pub fn newton(level: &mut Level, goal: Goal, keeps: bool, monitor: &mut Monitor<
     Ok((End::Failed, measured))
 }
 
-/// Takes one step, of at most so many directions, far from the solution or near it. Returns whether these were enough.
+/// Makes one step, with at most `most` directions, far from the solution or near it. Returns whether these were enough.
 fn take_step(level: &mut Level, Goal { wanted, pace, .. }: Goal, is_far: bool, most: usize) -> Result<bool> {
     let (n, threads) = (level.now.u.len(), level.problem.threads.clone());
     let mut fields = std::mem::take(&mut level.fields);
@@ -170,7 +170,7 @@ fn take_step(level: &mut Level, Goal { wanted, pace, .. }: Goal, is_far: bool, m
     Ok(is_enough)
 }
 
-/// s a0 outside the contact area of now, `place(i, e)` being the distance at which element i is linearised.
+/// s a0 outside the present contact area; `place(i, e)` is the distance at which element i is linearised.
 pub fn stiffnesses<T: Real>(level: &Level, place: impl Fn(usize, f64) -> f64 + Sync + Send, stiffness: &mut [[T; 1]]) {
     let (surface, now, a0) = (&level.surface, &level.now, level.self_influence());
     fields::fill(&level.problem.threads, stiffness, |i| {
@@ -182,7 +182,7 @@ pub fn stiffnesses<T: Real>(level: &Level, place: impl Fn(usize, f64) -> f64 + S
     });
 }
 
-/// s, and the right-hand side, of the contact area of now.
+/// s and the right-hand side for the present contact area.
 fn linearise(level: &Level, pace: Pace, is_far: bool, stiffness: &mut [Short], right: &mut [[f64; 1]]) {
     let (surface, now, a0, threads) = (&level.surface, &level.now, level.self_influence(), &level.problem.threads);
     let range = surface.attraction.range;

@@ -1,5 +1,5 @@
-//! Linear systems without a border that are solved firmly. On large grids they are solved in parts, again and again for what is left of the right-hand side, so
-//! that few vectors are kept at a time.
+//! Linear systems without a border, solved to small residuals. On large grids they are solved in parts, repeatedly for the residual, so that few
+//! vectors are kept at a time.
 
 use super::system::{Linearised, Short};
 use super::unknowns::is_small;
@@ -7,17 +7,17 @@ use crate::error::Result;
 use crate::methods::fgmres::{self, Bordered, Until};
 use crate::methods::fields::{self, Fields};
 
-/// A linear system is solved if its residual is at most this factor of what was asked for: round-off.
+/// Factor on the wanted residual at which a system counts as solved, for round-off.
 const SLACK: f64 = 1.0 + 1e-6;
 
-/// How firmly a system is solved.
+/// The accuracy and the cost of a solve.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// A solve ends where the residual is at most this part of the right-hand side.
+    /// Relative residual at which a solve ends.
     pub part: f64,
-    /// It makes this number of directions at most.
+    /// Most directions.
     pub most: usize,
-    /// A solve on a large grid keeps this number of directions at most, and then begins anew.
+    /// Most kept directions on a large grid, after which the solve restarts.
     pub at_once: usize,
 }
 
@@ -25,7 +25,7 @@ pub struct Effort {
 pub struct Solution {
     pub y: Vec<Short>,
     pub product: Vec<Short>,
-    /// Whether the system is solved as was asked for.
+    /// Whether the wanted residual is reached.
     pub is_solved: bool,
 }
 

@@ -1,23 +1,23 @@
-//! What a walk along a branch knows of states on its way, and where it ended.
+//! The states on a walk along a branch, and the end of a walk.
 
 use super::level::Level;
 use super::unknowns::Unknowns;
 use crate::error::Result;
 use crate::methods::fields;
 
-/// Where a walk ended.
+/// The end of a walk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Walk {
-    /// At the force that was wanted, on the stable branch.
+    /// At the wanted force, on the stable branch.
     Found,
-    /// At the least force, a sum of pressures, which is not as low as the one that was wanted. The level has that state.
+    /// At the least force, a sum of pressures, which is above the wanted one. The level has this state.
     Least {
         /// The sum of p.
         sum: f64,
-        /// The approach there.
+        /// The approach.
         approach: f64,
     },
-    /// At the state from which an earlier walk began.
+    /// At the starting state of an earlier walk.
     Met,
     /// The caller cancelled, or no cycle is left.
     Interrupted,
@@ -25,7 +25,7 @@ pub enum Walk {
     Lost,
 }
 
-/// Where an earlier walk began.
+/// The starting state of an earlier walk.
 #[derive(Clone, Copy, Debug)]
 pub struct Met {
     pub approach: f64,
@@ -35,7 +35,7 @@ pub struct Met {
 }
 
 impl Met {
-    /// Of what a level holds.
+    /// The state of a level.
     pub fn of(level: &Level) -> Met {
         let now = &level.now;
         let of_element = |i: usize| [now.p.field[i][0], now.p.field[i][0].abs()];
@@ -52,7 +52,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// Of what a level holds.
+    /// The state of a level.
     pub fn of(level: &Level, sum: f64) -> Result<Place> {
         let mut place = Place { at: Unknowns::default(), sum };
         place.at.copy_from(&level.now)?;
@@ -63,7 +63,7 @@ impl Place {
         self.at.approach()
     }
 
-    /// Takes what a level holds.
+    /// Copies the state of a level.
     pub fn take(&mut self, level: &Level, sum: f64) -> Result<()> {
         self.sum = sum;
         self.at.copy_from(&level.now)

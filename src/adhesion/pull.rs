@@ -1,8 +1,9 @@
-//! Forces that pull. Two equilibria belong to one of them, of which the one with dF/dapproach > 0 is stable; below the pull-off force there is none.
+//! Forces that pull. Each has two equilibria, of which the one with dF/dapproach > 0 is stable; below the pull-off force there is none.
 //!
-//! So the approach goes down the stable branch from a state of more force, step by step until nothing is in contact. Asperities part one after the
-//! other, and so do elements that are too coarse: the force falls and rises many times on the way. Where it was nearly the least the way is gone once more in
-//! small steps: their least is the pull-off force. Where a force is wanted, the way ends at the first step that crosses it ([`held`](super::held)).
+//! So the approach decreases along the stable branch from a state of more force, step by step until nothing is in contact. Asperities part one after
+//! the other, and so do elements that are too coarse: the force falls and rises many times on the way. Places where the force was nearly the least
+//! are revisited in small steps, whose least is the pull-off force. With a wanted force the way ends at the first step that crosses it
+//! ([`held`](super::held)).
 
 use super::level::Level;
 use super::place::{Met, Place, Walk};
@@ -12,39 +13,39 @@ use super::way::{Walker, Way};
 use crate::error::Result;
 use crate::methods::fields;
 
-/// A step: this part of the length that the energy and the stiffness of the contact have together; a larger part down to the state of an earlier way.
+/// A step, relative to the length from the energy and the stiffness of the contact; a longer one down to the state of an earlier way.
 const STEP: f64 = 0.1;
 const LONG: f64 = 0.3;
-/// A step of surfaces that are locked in contact: of the range.
+/// A step of surfaces locked in contact, relative to the range.
 const OF_RANGE: f64 = 0.1;
-/// Steps at most.
+/// Most steps.
 const MOST_STEPS: u32 = 400;
-/// Where the force was nearly the least, each step is repeated in so many parts. The edge of a contact rests at rings of elements. The force of a sphere has a
-/// minimum at each ring.
+/// Parts of each step that is repeated where the force was nearly the least. The edge of a contact is pinned at rings of elements, and the force of a
+/// sphere has a minimum at each ring.
 const PARTS: u32 = 8;
-/// Forces are nearly the least if they are more by at most this part of it, times the square of kappa, within these bounds. The minima of a sphere at
-/// neighbouring rings lie 1 % below the forces between them for kappa 0.4, and 0.01 % for kappa 0.14.
+/// Relative excess over the least force, divided by the square of kappa, of forces that are nearly the least; bounds of the excess. The minima of a
+/// sphere at neighbouring rings lie 1 % below the forces between them for kappa 0.4, and 0.01 % for kappa 0.14.
 const NEARLY: f64 = 0.1;
 const NEARLY_WITHIN: (f64, f64) = (0.005, 0.02);
-/// The least force is looked for once more so many small steps above.
+/// Small steps above the minimum from which the least force is sought again.
 const UP: [f64; 4] = [0.0, 0.25, 0.5, 1.0];
-/// Steps from the minimum, which are halved where they find no less: the last elements of a contact part at a cusp.
+/// Steps from the minimum, halved if they find no smaller force: the last elements of a contact part at a cusp.
 const LAST: u32 = 5;
-/// Two ways have met where their sums of p differ by less than this part of all attraction or repulsion.
+/// Difference of the sums of p, relative to the whole attraction or repulsion, at which two ways meet.
 const SAME: f64 = 1e-3;
-/// Of sigma(0): contact pressures below are those of elements that part.
+/// Contact pressures of parting elements are below this part of sigma(0).
 const PARTING: f64 = 1e-9;
 
 /// The least force on a way.
 struct Least {
     at: Place,
-    /// The state before the first one that is nearly the least, and the sum of that one.
+    /// The state before the first one that is nearly the least, and the latter's sum.
     above: Place,
     first: f64,
-    /// The approach of the last one that is, and the length of a step there.
+    /// The approach of the last state that is nearly the least, and the length of a step there.
     last: f64,
     step: f64,
-    /// The part by which a force that is nearly the least may be more.
+    /// The relative excess of forces that are nearly the least.
     nearly: f64,
 }
 
@@ -54,7 +55,7 @@ fn is_nearly(sum: f64, least: f64, part: f64) -> bool {
 }
 
 impl Least {
-    /// Of a way that begins.
+    /// The least force at the begin of a way.
     fn of(level: &Level, way: &Way) -> Result<Least> {
         let Way { here, longest, .. } = way;
         let place = || Place::of(level, here.sum);
@@ -63,7 +64,7 @@ impl Least {
         Ok(Least { at: place()?, above: place()?, first: here.sum, last: here.approach(), step: *longest, nearly })
     }
 
-    /// Takes a state of this sum, which the level holds, one step from where the way is.
+    /// Records the level's state of this sum, one step along the way.
     fn look_at(&mut self, level: &Level, sum: f64, way: &Way) -> Result<()> {
         if sum < self.at.sum {
             if !is_nearly(self.first, sum, self.nearly) {
@@ -82,7 +83,7 @@ impl Least {
 }
 
 impl Walker<'_, '_, '_> {
-    /// Walks down from what the level holds, the state of more force. `met`: where it may end.
+    /// Walks down from the level's state, one of more force. `met`: the place at which it may end.
     pub fn walk(&mut self, met: Option<Met>) -> Result<Walk> {
         let first = match is_locked(self.level) {
             true => match self.part()? {
@@ -112,7 +113,7 @@ impl Walker<'_, '_, '_> {
         self.closer(least)
     }
 
-    /// Down until nothing is in contact: the least force, or how the walk ended before.
+    /// Walks down until nothing is in contact. Returns the least force, or an earlier end of the walk.
     fn down(&mut self, mut way: Way, mut met: Option<Met>) -> Result<std::result::Result<Least, Walk>> {
         let mut least = Least::of(self.level, &way)?;
         for _ in 0..MOST_STEPS {
@@ -133,7 +134,7 @@ impl Walker<'_, '_, '_> {
             least.look_at(self.level, sum, &way)?;
             if let Some(at) = meets.filter(|met| approach == met.approach) {
                 if (sum - at.sum).abs() <= SAME * at.all {
-                    // What is less than at the meeting lies on this way alone.
+                    // A force less than at the meeting lies on this way only.
                     let is_less = least.at.sum < sum - SAME * at.all;
                     return Ok(if is_less { Ok(least) } else { Err(Walk::Met) });
                 }
@@ -148,7 +149,7 @@ impl Walker<'_, '_, '_> {
         Ok(Err(Walk::Lost))
     }
 
-    /// Small steps where the force was nearly the least.
+    /// Repeats the way in small steps where the force was nearly the least.
     fn closer(&mut self, least: Least) -> Result<Walk> {
         let Least { at: mut best, above, last, step, nearly, .. } = least;
         let (to, small) = (last - step, step / f64::from(PARTS));
@@ -184,10 +185,10 @@ impl Walker<'_, '_, '_> {
         self.last(best, (small, nearly))
     }
 
-    /// The state of the least force that the way has found, and smaller and smaller steps from there.
+    /// Restores the state of the least force on the way, and continues from there with smaller and smaller steps.
     fn last(&mut self, found: Place, (mut step, nearly): (f64, f64)) -> Result<Walk> {
         let mut best = None::<Place>;
-        // Next to the end of a branch its last state may be none of the tolerance that is asked for.
+        // Next to the end of a branch its last state may miss the tolerance.
         for up in UP {
             self.level.now.copy_from(&found.at)?;
             let sum = self.solve_at(found.approach() + up * step)?;
@@ -234,8 +235,8 @@ impl Walker<'_, '_, '_> {
         Ok(part * self.length(stiffness))
     }
 
-    /// A length of the contact: where a spring of its stiffness holds its elastic energy and the work that parts it. The elastic energy alone is nothing
-    /// where attraction and contact pressures cancel, as below a flat punch without a load.
+    /// A length of the contact: the stretch at which a spring of its stiffness has its elastic energy and the work of parting. The elastic energy
+    /// alone is 0 if attraction and contact pressures cancel, as below a flat punch without a load.
     fn length(&self, stiffness: f64) -> f64 {
         let Level { surface, now, problem, .. } = &*self.level;
         let [elastic, _] = energies(surface, now, &problem.threads);
@@ -244,8 +245,8 @@ impl Walker<'_, '_, '_> {
         ((elastic + parting) / stiffness.abs()).sqrt()
     }
 
-    /// From surfaces that are locked in contact, where pressures fall by the same everywhere: to the force that is wanted, or to that at which the first
-    /// element parts. Returns the sum of p, and whether it is the one that is wanted.
+    /// Lowers the pressures of surfaces locked in contact, which fall uniformly, to the wanted force or until the first element parts. Returns the
+    /// sum of p, and whether it is the wanted one.
     fn part(&mut self) -> Result<(f64, bool)> {
         let Met { sum, .. } = Met::of(self.level);
         let Level { surface, now, .. } = &mut *self.level;

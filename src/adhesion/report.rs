@@ -1,4 +1,4 @@
-//! The results of adhesion, and how well its conditions hold.
+//! The results of adhesion and their measures.
 
 use super::level::Level;
 use super::unknowns::{energies, Measured, Unknowns};
@@ -20,29 +20,29 @@ pub struct Report {
     pub adhesive_energy: f64,
     /// `||p + sigma(e)||` outside C, relative to `||p||`, or to 1e-3 of `||q||` in C if that is larger.
     pub law_residual: f64,
-    /// rho as it was used.
+    /// The range rho used.
     pub range: f64,
-    /// kappa: the largest stiffness of the attraction times what an element displaces itself by. Above 1/2 elements are too coarse.
+    /// kappa: the largest stiffness of the attraction times an element's influence on itself. Above 1/2 elements are too coarse.
     pub resolution: f64,
-    /// The part of the sum of sigma on the border of the grid, in directions that do not repeat themselves.
+    /// The part of the sum of sigma on the border of the grid, in directions without a period.
     pub border_share: f64,
-    /// dF/dapproach; none: not asked for.
+    /// dF/dapproach; none: not requested.
     pub stiffness: Option<f64>,
-    /// `1 - lambda` (module `stability`): positive in a stable state, 0 at a snap; none: not asked for.
+    /// `1 - lambda` (module `stability`): positive in a stable state, 0 at a snap; none: not requested.
     pub stability: Option<f64>,
-    /// Whether the bodies have snapped: the state before could not be followed, and more than a quarter of the contact is another one.
+    /// Whether the bodies have snapped: the state before could not be followed, and more than a quarter of the contact differs.
     pub jumped: bool,
 }
 
 /// kappa up to which elements resolve the attraction.
 pub const RESOLVED: f64 = 0.5;
-/// kappa beyond which an element alone is unstable.
+/// kappa above which a single element is unstable.
 pub const UNSTABLE: f64 = 1.0;
-/// Of the attraction on the border, up to which the grid contains it.
+/// Largest part of the attraction on the border of a grid that contains it.
 pub const CONTAINED: f64 = 1e-3;
 
 impl Report {
-    /// Of the state of a grid.
+    /// The report of a grid's state.
     pub(super) fn of(level: &Level, measured: &Measured) -> Report {
         let (surface, now, grid) = (&level.surface, &level.now, level.problem.grid);
         let threads = &level.problem.threads;
@@ -73,7 +73,7 @@ impl Report {
         }
     }
 
-    /// Bits of [`DiscretisationError`] that elements as coarse as these, or a grid as small, do not earn.
+    /// Bits of [`DiscretisationError`] for elements that are too coarse or a grid that is too small.
     pub fn untrusted(&self) -> u32 {
         let all = DiscretisationError::FORCE | DiscretisationError::MAX_PRESSURE | DiscretisationError::PRESSURE;
         if self.resolution > RESOLVED || self.border_share > CONTAINED {
@@ -83,7 +83,7 @@ impl Report {
         }
     }
 
-    /// Advice where elements are too coarse; none where they are not.
+    /// Advice if elements are too coarse.
     pub fn advice(&self) -> Option<String> {
         (self.resolution > RESOLVED).then(|| {
             let factor = self.resolution / RESOLVED;

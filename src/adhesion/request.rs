@@ -1,24 +1,24 @@
-//! A request.
+//! The request of a solve with adhesion.
 
 use super::levels::Surfaces;
 use crate::scene::Load;
 
-/// Where a solve from nothing begins: several states may belong to one approach.
+/// The begin of a solve without a state: several states may belong to one approach.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Start {
     /// On coarser grids with longer ranges, from the contact without attraction.
     #[default]
     Auto,
-    /// From a larger approach: what is in contact stays so.
+    /// From a larger approach: elements in contact stay so.
     Contact,
-    /// From bodies apart: what is not in contact does not snap in before it must.
+    /// From bodies apart: elements do not snap in before they must.
     Apart,
 }
 
-/// A state to go on from.
+/// A state to start from.
 #[derive(Clone, Copy, Debug)]
 pub struct State<'a> {
-    /// Total pressures; none: those that were lent.
+    /// Total pressures; none: those lent to the solver.
     pub pressure: Option<&'a [f64]>,
     /// The contact area.
     pub contact: &'a [bool],
@@ -33,18 +33,18 @@ pub struct Request<'a> {
     pub surfaces: Surfaces<'a>,
     /// Approach or force, which may pull.
     pub load: Load,
-    /// Whether the least force is to be found, from the load on.
+    /// Whether the least force is sought, from the load on.
     pub pull_off: bool,
-    /// Where it begins, if there is no state.
+    /// The begin without a state.
     pub start: Start,
-    /// Where it goes on from.
+    /// The state to start from.
     pub state: Option<State<'a>>,
-    /// Whether dF/dapproach is asked for.
+    /// Whether dF/dapproach is computed.
     pub stiffness: bool,
-    /// Whether it is asked for how near the state is to a snap.
+    /// Whether the distance of the state from a snap is computed.
     pub stability: bool,
-    /// Of each measure.
+    /// The tolerance of each measure.
     pub tolerance: f64,
-    /// Cycles on the finest grid at most.
+    /// Most cycles on the finest grid.
     pub max_cycles: u64,
 }

@@ -1,5 +1,5 @@
-//! One grid: Newton's method; where it fails in cautious steps; and where that fails, or ends uphill or on a saddle, some steps of descent from the last
-//! good state, and Newton's method again, in bold and cautious steps by turns.
+//! One grid: Newton's method, then in cautious steps if it fails. If these fail, or end uphill or on a saddle, some steps of descent from the last
+//! good state follow, then Newton's method again, with bold and cautious steps in turns.
 
 use super::level::{Level, MakeFrozen};
 use super::majorise::{descend, Descent, Steps};
@@ -9,48 +9,49 @@ use super::unknowns::{energies, Measured};
 use crate::error::Result;
 use crate::progress::Monitor;
 
-/// Times that Newton's method is tried.
+/// Most trials of Newton's method.
 const ROUNDS: u32 = 12;
 /// Steps of descent between.
 pub const BETWEEN: u64 = 5;
-/// An energy of more by this part is uphill.
+/// Relative increase of energy that counts as uphill.
 const UPHILL: f64 = 1e-6;
-/// Grids of so many elements are asked whether their equilibrium is stable: it costs little there. Larger ones are if Newton's method takes more steps
-/// than this: they begin near the equilibrium of a coarser grid, or of the last load, and a short way from a stable one ends at a stable one.
+/// Elements of a grid up to which stability is always tested, at little cost. Larger grids are tested if Newton's method takes more than SHORT steps:
+/// they start near the equilibrium of a coarser grid or of the last load, and few steps from a stable equilibrium end at a stable one.
 const ASKED: usize = 1024;
 const SHORT: u64 = 6;
 
-/// How a grid ended.
+/// The end of a solve of a grid.
 #[derive(Clone, Copy, Debug)]
 pub struct Ended {
-    /// Why.
+    /// Why it ended.
     pub end: Descent,
-    /// How well the conditions hold.
+    /// The measures of the conditions.
     pub measured: Measured,
-    /// Whether Newton's method failed at first: the state that it began from was not followed.
+    /// Whether Newton's method failed at first, so that the starting state was not followed.
     pub is_lost: bool,
 }
 
 impl Ended {
-    /// Whether that is an equilibrium of bodies that touch.
+    /// Whether it is an equilibrium of bodies in contact.
     pub fn is_in_contact(&self) -> bool {
         self.end == Descent::By(End::Solved) && self.measured.count > 0
     }
 }
 
-/// The energy that an equilibrium makes least, per area of an element: elastic energy less work of adhesion, and less that of a force that is given.
+/// The energy that a stable equilibrium minimises, per area of an element: elastic energy less work of adhesion, less the work of a given force.
 pub fn energy(level: &Level, wanted: Option<f64>) -> f64 {
     let [elastic, adhesive] = energies(&level.surface, &level.now, &level.problem.threads);
     elastic - adhesive - wanted.map_or(0.0, |wanted| wanted * level.now.approach())
 }
 
-/// Whether Newton's method ended at an equilibrium of no least energy, the approach being given. What a force has is asked at the end of a whole solve.
+/// Whether Newton's method ended at an equilibrium that does not minimise the energy at a given approach. With a given force the end of the whole
+/// solve tests this.
 fn is_saddle(level: &mut Level, goal: Goal, is_long: bool, monitor: &mut Monitor<'_>) -> Result<bool> {
     let is_asked = level.now.u.len() <= ASKED || goal.certified && is_long;
     Ok(goal.wanted.is_none() && is_asked && !is_stable(level, false, monitor)?)
 }
 
-/// Solves a grid from what it holds. `keeps`: the first step of Newton's method keeps the contact area.
+/// Solves a grid from its state. `keeps`: the first Newton step keeps the contact area.
 pub fn solve(
     level: &mut Level,
     goal: Goal,
@@ -63,7 +64,7 @@ pub fn solve(
     let (mut least, mut is_lost, mut has_descended) = (f64::INFINITY, false, false);
     for round in 0..ROUNDS {
         let before = monitor.count.cycles;
-        // Where bold steps go round in circles cautious ones may not, and the other way round.
+        // If bold steps cycle, cautious ones may not, and conversely.
         let pace = if round % 2 == 0 { goal.pace } else { Pace::Cautious };
         let keeps = keeps && !has_descended;
         let (end, measured) = newton(level, Goal { pace, ..goal }, keeps, monitor)?;
@@ -96,7 +97,7 @@ pub fn solve(
     level.good = good;
     let (end, measured) = match ended {
         Some(ended) => ended,
-        // All that is left goes downhill only.
+        // The remaining cycles are descent.
         None => descend(level, goal, Steps { most: goal.most, from_none: false, make }, monitor)?,
     };
     Ok(Ended { end, measured, is_lost })

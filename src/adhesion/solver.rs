@@ -21,18 +21,18 @@ use crate::progress::{Monitor, Outcome};
 use crate::scene::Load;
 use crate::threads::Threads;
 
-/// Where Newton's method could not follow a state, the bodies have snapped if so large a part of their contact is another one.
+/// If Newton's method could not follow a state, the bodies have snapped if more than this fraction of their contact has changed.
 const SNAPPED: f64 = 0.25;
 
 /// Grids and memory for many solves on one grid.
 pub struct Solver {
     pub(super) levels: Vec<Level>,
-    /// Whether what the finest grid holds could not be followed from the state before.
+    /// Whether the state of the finest grid could not be followed from the previous state.
     jumped: bool,
 }
 
 impl Solver {
-    /// On a grid with these coefficients, and their operator.
+    /// A solver on a grid, with its coefficients and their operator.
     pub fn new(
         grid: Grid,
         coefficients: &Coefficients,
@@ -42,40 +42,40 @@ impl Solver {
         Ok(Solver { levels: levels(grid, coefficients, operator, threads)?, jumped: false })
     }
 
-    /// The finest grid, with what was found.
+    /// The finest grid, with the solution.
     pub fn finest(&self) -> &Level {
         &self.levels[0]
     }
 
-    /// Takes the undeformed distances of the next solve, and pressures and displacements of any value.
+    /// Takes the arrays of the next solve: undeformed distances, and pressures and displacements with any values.
     pub fn lend(&mut self, [h, p, u]: [Vec<f64>; 3]) {
-        // Collected in the memory that they have.
+        // `collect` reuses their memory.
         let ones = |values: Vec<f64>| values.into_iter().map(|value| [value]).collect();
         let Level { surface, now, .. } = &mut self.levels[0];
         (surface.h, now.p.field, now.u) = (h, ones(p), ones(u));
     }
 
-    /// Gives them back: total pressures and their displacements, if a solve has ended well.
+    /// Returns these arrays. After a successful solve they hold the total pressures and their displacements.
     pub fn give_back(&mut self) -> [Vec<f64>; 3] {
         let Level { surface, now, .. } = &mut self.levels[0];
         let [p, u] = [&mut now.p.field, &mut now.u].map(|values| std::mem::take(values).into_flattened());
         [std::mem::take(&mut surface.h), p, u]
     }
 
-    /// The contact pressure q of element i, and its attraction sigma, of a state that was found here.
+    /// The contact pressure q of element i, and its attraction sigma, of a state that this solver found.
     pub fn split(&self, state: &contact::State, i: usize) -> (f64, f64) {
         let sigma = self.finest().surface.traction(i, state.h[i] - state.approach + state.u[i]);
-        // The residual may leave it a little below 0.
+        // Within the residual, q may be slightly negative.
         (if state.contact[i] { (state.p[i] + sigma).max(0.0) } else { 0.0 }, sigma)
     }
 
-    /// Bytes held, beside what was lent, and the operator of the finest grid.
+    /// Bytes held, without the lent arrays and the operator of the finest grid.
     pub fn bytes(&self) -> usize {
         let at_work = self.levels.iter().map(Level::bytes_at_work).max().unwrap_or(0);
         self.levels.iter().map(Level::bytes).sum::<usize>() + at_work - self.levels[0].problem.bytes_of_operator()
     }
 
-    /// Solves, with the arrays that were [lent](Solver::lend). The finest grid then has what was found, with u = A p by a fresh product.
+    /// Solves with the [lent](Solver::lend) arrays. The finest grid then holds the solution, with u = A p by a fresh product.
     pub fn solve(
         &mut self,
         request: &Request<'_>,
@@ -99,7 +99,7 @@ impl Solver {
             None => self.begin_anew(goal, (request.start, make), monitor)?,
         };
         let end = match (end, request.pull_off) {
-            // Where the state of the load is not found ways begin from bodies that are pressed together alone.
+            // If no state is found at the load, continuation starts from bodies that are pressed together without attraction.
             (Descent::By(end), true) if end != End::Interrupted => {
                 self.pull_off(goal, (end == End::Solved, make), monitor)?
             }
@@ -108,7 +108,7 @@ impl Solver {
         self.conclude(end, goal, request, monitor)
     }
 
-    /// From a state: along its branch.
+    /// Continues from a state along its branch.
     fn go_on(
         &mut self,
         state: &State<'_>,
@@ -149,7 +149,7 @@ impl Solver {
         self.begin_anew(goal, (start, make), monitor)
     }
 
-    /// To the state of the least force, from the state of now if it is one.
+    /// Finds the state of the least force, from the current state if it is valid.
     fn pull_off(
         &mut self,
         goal: Goal,
@@ -164,7 +164,7 @@ impl Solver {
         })
     }
 
-    /// Takes the measures of what was found, by a fresh product: what is solved has one.
+    /// Computes the measures of the solution, with a fresh product unless it has one.
     fn conclude(
         &mut self,
         end: Descent,
@@ -176,7 +176,7 @@ impl Solver {
         let wanted = goal.wanted;
         let mut end = end;
         if end == Descent::Parted && wanted == Some(0.0) {
-            // Nothing attracts and nothing pulls.
+            // There is no attraction and no pulling force.
             level.now.unload(&level.problem.threads);
             end = Descent::By(End::Solved);
         }
@@ -208,7 +208,7 @@ impl Solver {
     }
 }
 
-/// Whether the force that is given pulls.
+/// Whether the prescribed force pulls.
 pub(super) fn pulls(goal: Goal) -> bool {
     goal.wanted.is_some_and(|wanted| wanted < 0.0)
 }

@@ -1,5 +1,5 @@
-//! How near a state is to a snap. With the contact area as it is, a change v of the attraction outside moves the surfaces there by `A~ v`,
-//! `A~ = A_OO - A_OC A_CC^-1 A_CO`, and that changes the attraction by `s A~ v`: the state is stable where the approach is given if
+//! The distance of a state from a snap. At a fixed contact area a change v of the attraction outside moves the surfaces there by `A~ v`,
+//! `A~ = A_OO - A_OC A_CC^-1 A_CO`, which changes the attraction by `s A~ v`. At a given approach the state is stable if
 //!
 //! ```text
 //! lambda = the largest eigenvalue of  sqrt(s) A~ sqrt(s)  < 1
@@ -17,16 +17,16 @@ use crate::methods::fields::{self, Fields};
 use crate::progress::Monitor;
 use crate::threads::Threads;
 
-/// Steps of Lanczos' iteration at most, and the change of lambda at which it ends.
+/// Most steps of Lanczos' iteration, and the change of lambda at which it ends.
 const MOST_STEPS: usize = 20;
 const ENOUGH: f64 = 1e-4;
-/// Each linear system is solved to this part of its right-hand side: lambda, a Rayleigh quotient, is off by its square. On large grids the vectors of
+/// The effort of each linear system. The error of lambda, a Rayleigh quotient, is the square of the relative residual. On large grids the vectors of
 /// Lanczos' iteration take the memory of many directions.
 const INNER: Effort = Effort { part: 1e-3, most: 60, at_once: 8 };
-/// Halvings of the interval in which an eigenvalue lies.
+/// Halvings of the interval around an eigenvalue.
 const HALVINGS: u32 = 60;
 
-/// `1 - lambda`, at the state of now.
+/// `1 - lambda` of the present state.
 pub fn stability(level: &mut Level, monitor: &mut Monitor<'_>) -> Result<f64> {
     let (n, threads) = (level.now.u.len(), level.problem.threads.clone());
     level.clear_fields(0);
@@ -80,7 +80,7 @@ fn largest_eigenvalue(level: &mut Level, roots: &[Short], threads: &Threads, fie
 fn apply(level: &mut Level, roots: &[Short], v: &[One], fields: &mut Fields<1>) -> Result<Vec<One>> {
     let (n, threads) = (roots.len(), level.problem.threads.clone());
     let none = fields.zeros(n, &threads)?;
-    // Without attraction that changes: outside dp = sqrt(s) v, in contact no change of the distance.
+    // At constant attraction: outside dp = sqrt(s) v, in contact no change of the distance.
     let mut system = Linearised::new(level, &none, false, fields)?;
     let right = |_: &Linearised<'_>, i: usize| f64::from(roots[i][0]) * v[i][0];
     let Solution { y, product, .. } = solve_in_parts(&mut system, right, INNER, fields)?;

@@ -1,4 +1,4 @@
-//! The linear system of a step of Newton's method, on total pressures and the approach:
+//! The linear system of a Newton step, for total pressures and the approach:
 //!
 //! ```text
 //! in C       (A dp - da)/a0 = -e/a0
@@ -6,13 +6,13 @@
 //! force      sum dp = F/(dx dy) - sum p
 //! ```
 //!
-//! preconditioned by `M (a0 y)` on C and `y/(1 - min(s a0, 1/2))` outside, bordered where the force is given:
+//! preconditioned by `M (a0 y)` on C and `y/(1 - min(s a0, 1/2))` outside, bordered if the force is given:
 //! `da = (sum z - y_F)/sum Y`, `z -= Y da`, with Y the preconditioned column of da.
 //!
-//! On large grids preconditioned vectors are not kept, and products as long as they are few: the preconditioner is the same for all directions.
+//! On large grids preconditioned vectors are not kept, and products only if they are few, as the preconditioner is the same for all directions.
 //!
-//! Vectors are stored in single precision, [`Short`]: a linear solve ends at a tenth of its right-hand side. So are the s a0, which are of the
-//! order of 1.
+//! Vectors are stored in single precision, [`Short`], as a linear solve ends at a tenth of its right-hand side. So are the s a0, which are of
+//! order 1.
 
 use super::level::Level;
 use super::unknowns::{is_small, One};
@@ -21,10 +21,10 @@ use crate::methods::fgmres::{self, Bordered, Combination, Direction, Kept, Syste
 use crate::methods::fields::{self, Fields};
 use crate::threads::Threads;
 
-/// The diagonal of a row outside C is never taken for less: where elements snap alone the row tells nothing.
+/// Least diagonal of a row outside C in the preconditioner: rows of elements that snap alone are useless.
 const LEAST_DIAGONAL: f64 = 0.5;
 
-/// Products that are kept on large grids. Twice as many vectors of the basis take the same memory.
+/// Products kept on large grids. Twice as many vectors of the basis take the same memory.
 pub const PRODUCTS: usize = 11;
 
 /// A number per element in single precision.
@@ -37,14 +37,14 @@ pub struct Linearised<'a> {
     pub stiffness: &'a [Short],
     /// The influence of an element on itself.
     a0: f64,
-    /// a0 Y, where the force is given.
+    /// a0 Y, if the force is given.
     column: Vec<Short>,
-    /// 1/sum a0 Y; 0 where there is none.
+    /// 1/sum a0 Y; 0 without Y.
     inverse: f64,
 }
 
 impl<'a> Linearised<'a> {
-    /// With Y where the force is given.
+    /// The system, with Y if the force is given.
     pub fn new(
         level: &'a mut Level,
         stiffness: &'a [Short],
@@ -66,7 +66,7 @@ impl<'a> Linearised<'a> {
         Ok(system)
     }
 
-    /// Element i of the column of the system that belongs to the approach, times a0.
+    /// Element i of the system's column for the approach, times a0.
     pub fn column_at(&self, i: usize) -> f64 {
         if self.level.now.contact[i] {
             -1.0
@@ -75,7 +75,7 @@ impl<'a> Linearised<'a> {
         }
     }
 
-    /// Row i of the system for pressures y and their displacements in units of a0, the approach standing still.
+    /// Row i of the system for pressures y and their displacements in units of a0, at a fixed approach.
     pub fn row(&self, i: usize, y: f64, displaced: f64) -> f64 {
         if self.level.now.contact[i] {
             displaced
@@ -84,14 +84,14 @@ impl<'a> Linearised<'a> {
         }
     }
 
-    /// Gives its fields back.
+    /// Returns the system's fields.
     pub fn give(self, fields: &mut Fields<1>) {
         if !self.column.is_empty() {
             fields.give_of(self.column);
         }
     }
 
-    /// Solves for a right-hand side; displacements are stored in units of a0, so that single precision holds them whatever the units are.
+    /// Solves for a right-hand side. Displacements are stored in units of a0, so that they are within the range of single precision for any units.
     pub fn solve(
         &mut self,
         r: Bordered<1>,

@@ -1,4 +1,4 @@
-//! The unknowns of one grid, and what is known about them.
+//! The unknowns of one grid, and their measures.
 
 use super::law::Attraction;
 use crate::error::Result;
@@ -10,7 +10,7 @@ use crate::threads::Threads;
 /// A number per element, as fields of one number.
 pub type One = [f64; 1];
 
-/// Names its memory in messages.
+/// The name of this memory in messages.
 pub const MEMORY: &str = "the adhesion problem";
 
 /// Total pressures p with the approach as their border, u = A p, and the contact area.
@@ -18,7 +18,7 @@ pub const MEMORY: &str = "the adhesion problem";
 pub struct Unknowns {
     /// p, and the approach.
     pub p: Bordered<1>,
-    /// u = A p, as carried from step to step.
+    /// u = A p, updated from step to step.
     pub u: Vec<One>,
     /// C.
     pub contact: Vec<bool>,
@@ -33,7 +33,7 @@ impl Unknowns {
         Ok(unknowns)
     }
 
-    /// Of n elements, nothing of which is in contact; the fields of pressures and displacements are still to come.
+    /// Unknowns of n elements out of contact, without the fields of pressures and displacements.
     pub fn without_fields(n: usize, threads: &Threads) -> Result<Unknowns> {
         let mut unknowns = Unknowns::default();
         unwritten(&mut unknowns.contact, n, false, MEMORY, threads)?;
@@ -41,7 +41,7 @@ impl Unknowns {
         Ok(unknowns)
     }
 
-    /// Makes room for n elements, which hold anything.
+    /// Makes memory for n elements with undefined values.
     fn reserve(&mut self, n: usize, threads: &Threads) -> Result<()> {
         unwritten(&mut self.p.field, n, [f64::NAN], MEMORY, threads)?;
         unwritten(&mut self.u, n, [f64::NAN], MEMORY, threads)?;
@@ -53,14 +53,14 @@ impl Unknowns {
         self.p.border[0]
     }
 
-    /// p = 0, and nothing is in contact.
+    /// Sets p = 0, without contact.
     pub fn unload(&mut self, threads: &Threads) {
         fields::fill(threads, &mut self.p.field, |_| [0.0]);
         fields::fill(threads, &mut self.u, |_| [0.0]);
         self.contact.fill(false);
     }
 
-    /// Takes what others hold.
+    /// Copies other unknowns.
     pub fn copy_from(&mut self, other: &Unknowns) -> Result<()> {
         let n = other.u.len();
         self.reserve(n, &Threads::One)?;
@@ -71,7 +71,7 @@ impl Unknowns {
         Ok(())
     }
 
-    /// Goes on along the line from others, by this part of the way from them. The contact area stays.
+    /// Extrapolates from other unknowns, by this part of the difference. The contact area stays.
     pub fn go_along(&mut self, from: &Unknowns, part: f64, threads: &Threads) {
         let on = |[to]: [f64; 1], [from]: [f64; 1]| [to + part * (to - from)];
         fields::map(threads, &mut self.p.field, |i, to| on(to, from.p.field[i]));
@@ -84,15 +84,15 @@ impl Unknowns {
     }
 }
 
-/// Grids of at most so many elements are small.
+/// Most elements of a small grid.
 const SMALL: usize = 1 << 15;
 
-/// Whether a grid of n elements is small: more memory is held there, to save products.
+/// Whether a grid of n elements is small, so that memory is spent to save products.
 pub fn is_small(n: usize) -> bool {
     n <= SMALL
 }
 
-/// Pressures with the approach, and the contact area; on large grids u is found from them again by a product.
+/// Pressures with the approach, and the contact area; on large grids u is recomputed by a product.
 #[derive(Default)]
 pub struct Pressures {
     p: Bordered<1>,
@@ -101,7 +101,7 @@ pub struct Pressures {
 }
 
 impl Pressures {
-    /// Takes those of unknowns.
+    /// Copies the pressures of unknowns.
     pub fn take(&mut self, from: &Unknowns, threads: &Threads) -> Result<()> {
         let n = from.u.len();
         unwritten(&mut self.p.field, n, [f64::NAN], MEMORY, threads)?;
@@ -116,7 +116,7 @@ impl Pressures {
         Ok(())
     }
 
-    /// Copies them to unknowns. Returns whether u was kept, and is copied, too.
+    /// Copies the pressures to unknowns. Returns whether u was kept and is copied as well.
     pub fn put(&self, to: &mut Unknowns) -> bool {
         to.p.field.copy_from_slice(&self.p.field);
         to.contact.copy_from_slice(&self.contact);
@@ -140,13 +140,13 @@ pub struct Surface {
     pub h: Vec<f64>,
     /// The law, with the range of this grid.
     pub attraction: Attraction,
-    /// w of each element; empty where it is the same everywhere.
+    /// w of each element; empty if w is uniform.
     pub works: Vec<f64>,
-    /// w where it is the same everywhere, or the largest.
+    /// The uniform or the largest w.
     pub work: f64,
 }
 
-/// Of sigma(0): pressures of this part are none, as between bodies apart of which a law that ends has left no more.
+/// Pressures below this part of sigma(0) count as 0, as between bodies apart under a law of finite range.
 const NOTHING: f64 = f64::EPSILON;
 
 impl Surface {
@@ -169,49 +169,49 @@ impl Surface {
     }
 }
 
-/// Contact pressures and attraction cancel where p is less than this part of them.
+/// Contact pressures and attraction cancel if p is below this part of them.
 pub const CANCELLED: f64 = 1e-3;
-/// Of `h - approach` where h is the approach, as in plain contact problems.
+/// Relative round-off of `h - approach` for h equal to the approach, as in plain contact problems.
 const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
 
-/// How well the conditions hold, each number relative to its own scale. Where contact pressures and attraction cancel, as below a flat punch
-/// without a load, total pressures are round-off: the scale of pressures is p, or [`CANCELLED`] times q if that is larger.
+/// The measures of the conditions, each relative to its own scale. If contact pressures and attraction cancel, as below a flat punch without a
+/// load, total pressures are round-off: the scale of pressures is p, or [`CANCELLED`] times q if that is larger.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measured {
-    /// rms over C of e, relative to that of `h - approach`, or to what one element displaces itself by under p or [`CANCELLED`] q,
-    /// whichever is larger. 0 where both are the round-off of bodies that fit exactly.
+    /// rms over C of e, relative to that of `h - approach`, or to the displacement of one element by itself under p or [`CANCELLED`] q, whichever
+    /// is larger. 0 if both are the round-off of bodies that fit exactly.
     pub distance: f64,
     /// Largest -e outside C, a length.
     pub penetration: f64,
-    /// The same relative to the scale of `distance`.
+    /// The penetration relative to the scale of `distance`.
     pub violation: f64,
-    /// `||p + sigma(e)||` outside C, relative to `||p||`, if that is anything, or to that part of `||q||` in C if it is larger.
+    /// `||p + sigma(e)||` outside C, relative to `||p||`, or to [`CANCELLED`] times `||q||` in C if that is larger.
     pub law: f64,
-    /// The given force less the sum of p, relative to the sum of |p|, or that part of the sum of q.
+    /// The given force less the sum of p, relative to the sum of |p|, or to [`CANCELLED`] times the sum of q.
     pub force: f64,
     /// Elements in contact.
     pub count: usize,
-    /// Elements that have entered or left it.
+    /// Elements that have entered or left the contact.
     pub changed: usize,
     /// The sum of p.
     pub pressures: f64,
-    /// The mean of `h - approach` where all elements touch and a uniform pressure displaces nothing: e has that mean, whatever p is. 0 elsewhere.
+    /// The mean of `h - approach` if all elements touch and a uniform pressure displaces nothing: e has this mean for any p. 0 otherwise.
     pub opening: f64,
 }
 
 impl Measured {
-    /// The worst of all; infinite where one is no number.
+    /// The largest measure; infinite if one is NaN.
     pub fn worst(&self) -> f64 {
         largest([self.distance, self.violation, self.law, self.force])
     }
 
-    /// The same without the violation, which one element alone can keep large: how far a step of Newton's method has to go.
+    /// The largest measure without the violation, which a single element can keep large: the size of the next Newton step.
     pub fn residual(&self) -> f64 {
         largest([self.distance, self.law, self.force])
     }
 }
 
-/// The largest of some values, infinite where one is no number.
+/// The largest of some values, infinite if one is NaN.
 fn largest<const K: usize>(values: [f64; K]) -> f64 {
     values.into_iter().fold(0.0, |worst: f64, value| match value {
         value if value <= worst => worst,
@@ -220,8 +220,8 @@ fn largest<const K: usize>(values: [f64; K]) -> f64 {
     })
 }
 
-/// Takes C from the natural map q - e/a0 > 0, unless it `is_kept`, and measures. `round_off`: of displacements, per unit of pressure; `wanted`: the
-/// sum of p where the force is given; `is_mean_free`: whether the approach is given, and a uniform pressure displaces nothing.
+/// Takes C from the natural map q - e/a0 > 0, unless it `is_kept`, and measures. `round_off`: that of displacements per unit of pressure; `wanted`:
+/// the sum of p if the force is given; `is_mean_free`: whether the approach is given and a uniform pressure displaces nothing.
 pub fn measure(
     surface: &Surface,
     unknowns: &mut Unknowns,
@@ -278,7 +278,7 @@ pub fn measure(
     }
 }
 
-/// The elastic energy `1/2 sum p u`, and the work that the attraction has done, `sum W(e)`, both per area of an element.
+/// The elastic energy `1/2 sum p u`, and the remaining work of the attraction, `sum W(e)`, both per area of an element.
 pub fn energies(surface: &Surface, unknowns: &Unknowns, threads: &Threads) -> [f64; 2] {
     fields::sum(threads, unknowns.u.len(), |i| {
         let e = surface.distance(i, unknowns);

@@ -1,6 +1,7 @@
-//! A way along a branch, by the approach. Each state begins on the line through the two before it, and Newton's method takes cautious steps, to a tolerance
-//! that tells one force from another. Where that fails, or the contact changes by much, steps are halved. Where short steps fail, too, the branch ends: the
-//! bodies snap. Far beyond the end of a branch descent is faster than next to it, so that snaps take long steps.
+//! Continuation along a branch of states, by the approach. Each state starts from the line through the two before it. Newton's method takes cautious
+//! steps, to a tolerance that distinguishes the forces of neighbouring states. If it fails, or if the contact changes by much, the step is halved. If
+//! short steps fail too, the branch ends and the bodies snap. Descent is faster far beyond the end of a branch than next to it. So snaps take long
+//! steps.
 
 use super::level::{Level, MakeFrozen};
 use super::majorise::Descent;
@@ -10,42 +11,42 @@ use super::robust;
 use crate::error::Result;
 use crate::progress::Monitor;
 
-/// Each measure of the states on a way, and of those in small steps.
+/// The tolerance of each measure of the states on a way, and of states in small steps.
 const ON_THE_WAY: f64 = 1e-3;
 const IN_SMALL_STEPS: f64 = 1e-4;
-/// Steps of Newton's method, of one state.
+/// The most Newton steps for one state.
 const TRIED: u64 = 14;
-/// Halvings of a step, and doublings of one over a snap.
+/// The most halvings of a step, and doublings of a step over a snap.
 const HALVINGS: u32 = 2;
 const LEAPS: u32 = 2;
-/// A snap may take this factor times the cycles of a state on the way.
+/// A snap may take this many times the cycles of a state on the way.
 const LONGER: u64 = 4;
-/// After so few steps of Newton's method the next step is longer, by this factor.
+/// After at most so many Newton steps, the next step along the branch is longer by this factor.
 const EASY: u64 = 6;
 const GROWTH: f64 = 1.5;
-/// The first step after a snap is this part of others.
+/// The first step after a snap is this fraction of the longest step.
 const AFTER_SNAP: f64 = 0.25;
-/// The contact has snapped where this part of it changes, and so many elements more; in one small step.
+/// The contact has snapped if more than this fraction of it changes, plus so many elements. The second pair is for small steps.
 const SNAPPED: (f64, f64) = (0.5, 8.0);
 const SNAPPED_CLOSE: (f64, f64) = (0.25, 4.0);
 
-/// Goes from state to state on one grid.
+/// Continues from state to state on one grid.
 pub struct Walker<'a, 'm, 'c> {
     pub level: &'a mut Level,
     pub goal: Goal,
     pub make: MakeFrozen<'a>,
     pub monitor: &'m mut Monitor<'c>,
-    /// Cycles of each state on the way at most: more are a state that is not found.
+    /// The most cycles for each state on the way. A state that needs more counts as not found.
     pub each: u64,
 }
 
-/// Where a walk is.
+/// The current point of a continuation.
 pub struct Way {
     pub here: Place,
     before: Place,
-    /// Whether the line through both leads on.
+    /// Whether both states give a line to extrapolate.
     has_before: bool,
-    /// Elements in contact here.
+    /// Elements in contact in the current state.
     count: usize,
     /// Whether steps are small.
     is_close: bool,
@@ -55,16 +56,16 @@ pub struct Way {
 }
 
 impl Way {
-    /// From what a level holds.
+    /// Starts from the state of a level.
     pub fn from(level: &Level, sum: f64, longest: f64, is_close: bool) -> Result<Way> {
         let (here, before) = (Place::of(level, sum)?, Place::of(level, sum)?);
         Ok(Way { here, before, has_before: false, count: count_contact(level), is_close, step: longest, longest })
     }
 
-    /// Goes on to what the level holds.
+    /// Moves on to the state of the level.
     pub fn take(&mut self, level: &Level, sum: f64) -> Result<()> {
         let count = count_contact(level);
-        // The line does not lead over a snap.
+        // There is no extrapolation over a snap.
         self.has_before = !self.is_snap(count);
         if !self.has_before {
             self.step = AFTER_SNAP * self.longest;
@@ -74,7 +75,7 @@ impl Way {
         self.here.take(level, sum)
     }
 
-    /// Whether so many elements in contact are those of another branch.
+    /// Whether so many elements in contact indicate another branch.
     fn is_snap(&self, count: usize) -> bool {
         let (part, few) = if self.is_close { SNAPPED_CLOSE } else { SNAPPED };
         self.count.abs_diff(count) as f64 > part * self.count as f64 + few
@@ -86,12 +87,12 @@ fn count_contact(level: &Level) -> usize {
 }
 
 impl<'a, 'm, 'c> Walker<'a, 'm, 'c> {
-    /// On a grid, from what it holds; each state may take all cycles of the goal.
+    /// Starts from the state of a grid. Each state may take all cycles of the goal.
     pub fn new(level: &'a mut Level, goal: Goal, make: MakeFrozen<'a>, monitor: &'m mut Monitor<'c>) -> Self {
         Walker { level, goal, make, monitor, each: u64::MAX }
     }
 
-    /// The sum of p at an approach, from what the level holds; none where no state is found.
+    /// Solves at an approach, from the state of the level. Returns the sum of p; none if no state is found.
     pub fn solve_at(&mut self, approach: f64) -> Result<Option<f64>> {
         self.level.now.p.border = [approach];
         let most = self.goal.most.min(self.monitor.count.cycles.saturating_add(self.each));
@@ -111,7 +112,7 @@ impl<'a, 'm, 'c> Walker<'a, 'm, 'c> {
 }
 
 impl Walker<'_, '_, '_> {
-    /// The next state of a way, which the level then holds, at an approach or above it; beyond it after a snap. None where none is found.
+    /// Computes the next state of a way in the level. Its approach is at or above `approach`, or beyond it after a snap. None if no state is found.
     pub fn step_to(&mut self, way: &mut Way, approach: f64) -> Result<Option<f64>> {
         let mut by = approach - way.here.approach();
         for halving in 0..=HALVINGS {
@@ -134,7 +135,7 @@ impl Walker<'_, '_, '_> {
         self.snap(way)
     }
 
-    /// A state at an approach, from the line through the last two. None where Newton's method fails, or the contact is another one.
+    /// Computes a state at an approach, from the line through the last two. None if Newton's method fails or the contact is on another branch.
     fn advance(&mut self, way: &Way, approach: f64) -> Result<Option<f64>> {
         let Way { here, before, .. } = way;
         let now = &mut self.level.now;
@@ -146,7 +147,7 @@ impl Walker<'_, '_, '_> {
         now.p.border = [approach];
         let most = self.goal.most.min(self.monitor.count.cycles.saturating_add(TRIED.min(self.each)));
         let enough = match self.goal.wanted {
-            // Forces are compared with the one that is wanted.
+            // Forces are compared with the prescribed force.
             Some(_) => 0.0,
             None if way.is_close => IN_SMALL_STEPS,
             None => ON_THE_WAY,
@@ -158,7 +159,7 @@ impl Walker<'_, '_, '_> {
         Ok(is_found.then_some(measured.pressures))
     }
 
-    /// Over the end of a branch, which may take more cycles than a state on it.
+    /// Crosses the end of a branch. That may take more cycles than a state on the branch.
     fn snap(&mut self, way: &Way) -> Result<Option<f64>> {
         let each = self.each;
         self.each = each.saturating_mul(LONGER);
@@ -167,7 +168,7 @@ impl Walker<'_, '_, '_> {
         found
     }
 
-    /// To a state beyond, by longer and longer steps.
+    /// Finds a state beyond the end, by longer and longer steps.
     fn leap(&mut self, way: &Way) -> Result<Option<f64>> {
         let mut by = way.longest;
         for leap in 0..=LEAPS {
@@ -177,7 +178,7 @@ impl Walker<'_, '_, '_> {
             if self.goal.is_interrupted(self.monitor) {
                 return Ok(None);
             }
-            // Bodies that are apart after more than a step may have been in contact after less.
+            // Bodies that are apart after a leap of more than one step may still touch after a shorter one.
             if found.is_some() && (leap == 0 || self.level.now.contact.contains(&true)) {
                 return Ok(found);
             }

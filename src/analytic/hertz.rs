@@ -59,7 +59,7 @@ pub fn hertz(curvature_x: f64, curvature_y: f64, approach: f64, compliance: f64)
     Ok(exact)
 }
 
-/// The same with the force given: `F` grows with the approach to the power 3/2.
+/// The same for a prescribed force. `F` is proportional to the approach to the power 3/2.
 pub fn hertz_by_force(curvature_x: f64, curvature_y: f64, force: f64, compliance: f64) -> Result<Hertz> {
     positive("force", force)?;
     let unit = hertz(curvature_x, curvature_y, 1.0, compliance)?;

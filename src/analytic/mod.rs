@@ -1,4 +1,4 @@
-//! Closed forms: what numerical answers are held to.
+//! Closed forms to which numerical results are compared.
 
 mod hertz;
 

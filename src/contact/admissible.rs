@@ -1,14 +1,14 @@
-//! Admissible sets: the pressures that a scene allows. Steps (4.1) and (4.2) are projections on them, written once for all.
+//! Admissible sets: the pressures that a scene allows. Steps (4.1) and (4.2) are projections on them, with one implementation for all sets.
 //!
 //! ```text
 //! half-line   0 <= p              (NonNegative)
 //! box         0 <= p <= p_max     (PressureLimit, the effect)
 //! ```
 //!
-//! The third is what a caller gives who keeps the contact area (active_set FIXED): any pressure, on the elements given ([`Fixed`]).
+//! A third set is that of a given contact area (active_set FIXED): any pressure on the given elements ([`Fixed`]).
 //!
-//! An element is free (in C, with e = 0), exterior (p = 0, e >= 0), or at its limit (p = p_max, e <= 0). With a half-line the last does
-//! not exist: [`AdmissibleSet::LIMITED`] is a constant, and what asks for a limit is not compiled.
+//! An element is free (in C, with e = 0), exterior (p = 0, e >= 0), or at its limit (p = p_max, e <= 0). A half-line has no limit:
+//! [`AdmissibleSet::LIMITED`] is a constant, and code for limits is not compiled.
 
 use crate::scene::PressureLimit;
 
@@ -17,22 +17,21 @@ pub trait AdmissibleSet: Copy + Send + Sync {
     /// Whether there are limits.
     const LIMITED: bool;
 
-    /// Whether the contact area is given: nobody enters or leaves it, and pressures may be negative.
+    /// Whether the contact area is given: no element enters or leaves it, and pressures may be negative.
     const FIXED: bool = false;
 
     /// The set on a part of the grid, or on a coarser one.
     type Within<'a>: AdmissibleSet;
 
-    /// That set, where `limits` are those of its elements, if there are any.
+    /// The set with the `limits` of its elements, if there are any.
     fn within(limits: &[f64]) -> Self::Within<'_>;
 
-    /// The greatest pressure of element i; `+infinity` where there is none.
+    /// The greatest pressure of element i; `+infinity` without a limit.
     fn limit(&self, _i: usize) -> f64 {
         f64::INFINITY
     }
 
-    /// Whether one of the pressures `p`, of elements from `first` on, is beyond its limit; many at a time, which the compiler can
-    /// vectorise.
+    /// Whether any of the pressures `p` of elements from `first` on exceeds its limit, in a loop that the compiler vectorises.
     fn any_beyond(&self, _first: usize, _p: impl Iterator<Item = f64>) -> bool {
         false
     }
@@ -52,9 +51,9 @@ pub trait AdmissibleSet: Copy + Send + Sync {
         !Self::FIXED && (p < 0.0 || Self::LIMITED && p > self.limit(i))
     }
 
-    /// Step (4.2): whether an element that is not free, at its limit or exterior, enters C with the deformed distance `e`. The paper has
-    /// `e <= 0`. An element with `e = 0` and `p = 0` satisfies the conditions of C and of the exterior area alike: here it stays, so that C
-    /// does not change for it (step 5), and all elements of bodies that fit exactly do not enter with it.
+    /// Step (4.2): whether an element that is not free, at its limit or exterior, enters C with the deformed distance `e`. The paper has `e <= 0`. An
+    /// element with `e = 0` and `p = 0` satisfies the conditions of C and of the exterior area. Here it stays exterior. So it does not count as a
+    /// change of C (step 5), and conforming bodies do not enter C as a whole.
     fn enters(&self, at_limit: bool, e: f64) -> bool {
         !Self::FIXED && if at_limit { e > 0.0 } else { e < 0.0 }
     }
@@ -74,7 +73,7 @@ impl AdmissibleSet for NonNegative {
     }
 }
 
-/// Any pressure on a contact area that is given.
+/// Any pressure on a given contact area.
 #[derive(Clone, Copy, Debug)]
 pub struct Fixed;
 

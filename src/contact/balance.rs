@@ -1,4 +1,4 @@
-//! A prescribed force that has to be carried within an admissible set.
+//! Pressures of an admissible set that carry a prescribed force.
 
 use std::array::from_fn;
 use std::ops::Range;
@@ -9,16 +9,16 @@ use crate::scene::Load;
 use crate::sums::Sums;
 use crate::threads::Threads;
 
-/// Rounds of raising what is below its limit; each but the last brings an element to its limit, most of them many.
+/// Most rounds of raising pressures below their limit; each but the last brings at least one element to its limit, most bring many.
 const ROUNDS: u32 = 50;
 
-/// Round-off of the force, relative to the sum of all that pushes and pulls: that of a sum of 2^31 pressures in any order.
+/// Round-off of the force, relative to the sum of |p| and the force: that of a sum of 2^31 pressures in any order.
 const ROUND_OFF: f64 = 1e-12;
 
-/// Of the sum of |p|: forces of a smaller part are carried by adding, not by scaling p.
+/// Forces below this part of the sum of |p| are carried by adding to p, not by scaling p.
 const CANCELLED: f64 = 1e-3;
 
-/// Distances whose squares have no sum are never closed.
+/// Distances from which squares overflow in sums; such gaps never close.
 const OUT_OF_REACH: f64 = 1e140;
 
 impl State {
@@ -30,7 +30,7 @@ impl State {
         (sum * area - force).abs() <= ROUND_OFF * (all * area + force.abs())
     }
 
-    /// Projects p on the set, and with a prescribed force raises it to carry that: [`State::balance_force`] where no limit is reached.
+    /// Projects p on the set and makes it carry a prescribed force: by [`State::balance_force`] if no limit is reached.
     /// Call before u is recomputed.
     pub fn carry_force<S: AdmissibleSet>(&mut self, set: S, threads: &Threads) -> Option<f64> {
         if S::FIXED && self.is_cancelled(threads) {
@@ -60,10 +60,10 @@ impl State {
                 let factor = 1.0 + missing / free;
                 self.p.iter_mut().zip(&self.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p *= factor);
             } else if self.carries(threads) {
-                // Elements at their limit carry all of it, but for rounding.
+                // Elements at their limit carry the force up to round-off.
                 break;
             } else if missing < 0.0 {
-                // Less than what is at its limit carries: that is not at its limit.
+                // The force is less than that of elements at their limit: they leave the limit.
                 self.p.iter_mut().for_each(|p| *p *= pressures / all);
                 self.contact.iter_mut().zip(&mut self.at_limit).for_each(|(inside, at)| *inside |= std::mem::take(at));
             } else {
@@ -74,7 +74,7 @@ impl State {
         None
     }
 
-    /// A uniform pressure on C; on all that is exterior and has a surface in reach where C is empty.
+    /// Adds a uniform pressure on C. If C is empty, exterior elements with a surface in reach enter C first.
     fn spread(&mut self, pressures: f64) {
         if self.contact_count() == 0 {
             for i in 0..self.h.len() {
@@ -85,14 +85,14 @@ impl State {
         self.p.iter_mut().zip(&self.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p += uniform);
     }
 
-    /// Whether a prescribed force is next to nothing beside what pushes and pulls: the sum of p is then round-off, and no measure of p.
+    /// Whether a prescribed force is negligible beside the sum of |p|: the sum of p is then round-off, and no measure of p.
     pub fn is_cancelled(&self, threads: &Threads) -> bool {
         let Load::Force(force) = self.load else { return false };
         let [all] = self.sum_pressures(threads, |p| [p.abs()]);
         force.abs() <= CANCELLED * all * self.grid.element_area()
     }
 
-    /// On a given contact area such a force is carried by one pressure that is added everywhere.
+    /// Carries a cancelled force on a given contact area by a uniform pressure added on C.
     fn shift_mean(&mut self, threads: &Threads) {
         let Load::Force(force) = self.load else { return };
         let [all, _, count] = self.sum_on_contact(threads);
@@ -100,7 +100,7 @@ impl State {
         self.p.iter_mut().zip(&self.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p += missing);
     }
 
-    /// The sums of p, of p on C, and the elements of C: by blocks, for a plain sum of many equal pressures is off by more than a force may be.
+    /// The sums of p, of p on C, and the elements of C. In blocks, as the error of a plain sum of many equal pressures exceeds [`ROUND_OFF`].
     fn sum_on_contact(&self, threads: &Threads) -> [f64; 3] {
         let of_block = |block: Range<usize>| {
             let mut sums = Sums::new();
@@ -112,7 +112,7 @@ impl State {
         blocks::fold(&self.grid, threads, [0.0; 3], of_block, |sums, block| from_fn(|k| sums[k] + block[k]))
     }
 
-    /// Elements of C beyond their limit leave for it; what is at its limit has its value, what is exterior none.
+    /// Elements of C beyond their limit leave C for it. Elements at their limit get its value, exterior ones 0.
     pub fn project<S: AdmissibleSet>(&mut self, set: S) {
         if !S::LIMITED || !self.reached_limit && !set.any_beyond(0, self.p.iter().copied()) {
             return;

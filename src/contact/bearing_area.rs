@@ -1,20 +1,20 @@
-//! A start for surfaces that give way at a limit: the bearing area.
+//! A start for surfaces with a limit of pressure: the bearing area.
 //!
-//! Where displacements are small beside the distances between elements, the contact area of such a surface follows from its heights alone (Abbott &
-//! Firestone 1933): the lowest elements are at their limit, as many as the force needs, or all below the approach.
+//! If displacements are small beside the differences in distance of elements, the contact area of such a surface follows from its heights
+//! (Abbott & Firestone 1933): the lowest elements are at their limit, as many as the force needs, or all below the approach.
 
 use super::{AdmissibleSet, Freshness, State};
 use crate::scene::Load;
 use crate::threads::Threads;
 
-/// Elements about whose side displacements decide, as a part of those at their limit. With more of them coarser grids start better.
+/// Most elements whose state depends on displacements, relative to those at their limit. With more, a start from coarser grids is better.
 const UNDECIDED: f64 = 0.1;
-/// How exactly the depth is found, as a part of the largest displacement.
+/// Accuracy of the depth, relative to the largest displacement.
 const DEPTH: f64 = 0.25;
-/// Halvings of a bracket of the depth: those of a double.
+/// Most halvings of a bracket of the depth: the bits of a double.
 const HALVINGS: u32 = 64;
 
-/// What lies below a depth.
+/// The elements below a depth.
 struct Below {
     count: usize,
     /// The sum of the limits, and the largest.
@@ -23,7 +23,7 @@ struct Below {
 }
 
 impl State {
-    /// Starts on the bearing area, if displacements decide about few elements only. Returns the most that pressures displace there.
+    /// Starts on the bearing area, if few elements depend on displacements. Returns the bound on displacements there.
     pub fn start_on_bearing_area<S: AdmissibleSet>(
         &mut self,
         set: S,
@@ -40,7 +40,7 @@ impl State {
         let held = self.below(set, low);
         let reach = self.deepest(&held, self_influence);
         let undecided = self.h.iter().filter(|&h| low - reach <= *h && *h <= high + reach).count();
-        // Of one element alone nothing is at its limit.
+        // With one element alone, none is at its limit.
         if held.count == 0 || !(undecided as f64 <= UNDECIDED * held.count as f64) {
             return None;
         }
@@ -51,7 +51,7 @@ impl State {
         Some(reach)
     }
 
-    /// Two depths, with the limits of so much pressure between, as near to each other as displacements let them be known.
+    /// Two depths around the one that carries `pressures` at the limits, as close as displacements allow.
     fn depth_of_bearing<S: AdmissibleSet>(&self, set: S, pressures: f64, self_influence: f64) -> (f64, f64) {
         let finite = || self.h.iter().copied().filter(|h| h.is_finite());
         let (mut low, mut high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), h| (a.min(h), b.max(h)));
@@ -81,13 +81,14 @@ impl State {
         below
     }
 
-    /// No pressures up to the largest on this area displace more than where they are uniform on a circle: `2 p a / E*` at its centre (Johnson, eq. 3.22).
+    /// A bound on the displacement by pressures up to the largest on this area: that of uniform pressure on a circle, `2 p a / E*` at its centre
+    /// (Johnson, eq. 3.22).
     fn deepest(&self, below: &Below, self_influence: f64) -> f64 {
         let area = below.count as f64 * self.grid.element_area();
         2.0 * below.largest * (area / std::f64::consts::PI).sqrt() / self.grid.modulus(self_influence)
     }
 
-    /// Elements up to the first depth are at their limit; those up to the second carry what is left, one after the other.
+    /// Puts elements up to the first depth at their limit; those up to the second carry the rest, one after the other.
     fn press_below<S: AdmissibleSet>(&mut self, set: S, (low, high): (f64, f64), carried: f64) {
         let mut left = match self.load {
             Load::Approach(_) => 0.0,

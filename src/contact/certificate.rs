@@ -1,4 +1,4 @@
-//! How well the contact conditions hold: everything here is computed from p, h and a fresh u = A p.
+//! The measures of how well the contact conditions hold, all from p, h and a fresh u = A p.
 
 use super::survey_pass::Pass;
 pub use super::survey_pass::Survey;
@@ -6,7 +6,7 @@ use super::{AdmissibleSet, State};
 use crate::blocks;
 use crate::threads::Threads;
 
-/// The measures of a solution. Status OK means that they hold to the tolerance.
+/// The measures of a solution. Status OK means that they are within the tolerance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Certificate {
     /// `||h - approach + A p|| / ||h - approach||`, 2-norms over C.
@@ -19,8 +19,8 @@ pub struct Certificate {
     pub min_pressure: f64,
 }
 
-/// The round-off of `h - approach` where h is the approach: a sum and a mean of equal numbers. Distances below it are those of bodies that
-/// fit exactly; larger ones, though round-off of a huge offset they may be, are not taken for none.
+/// The relative round-off of `h - approach` for h equal to the approach: a sum and a mean of equal numbers. Distances below it count as 0
+/// (the bodies fit exactly). Larger ones are kept even if they may be round-off of a huge offset.
 const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
 
 impl Survey {
@@ -29,7 +29,7 @@ impl Survey {
         Survey::by(state, &Threads::One)
     }
 
-    /// The same by several threads: block of rows by block, so that they make no difference.
+    /// Surveys a state by several threads, in fixed blocks of rows: the bits do not depend on the number of threads.
     pub fn by(state: &State, threads: &Threads) -> Survey {
         let nothing = Survey { range: (f64::INFINITY, f64::NEG_INFINITY), ..Survey::default() };
         let of_block = |elements| {
@@ -47,7 +47,7 @@ impl Survey {
         survey
     }
 
-    /// Of two parts of a grid, before norms are made of sums.
+    /// The survey of two parts of a grid together, as sums.
     fn joined(self, other: &Survey) -> Survey {
         Survey {
             residual: self.residual + other.residual,
@@ -62,7 +62,7 @@ impl Survey {
         }
     }
 
-    /// Norms from sums. What is a difference of terms that are equal but for round-off is 0.
+    /// Takes norms of the sums. Sets measures to 0 that are round-off of equal terms.
     fn finish(&mut self, state: &State) {
         (self.residual, self.distance) = (self.residual.sqrt(), self.distance.sqrt());
         let offset = ROUND_OFF * state.approach.abs();
@@ -77,7 +77,7 @@ impl Survey {
         }
     }
 
-    /// Elements at their limit: their e must not be positive. Returns their sum of `(h - approach)^2`.
+    /// Adds the elements at their limit, whose e must not be positive. Returns their sum of `(h - approach)^2`.
     fn add_limited(&mut self, state: &State) -> f64 {
         let mut touching = 0.0;
         for i in (0..state.p.len()).filter(|&i| state.at_limit[i]) {
@@ -90,8 +90,8 @@ impl Survey {
         touching
     }
 
-    /// How far the conditions are from being met: the larger of the relative residual and the relative violation, p = 0 having 1; infinite
-    /// where pressures are not admissible. `max` alone would drop what is not a number.
+    /// The larger of the relative residual and the relative violation (1 for p = 0); infinite if pressures are not admissible or a measure is
+    /// NaN, which `max` alone would drop.
     pub fn violation<S: AdmissibleSet>(&self, _: S) -> f64 {
         let residual = relative(self.residual, self.distance);
         let violation = if S::FIXED { 0.0 } else { relative(self.violation, self.scale) };
@@ -118,7 +118,7 @@ impl Survey {
     }
 }
 
-/// A value relative to a scale: 0 is 0 on any scale, also on one of 0.
+/// A value relative to a scale; 0 relative to any scale is 0, even to 0.
 pub fn relative(value: f64, scale: f64) -> f64 {
     if value == 0.0 {
         0.0

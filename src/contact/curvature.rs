@@ -1,4 +1,4 @@
-//! How much the undeformed distance and the pressures bend within an element: what elements cannot show.
+//! The bend of the undeformed distance and of the pressures within an element, which elements do not resolve.
 
 use std::f64::consts::PI;
 
@@ -6,9 +6,9 @@ use super::direction::{shortest_run, Direction};
 use super::{each_jump, Jump, Outline, Problem, State};
 use crate::rectangle::Rectangle;
 
-/// Rows of the contact area that are looked at, at least: the means over more of them are the same.
+/// Least rows of the contact area that are sampled: means over more rows do not differ.
 const ROWS: usize = 32;
-/// A longer run counts as one of so many elements. Its part of the error, `(2.5/run)^2`, is then 2 %.
+/// Largest run that is counted: its error, `(2.5/run)^2`, is 2 %.
 const LONG: usize = 16;
 
 /// Second differences of h and p over the contact area.
@@ -21,11 +21,11 @@ pub struct Curvature {
     pub depth: f64,
     /// u = approach - h, its mean with the weights of a flat punch's pressures: the force over dF/d(approach) (Betti).
     pub displaced: f64,
-    /// `|bend|` over the square of the elements of the shorter run through an element: its mean over the rim, times the weight of the rim.
+    /// The mean over the rim of `|bend|` over the squared elements of the shorter run through an element, times the weight of the rim.
     pub short: f64,
     /// rms of the second differences of p, over that of p.
     pub pressure: f64,
-    /// Jumps of h beside contact: the sum of `|J|` times what is uncertain of an element.
+    /// Jumps of h beside contact: the sum of `|J|` times the uncertain part of an element.
     pub jumps: f64,
 }
 
@@ -45,7 +45,7 @@ struct Sums {
 }
 
 impl Curvature {
-    /// Of a state with this outline.
+    /// The curvature of a state with this outline.
     pub fn of(problem: &Problem, state: &State, outline: &Outline) -> Curvature {
         let stride = (outline.rows / ROWS).max(1);
         let (mx, my) = (state.grid.mx, state.grid.my);
@@ -71,7 +71,7 @@ impl Curvature {
         Curvature { jumps, ..sums.curvature(state.approach, of_area) }
     }
 
-    /// The second differences of the pressures at their peak, over it: small where elements resolve the peak. None without pressures.
+    /// The second differences of the pressures at their peak, over the peak: small if elements resolve it. None without pressures.
     pub fn of_peak(problem: &Problem, state: &State, peak: f64) -> Option<f64> {
         let at = state.p.iter().position(|p| *p == peak && peak > 0.0)?;
         let (mx, my) = (state.grid.mx, state.grid.my);
@@ -124,7 +124,7 @@ impl Sums {
         self.count_in(state, at, (bend, difference, rim));
     }
 
-    /// `rim`: of an element at the rim the shorter one of its runs.
+    /// `rim`: the shorter run of an element at the rim.
     #[inline]
     fn count_in(&mut self, state: &State, at: usize, (bend, difference, rim): (f64, f64, Option<usize>)) {
         self.bend += bend;
@@ -141,7 +141,7 @@ impl Sums {
         self.lowest = self.lowest.min(state.h[at]);
     }
 
-    /// Takes away what jumps add to the bends of the elements beside them.
+    /// Subtracts the contribution of jumps to the bends of the elements beside them.
     fn without_jumps(&mut self, [bend, short]: [f64; 2]) {
         self.bend -= bend;
         self.rim_bend -= bend;
@@ -167,16 +167,16 @@ impl Sums {
     }
 }
 
-/// The weight of the mean over the area, beside that over the rim, so that both together are the mean with the pressures of a flat punch.
+/// The weight of the mean over the area against that over the rim, so that both together give the mean with the pressures of a flat punch.
 ///
-/// A flat punch presses most at its rim. For `h = r^n` its weights give n k, of the mean over the area 2 n and over the rim n^2 with
-/// `k = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2)`: two thirds and one third of these are right to a tenth up to n = 10. Many
-/// places hardly feel each other. The force of a flat punch on each is in proportion to its width, not its area. The mean over the rims has
-/// these weights; that over the area is divided by the root of the number of places.
+/// A flat punch presses most at its rim. For `h = r^n` its weights give n k, the mean over the area gives 2 n and that over the rim n^2, with
+/// `k = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2)`: weights of two thirds and one third are right to a tenth up to n = 10. Many places of contact
+/// hardly interact. The force of a flat punch on each is in proportion to its width, not its area. The mean over the rims has these weights; that
+/// over the area is divided by the root of the number of places.
 ///
-/// With two periods the punch presses the more uniformly, the more of the period is in contact. Strips that fill the part c of it have the pressures
-/// `cos(pi x)/sqrt(k^2 - sin^2(pi x))`, k = sin(pi c/2) (Westergaard 1939). Of a wave `2 sin^2(pi x)` their mean is k^2, that over the area
-/// `m = 1 - sin(pi c)/(pi c)`, and that of the rim 2 k^2: the weight `k^2/(2 k^2 - m)` goes from three quarters to 1.
+/// With two periods the punch presses the more uniformly, the more of the period is in contact. Strips that fill a part c of the period have the
+/// pressures `cos(pi x)/sqrt(k^2 - sin^2(pi x))`, k = sin(pi c/2) (Westergaard 1939). For a wave `2 sin^2(pi x)` their mean is k^2, that over the
+/// area `m = 1 - sin(pi c)/(pi c)`, and that over the rim 2 k^2: the weight `k^2/(2 k^2 - m)` grows from three quarters to 1.
 fn area_weight(problem: &Problem, state: &State, outline: &Outline) -> f64 {
     let (grid, count) = (&state.grid, state.contact_count());
     let repeats = problem.coefficients.repeats(grid);
@@ -187,13 +187,13 @@ fn area_weight(problem: &Problem, state: &State, outline: &Outline) -> f64 {
     let filled = PI * count as f64 / grid.len() as f64;
     let (k_squared, m) = ((0.5 * filled).sin().powi(2), 1.0 - filled.sin() / filled);
     let of_strips = if count > 0 { k_squared / (2.0 * k_squared - m) } else { 0.75 };
-    // From three quarters to 1 for strips: the same part of the way from what other places have to 1.
+    // The weight of strips grows from three quarters to 1: other places go the same part of their way to 1.
     let of_places = (2.0 / 3.0 + outline.straight_part() / 12.0) / scatter;
     of_places + (1.0 - of_places) * (4.0 * of_strips - 3.0)
 }
 
-/// The jumps of h beside contact: see [`Curvature::jumps`]; and what they add at the rim to second differences of h, and to these over the square
-/// of the elements of their run.
+/// The jumps of h beside contact (see [`Curvature::jumps`]), and their contributions at the rim to second differences of h, and to these over the
+/// squared elements of their run.
 fn jumps(problem: &Problem, state: &State, repeats: (bool, bool)) -> (f64, [f64; 2]) {
     let (grid, contact, directions) = (&state.grid, &state.contact, Direction::both(&state.grid, repeats));
     let (mut sum, mut bend, mut short) = (0.0, 0.0, 0.0);
@@ -214,7 +214,7 @@ fn jumps(problem: &Problem, state: &State, repeats: (bool, bool)) -> (f64, [f64;
     (sum, [bend, short])
 }
 
-/// The elements before and behind element `i` of `m`; none beyond the end of what does not repeat itself.
+/// The elements before and behind element `i` of `m`; none beyond an end without a period.
 fn neighbours(i: usize, m: usize, repeats: bool) -> [Option<usize>; 2] {
     match (i, repeats && m > 1) {
         (_, _) if m == 1 => [None, None],

@@ -2,19 +2,19 @@
 
 use crate::grid::Grid;
 
-/// One of them.
+/// One direction of a grid.
 #[derive(Clone, Copy)]
 pub(super) struct Direction {
-    /// Elements of a line along it.
+    /// Elements of a line along the direction.
     pub m: usize,
-    /// From one of them to the next, in memory.
+    /// The distance in memory from one element to the next.
     pub step: usize,
-    /// Whether a line goes on at its other end.
+    /// Whether the direction is periodic.
     pub repeats: bool,
 }
 
 impl Direction {
-    /// Along x and along y.
+    /// The directions along x and along y.
     pub fn both(grid: &Grid, repeats: (bool, bool)) -> [Direction; 2] {
         [
             Direction { m: grid.mx, step: 1, repeats: repeats.0 },
@@ -22,19 +22,19 @@ impl Direction {
         ]
     }
 
-    /// The element of a line at `place`, by its number in the line; none beyond the ends.
+    /// The number in its line of the element at `place`; none beyond the ends.
     pub fn place(&self, place: isize) -> Option<usize> {
         let m = self.m as isize;
         let place = if self.repeats { place.rem_euclid(m) } else { place };
         (0..m).contains(&place).then_some(place as usize)
     }
 
-    /// From the first element of a line to the one at `place`, in memory; none beyond the ends.
+    /// The distance in memory from the first element of a line to the one at `place`; none beyond the ends.
     pub fn at(&self, place: isize) -> Option<usize> {
         self.place(place).map(|place| place * self.step)
     }
 
-    /// Elements of the run without a gap of marked ones through element `at`, which is one, at `place` of its line; `most` at most.
+    /// The length of the run of marked elements through the marked element `at`, at `place` of its line; at most `most`.
     pub fn run(&self, marked: &[bool], (at, place): (usize, usize), most: usize) -> usize {
         let first = at - place * self.step;
         let is_marked = |place: isize| self.at(place).is_some_and(|next| marked[first + next]);

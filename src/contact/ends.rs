@@ -1,8 +1,8 @@
-//! How much it matters where exactly a surface ends within the contact.
+//! The effect of the position of a surface's end within the contact.
 //!
-//! Elements know of an edge of the surface between which two centres it lies, and no more. Pressures are singular there,
-//! `p ~ K/sqrt(2 pi s)` at the distance s, and if the surface ends farther out by t, then the approach of a given force F falls by the
-//! energy that this sets free (Irwin 1957; Rice 1968):
+//! Elements only tell between which two centres an edge of the surface lies. Pressures are singular there,
+//! `p ~ K/sqrt(2 pi s)` at the distance s. If the surface ends farther out by t, the approach of a given force F falls by the
+//! energy released (Irwin 1957; Rice 1968):
 //!
 //! ```text
 //! F d(approach) = -t integral along the edge of K^2/E*,    K^2 = (pi/2) d p^2
@@ -10,11 +10,11 @@
 //!
 //! with the pressure p of the last element, d long across the edge. A layer of compliance c adds `t integral of c p^2`. The force of
 //! a given approach changes by `F d(approach) S/F`, S = dF/d(approach): pressures grow with the approach as `p S/F` for a flat punch, and for
-//! other surfaces nearly so. Whatever else is carried at the edge, tractions for instance, takes the place of one of the two factors p.
+//! other surfaces nearly so. For other quantities at the edge, as tractions, these replace one of the two factors p.
 //!
-//! t is about half an element at most, where a straight edge lies as the elements do, and some of it is an error of the singularity
-//! itself. Along edges in steps most of it goes out. At the border of the grid, and wherever the caller's elements are the surface, the edge lies
-//! exactly on edges of elements. (Measured, in elements: straight -0.46 to 0.2, in steps -0.15 to 0.05, on edges of elements -0.15.)
+//! t is at most about half an element along a straight edge parallel to the elements, a part of it being an error of the singularity itself. Along
+//! edges in steps most of it cancels. At the border of the grid, and if the caller's elements are the surface, the edge lies exactly on edges of
+//! elements. (Measured, in elements: straight -0.46 to 0.2, in steps -0.15 to 0.05, on edges of elements -0.15.)
 
 use std::f64::consts::PI;
 
@@ -30,9 +30,9 @@ const AT_EXACT: f64 = 0.2;
 /// The neighbour of an element.
 #[derive(Clone, Copy, PartialEq)]
 enum Beside {
-    /// It has a surface.
+    /// The neighbour has a surface.
     Surface,
-    /// It has none.
+    /// The neighbour has no surface.
     Hole,
     /// The grid ends.
     Border,
@@ -69,7 +69,7 @@ pub fn at_ends<const N: usize>(problem: &Problem, state: &State, weights: impl F
     sums
 }
 
-/// The neighbour of element `i`, which lies at `place` of its line in this direction: the one before it (side 0), or behind it.
+/// The neighbour of element `i` at `place` of its line in this direction: the one before (side 0), or behind.
 fn beside(direction: Direction, state: &State, (i, place): (usize, usize), side: usize) -> Beside {
     let next = if side == 0 { place as isize - 1 } else { place as isize + 1 };
     match direction.at(next) {
@@ -79,7 +79,7 @@ fn beside(direction: Direction, state: &State, (i, place): (usize, usize), side:
     }
 }
 
-/// Whether this edge goes on along a line, as a straight piece of the [outline](super::Outline) does.
+/// Whether this edge continues along a line, as a straight piece of the [outline](super::Outline) does.
 fn is_straight(
     along: Direction,
     state: &State,

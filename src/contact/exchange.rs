@@ -1,4 +1,4 @@
-//! Steps (4.1) and (4.2) of section 4.1: who enters the contact area and who leaves it.
+//! Steps (4.1) and (4.2) of section 4.1: elements leave and enter the contact area.
 
 use std::ops::Range;
 
@@ -7,13 +7,13 @@ use super::State;
 use crate::blocks;
 use crate::threads::Threads;
 
-/// Step (4.1): elements of C that would pull go to the exterior area, with `p = 0`, and those above their limit to that. Returns how
-/// many.
+/// Step (4.1): elements of C with p < 0 go to the exterior area with `p = 0`, elements above their limit to the limit. Returns their
+/// number.
 pub fn truncate<S: AdmissibleSet>(state: &mut State, set: S, threads: &Threads) -> usize {
     if S::FIXED {
         return 0;
     }
-    // Often nothing leaves, and otherwise few rows have an element that does.
+    // Most often no element leaves, and otherwise few rows have one that does.
     let (p, contact) = (&state.p, &state.contact);
     let some = blocks::fold(
         &state.grid,
@@ -46,7 +46,7 @@ pub fn all_stay<S: AdmissibleSet>(state: &State, set: S) -> bool {
     S::FIXED || !some_leaves(set, &state.p, &state.contact, 0..state.p.len())
 }
 
-/// Element i leaves C for its limit or for p = 0. Returns what its pressure gains.
+/// Element i leaves C for its limit or for p = 0. Returns the change of its pressure.
 pub fn leave<S: AdmissibleSet>(state: &mut State, set: S, i: usize, for_limit: bool) -> f64 {
     let (before, at_limit) = (state.p[i], S::LIMITED && for_limit);
     if at_limit {
@@ -65,14 +65,14 @@ pub fn enter<S: AdmissibleSet>(state: &mut State, i: usize) {
     }
 }
 
-/// Whether one of some elements leaves. All of them, which the compiler can vectorise.
+/// Whether any of some elements leaves. Tests all of them: the compiler vectorises this.
 #[inline(always)]
 fn some_leaves<S: AdmissibleSet>(set: S, p: &[f64], contact: &[bool], elements: Range<usize>) -> bool {
     let values = p[elements.clone()].iter().zip(&contact[elements.clone()]).zip(elements);
     values.fold(0, |some, ((p, inside), i)| some | u64::from(inside & set.leaves(i, *p))) != 0
 }
 
-/// Step (4.2): exterior elements with `e < 0`, and elements at their limit with `e > 0`, go to the contact area. Returns how many.
+/// Step (4.2): exterior elements with `e < 0`, and elements at their limit with `e > 0`, enter the contact area. Returns their number.
 /// Needs u = A p of the truncated p.
 pub fn admit<S: AdmissibleSet>(state: &mut State, set: S) -> usize {
     if S::FIXED {

@@ -1,8 +1,8 @@
-//! The guard against cycling of the active set.
+//! The guard against cycles of the active set.
 //!
 //! Exchanging all violators at once is fast but may cycle. Block principal pivoting (Judice & Pires 1994; Kim & Park 2011)
-//! keeps it finite for P-matrices: all are exchanged while their number reaches new minima, with three tries in
-//! between; after that only the violator of the highest index, until a new minimum is reached.
+//! terminates for P-matrices. All violators are exchanged while their number reaches new minima, with up to three tries in
+//! between. After that only the violator of the highest index is exchanged, until there is a new minimum.
 
 /// Full exchanges allowed without a new minimum.
 const TRIES: u32 = 3;

@@ -1,9 +1,9 @@
-//! Jumps of a quantity that is known at the centres of elements.
+//! Jumps of a quantity known at the centres of elements.
 //!
-//! A jump lies somewhere between two centres: half an element is uncertain, along a straight line all in the same direction, else most of
-//! it goes out. It is found by its third difference, `-2 J` for a jump J between the two middle ones of four centres: it stands out
-//! from what is around it, the second differences beside it have opposite signs, and it goes on in the next line. What bends smoothly has
-//! none. (Of a rough surface whose shortest waves have 3 to 16 elements one place in 1e4 or fewer is taken for a jump, and a small one.)
+//! A jump lies somewhere between two centres, so half an element is uncertain. Along a straight line all errors have one sign, else most
+//! cancel. A jump J between the middle two of four centres has the third difference `-2 J`. Three conditions identify it: the third
+//! difference exceeds those around, the second differences beside it have opposite signs, and the jump continues in the next line. Smooth
+//! curves have none. (On a rough surface whose shortest waves have 3 to 16 elements, at most one place in 1e4 counts as a jump, a small one.)
 
 use std::ops::Range;
 
@@ -11,13 +11,13 @@ use super::direction::Direction;
 use crate::grid::Grid;
 use crate::rectangle::Rectangle;
 
-/// Lines that are looked at, at least.
+/// Least number of lines that are searched.
 const LINES: usize = 32;
-/// A third difference stands out by this factor.
+/// Ratio of a jump's third difference to those around it.
 const STANDS_OUT: f64 = 8.0;
-/// A jump in the next line, at least this part of it and at most as many times it, says that it goes on.
+/// Least ratio, or inverse ratio, of the jump in the next line for a jump that continues.
 const GOES_ON: f64 = 0.5;
-/// Of an element: how far off a jump is, along a straight line and else.
+/// Uncertainty of a jump in elements, along a straight line and otherwise.
 const AT_STRAIGHT: f64 = 0.5;
 const AT_STEPS: f64 = 0.15;
 
@@ -33,17 +33,17 @@ struct Line {
 /// A jump between two neighbours of a line.
 #[derive(Clone, Copy, Debug)]
 pub struct Jump {
-    /// The elements before and behind it.
+    /// The elements before and behind the jump.
     pub between: (usize, usize),
-    /// The quantity behind it, less that before it.
+    /// The quantity behind the jump, less that before it.
     pub height: f64,
     /// The part of an element that is uncertain.
     pub uncertain: f64,
-    /// Lines that this one stands for.
+    /// Lines represented by this one.
     pub lines: f64,
 }
 
-/// Visits the jumps between neighbours that are wanted, of which one lies in `part` of the grid. Of many lines some are looked at, unless `all`.
+/// Visits the jumps between wanted neighbours, of which one lies in `part` of the grid. Searches a sample of many lines, unless `all`.
 pub fn each_jump(
     (grid, part): (&Grid, &Rectangle),
     repeats: (bool, bool),
@@ -60,7 +60,7 @@ pub fn each_jump(
         let stride = if all { 1 } else { (numbers.len() / LINES).max(1) };
         let looked_at = (numbers.start + stride / 2..numbers.end).step_by(stride);
         let lines = numbers.len() as f64 / looked_at.len() as f64;
-        // Where a whole period is looked at, the jump at its seam comes last.
+        // With a whole period, the jump at its seam comes last.
         let first = if along.repeats && places.len() == along.m { 0 } else { -1 };
         let places = places.start as isize + first..places.end as isize;
         for number in looked_at {
@@ -118,9 +118,9 @@ impl Line {
             let change = (second(to) - second(from)).abs();
             change.is_finite().then_some(change)
         };
-        // Second differences of waves of few elements have opposite signs there, too. Farther off they change as much.
+        // Second differences of short waves have opposite signs as well, but change as much farther off.
         let around = [change(-2, -1), change(2, 3), change(-1, 2)].into_iter().flatten().reduce(f64::max);
-        // Where nothing is known around, a jump is not told from what bends.
+        // Without values around, a jump cannot be distinguished from a bend.
         if !around.is_some_and(|around| found.abs() > STANDS_OUT * around) {
             return 0.0;
         }
@@ -139,7 +139,7 @@ impl Line {
         }
     }
 
-    /// The second difference at a place; no number where the surface ends.
+    /// The second difference at a place; NaN where the surface ends.
     #[inline]
     fn second(&self, place: isize, value: &impl Fn(usize) -> f64) -> f64 {
         let second = if place >= 1 && place + 1 < self.along.m as isize {

@@ -1,4 +1,4 @@
-//! The active set: which elements are in contact, steps 4.1 and 4.2 of the paper, and how well the conditions hold.
+//! The active set: the elements in contact, steps (4.1) and (4.2) of the paper, and the certificate.
 
 mod admissible;
 mod balance;

@@ -1,12 +1,12 @@
-//! The operators of `u = A p` on one grid, in double precision. Each element is displaced, but few carry pressure:
+//! The operators of `u = A p` on one grid, in double precision. u is computed on every element, but few elements carry pressure:
 //!
 //! ```text
 //! p on elements s..e of a row of m      offsets -(e - 1) .. m - 1 - s occur,    reach = max(e - 1, m - 1 - s)
 //! period = 2 reach                      m + (e - s) - 2 for contact in the middle of the grid, 2 m - 2 for any p
 //! ```
 //!
-//! So with contact on 0.6 of each side of the grid, in its middle, a product takes three quarters of the time, and so does the set-up of its
-//! spectrum. Which operator makes a product depends on p alone: no bit depends on the products before.
+//! If contact covers 0.6 of each side in the middle of the grid, a product takes three quarters of the time, and so does the set-up of its
+//! spectrum. The choice of the operator depends on p alone. So no bit of a product depends on earlier products.
 
 use std::array::from_fn;
 use std::ops::Range;
@@ -20,12 +20,12 @@ use crate::operator::{even_periods, Needs, Operator, Reach, SetUp, Workspace};
 use crate::rectangle::Rectangle;
 use crate::threads::Threads;
 
-/// On grids of at most so many elements products are summed: nothing is set up for them. A cold call of one element with a table of its
-/// own takes .64 of the time with an operator, of 2 x 2 elements .68.
+/// Grids of at most so many elements use direct summation, which needs no set-up. Measured on a first call with a table of its own: it takes
+/// 0.64 of the time with an operator for one element, 0.68 for 2 x 2 elements.
 const SUMMED: usize = 4;
-/// On grids of fewer elements one operator makes all products: there is little to save, and many small problems have many contact areas.
+/// Grids of fewer elements use one operator for all products. There is little to save, and many small problems have many contact areas.
 const SMALLEST_GRID: usize = 128 * 128;
-/// A reach is worth an operator of its own where its periods have at most this part of the elements of the full ones.
+/// A reach gets an operator of its own if its periods have at most this fraction of the elements of the full periods.
 const WORTHWHILE: f64 = 0.8;
 
 /// The inputs of an operator.
@@ -36,23 +36,23 @@ pub(super) struct MadeOf<'a> {
     pub threads: &'a Threads,
 }
 
-/// Each is set up when it is first needed.
+/// Operators of one grid. Each is set up when it is first needed.
 #[derive(Default)]
 pub(super) struct Operators {
-    /// A itself where products are summed, row by row.
+    /// A itself by rows, on grids with direct summation.
     matrix: Option<[f64; SUMMED * SUMMED]>,
-    /// For any p.
+    /// The operator for any p.
     whole: Option<Arc<Operator<f64>>>,
-    /// The last one for p on a part of the grid, and whether its coefficients are those of now.
+    /// The last operator for p on a part of the grid, and whether its coefficients are the current ones.
     part: Option<(Operator<f64>, bool)>,
-    /// Of the last product, with the needs that it is for.
+    /// The workspace of the last product, and the needs that it satisfies.
     workspace: Option<(Needs, Workspace<f64>)>,
     /// Memory for other coefficients.
     set_up: SetUp,
 }
 
 impl Operators {
-    /// With an operator for any p.
+    /// Operators with a given one for any p.
     pub fn with(whole: Arc<Operator<f64>>) -> Operators {
         Operators { whole: Some(whole), ..Operators::default() }
     }
@@ -66,14 +66,14 @@ impl Operators {
         Ok(self.whole.insert(whole))
     }
 
-    /// A, where products are summed.
+    /// A, on grids with direct summation.
     fn matrix(&mut self, MadeOf { coefficients, grid, .. }: MadeOf<'_>) -> Option<&[f64; SUMMED * SUMMED]> {
         let n = grid.len();
         let fill = || from_fn(|k| if k < n * n { coefficients.entry(grid, k / n, k % n) } else { 0.0 });
         (n <= SUMMED).then(|| &*self.matrix.get_or_insert_with(fill))
     }
 
-    /// Sets up what a product may need, where that does not depend on p.
+    /// Sets up what products with any p need.
     pub fn prepare(&mut self, of: MadeOf<'_>) -> Result<()> {
         if of.is_for_parts() || self.matrix(of).is_some() {
             return Ok(());
@@ -82,8 +82,8 @@ impl Operators {
         fit(&mut self.workspace, &whole).map(drop)
     }
 
-    /// The coefficients are others. An operator that all products need takes them now, with its plans and its memory if nobody else uses it; the
-    /// others follow when they are needed. Not to be used after an error, before it is renewed again.
+    /// Takes changed coefficients. An operator that all products need takes them now. It keeps its plans and its memory if nobody else uses it. The
+    /// others take them when they are needed. After an error these operators must be renewed before they are used.
     pub fn renew(&mut self, of: MadeOf<'_>) -> Result<()> {
         let is_for_parts = of.is_for_parts();
         self.matrix = None;
@@ -131,14 +131,14 @@ impl Operators {
         self.with_operator(reach, of, |operator, workspace| operator.apply_in_place(p, workspace))
     }
 
-    /// A product, by the operator of a reach.
+    /// A product with the operator of a reach.
     fn with_operator(
         &mut self,
         reach: Option<Reach>,
         of: MadeOf<'_>,
         multiply: impl FnOnce(&Operator<f64>, &mut Workspace<f64>),
     ) -> Result<()> {
-        // It is taken out for the time of the product.
+        // The workspace is taken out of `self` during the product.
         let mut workspace = self.workspace.take();
         let operator = self.get(reach, of)?;
         let fitting = fit(&mut workspace, operator)?;
@@ -148,7 +148,7 @@ impl Operators {
         Ok(())
     }
 
-    /// The operator of a reach; none: that for any p.
+    /// The operator of a reach. `None` means the operator for any p.
     fn get(&mut self, reach: Option<Reach>, of: MadeOf<'_>) -> Result<&Operator<f64>> {
         match reach {
             Some(reach) => self.part(reach, of),
@@ -169,7 +169,7 @@ impl Operators {
         Ok(&self.part.insert((part, true)).0)
     }
 
-    /// It is not needed for a while: the memory of products is given back.
+    /// Releases the memory of products while they are not needed.
     pub fn rest(&mut self) {
         self.workspace = None;
     }
@@ -188,21 +188,21 @@ impl Operators {
 }
 
 impl MadeOf<'_> {
-    /// Whether some p may have operators of their own.
+    /// Whether an operator for a part of the grid is possible.
     fn is_for_parts(&self) -> bool {
         let MadeOf { coefficients, grid, .. } = self;
         let is_toeplitz = coefficients.row_tables().is_none() && coefficients.repeats(grid) == (false, false);
         grid.len() >= SMALLEST_GRID && is_toeplitz && coefficients.is_even(grid)
     }
 
-    /// The reach of p, if that is worth an operator of its own.
+    /// The reach of p, if it gets an operator of its own.
     fn reach_of(&self, p: &[f64]) -> Option<Reach> {
         if !self.is_for_parts() {
             return None;
         }
         let Grid { mx, my, .. } = *self.grid;
         let Rectangle { x, y } = loaded(p, self.grid, self.threads)?;
-        // Few lengths are transformed fast: a contact area that moves in steps keeps its operator for many of them.
+        // Few lengths have a fast transform. So a contact area that moves in small steps keeps its operator over many of them.
         let farthest = |loaded: Range<usize>, m: usize| loaded.end.max(m - loaded.start).max(m.div_ceil(2) + 1) - 1;
         let periods = |x: usize, y: usize| even_periods(self.coefficients, self.grid, (2 * x, 2 * y));
         let ((px, py), (full_x, full_y)) = (periods(farthest(x, mx), farthest(y, my)), periods(mx - 1, my - 1));
@@ -211,7 +211,7 @@ impl MadeOf<'_> {
     }
 }
 
-/// The workspace of an operator: the one that there is, if it serves.
+/// The workspace of an operator: the existing one if it fits.
 fn fit<'a>(
     workspace: &'a mut Option<(Needs, Workspace<f64>)>,
     operator: &Operator<f64>,
@@ -224,7 +224,7 @@ fn fit<'a>(
     Ok(&mut workspace.insert(fitting).1)
 }
 
-/// The rectangle outside of which p is 0; none where it is 0 everywhere.
+/// The rectangle outside of which p is 0. None if p is 0 everywhere.
 fn loaded(p: &[f64], grid: &Grid, threads: &Threads) -> Option<Rectangle> {
     Rectangle::around_values(p, grid, threads, presses)
 }

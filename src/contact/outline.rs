@@ -7,10 +7,10 @@
 //! A* = (N_a - c M) dx dy,    c = (pi - 1 + ln 2)/24
 //! ```
 //!
-//! c is a mean over all directions of the outline, in units of the elements: of elements that are not square the outline is
-//! stretched to one on square ones, where N_a and M are the same, and the area shrinks by dx dy with it.
+//! c is a mean over all directions of the outline, in units of the elements. For elements that are not square the outline is stretched to
+//! square ones: N_a and M are the same, and the area scales by dx dy.
 //!
-//! Along a straight outline that lies as the elements do there is no mean over directions: all of it is off by the same part of an
+//! Along a straight outline parallel to the elements there is no mean over directions: all of it has the error of the same part of an
 //! element. Such pieces are counted.
 
 use std::f64::consts::{LN_2, PI};
@@ -20,7 +20,7 @@ use crate::grid::Grid;
 
 /// Part of an element by which each change overestimates the area.
 const SHARE: f64 = (PI - 1.0 + LN_2) / 24.0;
-/// A piece of so many elements is straight.
+/// Least elements of a straight piece.
 pub(super) const STRAIGHT: usize = 8;
 
 /// The outline of a contact area.
@@ -28,11 +28,11 @@ pub(super) const STRAIGHT: usize = 8;
 pub struct Outline {
     /// M: changes between contact and an exterior element that has a surface, along all rows and columns.
     pub changes: usize,
-    /// Those of them in straight pieces, of 8 elements and more or from one end of the grid to the other: along columns, along rows.
+    /// Changes in straight pieces, of 8 elements and more or from one end of the grid to the other: along columns, along rows.
     pub straight: (usize, usize),
     /// Sides of elements in contact beside an element without a surface.
     pub edges: usize,
-    /// Those of them in straight pieces.
+    /// Edges in straight pieces.
     pub straight_edges: usize,
     /// Sides on the border of the grid: on its first and last column, and on its first and last row.
     pub border: (usize, usize),
@@ -40,7 +40,7 @@ pub struct Outline {
     pub rows: usize,
 }
 
-/// Rows, one after the other, with the same contact and as many of its ends at holes.
+/// Successive rows with the same contact, and their changes and edges.
 #[derive(Default)]
 struct Same {
     rows: usize,
@@ -49,7 +49,7 @@ struct Same {
 }
 
 impl Outline {
-    /// Follows the rows and columns of a contact area; those without contact cost next to nothing.
+    /// The outline of a contact area. Rows without contact cost almost nothing.
     pub fn of(state: &State) -> Outline {
         let (mx, my) = (state.grid.mx, state.grid.my);
         let mut outline = Outline::default();
@@ -100,7 +100,7 @@ impl Outline {
         }
     }
 
-    /// The rows with the same contact end here.
+    /// Ends the rows with the same contact.
     fn close(&mut self, same: &mut Same, my: usize) {
         let Same { rows, changes, edges } = std::mem::take(same);
         if rows >= STRAIGHT.min(my) {
@@ -109,7 +109,7 @@ impl Outline {
         }
     }
 
-    /// Sides where the contact area ends with the surface or with the grid, which repeats itself in x and y or not.
+    /// Sides at which the contact area ends with the surface, or with the grid in directions without a period.
     pub fn ends(&self, repeats: (bool, bool)) -> usize {
         let border = |sides: usize, repeats: bool| if repeats { 0 } else { sides };
         self.edges + border(self.border.0, repeats.0) + border(self.border.1, repeats.1)
@@ -120,7 +120,7 @@ impl Outline {
         self.straight.0 as f64 * grid.dx + self.straight.1 as f64 * grid.dy
     }
 
-    /// Mean length of the runs of `count` elements in contact, along rows and columns alike. Where the grid repeats itself its border ends none.
+    /// Mean length of the runs of `count` elements in contact, over rows and columns. A periodic border ends no run.
     pub fn chord(&self, count: usize, repeats: (bool, bool)) -> f64 {
         let sides = self.changes + self.ends(repeats);
         4.0 * count as f64 / sides.max(1) as f64
@@ -131,8 +131,8 @@ impl Outline {
         (self.straight.0 + self.straight.1) as f64 / self.changes.max(1) as f64
     }
 
-    /// The root of the number of equal circles that a contact area of `count` elements with these chords is made of, at least 1: the chord of
-    /// one circle of that area, `(pi/2) sqrt(count/pi)`, over the mean one.
+    /// The root of the number of equal circles with the area of `count` elements and these chords, at least 1: the chord of one circle of this
+    /// area, `(pi/2) sqrt(count/pi)`, over the mean chord.
     pub fn scatter(&self, count: usize, repeats: (bool, bool)) -> f64 {
         (0.5 * (PI * count as f64).sqrt() / self.chord(count, repeats)).max(1.0)
     }
@@ -148,14 +148,14 @@ fn holes(h: &[f64]) -> bool {
     h.iter().fold(false, |any, h| any | h.is_infinite())
 }
 
-/// Elements in contact in one of two rows only. Counts in bytes, of which one instruction adds many.
+/// Elements in contact in one of two rows only. Counts in bytes, which SIMD adds many at a time.
 fn differing(a: &[bool], b: &[bool]) -> usize {
     const BYTE: usize = u8::MAX as usize;
     let pairs = a.chunks(BYTE).zip(b.chunks(BYTE));
     pairs.map(|(a, b)| usize::from(a.iter().zip(b).map(|(a, b)| u8::from(a != b)).sum::<u8>())).sum()
 }
 
-/// Pieces without a gap of the elements that differ between two rows.
+/// Contiguous pieces of the elements that differ between two rows.
 fn pieces(a: &[bool], b: &[bool]) -> usize {
     let differs = |i: usize| a[i] != b[i];
     (0..a.len()).filter(|&i| differs(i) && (i == 0 || !differs(i - 1))).count()

@@ -1,4 +1,4 @@
-//! The problem that every method works on: grid, influence coefficients, operator. The solver owns it.
+//! The problem of all methods: grid, influence coefficients, operator. The solver owns it.
 
 use std::sync::Arc;
 
@@ -12,13 +12,12 @@ use crate::operator::Operator;
 use crate::sums::Sums;
 use crate::threads::Threads;
 
-/// The rest of a displacement that should be 0, in units of round-off of what an element does to itself: a product by FFT is good
-/// to some of them.
+/// Round-off of a displacement by FFT, relative to that of an element by itself: some units of round-off.
 const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
-/// A wave of so many elements displaces about as much as an element displaces itself.
+/// Elements of a wave whose response is about an element's influence on itself.
 const WAVE: f64 = 16.0;
 
-/// `e = h - approach + A p` on one grid, but for h, the load and the unknowns, which a [`State`] holds.
+/// `e = h - approach + A p` on one grid, without h, the load and the unknowns, which a [`State`] holds.
 pub struct Problem {
     /// The grid.
     pub grid: Grid,
@@ -26,9 +25,9 @@ pub struct Problem {
     pub coefficients: Coefficients,
     /// Whether A is symmetric.
     pub symmetric: bool,
-    /// Whether the coefficients are the caller's: only they may be those of no elastic body.
+    /// Whether the coefficients are the caller's, which need not be those of an elastic body.
     pub given: bool,
-    /// Whether the surface is known to end, and to jump, between elements only: estimates ask for it.
+    /// Whether the surface ends and jumps between elements only, for estimates.
     pub exact_edges: bool,
     /// Work units of one product.
     pub work: f64,
@@ -39,12 +38,12 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Of the finest grid.
+    /// The problem of the finest grid.
     pub fn new(grid: Grid, coefficients: Coefficients, threads: &Threads) -> Result<Problem> {
         Problem::with(Operators::default(), grid, coefficients, 1.0, threads)
     }
 
-    /// On a grid, a product on which takes `work` of one on the finest.
+    /// The problem of a grid; a product takes `work` of one on the finest.
     pub fn with_operator(
         grid: Grid,
         coefficients: Coefficients,
@@ -78,8 +77,8 @@ impl Problem {
         })
     }
 
-    /// Takes other coefficients, on the same grid; plans and memory are kept where nobody else uses the operator. Not to be used after
-    /// an error, before it is renewed again.
+    /// Takes other coefficients on the same grid, and keeps plans and memory if the operator is not shared. After an error the problem must be
+    /// renewed before use.
     pub fn renew(&mut self, coefficients: Coefficients) -> Result<()> {
         self.symmetric = coefficients.is_symmetric(&self.grid);
         self.coefficients = coefficients;
@@ -87,13 +86,13 @@ impl Problem {
         operators.renew(MadeOf { coefficients, grid, threads })
     }
 
-    /// A for any p, if the product with p needs that.
+    /// A for any p, if p exceeds the reach of the others.
     pub fn operator_if_needed(&mut self, p: &[f64]) -> Result<Option<Arc<Operator<f64>>>> {
         let Problem { coefficients, grid, threads, operators, .. } = self;
         operators.whole_if_needed(MadeOf { coefficients, grid, threads }, p)
     }
 
-    /// A for any p, set up when that is first asked for.
+    /// A for any p, set up at the first call.
     pub fn operator(&mut self) -> Result<&Arc<Operator<f64>>> {
         let Problem { coefficients, grid, threads, operators, .. } = self;
         operators.whole(MadeOf { coefficients, grid, threads })
@@ -104,7 +103,7 @@ impl Problem {
         self.coefficients.self_influence()
     }
 
-    /// E* of half-spaces with the coefficients of the kernel, as far as that is an elastic body's.
+    /// E* of half-spaces with the kernel's coefficients, if it is that of elastic bodies.
     pub fn modulus(&self) -> f64 {
         let kernel = self.coefficients.kernel();
         self.grid.modulus(kernel.at(0, 0) - kernel.constant())
@@ -136,7 +135,7 @@ impl Problem {
         Ok(())
     }
 
-    /// `p = A p`: the same numbers.
+    /// `p = A p`, with the same bits.
     pub fn displace_in_place(&mut self, p: &mut [f64]) -> Result<()> {
         let Problem { coefficients, grid, threads, operators, .. } = self;
         operators.displace_in_place(MadeOf { coefficients, grid, threads }, p)?;
@@ -147,7 +146,7 @@ impl Problem {
         Ok(())
     }
 
-    /// p carries the prescribed force, u = A p by a fresh product, and the approach fits.
+    /// Makes p carry the prescribed force, u = A p by a fresh product, and the approach fit both.
     pub fn refresh<S: AdmissibleSet>(&mut self, state: &mut State, set: S) -> Result<()> {
         state.carry_force(set, &self.threads);
         self.displace(&state.p, &mut state.u)?;
@@ -161,7 +160,7 @@ impl Problem {
         std::mem::take(&mut self.products)
     }
 
-    /// It is not needed for a while: the memory of products is given back.
+    /// Gives the memory of products back until the next product.
     pub fn rest(&mut self) {
         self.operators.rest();
     }
@@ -180,7 +179,7 @@ impl Problem {
 /// Values of a piece of a pass.
 const BLOCK: usize = 1024;
 
-/// Two periods: the mean of u is 0, and what a product has of one is the round-off of sums over the whole grid.
+/// With two periods the mean of u is 0: removes the mean of a product, which is round-off of sums over the whole grid.
 fn remove_mean(u: &mut [f64], threads: &Threads) {
     let mut sums = Sums::new();
     sums.add::<f64, 1, 0>([&*u], [], |[u], []| [u]);

@@ -1,10 +1,10 @@
-//! A copy of the result of a state, to go back to.
+//! A copy of the result of a state, to restore it.
 
 use super::State;
 use crate::error::Result;
 use crate::memory::{keep, reserve};
 
-/// A copy of the result of a state without u, to go back to.
+/// A copy of the result of a state without u, to restore it.
 #[derive(Default)]
 pub struct Snapshot {
     p: Vec<f64>,
@@ -14,14 +14,14 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// Room for a state; `what` the memory is for.
+    /// Memory for a state; `what`: its name in messages.
     pub fn reserve(&mut self, state: &State, what: &str) -> Result<()> {
         reserve(&mut self.p, state.p.len(), what)?;
         reserve(&mut self.contact, state.p.len(), what)?;
         Ok(reserve(&mut self.at_limit, state.at_limit.len(), what)?)
     }
 
-    /// Keeps what a state has found.
+    /// Copies the result of a state.
     pub fn keep(&mut self, state: &State) {
         self.p.clone_from(&state.p);
         self.contact.clone_from(&state.contact);
@@ -29,7 +29,7 @@ impl Snapshot {
         self.approach = state.approach;
     }
 
-    /// The state has found what was kept; its u is another.
+    /// Restores the kept result, but not u.
     pub fn give_back(&self, state: &mut State) {
         state.p.copy_from_slice(&self.p);
         state.contact.copy_from_slice(&self.contact);

@@ -1,4 +1,4 @@
-//! Step 1 of section 4.1: the contact area to start from.
+//! Step 1 of section 4.1: the starting contact area.
 
 use super::values::lowest;
 use super::State;
@@ -15,7 +15,7 @@ impl State {
     }
 }
 
-/// The approach whose starting contact area would carry about this force: area S and mean penetration d of
+/// The approach whose starting contact area carries about this force: area S and mean penetration d of
 /// `{h <= approach}` carry as much as a flat punch of that area, `F = 2 E* sqrt(S/pi) d` (Johnson, eq. 3.36). Grows with
 /// the approach, so bisection finds it; it is a start, not a result.
 fn estimate_approach(grid: &Grid, h: &[f64], force: f64, self_influence: f64) -> f64 {

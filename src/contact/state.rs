@@ -1,4 +1,4 @@
-//! The unknowns of one grid and what is known about them.
+//! The unknowns of one grid and their status.
 
 use std::array::from_fn;
 use std::ops::Range;
@@ -13,10 +13,10 @@ use crate::scene::Load;
 use crate::sums::{sum_where, Sums};
 use crate::threads::Threads;
 
-/// Undeformed distances of more than so many times the approach are no part of a contact.
+/// Elements with an undeformed distance of more than this many approaches are never in contact.
 const OUT_OF_REACH: f64 = 1e6;
 
-/// Pressures, displacements and contact area on one grid, with the undeformed distance that they belong to.
+/// Pressures, displacements and contact area on one grid, with their undeformed distance.
 pub struct State {
     /// The grid.
     pub grid: Grid,
@@ -24,34 +24,34 @@ pub struct State {
     pub h: Vec<f64>,
     /// p: zero outside the contact area.
     pub p: Vec<f64>,
-    /// u = A p, as far as `u_is` says.
+    /// u = A p. `u_is` tells how accurately.
     pub u: Vec<f64>,
-    /// How fresh u is.
+    /// The freshness of u.
     pub u_is: Freshness,
     /// C.
     pub contact: Vec<bool>,
-    /// Elements at their limit, beside C; empty where the scene has no limits.
+    /// Elements at their limit, which are not in C. Empty if the scene has no limits.
     pub at_limit: Vec<bool>,
-    /// Whether an element was at its limit since the solve began: if not, all is as without limits, to the last bit.
+    /// Whether an element has reached its limit in this solve. If not, results are bitwise those without limits.
     pub reached_limit: bool,
     /// The approach: given, or the current estimate when the force is prescribed.
     pub approach: f64,
     /// The load.
     pub load: Load,
-    /// The round-off of a displacement, per unit of pressure: below it nothing is known.
+    /// The round-off of a displacement per unit of pressure. Smaller differences are meaningless.
     pub round_off: f64,
 }
 
 impl State {
-    /// Its undeformed distance, pressures and displacements are not known yet. With the load comes the approach to start from when the force is
-    /// prescribed.
+    /// A state whose undeformed distance, pressures and displacements are still to be set. `load` includes the initial approach for a prescribed
+    /// force.
     pub fn new(grid: Grid, load: (Load, f64), threads: &Threads) -> Result<State> {
         let mut state = State::at_rest(grid, load, threads)?;
         state.wake(threads);
         Ok(state)
     }
 
-    /// The same, of which large arrays rest: [`wake`](State::wake) them before they are used.
+    /// The same with large arrays at rest. [`wake`](State::wake) them before use.
     pub fn at_rest(grid: Grid, (load, estimate): (Load, f64), threads: &Threads) -> Result<State> {
         let mut arrays = [Vec::new(), Vec::new(), Vec::new()];
         for (values, what) in arrays.iter_mut().zip(["undeformed distances", "pressures", "displacements"]) {
@@ -91,13 +91,13 @@ impl State {
         Ok(copy)
     }
 
-    /// h, p and u are needed.
+    /// Wakes h, p and u.
     pub fn wake(&mut self, threads: &Threads) {
         let n = self.grid.len();
         [&mut self.h, &mut self.p, &mut self.u].into_iter().for_each(|values| wake(values, n, f64::NAN, threads));
     }
 
-    /// h, p and u are not needed for a while.
+    /// Lets h, p and u rest.
     pub fn rest(&mut self) {
         [&mut self.h, &mut self.p, &mut self.u].into_iter().for_each(rest);
     }
@@ -114,7 +114,7 @@ impl State {
 
     /// The rows that have an element in contact.
     pub fn rows_with_contact(&self) -> impl Iterator<Item = Range<usize>> + '_ {
-        // All of a row, which the compiler can vectorise.
+        // The fold has no early exit, so that the compiler vectorises it.
         let touches = |row: &[bool]| row.iter().fold(false, |any, &inside| any | inside);
         let mx = self.grid.mx;
         let rows = self.contact.chunks_exact(mx).enumerate();
@@ -123,7 +123,7 @@ impl State {
 
     /// Elements in contact.
     pub fn contact_count(&self) -> usize {
-        // Sums of bytes, of which the compiler makes vectors.
+        // The compiler vectorises sums of bytes.
         let count = |part: &[bool]| part.iter().map(|&inside| u8::from(inside)).sum::<u8>();
         self.contact.chunks(u8::MAX.into()).map(|part| usize::from(count(part))).sum()
     }
@@ -134,9 +134,10 @@ impl State {
         self.contact[i] || self.at_limit.get(i).is_some_and(|&at_limit| at_limit)
     }
 
-    /// Whether u is known in all of the contact area: that may have grown beyond the window of a coarser grid, outside of which it is infinite.
+    /// Whether u is finite in the whole contact area. u is infinite outside the window of a coarser grid, and the contact area may have grown beyond
+    /// it.
     pub fn has_displacements(&self) -> bool {
-        // All of a row, which the compiler can vectorise.
+        // The fold has no early exit, so that the compiler vectorises it.
         let known = |touches: &[bool], u: &[f64]| {
             touches.iter().zip(u).fold(true, |all, (touches, u)| all & (!touches | u.is_finite()))
         };
@@ -144,7 +145,8 @@ impl State {
             && (!self.has_limited() || known(&self.at_limit, &self.u))
     }
 
-    /// Elements in contact, free or at their limit, on the first or last row or column: with any, the potential contact area may be too small.
+    /// Elements in contact, free or at their limit, on the first or last row or column. If there are any, the potential contact area may be too
+    /// small.
     pub fn edge_count(&self) -> usize {
         let [columns, rows, corners] = self.edge_counts();
         columns + rows - corners
@@ -165,7 +167,7 @@ impl State {
             }
         };
         count(&self.contact);
-        // No element is both.
+        // No element is both in C and at its limit.
         if self.has_limited() {
             count(&self.at_limit);
         }
@@ -181,7 +183,7 @@ impl State {
         self.pressures(threads) * self.grid.element_area()
     }
 
-    /// The sum of all pressures, by blocks: a plain sum of many equal ones is off by more than a force may be.
+    /// The sum of all pressures, by blocks. The round-off of a plain sum of many equal values exceeds the tolerance of a force.
     pub fn pressures(&self, threads: &Threads) -> f64 {
         let [sum] = self.sum_pressures(threads, |p| [p]);
         sum
@@ -212,13 +214,13 @@ impl State {
         self.h[i] - self.approach + self.u[i]
     }
 
-    /// With a prescribed force: scales the pressures to carry it. Call before u is recomputed. Returns the factor; none when the
-    /// pressures were replaced by uniform ones, on the lowest element if there was no contact.
+    /// With a prescribed force: scales the pressures to carry it. Call it before u is recomputed. Returns the factor. None if
+    /// uniform pressures replaced the pressures; without contact the lowest element carries all.
     pub fn balance_force(&mut self, threads: &Threads) -> Option<f64> {
         let Load::Force(force) = self.load else { return Some(1.0) };
         let carried = self.force_by(threads);
         let factor = force / carried;
-        // Both push or both pull.
+        // Force and pressures have the same sign.
         if carried != 0.0 && factor.is_finite() && factor > 0.0 {
             if factor != 1.0 {
                 threads.for_a_pass(self.p.len()).for_each_plain_row(&mut self.p, self.grid.mx, |_, row| {
@@ -227,7 +229,7 @@ impl State {
             }
             return Some(factor);
         }
-        // Pressures too small or too large to be scaled (none yet, all truncated, a guess) start again from a uniform pressure.
+        // Pressures that are too small or too large to be scaled (none yet, all truncated, a guess) are replaced by a uniform pressure.
         if force > 0.0 && self.contact_count() == 0 {
             let touched = Some(lowest(&self.h)).filter(|h| h.is_finite());
             if let Some(i) = touched.and_then(|lowest| self.h.iter().position(|h| *h == lowest)) {
@@ -239,21 +241,21 @@ impl State {
         None
     }
 
-    /// Cap on h for coarser grids: out of reach of any contact, yet too small to dominate a mean. `lowest`: the least of h.
+    /// The cap on h for coarser grids. It is beyond any contact, yet too small to dominate a mean. `lowest` is the least h.
     pub fn out_of_reach(&self, lowest: f64, self_influence: f64) -> f64 {
         let lowest = Some(lowest).filter(|h| h.is_finite()).unwrap_or(0.0);
         let depth = match self.load {
             Load::Approach(approach) => approach - lowest,
-            // One element alone goes deepest.
+            // The approach is largest if one element carries the whole force.
             Load::Force(force) => force / self.grid.element_area() * self_influence,
         };
         lowest + OUT_OF_REACH * depth.max(0.0)
     }
 
-    /// With a prescribed force: the approach that fits best, the mean of h + u over the contact area.
+    /// With a prescribed force: sets the least-squares approach, the mean of h + u over the contact area.
     pub fn fit_approach(&mut self, threads: &Threads) {
         if let Load::Force(_) = self.load {
-            // Seen from one of its own elements: the mean of equal distances is that distance, to the last digit.
+            // The sum is relative to one of the elements. So the mean of equal distances is exact.
             let own = self.rows_with_contact().flatten().find(|&i| self.contact[i]).map_or(0.0, |i| self.h[i]);
             let (sum, count) = blocks::fold(
                 &self.grid,
@@ -266,20 +268,20 @@ impl State {
             if count > 0 {
                 self.approach = own + sum / count as f64;
             } else if self.has_limited() {
-                // Nothing is in elastic contact: the least approach that holds all elements at their limit.
+                // C is empty: the least approach that keeps all elements at their limit.
                 let held = (0..self.h.len()).filter(|&i| self.at_limit[i]).map(|i| self.h[i] + self.u[i]);
                 self.approach = held.fold(f64::NEG_INFINITY, f64::max);
             }
         }
     }
 
-    /// Forgets the last result: nothing to start from.
+    /// Discards the last result.
     pub fn forget(&mut self) {
         self.at_limit.fill(false);
         self.u_is = Freshness::Stale;
     }
 
-    /// p = 0: nothing is in contact, and u = 0 is A p.
+    /// Sets p = 0 and u = A p = 0, without contact.
     pub fn unload(&mut self) {
         self.p.fill(0.0);
         self.u.fill(0.0);

@@ -1,4 +1,4 @@
-//! The pass of a survey: what elements of a state add to it.
+//! The pass of a survey over the elements of a state.
 
 use std::array::from_fn;
 use std::ops::Range;
@@ -10,9 +10,9 @@ use super::State;
 pub struct Survey {
     /// 2-norm over C of `e = h - approach + u`.
     pub residual: f64,
-    /// 2-norm over C of `h - approach`: what residuals are compared with.
+    /// 2-norm over C of `h - approach`, the scale of residuals.
     pub distance: f64,
-    /// rms of the same over C and the elements at their limit: what violations are compared with.
+    /// rms of `h - approach` over C and the elements at their limit, the scale of violations.
     pub scale: f64,
     /// Largest `-e` over the exterior area, or e over the elements at their limit; 0 when there is none.
     pub violation: f64,
@@ -24,20 +24,20 @@ pub struct Survey {
     pub squares: f64,
     /// Smallest and largest p.
     pub range: (f64, f64),
-    /// `sum of p |e|` and `sum of p |u|`; of elements at their limit only e > 0 counts.
+    /// `sum of p |e|` and `sum of p |u|`; for elements at their limit only e > 0 counts.
     pub work: (f64, f64),
 }
 
-/// Elements that are looked at together: many at a time, which the compiler can vectorise.
+/// Elements of a chunk: loops over these are vectorised.
 const CHUNK: usize = 64;
-/// Parts of an extreme: a comparison does not wait for the one before.
+/// Lanes of an extreme: a comparison does not wait for the one before.
 const LANES: usize = 8;
 
-/// Sums of e^2 and `(h - approach)^2` over C, and of p, p^2, `p |e|` and `p |u|`: each in parts, one for each place in a chunk.
+/// Sums of e^2 and `(h - approach)^2` over C, and of p, p^2, `p |e|` and `p |u|`, each in one part for each place in a chunk.
 type Parts = [[f64; CHUNK]; 6];
 
-/// Elements that are added to a survey, before norms are made of its sums. Of those at their limit only p and its work count here; the survey adds
-/// the rest itself. Compiled for the vectors of this machine, on which no bit depends.
+/// Adds elements to the sums of a survey. Elements at their limit add only p and its work; the survey adds the rest. Compiled for the
+/// vectors of this machine, on which no bit depends.
 pub(super) struct Pass<'a> {
     pub state: &'a State,
     pub elements: Range<usize>,
@@ -77,8 +77,8 @@ impl pulp::NullaryFnOnce for Pass<'_> {
     }
 }
 
-/// Whether some elements penetrate, and whether some are in contact or have a pressure. Of most chunks none penetrates, and of many none is in
-/// contact. Signs and zeros are bits.
+/// Whether any element penetrates, and whether any is in contact or has a pressure. In most chunks none penetrates, in many none is in
+/// contact. Signs and zeros are tested as bits.
 #[inline(always)]
 fn signs(state: &State, elements: Range<usize>) -> (bool, bool) {
     let (h, u) = (&state.h[elements.clone()], &state.u[elements.clone()]);
@@ -92,7 +92,7 @@ fn signs(state: &State, elements: Range<usize>) -> (bool, bool) {
     (penetrates != 0, loaded != 0)
 }
 
-/// Adds at most [`CHUNK`] elements. Returns how many are in contact.
+/// Adds at most [`CHUNK`] elements. Returns the number in contact.
 #[inline(always)]
 fn add(state: &State, elements: Range<usize>, sums: &mut Parts) -> u64 {
     let (approach, n) = (state.approach, elements.len());
@@ -114,7 +114,7 @@ fn add(state: &State, elements: Range<usize>, sums: &mut Parts) -> u64 {
     contact.iter().map(|inside| u64::from(*inside)).sum()
 }
 
-/// The sum of all parts: half of them are added to the other half, and so on.
+/// The sum of all parts, by pairwise halving.
 #[inline(always)]
 fn total(parts: &mut [f64; CHUNK]) -> f64 {
     let mut n = CHUNK / 2;
@@ -126,11 +126,11 @@ fn total(parts: &mut [f64; CHUNK]) -> f64 {
     parts[0]
 }
 
-/// The least and the greatest of some values, and of those before, in lanes.
+/// Updates the least and the greatest value, in lanes.
 #[inline(always)]
 fn extremes((low, high): &mut ([f64; LANES], [f64; LANES]), values: &[f64]) {
     let (lanes, rest) = pulp::as_arrays::<LANES, f64>(values);
-    // One after the other: both in one loop are not vectorised.
+    // Two loops: one loop for both is not vectorised.
     for values in lanes {
         *low = from_fn(|lane| if values[lane] < low[lane] { values[lane] } else { low[lane] });
     }

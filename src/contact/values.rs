@@ -1,15 +1,15 @@
-//! How fresh displacements are, and questions to whole arrays of pressures and distances.
+//! The freshness of displacements, and reductions over arrays of pressures and distances.
 
 use crate::sums::least;
 
-/// How fresh the u of a state is.
+/// The freshness of a state's u.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Freshness {
-    /// A p.
+    /// u = A p.
     Exact,
-    /// Near A p.
+    /// u is near A p.
     Near,
-    /// Anything.
+    /// u is unrelated to p.
     Stale,
 }
 

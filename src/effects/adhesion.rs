@@ -10,7 +10,7 @@ use crate::error::{invalid, require, Error, Result};
 use crate::grid::{check_values, Grid};
 use crate::scene::{Load, Plain};
 
-/// Work and range lie within these powers of ten: their squares, and quotients of them, are numbers.
+/// Limits on work and range: their squares, and quotients of these, are finite.
 const RANGE: (f64, f64) = (1e-70, 1e70);
 
 /// w, a force per length (an energy per area): the same everywhere or one per element, `[my][mx]`.
@@ -29,13 +29,13 @@ pub struct Adhesion<'a> {
     pub law: Law,
     /// The work of adhesion, >= 0.
     pub work: Work<'a>,
-    /// rho, a length; 0: the shortest that the elements carry.
+    /// The range rho, a length; 0: the shortest that the elements carry.
     pub range: f64,
-    /// Which of several states a start from nothing looks for.
+    /// Which of several states is found without a state to start from.
     pub start: Start,
-    /// Whether dF/dapproach is asked for.
+    /// Whether dF/dapproach is computed.
     pub stiffness: bool,
-    /// Whether it is asked for how near the state is to a snap.
+    /// Whether the distance of the state from a snap is computed.
     pub stability: bool,
     /// tau0 >= 0, a traction: with friction the bound in contact is `mu q + tau0`.
     pub shear_strength: f64,
@@ -71,7 +71,7 @@ impl Effect for Adhesion<'_> {
         }
     }
 
-    // A scene has to know of what is wrong, too.
+    // Invalid values count as adhesion, so that the scene refuses them.
     fn is_one(&self, scene: &Plain<'_>) -> bool {
         self.attracts() || self.check(&scene.grid).is_err()
     }
@@ -124,7 +124,7 @@ impl Effect for Adhesion<'_> {
         Ok(())
     }
 
-    // It may be another one for each solve.
+    // Adhesion may differ in each solve.
     fn values(&self, _tell: &mut dyn FnMut(&'static str, Value<'_>)) {}
 
     fn gives_way(&self, _scene: &Plain<'_>) -> bool {

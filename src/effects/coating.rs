@@ -12,10 +12,10 @@ use crate::scene::{Bodies, Plain};
 
 /// Bound on the shear modulus of a coating over that of its substrate.
 const STIFFEST: f64 = 1e4;
-/// Below this ratio, or on a rigid body, an incompressible layer has to be at least so many elements thick: nothing else gives way there.
+/// Ratio of moduli below which, or on a rigid body, an incompressible layer must be at least THINNEST elements thick: it has no other compliance.
 const RIGID: f64 = 1e-4;
 const THINNEST: f64 = 0.125;
-/// Of what elements measure, a layer thinner than that is none.
+/// Thickness, relative to an element, below which there is no layer.
 const NOTHING: f64 = 1e-100;
 
 /// A bonded elastic layer; the body's own shear modulus and Poisson ratio are then those of the substrate, which may be rigid.
@@ -32,7 +32,7 @@ pub struct CoatingLayer {
 /// The coatings of body 1 and 2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Coating {
-    /// None: that body has none.
+    /// None: the body has no coating.
     pub layers: [Option<CoatingLayer>; 2],
 }
 
@@ -42,12 +42,12 @@ const NAMES: [[&str; 3]; 2] = [
 ];
 
 impl Coating {
-    /// Of body 1 alone.
+    /// A coating of body 1 alone.
     pub fn of_body_1(thickness: f64, shear_modulus: f64, poisson_ratio: f64) -> Coating {
         Coating { layers: [Some(CoatingLayer { thickness, shear_modulus, poisson_ratio }), None] }
     }
 
-    /// The coating of a body, if that is one: not of no thickness, and not of the substrate's material.
+    /// The coating of a body, unless it has no thickness or is of the substrate's material.
     pub fn in_effect(&self, b: usize, scene: &Plain<'_>) -> Option<CoatingLayer> {
         let (modulus, ratio) = (scene.bodies.shear_modulus[b], scene.bodies.poisson_ratio[b]);
         let is_none = |layer: &CoatingLayer| {
@@ -68,12 +68,12 @@ impl Coating {
         Ok(CoatedBody { compliance, layer: Some((thickness, radial(mu, [poisson_ratio, ratio]))) })
     }
 
-    /// Refuses a layer that gives way by shear alone, in waves that are shorter than elements: pressures that are constant on these see none of them.
+    /// Refuses a layer whose only compliance is shear in waves shorter than elements: pressures constant on elements do not excite such waves.
     fn check_thickness(&self, b: usize, (scene, body): (&Plain<'_>, &CoatedBody)) -> Result<()> {
         let Some((t, radial)) = &body.layer else { return Ok(()) };
         let longer = f64::max(scene.grid.dx, scene.grid.dy);
         let (s, transfer) = (PI * t / longer, &radial.transfer);
-        // B(s) of a thin layer: what is below, its compression, and its shear.
+        // B(s) of a thin layer: the substrate, its compression, and its shear.
         let is_sheared = transfer.substrate + transfer.of_mean * s < 2.0 / 3.0 * s.powi(3) || transfer.of_mean == 0.0;
         if self.ratio(b, scene)? < RIGID && *t < THINNEST * longer && is_sheared {
             return invalid(format!(
@@ -97,7 +97,7 @@ impl Coating {
         }
     }
 
-    /// Both bodies; none: they have no coating in effect.
+    /// Both bodies; none if no coating is in effect.
     pub fn bodies(&self, scene: &Plain<'_>) -> Result<Option<[CoatedBody; 2]>> {
         let bodies = [self.body(0, scene)?, self.body(1, scene)?];
         Ok(bodies.iter().any(|body| body.layer.is_some()).then_some(bodies))
@@ -105,14 +105,14 @@ impl Coating {
 }
 
 impl Coating {
-    /// The coating that both bodies have, for their tractions; none in effect: there is none.
+    /// The common coating of both bodies, for their tractions; none if no coating is in effect.
     pub fn of_both(&self, scene: &Plain<'_>) -> Result<Option<Coat>> {
         let Some(layer) = self.in_effect(0, scene) else { return Ok(None) };
         let nu = [layer.poisson_ratio, scene.bodies.poisson_ratio[0]];
         Ok(Some(Coat::new(layer.thickness, self.ratio(0, scene)?, nu)))
     }
 
-    /// The difference between both bodies; none: they are the same, layer and what is below.
+    /// The difference between both bodies; none if layers and substrates are the same.
     fn difference(&self, scene: &Plain<'_>) -> Option<String> {
         let (one, two) = match [0, 1].map(|b| self.in_effect(b, scene)) {
             [None, None] => return None,
@@ -182,12 +182,12 @@ impl Effect for Coating {
         Ok(())
     }
 
-    // A ratio that is no number is refused by name.
+    // A NaN ratio is refused by its own check.
     fn gives_way(&self, scene: &Plain<'_>) -> bool {
         (0..2).filter_map(|b| self.in_effect(b, scene)).any(|layer| !(layer.poisson_ratio >= 0.5))
     }
 
-    // Of other bodies what couples both problems is no difference of moduli.
+    // Of different coated bodies the coupling of both problems is not a difference of moduli.
     fn check_tractions(&self, scene: &Plain<'_>) -> Result<()> {
         // A layer or a body without meaning is refused by its own check.
         let is_checked = self.check(&scene.grid).is_ok() && scene.bodies.check_each().is_ok();
@@ -221,7 +221,7 @@ impl Effect for Coating {
         if layers == [None, None] {
             return;
         }
-        // That a body has none is told, too.
+        // A missing coating is told as well.
         for (layer, [t, g, nu]) in layers.into_iter().zip(NAMES) {
             tell(t, Value::Number(layer.map_or(0.0, |layer| layer.thickness)));
             if let Some(layer) = layer {
@@ -231,7 +231,7 @@ impl Effect for Coating {
         }
     }
 
-    // A layer of no thickness, or of the body's own material, is none.
+    // A layer without thickness, or of the body's own material, is no coating.
     fn is_one(&self, scene: &Plain<'_>) -> bool {
         (0..2).any(|b| self.in_effect(b, scene).is_some()) || self.check(&scene.grid).is_err()
     }

@@ -1,4 +1,4 @@
-//! Problems that are coupled with the normal one: both are solved in turns, and a step leaves something to the next one.
+//! Problems coupled with the normal one: both are solved in turns, with a history from step to step.
 
 use crate::contact::State;
 use crate::error::{invalid, Result};
@@ -6,8 +6,8 @@ use crate::grid::Grid;
 use crate::memory::zeros;
 use crate::progress::{Monitor, Outcome};
 
-/// A problem of its own that displaces the undeformed distance of the normal one. `state` holds the solution of the normal problem, with
-/// the distance that was made last.
+/// A problem that displaces the undeformed distance of the normal one. `state` holds the solution of the normal problem, with the last displaced
+/// distance.
 ///
 /// ```text
 /// repeat   solve           its own problem, with the pressures of the normal one
@@ -16,24 +16,24 @@ use crate::progress::{Monitor, Outcome};
 /// step_done
 /// ```
 pub trait Coupled {
-    /// Solves its own problem with the pressures of a normal problem that ended with `stop`. Says how that ended.
+    /// Solves the problem with the pressures of a normal problem that ended with `stop`. Returns the outcome.
     fn solve(&mut self, stop: Outcome, state: &State, monitor: &mut Monitor<'_>) -> Result<Outcome>;
 
-    /// Whether it displaces the undeformed distance; if not, there is one turn.
+    /// Whether the problem displaces the undeformed distance; if not, there is one turn.
     fn displaces(&self) -> bool;
 
-    /// Adds what it displaces to the undeformed distance of the scene.
+    /// Adds the problem's displacements to the undeformed distance of the scene.
     fn displace(&mut self, distance: &mut [f64]);
 
-    /// Whether the options leave it work for another turn.
+    /// Whether the options allow another turn.
     fn has_work_left(&self) -> bool;
 
-    /// The turns have come to their end: refuses what the last pressures do not allow.
+    /// After the last turn: refuses loads that the last pressures do not allow.
     fn refuse(&mut self) -> Result<()> {
         Ok(())
     }
 
-    /// The step is done: keeps what the next one continues from.
+    /// Ends the step: keeps the state from which the next one continues.
     fn step_done(&mut self, state: &State);
 }
 
@@ -42,16 +42,16 @@ pub trait Coupled {
 pub struct History {
     fields: Vec<Vec<f64>>,
     has_step: bool,
-    /// It is that of another solver, which has the result that goes with it.
+    /// Whether the history is that of another solver, which has the corresponding result.
     pub is_given: bool,
-    /// Of the steps so far, for effects that have a time.
+    /// The time of the steps so far, for effects with a time.
     pub time: f64,
-    /// The error of the steps so far, added up: a length.
+    /// The sum of the errors of the steps so far, a length.
     pub error: f64,
 }
 
 impl History {
-    /// So many fields, which are 0 where no step was done. Refuses a history that was [taken](History::take) and has another number of them.
+    /// The `count` fields, 0 before the first step. Refuses a [taken](History::take) history with another number of fields.
     pub fn fields(&mut self, count: usize, grid: &Grid) -> Result<&mut [Vec<f64>]> {
         if self.is_given && self.fields.len() != count {
             let known = self.fields.len();
@@ -63,12 +63,12 @@ impl History {
         Ok(&mut self.fields[..count])
     }
 
-    /// The fields that there are.
+    /// The present fields.
     pub fn known(&self) -> &[Vec<f64>] {
         &self.fields
     }
 
-    /// The same, to be written.
+    /// The present fields, mutable.
     pub fn known_mut(&mut self) -> &mut [Vec<f64>] {
         &mut self.fields
     }
@@ -78,12 +78,12 @@ impl History {
         self.has_step
     }
 
-    /// A step is done.
+    /// Ends a step.
     pub fn keep(&mut self) {
         self.has_step = true;
     }
 
-    /// There is no last step.
+    /// Forgets all steps.
     pub fn forget(&mut self) {
         self.fields.iter_mut().for_each(|field| field.fill(0.0));
         (self.has_step, self.is_given, self.time, self.error) = (false, false, 0.0, 0.0);
@@ -95,7 +95,7 @@ impl History {
         is_there.then(|| [self.time, self.error].into_iter().chain(self.fields.iter().flatten().copied()).collect())
     }
 
-    /// Becomes what these numbers say.
+    /// Takes the history from its [numbers](History::numbers).
     pub fn take(&mut self, numbers: &[f64], grid: &Grid) -> Result<()> {
         let [time, error, values @ ..] = numbers else { return invalid("a history begins with two numbers".into()) };
         if values.is_empty() || values.len() % grid.len() != 0 {

@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::scene::Plain;
 
-/// mu, a number: the same everywhere or one per element, `[my][mx]`.
+/// A coefficient: the same everywhere or one per element, `[my][mx]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Coefficient<'a> {
     /// The same everywhere.
@@ -21,7 +21,7 @@ pub enum Coefficient<'a> {
 }
 
 impl Coefficient<'_> {
-    /// Of element i.
+    /// The value at element i.
     pub fn at(&self, i: usize) -> f64 {
         match self {
             Coefficient::Uniform(mu) => *mu,
@@ -30,13 +30,13 @@ impl Coefficient<'_> {
     }
 }
 
-/// Slips and tractions are smaller: their squares are numbers.
+/// Upper limit on slips and tractions: their squares are finite.
 pub(super) const LARGEST: f64 = 1e140;
 
-/// Of angles and lengths.
+/// Relative round-off of `distance * cosine / dx`: below 1e-15 from the angle (at most 2 pi), cosine, product and quotient; ten times that.
 const ROUND_OFF: f64 = 1e-14;
 
-/// Why no accuracy is reached with it.
+/// Why refinement to an accuracy is refused.
 const OWN_COEFFICIENTS: &str =
     "friction->influence and friction->row_tables are those of one grid, and this asks for several";
 const KEPT: &str = "friction->continues begins with what a handle found on its own grid, and this asks for several: give previous_traction";
@@ -53,10 +53,9 @@ pub enum Motion {
     /// Sideways and about the normal, without rolling; creepages are lengths, spin is an angle.
     #[default]
     Shift,
-    /// A step of rolling, from the tractions before.
+    /// A step of rolling, from the previous tractions.
     TransientRolling,
-    /// Rolling that does not change any more: the tractions before are those of now. Those that are given or kept are only where the
-    /// iteration starts.
+    /// Rolling whose tractions no longer change. Given or kept tractions only start the iteration.
     SteadyRolling,
 }
 
@@ -84,54 +83,53 @@ pub enum Previous<'a> {
 /// Friction between the bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction<'a> {
-    /// mu.
+    /// The coefficient of friction mu.
     pub coefficient: Coefficient<'a>,
     /// How the bodies move.
     pub motion: Motion,
-    /// In x and in y. The slip is that of body 1 over body 2: a negative creepage gives a positive force.
+    /// The prescribed quantity in x and in y. The slip is that of body 1 over body 2: a negative creepage gives a positive force.
     pub prescribed: [Prescribed; 2],
-    /// phi, about the normal: for a shift an angle, for rolling an angle per length rolled.
+    /// The spin phi about the normal: for a shift an angle, for rolling an angle per length rolled.
     pub spin: f64,
-    /// Where the spin turns about and the moment is taken, from the centre of the grid.
+    /// The axis of the spin and of the moment, relative to the centre of the grid.
     pub spin_centre: [f64; 2],
-    /// dq, a length: rolled in the step. 0: dx.
+    /// dq, the length rolled in the step; 0: dx.
     pub rolling_distance: f64,
-    /// chi, an angle from the x axis.
+    /// chi, the angle of rolling from the x axis.
     pub rolling_direction: f64,
-    /// The part of the step by which places are ahead in the slip by spin.
+    /// The slip by spin is taken ahead of each element's centre by this part of the length rolled.
     pub spin_offset: f64,
-    /// The tractions before.
+    /// The tractions before the step.
     pub previous: Previous<'a>,
     /// Tractions in x and y to start the iteration from, `[my][mx]` each; the solution does not depend on them.
     pub initial: Option<[&'a [f64]; 2]>,
-    /// A rigid slip of the caller's in addition, lengths per step, x and y.
+    /// An additional rigid slip, lengths per step, x and y.
     pub rigid_slip: Option<[&'a [f64]; 2]>,
-    /// How much of a creepage in x, in y reaches each element, `[my][mx]` each; none: all of it. Forces that are given are then the sums of
-    /// these times q.
+    /// Weights of the creepages in x and in y at each element, `[my][mx]` each; none: 1. Prescribed forces are sums of q with these weights.
     pub weights: Option<[&'a [f64]; 2]>,
-    /// The compliance of a thin elastic layer between the bodies, a length per traction: it displaces by that times the traction on it.
+    /// The compliance of a thin elastic layer between the bodies: its displacement per traction.
     pub compliance: Coefficient<'a>,
-    /// Tangential coefficients of the caller's own; none: those of the bodies.
+    /// The caller's tangential coefficients; none: those of the bodies.
     pub influence: Option<TangentialInfluence<'a>>,
-    /// Whether the derivatives of the forces by the creepages and the spin are asked for.
+    /// Whether the derivatives of the forces by the creepages and the spin are computed.
     pub sensitivities: bool,
-    /// How the coefficient falls with the slip velocity; none: not at all.
+    /// How the coefficient falls with the slip velocity; none: it is constant.
     pub law: Option<FrictionLaw>,
     /// A layer that yields; none: tractions are bounded by friction alone.
     pub layer: Option<PlasticLayer>,
-    /// Before the step, `[my][mx]`: coefficients that particles had (of a law with memory), in rolling where these were then; none: those at rest.
+    /// Coefficients of the particles before the step (law with memory), `[my][mx]`, in rolling at their places before it; none: those at rest.
     pub coefficients_before: Option<&'a [f64]>,
-    /// And yield limits; none: those of fresh material.
+    /// Yield limits of the particles before the step; none: those of fresh material.
     pub yield_limits: Option<&'a [f64]>,
-    /// Which solution, with a law or a layer that hardens or softens.
+    /// Which of several solutions, with a law or a layer that hardens or softens.
     pub branch: Branch,
 }
 
 impl Friction<'_> {
-    /// As it is called in a scene.
+    /// The effect's name in a scene.
     pub const NAME: &'static str = "friction";
 
-    /// Of a coefficient; nothing moves.
+    /// Friction with this coefficient and no motion.
     pub fn new(coefficient: f64) -> Friction<'static> {
         Friction {
             coefficient: Coefficient::Uniform(coefficient),
@@ -157,7 +155,7 @@ impl Friction<'_> {
         }
     }
 
-    /// The length rolled in a step; of a shift 1, so that creepages are lengths.
+    /// The length rolled in a step; for a shift 1, so that creepages are lengths.
     pub fn distance(&self, grid: &Grid) -> f64 {
         match self.motion {
             Motion::Shift => 1.0,
@@ -166,7 +164,7 @@ impl Friction<'_> {
         }
     }
 
-    /// How many elements a step of rolling goes in x and in y. Of whole numbers round-off is removed: coefficients are simpler there.
+    /// The elements that a step of rolling covers in x and in y. Whole numbers are freed of round-off: coefficients are simpler there.
     pub fn elements_rolled(&self, grid: &Grid) -> (f64, f64) {
         let (distance, (sine, cosine)) = (self.distance(grid), self.rolling_direction.sin_cos());
         let clean = |value: f64| {
@@ -179,7 +177,7 @@ impl Friction<'_> {
         (clean(distance * cosine / grid.dx), clean(distance * sine / grid.dy))
     }
 
-    /// The rigid slip of the step at element i; without creepages that are to be found.
+    /// The rigid slip of the step at element i, without unknown creepages.
     pub fn rigid_slip_at(&self, grid: &Grid, i: usize) -> [f64; 2] {
         let distance = self.distance(grid);
         let centre =
@@ -201,12 +199,12 @@ impl Friction<'_> {
         [distance * (creepage[0] - self.spin * y) + own[0], distance * (creepage[1] + self.spin * x) + own[1]]
     }
 
-    /// How much of the creepages reaches element i.
+    /// The weights of the creepages at element i.
     pub fn weight_at(&self, i: usize) -> [f64; 2] {
         self.weights.map_or([1.0; 2], |[x, y]| [x[i], y[i]])
     }
 
-    /// How the rigid slip at element i changes with xi (0), eta (1) or phi (2).
+    /// The derivative of the rigid slip at element i by xi (0), eta (1) or phi (2).
     pub fn rigid_slip_by(&self, grid: &Grid, i: usize, creepage: usize) -> [f64; 2] {
         let mut unit = Friction { prescribed: [Prescribed::Creepage(0.0); 2], spin: 0.0, rigid_slip: None, ..*self };
         match creepage {
@@ -224,14 +222,14 @@ impl Effect for Friction<'_> {
 
     fn properties(&self) -> Properties<'_> {
         let has_particles = self.law.is_some() || self.layer.is_some();
-        // Tangential coefficients of these are not known, unless they are given.
+        // The library has no tangential coefficients for these effects; the caller may give them.
         let excludes: &[&str] = match self.influence {
             Some(influence) if influence.cross.is_none() => &["adhesion", "period", "patches"],
-            // The coupling of both problems is a table of offsets alone.
+            // A given coupling is a table of offsets, which these effects do not have.
             Some(_) => &["adhesion", "row_tables", "period", "patches", "coating"],
             None => &["adhesion", "influence", "row_tables", "period", "patches"],
         };
-        // Laws and layers ask for pressures: with adhesion there are only bounds.
+        // Laws and layers need pressures; adhesion gives only bounds.
         let excludes = if has_particles { excludes } else { &excludes[1..] };
         let continues = (self.previous == Previous::Kept).then_some(CONTINUES);
         let has_history = has_particles && (self.coefficients_before.is_some() || self.yield_limits.is_some());
@@ -245,7 +243,7 @@ impl Effect for Friction<'_> {
             own_coefficients: None,
             repeats: (false, false),
             limits: None,
-            // The solver itself has the tangential problem, in the place of `coupled`.
+            // The solver holds the tangential problem itself instead of `coupled`.
             is_beside: true,
             continues,
         }
@@ -280,7 +278,7 @@ impl Effect for Friction<'_> {
         Ok(())
     }
 
-    // It may be another one for each solve; a solver keeps tangential tables by itself.
+    // Friction may differ in each solve; the solver itself keeps the tangential tables.
     fn values(&self, _tell: &mut dyn FnMut(&'static str, Value<'_>)) {}
 
     fn gives_way(&self, _scene: &Plain<'_>) -> bool {

@@ -1,4 +1,4 @@
-//! Bounds of tractions that a law or a layer changes, and what is refused of these.
+//! Bounds of tractions with a law or a layer, and the checks of these.
 
 use super::friction::{Friction, Motion, Prescribed};
 use super::friction_law::{Branch, PlasticLayer};
@@ -11,12 +11,12 @@ const LIKE_BODIES: &str = "bodies must be alike";
 const WHOLE_STEPS: &str = "with memory a step of steady rolling must be of whole elements along x or along y";
 
 impl Friction<'_> {
-    /// Whether the bounds depend on the slip: then the tangential problem is solved by [`law`](crate::friction::law).
+    /// Whether the bounds depend on the slip, so that [`law`](crate::friction::law) solves the tangential problem.
     pub fn has_law(&self) -> bool {
         self.law.is_some() || self.layer.is_some_and(|layer| layer.hardening != 0.0)
     }
 
-    /// Whether they depend on what particles of the interface carry from step to step.
+    /// Whether the bounds depend on the history of the interface's particles.
     pub fn has_memory(&self) -> bool {
         self.law.is_some_and(|law| law.memory_distance > 0.0) || self.layer.is_some_and(|layer| layer.hardening != 0.0)
     }
@@ -30,7 +30,7 @@ impl Friction<'_> {
         }
     }
 
-    /// The bound of element i by a pressure where it does not depend on the slip; with a law mu p.
+    /// The bound of element i at a pressure, if independent of the slip; with a law mu p.
     pub fn bound_at(&self, i: usize, pressure: f64) -> f64 {
         let bound = self.coefficient.at(i) * pressure.max(0.0);
         match self.layer {
@@ -44,7 +44,7 @@ impl Friction<'_> {
         self.yield_limits.map_or(layer.yield_limit, |limits| limits[i])
     }
 
-    /// Refuses laws, layers and histories that are none, or that are not solved with the rest.
+    /// Refuses invalid laws, layers and histories, and those that are not solved with the rest.
     pub(super) fn check_law(&self, grid: &Grid) -> Result<()> {
         if let Some(law) = &self.law {
             law.check(self.motion == Motion::Shift)?;
@@ -55,7 +55,7 @@ impl Friction<'_> {
         }
         self.coefficients_before
             .map_or(Ok(()), |values| check_values("friction->previous_coefficient", values, grid, not_negative))?;
-        // Without a layer nobody reads them.
+        // Without a layer yield limits are not read.
         self.yield_limits
             .filter(|_| self.layer.is_some())
             .map_or(Ok(()), |values| check_values("friction->previous_yield_limit", values, grid, positive))?;
@@ -80,7 +80,7 @@ impl Friction<'_> {
         Ok(())
     }
 
-    /// Refuses unlike bodies.
+    /// Refuses unlike bodies with a law.
     pub(super) fn check_bodies_of_law(&self, bodies: &Bodies) -> Result<()> {
         let has_cross = self.influence.is_some_and(|influence| influence.cross.is_some());
         let is_unlike = self.influence.is_none() && bodies.unlike() != 0.0;

@@ -1,4 +1,4 @@
-//! Refusals of friction: steps, tables and numbers that make no sense.
+//! Checks of friction: steps, tables and numbers.
 
 use std::f64::consts::PI;
 
@@ -6,13 +6,13 @@ use super::friction::{Coefficient, Friction, Motion, Prescribed, Previous, LARGE
 use crate::error::{finite, invalid, require, Error, Result};
 use crate::grid::{check_values, Grid};
 
-/// Steps of rolling are at most so many elements long,
+/// Longest step of rolling, in elements.
 const LONGEST_STEP: f64 = 1e6;
-/// and those of steady rolling at least so many.
+/// Shortest step of steady rolling, in elements.
 const SHORTEST_STEADY_STEP: f64 = 0.1;
 const OTHER_UNITS: &str = "friction needs numbers below 1e140: choose other units";
 
-/// A step of rolling is of whole elements if it is so near.
+/// Distance from a whole number of elements at which a step of rolling counts as whole.
 const WHOLE: f64 = 1e-9;
 
 impl Friction<'_> {
@@ -66,7 +66,7 @@ impl Friction<'_> {
         let Previous::Given(before) = self.previous else { return Ok(()) };
         for (name, q) in ["friction->previous_traction[0]", "friction->previous_traction[1]"].iter().zip(before) {
             match self.motion {
-                // There they are only where the iteration starts.
+                // Previous tractions only start the iteration.
                 Motion::SteadyRolling => check_values(name, q, grid, finite)?,
                 _ => check_values(name, q, grid, small)?,
             }
@@ -74,7 +74,7 @@ impl Friction<'_> {
         Ok(())
     }
 
-    /// Refuses coefficients and compliances that are none.
+    /// Refuses invalid coefficients and compliances.
     pub(super) fn check_coefficients(&self, grid: &Grid) -> Result<()> {
         let coefficient = |name: &str, mu: f64| match mu {
             mu if !mu.is_finite() => Err(Error::NotFinite(format!("{name} is {mu}; it must be finite"))),
@@ -96,7 +96,7 @@ impl Friction<'_> {
         Ok(())
     }
 
-    /// Refuses numbers that are none.
+    /// Refuses invalid numbers.
     pub(super) fn check_numbers(&self) -> Result<()> {
         for (k, prescribed) in self.prescribed.iter().enumerate() {
             match prescribed {
@@ -121,7 +121,7 @@ impl Friction<'_> {
         require(direction.abs() <= 2.0 * PI, "friction->rolling_direction", direction, turns)
     }
 
-    /// Refuses tables that do not suit the grid and the step: between whole offsets they say nothing.
+    /// Refuses tables that do not suit the grid or the step: they have no coefficients between whole offsets.
     pub(super) fn check_influence(&self, grid: &Grid) -> Result<()> {
         let Some(influence) = &self.influence else { return Ok(()) };
         if self.motion != Motion::Shift {

@@ -1,5 +1,5 @@
-//! Friction beyond a constant coefficient: a law by which the coefficient falls with the slip velocity, and a layer between
-//! the bodies that yields. See [`friction::law`](crate::friction::law) for what is solved.
+//! Friction beyond a constant coefficient: a law by which the coefficient falls with the slip velocity, and a yielding layer
+//! between the bodies. See [`friction::law`](crate::friction::law) for the problem.
 
 use crate::error::{not_negative, positive, Result};
 
@@ -14,13 +14,13 @@ pub enum Fall {
     Exponential,
 }
 
-/// Which solution is wanted where bounds that fall with the slip have several.
+/// The wanted solution if bounds that fall with the slip have several.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Branch {
-    /// The solution near the start: the fastest to find. Where none is found so, that of `Low`.
+    /// The solution near the start, the fastest to find; if none is found, that of `Low`.
     #[default]
     Near,
-    /// The solution that begins with the bounds of no slip.
+    /// The solution reached from the bounds of no slip.
     Low,
     /// The solution that begins with the bounds of any speed.
     High,
@@ -29,20 +29,20 @@ pub enum Branch {
 /// A coefficient of friction that depends on the slip velocity:
 ///
 /// ```text
-/// mu_s(v) = mu (kinetic + falling_1 f_1(v) + falling_2 f_2(v))/(kinetic + falling_1 + falling_2)       mu: the coefficient, that at rest
-/// mu      = t mu_v + (1 - t) mu_s(v),    t = c/(c + dt max(v, v0))        c: memory_distance, v0: memory_speed, mu_v: what the particle had
+/// mu_s(v) = mu (kinetic + falling_1 f_1(v) + falling_2 f_2(v))/(kinetic + falling_1 + falling_2)       mu: the coefficient at rest
+/// mu      = t mu_v + (1 - t) mu_s(v),    t = c/(c + dt max(v, v0))        c: memory_distance, v0: memory_speed, mu_v: the particle's before
 /// ```
 ///
 /// The kinds are those of CONTACT (L = 2, 3, 4); Polach's law is `Exponential` with kinetic A, falling 1 - A and half speed ln 2/B.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionLaw {
-    /// How it falls.
+    /// How the coefficient falls.
     pub fall: Fall,
-    /// The part that is left at high speed; only ratios of this and of `falling` count.
+    /// The part that remains at high speed; only ratios to `falling` count.
     pub kinetic: f64,
     /// The part that falls, in two terms.
     pub falling: [f64; 2],
-    /// The slip velocities at which half of each part is left.
+    /// The slip velocities at which each part has fallen to a half.
     pub half_speed: [f64; 2],
     /// V: the speed of rolling. A step takes dq/V.
     pub speed: f64,
@@ -50,7 +50,7 @@ pub struct FrictionLaw {
     pub time_step: f64,
     /// The distance of slip over which the coefficient follows; 0: at once.
     pub memory_distance: f64,
-    /// The least slip velocity by which it follows.
+    /// The least slip velocity in the memory's rate.
     pub memory_speed: f64,
 }
 
@@ -59,12 +59,12 @@ pub struct FrictionLaw {
 pub struct PlasticLayer {
     /// The yield limit of fresh material, a traction.
     pub yield_limit: f64,
-    /// The gain of the limit by a length of plastic slip, a traction per length; negative: it softens, to a thousandth of `yield_limit` at least.
+    /// The gain of the limit per plastic slip, a traction per length; negative: it softens, down to a thousandth of `yield_limit`.
     pub hardening: f64,
 }
 
 impl FrictionLaw {
-    /// Of one part that falls, at once.
+    /// A law with one falling part and no memory.
     pub const fn new(fall: Fall, (kinetic, falling): (f64, f64), half_speed: f64, speed: f64) -> FrictionLaw {
         let (falling, half_speed) = ([falling, 0.0], [half_speed, 1.0]);
         FrictionLaw {
@@ -105,7 +105,7 @@ impl FrictionLaw {
         (value / at_rest, slope / at_rest)
     }
 
-    /// Refuses numbers that are none; `is_shift`: the time of a step is `time_step`.
+    /// Refuses invalid numbers; `is_shift`: the time of a step is `time_step`.
     pub(super) fn check(&self, is_shift: bool) -> Result<()> {
         not_negative("friction->kinetic", self.kinetic)?;
         for k in 0..2 {

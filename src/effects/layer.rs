@@ -1,4 +1,4 @@
-//! Effect: a thin compliant layer between the bodies, `e = h - approach + A p + c p`: a coating, a paint, roughness that gives way.
+//! Effect: a thin compliant layer between the bodies, `e = h - approach + A p + c p`: a coating, a paint, compliant roughness.
 
 use super::effect::{Effect, Value};
 use super::properties::{Properties, Stresses};
@@ -7,7 +7,7 @@ use crate::grid::{check_values, Grid};
 use crate::influence::{self, Coefficients};
 use crate::scene::Plain;
 
-/// The compliance c of the layer, a length per pressure: of the same kind as influence coefficients.
+/// The compliance c of the layer: length per pressure, as influence coefficients.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Layer<'a> {
     /// The same everywhere.
@@ -17,7 +17,7 @@ pub enum Layer<'a> {
 }
 
 impl Layer<'_> {
-    /// Whether it gives way nowhere: then it is none.
+    /// Whether the compliance is 0 everywhere. Then there is no layer.
     fn is_rigid(&self) -> bool {
         match self {
             Layer::Uniform(c) => *c == 0.0,

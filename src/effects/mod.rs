@@ -26,9 +26,9 @@
 //! | visco | yes | no | yes | nothing: its step is a problem of other lengths, with what is left of the steps before |
 //!
 //! A new effect is a file with an `impl Effect`, its `mod`, and a line in the list (`list.rs`), which makes it a field of
-//! [`Scene`](crate::scene::Scene). The list has the order in which effects act; `together.rs` has what all of a scene say. What is solved
-//! in turns with the normal problem, or remembers the steps before, is [`Coupled`]. `tests/unit/foundation.rs` is an example. What bodies themselves
-//! remember is [`Memory`].
+//! [`Scene`](crate::scene::Scene). Effects act in the order of the list; `together.rs` joins the properties of all effects of a scene. A problem
+//! solved in turns with the normal one, or with a state from step to step, is [`Coupled`]; `tests/unit/foundation.rs` is an example. The memory of
+//! the bodies themselves is [`Memory`].
 
 mod adhesion;
 mod coating;

@@ -1,9 +1,9 @@
 //! The bodies and the values of all effects of a set-up: an owned record, compared with later scenes.
 //!
-//! Numbers are kept. Tables are kept shared with the coefficients, so they cost nothing, and compared value by value unless they are the
-//! very same. Arrays of one value per element are kept as their length and a hash of 128 bits: each word enters by steps that are
-//! one-to-one (exclusive or, a product by an odd number, a rotation), so that arrays that differ in one value always differ, others but
-//! for one case in 2^128. Nothing is allocated by a comparison that finds no difference.
+//! Numbers are kept. Tables are shared with the coefficients, without additional memory, and compared value by value unless they are the same object.
+//! Arrays of one value per element are kept as their length and a hash of 128 bits. Each word enters by one-to-one steps (exclusive or, a product by
+//! an odd number, a rotation): arrays that differ in one value always have different hashes. Other different arrays have equal hashes in one case of
+//! 2^128. A comparison without difference allocates nothing.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::error::{invalid, Error, Result};
 use crate::memory::Held;
 use crate::scene::{Bodies, Scene};
 
-/// The consequence of other coefficients.
+/// The advice for other coefficients.
 pub const SET_THEM: &str =
     "leave them out, or set them first (influence and tangential tables: contact_normal_solver_set_influence)";
 
@@ -29,7 +29,7 @@ impl Kept {
     fn new(value: Value<'_>) -> Kept {
         match value {
             Value::Number(number) => Kept::Number(number),
-            // -0 is 0.
+            // Adding 0 turns -0 into 0.
             Value::Array(values) => Kept::Hash(values.len(), hash(values.iter().map(|value| (value + 0.0).to_bits()))),
             Value::Integers(values) => Kept::Hash(values.len(), hash(values.iter().map(|value| *value as u64))),
             Value::Shared(values) => Kept::Shared(values.clone()),
@@ -57,17 +57,17 @@ fn hash(words: impl Iterator<Item = u64>) -> [u64; 2] {
     })
 }
 
-/// The scene of a set-up, beside its grid.
+/// The scene of a set-up, without its grid.
 #[derive(Clone, Debug)]
 pub struct Named {
-    /// None where they do not matter.
+    /// The bodies. None if the caller's coefficients replace them.
     bodies: Option<Bodies>,
     effects: [Option<&'static str>; COUNT],
     values: Vec<(&'static str, Kept)>,
 }
 
 impl Named {
-    /// Of the scene of a set-up.
+    /// The record of a set-up's scene.
     pub fn new(scene: &Scene<'_>) -> Named {
         let mut values = Vec::new();
         effects(scene).for_each(|effect| effect.values(&mut |name, value| values.push((name, Kept::new(value)))));
@@ -75,7 +75,7 @@ impl Named {
         Named { bodies, effects: list(scene).map(name_of_set_up), values }
     }
 
-    /// An effect of the set-up has other values from now on.
+    /// Replaces the values of an effect of the set-up.
     pub fn replace(&mut self, effect: &dyn Effect) {
         effect.values(&mut |name, value| {
             self.values.retain(|(known, _)| *known != name);
@@ -83,7 +83,7 @@ impl Named {
         });
     }
 
-    /// Refuses another scene that is not as at the set-up.
+    /// Refuses a scene that differs from the set-up's.
     pub fn check(&self, scene: &Scene<'_>) -> Result<()> {
         if let Some(bodies) = self.bodies.filter(|bodies| !replace_bodies(scene) && *bodies != scene.bodies) {
             return scene.bodies.differs(&bodies).map_or(Ok(()), invalid);
@@ -97,7 +97,7 @@ impl Named {
                 _ => {}
             }
         }
-        // A value that this scene does not name is there all the same.
+        // Values of effects that this scene does not name are compared below.
         for effect in effects(scene) {
             let name = effect.name();
             let left_out = |other: &str| self.effects.iter().flatten().any(|effect| *effect == other);
@@ -127,7 +127,7 @@ impl Named {
             (Some(Kept::Number(kept)), Value::Number(number)) => {
                 invalid(format!("{name} is {number}; this solver was set up with {kept}"))
             }
-            // Of tables that are even less is kept.
+            // Even tables are kept in a smaller array.
             (Some(Kept::Shared(kept)), Value::Shared(values)) if kept.len() == values.len() => {
                 let other = kept.iter().zip(values.iter()).find(|(kept, now)| kept != now);
                 let (kept, now) = other.unwrap_or((&f64::NAN, &f64::NAN));

@@ -8,10 +8,10 @@ use crate::influence::{self, Coefficients};
 use crate::memory::collected;
 use crate::scene::Plain;
 
-/// Patches at most: each costs a product.
+/// Most patches. Each patch takes one product.
 const MOST: usize = 64;
 
-/// An element of no patch: nothing touches there.
+/// Marks an element without a patch, which has no surface.
 pub const NONE: i32 = -1;
 
 /// The patch of each element, and the factors between patches.
@@ -19,14 +19,14 @@ pub const NONE: i32 = -1;
 pub struct Patches<'a> {
     /// Number of patches.
     pub count: usize,
-    /// Of each element, `[my][mx]`: 0 to count - 1, or -1: in none.
+    /// The patch of each element, `[my][mx]`: 0 to count - 1, or -1 for none.
     pub patch: &'a [i32],
     /// `[count][count]`, symmetric, 1 on the diagonal; 0: independent, 1: as if there were no patches.
     pub factors: &'a [f64],
 }
 
 impl Patches<'_> {
-    /// The patch whose coefficients element i has: of none those of the first.
+    /// The patch of element i in the coefficients: the first one for elements without a patch.
     pub fn of(&self, i: usize) -> usize {
         self.patch[i].max(0) as usize
     }
@@ -111,7 +111,7 @@ impl Effect for Patches<'_> {
         Stresses::Patches { count, patch, factors }
     }
 
-    // No surface where there is no patch.
+    // Elements without a patch have no surface.
     fn surface(&self, h: &[f64]) -> Result<Option<Vec<f64>>> {
         if !self.patch.contains(&NONE) {
             return Ok(None);

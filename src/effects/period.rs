@@ -1,6 +1,6 @@
-//! Effect: the scene repeats itself, in x, in y or in both; the grid is one period.
+//! Effect: the scene is periodic in x, in y or in both. The grid is one period.
 //!
-//! See [`Periodic`](crate::influence::Periodic) for the coefficients and for what the approach is relative to.
+//! [`Periodic`](crate::influence::Periodic) describes the coefficients and the origin of the approach.
 
 use std::sync::Arc;
 
@@ -12,11 +12,11 @@ use crate::influence::{HalfSpace, Kernel, Periodic};
 use crate::scene::{Load, Plain};
 use crate::sums::mean;
 
-/// Why no approach is taken where a contact area that is given is full.
+/// Why an approach is refused if the given contact area is full.
 const FULL: &str = "active_set is FIXED and all elements are in contact; with two periods the approach is relative to the mean plane, \
      and any force fits: prescribe the force";
 
-/// In which directions the scene repeats itself, after `mx dx` and `my dy`.
+/// The directions in which the scene repeats, after `mx dx` and `my dy`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Period {
     /// In x.
@@ -51,8 +51,8 @@ impl Effect for Period {
         Ok(())
     }
 
-    // With two periods the mean displacement is zero, so no approach is possible at which the mean of the distance vanishes: contact
-    // is full there, and any force fits.
+    // With two periods the mean displacement is zero, so that the mean deformed distance does not depend on the force. If it is zero,
+    // contact is full and any force satisfies the conditions. Such an approach is rejected.
     fn check_area(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>], given: Option<&[bool]>) -> Result<()> {
         let (Load::Approach(approach), true, true) = (scene.load, self.x, self.y) else { return Ok(()) };
         if others.iter().flatten().any(|other| other.gives_way(scene)) {

@@ -1,7 +1,7 @@
 //! Effect: pressures do not exceed a limit, the hardness of the softer surface: `0 <= p <= p_max`.
 //!
-//! An elastic body with a perfectly plastic surface (Polonsky & Keer 1999, section 2; the limit is about 2.8 yield stresses): where
-//! the limit is reached the surface gives way by as much as is needed, and the deformed distance e is its depth, negative.
+//! An elastic body with a perfectly plastic surface (Polonsky & Keer 1999, section 2; the limit is about 2.8 yield stresses): at the
+//! limit the surface yields, and the deformed distance e is minus the depth of its indentation.
 //!
 //! ```text
 //! p = 0,          e >= 0    in the exterior area
@@ -52,7 +52,7 @@ impl Effect for PressureLimit<'_> {
         }
     }
 
-    // Those that are held leave the mean distance to the others.
+    // Elements at their limit leave the mean distance to the others.
     fn gives_way(&self, scene: &Plain<'_>) -> bool {
         let is_held = |(h, limit): (&f64, f64)| h.is_finite() && limit < f64::INFINITY;
         let h = scene.undeformed_distance.iter();
@@ -62,13 +62,13 @@ impl Effect for PressureLimit<'_> {
         }
     }
 
-    // A force that is more than all elements with a surface carry at the limit.
+    // Refuses a force that exceeds the sum of all limits.
     fn check_load(&self, scene: &Plain<'_>, _: &[Option<&dyn Effect>]) -> Result<()> {
         self.check(&scene.grid)?;
         let Load::Force(force) = scene.load else { return Ok(()) };
         let h = scene.undeformed_distance;
         let surface = |block: Range<usize>| block.filter(|&i| h[i].is_finite());
-        // By blocks, or at once: a plain sum of many equal limits is off by more than a force may be.
+        // In blocks, or as a product: the error of a plain sum of many equal limits exceeds that allowed for a force.
         let limits = match self {
             PressureLimit::Uniform(limit) => surface(0..h.len()).count() as f64 * limit,
             PressureLimit::PerElement(limits) => {
@@ -77,7 +77,7 @@ impl Effect for PressureLimit<'_> {
             }
         };
         let greatest = limits * scene.grid.element_area();
-        // A sum of n terms is good to some units of round-off.
+        // A sum of n terms has an error of some units of round-off.
         if force > greatest * (1.0 + 1e-12) {
             return Err(Error::Infeasible(format!(
                 "force is {force}; with this pressure_limit the greatest force that can be carried is {greatest}"
@@ -86,7 +86,7 @@ impl Effect for PressureLimit<'_> {
         Ok(())
     }
 
-    // It may be another one for each solve.
+    // The limit may differ in each solve.
     fn values(&self, _tell: &mut dyn FnMut(&'static str, Value<'_>)) {}
 
     fn stresses(&self, _b: usize, _scene: &Plain<'_>) -> Stresses<'_> {

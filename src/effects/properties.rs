@@ -1,4 +1,5 @@
-//! The questions of other places to an effect: every effect answers all of them, so one that forgets something does not compile.
+//! The properties of an effect that the rest of the library uses. Every effect states all of them: one that omits a property does not
+//! compile.
 
 /// p_max, a pressure; +infinity: no limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,7 +11,7 @@ pub enum PressureLimit<'a> {
 }
 
 impl PressureLimit<'_> {
-    /// Of element i.
+    /// The limit of element i.
     #[inline]
     pub fn at(&self, i: usize) -> f64 {
         match self {
@@ -20,7 +21,7 @@ impl PressureLimit<'_> {
     }
 }
 
-/// How the caller's own coefficients are laid out.
+/// The layout of the caller's coefficients.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
     /// One table over offsets.
@@ -29,33 +30,33 @@ pub enum Layout {
     Rows,
 }
 
-/// The answer of most effects that stresses below the surface do not know.
+/// The message of most effects without subsurface stresses.
 pub const HALF_SPACE_ALONE: &str = "is given; subsurface stresses are those of a half-space";
 
 /// How stresses below the surface of a body change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stresses<'a> {
-    /// They are those of the pressures and tractions on a half-space.
+    /// The stresses are those of the pressures and tractions on a half-space.
     Same,
-    /// They repeat themselves in both directions.
+    /// The stresses repeat in both directions.
     Repeat,
     /// Loads count times the factor between their patch and that of the element above.
     Patches {
         /// Number of patches.
         count: usize,
-        /// Of each element.
+        /// The patch of each element.
         patch: &'a [i32],
         /// `[count][count]`.
         factors: &'a [f64],
     },
-    /// They are not known: what the message says after the name of the effect.
+    /// The stresses are unknown: the message after the name of the effect.
     Unknown(&'static str),
 }
 
 /// A step that begins where the last one of the solver ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Continues {
-    /// The member that says so.
+    /// The member of the scene that requests it.
     pub member: &'static str,
     /// The result that the last step must have left.
     pub from: &'static str,
@@ -66,22 +67,22 @@ pub struct Continues {
 /// The role of an effect in the rest of the library.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Properties<'a> {
-    /// The effects that it is not solved with; one of a pair says so.
+    /// The effects that exclude this one; one of a pair names the other.
     pub excludes: &'static [&'static str],
-    /// The effect that MULTIGRID and FULL_MULTIGRID do not solve: there is no smoother, or there are no coarser grids.
+    /// The effect that MULTIGRID and FULL_MULTIGRID refuse: without smoother or without coarser grids.
     pub without_multigrid: Option<&'static str>,
-    /// Whether it is solved on a contact area that is given.
+    /// Whether the effect works on a given contact area.
     pub with_given_area: bool,
-    /// Why it stands for one grid only: then no accuracy is reached over several.
+    /// Why the effect stands for one grid only, so that refinement to an accuracy is refused.
     pub one_grid: Option<&'static str>,
-    /// Coefficients of the caller's own, in place of the bodies'. Later scenes of a solver need not name them again.
+    /// The caller's coefficients, in place of the bodies'. Later scenes of a solver need not name them again.
     pub own_coefficients: Option<Layout>,
-    /// In which directions it makes the scene repeat itself.
+    /// The directions in which the effect makes the scene repeat.
     pub repeats: (bool, bool),
-    /// The greatest pressures that are admissible; none: there are no limits.
+    /// The largest admissible pressures; none: there are no limits.
     pub limits: Option<PressureLimit<'a>>,
-    /// Whether something is solved beside the normal problem: it may be refused, or change the undeformed distance, when that is solved already.
+    /// Whether another problem is solved beside the normal one. After the normal solve it may be refused or change the undeformed distance.
     pub is_beside: bool,
-    /// Whether this step begins where the last one ended; none: it does not.
+    /// How this step begins where the last one ended; none: it does not.
     pub continues: Option<Continues>,
 }

@@ -1,5 +1,5 @@
-//! Coefficients that differ between the sides of an element are those of bodies that relax and roll one way: they are softer behind. A step of rolling goes
-//! that way. In another one bodies would give back more work than was done on them, and the problem would have no solution, or several.
+//! The direction of rolling of coefficients that are not even in an offset: those of relaxing bodies, which are softer behind. A step of rolling must
+//! have this direction. Otherwise bodies would return more work than was done on them, and the problem would have no solution or several.
 
 use super::friction::{Friction, Motion};
 use super::tangential_influence::SYMMETRY;
@@ -17,21 +17,21 @@ struct Line<'a> {
 }
 
 impl Line<'_> {
-    /// The offset at which both sides differ most, if that is more than round-off of the largest coefficient.
+    /// The offset with the largest difference of both sides, if that exceeds round-off of the largest coefficient.
     fn uneven_at(&self) -> Option<i64> {
         let off = |k: i64| ((self.at)(k) - (self.at)(-k)).abs();
         let most = (1..self.count as i64).max_by(|a, b| off(*a).total_cmp(&off(*b)))?;
         (off(most) > SYMMETRY * (self.at)(0).abs()).then_some(most)
     }
 
-    /// 1: softer at smaller offsets, which are behind a body that rolls towards the end of the axis; -1: at larger ones; 0: even.
+    /// 1: softer at smaller offsets, which are behind a body rolling towards the end of the axis; -1: at larger ones; 0: even.
     fn towards(&self) -> f64 {
         let softer: f64 = (1..self.count as i64).map(|k| (self.at)(-k) - (self.at)(k)).sum();
         self.uneven_at().map_or(0.0, |_| softer.signum())
     }
 }
 
-/// Refuses a step of rolling, in elements, that goes another way than the bodies of these coefficients, which are called `name`.
+/// Refuses a step of rolling, in elements, in another direction than that of the coefficients `name`.
 fn check(name: &str, lines: [Line<'_>; 2], step: (f64, f64)) -> Result<()> {
     let goes = [step.0, step.1].map(|step| if step == 0.0 { 0.0 } else { step.signum() });
     let towards = lines.each_ref().map(Line::towards);
@@ -53,7 +53,7 @@ fn check(name: &str, lines: [Line<'_>; 2], step: (f64, f64)) -> Result<()> {
 }
 
 impl Friction<'_> {
-    /// Refuses tangential coefficients of bodies that roll another way.
+    /// Refuses tangential coefficients of another direction of rolling.
     pub(super) fn check_rolled(&self, grid: &Grid) -> Result<()> {
         let Some(own) = self.influence.filter(|own| self.motion != Motion::Shift && !own.by_row) else { return Ok(()) };
         for component in 0..2 {
@@ -66,7 +66,7 @@ impl Friction<'_> {
         Ok(())
     }
 
-    /// Refuses coefficients of pressures, a table of offsets, of bodies that roll another way.
+    /// Refuses a table of coefficients of pressures of another direction of rolling.
     pub fn check_pressures_rolled(&self, grid: &Grid, at: &dyn Fn(i64, i64) -> f64) -> Result<()> {
         if self.motion == Motion::Shift {
             return Ok(());
@@ -76,7 +76,7 @@ impl Friction<'_> {
         check("influence", lines, self.elements_rolled(grid))
     }
 
-    /// The same of tables per loaded row: `at` has the coefficients of a row on itself. Those are even where the operator is symmetric.
+    /// Refuses tables per loaded row of another direction: `at` has the coefficients of a row on itself, which are even if the operator is symmetric.
     pub fn check_rows_rolled(&self, grid: &Grid, at: &dyn Fn(usize, i64) -> f64) -> Result<()> {
         if self.motion == Motion::Shift {
             return Ok(());

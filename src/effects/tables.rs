@@ -1,6 +1,6 @@
 //! Effects: own coefficients, one table for all elements (`influence`) or one per loaded row (`row_tables`).
 //!
-//! A solve on a handle need not name them again: its own serve.
+//! Later scenes of a handle need not name them again: the handle keeps them.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::grid::Grid;
 use crate::influence::{Kernel, RowTables, Table};
 use crate::scene::Plain;
 
-/// Why no accuracy is reached with them.
+/// Why refinement to an accuracy is refused.
 const ONE_GRID: &str = "own coefficients are those of one grid, and an accuracy needs several";
 
 impl Effect for Table {

@@ -1,27 +1,27 @@
-//! Tangential influence coefficients of the caller's own, beside [`Friction`](super::Friction): what they must be.
+//! The caller's tangential influence coefficients, beside [`Friction`](super::Friction), and their checks.
 
 use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
 use crate::memory::collected;
 
-/// The caller's own tangential influence coefficients: three tables over offsets `-cx..cx-1` by `-cy..cy-1`, x fastest, laid out as the table of the
-/// normal coefficients. Axx and Ayy must be even in both directions, Axy odd in both. In steady rolling only y needs this symmetry: bodies that relax
-/// are softer behind. With `by_row` there is a table for each loaded row (`tangential_rows.rs`).
+/// The caller's tangential influence coefficients: three tables over offsets `-cx..cx-1` by `-cy..cy-1`, x fastest, in the layout of the normal
+/// table. Axx and Ayy must be even in both directions, Axy odd in both. In steady rolling only y needs this symmetry: relaxing bodies are softer
+/// behind. With `by_row` there is a table for each loaded row (`tangential_rows.rs`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TangentialInfluence<'a> {
-    /// Columns of the grid that the tables were made for.
+    /// Columns of the tables' grid.
     pub cx: usize,
-    /// Its rows.
+    /// Rows of the tables' grid.
     pub cy: usize,
     /// Whether there is a table for each loaded row: `[cy][cy][2 cx]` of the loaded row, the row, and the offset in x.
     pub by_row: bool,
     /// Axx, Ayy and Axy: the displacement in x by a traction in x, in y by one in y, and across. In tables per loaded row Axy is the displacement in
     /// x by a traction in y.
     pub coefficients: [&'a [f64]; 3],
-    /// Of unlike bodies Axz and Ayz: displacements in x and in y by a unit pressure. Tractions displace along the normal by
+    /// For unlike bodies Axz and Ayz: displacements in x and in y by a unit pressure. Tractions displace along the normal by
     /// `-(Axz qx + Ayz qy)`.
     pub cross: Option<[&'a [f64]; 2]>,
-    /// Every coefficient is multiplied by this, positive.
+    /// A positive factor on every coefficient.
     pub scale: f64,
 }
 
@@ -32,7 +32,7 @@ type AtOffset = ((i64, i64), f64);
 #[derive(Clone, Copy)]
 struct Symmetry {
     name: &'static str,
-    /// The factor of a value where x changes its sign, and where y does.
+    /// The factor of a value when x changes its sign, and when y does.
     in_x: f64,
     in_y: f64,
     rule: &'static str,
@@ -58,7 +58,7 @@ const SYMMETRIES: [Symmetry; 5] = [
 pub(super) const SYMMETRY: f64 = 1e-7;
 
 impl TangentialInfluence<'_> {
-    /// The member of friction that they are given as.
+    /// The name of the member of friction.
     pub fn name(&self) -> &'static str {
         if self.by_row {
             "friction->row_tables"
@@ -117,7 +117,7 @@ impl TangentialInfluence<'_> {
         tables().try_for_each(|(values, symmetry)| self.check_symmetry(values, (symmetry, in_x_too), largest))
     }
 
-    /// Compares the values of one component at each offset and at its mirror images: in y, and with `in_x_too` in x.
+    /// Compares the values of one component at each offset and at its mirror images: in y, and if `in_x_too` in x.
     fn check_symmetry(&self, values: &[f64], (symmetry, in_x_too): (Symmetry, bool), largest: f64) -> Result<()> {
         let Symmetry { in_x, in_y, .. } = symmetry;
         let (cx, width) = (self.cx, 2 * self.cx);
@@ -147,7 +147,7 @@ impl TangentialInfluence<'_> {
         Ok(())
     }
 
-    /// The refusal: of four values at mirrored offsets one is not finite, or two differ.
+    /// The refusal of four values at mirrored offsets, one of which is not finite, or two of which differ.
     fn uneven_at(
         &self,
         all: &[AtOffset; 4],
@@ -206,7 +206,7 @@ impl KeptInfluence {
         }
     }
 
-    /// Whether these tables are equal. Row -cy and column -cx do not count: no product reads them.
+    /// Whether these tables are equal, except row -cy and column -cx, which no product reads.
     pub fn is(&self, other: &TangentialInfluence<'_>) -> bool {
         let kept = self.view();
         let (cx, cy, width) = (self.cx, self.cy, 2 * self.cx);

@@ -1,4 +1,4 @@
-//! Tangential influence coefficients of the caller's own, one table per loaded row: what they must be.
+//! Checks of the caller's tangential influence coefficients, one table per loaded row.
 //!
 //! ```text
 //! u_x(ix, iy) = sum over jy and jx of  xx_jy(iy, k) qx(jx, jy) + xy_jy(iy, k) qy(jx, jy)          k = ix - jx
@@ -11,12 +11,12 @@ use super::tangential_influence::{TangentialInfluence, SCALE, SYMMETRY};
 use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
 
-/// Of the components xx, yy, xy.
+/// Names of the components xx, yy, xy in messages.
 const NAMES: [&str; 3] =
     ["friction->row_tables[0] (xx)", "friction->row_tables[1] (yy)", "friction->row_tables[2] (xy)"];
 
 impl TangentialInfluence<'_> {
-    /// `xx, yy, xy, yx` of a loaded row jy and a row iy at an offset in x, `|kx| < cx`.
+    /// `xx, yy, xy, yx` of a loaded row jy and a displaced row iy at an offset in x, `|kx| < cx`.
     pub fn of_rows(&self, jy: usize, iy: usize, kx: i64) -> [f64; 4] {
         let at = |jy: usize, iy: usize, kx: i64| (jy * self.cy + iy) * 2 * self.cx + (kx + self.cx as i64) as usize;
         let [xx, yy, xy] = self.coefficients.map(|values| self.scale * values[at(jy, iy, kx)]);
@@ -45,8 +45,8 @@ impl TangentialInfluence<'_> {
         (0..rows).try_for_each(|jy| (0..=jy).try_for_each(|iy| self.check_pair((jy, iy), largest)))
     }
 
-    /// Refuses coefficients that are not finite, and tractions that do not displace their own element along. Returns the largest
-    /// coefficient of an element on itself.
+    /// Refuses coefficients that are not finite, and coefficients of an element on itself that are not positive. Returns the largest of the
+    /// latter.
     fn check_finite_and_own(&self) -> Result<f64> {
         let (rows, width, mut largest) = (self.cy, 2 * self.cx, 0.0_f64);
         for (component, (values, name)) in self.coefficients.iter().zip(NAMES).enumerate() {
@@ -72,7 +72,7 @@ impl TangentialInfluence<'_> {
         Ok(largest)
     }
 
-    /// The tables of two rows on each other, which differ by round-off alone.
+    /// Refuses tables of two rows on each other that are not symmetric to round-off.
     fn check_pair(&self, (jy, iy): (usize, usize), largest: f64) -> Result<()> {
         for kx in 1 - self.cx as i64..self.cx as i64 {
             let (one, other) = (self.of_rows(jy, iy, kx), self.of_rows(iy, jy, -kx));

@@ -1,4 +1,4 @@
-//! The answers of all effects of a scene together.
+//! The joined properties of all effects of a scene.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ macro_rules! define_list {
             [$($(#[cfg($when)])? stringify!($name)),+].iter().position(|known| *known == name)
         }
 
-        /// The effects that a scene names and that it has to know of.
+        /// The named effects of a scene that are in effect, see [`Effect::is_one`].
         pub(super) fn list<'s>(scene: &'s Scene<'_>) -> [Option<&'s dyn Effect>; COUNT] {
             let plain = &scene.plain();
             [$($(#[cfg($when)])? of(&scene.$name, plain)),+]
@@ -42,7 +42,7 @@ pub fn effects<'s>(scene: &'s Scene<'_>) -> impl Iterator<Item = &'s dyn Effect>
     list(scene).into_iter().flatten()
 }
 
-/// The first answer of an effect, with the effect's name.
+/// The first effect with an answer: its name and the answer.
 fn first<'s, T>(scene: &'s Scene<'_>, answer: impl Fn(Properties<'s>) -> Option<T>) -> Option<(&'static str, T)> {
     effects(scene).find_map(|effect| Some((effect.name(), answer(effect.properties())?)))
 }
@@ -58,7 +58,7 @@ pub fn check_effects(scene: &Scene<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Refuses an effect beside others that are there and that it is not solved with; `say(other)` begins the message.
+/// Refuses an effect if one that it excludes is present; `say(other)` begins the message.
 pub(super) fn refuse_together(
     effect: &dyn Effect,
     is_there: impl Fn(&str) -> bool,
@@ -70,23 +70,23 @@ pub(super) fn refuse_together(
     }
 }
 
-/// The effect with coefficients of the caller's own, and their layout. With it the bodies do not matter.
+/// The effect with the caller's coefficients, and their layout. With these the bodies are not used.
 pub fn own_coefficients(scene: &Scene<'_>) -> Option<(&'static str, Layout)> {
     first(scene, |properties| properties.own_coefficients)
 }
 
-/// Whether the bodies do not matter: own coefficients know none.
+/// Whether own coefficients replace the bodies.
 pub fn replace_bodies(scene: &Scene<'_>) -> bool {
     own_coefficients(scene).is_some()
 }
 
-/// Checks the bodies, each by itself, and both together as they are at their surfaces.
+/// Checks each body, and both together with the materials at their surfaces.
 pub fn check_bodies(scene: &Scene<'_>) -> Result<()> {
     scene.bodies.check_each()?;
     effects(scene).find_map(|effect| effect.at_surface(&scene.plain())).unwrap_or(scene.bodies).check()
 }
 
-/// The first effect that is not solved on a contact area that is given.
+/// The first effect that excludes a given contact area.
 pub fn without_given_area(scene: &Scene<'_>) -> Option<&'static str> {
     effects(scene).find(|effect| !effect.properties().with_given_area).map(Effect::name)
 }
@@ -96,7 +96,7 @@ fn one_grid(scene: &Scene<'_>) -> Option<(&'static str, &'static str)> {
     first(scene, |properties| properties.one_grid)
 }
 
-/// Refuses effects that stand for one grid only, where several are solved.
+/// Refuses effects that stand for one grid only if several are solved.
 pub fn check_other_grids(scene: &Scene<'_>) -> Result<()> {
     match one_grid(scene) {
         Some((name, why)) => Err(Error::Unsupported(format!("{name} is given; {why}"))),
@@ -104,30 +104,30 @@ pub fn check_other_grids(scene: &Scene<'_>) -> Result<()> {
     }
 }
 
-/// In which directions a scene repeats itself.
+/// The directions in which a scene is periodic.
 pub fn repeats(scene: &Scene<'_>) -> (bool, bool) {
     effects(scene)
         .map(|effect| effect.properties().repeats)
         .fold((false, false), |(x, y), (of_x, of_y)| (x | of_x, y | of_y))
 }
 
-/// The greatest pressures that a scene allows; none: there are no limits.
+/// The largest admissible pressures of a scene; none: there are no limits.
 pub fn limits<'s>(scene: &'s Scene<'_>) -> Option<PressureLimit<'s>> {
     first(scene, |properties| properties.limits).map(|(_, limits)| limits)
 }
 
-/// The effects of which something is solved beside the normal problem.
+/// The effects with a problem beside the normal one.
 pub fn beside<'s>(scene: &'s Scene<'_>) -> impl Iterator<Item = &'static str> + 's {
     effects(scene).filter(|effect| effect.properties().is_beside).map(Effect::name)
 }
 
-/// The effects whose step begins where the last one ended: the place in the list, the name.
+/// The effects whose step begins at the end of the last one: the place in the list, and the name.
 pub fn continuing<'s>(scene: &'s Scene<'_>) -> impl Iterator<Item = (usize, &'static str, Continues)> + 's {
     let named = list(scene).into_iter().enumerate();
     named.filter_map(|(k, effect)| effect.and_then(|effect| Some((k, effect.name(), effect.properties().continues?))))
 }
 
-/// The problems that are coupled with the normal one, each with the history that the last step left.
+/// The problems coupled with the normal one, each with its history.
 pub fn coupled<'s>(scene: &'s Scene<'_>, histories: &'s mut [History; COUNT]) -> Result<Vec<Box<dyn Coupled + 's>>> {
     let (plain, mut coupled) = (scene.plain(), Vec::new());
     for (effect, history) in list(scene).into_iter().zip(histories) {
@@ -149,7 +149,7 @@ pub fn memory(scene: &Scene<'_>, histories: &mut [History; COUNT]) -> Result<Opt
     Ok(None)
 }
 
-/// A step of the effects that a scene names is done; of those that it does not name there is none any more.
+/// Ends a step: keeps the histories of the scene's effects, and drops all others.
 pub fn keep(scene: &Scene<'_>, histories: &mut [History; COUNT]) {
     for (effect, history) in list(scene).into_iter().zip(histories) {
         match effect {
@@ -159,7 +159,7 @@ pub fn keep(scene: &Scene<'_>, histories: &mut [History; COUNT]) {
     }
 }
 
-/// The undeformed distance of a scene as its effects change it; none: they do not.
+/// The undeformed distance of a scene changed by its effects; none if they do not change it.
 pub fn surface(scene: &Scene<'_>) -> Result<Option<Vec<f64>>> {
     effects(scene).try_fold(None, |changed: Option<Vec<f64>>, effect| {
         let new = effect.surface(changed.as_deref().unwrap_or(scene.undeformed_distance))?;
@@ -173,7 +173,7 @@ pub fn excluded_method(scene: &Scene<'_>) -> Option<&'static str> {
 }
 
 impl Scene<'_> {
-    /// The coefficients that this scene asks for.
+    /// The coefficients of the scene.
     pub fn coefficients(&self) -> Result<Coefficients> {
         self.grid.check()?;
         let (plain, mut kernel) = (self.plain(), None);
@@ -187,7 +187,7 @@ impl Scene<'_> {
         effects(self).try_fold(coefficients, |coefficients, effect| effect.apply(coefficients))
     }
 
-    /// Checks everything the solver relies on: each effect, the pairs that are not solved, and the bodies if they matter. Returns the least distance.
+    /// Checks everything the solver relies on: each effect, excluded pairs, and the bodies if used. Returns the least distance.
     pub fn check(&self, threads: &Threads) -> Result<f64> {
         let lowest = self.check_distance_and_load(threads)?;
         self.check_effects_and_bodies()?;
@@ -204,7 +204,7 @@ impl Scene<'_> {
         Ok(())
     }
 
-    /// The friction of a scene whose pressures are given; refuses tables without `cross` beside unlike bodies.
+    /// The friction of a scene with given pressures; refuses tables without `cross` for unlike bodies.
     pub fn tangential(&self) -> Result<&Friction<'_>> {
         self.grid.check()?;
         let Some(friction) = &self.friction else {
@@ -214,14 +214,14 @@ impl Scene<'_> {
         Ok(friction)
     }
 
-    /// The same; checks all but the distance and the load.
+    /// [`Scene::tangential`], with all checks but those of the distance and the load.
     pub fn check_tangential(&self) -> Result<&Friction<'_>> {
         let friction = self.tangential()?;
         self.check_effects_and_bodies()?;
         Ok(friction)
     }
 
-    /// Checks what changes from solve to solve. Returns the least distance.
+    /// Checks the members that change from solve to solve. Returns the least distance.
     pub fn check_distance_and_load(&self, threads: &Threads) -> Result<f64> {
         let plain = self.plain();
         let lowest = plain.check_distance(threads)?;
@@ -231,7 +231,7 @@ impl Scene<'_> {
         Ok(lowest)
     }
 
-    /// Refuses a load that no pressures carry: of a contact area that is to be found, not of one that `is_fixed`.
+    /// Refuses a load that no pressures carry, unless the contact area `is_fixed`.
     pub fn check_free_load(&self, is_fixed: bool) -> Result<()> {
         self.load.check_sign(is_fixed || self.attraction().is_some())?;
         if is_fixed {
@@ -240,7 +240,7 @@ impl Scene<'_> {
         self.check_area(None)
     }
 
-    /// Refuses a load that no pressures carry, on any contact area or on the one that is given.
+    /// Refuses a load that no pressures carry, on any contact area or on the given one.
     pub fn check_area(&self, given: Option<&[bool]>) -> Result<()> {
         effects(self).try_for_each(|effect| effect.check_area(&self.plain(), &list(self), given))
     }

@@ -1,4 +1,4 @@
-//! Effect: bodies that relax. See [`visco`](crate::visco) for the equations of a step.
+//! Effect: relaxing bodies. See [`visco`](crate::visco) for the equations of a step.
 
 use super::coupled::History;
 use super::effect::{Effect, Value};
@@ -13,22 +13,22 @@ use crate::visco::{Form, Series, MOST};
 /// The branches of a body's Prony series.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Branches<'a> {
-    /// `G_k`, pressures >= 0; together at most the body's shear modulus, which is that at once.
+    /// `G_k`, pressures >= 0; their sum is at most the body's shear modulus, the instantaneous one.
     pub modulus: &'a [f64],
     /// `t_k`, times > 0.
     pub time: &'a [f64],
 }
 
-/// A step in time of bodies that relax.
+/// A step in time of relaxing bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Visco<'a> {
-    /// Of body 1 and 2; of a coated one those of its layer.
+    /// The branches of body 1 and 2; for a coated body those of its layer.
     pub bodies: [Branches<'a>; 2],
-    /// The time of the step, >= 0; 0: a jump.
+    /// The time of the step, >= 0. 0 is a jump.
     pub time_step: f64,
-    /// The quantity that is linear in it; none: the displacement where the approach is given, the pressures where the force is.
+    /// The quantity that is linear in the step. The default is the displacement for a prescribed approach, the pressures for a prescribed force.
     pub form: Option<Form>,
-    /// Whether the step begins where the last one ended; if not, at rest.
+    /// Whether the step begins at the end of the last one; if not, at rest.
     pub continues: bool,
 }
 
@@ -41,7 +41,7 @@ const CONTINUES: Continues =
     Continues { member: "visco->continues", from: "step in time", instead: "begin each problem at rest" };
 
 impl Visco<'_> {
-    /// As it is called in a scene.
+    /// The effect's name in a scene.
     pub const NAME: &'static str = "visco";
 
     /// Whether a body has branches.
@@ -49,7 +49,7 @@ impl Visco<'_> {
         self.bodies.iter().any(|branches| !branches.modulus.is_empty())
     }
 
-    /// The series of both bodies, with the moduli of what is at their surfaces.
+    /// The series of both bodies, with the moduli of the materials at their surfaces.
     pub(crate) fn series(&self, at_surface: &Bodies) -> Result<[Series; 2]> {
         let of = |b: usize| {
             let (Branches { modulus, time }, g) = (self.bodies[b], at_surface.shear_modulus[b]);
@@ -74,7 +74,7 @@ impl Visco<'_> {
         Ok([of(0)?, of(1)?])
     }
 
-    /// The maps of both bodies, or one of what relaxes alike.
+    /// The maps of both bodies, or one map if they relax alike.
     fn bodies(&self, at_surface: &Bodies, form: Form) -> Result<Vec<Body>> {
         let series = self.series(at_surface)?;
         let compliance = |b: usize| (1.0 - at_surface.poisson_ratio[b]) / (2.0 * at_surface.shear_modulus[b]);
@@ -87,7 +87,7 @@ impl Visco<'_> {
         Ok(elastic.map(|b| body(b, compliance(b) / total)).collect())
     }
 
-    /// Coefficients that are not those of two half-spaces relax with their whole compliance alone: `of` is the effect that has them.
+    /// Rejects bodies that relax differently if the coefficients are not those of two half-spaces. `of` is the effect with these coefficients.
     fn check_alike(&self, of: &str, scene: &Plain<'_>, at_surface: &Bodies) -> Result<()> {
         let series = self.series(at_surface)?;
         let is_coated = |b: usize| {
@@ -138,7 +138,7 @@ impl Effect for Visco<'_> {
         }
     }
 
-    // Without branches the bodies are elastic. A scene has to know of what is wrong, too.
+    // Without branches the bodies are elastic. Invalid values count as an effect, so that the scene refuses them.
     fn is_one(&self, scene: &Plain<'_>) -> bool {
         self.relaxes() || self.check(&scene.grid).is_err()
     }
@@ -170,7 +170,7 @@ impl Effect for Visco<'_> {
         }
     }
 
-    // The step may be another one for each solve.
+    // The step may differ in each solve.
     fn values(&self, tell: &mut dyn FnMut(&'static str, Value<'_>)) {
         for (branches, [_, modulus, time]) in self.bodies.iter().zip(NAMES) {
             tell(modulus, Value::Array(branches.modulus));
@@ -182,7 +182,7 @@ impl Effect for Visco<'_> {
         false
     }
 
-    // Of given pressures, with a Poisson ratio that does not change.
+    // Stresses depend on the pressures and the Poisson ratio, which is constant.
     fn stresses(&self, _b: usize, _scene: &Plain<'_>) -> Stresses<'_> {
         Stresses::Same
     }

@@ -1,13 +1,13 @@
-//! A step in time of bodies that relax, on the elements of a grid.
+//! A step in time of relaxing bodies, on the elements of a grid.
 //!
-//! The history has A p of the last step, and after it what the dashpots of each body have given way, branch by branch.
+//! The history has A p of the last step, then the displacements of each body's dashpots, branch by branch.
 
 use super::coupled::History;
 use super::memory::Memory;
 use crate::contact::State;
 use crate::visco::{Form, Map, Report, Series, MOST};
 
-/// A body: its share of the compliance at once, and its step.
+/// A body: its share of the instantaneous compliance, and its step.
 pub struct Body {
     share: f64,
     map: Map,
@@ -24,7 +24,7 @@ impl Body {
 pub struct Step {
     pub time_step: f64,
     pub bodies: Vec<Body>,
-    /// The same by another form, for the error.
+    /// The bodies in another form, for the error.
     pub compared: Vec<Body>,
     /// Whether there is a step before.
     pub continues: bool,
@@ -36,7 +36,7 @@ impl Step {
         1 + self.bodies.iter().map(|body| body.map.branches()).sum::<usize>()
     }
 
-    /// H of element i by the maps of either form, and `before` it `[A p, q...]`.
+    /// H of element i by the maps of either form, from the fields `[A p, q...]`.
     fn history(bodies: &[Body], fields: &[Vec<f64>], i: usize) -> f64 {
         let (mut sum, mut first, mut q) = (0.0, 1, [0.0; MOST]);
         for Body { share, map } in bodies {
@@ -60,7 +60,7 @@ impl Step {
             let history = if self.continues { Step::history(&self.bodies, fields, i) } else { 0.0 };
             let compared = if self.continues { Step::history(&self.compared, fields, i) } else { 0.0 };
             differences += ((other - s) * state.u[i] + compared - history).powi(2);
-            // The distances of the problem that was solved have the history, and are s times shorter.
+            // The distances of the problem solved contain the history, and are s times shorter.
             distances += (s * (state.h[i] - state.approach) - history).powi(2);
             count += 1;
         }
@@ -103,7 +103,7 @@ impl Memory for Step {
             fields[0][i] = now;
         }
         history.keep();
-        // Without contact there is nothing to compare with.
+        // Without contact there are no distances to compare with.
         let relative = |length: f64| if distance > 0.0 { length / distance } else { 0.0 };
         Report { time, step_error: relative(off), time_error: relative(sum), compliance: self.compliance() }
     }

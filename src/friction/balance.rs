@@ -1,12 +1,11 @@
-//! The creepages by which the natural map itself carries the forces that are given.
+//! The creepages at which the natural map itself carries the given forces.
 //!
 //! ```text
 //! sum of P(q - rho (s + dc)) = F/(dx dy)        P: onto the discs
 //! ```
 //!
-//! The sum falls as dc grows, and its slope is known: Newton's method, within a [`Corral`]. What is predicted to slip then carries the forces
-//! together with the rest: as long as these are less than mu N, not all elements slip one way, and the border of the linear systems is
-//! not singular.
+//! The sum falls as dc grows, and its slope is known: Newton's method finds dc within a [`Corral`]. The predicted tractions then carry the
+//! forces. As long as these are less than mu N, not all elements slip one way, and the border of the linear systems is not singular.
 
 use super::corral::Corral;
 use super::forces::{sum_of_bounds, Forces};
@@ -15,14 +14,14 @@ use super::problem::{Problem, State};
 use super::system::pseudo_inverse;
 use crate::methods::fields;
 
-/// Forces that are met to this part of the sum of all bounds are met.
+/// Missing force, relative to the sum of all bounds, at which forces are met.
 const MET: f64 = 1e-13;
-/// Trials at most: halvings from the largest creepage to round-off.
+/// Most trials: halvings from the largest creepage to round-off.
 const MOST_TRIALS: usize = 200;
-/// A trial that leaves more than this part of what was missing is followed by one in the middle.
+/// A trial with more than this part of the last missing force is followed by the centre of the corral.
 const PROGRESS: f64 = 0.5;
 
-/// The sum of tractions that the natural map makes, and its derivative by `-rho dc`: xx, xy, yy.
+/// The sum of the natural map's tractions, and its derivative by `-rho dc`: xx, xy, yy.
 fn response(problem: &Problem, state: &State, rho: f64, dc: Vector) -> (Vector, [Vector; 2]) {
     let [x, y, xx, xy, yy] = fields::sum(problem.threads(), problem.bound.len(), |i| {
         let g = problem.bound[i];
@@ -46,11 +45,11 @@ fn response(problem: &Problem, state: &State, rho: f64, dc: Vector) -> (Vector, 
     ([x, y], [[xx, xy], [xy, yy]])
 }
 
-/// These creepages, in the place of the offset of the problem.
+/// The balanced creepages, to replace the problem's offset.
 pub fn balanced(problem: &Problem, state: &State, rho: f64, forces: Forces) -> Vector {
     let bounds = sum_of_bounds(problem);
     let part = square(forces.only_given(forces.sum)).sqrt() / bounds;
-    // Where dc is larger than that all slip against it, more than F.
+    // With a larger dc all elements slip against it and carry more than F.
     let furthest = fields::largest(problem.threads(), problem.bound.len(), |i| {
         let reach = if problem.bound[i] > 0.0 { square(problem.slip_at(i, &state.u)).sqrt() } else { 0.0 };
         reach + (square(state.q[i]).sqrt() + problem.bound[i]) / rho
@@ -83,7 +82,7 @@ pub fn balanced(problem: &Problem, state: &State, rho: f64, forces: Forces) -> V
     add(problem.offset, least.1)
 }
 
-/// Rows and columns of the directions in which forces are given.
+/// The rows and columns of directions with given forces; 0 in the others.
 fn only_given([xx, yy]: [Vector; 2], forces: Forces) -> [Vector; 2] {
     let keep = |row: Vector, k: usize| if forces.given[k] { forces.only_given(row) } else { [0.0; 2] };
     [keep(xx, 0), keep(yy, 1)]

@@ -1,4 +1,4 @@
-//! The best tractions that an iteration saw: they are what it returns where it does not converge.
+//! The best tractions of an iteration, returned if it does not converge.
 
 use super::certificate::Certificate;
 use super::forces::Forces;
@@ -7,24 +7,24 @@ use super::problem::{Problem, State};
 use crate::error::Result;
 use crate::methods::fields::{self, Fields};
 
-/// Of a residual with displacements that are not fresh, the part that they hide: round-off of single precision.
+/// Relative uncertainty of a residual from displacements that are not fresh: round-off of single precision.
 const HIDDEN: f64 = f32::EPSILON as f64;
 
-/// Tractions, the creepages found with them, and how far they are from the conditions.
+/// Tractions, their creepages, and their largest measure.
 pub struct Best {
     q: Vec<Vector>,
     offset: Vector,
-    /// The largest of the residual, the excess over the bounds and what is missing of the forces.
+    /// The largest of the residual, the excess over the bounds and the missing force.
     worst: f64,
 }
 
 impl Best {
-    /// None yet.
+    /// No tractions yet.
     pub fn none() -> Best {
         Best { q: Vec::new(), offset: [0.0; 2], worst: f64::INFINITY }
     }
 
-    /// Keeps these if they are better, as far as displacements that may be of products in single precision tell.
+    /// Keeps the state's tractions if they are better by more than [`HIDDEN`].
     pub fn see(&mut self, problem: &Problem, state: &State, worst: f64, fields: &mut Fields) -> Result<()> {
         let worst = if state.is_exact { worst } else { worst.max(HIDDEN) };
         if !(worst < self.worst) {
@@ -38,8 +38,8 @@ impl Best {
         Ok(())
     }
 
-    /// Where an iteration did not converge: makes the last tractions feasible, with a fresh product, and puts the best in their place if
-    /// those are better then.
+    /// After an iteration without convergence: makes the last tractions feasible, with a fresh product, and replaces them by the best if those are
+    /// better.
     pub fn restore(&mut self, problem: &mut Problem, state: &mut State, forces: Forces) {
         let last = measured(problem, state, forces);
         if self.q.len() != state.q.len() {
@@ -52,7 +52,7 @@ impl Best {
         }
     }
 
-    /// Goes on from the best, if there is one.
+    /// Restores the best tractions, if there are any.
     pub fn take_up(&mut self, problem: &mut Problem, state: &mut State) {
         if self.q.len() == state.q.len() {
             fields::map(&problem.threads().clone(), &mut state.q, |i, _| self.q[i]);
@@ -66,7 +66,7 @@ impl Best {
         std::mem::swap(&mut self.offset, &mut problem.offset);
     }
 
-    /// Gives its field back.
+    /// Returns the field.
     pub fn give(self, fields: &mut Fields) {
         if !self.q.is_empty() {
             fields.give(self.q);
@@ -74,7 +74,7 @@ impl Best {
     }
 }
 
-/// How far feasible tractions are from the conditions.
+/// The largest measure of feasible tractions.
 fn measured(problem: &mut Problem, state: &mut State, forces: Forces) -> f64 {
     problem.refresh(state);
     let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };

@@ -1,9 +1,8 @@
-//! Forces that are given, where Newton's method stalls: by solves with creepages that are given, between creepages that are known to
-//! carry too much and too little.
+//! Given forces for which Newton's method stalls: solves with given creepages, between creepages known to carry too much and too little.
 //!
-//! Such a solve has one solution, and its forces cut off a part of the [`Corral`]. The next creepages are those by which the natural map
-//! carries the forces ([`balanced`]), best where nearly all slips, or those of the linear system,
-//! best where much sticks; where neither halves what is missing, those in the middle. That ends.
+//! Such a solve has one solution, and its forces cut off a part of the [`Corral`]. The next creepages are those at which the natural map
+//! carries the forces ([`balanced`]), best if nearly all of C slips, or those of the linear system, best if much sticks. If neither halves
+//! the missing force, the centre of the corral follows. So the method ends.
 
 use super::balance::balanced;
 use super::best::Best;
@@ -21,33 +20,33 @@ use crate::error::Result;
 use crate::methods::fields;
 use crate::progress::Outcome;
 
-/// Where more than this part of C slips the natural map is tried first.
+/// If more than this part of C slips, the natural map is tried first.
 const MOSTLY_SLIP: f64 = 0.8;
-/// A trial is good if it leaves at most this part of the least that was missing.
+/// A trial is good if its missing force is at most this part of the least so far.
 const PROGRESS: f64 = 0.5;
-/// Where trials miss this part of what they missed before, Newton's method with balanced creepages tries to finish, by so many products.
+/// Each time the missing force falls to CLOSE times the last value, Newton's method with balanced creepages gets FINISH products.
 const CLOSE: f64 = 0.1;
 const FINISH: u64 = 30;
-/// Where other creepages leave the forces as they are, solves go on to this part of their residual, down to the least.
+/// Factor on the residual of solves if other creepages leave the forces unchanged, and its least value.
 const TIGHTER: f64 = 0.03;
 const LEAST_INNER: f64 = 1e-14;
-/// Derivatives of forces are known to this part; a matrix of them with a smaller determinant than that, relative, is singular.
+/// Relative accuracy of the derivatives of forces, and the relative determinant below which their matrix is singular.
 const SLOPE: f64 = 1e-2;
 const SINGULAR: f64 = 1e-8;
-/// Trials at most.
+/// Most trials.
 const MOST_TRIALS: u32 = 400;
 
-/// Where trials come from.
+/// The choice of trials.
 struct Trials {
     corral: Corral,
     by_map: bool,
-    /// Trials in succession that were not good.
+    /// Trials in a row that were not good.
     bad: u32,
-    /// The least that was missing. (Than the last one every other trial of two that lead to each other may be better.)
+    /// The least missing force. (Of two trials that lead to each other every other one would improve on the last.)
     least: Option<f64>,
 }
 
-/// Solves from what the state and the offset hold.
+/// Solves from the state and the offset.
 pub fn solve(
     problem: &mut Problem,
     state: &mut State,
@@ -90,7 +89,7 @@ pub fn solve(
                 return Ok(end);
             }
         }
-        // The residual hides what forces change by.
+        // The residual hides the change of the forces.
         if excess == before && inner > LEAST_INNER {
             inner *= TIGHTER;
             continue;
@@ -102,14 +101,14 @@ pub fn solve(
         } else if is_exact {
             break;
         } else {
-            // A residual on one element alone may hide that forces are too small: such a solve cuts off the creepages that are wanted.
+            // A residual on one element alone may hide a missing force: such a solve cuts off the wanted creepages.
             (is_exact, inner, trials) = (true, inner.min(LEAST_INNER), Trials::new(problem, forces, bounds));
         }
     }
     Ok(Outcome::Stagnated)
 }
 
-/// Newton's method with balanced creepages from here; where it does not converge everything is as before.
+/// Newton's method with balanced creepages from here; restores the state if it does not converge.
 fn finish(
     problem: &mut Problem,
     state: &mut State,
@@ -129,7 +128,7 @@ fn finish(
     Ok(end)
 }
 
-/// Solves with the creepages that the offset holds.
+/// Solves with the creepages of the offset.
 fn by_creepages(problem: &mut Problem, state: &mut State, memory: &mut Memory, goal: Goal<'_>) -> Result<Outcome> {
     let Goal { tolerance, limit, certified, watch } = goal;
     if problem.rms_slip() == 0.0 {
@@ -164,7 +163,7 @@ fn by_creepages(problem: &mut Problem, state: &mut State, memory: &mut Memory, g
 
 impl Trials {
     fn new(problem: &Problem, forces: Forces, bounds: f64) -> Trials {
-        // The largest displacement by all tractions together, of both components, here and a step ahead.
+        // A bound on the displacement by all tractions, of both components, here and a step ahead.
         let displaced = 8.0 * problem.operators.greatest() * bounds;
         let rigid = fields::largest(problem.threads(), problem.bound.len(), |i| {
             let inside = problem.bound[i] > 0.0;
@@ -179,7 +178,7 @@ impl Trials {
         Trials { corral: Corral::new(half, forces.given), by_map: true, bad: 0, least: None }
     }
 
-    /// The creepages to try next; those of now where there are no others.
+    /// The creepages to try next; the present ones if there are no others.
     fn next(
         &mut self,
         problem: &mut Problem,
@@ -215,7 +214,7 @@ impl Trials {
     }
 }
 
-/// How creepages go with what forces exceed: the inverse of minus the derivatives of the forces, while the same elements slip.
+/// The change of creepages per excess of force: the inverse of minus the derivatives of the forces at fixed slip area.
 fn slope(problem: &mut Problem, memory: &mut Memory, forces: Forces) -> Result<[Vector; 2]> {
     let Memory { tangent, fields, .. } = memory;
     let mut falls = [[0.0; 2]; 2];

@@ -1,12 +1,12 @@
-//! How well the conditions of friction hold: everything here is computed from q and a fresh u = A q.
+//! The measures of the conditions of friction, all from q and a fresh u = A q.
 //!
 //! ```text
 //! n = q/|q|,  s_n = s.n;  on the circle: |q| >= g (1 - 1e-7)
 //! rest = s                       inside the circle
-//! rest = s - min(s_n, 0) n       on it: what of -s does not point outwards along the normal
+//! rest = s - min(s_n, 0) n       on it: without the outward normal part of -s
 //! residual = rms_C(rest)/S,      S = max(rms_C(rigid slip), f rms_C(u));  u: displacements of a shift or of a step, f = 1 for a shift and
-//!                                for steady rolling by a force; else f = 1.5e-8, which is what round-off leaves
-//!                                where forces are given, S is at least 1.5e-8 rms_C(rigid slip without the creepages that are found)
+//!                                for steady rolling by a force; else f = 1.5e-8, round-off
+//!                                with given forces S is at least 1.5e-8 rms_C(rigid slip without the found creepages)
 //! gap      = sum_C (s.q + g |s|) / sum_C g |rigid slip|     >= 0, and 0 for the solution only
 //! ```
 //!
@@ -16,7 +16,7 @@ use super::plane::{add, dot, square, Vector};
 use super::problem::{Problem, State};
 use crate::methods::fields::{self, BLOCK};
 
-/// Tractions of more than this part of the bound are on the circle: round-off of the projection is far below.
+/// Part of the bound from which tractions are on the circle: round-off of the projection is far below.
 pub const ON_THE_CIRCLE: f64 = 1.0 - 1e-7;
 
 /// The measures of a solution.
@@ -37,7 +37,7 @@ pub fn scale(problem: &Problem, state: &State) -> f64 {
     problem.compared(problem.rms_rigid(), problem.rms(|i| state.u[i]))
 }
 
-/// A length relative to another one; nothing is nothing relative to nothing.
+/// A length relative to another one; 0 relative to 0 is 0.
 pub fn relative(value: f64, scale: f64) -> f64 {
     if value == 0.0 {
         0.0
@@ -47,7 +47,7 @@ pub fn relative(value: f64, scale: f64) -> f64 {
 }
 
 impl Certificate {
-    /// Of a state whose u is A q.
+    /// The certificate of a state with u = A q.
     pub fn of(problem: &Problem, state: &State) -> Certificate {
         let blocks = (0..problem.bound.len()).step_by(BLOCK);
         let sums = fields::over(problem.threads(), blocks, |start, _| {
@@ -82,7 +82,7 @@ pub fn is_on_circle(q: Vector, g: f64) -> bool {
     square(q) >= (g * ON_THE_CIRCLE) * (g * ON_THE_CIRCLE)
 }
 
-/// The square of what is left of the slip s: on the circle, where s points against q, the part across q.
+/// The square of the residual of the slip s: on the circle, for s opposite to q, the part across q.
 #[inline]
 pub fn rest(s: Vector, q: Vector, g: f64) -> f64 {
     if dot(s, q) < 0.0 && is_on_circle(q, g) {

@@ -1,7 +1,7 @@
-//! Influence coefficients of tangential tractions: those of both bodies as half-spaces (`HalfSpace`), with what one coating on both
-//! changes ([`Coat`]), or tables of the caller's own; and a layer between the bodies.
+//! Influence coefficients of tangential tractions: those of both bodies as half-spaces (`HalfSpace`), with the changes by a common coating
+//! ([`Coat`]), or the caller's tables; and a layer between the bodies.
 //!
-//! Offsets are in elements and need not be whole: rolling asks for displacements between centres.
+//! Offsets are in elements and need not be whole: rolling needs displacements between centres.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -23,11 +23,11 @@ use crate::influence::{Base, Coat};
 #[derive(Clone, Debug)]
 pub struct Tangential {
     half_space: HalfSpace,
-    /// The coating that both bodies have, of whose material the half-space is, and the half-space below.
+    /// The common coating of both bodies, whose material is that of the half-space, and the half-space of the substrates.
     coat: Option<(Coat, HalfSpace)>,
-    /// The caller's own, in place of these.
+    /// The caller's tables, in place of these.
     own: Option<Tables>,
-    /// One table per loaded row, of which these are the means.
+    /// Tables per loaded row, whose means the coefficients are.
     rows: Option<RowTables>,
     /// The compliance of a layer between the bodies, which adds to the coefficient of an element on itself.
     layer: f64,
@@ -44,7 +44,7 @@ impl Tangential {
         Tangential { half_space, coat: None, own: None, rows: None, layer: 0.0 }
     }
 
-    /// Coefficients of bodies whose surfaces these are, with a coating on both, and what is below.
+    /// Coefficients of bodies with a common coating of the material `surface`, and the substrates below.
     pub fn of_coated(dx: f64, dy: f64, surface: Compliance, (coat, below): (Coat, Compliance)) -> Tangential {
         let plain = Tangential::new(dx, dy, surface);
         let below = HalfSpace::new(dx, dy, below, plain.half_space.shape.clone());
@@ -62,7 +62,7 @@ impl Tangential {
         Ok(Tangential { own: Some(own), rows, ..Tangential::new(dx, dy, no_bodies) })
     }
 
-    /// The same for a run of rows of the grid: they matter to tables per loaded row.
+    /// The coefficients for a range of rows of the grid, on which tables per loaded row depend.
     pub fn of_run(&self, first: usize, rows: usize) -> Tangential {
         Tangential { rows: self.rows.as_ref().map(|all| all.of_run(first, rows)), ..self.clone() }
     }
@@ -72,7 +72,7 @@ impl Tangential {
         self.rows.as_ref()
     }
 
-    /// The same with a layer of this compliance between the bodies.
+    /// The coefficients with a layer of this compliance between the bodies.
     pub fn with_layer(&self, layer: f64) -> Tangential {
         Tangential { layer, ..self.clone() }
     }
@@ -82,7 +82,7 @@ impl Tangential {
         self.layer
     }
 
-    /// Whether these are the caller's own.
+    /// Whether these are the caller's tables.
     pub fn is_own(&self) -> bool {
         self.own.is_some()
     }
@@ -101,7 +101,7 @@ impl Tangential {
         Ok(())
     }
 
-    /// The same bodies, another element size; own tables are coarsened where elements are larger.
+    /// The coefficients for another element size; own tables are coarsened for larger elements.
     pub fn for_element(&self, dx: f64, dy: f64) -> Result<Tangential> {
         let of = &self.half_space;
         let same_shape = dx / of.dx == dy / of.dy;
@@ -117,7 +117,7 @@ impl Tangential {
         Ok(Tangential { own, rows, coat, layer: self.layer, ..Tangential::of_shape(dx, dy, of.compliance, shape) })
     }
 
-    /// The same with lengths in units of `length`, and the unit of displacements by tractions of 1 that makes the coefficients of order 1.
+    /// The coefficients with lengths in units of `length`, and the unit of displacements by tractions of 1 with which they are of order 1.
     pub fn in_units_of(&self, length: f64) -> (Tangential, f64) {
         let HalfSpace { dx, dy, compliance, .. } = self.half_space;
         let (stiff, unit) = match &self.own {
@@ -145,17 +145,17 @@ impl Tangential {
         self.half_space.compliance
     }
 
-    /// Whether they are those of coated bodies.
+    /// Whether the bodies are coated.
     pub fn is_coated(&self) -> bool {
         self.coat.is_some()
     }
 
-    /// Whether there is no Axy at all: of half-spaces without Poisson's ratio.
+    /// Whether Axy is 0, as for half-spaces with a Poisson ratio of 0.
     pub fn is_uncoupled(&self) -> bool {
         self.half_space.compliance.poisson == 0.0 && self.coat.is_none()
     }
 
-    /// These over others, where they are a multiple of them.
+    /// The factor of these coefficients over others, if they are a multiple.
     pub fn times(&self, other: &Tangential) -> Option<f64> {
         let is_plain = |of: &Tangential| of.layer == 0.0 && of.own.is_none() && of.coat.is_none();
         let (one, two) = (&self.half_space, &other.half_space);
@@ -165,7 +165,7 @@ impl Tangential {
         is_multiple.then_some(one.dx / two.dx)
     }
 
-    /// What waves of tractions displace, by the wave vector, where a coating is a membrane: its coefficients may fall off over lengths beyond the grid.
+    /// The responses to traction waves, by the wave vector, if a coating is a membrane: its coefficients may decay over lengths beyond the grid.
     pub fn of_waves(&self) -> Option<impl Fn(Vector) -> Entry + Sync + Send + '_> {
         let (coat, _) = self.coat.as_ref().filter(|(coat, _)| coat.is_membrane())?;
         let HalfSpace { dx, dy, compliance, .. } = self.half_space;
@@ -179,7 +179,7 @@ impl Tangential {
         })
     }
 
-    /// The coefficients at an offset, in elements; of own tables at the next whole one.
+    /// The coefficients at an offset in elements; for own tables at the nearest whole one.
     pub fn at(&self, x: f64, y: f64) -> Entry {
         let [xx, yy, xy] = self.of_bodies(x, y);
         // Between the centres tractions are interpolated.
@@ -187,12 +187,12 @@ impl Tangential {
         [xx + layer, yy + layer, xy]
     }
 
-    /// Own tables that are uneven in x: those of steady rolling.
+    /// Own tables that are uneven in x, for steady rolling.
     pub fn uneven(&self) -> Option<&Tables> {
         self.own.as_ref().filter(|own| own.is_uneven())
     }
 
-    /// The same without the layer.
+    /// The coefficients without the layer.
     fn of_bodies(&self, x: f64, y: f64) -> Entry {
         if let Some(own) = &self.own {
             return own.at(x.round() as i64, y.round() as i64);

@@ -2,7 +2,7 @@
 
 use crate::scene::Bodies;
 
-/// The materials' part of the displacements: `1/G`, `nu/G` and `K/G` of both bodies together.
+/// The factors of the displacements that depend on the materials: `1/G`, `nu/G` and `K/G` of both bodies together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Compliance {
     /// `1/G = (1/G1 + 1/G2)/2`.
@@ -14,7 +14,7 @@ pub struct Compliance {
 }
 
 impl Compliance {
-    /// Of two bodies.
+    /// The compliance of two bodies together.
     pub fn of(bodies: &Bodies) -> Compliance {
         let Bodies { shear_modulus: [g1, g2], poisson_ratio: [nu1, nu2] } = *bodies;
         Compliance {

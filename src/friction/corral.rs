@@ -1,24 +1,24 @@
-//! Where the creepages lie that carry given forces: a convex polygon, of which every force that is found cuts off a part.
+//! A convex polygon that contains the creepages of given forces. Each computed force cuts off a part.
 //!
-//! Forces F fall as creepages c grow, `(F(c) - F(c*)).(c - c*) <= 0`: whatever forces are found at c, those that are wanted lie at a
-//! `c*` with `(F(c) - F*).(c* - c) >= 0`. Cuts through the centre leave 5/9 of the area at most (Gruenbaum 1960): that ends.
+//! Forces F fall as creepages c grow, `(F(c) - F(c*)).(c - c*) <= 0`: from the force at c follows `(F(c) - F*).(c* - c) >= 0` for the wanted
+//! force F* at c*. Cuts through the centroid leave at most 5/9 of the area (Gruenbaum 1960), so the search ends.
 
 use super::plane::{dot, plus, Vector};
 
-/// The polygon; of one creepage that is not known a rectangle, which is never cut across.
+/// The polygon; with one unknown creepage a rectangle, whose cuts are parallel.
 pub struct Corral {
     corners: Vec<Vector>,
     given: [bool; 2],
 }
 
 impl Corral {
-    /// Creepages of at most `half` in each direction in which the force is given.
+    /// Creepages up to `half` in each direction with a given force.
     pub fn new(half: f64, given: [bool; 2]) -> Corral {
         let corners = [[-half, -half], [half, -half], [half, half], [-half, half]];
         Corral { corners: corners.to_vec(), given }
     }
 
-    /// Takes off what lies on the other side of `at`, where forces exceed those that are wanted by `excess`.
+    /// Cuts off the part that the `excess` of the forces at `at` excludes.
     pub fn cut(&mut self, at: Vector, excess: Vector) {
         let beyond = |c: Vector| dot(excess, plus(c, -1.0, at));
         let mut kept = Vec::with_capacity(self.corners.len() + 1);
@@ -33,13 +33,13 @@ impl Corral {
                 kept.push([0, 1].map(|k| from[k] + part * (to[k] - from[k])));
             }
         }
-        // By round-off nothing is left: it is as small as numbers tell.
+        // If round-off leaves nothing, the polygon is as small as double precision resolves.
         if !kept.is_empty() {
             self.corners = kept;
         }
     }
 
-    /// The centre of its area.
+    /// The centroid.
     pub fn centre(&self) -> Vector {
         let first = self.corners[0];
         let (mut area, mut moment) = (0.0, [0.0; 2]);
@@ -58,7 +58,7 @@ impl Corral {
         self.only_given(if is_inside { centre } else { mean() })
     }
 
-    /// Whether a place lies inside, of all corners the same way round.
+    /// Whether a place lies inside: all edges turn the same way around it.
     pub fn holds(&self, c: Vector) -> bool {
         let sides = self.corners.iter().enumerate().map(|(k, from)| {
             let to = self.corners[(k + 1) % self.corners.len()];

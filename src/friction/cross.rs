@@ -7,10 +7,12 @@
 //! u_z = -(Axz qx + Ayz qy)                                                    along the normal, by tractions
 //! ```
 //!
-//! so that the operator of all three components is symmetric. Both integrals are one, `integral of 1/(x + i y)`: beyond six
-//! half-diagonals a series in the moments of the element, `dx dy sum_k m_2k/Z^(2k+1)`, `Z = X + i Y`; nearer exact in one direction and by
-//! Gauss-Legendre in the other; next to the element differences of `Y ln r + X atan(Y/X)` over its corners, of
-//! a slender one over those of the part that is near, and by Gauss-Legendre over panels that grow beyond it.
+//! so that the operator of all three components is symmetric. Both integrals are parts of `integral of 1/(x + i y)`:
+//!
+//! * beyond six half-diagonals a series in the moments of the element, `dx dy sum_k m_2k/Z^(2k+1)`, `Z = X + i Y`;
+//! * nearer, the closed form in one direction and Gauss-Legendre in the other;
+//! * next to the element differences of `Y ln r + X atan(Y/X)` over its corners, for a slender element over those of its near part, with
+//!   Gauss-Legendre over growing panels beyond.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -26,15 +28,15 @@ use crate::operator::fft::Complex;
 use crate::operator::{Operator, Workspace};
 use crate::threads::Threads;
 
-/// The series suffices from so many half-diagonals on, with this many terms after the first.
+/// Half-diagonals from which the series suffices, with TERMS terms after the first: the next is `6^-18`, 1e-14 of the first, times m_18.
 const FAR: f64 = 6.0;
 const TERMS: usize = 8;
-/// Next to the element differences over corners serve so far, in units of its shorter side;
+/// Distance up to which differences over corners serve next to the element, in units of its shorter side.
 const CORNERS: f64 = 2.0;
-/// beyond that panels, of which each ends so many times as far away as it begins.
+/// Ratio of the distances of a panel's end and begin, beyond CORNERS.
 const PANELS: f64 = 1.5;
 
-/// Where Axz and Ayz come from.
+/// The source of Axz and Ayz.
 #[derive(Clone, Debug)]
 pub enum Source {
     /// The half-space: K/G.
@@ -53,7 +55,7 @@ impl Source {
     }
 }
 
-/// Axz and Ayz of the caller's own, at the offsets `-cx..cx` by `-cy..cy`.
+/// The caller's Axz and Ayz, at the offsets `-cx..cx` by `-cy..cy`.
 #[derive(Clone, Debug)]
 pub struct CrossTables {
     cx: i64,
@@ -62,7 +64,7 @@ pub struct CrossTables {
 }
 
 impl CrossTables {
-    /// Of tables that were checked; none if there are none.
+    /// Copies checked tables; none if there are none.
     pub fn new(influence: &TangentialInfluence<'_>) -> Result<Option<CrossTables>> {
         if influence.cross.is_none() {
             return Ok(None);
@@ -75,7 +77,7 @@ impl CrossTables {
         Ok(Some(CrossTables { cx, cy, values: Arc::new(values) }))
     }
 
-    /// The coefficients at an offset; 0 beyond the tables, where C does not ask.
+    /// The coefficients at an offset; 0 beyond the tables, which C does not use.
     fn at(&self, x: i64, y: i64) -> Vector {
         if x < -self.cx || x >= self.cx || y < -self.cy || y >= self.cy {
             return [0.0; 2];
@@ -84,7 +86,7 @@ impl CrossTables {
     }
 }
 
-/// Axz (component 0) or Ayz (1), displacements being taken at `by` from each centre, in elements.
+/// Axz (component 0) or Ayz (1), for displacements at `by` from each centre, in elements.
 #[derive(Clone, Debug)]
 struct Cross {
     dx: f64,
@@ -128,7 +130,7 @@ pub fn integrals(x: f64, y: f64, dx: f64, dy: f64) -> [f64; 2] {
     let (px, py) = (kx * dx, ky * dy);
     let far = FAR * 0.5 * dx.hypot(dy);
     let [jx, jy] = if px * px + py * py >= far * far { series(px, py, dx, dy) } else { near(kx, ky, dx, dy) };
-    // Odd functions: exactly 0 in the middle.
+    // Odd functions: exactly 0 at the centre.
     let odd = |x: f64, value: f64| if x == 0.0 { 0.0 } else { value.copysign(x) };
     [odd(x, jx), odd(y, jy)]
 }
@@ -173,8 +175,8 @@ fn near(kx: f64, ky: f64, dx: f64, dy: f64) -> [f64; 2] {
     }
 }
 
-/// The element is `length >= 1` long in x, 1 in y, and less than two of itself away, at `(x, ky)`: the part next to the loaded point by
-/// its corners, whose difference over a long element would lose what it is longer, beyond it panels in x.
+/// The integrals over an element of `length >= 1` in x and 1 in y, at `(x, ky)` less than two of its sides away: the near part by its
+/// corners, the rest by panels in x. Over a long element differences of corners would lose digits.
 fn beside(x: f64, ky: f64, length: f64) -> [f64; 2] {
     let (from, to) = (x - 0.5 * length, x + 0.5 * length);
     let (near_from, near_to) = (from.clamp(-CORNERS, CORNERS), to.clamp(-CORNERS, CORNERS));
@@ -185,7 +187,7 @@ fn beside(x: f64, ky: f64, length: f64) -> [f64; 2] {
         while at < last {
             let next = (PANELS * at).min(last);
             let panel = |component: usize| gauss(0.5 * (at + next), next - at, |x| along(ky, 1.0, x)[component]);
-            // Over y at the distance x: the roles of both are exchanged.
+            // Integrals over y at the distance x: x and y are exchanged.
             sum = [sum[0] + sign * panel(1), sum[1] + panel(0)];
             at = next;
         }
@@ -203,13 +205,13 @@ fn corners((xm, xp): (f64, f64), ky: f64) -> [f64; 2] {
     [f(xp, yp) - f(xp, ym) - f(xm, yp) + f(xm, ym), f(yp, xp) - f(ym, xp) - f(yp, xm) + f(ym, xm)]
 }
 
-/// Over x in an interval of length d about k d, at the distance y: the integrals of `x/r^2` and `y/r^2`.
+/// The integrals of `x/r^2` and `y/r^2` over x in an interval of length d about k d, at the distance y.
 fn along(k: f64, d: f64, y: f64) -> [f64; 2] {
     let (plus, minus) = ((k + 0.5) * d, (k - 0.5) * d);
     [0.5 * (2.0 * k * d * d / (minus * minus + y * y)).ln_1p(), (d * y).atan2(plus * minus + y * y)]
 }
 
-/// Products of pressures and tractions with what couples them.
+/// Products with the coupling of pressures and tractions.
 pub struct Coupling {
     operators: [Operator<f64>; 2],
     workspace: Workspace<f64>,
@@ -217,7 +219,7 @@ pub struct Coupling {
 }
 
 impl Coupling {
-    /// On a grid; displacements are taken at `by` from each centre, in elements.
+    /// The coupling on a grid, with displacements at `by` from each centre, in elements.
     pub fn new(grid: &Grid, source: &Source, by: (f64, f64), threads: &Threads) -> Result<Coupling> {
         let threads = &threads.suited_to(grid.len());
         let operator = |component: usize| {

@@ -4,7 +4,7 @@ use super::coefficients::Tangential;
 use super::plane::Vector;
 use crate::grid::Grid;
 
-/// `u_I = sum_J A(I - J + by) q_J`, term by term; `by` in elements: where the displacement is taken, from each centre.
+/// `u_I = sum_J A(I - J + by) q_J`, term by term: displacements at `by` from each centre, in elements.
 pub fn apply(tangential: &Tangential, grid: &Grid, by: (f64, f64), q: &[Vector], u: &mut [Vector]) {
     assert!(q.len() == grid.len() && u.len() == grid.len());
     let place = |i: usize| ((i % grid.mx) as f64, (i / grid.mx) as f64);

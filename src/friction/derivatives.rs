@@ -1,7 +1,7 @@
-//! Derivatives of the last result by what moves it, on the whole grid.
+//! Derivatives of the last result by pressures and slip, on the whole grid.
 //!
-//! While the elements that slip stay the same, their tractions follow the pressures, `dq = mu dp n + z` with `P z = z` (see
-//! [`sensitivity`]), and a change dw of the slip, which holds that of the sideways displacements by pressures, gives
+//! The elements in slip stay the same. Their tractions follow the pressures, `dq = mu dp n + z` with `P z = z` (see
+//! [`sensitivity`]), and a change dw of the slip, which includes the change of lateral displacements by pressures, gives
 //!
 //! ```text
 //! (P A P + D) z = -P (dw + A mu dp n)
@@ -17,7 +17,7 @@ use crate::effects::Friction;
 use crate::error::Result;
 
 impl Solver {
-    /// See [`Report::sensitivities`](super::Report::sensitivities): the pressures are held.
+    /// See [`Report::sensitivities`](super::Report::sensitivities): the pressures are fixed.
     pub(super) fn sensitivities(&mut self, friction: &Friction<'_>) -> Result<[[f64; 3]; 3]> {
         let mut derivatives = [[0.0; 3]; 3];
         let (Some(window), Some(level)) = (&self.window, self.levels.first_mut()) else { return Ok(derivatives) };
@@ -44,8 +44,8 @@ impl Solver {
         Ok(derivatives)
     }
 
-    /// How the tractions of the last result change with its pressures, by `dp`, and with the slip that is not theirs: `change` is dw on entry and
-    /// dq on return. All on the whole grid.
+    /// The change of the tractions of the last result with its pressures, by `dp`, and with the slip from other causes. `change` holds dw on entry
+    /// and dq on return. All arrays are on the whole grid.
     pub fn change(&mut self, friction: &Friction<'_>, dp: &[f64], change: &mut [Vector]) -> Result<()> {
         let (Some(window), Some(level)) = (&self.window, self.levels.first_mut()) else {
             change.fill([0.0; 2]);
@@ -56,7 +56,7 @@ impl Solver {
         let n = level.state.q.len();
         let (mut slip, mut along, mut displaced) = (fields.take(n)?, fields.take(n)?, fields.take(n)?);
         for (k, i) in window.elements(&self.grid) {
-            // Where the layer yields pressures do not count.
+            // Where the layer yields, tractions do not depend on pressures.
             let yields = friction.layer.is_some_and(|layer| {
                 self.scales.own_traction([problem.bound[k], 0.0])[0] >= friction.yield_limit_before(layer, i)
             });
@@ -81,7 +81,7 @@ impl Solver {
         Ok(())
     }
 
-    /// Products on the finest grid since it was asked last.
+    /// Products on the finest grid since the last call.
     pub fn take_products(&mut self) -> f64 {
         self.levels.first_mut().map_or(0, |level| level.problem.take_products()) as f64
     }

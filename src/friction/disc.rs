@@ -1,4 +1,4 @@
-//! One vector of elements of the projected gradients: what slips there, and where elements go.
+//! The projected gradients on one SIMD vector of elements: slip prediction and step.
 
 use pulp::Simd;
 
@@ -6,31 +6,31 @@ use super::certificate::ON_THE_CIRCLE;
 use super::lanes::{Arithmetic, Pair};
 use super::tangent::{ALIGNED, MIXED, NEAR_THE_CIRCLE};
 
-/// Units, and what is in them.
+/// The units, and constants of the formulas in them.
 #[derive(Clone, Copy, Default)]
 pub struct Units {
-    /// Tractions are in this one, displacements in that one.
+    /// The unit of tractions, the unit of displacements.
     pub traction: f64,
     pub displacement: f64,
     /// The influence of an element on itself.
     pub a0: f64,
-    /// Of the natural map.
+    /// rho of the natural map.
     pub rho: f64,
 }
 
-/// The natural map on an element of C: see [`look`](super::tangent::look).
+/// The prediction of the natural map on an element of C: see [`Tangent::predict`](super::tangent::Tangent::predict).
 pub struct Seen<S: Simd> {
-    /// n; 0 where they stick.
+    /// The normal n; 0 on stick.
     pub normal: Pair<S>,
     /// D.
     pub curvature: S::f64s,
     /// `P(-s)`.
     pub projected: Pair<S>,
-    /// The square of what is left of the slip.
+    /// The square of the slip's residual.
     pub rest: S::f64s,
 }
 
-/// The formulas in these units.
+/// The formulas, with their constants as vectors.
 #[derive(Clone, Copy)]
 pub struct Disc<S: Simd> {
     pub a: Arithmetic<S>,
@@ -57,7 +57,7 @@ impl<S: Simd> Disc<S> {
         }
     }
 
-    /// Elements of bounds g, with their q and slips s.
+    /// The prediction for elements of tractions q, slips s and bounds g.
     #[inline(always)]
     pub fn look(&self, q: Pair<S>, s: Pair<S>, g: S::f64s) -> Seen<S> {
         let Disc { a, zero, one, .. } = *self;
@@ -65,7 +65,7 @@ impl<S: Simd> Disc<S> {
         let (square_q, square_tau) = (a.square(q), a.square(tau));
         let slips = a.0.greater_than_f64s(square_tau, a.mul(g, g));
         let (length, reach) = (a.sqrt(square_q), a.sqrt(square_tau));
-        // Near the circle, and turned by less than the angle.
+        // q is near the circle, and its angle with tau is below that of ALIGNED.
         let off = a.abs(a.sub(length, g));
         let is_near = a.0.less_than_or_equal_f64s(off, a.mul(a.splat(NEAR_THE_CIRCLE), g));
         let least = a.mul(a.splat(ALIGNED), a.mul(length, reach));
@@ -98,7 +98,7 @@ impl<S: Simd> Disc<S> {
         a.div(self.one, a.add(self.one, a.mul(self.mixed, curvature)))
     }
 
-    /// The own inverse beside E: `(1 - E)/(D + a0)`.
+    /// The diagonal part of the preconditioner, beside E: `(1 - E)/(D + a0)`.
     #[inline(always)]
     pub fn own(&self, mixing: S::f64s, stiff: S::f64s) -> S::f64s {
         self.a.div(self.a.sub(self.one, mixing), self.a.add(stiff, self.a0))
@@ -110,14 +110,14 @@ impl<S: Simd> Disc<S> {
         self.a.sub_pair(v, self.a.scale(self.a.dot(v, n), n))
     }
 
-    /// Where elements with this normal slip.
+    /// The slipping elements, whose normal is not 0.
     #[inline(always)]
     pub fn slips(&self, [x, y]: Pair<S>) -> S::m64s {
         let a = self.a;
         a.0.greater_than_f64s(a.add(a.abs(x), a.abs(y)), self.zero)
     }
 
-    /// Where elements go from q by `a t`: along their circles where they slip, else straight on and back into the disc.
+    /// The tractions after a step `way` from q: along the circle where elements slip, else straight and projected onto the disc.
     #[inline(always)]
     pub fn moved(&self, (slips, n): (S::m64s, Pair<S>), g: S::f64s, q: Pair<S>, way: Pair<S>) -> Pair<S> {
         let a = self.a;

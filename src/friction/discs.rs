@@ -1,7 +1,7 @@
 //! The fields of projected gradients on discs, on C alone, and the passes over them.
 //!
-//! Tractions are in units of the smaller one of the bounds and what the rigid slip asks for, displacements in that times the unit of the coefficients: what
-//! is multiplied, in single precision T, stays within its range.
+//! Tractions are in units of the smaller of the bounds and the tractions of the rigid slip, displacements in this unit times that of the
+//! coefficients. So fields to be multiplied stay within the range of single precision.
 
 mod fields;
 mod passes;
@@ -21,16 +21,16 @@ use passes::{AddProduct, Direct, Energy, Go, Precondition, Predict};
 /// The fields of one solve.
 #[derive(Default)]
 pub struct Discs<T: Real> {
-    /// Those of [`Fields`], on C by blocks.
+    /// The values of [`Fields`], on C by blocks.
     fields: Vec<f64>,
-    /// On the grid, by component: what is multiplied, 0 outside C, and what that gives.
+    /// On the grid, by component: the fields to be multiplied, 0 outside C, and the products.
     given: [Vec<T>; 2],
     answer: [Vec<T>; 2],
     extension: Option<Extension<T, 2>>,
     units: Units,
 }
 
-/// Sums of squares over C: of what is left of the slip, of u, and of a step the deferred corrections and the ways that elements went.
+/// Sums of squares over C: of the slip's residual and of u; after a step also of the deferred corrections and of the change of q.
 #[derive(Clone, Copy)]
 pub struct Sums {
     pub rest: f64,
@@ -45,12 +45,12 @@ impl<T: Real> Discs<T> {
         length / self.units.displacement
     }
 
-    /// A traction of these fields as the state has it.
+    /// A traction in the unit of the state.
     pub fn own_traction(&self, traction: f64) -> f64 {
         self.units.traction * traction
     }
 
-    /// Calls `work` on the fields of each block, and makes what it leaves in z ready to be multiplied.
+    /// Calls `work` on the fields of each block, and copies z to the grid to be multiplied.
     fn give_z<const K: usize>(
         &mut self,
         places: &Places,
@@ -69,7 +69,7 @@ impl<T: Real> Discs<T> {
         })
     }
 
-    /// Calls `work` on the fields of each block after `take` has said where the answer goes.
+    /// Copies the answer to the fields that `take` chooses, and calls `work` on the fields of each block.
     fn with_answer<const K: usize>(
         &mut self,
         problem: &Problem,
@@ -87,7 +87,7 @@ impl<T: Real> Discs<T> {
         })
     }
 
-    /// Predicts what slips; what the preconditioner is given is made ready.
+    /// Predicts the slip area, and prepares the preconditioner's argument.
     pub fn predict(&mut self, places: &Places, threads: &Threads) -> Sums {
         let units = self.units;
         let predict = |fields: &mut Fields<'_>| pulp::Arch::new().dispatch(Predict { fields, units });
@@ -95,7 +95,8 @@ impl<T: Real> Discs<T> {
         Sums { rest, displaced, deferred: 0.0, moved: 0.0 }
     }
 
-    /// z, the preconditioned residual: see [`Tangent::precondition`](super::tangent::Tangent::precondition). Returns `z.(A + D) t` of the last direction.
+    /// z, the preconditioned residual: see [`Tangent::precondition`](super::tangent::Tangent::precondition). Returns `z.(A + D) t` of the last
+    /// direction.
     pub fn precondition(&mut self, problem: &mut Problem) -> f64 {
         let operators = &mut problem.operators;
         let compliance = operators.relative_compliance();
@@ -112,14 +113,14 @@ impl<T: Real> Discs<T> {
         along
     }
 
-    /// The direction t, its chord at the length f, and what is multiplied: the chord with the deferred corrections.
+    /// The direction t, its chord at the length f, and the field to be multiplied: the chord with the deferred corrections.
     pub fn choose_direction(&mut self, problem: &Problem, (beta, f): (f64, f64)) {
         let units = self.units;
         let direct = |fields: &mut Fields<'_>| pulp::Arch::new().dispatch(Direct { fields, units, beta, f });
         let [] = self.give_z(&problem.places, problem.threads(), direct);
     }
 
-    /// Multiplies; returns `t.(A + D) t` and `t` times the projected residual, of the chord where C sticks.
+    /// Multiplies. Returns `t.(A + D) t` and `t` times the projected residual; on stick t is the chord.
     pub fn multiply(&mut self, problem: &mut Problem) -> [f64; 2] {
         self.multiply_given(problem);
         let units = self.units;
@@ -127,7 +128,7 @@ impl<T: Real> Discs<T> {
         self.with_answer(problem, |fields| &mut fields.product, energy)
     }
 
-    /// Goes so far along the chord at the length f, and predicts what slips there.
+    /// Steps by `length` along the chord at the length f, and predicts the slip area there.
     pub fn go(&mut self, places: &Places, threads: &Threads, length: f64, f: f64) -> Sums {
         let units = self.units;
         let go = |fields: &mut Fields<'_>| pulp::Arch::new().dispatch(Go { fields, units, length, f });
@@ -135,7 +136,7 @@ impl<T: Real> Discs<T> {
         Sums { rest, displaced, deferred, moved }
     }
 
-    /// Multiplies the deferred corrections: none is left.
+    /// Makes all deferred corrections by a product.
     pub fn correct(&mut self, problem: &mut Problem) {
         let threads = problem.threads().clone();
         let [] = self.give_z(&problem.places, &threads, |fields| {

@@ -1,4 +1,4 @@
-//! Products between the centres of the elements of a window.
+//! Displacements at points between the centres of the elements of a window.
 
 use super::plane::Vector;
 use super::row_product::RowProduct;
@@ -10,11 +10,11 @@ use crate::grid::Grid;
 use crate::threads::Threads;
 use toeplitz::Memory;
 
-/// `A q` at places between the centres.
+/// `A q` at points between the centres.
 pub struct Displaced {
     by: (f64, f64),
     grid: Grid,
-    /// The first row, of tables per loaded row.
+    /// The first row, for tables per loaded row.
     first: Option<usize>,
     product: Product,
 }
@@ -44,7 +44,8 @@ impl Displaced {
     }
 }
 
-/// The product at places `by` elements beside the centres. It is kept, and set up anew for other places, another grid or another first row.
+/// The product at points that are offset by `by` elements from the centres. It is kept. Other points, another grid or another first row need a new
+/// set-up.
 pub fn displaced<'a>(
     kept: &'a mut Option<Displaced>,
     tangential: &Tangential,

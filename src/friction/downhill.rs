@@ -1,6 +1,6 @@
-//! Shift, and a step of transient rolling, with the motion given, where faster methods go round in circles: Newton's method, projected on the discs. Every
-//! step lowers the energy `1/2 q.Aq + w.q`, so no state comes back (Bertsekas, *Projected Newton methods for optimization problems with simple
-//! constraints*, 1982).
+//! Shift, and a step of transient rolling, with given motion, if faster methods cycle: Newton's method, projected on the discs. Every step lowers
+//! the energy `1/2 q.Aq + w.q`, so no state recurs (Bertsekas, *Projected Newton methods for optimization problems with simple constraints*,
+//! 1982).
 //!
 //! ```text
 //! z       a step of Newton's method                            (module `step`)
@@ -8,7 +8,7 @@
 //! a = -(d, s)/(d, A d), at most 1;    q = q + a d
 //! ```
 //!
-//! c, because a force that is missing displaces all of C: on long lines a falls to nothing without it. Where d leads uphill, `z = -rho s` does not.
+//! c is needed because a missing force displaces all of C: on long lines a tends to 0 without c. If d leads uphill, `z = -rho s` does not.
 
 use super::best::Best;
 use super::forces::Forces;
@@ -21,24 +21,24 @@ use crate::error::Result;
 use crate::methods::fields::{self, Fields};
 use crate::progress::Outcome;
 
-/// The inner residual relative to that of the step, and directions of one step at most.
+/// Relative tolerance of linear solves, and most directions of one step.
 const INNER: f64 = 0.1;
 const MOST: usize = 16;
-/// The last step need not be solved further than to this part of the tolerance.
+/// The last linear solve stops at this part of the tolerance.
 const ENOUGH: f64 = 0.5;
-/// Rounds in which a force is carried.
+/// Most rounds to carry a force.
 const ROUNDS: u32 = 4;
-/// Steps without a new least residual after which the energy falls by round-off only.
+/// Steps without a new least residual after which the energy changes by round-off only.
 const PATIENCE: u32 = 40;
 
-/// The way of a step.
+/// The direction of a step.
 struct Way {
     d: Vec<Vector>,
     /// `(d, s)`, negative downhill.
     slope: f64,
 }
 
-/// Iterates from what the state holds.
+/// Iterates from the state.
 pub fn solve(
     problem: &mut Problem,
     state: &mut State,
@@ -86,7 +86,7 @@ pub fn solve(
     }
 }
 
-/// One step. Returns a; 0 where nothing leads downhill.
+/// One step. Returns a; 0 if no direction leads downhill.
 fn go(
     problem: &mut Problem,
     state: &mut State,
@@ -121,7 +121,7 @@ fn go(
     Ok(part)
 }
 
-/// What is added everywhere so that `clip(to + c)` carries the force of `to`: a force that is missing displaces all of C, and would cut the step short.
+/// The c with which `clip(to + c)` carries the force of `to`: a missing force displaces all of C, and would shorten the step.
 fn carried(problem: &Problem, to: &[Vector]) -> Vector {
     let mut c = [0.0; 2];
     for _ in 0..ROUNDS {

@@ -1,5 +1,5 @@
-//! A layer between the bodies whose compliance differs from element to element: what it displaces beyond its least, which is among the
-//! coefficients.
+//! A layer between the bodies whose compliance differs between elements: its displacements beyond its least compliance, which the coefficients
+//! contain.
 //!
 //! ```text
 //! u_I += r_I q_I                             r: the compliance less the least
@@ -20,7 +20,7 @@ pub struct Excess {
 }
 
 impl Excess {
-    /// Of a grid: `of(i)` each.
+    /// The excess `of(i)` of each element of a grid.
     pub fn new(grid: &Grid, of: impl Fn(usize) -> f64) -> Result<Excess> {
         let mut values: Vec<f64> = zeros(grid.len(), "the layer between the bodies")?;
         values.iter_mut().enumerate().for_each(|(i, value)| *value = of(i));
@@ -32,7 +32,7 @@ impl Excess {
         self.values[i]
     }
 
-    /// Calls `add(i, what q displaces)` for each element; with a sweep, in a step of steady rolling.
+    /// Calls `add(i, displacement by q)` for each element; with a sweep, in a step of steady rolling.
     pub fn add(&self, q: impl Fn(usize) -> Vector, sweep: Option<&Sweep>, mut add: impl FnMut(usize, Vector)) {
         for i in 0..self.values.len() {
             let here = self.displaced(&q, i);
@@ -41,7 +41,7 @@ impl Excess {
         }
     }
 
-    /// Subtracts what tractions before displaced at the places of a step of transient rolling.
+    /// Subtracts the displacements by the tractions before at the places of a step of transient rolling.
     pub fn subtract_ahead(&self, q: &[Vector], sweep: &Sweep, w: &mut [Vector]) {
         for (i, w) in w.iter_mut().enumerate() {
             let there = self.ahead(&|i| q[i], sweep, i);

@@ -1,4 +1,4 @@
-//! Tangential forces that are given.
+//! Given tangential forces.
 
 use super::plane::{add, square, Vector};
 use super::problem::Problem;
@@ -10,16 +10,16 @@ use crate::memory::sparse;
 use crate::methods::fields;
 use crate::sums::in_blocks;
 
-/// Forces that are given.
+/// Given forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Forces {
-    /// Whether that in x, in y.
+    /// Whether the force in x, in y is given.
     pub given: [bool; 2],
-    /// `F/(dx dy)` of each.
+    /// `F/(dx dy)` in each direction.
     pub sum: Vector,
 }
 
-/// A force, as a sum of tractions, and the greatest that can be carried.
+/// A force, as a sum of tractions, and the greatest that tractions carry.
 struct Reach {
     direction: &'static str,
     by: &'static str,
@@ -38,23 +38,23 @@ impl Reach {
     }
 }
 
-/// Round-off of the sum of all bounds, relative to it: that of 2^31 of them in any order.
+/// Relative round-off of the sum of all bounds: that of a sum of 2^31 bounds in any order.
 const ROUND_OFF: f64 = 1e-12;
 
-/// Of an interval in which a minimum lies, whose value then is right to round-off.
+/// Halvings of an interval around a minimum, whose value is then exact to round-off.
 const HALVINGS: u32 = 60;
 
 impl Forces {
-    /// None.
+    /// No given forces.
     pub const NONE: Forces = Forces { given: [false; 2], sum: [0.0; 2] };
 
-    /// Whether all that are given are 0.
+    /// Whether all given forces are 0.
     pub fn are_zero(&self) -> bool {
         self.only_given(self.sum) == [0.0; 2]
     }
 
-    /// Those of a scene whose elements carry at most `bound(i)` each; refuses forces that no tractions within these carry. Where nothing can be carried
-    /// a force of 0 is met as it is, and its creepage stays 0.
+    /// The forces of a scene whose elements carry at most `bound(i)` each. Rejects forces that no tractions within these bounds carry. If the bounds
+    /// are all 0, a force of 0 is met, and its creepage stays 0.
     pub fn of(friction: &Friction<'_>, grid: &Grid, bound: impl Fn(usize) -> f64) -> Result<Forces> {
         let mut refused = None;
         let forces = Forces::within(friction, grid, bound, |reach| {
@@ -65,14 +65,14 @@ impl Forces {
         refused.map_or(Ok(forces), |message| Err(Error::Infeasible(message)))
     }
 
-    /// The part of the forces, all together, up to which tractions within these bounds carry them; more than 1 where they carry them.
+    /// The largest common factor on all forces that tractions within these bounds carry. Above 1 they could carry larger forces.
     pub fn part(friction: &Friction<'_>, grid: &Grid, bound: impl Fn(usize) -> f64) -> Result<f64> {
         let mut part = f64::INFINITY;
         Forces::within(friction, grid, bound, |reach| part = part.min(reach.greatest / reach.wanted))?;
         Ok(part)
     }
 
-    /// The same as [`Forces::of`], which are compared with what can be carried by `compare`: in each direction that has weights, then together.
+    /// The forces of [`Forces::of`]. Calls `compare` with each force and the greatest one carried: in each direction with weights, then together.
     fn within(
         friction: &Friction<'_>,
         grid: &Grid,
@@ -118,22 +118,22 @@ impl Forces {
         Ok(forces)
     }
 
-    /// The same in other units of tractions.
+    /// The forces in other units of tractions.
     pub fn in_units_of(&self, scales: &Scales) -> Forces {
         Forces { sum: self.sum.map(|sum| scales.traction(sum)), ..*self }
     }
 
-    /// Whether there are any.
+    /// Whether any force is given.
     pub fn any(&self) -> bool {
         self.given[0] || self.given[1]
     }
 
-    /// The same, a part of it.
+    /// The forces times a factor.
     pub fn times(&self, part: f64) -> Forces {
         Forces { sum: [part * self.sum[0], part * self.sum[1]], ..*self }
     }
 
-    /// v in the directions of forces that are given, else 0.
+    /// The components of v in the directions of given forces. Other components are 0.
     pub fn only_given(&self, v: Vector) -> Vector {
         [if self.given[0] { v[0] } else { 0.0 }, if self.given[1] { v[1] } else { 0.0 }]
     }
@@ -146,16 +146,16 @@ impl Forces {
     }
 }
 
-/// The greatest force along a direction t whose part across it is 0, of elements that carry at most `bound(i)` each.
+/// The greatest force along a direction t without a component across it, of elements that carry at most `bound(i)` each.
 ///
 /// ```text
 /// sum of W q  lies in the convex set  { F: F.d <= h(d) for all d },     h(d) = sum of g |W d|
 /// greatest = min h(t + c n) over c                                      n: across t
 /// ```
 ///
-/// h is convex: its slope along c rises from below 0 to above it, and where it is 0 is found by halving.
+/// h is convex. Its slope along c rises from negative to positive values. Bisection finds the zero of the slope.
 fn reach([x, y]: [&[f64]; 2], [along, aside]: Vector, n: usize, bound: &impl Fn(usize) -> f64) -> Result<f64> {
-    // g W of each element of C: the passes go over these only.
+    // g W of each element of C, for passes over these only.
     let of = (0..n).map(|i| (i, bound(i))).filter(|(_, g)| *g > 0.0).map(|(i, g)| [g * x[i], g * y[i]]);
     let mut scaled: Vec<Vector> = sparse((0..n).filter(|i| bound(*i) > 0.0).count(), "the bounds of forces")?;
     scaled.extend(of);
@@ -175,7 +175,7 @@ fn reach([x, y]: [&[f64]; 2], [along, aside]: Vector, n: usize, bound: &impl Fn(
             }
         })
     };
-    // h(c) >= |c| h(n) - h(t), which is above h(0) from here on.
+    // h(c) >= |c| h(n) - h(t), which exceeds h(0) beyond this c.
     let across = sum(&|gw| length(gw, [-aside, along]));
     let most = if across > 0.0 { 2.0 * h(0.0) / across } else { 0.0 };
     let (mut low, mut high) = (-most, most);

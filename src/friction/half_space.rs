@@ -9,11 +9,11 @@
 //! Axy = Ayx = nu c/(pi G)             c = integral of x y/r^3
 //! ```
 //!
-//! `a + b` is the integral of 1/r, which the normal coefficients are made of, and as there three ways of summation share the offsets:
+//! `a + b` is the integral of 1/r, as in the normal coefficients. As there, each range of offsets has its own summation:
 //!
 //! * beyond six half-diagonals d a series in `z = (d/r)^2`, whose terms are polynomials in `t = (X/r)^2`: `a = dx dy/r sum_k z^k a_k(t)`, from
 //!   the moments of the element and the derivatives of `y^2/r^3`;
-//! * nearer, where the offset is two elements or more in one direction, the integral is exact in the other direction, by Gauss-Legendre in this one;
+//! * nearer, at two elements or more in one direction, Gauss-Legendre integrates in this direction, the closed form in the other;
 //! * next to the element `a = [X asinh(Y/|X|)]`, `b = [Y asinh(X/|Y|)]`, differences over its corners.
 //!
 //! c needs no series: as a difference of distances it is a product of positive terms, without cancellation,
@@ -21,7 +21,7 @@
 //! ```text
 //! c = (X+^2 - X-^2)(Y+^2 - Y-^2) (r++ + r-+ + r+- + r--) / ((r++ + r-+)(r+- + r--)(r++ + r+-)(r-+ + r--))
 //! ```
-//! Offsets are in elements and need not be whole: rolling asks for displacements between centres.
+//! Offsets are in elements and need not be integers, because rolling needs displacements between centres.
 use std::array::from_fn;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -49,7 +49,7 @@ pub struct HalfSpace {
 }
 
 impl HalfSpace {
-    /// Of elements `dx` by `dy`, whose shape is this.
+    /// The coefficients of elements `dx` by `dy` of this shape.
     pub fn new(dx: f64, dy: f64, compliance: Compliance, shape: Arc<Shape>) -> HalfSpace {
         let Compliance { shear, poisson, .. } = compliance;
         let combined = |of: &dyn Fn(f64, f64) -> f64| {
@@ -118,7 +118,7 @@ impl HalfSpace {
         }
     }
 
-    /// Whether an offset is so many half-diagonals away, or more.
+    /// Whether an offset is at least this number of half-diagonals away.
     fn is_beyond(&self, half_diagonals: f64, x: f64, y: f64) -> bool {
         0.25 * (self.dx * self.dx + self.dy * self.dy) * (half_diagonals * half_diagonals) <= x * x + y * y
     }

@@ -1,13 +1,13 @@
-//! Where a grid of nested iteration starts: tractions interpolated from the coarser one.
+//! The start of a grid of nested iteration: tractions interpolated from the coarser one.
 //!
 //! ```text
-//! start of the next grid: q per area in C, interpolated between the centres of those in C, and back into the disc;
-//!                         where all that it is interpolated from slip, g times the direction of q/g; in steady rolling g times q/g
+//! start of the next grid: q per area in C, interpolated between the centres of elements in C, projected onto the disc;
+//!                         if all of these slip, g times the direction of q/g; in steady rolling g times q/g
 //! ```
 //!
-//! In steady rolling what slips far turns against its slip: with d the q/g that is interpolated, s = w + u with w of the finer grid and u
-//! interpolated, and k = |s|/(a0 g), it starts from `d - 0.3 k^2 s/|s|`, back into the disc. Where spin dominates the slip turns from
-//! element to element, and coarse tractions do not show it; where little slips s is the difference of large numbers.
+//! In steady rolling a traction of large slip is turned towards -s. With the interpolated q/g as d, s = w + u with w of the finer grid and u
+//! interpolated, and k = |s|/(a0 g), the start is `d - 0.3 k^2 s/|s|`, projected onto the disc. With spin the direction of slip varies within
+//! a coarse element, which interpolation cannot represent; at small slip s is a difference of large numbers.
 
 use super::certificate::ON_THE_CIRCLE;
 use super::plane::{add, onto_disc, plus, square, Vector};
@@ -16,15 +16,15 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{collected, zeros};
 
-/// How much what slips turns against its slip.
+/// Weight of the turn of tractions against the slip.
 const TURNING: f64 = 0.3;
 
-/// Elements of a grid that make one of the next coarser.
+/// Elements of a grid in one of the next coarser.
 pub fn children(fine: &Grid, coarse: &Grid) -> usize {
     (1 + usize::from(coarse.dx > fine.dx)) * (1 + usize::from(coarse.dy > fine.dy))
 }
 
-/// How much longer a step of steady rolling is on a coarse grid.
+/// The ratio of the steps of steady rolling on the coarse and the fine grid.
 pub fn step_ratio(coarse: &Problem, fine: &Problem) -> f64 {
     match (coarse.operators.step(), fine.operators.step()) {
         (Some(coarse), Some(fine)) => coarse.distance / fine.distance,
@@ -34,7 +34,7 @@ pub fn step_ratio(coarse: &Problem, fine: &Problem) -> f64 {
 /// q on the next finer grid, from the coarser one.
 pub fn interpolate((coarse, from_state): (&Problem, &State), (fine, state): (&mut Problem, &mut State)) -> Result<()> {
     let (from, to) = (coarse.grid, fine.grid);
-    // Elements of a coarse one by those of them in C: q carries on C what it carried on the whole.
+    // Finer elements of a coarse one over those in C: q on C carries the force that it carried on the whole.
     let mut shares: Vec<f64> = zeros(from.len(), "the start from a coarser grid")?;
     fine.threads().for_each_plain_row(&mut shares, from.mx, |iy, row| {
         for (ix, share) in row.iter_mut().enumerate() {
@@ -43,7 +43,7 @@ pub fn interpolate((coarse, from_state): (&Problem, &State), (fine, state): (&mu
             *share = children(&to, &from) as f64 / in_contact.max(1) as f64;
         }
     });
-    // Behind the leading edge tractions of steady rolling begin as their bound does.
+    // Behind the leading edge tractions of steady rolling grow like their bound.
     let is_rolling = fine.operators.rolling.is_some();
     let shorter = 1.0 / step_ratio(coarse, fine);
     fine.offset = coarse.offset.map(|w| shorter * w);
@@ -87,11 +87,11 @@ pub fn interpolate((coarse, from_state): (&Problem, &State), (fine, state): (&mu
 
 /// The coarse elements from which a fine one interpolates, with their weights.
 struct Mean {
-    /// Of q/g.
+    /// The sum of q/g.
     direction: Vector,
-    /// Of q, for what it carries.
+    /// The sum of q, with the shares.
     traction: Vector,
-    /// Of u.
+    /// The sum of u.
     displaced: Vector,
     weights: f64,
     all_slip: bool,
@@ -115,7 +115,7 @@ impl Mean {
         self.weights += weight;
     }
 
-    /// q/g; of length 1 where all slip.
+    /// q/g; of length 1 if all slip.
     fn direction(&self) -> Vector {
         let length = square(self.direction).sqrt();
         let by = if self.all_slip && length > 0.0 { length } else { self.weights };
@@ -123,7 +123,7 @@ impl Mean {
     }
 }
 
-/// `d - TURNING k^2 s/|s|` with k = |s|/stiff, back into the disc of radius 1; k may be infinite.
+/// `d - TURNING k^2 s/|s|` with k = |s|/stiff, projected onto the disc of radius 1; k may be infinite.
 fn turned_against(d: Vector, s: Vector, stiff: f64) -> Vector {
     let length = s[0].hypot(s[1]);
     if length == 0.0 {
@@ -136,13 +136,13 @@ fn turned_against(d: Vector, s: Vector, stiff: f64) -> Vector {
     turned.map(|v| v / by)
 }
 
-/// Of each fine place the two coarse ones between which its centre lies, with their weights.
+/// The two coarse places around each fine one, with their weights.
 fn places(fine: usize, coarse: usize) -> Result<Vec<[(usize, f64); 2]>> {
     let of = |i: usize| if fine == coarse { [(i, 1.0), (i, 0.0)] } else { neighbours(i, coarse) };
     Ok(collected((0..fine).map(of), "the start from a coarser grid")?)
 }
 
-/// The two coarse places between which a fine one lies, and their weights.
+/// The two coarse places around a fine one, with their weights.
 fn neighbours(fine: usize, coarse: usize) -> [(usize, f64); 2] {
     let own = fine / 2;
     let other = if fine % 2 == 0 { own.checked_sub(1) } else { Some(own + 1).filter(|k| *k < coarse) };

@@ -1,5 +1,5 @@
-//! The iteration with a [law](super::law) or a layer that yields: the nearest solution by Newton's method, a branch by turns, and each where the
-//! other one ends.
+//! The iteration with a [law](super::law) or a yielding layer: the nearest solution by Newton's method, a branch by turns, and each if the
+//! other fails.
 
 use super::certificate::Certificate;
 use super::forces::Forces;
@@ -17,16 +17,16 @@ use crate::memory::collected;
 use crate::progress::Outcome;
 use crate::rectangle::Rectangle;
 
-/// Products in vain are kept back for the end of a solve, and of one in turns.
+/// Products reserved for the end of a solve, and of a solve in turns.
 const KEPT_BACK: u64 = 3;
 const KEPT_BACK_OF_TURNS: u64 = 5;
-/// Coulomb's law with the coefficients at rest is solved to this, where forces are given, before the iteration with the law begins.
+/// With given forces: tolerance of the first solve, of Coulomb's law with the coefficients at rest.
 const FIRST: f64 = 1e-2;
 
-/// The first residual to which turns go before Newton's method is tried again, and the part of it for the next ones.
+/// The residual of the first turns before Newton's method is tried again, and its factor for the next ones.
 const NEARER: f64 = 1e-2;
 const FURTHER: f64 = 0.1;
-/// Names its memory in messages.
+/// The name of this memory in messages.
 const KEPT: &str = "the tractions before turns";
 
 /// A state of the finest grid.
@@ -43,8 +43,8 @@ impl Kept {
 }
 
 impl Solver {
-    /// Iterates on the finest grid from what it holds, where forces are given from the solution of Coulomb's law. The report gets the certificate
-    /// and what that took.
+    /// Iterates on the finest grid from its state, with given forces from the solution of Coulomb's law. Writes certificate and products to the
+    /// report.
     pub(super) fn iterate_with_law(
         &mut self,
         request: &Request<'_>,
@@ -88,8 +88,8 @@ impl Solver {
         self.alternate((request, began.1), &mut march, watch, report)
     }
 
-    /// Where Newton's method has found no solution: the turns of the branch LOW as far as [`NEARER`] and Newton's method from there, if that finds none the
-    /// next turns, ten times as far, and so on. The best state of all where none of them ends.
+    /// After Newton's method found no solution: turns of the branch LOW down to [`NEARER`], then Newton's method from there. If this fails, the next
+    /// turns go ten times as far, and so on. Ends with the best state if all fail.
     fn alternate(
         &mut self,
         (request, had_slip): (&Request<'_>, bool),
@@ -127,7 +127,7 @@ impl Solver {
         }
     }
 
-    /// What the finest grid holds.
+    /// A copy of the finest grid's state.
     fn keep(&self, report: &Report) -> Result<Kept> {
         let Level { problem, state, .. } = &self.levels[0];
         let (q, bound) = (collected(state.q.iter().copied(), KEPT)?, collected(problem.bound.iter().copied(), KEPT)?);
@@ -143,7 +143,7 @@ impl Solver {
         report.certificate = kept.certificate;
     }
 
-    /// The nearest solution, by the stages of Newton's method. `has_slipped`: what slips is that of the state.
+    /// The nearest solution, by the stages of Newton's method. `has_slipped`: the slip area is that of the state.
     fn nearest(
         &mut self,
         request: &Request<'_>,
@@ -164,8 +164,8 @@ impl Solver {
         Ok(ended.outcome)
     }
 
-    /// The solution of a branch: Coulomb's problem with the bounds of the last slips, in turns. `begins`: with the bounds of the branch, else with those
-    /// that there are.
+    /// The solution of a branch: Coulomb's problem with the bounds of the last slips, in turns. `begins`: from the bounds of the branch, else from
+    /// the present ones.
     fn in_turns(
         &mut self,
         (request, (nested, had_slip)): (&Request<'_>, (bool, bool)),
@@ -177,7 +177,7 @@ impl Solver {
         if begins {
             branch::begin(&mut self.levels[0].problem, march, request.friction.branch == Branch::High);
         }
-        // The way to the best of them and onto the circles takes products, too.
+        // The return to the best turn and onto the circles takes products as well.
         let most = request.limit.saturating_sub(KEPT_BACK_OF_TURNS).max(1);
         let (outcome, residual) = loop {
             let limit = most.saturating_sub(report.products.ceil() as u64).max(1);
@@ -196,7 +196,7 @@ impl Solver {
                     () if residual < request.tolerance => break (Outcome::Converged, residual),
                     () if report.products >= most as f64 => Some(Outcome::IterationLimit),
                     () if turns.are_in_vain() => Some(Outcome::Stagnated),
-                    // The rest on the way to the circles is more than the tolerance: another turn follows.
+                    // The residual after the step onto the circles exceeds the tolerance: another turn follows.
                     () => None,
                 };
             }

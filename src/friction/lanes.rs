@@ -1,20 +1,20 @@
-//! Passes over fields by component, in vectors of the machine.
+//! Vectorised passes over fields, component by component.
 //!
-//! A pass goes over fields of one length, a multiple of [`LANES`], and sums in so many lanes whatever the length of vectors is: no bit of a
-//! sum depends on it.
+//! A pass processes fields of the same length, a multiple of [`LANES`]. It sums in so many lanes for any vector length of the machine. So no bit of a
+//! sum depends on the machine.
 //!
-//! Loops run over indices: what closures of arrays do is not always compiled for the vectors of this machine.
+//! Loops run over indices, because closures of array methods are not always compiled for the vector instructions of this machine.
 #![allow(clippy::needless_range_loop)]
 
 use pulp::Simd;
 
-/// Lanes of a sum: those of the longest vector.
+/// Lanes of a sum, as many as in the longest vector.
 pub const LANES: usize = 8;
 
 /// Vectors of both components.
 pub type Pair<S> = [<S as Simd>::f64s; 2];
 
-/// Arithmetic of vectors; nothing is contracted.
+/// Arithmetic of vectors, without fused operations.
 #[derive(Clone, Copy)]
 pub struct Arithmetic<S: Simd>(pub S);
 
@@ -62,7 +62,7 @@ impl<S: Simd> Arithmetic<S> {
         self.0.select_f64s(mask, a, b)
     }
 
-    /// The same of pairs.
+    /// The same for pairs.
     #[inline(always)]
     pub fn select_pair(self, mask: S::m64s, a: Pair<S>, b: Pair<S>) -> Pair<S> {
         [self.select(mask, a[0], b[0]), self.select(mask, a[1], b[1])]
@@ -105,7 +105,7 @@ impl<S: Simd> Arithmetic<S> {
     }
 }
 
-/// One pass over some fields: what each vector of `read` and `write` becomes, and its terms of K sums.
+/// One pass over some fields. The closure maps each vector of `read` and `write` to its new values and its terms of K sums.
 #[inline(always)]
 pub fn pass<S: Simd, const A: usize, const B: usize, const K: usize>(
     a: Arithmetic<S>,

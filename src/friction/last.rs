@@ -1,4 +1,4 @@
-//! The last result, copied, to go back to where a step of several solves comes to no end.
+//! A copy of the last result, to restore it if a step of several solves fails.
 
 use super::plane::Vector;
 use super::solution::Solution;
@@ -36,14 +36,14 @@ impl Solver {
         Ok(Some(Last { solution, offset: self.offset }))
     }
 
-    /// The last result is that of another solver on the same grid.
+    /// Takes the last result of another solver on the same grid.
     pub fn take_last_of(&mut self, other: &mut Solver) {
         std::mem::swap(&mut self.solution, &mut other.solution);
         std::mem::swap(&mut self.sums, &mut other.sums);
         (self.offset, self.has_solution) = (other.offset, other.has_solution);
     }
 
-    /// Everything found since then is dropped.
+    /// Restores the copy.
     pub fn go_back(&mut self, last: Option<Last>) {
         self.has_solution = last.is_some();
         if let Some(mut last) = last {

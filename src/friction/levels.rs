@@ -1,7 +1,7 @@
 //! Nested iteration: the problem on coarser grids, coarsest first, each the start of the next.
 //!
 //! ```text
-//! g of a coarse element: the mean of its children's, 0 where there is none;  w: the mean of those in C,
+//! g of a coarse element: the mean of its children's, 0 without children in C; w: the mean of those in C,
 //!                                                                              in steady rolling times 2: a step is 2 dq long,
 //!                                                                              and w a third of the difference ahead
 //! ```
@@ -27,7 +27,7 @@ use crate::threads::Threads;
 
 /// A side with fewer elements is not coarsened.
 const COARSEST: usize = 24;
-/// How far ahead of a coarse element's centre the slip by spin is taken, of the difference of both steps.
+/// Place ahead of a coarse element's centre at which the slip by spin is taken, as a part of the difference of both steps.
 const AHEAD: f64 = 1.0 / 3.0;
 
 /// One grid: its problem, its unknowns, the memory of its iteration.
@@ -38,8 +38,8 @@ pub struct Level {
 }
 
 impl Level {
-    /// On a grid, with coefficients that reach far enough. `single`: whether directions may be multiplied in single precision;
-    /// `only_single`: whether that serves for all.
+    /// A level on a grid, with coefficients that reach far enough. `single`: whether directions may be multiplied in single precision; `only_single`:
+    /// whether all products are.
     fn new(
         quadrant: &Quadrant,
         grid: Grid,
@@ -53,7 +53,7 @@ impl Level {
         Ok(Level { problem: Problem::new(grid, operators)?, state, memory })
     }
 
-    /// The force, and the creepages that were found, of a step of rolling, in the units of the iterations.
+    /// The force and the found creepages of a step of rolling, in the units of the iterations.
     pub fn found(&self) -> (Vector, Vector) {
         let Problem { grid, offset, operators, .. } = &self.problem;
         let sum = super::forces::sum_of(&self.problem, &self.state.q);
@@ -86,8 +86,8 @@ fn coarser(grid: &Grid) -> Option<Grid> {
     Some(Grid { mx, my, dx, dy })
 }
 
-/// The grids of a box, the finest first. `single`: whether directions may be multiplied in single precision; on coarser grids that
-/// serves for all.
+/// The grids of a box, the finest first. `single`: whether directions may be multiplied in single precision; on coarser grids all products
+/// are then.
 pub fn levels(
     tangential: &Tangential,
     grid: Grid,
@@ -112,7 +112,7 @@ pub fn levels(
     Ok(levels)
 }
 
-/// g, w and what goes with them on the next coarser grid; q = 0.
+/// Restricts g, w, weights and layer to the next coarser grid; q = 0.
 pub fn restrict(fine: &Problem, coarse: &mut Level) -> Result<()> {
     let Level { problem, state, .. } = coarse;
     let (from, to) = (fine.grid, problem.grid);

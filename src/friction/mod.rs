@@ -1,22 +1,22 @@
-//! The tangential problem: tractions q on C with `|q| <= g = mu p`, and slip opposite to them. docs/friction.md says what it computes.
+//! The tangential problem: tractions q on C with `|q| <= g = mu p`, and slip opposite to them. docs/friction.md describes it.
 //!
-//! | module | what it holds |
+//! | module | contents |
 //! |---|---|
 //! | [`coefficients`], `half_space`, `compliance`, `near_element`, `series`, `quadrant` | influence of tangential tractions, far from an element, and kept for all operators |
 //! | [`Toeplitz`], [`dense`] | products of two components, by FFT and by direct summation |
 //! | `operators`, `window` | the operators of the box around C |
-//! | `problem`, `plane`, `certificate`, `tangent` | the problem on one grid, how well its conditions hold, which elements slip |
-//! | `tables`, `row_tables`, `row_product` | coefficients of the caller's own, also per loaded row, and products with these |
+//! | `problem`, `plane`, `certificate`, `tangent` | the problem on one grid, its certificate, stick and slip |
+//! | `tables`, `row_tables`, `row_product` | the caller's coefficients, also per loaded row, and products with these |
 //! | `rolling_tables` | tables of bodies that relax and roll steadily |
 //! | `excess` | a layer between the bodies that differs between elements |
-//! | `lanes`, `beside` | passes over fields by component in vectors of the machine, residuals continued beside C; fields of pairs: `methods::fields` |
-//! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for motions that are given; the fields of these, on C alone |
-//! | `newton`, `step`, `system`, `sweep`, `forces`, `best` | semismooth Newton, for steady rolling, for forces that are given and where the gradients stall |
-//! | `balance`, `corral`, `bracket` | creepages of forces that are given, where Newton's method stalls |
+//! | `lanes`, `beside` | SIMD passes over fields by component, extension of residuals beside C; fields of pairs: `methods::fields` |
+//! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for given motions; their fields, on C alone |
+//! | `newton`, `step`, `system`, `sweep`, `forces`, `best` | semismooth Newton, for steady rolling, for given forces and if the gradients stall |
+//! | `balance`, `corral`, `bracket` | creepages of given forces if Newton's method stalls |
 //! | `sensitivity`, `derivatives` | derivatives of the forces by creepages and spin |
-//! | [`cross`] | unlike bodies: what couples the normal and the tangential problem |
-//! | [`law`], `with_law` | bounds that depend on the slip, and what particles of the interface carry |
-//! | `levels`, `interpolation`, `nested`, `request`, `unit`, `scales`, `take_over`, `solver`, `result`, `last` | coarser grids, nested iteration, units, the whole solve, and the way back from it |
+//! | [`cross`] | unlike bodies: the coupling of the normal and the tangential problem |
+//! | [`law`], `with_law` | bounds that depend on the slip, and the state of the interface's particles |
+//! | `levels`, `interpolation`, `nested`, `request`, `unit`, `scales`, `take_over`, `solver`, `result`, `last` | coarser grids, nested iteration, units, the whole solve, and its undoing |
 
 mod balance;
 mod beside;

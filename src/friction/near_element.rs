@@ -19,8 +19,8 @@ pub fn near(kx: f64, ky: f64, dx: f64, dy: f64) -> (f64, f64) {
     }
 }
 
-/// Over `x` in an interval of length d about k d, at the distance y: the integrals of `y^2/r^3`, `[x/r]`, and of `1/r`,
-/// `[asinh(x/y)]`, without cancellation.
+/// The integrals of `y^2/r^3`, `[x/r]`, and of `1/r`, `[asinh(x/y)]`, over x in an interval of length d about k d, at the distance y, without
+/// cancellation.
 fn along(k: f64, d: f64, y: f64) -> [f64; 2] {
     let (plus, minus) = ((k + 0.5) * d, (k - 0.5) * d);
     // Lengths are in units of the element: their squares are in range.

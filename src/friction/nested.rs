@@ -1,7 +1,7 @@
-//! Nested iteration: the coarsest grid first, each from what the one before it found.
+//! Nested iteration: the coarsest grid first, each from the solution of the one before.
 //!
-//! One grid is solved in several ways, each from where the one before it stalled: by gradients, and where they stall, in steady rolling, or
-//! where forces are given by Newton's method.
+//! A grid is solved by several methods, each from the state at which the one before stalled: by gradients, and by Newton's method if these stall, in
+//! steady rolling, or with given forces.
 
 use super::balance::balanced;
 use super::best::Best;
@@ -17,38 +17,38 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::progress::Outcome;
 
-/// Coarser grids are solved to this residual: what they leave wrong costs more on the finest.
+/// Residual on coarser grids: larger errors cost more on the finest grid.
 pub const COARSE: f64 = 1e-3;
-/// The one next to the finest to this one, where its forces count: they are then right to some 1e-5 of mu N.
+/// Residual on the grid next to the finest if its forces are used: their error is then about 1e-5 of mu N.
 pub const COUNTS: f64 = 1e-4;
-/// Gradients on each of them at most.
+/// Most gradient iterations on each coarser grid.
 const COARSE_LIMIT: u64 = 60;
-/// All of them together make this part of the products at most.
+/// Largest part of the products for all coarser grids together.
 const COARSE_SHARE: f64 = 0.5;
-/// Of what is left a way makes this part at most, if another can follow.
+/// Largest part of the remaining products for a method that is not the last.
 const SHARE: f64 = 0.4;
 
-/// Creepages and tractions follow each other where more than this part of C slips.
+/// The part of C in slip from which creepages and tractions are found in turns.
 const MOSTLY_SLIP: f64 = 0.8;
-/// Where nearly all slips, Newton's method with balanced creepages comes first. It has so many products: half of 3800 random scenes then take less than
-/// half of the products, and where one element alone sticks the method goes round in circles.
+/// Products of Newton's method with balanced creepages, which comes first near full slip: half of 3800 random scenes then take less than half of the
+/// products. If a single element sticks, the method cycles.
 const TRIED: u64 = 8;
-/// Plain Newton steps come next. They may go round in circles as well.
+/// Products of plain Newton steps, which come next and may cycle as well.
 const PLAIN: u64 = 60;
-/// Products that certificates take at the end of a solve that is not done: they are kept back.
+/// Products reserved for the certificates at the end of an unfinished solve.
 const KEPT_BACK: u64 = 5;
 
-/// The counts, and the caller's callback.
+/// The products so far, and the caller's callback.
 pub struct Work<'a> {
-    /// On all grids, in products on the finest; and at most so many.
+    /// Products on all grids, in products on the finest, and their limit.
     pub products: f64,
     pub limit: u64,
-    /// The residual that the grid next to the finest is solved to, at least.
+    /// Largest residual of the grid next to the finest.
     pub coarse: f64,
     pub watch: &'a mut dyn FnMut(&Grid, f64) -> bool,
 }
 
-/// One way to solve a grid.
+/// One method to solve a grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
     Gradients,
@@ -58,7 +58,7 @@ enum Way {
 }
 
 impl Way {
-    /// As the log calls it.
+    /// The name in the log.
     fn name(self) -> &'static str {
         match self {
             Way::Gradients => "the gradients' method",
@@ -69,7 +69,7 @@ impl Way {
     }
 }
 
-/// Solves the finest of `levels`; `nested`: from the coarsest on. `mostly_slips`: of the step before.
+/// Solves the finest of `levels`; `nested`: from the coarsest on. `mostly_slips`: whether most of C slipped in the step before.
 pub fn solve(
     levels: &mut [Level],
     forces: Forces,
@@ -103,12 +103,12 @@ pub fn solve(
     one(&mut levels[0], (forces, forces.any() || mostly_slips), tolerance, 1.0, work)
 }
 
-/// The ways to solve a grid, in turns, with the products of each at most. `slips`: by given forces, and nearly all of it.
+/// The methods to solve a grid, in order, with the most products of each. `slips`: with given forces, near full slip.
 fn ways(forces: Forces, newton_first: bool, (is_rolling, certified): (bool, bool), slips: bool) -> Vec<(Way, u64)> {
     use Way::{Gradients, Newton};
     let as_many = |ways: &[Way]| ways.iter().map(|way| (*way, u64::MAX)).collect();
     if forces.any() && !certified {
-        // The next grid starts from what they leave.
+        // The next grid starts from their last state.
         as_many(&[Newton(Manner::Plain), Newton(Manner::Balanced)])
     } else if slips {
         vec![(Newton(Manner::Balanced), TRIED), (Newton(Manner::Plain), PLAIN), (Way::Bracket, u64::MAX)]
@@ -121,7 +121,7 @@ fn ways(forces: Forces, newton_first: bool, (is_rolling, certified): (bool, bool
     }
 }
 
-/// Whether given forces let nearly all of C slip, as far as the displacements of now tell: with creepages by which the natural map carries them.
+/// Whether given forces let nearly all of C slip, predicted by the present displacements with balanced creepages.
 fn mostly_slips(level: &mut Level, forces: Forces) -> Result<bool> {
     let Level { problem, state, memory, .. } = level;
     let (offset, rho) = (problem.offset, 1.0 / compliance(problem));
@@ -132,7 +132,7 @@ fn mostly_slips(level: &mut Level, forces: Forces) -> Result<bool> {
     Ok(memory.tangent.slip_count as f64 > MOSTLY_SLIP * problem.count() as f64)
 }
 
-/// Products that a grid may make, if it is the finest or all coarser ones together.
+/// The products allowed for the finest grid, or for all coarser ones together.
 fn products_of(limit: u64, certified: bool) -> f64 {
     if certified {
         limit.saturating_sub(KEPT_BACK).max(limit / 2) as f64
@@ -141,7 +141,7 @@ fn products_of(limit: u64, certified: bool) -> f64 {
     }
 }
 
-/// Solves one grid from what it holds; `part`: its products, in products on the finest.
+/// Solves one grid from its state; `part`: the work of one of its products, relative to the finest.
 fn one(
     level: &mut Level,
     (forces, newton_first): (Forces, bool),
@@ -151,7 +151,7 @@ fn one(
 ) -> Result<Outcome> {
     let Level { problem, state, .. } = &mut *level;
     let grid = problem.grid;
-    // Nothing moves, and nothing did: forces of 0 take no creepage then.
+    // Without motion before or now, forces of 0 need no creepage.
     let is_held = !forces.any() && problem.offset != [0.0; 2];
     if forces.are_zero() && !is_held && problem.rms(|i| problem.slip[i]) == 0.0 {
         problem.offset = [0.0; 2];
@@ -167,7 +167,7 @@ fn one(
     for (k, &(way, most)) in ways.iter().enumerate() {
         let Level { problem, state, memory, .. } = &mut *level;
         let left = ((all - work.products) / part).max(0.0);
-        // In turns where nearly all slips.
+        // In turns only near full slip.
         let slipping = memory.tangent.slip_count as f64;
         if way == Way::Newton(Manner::InTurns) && slipping < MOSTLY_SLIP * problem.count() as f64 {
             continue;
@@ -199,7 +199,7 @@ fn one(
     Ok(end)
 }
 
-/// Solves one grid by one way.
+/// Solves one grid by one method.
 fn by(way: Way, level: &mut Level, best: &mut Best, forces: Forces, goal: Goal<'_>) -> Result<Outcome> {
     let Level { problem, state, memory, .. } = level;
     match way {

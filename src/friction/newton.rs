@@ -1,18 +1,18 @@
 //! Semismooth Newton: where forces are given, and where the projected gradients stall.
 //!
-//! With the prediction of [`Tangent`] (P, D, n) and x0 the way to the circles, each step solves
+//! With the prediction of [`Tangent`] (P, D, n) and x0 the step onto the circles, each Newton step solves
 //!
 //! ```text
 //! (P A P + D) z + sum_k dc_k P e_k = P(-(s + A x0)),        x0 = g n - q on slip
 //!                            sum z = F/(dx dy) - sum(q + x0)        for each direction k whose force is given
 //! ```
 //!
-//! with B for A in steady rolling, by flexible GMRES, with the preconditioner of the gradients, bordered by the creepages dc. Then `q += x0 + z`: no line search and no
-//! projection between steps (Alart and Curnier 1991; Christensen 2002). [`step`](super::step) takes them.
+//! with B for A in steady rolling, by flexible GMRES with the preconditioner of the gradients, bordered by the creepages dc. Then
+//! `q += x0 + z`, without line search or projection (Alart and Curnier 1991; Christensen 2002). [`step`](super::step) makes the steps.
 //!
-//! The certificate takes a fresh product. It is taken at what a step starts with, x0 and a part of the preconditioned residual: where little is missing, that
-//! is enough. Where the preconditioner is far from an inverse, as for thin stiff coatings in steady rolling, that part brings back more than it takes, each
-//! time. Then the certificate is taken at x0 alone.
+//! A certificate costs a fresh product. It is taken after a cheap step, x0 and a part of the preconditioned residual, which suffices near
+//! the solution. If the preconditioner is far from an inverse, as for thin stiff coatings in steady rolling, that part increases the
+//! residual each time. Then the certificate is taken after x0 alone.
 
 use super::balance::balanced;
 use super::best::Best;
@@ -26,60 +26,59 @@ use crate::error::Result;
 use crate::methods::fields::Fields;
 use crate::progress::Outcome;
 
-/// The inner residual relative to that of the step.
+/// Relative tolerance of the linear solve of a step, and in rolling.
 const INNER: f64 = 0.15;
 const INNER_ROLLING: f64 = 0.35;
-/// The last step need not be solved further than to this part of the tolerance, and what starts the next one does the rest, from
-/// residuals below that part of it.
+/// The last linear solve stops at ENOUGH times the tolerance. Below NEAR times the tolerance only `polish` is tried.
 const ENOUGH: f64 = 0.9;
 const NEAR: f64 = 1.5;
-/// But always to this part.
+/// Largest relative tolerance of a linear solve.
 const LEAST_GAIN: f64 = 0.5;
-/// Below this residual fresh displacements are round-off: the certificate is tried from here on, whatever the tolerance, for what is not fresh hides more.
+/// Residuals below this are round-off, of which displacements that are not fresh hide more: the certificate is taken, whatever the tolerance.
 const ROUND_OFF: f64 = 1e-15;
-/// It and rho are cut by this when steps bring nothing, down to the least.
+/// Factor on the relative tolerance and on rho when steps make no progress, and the least relative tolerance.
 const CUT: f64 = 0.3;
 const LEAST_INNER: f64 = 0.01;
-/// Directions of a linear solve. Where steps bring nothing, as many as it has unknowns solve it whatever the preconditioner: so many
-/// elements of them together may be kept.
+/// Directions of a linear solve. Without progress it gets as many as it has unknowns, which solve it with any preconditioner, if they
+/// hold at most KEPT vectors together.
 const DIRECTIONS: usize = 40;
 const KEPT: usize = 1 << 21;
-/// Steps then go this part of their way, every other time: two sets of slipping elements may follow each other for ever.
+/// Length of steps after an odd number of cuts: full steps may alternate between two slip areas for ever.
 const PART: f64 = 0.5;
-/// The preconditioner does not help where a certificate finds more than WORSE times the residual before it, TIMES_WORSE times in a row. A single time may
-/// come from displacements that were not fresh.
+/// The preconditioner is left out of `polish` once TIMES_WORSE certificates in a row find more than WORSE times the residual before. A
+/// single one may come from displacements that were not fresh.
 const WORSE: f64 = 1.5;
 const TIMES_WORSE: u32 = 2;
-/// Steps without the residual falling to this part of its least.
+/// Steps without progress before a cut; progress is a residual below PROGRESS times the least.
 const PATIENCE: u32 = 4;
 const PROGRESS: f64 = 0.7;
-/// Coarser grids are left where q exceeds its bounds by so many times the tolerance: the next one cuts it off.
+/// Coarser grids may leave q above its bounds by this times the tolerance: the next finer grid projects q.
 const COARSE_EXCESS: f64 = 10.0;
-/// Steps at most where nothing is certified.
+/// Most steps on a grid without certificate.
 const MOST_STEPS: u64 = 60;
 /// Cuts without progress after which the steps end.
 const MOST_CUTS: u32 = 6;
-/// Creepages of more than so many times that at which all slips, and the slip that is given, run away: the system has nothing that holds them.
+/// Creepages above this times the displacement by g plus the given slip run away: nothing in the system holds them.
 const RUNAWAY: f64 = 1e4;
 
-/// How it finds what slips.
+/// How the slipping elements are predicted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Manner {
-    /// By the natural map in which the slip moves tractions as far as their bounds.
+    /// By the natural map whose rho makes the rms slip move tractions by the rms bound.
     Plain,
-    /// In which it moves them as far as they displace: what slips much is seen to slip, whatever its bound.
+    /// By the natural map whose rho is the inverse compliance: a large slip is predicted whatever the bound.
     Bold,
-    /// The same with creepages by which the natural map carries the forces.
+    /// `Bold`, with the creepages at which the natural map carries the forces.
     Balanced,
-    /// The same in turns: creepages that carry the forces while displacements stand still, and a step in which these creepages are given.
+    /// `Balanced` in turns: the creepages that carry the forces at fixed displacements, then a step with these creepages given.
     InTurns,
 }
 
 /// The progress of the steps, and the kind of the next one.
-struct Course {
-    /// Of rho.
+struct Progress {
+    /// The factor on rho.
     factor: f64,
-    /// The inner residual.
+    /// The relative tolerance of linear solves.
     inner: f64,
     /// The least residual, the steps since then, and the cuts since then.
     least: f64,
@@ -90,14 +89,14 @@ struct Course {
     still: u32,
 }
 
-impl Course {
-    fn new(inner: f64) -> Course {
-        Course { factor: 1.0, inner, least: f64::INFINITY, since: 0, cuts: 0, last: f64::INFINITY, still: 0 }
+impl Progress {
+    fn new(inner: f64) -> Progress {
+        Progress { factor: 1.0, inner, least: f64::INFINITY, since: 0, cuts: 0, last: f64::INFINITY, still: 0 }
     }
 
-    /// Takes what is missing now. Says whether steps go on.
+    /// Records the worst measure of an iterate. Returns whether to go on.
     fn goes_on(&mut self, worst: f64, by_force: bool) -> bool {
-        // Nothing moves any more: the system holds no creepages, whatever rho is.
+        // The measure is constant: nothing holds the creepages, whatever rho is.
         self.still = if worst == self.last { self.still + 1 } else { 0 };
         self.last = worst;
         if by_force && self.still > PATIENCE {
@@ -114,7 +113,7 @@ impl Course {
         self.cuts <= MOST_CUTS
     }
 
-    /// The part of its way that the next step goes.
+    /// The length of the next step.
     fn length(&self) -> f64 {
         if self.cuts % 2 == 1 {
             PART
@@ -124,36 +123,36 @@ impl Course {
     }
 }
 
-/// What certificates were taken at.
+/// The residuals at which certificates were taken.
 #[derive(Default)]
-struct Tried {
-    /// The residual before the last one, which was not met.
+struct Certificates {
+    /// The predicted residual before the last certificate, which failed.
     before: Option<f64>,
-    /// In a row.
+    /// Certificates in a row that were worse.
     worse: u32,
 }
 
-impl Tried {
-    /// Takes the residual behind it.
+impl Certificates {
+    /// Compares the residual after a certificate with the prediction before it.
     fn compare(&mut self, residual: f64) {
         if let Some(before) = self.before.take().filter(|_| self.is_by_step()) {
             self.worse = if residual > WORSE * before { self.worse + 1 } else { 0 };
         }
     }
 
-    /// Whether the preconditioner serves.
+    /// Whether `polish` uses the preconditioner.
     fn is_by_step(&self) -> bool {
         self.worse < TIMES_WORSE
     }
 
-    /// Whether it is to be tried.
+    /// Whether to take a certificate.
     fn is_near(&self, measures: Measures, missing: f64, tolerance: f64) -> bool {
         let part = if self.is_by_step() { NEAR } else { 1.0 };
         measures.residual < part * tolerance && measures.excess.max(missing) < tolerance
     }
 }
 
-/// Iterates from what the state and the offset hold.
+/// Iterates from the state and the offset.
 pub fn solve(
     problem: &mut Problem,
     state: &mut State,
@@ -169,8 +168,8 @@ pub fn solve(
     let spinning = problem.rms(|i| problem.rigid[i]).max(problem.rms(|i| problem.slip[i]));
     let made = problem.operators.products;
     let of_step = if manner == Manner::InTurns { Forces::NONE } else { forces };
-    let mut course = Course::new(if problem.operators.rolling.is_some() { INNER_ROLLING } else { INNER });
-    let (mut iterations, mut tried) = (0, Tried::default());
+    let mut course = Progress::new(if problem.operators.rolling.is_some() { INNER_ROLLING } else { INNER });
+    let (mut iterations, mut tried) = (0, Certificates::default());
     loop {
         let rho = course.factor
             * if manner == Manner::Plain { rho_of((problem.rms_bound(), problem.rms_slip()), cap) } else { cap };
@@ -213,7 +212,7 @@ pub fn solve(
     }
 }
 
-/// Nothing is left of an iteration that came to no numbers.
+/// Discards an iterate that is not finite.
 fn unloaded(problem: &mut Problem, state: &mut State) -> Outcome {
     problem.offset = [0.0; 2];
     state.unload(problem.threads());
@@ -225,7 +224,7 @@ fn largest(values: [f64; 3]) -> f64 {
     values.into_iter().fold(0.0, |most, value| if most.is_nan() || value <= most { most } else { value })
 }
 
-/// As many as there are unknowns, if so many can be kept.
+/// As many directions as unknowns, within KEPT vectors together.
 fn all_directions(problem: &Problem) -> usize {
     (KEPT / problem.grid.len()).min(2 * problem.count() + 2).max(DIRECTIONS)
 }

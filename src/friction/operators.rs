@@ -1,4 +1,4 @@
-//! The operators of one grid: products with A or B, and what undoes them nearly.
+//! The operators of one grid: products with A or B, and their approximate inverses.
 
 use super::coefficients::Tangential;
 use super::excess::Excess;
@@ -14,26 +14,26 @@ use crate::operator::fft::Real;
 use crate::threads::Threads;
 use toeplitz::Memory;
 
-/// An iteration gains by several threads on a grid of so many times fewer elements than the normal problem does: it multiplies more.
+/// Factor on the number of elements in the choice of threads: an iteration multiplies more than the normal problem.
 const WORK: usize = 4;
 
 /// Products with A, or in steady rolling with B, in double and in single precision, and with a circulant near the inverse of A.
 pub struct Operators {
     /// The coefficients.
     pub tangential: Tangential,
-    /// None: single precision serves for all, on a coarser grid; or there are tables per loaded row.
+    /// The product in double precision. None on a coarser grid, which uses single precision only, or with tables per loaded row.
     exact: Option<(Toeplitz<f64>, Memory<f64>)>,
     fast: Option<(Toeplitz<f32>, Memory<f32>)>,
     inverse: Option<(Toeplitz<f32>, Memory<f32>)>,
-    /// Of tables per loaded row, in place of `exact` and `fast`.
+    /// The product of tables per loaded row, in place of `exact` and `fast`.
     rows: Option<RowProduct>,
-    /// Of steady rolling: the step, of which B is made, and the way to undo it.
+    /// In steady rolling: the step of B, and the sweep that inverts its difference.
     pub rolling: Option<(Rolling, Sweep)>,
-    /// A layer between the bodies, where it is not uniform.
+    /// A layer between the bodies, if it is not uniform.
     pub excess: Option<Excess>,
-    /// The displacement of an element by a unit traction on itself, in steady rolling its change in a step: the larger of both directions.
+    /// The displacement of an element by a unit traction on itself, in steady rolling its change in a step; the larger of both directions.
     pub self_influence: f64,
-    /// The same without rolling.
+    /// The self-influence without rolling.
     a0: f64,
     /// The unit of the coefficients, a power of two.
     unit: f64,
@@ -43,8 +43,8 @@ pub struct Operators {
 }
 
 impl Operators {
-    /// On a grid, with coefficients that reach far enough: products in double precision, or where `single` in that precision only. What
-    /// iterations need beside is to be [prepared](Operators::prepare).
+    /// The operators on a grid, with coefficients that reach far enough: products in double precision, or only in single precision if `single`.
+    /// Iterations need further operators, see [`Operators::prepare`].
     pub fn new(
         quadrant: &Quadrant,
         grid: &Grid,
@@ -65,7 +65,7 @@ impl Operators {
         };
         let [xx, yy, _] = tangential.at(0.0, 0.0);
         let rolling = rolling.map(|rolling| (rolling, Sweep::new(&rolling)));
-        // Between the centres as the sweep has it.
+        // Coefficients between the centres are interpolated as in the sweep.
         let at = |x: f64, y: f64| match tangential.uneven() {
             Some(own) if (x, y) != (0.0, 0.0) => own.whole_at(x as i64, y as i64),
             _ => tangential.at(x, y),
@@ -87,7 +87,7 @@ impl Operators {
         })
     }
 
-    /// Sets up what iterations need: directions, where `single` in single precision, and the inverse.
+    /// Sets up the operators of iterations: products of directions, in single precision if `single`, and the inverse.
     pub fn prepare(&mut self, quadrant: &Quadrant, grid: &Grid, single: bool) -> Result<()> {
         if let (true, None, Some((exact, _))) = (single, &self.fast, &self.exact) {
             self.fast = Some(with_workspace(exact.in_precision()?)?);
@@ -102,7 +102,7 @@ impl Operators {
         self.a0
     }
 
-    /// The influence of element k on itself, in steady rolling in a step, with all of its layer.
+    /// The influence of element k on itself, including its whole layer; in steady rolling, over a step.
     pub fn own_influence(&self, k: usize) -> f64 {
         let stays = self.rolling.as_ref().map_or(0.0, |(_, sweep)| sweep.own());
         self.self_influence + self.excess.as_ref().map_or(0.0, |excess| (1.0 - stays) * excess.at(k))
@@ -118,7 +118,7 @@ impl Operators {
         self.rolling.as_ref().map(|(rolling, _)| *rolling)
     }
 
-    /// `u = A q` in double precision, or B q; on coarser grids in the precision that there is, for q of the order of `unit`.
+    /// `u = A q` in double precision, or B q, for q of the order of `unit`; on coarser grids in the precision available.
     pub fn multiply(&mut self, q: &[Vector], unit: f64, u: &mut [Vector]) {
         match (&mut self.rows, &mut self.exact, &mut self.fast) {
             (Some(rows), ..) => rows.apply(q, u),
@@ -130,14 +130,14 @@ impl Operators {
         self.products += 1;
     }
 
-    /// The compliance of a layer beyond its uniform part.
+    /// Adds the displacement of a layer beyond its uniform part.
     fn add_excess(&self, q: &[Vector], u: &mut [Vector]) {
         if let Some(excess) = &self.excess {
             excess.add(|i| q[i], self.rolling.as_ref().map(|(_, sweep)| sweep), |i, v| u[i] = add(u[i], v));
         }
     }
 
-    /// The same to single precision.
+    /// [`Operators::multiply`] in single precision, if there is one.
     pub fn multiply_fast(&mut self, q: &[Vector], unit: f64, u: &mut [Vector]) {
         let Some((operator, workspace)) = &mut self.fast else { return self.multiply(q, unit, u) };
         operator.apply(q, unit_of(unit), u, workspace);
@@ -145,7 +145,7 @@ impl Operators {
         self.products += 1;
     }
 
-    /// The same of fields by component, in units of a traction, and of that times [`unit`](Self::unit).
+    /// The product of fields by component, in units of a traction, and of that times [`unit`](Self::unit).
     pub fn multiply_plain<S: Real>(&mut self, q: [&[S]; 2], u: [&mut [S]; 2]) {
         let [ux, uy] = u;
         match (&mut self.rows, &mut self.exact, &mut self.fast) {
@@ -175,12 +175,12 @@ impl Operators {
         self.fast.is_some()
     }
 
-    /// Whether [`multiply_fast`](Self::multiply_fast) is as good as [`multiply`](Self::multiply).
+    /// Whether [`multiply_fast`](Self::multiply_fast) is as accurate as [`multiply`](Self::multiply).
     pub fn fast_is_exact(&self) -> bool {
         self.exact.is_none() || self.fast.is_none()
     }
 
-    /// About `q = A^-1 u`, for tractions of the order of `unit`.
+    /// Approximately `q = A^-1 u`, for tractions of the order of `unit`.
     pub fn precondition(&mut self, u: &[Vector], unit: f64, q: &mut [Vector]) {
         let a0 = self.a0;
         match &mut self.inverse {
@@ -189,19 +189,19 @@ impl Operators {
         }
     }
 
-    /// The same of fields by component.
+    /// [`Operators::precondition`] of fields by component.
     pub fn precondition_components(&mut self, u: [&[f64]; 2], unit: f64, q: [&mut [f64]; 2]) {
         let unit = unit_of(unit * self.a0);
         let scales = self.inverse.as_ref().map_or([1.0; 2], |(operator, _)| operator.scales(unit));
         self.precondition_scaled(u, (scales, 1.0 / self.a0), q);
     }
 
-    /// The same in units of a traction, and of that times [`unit`](Self::unit).
+    /// [`Operators::precondition_components`] in units of a traction, and of that times [`unit`](Self::unit).
     pub fn precondition_plain<S: Real>(&mut self, u: [&[S]; 2], q: [&mut [S]; 2]) {
         self.precondition_scaled(u, ([1.0; 2], self.unit / self.a0), q);
     }
 
-    /// With these scales of a product, or by a number where there is no inverse.
+    /// Preconditions with these scales of a product, or by the factor `by` without an inverse.
     fn precondition_scaled<S: Real>(&mut self, u: [&[S]; 2], (scales, by): ([f64; 2], f64), q: [&mut [S]; 2]) {
         match &mut self.inverse {
             Some((operator, memory)) => operator.apply_by_component(u, scales, q, memory),

@@ -1,8 +1,8 @@
-//! The elements of C one after the other: fields of an iteration hold these only.
+//! The elements of C in one sequence: the fields of an iteration hold these elements only.
 //!
-//! They are cut into blocks at rows of the grid, so that a pass has both the values of its elements and their rows of a field on the grid. Blocks depend on C
-//! alone: sums by blocks have the same bits for any number of threads. A block has a whole number of vectors: what it lacks of
-//! that is filled up with elements that are nowhere, of which all is zero.
+//! The sequence is cut into blocks at rows of the grid, so that a pass has the values of its elements and their rows of a field on the
+//! grid. Blocks depend on C alone: sums by blocks have the same bits for any number of threads. Blocks are padded with zeros to a whole
+//! number of vectors.
 
 use super::lanes::LANES;
 use crate::error::Result;
@@ -11,27 +11,27 @@ use crate::memory::reserve;
 use crate::methods::fields::BLOCK;
 use crate::operator::fft::Real;
 
-/// Where the elements of C are.
+/// The places of the elements of C on the grid.
 #[derive(Default)]
 pub struct Places {
-    /// Elements of C that are neighbours in a row.
+    /// Runs of neighbours in a row.
     runs: Vec<Run>,
     blocks: Vec<Block>,
     mx: usize,
     count: usize,
 }
 
-/// A grid has so many blocks, where they are not too small then.
+/// Blocks of a full grid, as long as each has [`BLOCK`]`/4` to [`BLOCK`] elements.
 const BLOCKS: usize = 64;
 
-/// Elements side by side: the place of the first on the grid, and how many. Grids of more elements than 32 bits count would take 300 GB.
+/// Neighbours in a row: the place of the first on the grid, and their number. 32 bits suffice: 2^32 elements would take 300 GB.
 #[derive(Clone, Copy)]
 struct Run {
     first: u32,
     length: u32,
 }
 
-/// Some rows of the grid, with up to [`BLOCK`] elements of C or a row more.
+/// Rows of the grid, with up to [`BLOCK`] elements of C and one row more.
 #[derive(Clone, Copy)]
 struct Block {
     runs: (usize, usize),
@@ -40,16 +40,16 @@ struct Block {
 }
 
 impl Block {
-    /// Elements and those that fill up a vector.
+    /// The number of elements with the padding.
     fn length(&self) -> usize {
         self.elements.next_multiple_of(LANES)
     }
 }
 
-/// A block of a pass: where its elements are.
+/// A block of a pass: the places of its elements.
 pub struct Part<'a> {
     runs: &'a [Run],
-    /// The first place of its rows.
+    /// The first place of the block's rows.
     first: usize,
 }
 
@@ -65,7 +65,7 @@ impl Part<'_> {
         }
     }
 
-    /// Takes the values of its elements from a field on the grid.
+    /// Copies the values of the block's elements from a field on the grid.
     #[inline(always)]
     pub fn gather<T: Real>(&self, field: &[T], to: &mut [f64]) {
         self.each_run(
@@ -77,7 +77,7 @@ impl Part<'_> {
         );
     }
 
-    /// Puts the values of its elements to its rows of a field on the grid.
+    /// Copies the values of the block's elements to its rows of a field on the grid.
     #[inline(always)]
     pub fn scatter<T: Real>(&self, from: &[f64], rows: &mut [T]) {
         self.each_run(
@@ -94,14 +94,14 @@ impl Part<'_> {
         self.each_run(|place, at, length| (0..length).for_each(|k| work(place + k, at + k)));
     }
 
-    /// The first place of its rows on the grid.
+    /// The first place of the block's rows on the grid.
     pub fn first(&self) -> usize {
         self.first
     }
 }
 
 impl Places {
-    /// With room for all elements of a grid.
+    /// No elements, with room for all elements of a grid.
     pub fn new(grid: &Grid) -> Result<Places> {
         let what = "the elements of C";
         let mut places = Places { mx: grid.mx, ..Places::default() };
@@ -110,7 +110,7 @@ impl Places {
         Ok(places)
     }
 
-    /// C has changed: where `bound` is positive.
+    /// Takes the elements of positive `bound` as C.
     pub fn contact_changed(&mut self, bound: &[f64]) {
         let Places { runs, blocks, mx, count } = self;
         runs.clear();
@@ -137,17 +137,17 @@ impl Places {
         }
     }
 
-    /// Elements of C.
+    /// The number of elements of C.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// Values of a field: elements, and those that fill up vectors.
+    /// The number of values of a field, with the padding.
     pub fn length(&self) -> usize {
         self.blocks.iter().map(Block::length).sum()
     }
 
-    /// Their places on the grid.
+    /// The places of the elements of C on the grid.
     pub fn elements(&self) -> impl Iterator<Item = usize> + '_ {
         self.runs.iter().flat_map(|run| (0..run.length).map(|k| (run.first + k) as usize))
     }
@@ -163,19 +163,19 @@ impl Places {
         self.runs.capacity() * size_of::<Run>() + self.blocks.capacity() * size_of::<Block>()
     }
 
-    /// So many fields on C by blocks: those of a block one after the other.
+    /// Cuts `count` fields on C into blocks, in which the fields follow each other.
     pub fn cut<'a, A>(&'a self, fields: &'a mut [A], count: usize) -> impl Iterator<Item = &'a mut [A]> {
         debug_assert_eq!(fields.len(), count * self.length());
         cut(fields, self.blocks.iter().map(move |block| count * block.length()))
     }
 
-    /// A field on the grid by blocks.
+    /// Cuts a field on the grid into the rows of each block.
     pub fn cut_grid<'a, A>(&'a self, field: &'a mut [A]) -> impl Iterator<Item = &'a mut [A]> {
         cut(field, self.blocks.iter().map(|block| (block.rows.1 - block.rows.0) * self.mx))
     }
 }
 
-/// Consecutive pieces of so many values.
+/// Consecutive pieces of the given lengths.
 fn cut<'a, A>(mut rest: &'a mut [A], lengths: impl Iterator<Item = usize> + 'a) -> impl Iterator<Item = &'a mut [A]> {
     lengths.map(move |length| {
         let (piece, behind) = std::mem::take(&mut rest).split_at_mut(length);

@@ -5,10 +5,10 @@ pub use crate::methods::fields::plus;
 /// A vector of the plane: `[x, y]`.
 pub type Vector = [f64; 2];
 
-/// Squares of a length may round up: so much is left between a traction and its bound.
+/// Relative margin between a traction and its bound, as squares of lengths may round up.
 const MARGIN: f64 = 4.0 * f64::EPSILON;
 
-/// The nearest traction to q with `|q| <= g`, whichever way its length is rounded.
+/// The nearest traction to q with `|q| <= g`, for any rounding of its length.
 pub fn clip(q: Vector, g: f64) -> Vector {
     if !(g > 0.0) {
         return [0.0; 2];
@@ -22,7 +22,7 @@ pub fn clip(q: Vector, g: f64) -> Vector {
     q
 }
 
-/// The traction of length g against a slip, whichever way lengths are rounded.
+/// The traction of length g opposite to a slip, for any rounding of lengths.
 pub fn against(slip: Vector, g: f64) -> Vector {
     let length = length(slip);
     if length > 0.0 {
@@ -32,7 +32,7 @@ pub fn against(slip: Vector, g: f64) -> Vector {
     }
 }
 
-/// `|v|`, of any size.
+/// `|v|`, without overflow.
 pub fn length(v: Vector) -> f64 {
     v[0].hypot(v[1])
 }

@@ -3,7 +3,7 @@
 //! Find tractions q on C with
 //!
 //! ```text
-//! s = w + A q                         the slip; w is the rigid slip, less the displacement u' before the step
+//! s = w + A q                         the slip; w is the rigid slip, minus the displacement u' before the step
 //! stick:  s = 0,             |q| <= g
 //! slip:   s = -lambda q,     |q| = g,     lambda >= 0
 //! outside C:                  q = 0
@@ -26,10 +26,10 @@ use crate::threads::Threads;
 
 const FIELDS: &str = "tangential fields";
 
-/// A product in single precision leaves a residual far below this.
+/// A residual far above the round-off of a product in single precision.
 const SINGLE: f64 = 1e-6;
 
-/// Elements that creepages move by less than this part of the most do not bound where creepages lie.
+/// Least weight of an element, relative to the largest, that bounds the creepages.
 const LEAST_WEIGHT: f64 = 1e-6;
 
 /// The scale of residuals.
@@ -41,11 +41,11 @@ pub enum Scale {
     Slip,
 }
 
-/// Rolling slowly: what the displacements' round-off leaves of the rigid slip.
+/// Round-off of displacements as a part of the scale, for slow rolling.
 const ROUND_OFF: f64 = 1.5e-8;
 
 impl Scale {
-    /// Of the rms of both.
+    /// The scale from the rms of both.
     pub fn of(self, rigid: f64, displacement: f64) -> f64 {
         match self {
             Scale::SlipOrDisplacement => rigid.max(displacement),
@@ -60,25 +60,25 @@ pub struct Problem {
     pub grid: Grid,
     /// g, 0 outside C.
     pub bound: Vec<f64>,
-    /// The rigid slip, but for `offset`.
+    /// The rigid slip without `offset`.
     pub rigid: Vec<Vector>,
-    /// w, but for `offset`: the rigid slip less u'.
+    /// w without `offset`: the rigid slip minus u'.
     pub slip: Vec<Vector>,
-    /// An amount for both on C, times the weights: found where forces are given.
+    /// The creepages in w and the rigid slip, times the weights: found if forces are given.
     pub offset: Vector,
-    /// How much of a creepage reaches each element; none: all of it.
+    /// The weights of the creepages at each element; empty: 1.
     pub weights: Vec<Vector>,
-    /// In steady rolling: what the slip by spin gains a step ahead.
+    /// In steady rolling: the change of the slip by spin over a step.
     pub ahead: Vector,
     /// The scale of residuals.
     pub scale: Scale,
     /// A.
     pub operators: Operators,
-    /// Residuals beside C, of Newton's method: there once it is to be [continued](Problem::continue_residuals).
+    /// The extension of residuals beyond C for Newton's method, made by [`Problem::continue_residuals`].
     pub extension: Option<Extension<f64, 2>>,
     /// The elements of C.
     pub places: Places,
-    /// Where forces are given: rms over C of the rigid slip without what is found, whose round-off is left of it.
+    /// With given forces: rms over C of the rigid slip without the found creepages, the scale of its round-off.
     pub given: f64,
     /// rms over C of the last change of q.
     pub update: f64,
@@ -91,14 +91,14 @@ pub struct Problem {
 pub struct State {
     /// q: 0 outside C.
     pub q: Vec<Vector>,
-    /// u = A q, as far as `is_exact` says.
+    /// u = A q, exactly if `is_exact`.
     pub u: Vec<Vector>,
-    /// Whether u is a product in double precision of this very q.
+    /// Whether u is a product of this q in double precision.
     pub is_exact: bool,
 }
 
 impl State {
-    /// To be [unloaded](State::unload) first.
+    /// An undefined state: call [`State::unload`] first.
     pub fn new(n: usize) -> Result<State> {
         let field = || blank(n, [f64::NAN; 2], FIELDS);
         Ok(State { q: field()?, u: field()?, is_exact: false })
@@ -129,7 +129,7 @@ impl Drop for Problem {
 }
 
 impl Problem {
-    /// Without bounds and slips yet.
+    /// A problem without bounds and slips.
     pub fn new(grid: Grid, operators: Operators) -> Result<Problem> {
         let n = grid.len();
         Ok(Problem {
@@ -150,7 +150,7 @@ impl Problem {
         })
     }
 
-    /// Sets up what continues residuals beside C, if it is not there. In steady rolling nothing is continued.
+    /// Sets up the extension of residuals beyond C, if missing. Steady rolling has none.
     pub fn continue_residuals(&mut self) -> Result<()> {
         if self.operators.rolling.is_none() && self.extension.is_none() {
             self.extension = extension_on(&self.grid, self.threads())?;
@@ -159,18 +159,18 @@ impl Problem {
         Ok(())
     }
 
-    /// To be called when `bound` has changed.
+    /// Updates C after a change of `bound`.
     pub fn bound_changed(&mut self) {
         count_near(&mut self.extension, &self.bound);
         self.places.contact_changed(&self.bound);
         let (threads, bound) = (self.threads(), &self.bound);
         let largest = fields::largest(threads, bound.len(), |i| bound[i]);
-        // Without friction 0/0: nothing.
+        // Without friction 0/0 gives 0.
         let [squares] = fields::sum(threads, bound.len(), |i| [(bound[i] / largest).max(0.0).powi(2)]);
         self.rms_bound = largest * (squares / self.count().max(1) as f64).sqrt();
     }
 
-    /// Whether its operators are those of a grid, of tables per loaded row from that row on, and of a step.
+    /// Whether the operators suit a grid, for tables per loaded row from that row on, and a step.
     pub fn suits(&self, grid: &Grid, first: Option<usize>, rolling: Option<Rolling>) -> bool {
         let own = self.operators.tangential.rows().map(RowTables::first);
         self.grid == *grid && own == first && self.operators.step() == rolling
@@ -181,12 +181,12 @@ impl Problem {
         self.places.elements()
     }
 
-    /// Those that work on this grid.
+    /// The threads of this grid.
     pub fn threads(&self) -> &Threads {
         &self.operators.threads
     }
 
-    /// Elements of C.
+    /// The number of elements of C.
     pub fn count(&self) -> usize {
         self.places.count()
     }
@@ -196,7 +196,7 @@ impl Problem {
         self.rms_bound
     }
 
-    /// The order of what tractions of the size of the bounds displace.
+    /// The order of the displacement by tractions of the size of the bounds.
     pub fn displaced_by_bounds(&self) -> f64 {
         self.operators.self_influence * self.rms_bound
     }
@@ -208,7 +208,7 @@ impl Problem {
         [w[0] + offset[0] + u[0], w[1] + offset[1] + u[1]]
     }
 
-    /// The slip of element i by creepages c; and the part of its tractions in the forces that go with them.
+    /// The slip of element i by creepages c. For a traction in place of c, it is the element's contribution to the forces.
     #[inline]
     pub fn weighted(&self, i: usize, c: Vector) -> Vector {
         match self.weights.get(i) {
@@ -217,7 +217,7 @@ impl Problem {
         }
     }
 
-    /// The creepage that moves the element of the least weight by 1; weights below 1e-6 of the largest do not count.
+    /// The creepage that moves the element of the least weight by 1. Weights below [`LEAST_WEIGHT`] are ignored.
     pub fn farthest_creepage(&self) -> f64 {
         let sizes = || self.weights.iter().flatten().map(|weight| weight.abs());
         let most = sizes().fold(0.0, f64::max);
@@ -241,7 +241,7 @@ impl Problem {
         self.rms_of(sum)
     }
 
-    /// Of the sum of squares of a field over C, the rms.
+    /// The rms over C of a field, from its sum of squares.
     pub fn rms_of(&self, squares: f64) -> f64 {
         (squares / self.count().max(1) as f64).sqrt()
     }
@@ -256,19 +256,19 @@ impl Problem {
         self.rms(|i| add(self.rigid[i], self.weighted(i, self.offset)))
     }
 
-    /// q feasible to the last bit, and u = A q by a fresh product.
+    /// Makes q feasible to the last bit, and u = A q by a fresh product.
     pub fn refresh(&mut self, state: &mut State) {
         self.clip(state);
         self.refresh_unclipped(state);
     }
 
-    /// `u = A q` by a fresh product, of q as it is.
+    /// Makes `u = A q` by a fresh product, without change of q.
     pub fn refresh_unclipped(&mut self, state: &mut State) {
         self.operators.multiply(&state.q, self.rms_bound, &mut state.u);
         state.is_exact = true;
     }
 
-    /// The same to single precision, where that is enough to go on from.
+    /// [`Problem::refresh`], in single precision if that suffices for the tolerance.
     pub fn refresh_to(&mut self, state: &mut State, tolerance: f64) {
         if tolerance < SINGLE {
             return self.refresh(state);

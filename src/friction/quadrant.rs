@@ -19,8 +19,8 @@ pub struct Quadrant {
 }
 
 impl Quadrant {
-    /// As far as operators of a grid ask: products ask for the offsets between its elements, preconditioners for one more, and rolling
-    /// by whole elements, no more of them than the grid has, for `by` more.
+    /// The coefficients for the operators of a grid: offsets between its elements for products, one more for preconditioners, and `by` more for
+    /// rolling by whole elements within the grid.
     pub fn new(tangential: &Tangential, grid: &Grid, by: (f64, f64), threads: &Threads) -> Result<Quadrant> {
         let (cx, cy) = reach(tangential, grid, by);
         let mut values: Vec<Entry> = blank(cx * cy, [f64::NAN; 3], "the tangential influence coefficients")?;
@@ -28,7 +28,7 @@ impl Quadrant {
         Ok(Quadrant { tangential: tangential.clone(), cx, cy, values })
     }
 
-    /// Of a coarser grid.
+    /// The coefficients of a coarser grid.
     pub fn coarser(self, tangential: &Tangential, grid: &Grid, by: (f64, f64), threads: &Threads) -> Result<Quadrant> {
         let (cx, cy) = reach(tangential, grid, by);
         match tangential.times(&self.tangential) {
@@ -46,17 +46,17 @@ impl Quadrant {
         }
     }
 
-    /// The origin of the coefficients.
+    /// The source of the coefficients.
     pub fn tangential(&self) -> &Tangential {
         &self.tangential
     }
 
-    /// Whether there is no Axy between the elements of a grid, displacements being taken at `by` from the centres.
+    /// Whether there is no Axy between the elements of a grid, for displacements at `by` from the centres.
     pub fn is_uncoupled(&self, grid: &Grid, by: (f64, f64)) -> bool {
         if self.tangential.is_own() {
             return self.values.iter().all(|entry| entry[2] == 0.0);
         }
-        // On a line Axy is 0, and that of steps along it.
+        // On a line Axy is 0, also for steps along it.
         let along_line = (grid.my == 1 && by.1 == 0.0) || (grid.mx == 1 && by.0 == 0.0);
         along_line || self.tangential.is_uncoupled()
     }
@@ -74,7 +74,7 @@ impl Quadrant {
         out.iter_mut().zip(row).for_each(|(value, entry)| *value = entry[component]);
     }
 
-    /// The same `by` elements further on: computed where they are not at whole offsets within reach.
+    /// The coefficients `by` elements further on, computed anew if not at whole offsets within reach.
     pub fn displaced(&self, x: i64, y: i64, by: (f64, f64)) -> Entry {
         let (at_x, at_y) = (x as f64 + by.0, y as f64 + by.1);
         let is_kept =
@@ -87,14 +87,14 @@ impl Quadrant {
     }
 }
 
-/// The period of the circulant near A, an element longer than the grid, and offsets up to half of it; of one row or column there is one offset.
+/// The period of the circulant near A, an element longer than the grid, and the offsets up to half of it; one offset for a single row or column.
 pub fn circulant_period(grid: &Grid) -> ((usize, usize), (usize, usize)) {
     let (px, py) = vector_period((grid.mx + 1, grid.my + 1));
     let given = |m: usize, period: usize| if m == 1 { 1 } else { period / 2 + 1 };
     ((px, py), (given(grid.mx, px), given(grid.my, py)))
 }
 
-/// Offsets in each direction. A step beyond the grid is no reason to keep what lies between, but of own tables.
+/// Offsets in each direction. For a step beyond the grid offsets between are not kept, except those of own tables.
 fn reach(tangential: &Tangential, grid: &Grid, by: (f64, f64)) -> (usize, usize) {
     let is_whole = by.0.fract() == 0.0 && by.1.fract() == 0.0;
     let is_short = by.0.abs() <= grid.mx as f64 && by.1.abs() <= grid.my as f64;

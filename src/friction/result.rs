@@ -9,7 +9,7 @@ use crate::effects::{Friction, Prescribed};
 use crate::sums::in_blocks;
 
 impl Solver {
-    /// The result on the whole grid, and what is to be said of it.
+    /// Writes the result on the whole grid, and the report.
     pub(super) fn write(&mut self, friction: &Friction<'_>, pressure: &[f64], report: &mut Report) {
         let Solution { traction, slip, stick_slip, .. } = &mut self.solution;
         let (grid, scales, threads) = (self.grid, self.scales, self.threads.suited_to(self.grid.len()));
@@ -39,7 +39,7 @@ impl Solver {
                     stick_slip[ix] = if is_on_circle(state.q[k], problem.bound[k]) { SLIP } else { STICK };
                 }
             });
-            // Without friction all slips.
+            // Elements without friction slip.
             let without = |iy: usize| touching(iy).filter(|(k, _)| !(problem.bound[*k] > 0.0)).count();
             threads.for_each(&mut self.sums, |iy, sum| sum[0] = without(iy) as f64);
             report.certificate.slip_count += self.sums.iter().map(|sum| sum[0] as usize).sum::<usize>();
@@ -67,7 +67,7 @@ impl Solver {
         }
     }
 
-    /// By how much the forces of the last result, times the weights of creepages, exceed those that are given.
+    /// The excess of the last result's weighted forces over the given ones.
     pub fn excess(&self, friction: &Friction<'_>, report: &Report) -> Vector {
         let carried = |k: usize| match friction.weights {
             None => report.force[k],

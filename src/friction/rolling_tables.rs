@@ -1,7 +1,7 @@
 //! Tangential coefficients of bodies that relax and roll steadily: each of xx, yy and xy by the integral of the
-//! [normal ones](crate::visco::rolling_table), at a Poisson ratio that stays.
+//! [normal ones](crate::visco::rolling_table), at a constant Poisson ratio.
 //!
-//! Material that is behind has given way for longer: the tables are not even in x, and serve steady rolling.
+//! Material behind has relaxed for longer: the tables are not even in x, and serve steady rolling.
 
 use super::coefficients::{Compliance, Entry, Tangential};
 use crate::error::{finite, require, Error, Result};
@@ -12,7 +12,7 @@ use crate::visco::RollingBody;
 
 const WHAT: &str = "the tangential influence coefficients";
 
-/// Refuses bodies between which pressures would push sideways, at once or later: `compliance` is 1/(2 G).
+/// Refuses bodies that pressures would displace sideways, at once or later. `compliance` is 1/(2 G).
 fn check_alike(bodies: &[RollingBody; 2], nu: [f64; 2]) -> Result<()> {
     let push = [0, 1].map(|b: usize| (1.0 - 2.0 * nu[b]) * bodies[b].compliance);
     let same = |of: fn(&RollingBody) -> &[f64]| of(&bodies[0]) == of(&bodies[1]);
@@ -25,8 +25,8 @@ fn check_alike(bodies: &[RollingBody; 2], nu: [f64; 2]) -> Result<()> {
     ))
 }
 
-/// xx, yy and xy of two bodies that roll steadily towards +x at a speed, or towards -x at one below 0, as tables of the offsets `-cx..cx` by `-cy..cy`.
-/// `compliance` of the bodies is `1/(2 G)` at once.
+/// xx, yy and xy of two bodies in steady rolling towards +x, or towards -x for a negative speed, as tables of the offsets `-cx..cx` by
+/// `-cy..cy`. `compliance` of the bodies is the instantaneous `1/(2 G)`.
 ///
 /// # Errors
 /// As `rolling_table`; `Unsupported`: unlike bodies.
@@ -39,10 +39,10 @@ pub fn rolling_tables(
     let most = check((cx, cy), (dx, dy), bodies, speed)?;
     check_alike(bodies, nu)?;
     let ((d, of_d), (_, of_compliance)) = (apart(dx), apart(most));
-    // In elements.
+    // The aspect of elements.
     let width = times_power(dy, -of_d) / d;
     let of_body = |b: usize| -> Result<_> {
-        // Of a compliance of 1.
+        // Coefficients of compliance 1.
         let at_once = Compliance { shear: 1.0, poisson: nu[b], unlike: 0.0 };
         Ok((Tangential::new(d, times_power(dy, -of_d), at_once), parts(b, &bodies[b], of_compliance, dx, speed)?))
     };
@@ -69,7 +69,7 @@ pub fn rolling_tables(
     Ok(tables)
 }
 
-/// A row of offsets, and its mirror in y: xx and yy are even there, xy is odd; `back`: of bodies that roll towards -x, seen in a mirror.
+/// Writes a row of offsets and its mirror image in y: xx and yy are even in y, xy is odd. `back`: bodies roll towards -x, mirrored in x.
 fn write(row: &[Entry], back: bool, (cx, cy, ky): (usize, usize, usize), tables: &mut [Vec<f64>; 3]) {
     for (iy, side) in [(cy.checked_sub(ky), -1.0), (Some(cy + ky), 1.0)] {
         let Some(iy) = iy.filter(|iy| *iy < 2 * cy) else { continue };

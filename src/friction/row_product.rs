@@ -29,7 +29,7 @@ impl Drop for RowProduct {
 }
 
 impl RowProduct {
-    /// Displacements at `by` elements from each centre, along x; A, if that is 0.
+    /// The product with displacements at `by` elements from each centre along x; A if `by` is 0.
     pub fn displaced(
         tangential: &Tangential,
         rows: &RowTables,
@@ -41,7 +41,7 @@ impl RowProduct {
         RowProduct::new(|jy, iy, kx| with_layer(rows, layer, (jy, iy, kx + by)), grid, threads)
     }
 
-    /// Displacements at each centre less those at `by` elements from it, along x: steady rolling.
+    /// The product with displacements at each centre less those at `by` elements from it along x: steady rolling.
     pub fn rolling(
         tangential: &Tangential,
         rows: &RowTables,
@@ -66,7 +66,7 @@ impl RowProduct {
         let Grid { mx, my, .. } = *grid;
         let last = mx as i64 - 1;
         let fill = |from: usize, to: usize, period: &mut [f64]| {
-            // Of the displacement in x, then in y, by a traction in x, then in y.
+            // Rows: displacement in x, in y; columns: traction in x, in y.
             let component = [[0, 2], [3, 1]][to / my][from / my];
             let px = period.len() as i64;
             period.fill(0.0);
@@ -108,7 +108,7 @@ impl RowProduct {
     }
 }
 
-/// The coefficients with a layer between the bodies, which displaces an element by its own traction alone.
+/// The coefficients with a layer between the bodies, which displaces each element by its own traction.
 fn with_layer(rows: &RowTables, layer: f64, (jy, iy, kx): (usize, usize, i64)) -> Full {
     let [xx, yy, xy, yx] = rows.at(jy, iy, kx);
     let layer = if jy == iy && kx == 0 { layer } else { 0.0 };

@@ -1,8 +1,8 @@
-//! Tangential coefficients of the caller's own, one table per loaded row.
+//! The caller's tangential coefficients, one table per loaded row.
 //!
-//! On a coarser grid the coefficient is the mean displacement of the fine elements of one coarse element by a unit traction on those of
-//! another: in x as for [`Tables`], in y as for [the normal ones](crate::influence::RowTables). A preconditioner knows the mean over the
-//! rows at each offset.
+//! On a coarser grid the coefficient is the mean displacement of the fine elements of one coarse element by a unit traction on the fine
+//! elements of another. In x it is computed as for [`Tables`], in y as for [the normal ones](crate::influence::RowTables). A preconditioner uses the
+//! mean over the rows at each offset.
 
 use std::sync::Arc;
 
@@ -17,14 +17,14 @@ const TABLES: &str = "the tangential influence coefficients";
 /// `xx, yy, xy, yx`: xy is the displacement in x by a traction in y.
 pub type Full = [f64; 4];
 
-/// The tables, or those of a run of their rows.
+/// The tables of all rows, or of a run of rows.
 #[derive(Clone, Debug)]
 pub struct RowTables {
-    /// Offsets less than this are in them.
+    /// The tables hold offsets below this.
     cx: usize,
-    /// Rows in all.
+    /// The number of all rows.
     of_all: usize,
-    /// `[jy][iy][2 cx - 1]`: a loaded row, a row, offsets from `1 - cx` on.
+    /// `[jy][iy][2 cx - 1]`: loaded row, row, offsets from `1 - cx` on.
     values: Arc<Vec<Full>>,
     /// Their common factor: a power of two.
     factor: f64,
@@ -33,7 +33,7 @@ pub struct RowTables {
 }
 
 impl RowTables {
-    /// Of tables that were checked.
+    /// The coefficients of checked tables.
     pub fn new(influence: &TangentialInfluence<'_>) -> Result<RowTables> {
         RowTables::of(influence.cx, influence.cy, |jy, iy, kx| influence.of_rows(jy, iy, kx))
     }
@@ -47,22 +47,22 @@ impl RowTables {
         Ok(RowTables { cx, of_all: rows, values: Arc::new(values), factor: 1.0, first: 0, rows })
     }
 
-    /// The same in units of `unit`.
+    /// The tables in units of `unit`.
     pub fn in_units_of(&self, unit: f64) -> RowTables {
         RowTables { factor: self.factor / unit, ..self.clone() }
     }
 
-    /// Those of a run of rows.
+    /// The tables of a run of rows.
     pub fn of_run(&self, first: usize, rows: usize) -> RowTables {
         RowTables { first, rows, ..self.clone() }
     }
 
-    /// The first row, of all.
+    /// The first row of the run.
     pub fn first(&self) -> usize {
         self.first
     }
 
-    /// The coefficients of a loaded row jy and a row iy at a whole offset in x; beyond the tables the outermost serve.
+    /// The coefficients of a loaded row jy and a row iy at an integer offset in x. Beyond the tables, the outermost coefficient is used.
     pub fn at(&self, jy: usize, iy: usize, kx: i64) -> Full {
         let last = self.cx as i64 - 1;
         let row = (self.first + jy) * self.of_all + self.first + iy;
@@ -70,9 +70,9 @@ impl RowTables {
         self.values[row * (2 * self.cx - 1) + column].map(|value| self.factor * value)
     }
 
-    /// On a grid that is coarsened in x, in y, or in both.
+    /// The tables on a grid that is coarsened in x, in y, or in both.
     pub fn coarsened(&self, in_x: bool, in_y: bool) -> Result<RowTables> {
-        // The rows at the same distance where one lies beyond the last.
+        // If a row lies beyond the last, the pair is shifted to rows at the same distance.
         let at = |jy: usize, iy: usize, kx: i64| {
             let beyond = jy.max(iy).saturating_sub(self.rows - 1);
             self.at(jy.saturating_sub(beyond), iy.saturating_sub(beyond), kx)
@@ -95,7 +95,7 @@ impl RowTables {
         })
     }
 
-    /// The mean over the rows at each offset and its mirrors: xx and yy even in both directions, xy odd in both.
+    /// The mean over the rows at each offset and its mirrored offsets. xx and yy are even in both directions, xy is odd in both.
     pub fn mean(&self) -> Result<Tables> {
         Tables::of(self.cx, self.rows, |x, y| {
             let (mut sum, mut count) = ([0.0; 3], 0);

@@ -1,33 +1,33 @@
-//! Units of the iterations: powers of two, so that no bit changes. In them element sizes, coefficients and traction bounds are of order 1,
-//! whatever the caller's units are: squares, and what is in single precision, stay within range.
+//! Units of the iterations: powers of two, so that no bit changes. Element sizes, coefficients and traction bounds are of order 1 in them,
+//! whatever the caller's units: squares and single precision stay within range.
 
 use super::plane::Vector;
 use super::unit::unit_of;
 use super::Tangential;
 use crate::grid::Grid;
 
-/// Units of displacements keep to this range: their inverses are numbers.
+/// The range of units of displacements, so that their inverses are finite.
 const SMALLEST: f64 = 1e-290;
 const LARGEST: f64 = 1e290;
 
-/// The units of one grid, and of the step that is solved.
+/// The units of one grid and one step.
 #[derive(Clone, Copy, Debug)]
 pub struct Scales {
     length: f64,
-    /// Of displacements, by tractions of 1.
+    /// The unit of displacements by tractions of 1.
     compliance: f64,
     traction: f64,
 }
 
 impl Scales {
-    /// Of a grid, and the coefficients in these units.
+    /// The units of a grid, and the coefficients in these units.
     pub fn of(grid: &Grid, tangential: &Tangential) -> (Scales, Tangential) {
         let length = unit_of(grid.dx);
         let (scaled, compliance) = tangential.in_units_of(length);
         (Scales { length, compliance, traction: 1.0 }, scaled)
     }
 
-    /// Tractions of a step are at most `largest`.
+    /// Fits the unit of tractions to a step, whose tractions are at most `largest`.
     pub fn fit(&mut self, largest: f64) {
         let traction = unit_of(largest);
         let displacement = (traction * self.compliance).clamp(SMALLEST, LARGEST);
@@ -64,7 +64,7 @@ impl Scales {
         displacement.map(|u| u / self.compliance / self.traction)
     }
 
-    /// How a displacement changes by tractions that are in the caller's units.
+    /// A change of displacement per change of tractions, these in the caller's units.
     pub fn change(&self, displacement: Vector) -> Vector {
         displacement.map(|u| u / self.compliance)
     }

@@ -1,12 +1,12 @@
-//! How the forces change with the creepages and the spin: derivatives of the final state, one linear solve each.
+//! Derivatives of the forces by the creepages and the spin, in the final state. Each takes one linear solve.
 //!
-//! While the elements that slip stay the same, tractions on slip move along their circles, `q = g n`, and the slip stays opposite to them:
+//! The elements in slip stay the same. Their tractions move along circles, `q = g n`, and the slip stays opposite to them:
 //!
 //! ```text
 //! (P A P + D) dq = -P dw,     D = |s|/g on slip,     dw = dq_r e_x, dq_r e_y, dq_r (-y, x)        dq_r: the length rolled
 //! ```
 //!
-//! with B for A in steady rolling. Sums of dq and of its moments are the derivatives.
+//! with B in place of A in steady rolling. The derivatives are the sums of dq and of its moments.
 
 use super::forces::Forces;
 use super::plane::Vector;
@@ -17,14 +17,14 @@ use crate::error::Result;
 use crate::methods::fgmres::{self, Bordered, Until};
 use crate::methods::fields::{self, Fields};
 
-/// The residual of the linear solves of derivatives that are reported, relative.
+/// The relative residual of the linear solves for reported derivatives.
 pub const TOLERANCE: f64 = 1e-5;
 /// Directions of one call.
 const DIRECTIONS: usize = 40;
-/// Restarts at most.
+/// The most restarts.
 const MOST_CALLS: usize = 10;
 
-/// Which elements slip in the final state, for [`solve`].
+/// Determines the elements in slip of the final state, for [`solve`].
 pub fn predict(problem: &mut Problem, state: &State, tangent: &mut Tangent) -> Result<()> {
     tangent.fit(problem.grid.len())?;
     problem.continue_residuals()?;
@@ -34,8 +34,8 @@ pub fn predict(problem: &mut Problem, state: &State, tangent: &mut Tangent) -> R
     Ok(())
 }
 
-/// dq for a change dw of the rigid slip, both on the grid of the problem: dw on entry, dq on return. Where nothing moves or carries
-/// tractions, dq = 0. `tolerance`: of the residual, relative.
+/// Computes dq for a change dw of the rigid slip, on the grid of the problem. The array holds dw on entry and dq on return. dq = 0
+/// without motion or tractions. `tolerance` is that of the relative residual.
 pub fn solve(
     problem: &mut Problem,
     tangent: &Tangent,
@@ -43,7 +43,7 @@ pub fn solve(
     tolerance: f64,
 ) -> Result<()> {
     let (n, threads) = (dw.len(), problem.threads().clone());
-    // Unit tractions: the system is linear, and single precision has a small range.
+    // The system is linear. It is scaled to unit tractions, because single precision has a small range.
     let size = fields::dot(&threads, dw, dw).sqrt();
     let scale = problem.rms_bound() / size;
     if !(scale > 0.0 && scale < f64::INFINITY) {

@@ -1,6 +1,6 @@
 //! The series of tangential coefficients far from an element: polynomials in `t = (X/r)^2` for each power of `z = (d/r)^2`.
 
-/// Terms of the series at most.
+/// Most terms of the series.
 const MOST_TERMS: usize = 8;
 
 /// Polynomials `p_k(t) = sum_j series[k][j] t^j`.
@@ -14,7 +14,7 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// Of elements `dx` by `dy`.
+    /// The series of elements `dx` by `dy`.
     pub fn new(dx: f64, dy: f64) -> Shape {
         Shape { a: series(dx, dy, [1.0, 0.0, 0.0]), b: series(dx, dy, [0.0, 0.0, 1.0]) }
     }
@@ -34,7 +34,7 @@ impl Fraction {
         let mut coefficients = vec![0.0; degree + 2];
         for (p, c) in self.coefficients.iter().enumerate() {
             let exponent = if in_x { p } else { degree - p } as f64;
-            // Of X^p Y^q: X^(p+1) Y^q and X^(p-1) Y^(q+2), or X^p Y^(q+1) and X^(p+2) Y^(q-1).
+            // X^p Y^q becomes X^(p+1) Y^q and X^(p-1) Y^(q+2), or X^p Y^(q+1) and X^(p+2) Y^(q-1).
             let (raised, crossed) = if in_x { (p + 1, p.wrapping_sub(1)) } else { (p, p + 2) };
             coefficients[raised] += (exponent - self.power) * c;
             if exponent > 0.0 {

@@ -1,17 +1,16 @@
-//! Shift, and a step of transient rolling, with the motion given: projected conjugate gradients on discs.
+//! Shift, and a step of transient rolling, with given motion: projected conjugate gradients on discs.
 //!
 //! Per iteration, with the prediction of [`Tangent`] and one product `A t`:
 //!
 //! ```text
 //! z = the preconditioned P(-s);   t = P(z + beta t)
-//! q moves by a t: on stick straight on, and back into the disc; on slip along the circle, g (g n + a t)/|g n + a t|
+//! q moves by a t: on stick straight, projected onto the disc; on slip along the circle, g (g n + a t)/|g n + a t|
 //! ```
 //!
-//! The move is not straight, so a step is held back: its chord at the length f that the step before had is taken as the direction and
-//! multiplied. What a step of another length leaves of it is a deferred correction: the next product includes it, or a product of its own where
-//! it is large.
+//! The move is curved, so its chord at the forecast length f, that of the step before, is the direction that is multiplied. The difference of a step
+//! of another length is a deferred correction: the next product includes it, or a product of its own if it is large.
 //!
-//! Fields are those of the elements of C ([`Discs`]).
+//! Fields are on C only ([`Discs`]).
 
 use super::certificate::relative;
 use super::discs::{Discs, Sums};
@@ -22,36 +21,36 @@ use crate::methods::fields::Fields;
 use crate::operator::fft::Real;
 use crate::progress::Outcome;
 
-/// Iterations without the residual falling to this part of its least after which another method takes over.
+/// Iterations without progress after which another method follows; progress is a residual below PROGRESS times the least.
 const PATIENCE: u32 = 10;
 const PROGRESS: f64 = 0.9;
 
-/// Deferred corrections above this part of a step are multiplied at once, both as rms.
+/// Rms of deferred corrections over that of the step above which they are multiplied at once.
 const MOST_DEFERRED: f64 = 0.2;
 
-/// The length at which a step is held back is at least this: on rough surfaces steps are short.
+/// Least forecast length: on rough surfaces steps are short.
 const LEAST_HELD_BACK: f64 = 0.2;
 
 /// Memory of the iterations.
 #[derive(Default)]
 pub struct Memory {
-    /// With directions in single precision, and in double.
+    /// The fields with products in single precision, and in double.
     single: Discs<f32>,
     double: Discs<f64>,
-    /// Of Newton's method.
+    /// The prediction of Newton's method.
     pub tangent: Tangent,
     pub fields: Fields,
 }
 
 /// The goal of an iteration.
 pub struct Goal<'a> {
-    /// The residual.
+    /// The tolerance of the residual.
     pub tolerance: f64,
-    /// Iterations at most; of Newton's method products.
+    /// Most iterations; in Newton's method most products.
     pub limit: u64,
-    /// Whether it has to hold by a fresh product.
+    /// Whether a fresh product has to confirm the residual.
     pub certified: bool,
-    /// Told the residual of each iteration; says whether to go on.
+    /// Called with the residual of each iteration; false cancels.
     pub watch: &'a mut dyn FnMut(f64) -> bool,
 }
 
@@ -70,7 +69,7 @@ struct Steps {
     energy: f64,
 }
 
-/// Iterates from what the state holds.
+/// Iterates from the state.
 pub fn solve(problem: &mut Problem, state: &mut State, memory: &mut Memory, goal: Goal<'_>) -> Result<Outcome> {
     match problem.operators.has_fast() {
         true => iterate(problem, state, &mut memory.single, goal),
@@ -129,7 +128,7 @@ fn residual(problem: &Problem, rigid: f64, sums: Sums) -> f64 {
     relative(rest, problem.compared(rigid, displaced))
 }
 
-/// One iteration; the sums of where it leads to.
+/// One iteration. Returns the sums of the new state.
 fn step<T: Real>(problem: &mut Problem, discs: &mut Discs<T>, steps: &mut Steps) -> Sums {
     let along_last = discs.precondition(problem);
     let beta = if steps.energy > 0.0 { (-along_last / steps.energy).max(0.0) } else { 0.0 };
@@ -147,7 +146,7 @@ fn step<T: Real>(problem: &mut Problem, discs: &mut Discs<T>, steps: &mut Steps)
     sums
 }
 
-/// How far to go along the chord, and how far the next step is held back.
+/// The step along the chord, and the next forecast.
 fn choose_length(length: f64, energy: f64, steps: &mut Steps) -> (f64, f64) {
     let f = steps.held_back;
     steps.energy = energy;
@@ -156,7 +155,7 @@ fn choose_length(length: f64, energy: f64, steps: &mut Steps) -> (f64, f64) {
     }
     steps.energy = 0.0;
     if length > 4.0 * f {
-        // Else steps that want to be long would stay short for ever.
+        // Otherwise steps would never lengthen.
         (f, 4.0 * f)
     } else if length > 0.0 {
         let length = length.max(0.1 * f);

@@ -6,13 +6,13 @@ use super::plane::{dot, Vector};
 use crate::grid::Grid;
 use crate::threads::Threads;
 
-/// Whether an element sticks or slips: see [`Solution::stick_slip`].
+/// An element outside C: see [`Solution::stick_slip`].
 pub const EXTERIOR: i32 = 0;
-/// It sticks.
+/// An element that sticks.
 pub const STICK: i32 = 1;
-/// It slips.
+/// An element that slips.
 pub const SLIP: i32 = 2;
-/// It slips within a layer that yields, below mu p.
+/// An element that slips within a yielding layer, below mu p.
 pub const PLASTIC: i32 = 3;
 
 /// Fields on the whole grid.
@@ -22,16 +22,16 @@ pub struct Solution {
     pub traction: Vec<Vector>,
     /// s of the step, body 1 over body 2, a length: 0 outside C.
     pub slip: Vec<Vector>,
-    /// Of each element: exterior 0, stick 1, slip 2, in a layer that yields 3.
+    /// The state of each element: exterior 0, stick 1, slip 2, in a yielding layer 3.
     pub stick_slip: Vec<i32>,
-    /// The state of the particles after the step: empty without a law and a layer that yields.
+    /// The state of the particles after the step: empty without a law or a yielding layer.
     pub particles: Vec<Particle>,
 }
 
 /// The measures of a result, and its cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
-    /// How well the conditions hold.
+    /// How well the conditions of friction hold.
     pub certificate: Certificate,
     /// `sum of q dx dy`, on body 1.
     pub force: Vector,
@@ -39,22 +39,22 @@ pub struct Report {
     pub moment: f64,
     /// Creepages: given, or found.
     pub creepage: Vector,
-    /// Where they were asked for: derivatives of the force in x, in y and of the moment (rows) by xi, eta and phi (columns). Creepages
-    /// that are found count as given. The pressures are held, but where a solve finds those of unlike bodies. None after it was cancelled.
+    /// If requested: derivatives of the force in x, in y and of the moment (rows) by xi, eta and phi (columns). Found creepages count as given.
+    /// Pressures are fixed, except in solves of unlike bodies with the normal problem. None after a cancel.
     pub sensitivities: Option<[[f64; 3]; 3]>,
     /// mu N: the sum of the traction bounds, times the area of an element.
     pub carried: f64,
-    /// rms over C of the last change of q; 0 where the iteration ended where it began.
+    /// rms over C of the last change of q; 0 if the iteration ended at its start.
     pub update: f64,
-    /// By how much forces that are given are missed, relative to mu N.
+    /// The error of given forces, relative to mu N.
     pub missing: f64,
-    /// Whether there were no tractions before.
+    /// Whether there were no tractions before the step.
     pub from_rest: bool,
     /// Force and creepages of the next coarser grid, in steady rolling from rest.
     pub coarser: Option<(Vector, Vector)>,
-    /// Estimated errors of the force in each direction, or of the creepage where the force is prescribed; negative: not known.
+    /// Estimated errors of the force in each direction, or of the creepage if the force is prescribed; negative: unknown.
     pub error: Vector,
-    /// The largest slope by which bounds fall with the slip, times an element's influence on itself; 0 without a law. From .5 on the iteration may
+    /// The largest slope with which bounds fall with the slip, times an element's influence on itself; 0 without a law. From .5 on the iteration may
     /// stagnate; from 1 on a single element has several solutions.
     pub law_slope: f64,
     /// Products of two components on all grids, in products on the finest.
@@ -84,8 +84,8 @@ impl Default for Report {
     }
 }
 
-/// The force of tractions, and their moment about `centre`, a place from the middle of the grid. `row(iy)` gives those of a row, each with
-/// its column; `sums` has room for one of each row.
+/// The force of tractions, and their moment about `centre`, relative to the middle of the grid. `row(iy)` gives the tractions of a row, each with
+/// its column; `sums` has one value for each row.
 pub fn resultant<I: Iterator<Item = (usize, Vector)>>(
     grid: &Grid,
     threads: &Threads,

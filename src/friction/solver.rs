@@ -22,10 +22,10 @@ use crate::progress::Outcome;
 use crate::rectangle::Rectangle;
 use crate::threads::Threads;
 
-/// A start that leaves more than this residual is worth less than the coarser grids.
-const WORTHLESS: f64 = 0.1;
+/// Residual above which a start is discarded for one from the coarser grids.
+const LARGEST_USEFUL: f64 = 0.1;
 
-/// Solves tangential problems on one grid and keeps what the next can use: operators of the box around C, and the tractions.
+/// Solves tangential problems on one grid. Keeps the operators of the box around C and the tractions for the next solve.
 pub struct Solver {
     pub(super) grid: Grid,
     pub(super) tangential: Tangential,
@@ -34,9 +34,9 @@ pub struct Solver {
     pub(super) scaled: Tangential,
     single: bool,
     pub(super) threads: Threads,
-    /// The finest first; none: nothing was solved yet.
+    /// The finest first; empty before the first solve.
     pub(super) levels: Vec<Level>,
-    /// Products displaced by so many elements.
+    /// The product at places between the centres, for steps of rolling.
     pub(super) displaced: Option<Displaced>,
     pub(super) solution: Solution,
     /// The tractions before the step, where they were kept.
@@ -48,15 +48,15 @@ pub struct Solver {
     pub(super) has_solution: bool,
     /// The box of the last solve.
     pub(super) window: Option<Rectangle>,
-    /// Sums of each row, while a result is summed up.
+    /// Scratch: the sums of each row of a result.
     pub(super) sums: Vec<[f64; 3]>,
 }
 
 /// The quality of a start.
-struct Near {
+struct StartQuality {
     certificate: Certificate,
     is_solution: bool,
-    is_worth_something: bool,
+    is_useful: bool,
     products: f64,
 }
 
@@ -69,7 +69,7 @@ impl Drop for Solver {
 }
 
 impl Solver {
-    /// For a grid and bodies. `single`: whether directions may be multiplied in single precision.
+    /// A solver of one grid and one pair of bodies. `single`: whether products of directions may be in single precision.
     pub fn new(grid: Grid, tangential: Tangential, single: bool, threads: &Threads) -> Solver {
         let (scales, scaled) = Scales::of(&grid, &tangential);
         Solver {
@@ -115,7 +115,7 @@ impl Solver {
         self.offset
     }
 
-    /// There is no last result any more.
+    /// Forgets the last result.
     pub fn forget(&mut self) {
         self.has_solution = false;
     }
@@ -129,7 +129,7 @@ impl Solver {
         self.levels.iter().map(Level::bytes).sum::<usize>() + displaced + fields
     }
 
-    /// Solves. `watch(grid, residual)` is told of each iteration, and says whether to go on.
+    /// Solves. `watch(grid, residual)` is called at each iteration; false cancels.
     pub fn solve(
         &mut self,
         request: &Request<'_>,
@@ -174,7 +174,7 @@ impl Solver {
             [report.carried, _] = self.scales.own_traction([carried * self.grid.element_area(), 0.0]);
         }
         self.window = window;
-        // Before the result is written: what fails leaves the last one.
+        // Before the result is written, so that a failure leaves the last result.
         if friction.sensitivities && end != Outcome::Cancelled {
             report.sensitivities = Some(self.sensitivities(friction)?);
             report.products += self.take_products();
@@ -188,12 +188,12 @@ impl Solver {
         Ok((end, report))
     }
 
-    /// The part of the forces of a request up to which its pressures carry them; more than 1 where they do.
+    /// The largest part of a request's forces that its pressures carry; above 1 if they carry the forces with room to spare.
     pub fn part_in_reach(&self, request: &Request<'_>) -> Result<f64> {
         Forces::part(request.friction, &self.grid, |i| request.bound(i))
     }
 
-    /// Solves in a window, in the solver's units. The report gets the certificate, and what that took.
+    /// Solves in a window, in the solver's units. Writes the certificate and the products to the report.
     fn solve_in(
         &mut self,
         (window, rolling): (&Rectangle, Option<Rolling>),
@@ -212,19 +212,19 @@ impl Solver {
             [report.update, _] = self.scales.own_traction([self.levels[0].problem.update, 0.0]);
             return Ok(end);
         }
-        let mut is_worth_something = false;
+        let mut is_useful = false;
         if request.start.is_guess() {
-            let near = self.look(forces, request.tolerance);
+            let near = self.assess_start(forces, request.tolerance);
             (report.products, report.certificate) = (near.products, near.certificate);
             if near.is_solution {
                 return Ok(Outcome::Converged);
             }
-            is_worth_something = near.is_worth_something;
-            if !is_worth_something {
+            is_useful = near.is_useful;
+            if !is_useful {
                 had_slip = self.begin(&Request { start: Start::Before, ..*request }, from_rest, window, bound)?;
             }
         }
-        let nested = from_rest && !is_worth_something && !request.start.is_again();
+        let nested = from_rest && !is_useful && !request.start.is_again();
         let end = match request.is_cancelled {
             true => Outcome::Cancelled,
             false => self.iterate(request, forces, (nested, had_slip), watch, report)?,
@@ -235,7 +235,7 @@ impl Solver {
         Ok(end)
     }
 
-    /// Iterates on the grids of the window, from what the finest holds. The report gets what that took and found.
+    /// Iterates on the grids of the window, from the state of the finest. Writes products and creepages to the report.
     pub(super) fn iterate(
         &mut self,
         request: &Request<'_>,
@@ -256,7 +256,7 @@ impl Solver {
         Ok(end)
     }
 
-    /// The least compliance of the layer is added to the coefficient of an element on itself; if it changes, operators are made anew.
+    /// Adds the least compliance of the layer to the coefficient of an element on itself. If it changes, operators are made anew.
     fn set_layer(&mut self, friction: &Friction<'_>) {
         let layer = match friction.compliance {
             Coefficient::Uniform(compliance) => compliance,
@@ -269,7 +269,7 @@ impl Solver {
         }
     }
 
-    /// Operators of a window.
+    /// Makes the operators of a window unless they suit.
     fn set_up(&mut self, window: &Rectangle, rolling: Option<Rolling>) -> Result<()> {
         let grid = self.scales.grid(&window.grid(&self.grid));
         let first = self.scaled.rows().map(|_| window.y.start);
@@ -283,15 +283,15 @@ impl Solver {
     }
 
     /// The quality of the start, whose displacements are fresh.
-    fn look(&mut self, forces: Forces, tolerance: f64) -> Near {
+    fn assess_start(&mut self, forces: Forces, tolerance: f64) -> StartQuality {
         let Level { problem, state, .. } = &mut self.levels[0];
         let certificate = Certificate::of(problem, state);
         let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
         let below = |bound: f64| certificate.residual < bound && missing < bound;
-        Near {
+        StartQuality {
             certificate,
             is_solution: below(tolerance),
-            is_worth_something: below(WORTHLESS),
+            is_useful: below(LARGEST_USEFUL),
             products: problem.take_products() as f64,
         }
     }

@@ -1,13 +1,13 @@
 //! One step of Newton's method (see [`newton`](super::newton)).
 //!
-//! It starts with the way to the circles and a part of what the preconditioner says, so that forces that are given are met:
+//! It starts with the step onto the circles and a part of the preconditioned residual, so that given forces are met:
 //!
 //! ```text
-//! x0 = g n - q on slip,   z1 = theta M P(-s),   theta = 1 - 1/5/(1 + D/(10 a0)),   less Y dc where sum(q + x0 + z1) is not F/(dx dy)
+//! x0 = g n - q on slip,   z1 = theta M P(-s),   theta = 1 - 1/5/(1 + D/(10 a0)),   less Y dc so that sum(q + x0 + z1) = F/(dx dy)
 //! ```
 //!
-//! Where the curvature D dominates M is near the inverse of the system, and theta near 1. One product serves x0 and z1; flexible GMRES does the rest.
-//! Where x0 is short there is nothing to start with: all products are GMRES'.
+//! If the curvature D dominates, M is near the inverse of the system, and theta near 1. One product serves x0 and z1; flexible GMRES does the rest.
+//! If x0 is short, the step starts from 0, and all products are GMRES'.
 
 use super::certificate::{is_on_circle, scale};
 use super::forces::{sum_of, sum_of_both, sum_of_bounds, Forces};
@@ -20,25 +20,25 @@ use crate::methods::fgmres::{self, Bordered, Until};
 use crate::methods::fields::{self, Fields};
 use crate::threads::Threads;
 
-/// theta where nothing slips, and how fast it comes to 1 with D.
+/// theta on stick, and the weight of D in its growth to 1.
 const LEAST_THETA: f64 = 0.8;
 const TURNED: f64 = 0.1;
 
-/// The way to the circles is short where it displaces less than this part of what the linear solve leaves, and is less than this part of the
-/// residual beside the bounds; and where the slips of elements inside their circles are less than this part of what is projected. (Slips of 1e10 times
-/// what tractions displace: round-off is projected, and a way of 1e-6 of the bounds is the residual.)
+/// The step onto the circles is short if three ratios are below this: its displacement to the residual of the linear solve, its size relative to the
+/// bounds to the residual, and the slips of elements inside their circles to the projected slips. (For slips of 1e10 times the displacements by
+/// tractions round-off is projected, and a step of 1e-6 of the bounds is the residual.)
 const SHORT: f64 = 0.1;
 
 /// The kind of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// The residual of the linear solve, relative.
+    /// The relative residual of the linear solve.
     pub inner: f64,
-    /// Its directions at most.
+    /// Most directions of the linear solve.
     pub most: usize,
-    /// The residual of the step, relative.
+    /// The relative residual before the step.
     pub left: f64,
-    /// How much of the step is taken.
+    /// The length of the step, as a part of the full one.
     pub length: f64,
 }
 
@@ -70,7 +70,7 @@ fn to_the_circle(tangent: &Tangent, bound: &[f64], state: &State, i: usize) -> V
     }
 }
 
-/// x0, and the slips of elements that slip inside their circles, which certificates take for slips of what sticks: both as roots of sums of squares.
+/// The norms of x0 and of the slips of elements that slip inside their circles, which certificates count as slips of stick.
 fn way_to_the_circles(problem: &Problem, tangent: &Tangent, state: &State) -> [f64; 2] {
     let squared = |i: usize| {
         let is_inside = tangent.side[i] == Side::Slip && !is_on_circle(state.q[i], problem.bound[i]);
@@ -111,7 +111,7 @@ impl Start {
     }
 }
 
-/// Only what a step starts with, feasible to the last bit, and a fresh product of it. `by_step`: not the way to the circles alone.
+/// The start of a step only, feasible to the last bit, with a fresh product. `by_step`: with the part of the preconditioned residual.
 pub fn polish(
     problem: &mut Problem,
     state: &mut State,
@@ -133,7 +133,7 @@ pub fn polish(
     Ok(())
 }
 
-/// The same of the way to the circles alone.
+/// [`polish`] by the step onto the circles alone.
 fn settle(problem: &mut Problem, state: &mut State, tangent: &Tangent, fields: &mut Fields) -> Result<()> {
     let mut way = fields.take(state.q.len())?;
     fields::fill(problem.threads(), &mut way, |i| to_the_circle(tangent, &problem.bound, state, i));
@@ -144,7 +144,7 @@ fn settle(problem: &mut Problem, state: &mut State, tangent: &Tangent, fields: &
     Ok(())
 }
 
-/// The square of what forces weigh beside the field of slips: as much as the slip that goes with them.
+/// The square of the weight of forces against the field of slips: that of the corresponding slip.
 pub fn border_weight(problem: &Problem, state: &State, forces: Forces) -> f64 {
     if !forces.any() {
         return 0.0;

@@ -1,4 +1,4 @@
-//! Steady rolling: what one step of rolling does to tractions, undone element by element from the leading edge.
+//! Steady rolling: the difference over a step of rolling, inverted element by element from the leading edge.
 //!
 //! A step of length dq in the direction chi displaces by `(bx, by)` elements, and the operator is a product,
 //!
@@ -6,8 +6,8 @@
 //! B = A d,    (d q)(x) = q(x) - q(x + dq)        dq = (dq cos chi, dq sin chi)
 //! ```
 //!
-//! `d x = v` is solved from the leading edge on, where x = 0 ahead of each run of C. Between the centres x is interpolated bilinearly.
-//! Where a layer of compliance D lies between, each slip is solved with the part of it that the layer leaves (see [`disc`](super::disc)):
+//! `d x = v` is solved from the leading edge on, with x = 0 ahead of each run of C. Between the centres x is interpolated bilinearly. On
+//! slip the value ahead is weighted by E of the preconditioner (see [`disc`](super::disc)):
 //!
 //! ```text
 //! stick: x_i = x(ahead of i) + v_i
@@ -18,7 +18,7 @@ use super::plane::{plus, Vector};
 use crate::grid::Grid;
 use crate::threads::Threads;
 
-/// How far a step of rolling goes.
+/// The length of a step of rolling.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rolling {
     /// dq, a length.
@@ -36,7 +36,7 @@ pub struct Sweep {
 }
 
 impl Rolling {
-    /// On a coarser grid a step of as many elements, of one at least: the slip per length depends little on the step.
+    /// The step on a coarser grid, of as many elements but at least one: the slip per length depends little on the step.
     pub fn on(&self, fine: &Grid, coarse: &Grid) -> Rolling {
         let (is_along_x, length) = (self.by.0.abs() >= self.by.1.abs(), self.by.0.abs().max(self.by.1.abs()));
         let factor = if is_along_x { coarse.dx / fine.dx } else { coarse.dy / fine.dy } / length.min(1.0);
@@ -46,7 +46,7 @@ impl Rolling {
 }
 
 impl Sweep {
-    /// Of steps.
+    /// The weights of a step.
     pub fn new(rolling: &Rolling) -> Sweep {
         let (x, y) = (rolling.by.0.floor(), rolling.by.1.floor());
         let (in_x, in_y) = (rolling.by.0 - x, rolling.by.1 - y);
@@ -69,7 +69,7 @@ impl Sweep {
         self.own
     }
 
-    /// The neighbours between which that place lies, with their weights.
+    /// The neighbours around an element's place after a step, with their weights.
     pub fn neighbours(&self) -> &[(isize, isize, f64)] {
         &self.ahead
     }
@@ -127,7 +127,7 @@ impl Sweep {
     }
 }
 
-/// By one element along x, `forward` or backward: no row knows of another.
+/// Steps of one element along x, `forward` or backward: rows are independent.
 fn each_row(
     grid: &Grid,
     (mixing, project): (impl Fn(usize) -> f64 + Sync + Send, impl Fn(usize, Vector) -> Vector + Sync + Send),

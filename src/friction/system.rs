@@ -1,4 +1,4 @@
-//! The linear system of a step of Newton's method: the tangents of the circles, bordered by the creepages where forces are given.
+//! The linear system of a Newton step: the tangents of the circles, bordered by the creepages of given forces.
 //!
 //! ```text
 //! (P A P + D) z + sum_k dc_k P e_k = r
@@ -15,7 +15,7 @@ use crate::error::Result;
 use crate::methods::fgmres::{Bordered, Direction, System};
 use crate::methods::fields::{self, Fields};
 
-/// Eigenvalues of the border below this part of the largest are none.
+/// Eigenvalues of the border below this part of the largest count as 0.
 const SINGULAR: f64 = 1e-8;
 
 /// The system, at the state that the tangent predicts.
@@ -30,7 +30,7 @@ pub struct TangentSystem<'a> {
 }
 
 impl<'a> TangentSystem<'a> {
-    /// With Y and S.
+    /// The system with Y and S.
     pub fn new(
         problem: &'a mut Problem,
         tangent: &'a Tangent,
@@ -59,7 +59,7 @@ impl<'a> TangentSystem<'a> {
         Ok(system)
     }
 
-    /// Gives its fields back.
+    /// Returns the system's fields.
     pub fn give(self, fields: &mut Fields) {
         fields.give(self.scratch);
         self.border.into_iter().filter(|field| !field.is_empty()).for_each(|field| fields.give(field));
@@ -67,7 +67,7 @@ impl<'a> TangentSystem<'a> {
 
     /// `z = M r`, 0 outside C.
     pub fn precondition_field(&mut self, r: &[Vector], z: &mut [Vector]) {
-        // r is of the order of the slip here: the unit only keeps single precision in its range.
+        // r is of the order of the slip; the unit only keeps single precision in its range.
         let unit = self.problem.rms_bound();
         self.tangent.precondition(self.problem, r, unit, &mut self.scratch, z);
     }
@@ -84,7 +84,7 @@ impl<'a> TangentSystem<'a> {
         Ok(Bordered { field: z, border })
     }
 
-    /// dc, for what sums have too much: 0, not round-off, where the creepage is given, which may be smaller than that.
+    /// dc for the excess of the sums. It is exactly 0 if the creepage is given, which may be smaller than round-off.
     pub fn creepages(&self, too_much: Vector) -> Vector {
         let rest = self.forces.only_given(too_much);
         let [upper, lower] = self.inverse;
@@ -98,7 +98,7 @@ impl<'a> TangentSystem<'a> {
         fields::add_all(self.problem.threads(), z, &terms);
     }
 
-    /// `H` of a vector, whose field was multiplied by A.
+    /// `H z`, from the product of the field of z with A.
     fn apply(&self, z: &Bordered, product: &[Vector], fields: &mut Fields) -> Result<Bordered> {
         let tangent = self.tangent;
         let mut h = fields.take(product.len())?;
@@ -110,7 +110,7 @@ impl<'a> TangentSystem<'a> {
         Ok(Bordered { field: h, border })
     }
 
-    /// `r -= H z` of a field, whose product with A is given.
+    /// `r -= H z` for a field, from its product with A.
     pub fn subtract(&self, z: &Bordered, product: &[Vector], r: &mut [Vector]) {
         let tangent = self.tangent;
         fields::map(self.problem.threads(), r, |i, r| {
@@ -136,7 +136,8 @@ impl System for TangentSystem<'_> {
     }
 }
 
-/// The pseudo-inverse of a symmetric 2 x 2 matrix, by its eigenvectors: where all slips one way, or one force is given, it is singular.
+/// The pseudo-inverse of a symmetric 2 x 2 matrix, by its eigenvectors. The matrix is singular if all of C slips one way, or if one force
+/// is given.
 pub fn pseudo_inverse([[a, b], [c, d]]: [Vector; 2]) -> [Vector; 2] {
     let off = 0.5 * (b + c);
     let (mean, half) = (0.5 * (a + d), 0.5 * (a - d));

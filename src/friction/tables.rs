@@ -1,9 +1,9 @@
-//! Tangential coefficients of the caller's own: three tables, for whole offsets.
+//! The caller's tangential coefficients: three tables, for whole offsets.
 //!
 //! On a grid coarsened in x the coefficient is the mean displacement of the fine elements of one coarse element by a unit traction on
 //! those of another, `c_H(K) = c(2K-1)/2 + c(2K) + c(2K+1)/2`, and likewise in y, as for the normal coefficients.
 //!
-//! In steady rolling coefficients may be uneven in x. Products know them as they are, and a preconditioner their part that is even, of Axy odd, in x.
+//! In steady rolling coefficients may be uneven in x. Products use them unchanged, a preconditioner their even part in x, for Axy the odd part.
 
 use std::sync::Arc;
 
@@ -20,14 +20,14 @@ pub struct Tables {
     cx: usize,
     cy: usize,
     values: Arc<Vec<Entry>>,
-    /// Where they are uneven in x, of which `values` are the even and odd parts: those at the offsets `1 - cx..cx` by `0..cy`.
+    /// If the coefficients are uneven in x: the coefficients at the offsets `1 - cx..cx` by `0..cy`; `values` are then their even and odd parts.
     uneven: Option<Arc<Vec<Entry>>>,
-    /// Their common factor: a power of two.
+    /// The common factor of the coefficients, a power of two.
     factor: f64,
 }
 
 impl Tables {
-    /// Of tables that were checked.
+    /// Copies checked tables.
     pub fn new(influence: &TangentialInfluence<'_>) -> Result<Tables> {
         match influence.is_uneven() {
             true => Tables::of_uneven(influence.cx, influence.cy, |x, y| influence.at(x, y)),
@@ -51,7 +51,7 @@ impl Tables {
         Ok(Tables { uneven: Some(Arc::new(values)), ..tables })
     }
 
-    /// Whether they are uneven in x.
+    /// Whether the coefficients are uneven in x.
     pub fn is_uneven(&self) -> bool {
         self.uneven.is_some()
     }
@@ -61,7 +61,7 @@ impl Tables {
         self.uneven.as_ref().unwrap_or(&self.values).iter().all(|entry| entry[2] == 0.0)
     }
 
-    /// The coefficients at a whole offset as they are given, not the even part; beyond the tables the outermost serve.
+    /// The given coefficients at a whole offset, not the even part; beyond the tables the outermost ones.
     pub fn whole_at(&self, x: i64, y: i64) -> Entry {
         let Some(values) = &self.uneven else { return self.at(x, y) };
         let last = self.cx as i64 - 1;
@@ -80,17 +80,17 @@ impl Tables {
         Ok(Tables { cx, cy, values: Arc::new(values), uneven: None, factor: 1.0 })
     }
 
-    /// Offsets less than these are in them.
+    /// The tables have offsets below these.
     pub fn reach(&self) -> (usize, usize) {
         (self.cx, self.cy)
     }
 
-    /// The same in units of `unit`.
+    /// The tables in units of `unit`.
     pub fn in_units_of(&self, unit: f64) -> Tables {
         Tables { factor: self.factor / unit, ..self.clone() }
     }
 
-    /// The coefficients at a whole offset; beyond the tables the outermost serve.
+    /// The coefficients at a whole offset; beyond the tables the outermost ones.
     pub fn at(&self, x: i64, y: i64) -> Entry {
         let clamp = |k: i64, c: usize| (k.unsigned_abs() as usize).min(c - 1);
         let [xx, yy, xy] =
@@ -98,7 +98,7 @@ impl Tables {
         [xx, yy, if (x < 0) == (y < 0) { xy } else { -xy }]
     }
 
-    /// On a grid that is coarsened in x, in y, or in both.
+    /// The tables on a grid coarsened in x, in y, or in both.
     pub fn coarsened(&self, in_x: bool, in_y: bool) -> Result<Tables> {
         let stencil = |is_halved: bool, k: i64| match is_halved {
             true => [(2 * k - 1, 0.5), (2 * k, 1.0), (2 * k + 1, 0.5)],

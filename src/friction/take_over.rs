@@ -18,21 +18,21 @@ use crate::memory::{blank, collected, unwritten, zeros};
 use crate::methods::fields;
 use crate::rectangle::Rectangle;
 
-/// Where more than this part of C slips after the step before, Newton's method is the faster one for the next step.
+/// The part of C in slip after a step from which Newton's method is faster for the next step.
 const MOSTLY_SLIP: f64 = 0.8;
 
-/// Rigid slips may be so many times what tractions displace: single precision ends at 1e38.
+/// Largest ratio of rigid slips to displacements by tractions: single precision ends at 1e38.
 pub(super) const LARGEST_RATIO: f64 = 1e30;
-/// And this part of it: the round-off of what pressures displace sideways is a slip, too.
+/// Least ratio: the round-off of sideways displacements by pressures is a slip as well.
 const LEAST_RATIO: f64 = 1e-60;
 
-/// Bounds below this part of the largest carry nothing but round-off, and make a system singular: elements of them are solved as if they carried
-/// nothing, and get what their slip asks for.
+/// Bounds below this fraction of the largest are round-off and make the system singular. Their elements are solved with the bound 0, and get their
+/// traction from the slip.
 const NEGLIGIBLE: f64 = 1e-17;
-/// Tractions before the step are at most so many times the largest bound.
+/// Largest ratio of tractions before the step to the largest bound.
 const LARGEST_BEFORE: f64 = 1e150;
 
-/// Names its memory in messages.
+/// The name of this memory in messages.
 const FIELDS: &str = "tangential fields";
 
 impl Solver {
@@ -44,7 +44,7 @@ impl Solver {
         fields::largest(&threads, rows, of_row)
     }
 
-    /// Room for the result.
+    /// Allocates memory for the result.
     pub(super) fn make_room(&mut self) -> Result<()> {
         if self.solution.traction.is_empty() {
             let n = self.grid.len();
@@ -56,7 +56,7 @@ impl Solver {
         Ok(())
     }
 
-    /// The tractions of the last result become those before the step.
+    /// Keeps the tractions of the last result as those before the step.
     pub(super) fn keep_tractions(&mut self) -> Result<()> {
         let last = &self.solution.traction;
         unwritten(&mut self.before, last.len(), [f64::NAN; 2], FIELDS, &self.threads)?;
@@ -64,7 +64,7 @@ impl Solver {
         Ok(())
     }
 
-    /// g, w, and for rolling the tractions to start from; refuses slips out of range. Returns whether most of C slipped before.
+    /// Sets g, w, and for rolling the initial tractions. Rejects slips out of range. Returns whether most of C slipped before.
     pub(super) fn begin(
         &mut self,
         request: &Request<'_>,
@@ -130,7 +130,7 @@ impl Solver {
         Ok(mostly)
     }
 
-    /// The tractions and the offset to start from, where they are not those before the step.
+    /// Sets the tractions and the offset of a start other than the tractions before the step.
     fn start_from(&mut self, request: &Request<'_>, window: &Rectangle) {
         let scales = self.scales;
         let Level { problem, state, .. } = &mut self.levels[0];
@@ -150,7 +150,7 @@ impl Solver {
         }
     }
 
-    /// w less the displacements before the step, by the tractions that the state holds.
+    /// Subtracts the displacements before the step from w, by the tractions of the state.
     fn leave(&mut self, friction: &Friction<'_>) -> Result<()> {
         let Level { problem, state, .. } = &mut self.levels[0];
         match friction.motion {
@@ -173,13 +173,13 @@ impl Solver {
         Ok(())
     }
 
-    /// What the tractions of full slip displace, on the elements of the last solve.
+    /// The displacement by the tractions of full slip, on the elements of the last solve.
     pub fn full_displacement(&self) -> f64 {
         let displaced = self.levels.first().map_or(0.0, |level| level.problem.displaced_by_bounds());
         self.scales.own_displacement([displaced, 0.0])[0]
     }
 
-    /// Refuses slips that dwarf what tractions displace, and the reverse: products of their ratios are no numbers.
+    /// Rejects slips far above or below displacements by tractions, because products of their ratios overflow.
     fn check_range(&self) -> Result<()> {
         let problem = &self.levels[0].problem;
         let (slip, displaced) = (problem.rms_rigid(), problem.displaced_by_bounds());
@@ -187,7 +187,7 @@ impl Solver {
         if displaced > 0.0
             && (is_far(slip) || is_far(problem.rms_slip()) || slip > 0.0 && !(slip / displaced > LEAST_RATIO))
         {
-            // In the scene's units what is beyond the range of numbers has no number.
+            // A length that overflows in the scene's units has no number.
             let own = self.scales.own_displacement([slip.max(problem.rms_slip()), displaced]);
             let [slip, displaced] =
                 own.map(|length| if length.is_finite() { format!("{length:e}") } else { "1e308 or more".into() });
@@ -200,9 +200,9 @@ impl Solver {
     }
 }
 
-/// Where creepages that are to be found start, what residuals are compared with, and what the slip by spin gains; `last` creepages found.
+/// Sets the start of unknown creepages, the scale of residuals, and the gain of the slip by spin; `last`: the last creepages found.
 fn take_step(problem: &mut Problem, friction: &Friction<'_>, grid: &Grid, (scales, last): (&Scales, Vector)) {
-    // A warm start of steady rolling starts from the last creepages, too.
+    // A warm start of steady rolling includes the last creepages.
     let is_warm = friction.motion == Motion::SteadyRolling && friction.previous == Previous::Kept;
     let found = |k: usize| matches!(friction.prescribed[k], Prescribed::Force(_));
     problem.offset = scales.displacement([0, 1].map(|k| if is_warm && found(k) { last[k] } else { 0.0 }));
@@ -214,7 +214,7 @@ fn take_step(problem: &mut Problem, friction: &Friction<'_>, grid: &Grid, (scale
     problem.ahead = scales.displacement(spin_ahead(friction, grid));
 }
 
-/// The weights of creepages, and what the compliance of a layer is beyond its least, on the elements of a window.
+/// Sets the weights of creepages, and the compliance of a layer beyond its least, on the elements of a window.
 fn take_weights_and_layer(
     problem: &mut Problem,
     friction: &Friction<'_>,
@@ -238,7 +238,7 @@ fn take_weights_and_layer(
     Ok(())
 }
 
-/// The creepage of tractions to start from: with it what sticks does not slip in the mean. 0 where all slips.
+/// The creepage of the tractions of a start: the mean slip of the stick area is then 0. 0 in full slip.
 fn creepage_of(problem: &Problem, state: &State, k: usize) -> f64 {
     let sticks = |i: usize| problem.bound[i] > 0.0 && !is_on_circle(state.q[i], problem.bound[i]);
     let terms = |i: usize| {
@@ -258,7 +258,7 @@ fn creepage_of(problem: &Problem, state: &State, k: usize) -> f64 {
     }
 }
 
-/// Tractions in the units of the iterations; in steady rolling they are only where these start.
+/// Tractions in the units of the iterations, clamped to their range: in steady rolling they only start the iteration.
 fn in_range(q: Vector, scales: &Scales) -> Vector {
     q.map(|q| scales.traction(q).clamp(-LARGEST_BEFORE, LARGEST_BEFORE))
 }

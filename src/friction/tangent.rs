@@ -1,4 +1,4 @@
-//! Which elements stick and which slip, by the natural map, and the tangents of their circles.
+//! The prediction of stick and slip by the natural map, with the tangents of the circles.
 //!
 //! ```text
 //! tau = q - rho s;   slip where |tau| > g
@@ -6,11 +6,11 @@
 //! P v = v on stick,  v - n (n.v) on slip,  0 outside C
 //! ```
 //!
-//! States come from the natural map and not from |q| = g: that makes the iterations robust. On a circle of radius g the slope of the
-//! slip along the tangent is as if a layer of compliance D lay between the bodies.
+//! The natural map, not |q| = g, decides stick or slip, which makes the iterations robust. On a circle of radius g the slope of the slip
+//! along the tangent is that of a layer of compliance D between the bodies.
 //!
-//! Of tractions near their circle n is q/|q| and `D = -(n.s)/g`, which is the same at the solution: the way to the circle is then as short as
-//! it can be, of second order in what is missing.
+//! For tractions near their circle n is q/|q| and `D = -(n.s)/g`, the same at the solution: the step to the circle is then the shortest, of
+//! second order in the error.
 
 use super::certificate::{relative, rest};
 use super::plane::{add, dot, plus, square, Vector};
@@ -19,23 +19,23 @@ use crate::error::Result;
 use crate::memory::zeros;
 use crate::methods::fields::{self, BLOCK};
 
-/// How fast the preconditioner leaves the inverse of A for that of D, as D grows beside the influence of an element on itself.
+/// Weight of D over the influence of an element on itself, in the preconditioner's transition from the inverse of A to that of D.
 pub(super) const MIXED: f64 = 0.5;
 
-/// Tractions are near their circles within this part of the radius.
+/// Distance from the circle, relative to its radius, within which tractions count as near.
 pub(super) const NEAR_THE_CIRCLE: f64 = 0.2;
-/// And where the natural map turns them by less than the angle of this cosine: those against their slip are to turn round.
+/// Least cosine of the angle by which the natural map turns near tractions: tractions along their slip have to turn round.
 pub(super) const ALIGNED: f64 = 0.9;
 
 /// Whether an element sticks or slips.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
-    /// It is not in C.
+    /// The element is not in C.
     #[default]
     Outside,
-    /// It sticks.
+    /// The element sticks.
     Stick,
-    /// It slips.
+    /// The element slips.
     Slip,
 }
 
@@ -55,7 +55,7 @@ pub struct Tangent {
     pub slip_count: usize,
 }
 
-/// How far a state is from a solution.
+/// The measures of a state.
 #[derive(Clone, Copy, Debug)]
 pub struct Measures {
     /// The residual of the certificate.
@@ -64,17 +64,17 @@ pub struct Measures {
     pub excess: f64,
 }
 
-/// The natural map on an element of C: see [`Tangent`]; n is 0 where it sticks.
+/// The prediction for an element of C: see [`Tangent`]; n is 0 on stick.
 pub(super) struct Seen {
     pub side: Side,
     pub normal: Vector,
     pub curvature: f64,
     pub projected: Vector,
-    /// The square of what is left of the slip.
+    /// The square of the slip's residual.
     pub rest: f64,
 }
 
-/// An element of bound g, q and s.
+/// The prediction for an element with q, s and the bound g.
 #[inline]
 pub(super) fn look((q, s): (Vector, Vector), g: f64, (rho, inverse_rho): (f64, f64)) -> Seen {
     let (tau, against, rest) = (plus(q, -rho, s), [-s[0], -s[1]], rest(s, q, g));
@@ -85,7 +85,7 @@ pub(super) fn look((q, s): (Vector, Vector), g: f64, (rho, inverse_rho): (f64, f
     Seen { side: Side::Slip, normal, curvature, projected: plus(against, dot(s, normal), normal), rest }
 }
 
-/// rho of the natural map, at most `most`: by it the slip, as rms over C, moves tractions as far as their bounds.
+/// rho of the natural map, at most `most`, with which the rms slip moves tractions by the rms bound.
 pub(super) fn rho_of((bound, slip): (f64, f64), most: f64) -> f64 {
     if slip > 0.0 {
         most.min(bound / slip)
@@ -106,7 +106,7 @@ pub(super) fn project(n: Vector, v: Vector) -> Vector {
     plus(v, -dot(v, n), n)
 }
 
-/// n and D of an element that slips.
+/// n and D of a slipping element.
 #[inline]
 fn normal_and_curvature((q, s): (Vector, Vector), g: f64, tau: Vector, inverse_rho: f64) -> (Vector, f64) {
     let (length, reach) = (square(q).sqrt(), square(tau).sqrt());
@@ -118,7 +118,7 @@ fn normal_and_curvature((q, s): (Vector, Vector), g: f64, tau: Vector, inverse_r
 }
 
 impl Tangent {
-    /// Memory for n elements, where there is none yet.
+    /// Makes memory for n elements, unless it is there.
     pub fn fit(&mut self, n: usize) -> Result<()> {
         let what = "the stick and slip areas";
         if self.projected.len() != n {
@@ -137,10 +137,10 @@ impl Tangent {
         self.projected.capacity() * each
     }
 
-    /// Predicts from q and its displacements.
+    /// Predicts stick and slip from q and its displacements.
     pub fn predict(&mut self, problem: &Problem, state: &State, rho: f64) -> Measures {
         let (u, a0, inverse_rho) = (&state.u, problem.operators.self_influence, 1.0 / rho);
-        // In steady rolling a0 is that of a step, which a layer does not shorten.
+        // In steady rolling a0 belongs to the step, which a layer does not change.
         let share = a0 / problem.operators.greatest();
         let beyond = |i: usize| problem.operators.excess.as_ref().map_or(0.0, |excess| share * excess.at(i));
         let Tangent { side, normal, curvature, mixing: mixings, projected, .. } = self;
@@ -155,7 +155,7 @@ impl Tangent {
                     let i = start + k;
                     let g = problem.bound[i];
                     if !(g > 0.0) {
-                        // Most have been there before.
+                        // Most elements outside were outside before.
                         if side[k] != Side::Outside {
                             (side[k], curvature[k], projected[k]) = (Side::Outside, 0.0, [0.0; 2]);
                         }
@@ -191,14 +191,15 @@ impl Tangent {
         }
     }
 
-    /// `z = P(E X' M X E r) + (1 - E) r/(D + a0)`, `E = 1/(1 + D/(2 a0))`, for r of which P r = r and which is 0 outside C: the circulant
-    /// inverse M of A with residuals continued beside C by X (see [`Extension`](crate::methods::extension::Extension)) and, where the curvature D
-    /// dominates, its own inverse. What a layer between the bodies is beyond its least compliance adds to D: there, too. In steady rolling, `B = A d`, with x of `d x = E M E r` in the place of the first term (see [`Sweep`](super::sweep::Sweep)).
+    /// `z = P(E X' M X E r) + (1 - E) r/(D + a0)`, `E = 1/(1 + D/(2 a0))`, for r = P r, 0 outside C: the circulant inverse M of A, with residuals
+    /// extended beside C by X (see [`Extension`](crate::methods::extension::Extension)), and a diagonal inverse where the curvature D dominates.
+    /// The compliance of a layer beyond its least adds to D. In steady rolling, with `B = A d`, the first term has x from `d x = E M E r`
+    /// (see [`Sweep`](super::sweep::Sweep)).
     pub fn precondition(&self, problem: &mut Problem, r: &[Vector], unit: f64, mixed: &mut [Vector], z: &mut [Vector]) {
         let a0 = problem.operators.self_influence;
         let threads = problem.threads().clone();
         self.invert(problem, r, unit, mixed, z);
-        // The own inverse, where something slips or a layer is softer than elsewhere.
+        // The diagonal inverse, on slip or where a layer is softer than elsewhere.
         let beyond = |i: usize| problem.operators.excess.as_ref().map_or(0.0, |excess| excess.at(i));
         let own = |i: usize| match self.side[i] {
             Side::Outside => 0.0,
@@ -215,7 +216,7 @@ impl Tangent {
             sweep.solve(&problem.grid, |i| self.mixing[i], project, &threads, z);
             return fields::map(&threads, z, |i, z| plus(z, own(i), r[i]));
         }
-        // The displacement of a layer is rolled over, too: (a + r) x goes from element to element, for r differs.
+        // A step of rolling differences the layer's displacement as well: the sweep carries (a + r) x, as r differs by element.
         let a = problem.operators.greatest();
         let soft = |i: usize| (a + beyond(i)) / a;
         let of_layer = |i: usize| match self.side[i] {
@@ -228,17 +229,17 @@ impl Tangent {
         fields::map(&threads, z, |i, z| plus(z.map(|z| z / soft(i)), after(i), r[i]));
     }
 
-    /// `z = X' M X E r`, of no meaning outside C. `mixed` is overwritten.
+    /// `z = X' M X E r`, undefined outside C. `mixed` is overwritten.
     fn invert(&self, problem: &mut Problem, r: &[Vector], unit: f64, mixed: &mut [Vector], z: &mut [Vector]) {
         let (threads, n) = (problem.threads().clone(), r.len());
         let compliance = problem.operators.relative_compliance();
         let Problem { operators, extension, .. } = problem;
-        // The sweep starts from nothing at each leading edge: what is beside C does not help it.
+        // Without extension: in rolling the sweep starts from 0 at each leading edge, and values beside C do not help.
         let Some(extension) = extension else {
             fields::fill(&threads, mixed, |i| r[i].map(|r| self.mixing[i] * r));
             return operators.precondition(mixed, unit, z);
         };
-        // By component: both fields have room for that.
+        // By component, in the memory of both fields.
         let (x, y) = z.as_flattened_mut().split_at_mut(n);
         for (component, given) in [&mut *x, &mut *y].into_iter().enumerate() {
             threads.for_each_plain_row(given, BLOCK, |k, given| {

@@ -1,10 +1,10 @@
 //! Products `u = A q` of tractions, by [`VectorProduct`].
 //!
-//! Axx and Ayy are even in both directions, Axy is odd in both. So are they in steady rolling by whole elements along x, of which a product
-//! takes the differences; between the centres, of which rolling asks else, they are neither.
+//! Axx and Ayy are even in both directions, Axy is odd in both. Steady rolling by whole elements along x uses differences of such products. In other
+//! steps of rolling coefficients lie between the centres and are neither even nor odd.
 //!
-//! Without Axy (a Poisson ratio of 0, a single row) a traction in one direction displaces in that direction only: the other component is exactly
-//! 0, and takes no time where it is zero.
+//! Without Axy (a Poisson ratio of 0, a single row) a traction displaces in its own direction only: the other component is exactly 0, and a zero
+//! component takes no time.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -24,14 +24,14 @@ use crate::threads::Threads;
 /// Displacements at the centres.
 const HERE: (f64, f64) = (0.0, 0.0);
 
-/// A period that steps by whole elements lengthen by this part at most is worth the half of the symbol that is not kept, and three quarters of its
-/// set-up.
+/// Steps by whole elements that lengthen the period by at most one part in this many use the even product: it saves half of the symbol and three
+/// quarters of its set-up.
 const LONGER: usize = 8;
 
 /// The operator of one grid.
 pub struct Toeplitz<T: Real> {
     product: VectorProduct<T>,
-    /// Coefficients are kept in this unit, a power of two: single precision has a small range.
+    /// The unit of the coefficients, a power of two, for the range of single precision.
     unit: f64,
 }
 
@@ -41,13 +41,13 @@ impl<T: Real> Toeplitz<T> {
         Toeplitz::direct(&Quadrant::new(tangential, grid, HERE, threads)?, grid, threads)
     }
 
-    /// The inverse of a circulant near A, with a period one element longer than the grid: a preconditioner. None where that is not
-    /// positive definite.
+    /// The inverse of a circulant near A, with a period one element longer than the grid: a preconditioner. None if the circulant is
+    /// not positive definite.
     pub fn inverse(tangential: &Tangential, grid: &Grid, threads: &Threads) -> Result<Option<Toeplitz<T>>> {
         Toeplitz::nearly_inverse(&Quadrant::new(tangential, grid, HERE, threads)?, grid, threads)
     }
 
-    /// Products whose displacements are taken at `(x, y)` from each centre, in elements.
+    /// Products with displacements at `(x, y)` from each centre, in elements.
     pub fn displaced(tangential: &Tangential, grid: &Grid, by: (f64, f64), threads: &Threads) -> Result<Toeplitz<T>> {
         let quadrant = Quadrant::new(tangential, grid, by, threads)?;
         if let Some(n) = whole_step(grid, by) {
@@ -57,7 +57,7 @@ impl<T: Real> Toeplitz<T> {
         Toeplitz::general((&quadrant, by), grid, |x, y| quadrant.displaced(x, y, by), threads)
     }
 
-    /// Products with coefficients that were computed.
+    /// Products with computed coefficients.
     pub fn direct(quadrant: &Quadrant, grid: &Grid, threads: &Threads) -> Result<Toeplitz<T>> {
         Toeplitz::even(quadrant, grid, 0, threads)
     }
@@ -85,7 +85,7 @@ impl<T: Real> Toeplitz<T> {
         Toeplitz::general((quadrant, by), grid, fill, threads)
     }
 
-    /// With a period for offsets of so many elements more in x.
+    /// Even products, with a period for `more` offsets in x.
     fn even(quadrant: &Quadrant, grid: &Grid, more: usize, threads: &Threads) -> Result<Toeplitz<T>> {
         let (given, unit) = ((grid.mx + more, grid.my), unit_of(quadrant.at(0, 0)[0]));
         let coefficients = EvenMatrix {
@@ -98,8 +98,8 @@ impl<T: Real> Toeplitz<T> {
         Ok(Toeplitz { product: VectorProduct::even((grid.mx, grid.my), period, &coefficients, threads)?, unit })
     }
 
-    /// See [`inverse`](Self::inverse). Where coatings are membranes coefficients that end at half a period may not be positive definite, and
-    /// waves serve.
+    /// See [`inverse`](Self::inverse). For coatings that are membranes, coefficients cut at half a period may not be positive definite: their inverse
+    /// is made from waves.
     pub fn nearly_inverse(quadrant: &Quadrant, grid: &Grid, threads: &Threads) -> Result<Option<Toeplitz<T>>> {
         let (period, given) = circulant_period(grid);
         if let Some(of_wave) = quadrant.tangential().of_waves().filter(|_| grid.mx > 1 && grid.my > 1) {
@@ -127,7 +127,7 @@ impl<T: Real> Toeplitz<T> {
         Ok(is_positive.into_inner().then_some(Toeplitz { product, unit }))
     }
 
-    /// The inverse of what waves of a period displace, by their wave vectors in elements.
+    /// The inverse of the responses to the waves of a period, by their wave vectors in elements.
     fn inverse_of_waves(
         quadrant: &Quadrant,
         (grid, (px, py)): (&Grid, (usize, usize)),
@@ -143,7 +143,7 @@ impl<T: Real> Toeplitz<T> {
                 [0, 1, 2].map(|k| sum[k] + mean_x * mean_y * entry[k])
             })
         };
-        // The mean displaces as the longest waves do.
+        // The mean gets the response of the longest waves.
         let mean = [wave(1, 0), wave(0, 1)].iter().fold(0.0, |most: f64, [xx, yy, _]| most.max(*xx).max(*yy));
         let inverse = |kx: usize, ky: usize| {
             let [xx, yy, xy] = if (kx, ky) == (0, 0) { [mean, mean, 0.0] } else { wave(kx, ky) };
@@ -156,7 +156,7 @@ impl<T: Real> Toeplitz<T> {
         Ok(Toeplitz { product, unit })
     }
 
-    /// Of coefficients that are neither even nor odd: `at(x, y)` gives those of an offset.
+    /// Products with coefficients `at(x, y)` of offsets that are neither even nor odd.
     fn general(
         (quadrant, by): (&Quadrant, (f64, f64)),
         grid: &Grid,
@@ -181,7 +181,7 @@ impl<T: Real> Toeplitz<T> {
         Ok(self.product.memory()?)
     }
 
-    /// The same operator in another precision.
+    /// The operator in another precision.
     pub fn in_precision<S: Real>(&self) -> Result<Toeplitz<S>> {
         Ok(Toeplitz { product: self.product.in_precision()?, unit: self.unit })
     }
@@ -191,7 +191,7 @@ impl<T: Real> Toeplitz<T> {
         self.product.bytes()
     }
 
-    /// `u = A q`. Values of q are computed with in units of `unit`, a power of two.
+    /// `u = A q`, computed with q in units of `unit`, a power of two.
     pub fn apply(&self, q: &[Vector], unit: f64, u: &mut [Vector], memory: &mut Memory<T>) {
         let (mx, my) = self.product.grid();
         assert!(q.len() == mx * my && u.len() == mx * my, "fields of another grid");
@@ -213,7 +213,7 @@ impl<T: Real> Toeplitz<T> {
         self.product.apply(loaded.map(range), load, (pieces, write), memory);
     }
 
-    /// The same of fields by component, in any precision, q times the first of the scales, and u times the second.
+    /// `u = A q` for fields by component in any precision, q times the first of the scales, and u times the second.
     pub fn apply_by_component<S: Real>(
         &self,
         q: [&[S]; 2],
@@ -241,13 +241,13 @@ impl<T: Real> Toeplitz<T> {
         self.product.apply(loaded.map(range), load, (x.zip(y), write), memory);
     }
 
-    /// The factor of q, and of u, where q is in units of `unit`.
+    /// The factors of q and of u for q in units of `unit`.
     pub fn scales(&self, unit: f64) -> [f64; 2] {
         [1.0 / unit, unit * self.unit]
     }
 }
 
-/// A wave of a period, per element, and the longest that is the same at the centres: with the mean of each over an element.
+/// A wave of a period, per element, and its longest alias, each with its mean over an element.
 fn aliases(k: usize, period: usize) -> [(f64, f64); 2] {
     let half = PI * k as f64 / period as f64;
     let mean = |half: f64| if half == 0.0 { 1.0 } else { half.sin() / half };
@@ -260,21 +260,21 @@ fn inverted([xx, yy, xy]: [f64; 3]) -> ([f64; 3], f64) {
     ([yy, xx, -xy].map(|value| value / determinant), determinant)
 }
 
-/// Whole elements in x, if a step is that and short.
+/// The whole elements of a short step along x; none for other steps.
 fn whole_step(grid: &Grid, by: (f64, f64)) -> Option<i64> {
     (by.1 == 0.0 && by.0.fract() == 0.0 && by.0.abs() * LONGER as f64 <= grid.mx as f64).then_some(by.0 as i64)
 }
 
-/// The run of rows outside of which nothing is loaded: the first, and that behind the last; the number of rows and 0 if nothing is.
+/// The range of loaded rows: the first, and the one behind the last; the number of rows and 0 if none is loaded.
 fn rows_with<A>(q: &[A], mx: usize, is_loaded: impl Fn(&A) -> bool) -> (usize, usize) {
-    // All of a row, which the compiler can vectorise.
+    // All of a row: the compiler vectorises this.
     let has_any = |row: &[A]| row.iter().fold(false, |any, q| any | is_loaded(q));
     let first = q.chunks_exact(mx).position(has_any);
     let last = q.chunks_exact(mx).rposition(has_any);
     first.zip(last).map_or((q.len() / mx, 0), |(first, last)| (first, last + 1))
 }
 
-/// As a range: nothing where the first is not before the last.
+/// The rows as a range, empty if the first is not before the last.
 fn range((first, last): (usize, usize)) -> Range<usize> {
     first.min(last)..last
 }

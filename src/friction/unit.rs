@@ -1,6 +1,6 @@
-//! Units: powers of two, by which no bit changes.
+//! Units. They are powers of two, so that scaling is exact.
 
-/// The power of two next to a value.
+/// A power of two near a value.
 pub fn unit_of(value: f64) -> f64 {
     if value.is_normal() {
         value.abs().log2().round().exp2()

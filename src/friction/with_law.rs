@@ -1,4 +1,4 @@
-//! A [law](super::law) or a layer that yields, in the units of the iterations, and what particles carry from step to step.
+//! A [law](super::law) or a yielding layer in the units of the iterations, and the state of particles from step to step.
 
 use super::law::{Law, March, Particle, Place};
 use super::solution::{PLASTIC, SLIP};
@@ -14,12 +14,12 @@ pub(super) struct Had<'a> {
     friction: &'a Friction<'a>,
     kept: &'a [Particle],
     grid: Grid,
-    /// How a step of transient rolling takes them along.
+    /// The weights with which a step of transient rolling moves particles.
     sweep: Option<Sweep>,
 }
 
 impl Had<'_> {
-    /// Of the particle that lies on element i after the step.
+    /// The state before the step of the particle on element i after it.
     pub(super) fn at(&self, i: usize) -> Particle {
         if self.friction.motion == Motion::SteadyRolling {
             return self.fresh(i);
@@ -57,7 +57,7 @@ impl Had<'_> {
 }
 
 impl Solver {
-    /// The state of the particles at the end of the last step becomes that before this one.
+    /// Keeps the particles' state of the last step as that before this step.
     pub(super) fn keep_particles(&mut self) {
         self.particles_before.clone_from(&self.solution.particles);
     }
@@ -82,12 +82,12 @@ impl Solver {
         Had { friction, kept, grid, sweep }
     }
 
-    /// The state of the particle of element i before the step, in the units of the iterations.
+    /// A particle's state in the units of the iterations.
     pub(super) fn scaled(&self, particle: Particle) -> Particle {
         Particle { yield_limit: self.scales.traction(particle.yield_limit), ..particle }
     }
 
-    /// Room for what particles carry after the step, and what they had before; none without a law and a layer.
+    /// The march over particles with their state before the step, and memory for that after it; none without a law or a layer.
     pub(super) fn march(&self, friction: &Friction<'_>, pressure: &[f64]) -> Result<Option<(March, Vec<Particle>)>> {
         if friction.law.is_none() && friction.layer.is_none() {
             return Ok(None);
@@ -103,13 +103,13 @@ impl Solver {
         Ok(Some((march, particles)))
     }
 
-    /// The state of the particles after the step, and the elements that the layer bounds.
+    /// Writes the particles' state after the step, and marks the elements bounded by the layer.
     pub(super) fn write_particles(&mut self, march: Option<(March, Vec<Particle>)>) {
         let (solution, scales) = (&mut self.solution, self.scales);
         let Some((mut march, mut particles)) = march else { return solution.particles.clear() };
         let law = march.law;
         march.go(|i, place, had| {
-            // Elements without friction are those outside of contact for particles, as in the iteration.
+            // For particles, elements without friction are outside the contact, as in the iteration.
             let slips = solution.stick_slip[i] == SLIP && place.coefficient > 0.0;
             let [x, y] = if slips { scales.displacement(solution.slip[i]) } else { [0.0; 2] };
             let response = law.at(x.hypot(y), place, had);

@@ -1,30 +1,31 @@
-//! The temperature rise by a source of heat on an element of a half-space that moves.
+//! The temperature rise by a heat source on an element of a moving half-space.
 //!
-//! A point source of strength 1 on the surface of a body that moves past it at speed V, of conductivity lambda and diffusivity kappa, heats the
-//! surface by (Jaeger 1942; Carslaw & Jaeger, section 10.7)
+//! A point source of strength 1 heats the surface of a body that moves past it at speed V, of conductivity lambda and diffusivity kappa, by
+//! (Jaeger 1942; Carslaw & Jaeger, section 10.7)
 //!
 //! ```text
 //! T = 1/(2 pi lambda r) exp(-P (r - x)),    P = V/(2 kappa),    x downstream of the source
 //! ```
 //!
-//! once that is steady. Over an element, with `y = |x| sinh t`:
+//! in the steady state. Over an element, with `y = |x| sinh t`:
 //!
 //! ```text
 //! lambda T = integral of g(x) dx,    g(x) = 1/(2 pi) integral of exp(-P (|x| cosh t - x)) dt
 //! ```
 //!
-//! g has a logarithm at x = 0, and behind a fast source the root of 1/x: `x = L s^4` makes both smooth. It changes where x is half the width of the element, and
-//! 1/P: up to the nearer of both that rule serves, and beyond panels each [`WIDER`] than the one before. Without motion it is Love's integral.
+//! g has a logarithm at x = 0, and behind a fast source the root of 1/x: `x = L s^4` makes both smooth. g changes on the scales of half the width of
+//! the element and of 1/P: up to the smaller one this rule is used, beyond it panels, each [`WIDER`] than the one before. Without motion the integral
+//! is Love's.
 
 use std::f64::consts::PI;
 
-/// Exponents beyond do not count: e^-40 is round-off.
+/// Exponents beyond are dropped: e^-40 is round-off.
 const FADED: f64 = 40.0;
-/// Panels in t are at most so long, and of so many nodes: exp(-a cosh t) is integrated to 1e-10.
+/// Longest panel in t, on which the rule integrates exp(-a cosh t) to 1e-10.
 const PANEL: f64 = 2.0;
-/// Of panels in x: their ends have this ratio.
+/// Ratio of the ends of panels in x.
 const WIDER: f64 = 4.0;
-/// The first of them is at least this part of an element.
+/// Least length of the first panel in x, as a part of an element.
 const SHORTEST: f64 = 1e-6;
 
 /// Nodes and weights on [0, 1].
@@ -42,7 +43,7 @@ pub fn of_element((x, y): (f64, f64), (dx, dy): (f64, f64), wave: f64, rule: &Ru
     let behind =
         |from: f64, to: f64| along((from, to), near, rule, |distance| strip(distance, edges, (wave, true), rule));
     let ahead = |from: f64, to: f64| {
-        // It fades as exp(-2 P x).
+        // Ahead, g decays as exp(-2 P x).
         let to = to.min(from + 0.5 * FADED / wave);
         along((from, to), near, rule, |distance| strip(distance, edges, (wave, false), rule))
     };
@@ -61,7 +62,7 @@ fn love((x, y): (f64, f64), (dx, dy): (f64, f64)) -> f64 {
     corner(right, high) - corner(left, high) - corner(right, low) + corner(left, low)
 }
 
-/// The integral of a function of the distance, which at 0 may have a logarithm or the root of 1/x, and changes from `near` on.
+/// The integral of a function of the distance with a logarithm or the root of 1/x at 0, which changes on the scale `near`.
 fn along((from, to): (f64, f64), near: f64, rule: &Rule, f: impl Fn(f64) -> f64) -> f64 {
     let (mut start, mut sum) = (from, 0.0);
     if !(from > 0.0) {
@@ -77,7 +78,7 @@ fn along((from, to): (f64, f64), near: f64, rule: &Rule, f: impl Fn(f64) -> f64)
     sum
 }
 
-/// g at a distance behind the source or ahead of it, of a strip between two edges in y; the first may be negative.
+/// g of a strip between two edges in y, at a distance behind the source or ahead of it; the first edge may be negative.
 fn strip(distance: f64, (low, high): (f64, f64), (wave, behind): (f64, bool), rule: &Rule) -> f64 {
     let a = 2.0 * wave * distance;
     // -P (|x| cosh t - x) = -a sinh^2(t/2) behind, -a cosh^2(t/2) ahead.

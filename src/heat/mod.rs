@@ -1,12 +1,12 @@
-//! Flash temperature: how much a flux of heat through the contact, that of friction, raises the temperature of both surfaces, once that is steady.
+//! Flash temperature: the steady temperature rise of both surfaces by a heat flux through the contact, that of friction.
 //!
 //! Each body is a half-space whose surface moves past the contact. The heat flux is constant on elements, a part of it goes into body 1 and the
-//! rest into body 2. The part is given, or that for which the largest temperatures of both are the same (Blok 1937): where each of both gets warmer than
-//! 0 somewhere, else it is one half. A flux below 0 cools.
+//! rest into body 2. The part is given, or such that the largest temperatures of both are equal (Blok 1937), if both bodies have a positive rise
+//! somewhere, else one half. A flux below 0 cools.
 //!
-//! | module | what it holds |
+//! | module | contents |
 //! |---|---|
-//! | `kernel` | the temperature by one element |
+//! | `kernel` | the temperature rise by one element |
 
 mod kernel;
 
@@ -19,36 +19,36 @@ use crate::threads::Threads;
 
 /// Nodes of the rule for the temperature by one element.
 const NODES: usize = 20;
-/// Names its memory in messages.
+/// The name of this memory in messages.
 const FIELDS: &str = "the flash temperature";
 
-/// The heat that flows, and the bodies that it flows through.
+/// The heat flux, and the bodies.
 #[derive(Clone, Copy, Debug)]
 pub struct Heat<'a> {
     /// The elements.
     pub grid: Grid,
-    /// Of each element, `[my][mx]`: a power per area, below 0 where it cools.
+    /// The flux of each element, `[my][mx]`: a power per area; below 0 it cools.
     pub flux: &'a [f64],
     /// lambda of body 1 and 2: power per length and temperature.
     pub conductivity: [f64; 2],
     /// kappa = lambda/(rho c) of both: area per time.
     pub diffusivity: [f64; 2],
-    /// How fast each surface moves in x, past the contact: length per time, of any sign; 0: it stands still.
+    /// The speed of each surface in x past the contact: length per time, of any sign.
     pub speed: [f64; 2],
-    /// The part of the heat that goes into body 1; none: that for which the largest temperatures of both are the same.
+    /// The part of the heat that goes into body 1; none: such that the largest temperatures of both are equal.
     pub share: Option<f64>,
 }
 
-/// How warm the surfaces get, above their temperature far away.
+/// The temperature rise of the surfaces, above the temperature far away.
 #[derive(Clone, Debug)]
 pub struct Flash {
-    /// Of body 1 and 2, `[my][mx]` each.
+    /// The rise of body 1 and 2, `[my][mx]` each.
     pub rise: [Vec<f64>; 2],
     /// The part of the heat that goes into body 1.
     pub share: f64,
-    /// The largest of each body.
+    /// The largest rise of each body.
     pub largest: [f64; 2],
-    /// Where that is: elements.
+    /// The elements of the largest rises.
     pub at: [usize; 2],
 }
 
@@ -71,7 +71,7 @@ impl Heat<'_> {
         }
     }
 
-    /// lambda T of element offsets, by a unit flux, of a body that moves.
+    /// lambda T at element offsets by a unit flux, for a moving body.
     fn table(&self, b: usize, threads: &Threads) -> Result<Table> {
         let Grid { mx, my, dx, dy } = self.grid;
         let (wave, rule) = (self.speed[b].abs() / (2.0 * self.diffusivity[b]), gauss_legendre(NODES));
@@ -90,14 +90,14 @@ impl Heat<'_> {
             below[(my - ky) * 2 * mx..][..2 * mx].copy_from_slice(&above[ky * 2 * mx..][..2 * mx]);
         }
         let own = values[2 * mx * my + mx];
-        // All of a row's are sums of the same kind: those that are none are so for the speed.
+        // Values that are not finite are due to the speed.
         let is_within = own > 0.0 && values.iter().all(|value| value.is_finite());
         let (speed, diffusivity) = (self.speed[b], self.diffusivity[b]);
         require_range(is_within, || format!("speed[{b}] is {speed:e} with diffusivity[{b}] of {diffusivity:e}"))?;
         Table::new(mx, my, &values, &self.grid)
     }
 
-    /// lambda times the rise of a body that takes all of the heat.
+    /// lambda times the rise of a body with all of the heat.
     fn alone(&self, b: usize, threads: &Threads) -> Result<Vec<f64>> {
         let coefficients = Coefficients::from(self.table(b, threads)?);
         let operator = Operator::<f64>::new(&coefficients, &self.grid, threads)?;
@@ -106,7 +106,7 @@ impl Heat<'_> {
         Ok(rise)
     }
 
-    /// The rise of each body that takes all of the heat. Where both have the same speed and diffusivity one product serves both.
+    /// The rise of each body with all of the heat. If both have the same speed and diffusivity, one product serves both.
     fn each(&self, threads: &Threads) -> Result<[Vec<f64>; 2]> {
         let first = self.alone(0, threads)?;
         let is_same = self.speed[0] == self.speed[1] && self.diffusivity[0] == self.diffusivity[1];
@@ -123,7 +123,7 @@ impl Heat<'_> {
     }
 }
 
-/// Refuses temperatures that are no numbers; what makes them so.
+/// Refuses temperatures that are not finite, with the reason.
 fn require_range(is_within: bool, reason: impl FnOnce() -> String) -> Result<()> {
     match is_within {
         true => Ok(()),
@@ -134,7 +134,7 @@ fn require_range(is_within: bool, reason: impl FnOnce() -> String) -> Result<()>
 /// The flash temperatures of both bodies.
 ///
 /// # Errors
-/// `InvalidArgument`, `NotFinite`: numbers out of their range, a flux that has not one value per element, temperatures beyond the range of numbers.
+/// `InvalidArgument`, `NotFinite`: numbers out of their range, a flux without one value per element, temperatures that overflow.
 /// `OutOfMemory`.
 pub fn flash_temperature(heat: &Heat<'_>, threads: &Threads) -> Result<Flash> {
     heat.check()?;
@@ -145,7 +145,7 @@ pub fn flash_temperature(heat: &Heat<'_>, threads: &Threads) -> Result<Flash> {
     };
     let tops = [top(&rise[0]), top(&rise[1])];
     let [first, second] = tops.map(|(_, top)| top);
-    // Without any heat both are the same whatever the part.
+    // Without heat the part is arbitrary.
     let equal = if first > 0.0 && second > 0.0 { 1.0 / (1.0 + first / second) } else { 0.5 };
     let share = heat.share.unwrap_or(equal);
     let parts = [share, 1.0 - share];

@@ -22,22 +22,22 @@ impl<K: Kernel + 'static> From<K> for Coefficients {
 }
 
 impl Coefficients {
-    /// Those of a kernel alone.
+    /// The coefficients of a kernel alone.
     pub fn new(kernel: Arc<dyn Kernel>) -> Coefficients {
         Coefficients { kernel, diagonal: None, coupling: None }
     }
 
-    /// The same with another kernel.
+    /// These coefficients with another kernel.
     pub fn with_kernel(self, kernel: Arc<dyn Kernel>) -> Coefficients {
         Coefficients { kernel, ..self }
     }
 
-    /// The same with a compliant layer.
+    /// These coefficients with a compliant layer.
     pub fn with_layer(self, layer: Layer) -> Coefficients {
         Coefficients { diagonal: Some(layer), ..self }
     }
 
-    /// The same, scaled between patches.
+    /// These coefficients scaled between patches.
     pub fn with_patches(self, patches: Patches) -> Coefficients {
         Coefficients { coupling: Some(patches), ..self }
     }
@@ -62,19 +62,19 @@ impl Coefficients {
         self.least() + self.diagonal().map_or(0.0, |more| more[i])
     }
 
-    /// The coefficient at offset `(kx, ky)`, without factors between patches; of row tables the mean over rows.
+    /// The coefficient at offset `(kx, ky)`, without factors between patches; for row tables the mean over rows.
     pub fn at(&self, kx: i64, ky: i64) -> f64 {
         let layer = if (kx, ky) == (0, 0) { self.least() } else { 0.0 };
         self.kernel.at(kx, ky) + layer
     }
 
-    /// `A_IJ` of elements i and j of `grid`: all that A is.
+    /// `A_IJ` of elements i and j of `grid`, with all effects.
     pub fn entry(&self, grid: &Grid, i: usize, j: usize) -> f64 {
         let place = |i: usize| ((i % grid.mx) as i64, (i / grid.mx) as i64);
         self.entry_of(self.kernel.between(place(j), place(i)), i, j)
     }
 
-    /// The same, where that of the kernel is known.
+    /// `A_IJ` from the known coefficient of the kernel.
     pub fn entry_of(&self, kernel: f64, i: usize, j: usize) -> f64 {
         let coupled = self.coupling.as_ref().map_or(kernel, |patches| patches.between(i, j) * kernel);
         match i == j {
@@ -89,7 +89,7 @@ impl Coefficients {
         self.add_layer(kx, ky, out);
     }
 
-    /// The same of what is symmetric of the coefficients.
+    /// Fills `out[k]` with the symmetric part of the coefficients, as [`Kernel::fill_symmetric_row`].
     pub fn fill_symmetric_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
         self.kernel.fill_symmetric_row(kx, ky, out);
         self.add_layer(kx, ky, out);
@@ -101,9 +101,8 @@ impl Coefficients {
         }
     }
 
-    /// Fills `out[k]` with what is even of the coefficients at offsets `(+-k, +-ky)`, for preconditioners: with a
-    /// typical layer. Where a uniform pressure displaces nothing it gets a response: that of the layer, which is its mean, or without one
-    /// the kernel's own.
+    /// Fills `out[k]` with the even part of the coefficients at offsets `(+-k, +-ky)` and a typical layer, for preconditioners. A uniform
+    /// pressure that displaces nothing gets a response: that of the mean layer, or without a layer that of the kernel.
     pub fn fill_even_row(&self, ky: i64, out: &mut [f64]) {
         self.kernel.fill_even_row(ky, out);
         let constant = match &self.diagonal {
@@ -118,7 +117,7 @@ impl Coefficients {
         }
     }
 
-    /// The displacement of a pressure wave, where that and not coefficients makes a preconditioner: with a typical layer.
+    /// The displacement of a pressure wave with a typical layer, if the preconditioner is made from waves and not from coefficients.
     pub fn wave(&self, grid: &Grid, kx: f64, ky: f64) -> Option<f64> {
         let layer = self.diagonal.as_ref().map_or(0.0, |layer| layer.typical);
         self.kernel.wave(grid, kx, ky).map(|value| value + layer)
@@ -139,12 +138,12 @@ impl Coefficients {
         self.kernel.is_symmetric(grid)
     }
 
-    /// In which directions A is circulant on `grid`, not only Toeplitz.
+    /// The directions in which A is circulant on `grid`, not only Toeplitz.
     pub fn repeats(&self, grid: &Grid) -> (bool, bool) {
         self.kernel.repeats(grid)
     }
 
-    /// The diagonal of A beyond the coefficient at offset (0, 0), per element; none where it is the same everywhere.
+    /// The diagonal of A beyond the coefficient at offset (0, 0), per element; none if it is uniform.
     pub fn diagonal(&self) -> Option<&[f64]> {
         self.diagonal.as_ref().and_then(Layer::more)
     }
@@ -154,12 +153,12 @@ impl Coefficients {
         self.coupling.as_ref()
     }
 
-    /// Tables of loaded rows, and what a layer adds to all of them at offset (0, 0).
+    /// Tables of loaded rows, and the compliance that a layer adds to all of them at offset (0, 0).
     pub fn row_tables(&self) -> Option<(&RowTables, f64)> {
         RowTables::of(&*self.kernel).map(|tables| (tables, self.least()))
     }
 
-    /// Whether A is more than coefficients of offsets: then a part of the grid has an operator of its own, wherever it is.
+    /// Whether A depends on more than offsets, so that the operator of a part of the grid depends on its place.
     pub fn depends_on_place(&self) -> bool {
         self.diagonal().is_some() || self.patches().is_some() || self.row_tables().is_some()
     }
@@ -169,23 +168,23 @@ impl Coefficients {
         self.diagonal.is_none() && self.kernel.is_mean_free()
     }
 
-    /// An element's influence on itself, of the kernel: without a constant that is negative, which is no part of what the element does.
+    /// The kernel's influence of an element on itself, without a negative constant, which is not due to the element.
     fn kernel_on_itself(&self) -> f64 {
         self.kernel.at(0, 0) - self.kernel.constant().min(0.0)
     }
 
-    /// The same with the least layer.
+    /// An element's influence on itself, with the least layer.
     pub fn self_influence(&self) -> f64 {
         self.kernel_on_itself() + self.least()
     }
 
-    /// The coefficients by which a prescribed force is solved: without the [constant](Kernel::constant) of the kernel. None where that is 0.
+    /// The coefficients for a prescribed force: without the [constant](Kernel::constant) of the kernel. None if the constant is 0.
     pub fn without_constant(&self) -> Option<Coefficients> {
         self.kernel.without_constant().map(|kernel| self.clone().with_kernel(kernel))
     }
 
-    /// For preconditioners, which know one compliance: coefficients of several, and the weights of the elements with each. No weights:
-    /// the layer is the same everywhere.
+    /// Coefficients of several compliances for preconditioners, which have one each, with the weights of the elements in each. No weights: the
+    /// layer is uniform.
     pub fn levels(&self) -> Result<Vec<(Coefficients, Vec<f64>)>> {
         let Some(layer) = &self.diagonal else { return Ok(vec![(self.clone(), Vec::new())]) };
         let levels = layer.levels(self.kernel_on_itself())?.into_iter();

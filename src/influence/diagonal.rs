@@ -1,7 +1,7 @@
-//! The diagonal of A: a thin compliant layer, `A p + c p`, that of element I giving way by `c_I p_I` (Johnson, Contact Mechanics,
+//! The diagonal of A: a thin compliant layer, `A p + c p`, whose displacement at element I is `c_I p_I` (Johnson, Contact Mechanics,
 //! section 4.3: an elastic foundation, here in series with the half-space).
 //!
-//! min(c) joins the coefficient at offset (0, 0); the operator adds `c - min(c)` as a diagonal. A preconditioner knows one c: see
+//! min(c) is added to the coefficient at offset (0, 0); the operator adds `c - min(c)` as a diagonal. A preconditioner has one c: see
 //! `typical` and [`Layer::levels`].
 
 use std::sync::Arc;
@@ -10,40 +10,40 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::collected;
 
-/// Names its memory in messages.
+/// The name of this memory in messages.
 const LAYER: &str = "the layer";
 
-/// A layer of less compliance than this, in self-influences, hardly matters. The smallest eigenvalue of A is 0.3.
-/// Measured: with 2 an iteration needs up to a third fewer products than with 0.3, and fewer levels; 1 to 4 are much alike.
+/// The response of A in means over c, in self-influences. The smallest eigenvalue of A is 0.3. Measured: with 2 an iteration needs up to a
+/// third fewer products than with 0.3, and fewer levels; 1 to 4 differ little.
 const SHORT: f64 = 2.0;
-/// Levels of c for preconditioners: this factor apart, and so many at most.
+/// The ratio of neighbouring levels of c for preconditioners, and the most levels.
 const FACTOR: f64 = 6.0;
 const MOST_LEVELS: f64 = 4.0;
 
 /// A compliant layer.
 #[derive(Clone, Debug)]
 pub struct Layer {
-    /// The least c: added to the coefficient at offset (0, 0), everywhere.
+    /// The least c, which the coefficient at offset (0, 0) contains.
     pub(super) least: f64,
-    /// The compliance beyond the least one, per element; none where c is uniform.
+    /// The compliance beyond the least, per element; none if c is uniform.
     more: Option<Arc<Vec<f64>>>,
-    /// The one c of preconditioners.
+    /// The c of preconditioners.
     pub(super) typical: f64,
-    /// The mean c: what a uniform pressure meets.
+    /// The mean c, the response to a uniform pressure.
     pub(super) mean: f64,
 }
 
 impl Layer {
-    /// Of uniform compliance c.
+    /// A layer of uniform compliance c.
     pub fn uniform(c: f64) -> Layer {
         Layer { least: c, more: None, typical: c, mean: c }
     }
 
-    /// Of one c per element, on coefficients with this `self_influence`.
+    /// A layer of one c per element, on coefficients with this `self_influence`.
     pub fn per_element(c: &[f64], self_influence: f64) -> Result<Layer> {
         let least = c.iter().copied().fold(f64::INFINITY, f64::min);
         let more = Some(Arc::new(collected(c.iter().map(|c| c - least), LAYER)?));
-        // The geometric mean of what waves meet of both.
+        // The geometric mean of the responses of A and the layer together.
         let short = SHORT * self_influence;
         let n = c.len() as f64;
         let geometric = (c.iter().map(|c| (c + short).ln()).sum::<f64>() / n).exp();
@@ -60,10 +60,9 @@ impl Layer {
         self.least + self.more().map_or(0.0, |more| more.iter().copied().fold(0.0, f64::max))
     }
 
-    /// Levels of c, as layers of which each is the `typical` one, and the weights of the elements:
-    /// `w = sqrt((c_l + s)/(c + s)) sqrt(share)`, with s what waves meet of A and the shares of neighbouring levels linear in
-    /// log(c + s). Where c is large A hardly matters, and the first factor makes `w^2/c_l` the 1/c that is asked for. A uniform layer
-    /// is one level, without weights.
+    /// Levels c_l of c, each as the `typical` c of a layer, with the weights `w = sqrt((c_l + s)/(c + s)) sqrt(share)` of the elements. s is
+    /// the response of A; the shares of neighbouring levels are linear in log(c + s). If c is large, A is negligible and the first factor
+    /// makes `w^2/c_l` the wanted 1/c. A uniform layer is one level without weights.
     pub fn levels(&self, self_influence: f64) -> Result<Vec<(Layer, Vec<f64>)>> {
         let Some(more) = self.more() else { return Ok(vec![(self.clone(), Vec::new())]) };
         let short = SHORT * self_influence;

@@ -1,42 +1,42 @@
-//! The largest coefficient of a table, and how far the table is from symmetric: found while its rows are near.
+//! The largest coefficient of a table, its symmetry and finiteness, found while its rows are in cache.
 
-/// Values that are looked at together: that the compiler can vectorise.
+/// Lanes of a pass, which the compiler vectorises.
 const LANES: usize = 8;
 
 pub(super) use toeplitz::coefficients::SYMMETRY;
 
-/// Of a table, or a part of it.
+/// The extremes of a table or a part of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extremes {
     /// The largest coefficient, whatever its sign.
     pub largest: f64,
     /// Whether the coefficients are symmetric, to within round-off of the one at offset (0, 0).
     pub symmetric: bool,
-    /// Whether they are finite.
+    /// Whether the coefficients are finite.
     pub finite: bool,
 }
 
 impl Extremes {
-    /// Of nothing.
+    /// The extremes of no values.
     pub const NONE: Extremes = Extremes { largest: 0.0, symmetric: true, finite: true };
 
-    /// Of an even table, or some rows of it.
+    /// The extremes of an even table or some of its rows.
     pub fn of_even(values: &[f64]) -> Extremes {
         Extremes { largest: largest(values), symmetric: true, finite: are_finite(values, 1.0) }
     }
 
-    /// Of a row and the opposite one, both of all offsets in x; `large`: the coefficient at offset (0, 0).
+    /// The extremes of a row and the opposite one, both at all offsets in x; `large`: the coefficient at offset (0, 0).
     pub fn of_opposite(row: &[f64], opposite: &[f64], large: f64) -> Extremes {
         pulp::Arch::new().dispatch(Opposite { row, opposite, large })
     }
 
-    /// Of all rows, `2 my - 1`, of a table that is not even.
+    /// The extremes of all `2 my - 1` rows of a table that is not even.
     pub fn of_rows<'a>(rows: impl DoubleEndedIterator<Item = &'a [f64]> + Clone, my: usize, large: f64) -> Extremes {
         let pairs = rows.clone().zip(rows.rev()).take(my);
         pairs.fold(Extremes::NONE, |all, (row, opposite)| all.and(Extremes::of_opposite(row, opposite, large)))
     }
 
-    /// Of these and others.
+    /// The extremes of both together.
     pub fn and(&self, others: Extremes) -> Extremes {
         Extremes {
             largest: self.largest.max(others.largest),
@@ -67,14 +67,14 @@ impl pulp::NullaryFnOnce for Opposite<'_> {
     }
 }
 
-/// Whether a row is the opposite one turned around, to within round-off of a coefficient that is `large`.
+/// Whether a row is the opposite one reversed, to within round-off of a coefficient `large`.
 #[inline(always)]
 pub(super) fn are_symmetric(row: &[f64], opposite: &[f64], large: f64) -> bool {
     let allowed = SYMMETRY * large;
     row.iter().zip(opposite.iter().rev()).fold(true, |all, (a, b)| all & ((a - b).abs() <= allowed))
 }
 
-/// Whether all are finite, looked at many at a time.
+/// Whether all scaled values are finite, tested in vectors.
 #[inline(always)]
 pub(super) fn are_finite(values: &[f64], scale: f64) -> bool {
     values.iter().fold(true, |all, value| all & (scale * value).is_finite())

@@ -1,14 +1,14 @@
-//! A table of the caller's as it is given: what of it matters is copied, and looked at on the way.
+//! The caller's table as given. The copy of its used part also determines its extremes.
 
 use super::extremes::Extremes;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::memory::{blank, reserve};
 
-/// Names its memory in messages.
+/// The name of this memory in messages.
 pub(super) const TABLE: &str = "the influence coefficients";
 
-/// Coefficients of one direction that are kept.
+/// Number of stored coefficients in one direction.
 pub(super) fn width(c: usize, even: bool) -> usize {
     if even {
         c
@@ -17,7 +17,7 @@ pub(super) fn width(c: usize, even: bool) -> usize {
     }
 }
 
-/// A table as it is given: `values[ky + cy][kx + cx]`.
+/// A table as given: `values[ky + cy][kx + cx]`.
 pub(super) struct Given<'a> {
     pub cx: usize,
     pub cy: usize,
@@ -59,7 +59,7 @@ impl Given<'_> {
         }
     }
 
-    /// All offsets of the grid, scaled. Opposite rows are filled together, and compared while they are near.
+    /// All offsets of the grid, scaled. Opposite rows are filled together and compared while they are in the cache.
     pub fn whole(&self, grid: &Grid, scale: f64) -> Result<(Vec<f64>, Extremes)> {
         let Grid { mx, my, .. } = *grid;
         let (columns, mut extremes) = (width(mx, false), Extremes::NONE);
@@ -89,7 +89,7 @@ impl Given<'_> {
         }
     }
 
-    /// The error of a table of which some coefficients are not finite.
+    /// The error of a table with coefficients that are not finite.
     fn not_finite(&self, grid: &Grid, scale: f64, even: bool) -> Error {
         let (mx, my) = (grid.mx as i64, grid.my as i64);
         let (first_x, first_y) = if even { (0, 0) } else { (1 - mx, 1 - my) };

@@ -9,12 +9,12 @@
 //! ```
 //!
 //! (Love 1929; Johnson, Contact Mechanics, eq. 3.25). The closed form cancels: at offset `k` it loses a factor `k^2`.
-//! So it serves only the four coefficients next to the element, and
+//! So it is used for the four coefficients next to the element only:
 //!
-//! * beyond six half-diagonals `d` the multipole series serves, with `r^2 = X^2 + Y^2`, `z = (d/r)^2`, `t = (X/r)^2`:
+//! * beyond six half-diagonals `d`, a multipole series, with `r^2 = X^2 + Y^2`, `z = (d/r)^2`, `t = (X/r)^2`:
 //!   `A = c dx dy / r * sum_k z^k q_k(t)`; `z^k q_k` is the mean over the element of the Legendre term of degree `2k`;
-//! * between them the integral is exact in one direction, `asinh(X+/|y|) - asinh(X-/|y|)` written as one logarithm of
-//!   positive terms, and by Gauss-Legendre in the other, where `y = 0` is at least three half-widths away.
+//! * between, the closed form in one direction, `asinh(X+/|y|) - asinh(X-/|y|)` written as one logarithm of positive
+//!   terms, and Gauss-Legendre in the other, with `y = 0` at least three half-widths away.
 
 use std::cell::RefCell;
 use std::f64::consts::PI;
@@ -25,22 +25,22 @@ use super::kernel::Kernel;
 use crate::error::Result;
 use crate::grid::Grid;
 
-/// Terms of the multipole series at most (degree `2 * 8 = 16`).
+/// Most terms of the multipole series (degree `2 * 8 = 16`).
 const MOST_TERMS: usize = 8;
 
-/// `(distance in half-diagonals, K)`: from this distance on the terms `k <= K` suffice; the first one left out is
+/// `(distance in half-diagonals, K)`: from this distance on the terms `k <= K` suffice; the first omitted term is
 /// `z^(K+1) <= 2e-15` (1e-14 at the first distance, where `|q_9| < 0.1`).
 const SERIES: [(f64, usize); 4] = [(6.0, 8), (12.0, 6), (40.0, 4), (300.0, 2)];
 
-/// Coefficients nearer than the series reaches are kept if there are no more than this, of one quadrant.
+/// Most coefficients of one quadrant nearer than the series that are kept.
 const MOST_KEPT: usize = 1024;
 
-/// Offsets in each direction of which all coefficients are kept, once a grid of so many elements asks for them: to compute them takes
-/// as long as a product or more, and operators of the grid, of its windows and coarser grids, preconditioners and the next solver need
-/// the same ones. At most 4.4 MB for a shape; none is computed that is part of one there is.
+/// Sizes of quadrants of coefficients that are kept once a grid of this size needs them. Computing them takes as long as a product or more, and
+/// operators of the grid, its windows and coarser grids, preconditioners and the next solver need the same ones. At most 4.4 MB for a shape; a
+/// quadrant within a kept one is not computed.
 const QUADRANTS: [usize; 12] = [8, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512];
 
-/// Quadrants that are computed whichever part of them is asked for.
+/// Largest quadrant that is computed as a whole for any part of it.
 const SMALL: usize = 64;
 
 /// Coefficients of the half-space for one element size.
@@ -53,35 +53,35 @@ pub struct HalfSpace {
     shape: Arc<Shape>,
 }
 
-/// The part of coefficients that depends on the ratio dx/dy only: the coefficients of an element twice as long and twice as wide are twice as large. Here they
-/// are integrals of 1/rho over an element, relative to its length in x.
+/// The coefficients of one ratio dx/dy: an element twice as long and twice as wide has twice the coefficients. Here they are integrals of 1/rho over
+/// an element, relative to its length in x.
 #[derive(Debug)]
 struct Shape {
-    /// Of the element that it was computed for.
+    /// The sides of the element of the computation.
     dx: f64,
     dy: f64,
     /// `q_k(t) = sum_j series[k][j] t^j`.
     series: [[f64; MOST_TERMS + 1]; MOST_TERMS + 1],
-    /// At least those at all offsets nearer than the series reaches, `[ky][kx]`, `near_x` in a row. Empty if there are too many.
+    /// The coefficients at all offsets nearer than the series, `[ky][kx]`, `near_x` in a row. Empty if there are too many.
     near: Vec<f64>,
     near_x: usize,
-    /// All of the [`QUADRANTS`], row by row, that were asked for.
+    /// The [`QUADRANTS`] computed so far, row by row.
     quadrants: [OnceLock<Vec<f64>>; QUADRANTS.len()],
 }
 
-/// A shape that was computed, and of which element.
+/// A computed shape, and its element.
 struct Computed {
     element: (f64, f64),
     shape: Arc<Shape>,
 }
 
 thread_local! {
-    /// The last one: it takes as long as all else that is set up for a small grid, and most programs have one element.
+    /// The last shape: computing it takes as long as the rest of the set-up of a small grid, and most programs have one element size.
     static LAST: RefCell<Option<Computed>> = const { RefCell::new(None) };
 }
 
 impl Shape {
-    /// That of an element, computed once.
+    /// The shape of an element, computed once.
     fn of(dx: f64, dy: f64) -> Arc<Shape> {
         LAST.with_borrow_mut(|last| match last {
             Some(last) if last.element == (dx, dy) => last.shape.clone(),
@@ -91,7 +91,7 @@ impl Shape {
 
     fn new(dx: f64, dy: f64) -> Shape {
         let reach = SERIES[0].0 * 0.5 * dx.hypot(dy);
-        // Of a needle of an element there are more than can be counted.
+        // Very slender elements have more near offsets than usize counts.
         let count = |d: f64| ((reach / d) as usize).saturating_add(2);
         let (near_x, near_y) = (count(dx), count(dy));
         let few = near_x.saturating_mul(near_y) <= MOST_KEPT;
@@ -101,12 +101,12 @@ impl Shape {
         Shape { dx, dy, series: multipole_series(dx, dy), near, near_x, quadrants: Default::default() }
     }
 
-    /// Those at the offsets `(..end, ky)`, if they are kept.
+    /// The coefficients at the offsets `(..end, ky)`, if they are kept.
     fn kept(&self, end: usize, ky: usize) -> Option<&[f64]> {
         let large_enough = || QUADRANTS.iter().zip(&self.quadrants).filter(|(size, _)| **size >= end.max(ky + 1));
         let known = large_enough().find_map(|(size, quadrant)| Some((size, quadrant.get()?)));
         let (size, quadrant) = known.or_else(|| {
-            // A large one takes more than it saves where only a part of it is asked for: a long grid, or one coefficient.
+            // A large quadrant costs more than it saves if only a part of it is needed: on a long grid, or for one coefficient.
             let worthwhile = |size: usize| size <= SMALL || end.min(ky + 1) >= size / 4;
             let (size, quadrant) = large_enough().next().filter(|(size, _)| worthwhile(**size))?;
             Some((size, quadrant.get_or_init(|| self.quadrant(*size))))
@@ -114,7 +114,7 @@ impl Shape {
         quadrant.get(ky * size..)?.get(..end)
     }
 
-    /// Empty where there is no memory for it.
+    /// Computes a quadrant; empty without memory for it.
     fn quadrant(&self, size: usize) -> Vec<f64> {
         let mut quadrant = Vec::new();
         if quadrant.try_reserve_exact(size * size).is_ok() {
@@ -124,11 +124,11 @@ impl Shape {
         quadrant
     }
 
-    /// Those at the offsets `(kx.., ky)`.
+    /// Computes the coefficients at the offsets `(kx.., ky)`.
     fn fill_row(&self, kx: usize, ky: usize, out: &mut [f64]) {
         let y = ky as f64 * self.dy;
         let half_diagonal2 = 0.25 * (self.dx * self.dx + self.dy * self.dy);
-        // The distance grows along the row: one segment after the other, each with its own number of terms.
+        // The distance grows along the row, so each segment has its own number of terms.
         let first_beyond = |half_diagonals: f64| {
             let x2 = half_diagonals * half_diagonals * half_diagonal2 - y * y;
             let k = if x2 > 0.0 { (x2.sqrt() / self.dx).ceil() as i64 - kx as i64 } else { 0 };
@@ -151,7 +151,7 @@ impl Shape {
         arch.dispatch(Far::<2> { shape: self, kx: at(s2), y, out: far2 });
     }
 
-    /// The one at an offset nearer than the series reaches.
+    /// The coefficient at an offset nearer than the series.
     fn near(&self, kx: usize, ky: usize) -> f64 {
         let kept = if kx < self.near_x { self.near.get(ky * self.near_x + kx) } else { None };
         kept.copied().unwrap_or_else(|| near_integral(kx as f64, ky as f64, self.dx, self.dy) / self.dx)
@@ -172,7 +172,7 @@ impl<const K: usize> pulp::NullaryFnOnce for Far<'_, K> {
     #[inline(always)]
     fn call(self) {
         let Far { shape, kx, y, out } = self;
-        // Copies, of which the compiler knows that writing to `out` does not change them.
+        // Copies, as the compiler must know that writes to `out` do not change them.
         let (dx, dy, series) = (shape.dx, shape.dy, shape.series);
         let half_diagonal2 = 0.25 * (dx * dx + dy * dy);
         for (k, value) in out.iter_mut().enumerate() {
@@ -199,7 +199,7 @@ impl HalfSpace {
         HalfSpace { dx, dy, compliance: compliance / PI, shape: Shape::of(dx, dy) }
     }
 
-    /// The same bodies, another element size.
+    /// The coefficients of the same bodies for another element size.
     pub fn for_element(&self, dx: f64, dy: f64) -> HalfSpace {
         let same_shape = dx / self.dx == dy / self.dy;
         let shape = if same_shape { self.shape.clone() } else { Shape::of(dx, dy) };
@@ -237,7 +237,7 @@ impl Kernel for HalfSpace {
     }
 }
 
-/// The integral of 1/rho over an element, seen from `(kx, ky) >= 0` elements away, between offsets, too.
+/// The integral of 1/rho over an element at `(kx, ky) >= 0` elements, which need not be whole.
 pub(crate) fn integral_at((kx, ky): (f64, f64), (dx, dy): (f64, f64)) -> f64 {
     near_integral(kx, ky, dx, dy)
 }

@@ -1,12 +1,12 @@
-//! The images of a scene that repeats itself: what all but the near ones contribute, as a polynomial.
+//! The images of a periodic scene: the contribution of all but the near ones, as a polynomial.
 //!
 //! The sum over the images is smooth on one period: a polynomial in x^2 and y^2 through 12 x 12 Chebyshev nodes, whose means over
 //! elements are its integrals. Images are summed in lines along the period, or along the shorter of two: at the nodes a line is the
 //! sum of `1/|x + n L| - 1/|n L|`, whose tail is a multipole series.
 //!
-//! *Bounded work.* A line of images of period L has waves along it that fade with the distance y as `exp(-2 pi |y|/L)`. Beyond
-//! [`FADED`] L only the mean is left, which has a closed form. So images are summed for nearer rows alone, and with two periods in the
-//! nearer of the other lines.
+//! *Bounded work.* A line of images of period L has waves along it that decay with the distance y as `exp(-2 pi |y|/L)`. Beyond [`FADED`] L
+//! only the mean remains, which has a closed form. So images are summed for nearer rows only, and with two periods in the nearer of the other
+//! lines.
 
 use std::f64::consts::PI;
 
@@ -14,18 +14,18 @@ use super::gauss::GAUSS;
 use super::special::{hurwitz_zeta, EULER_GAMMA};
 use crate::grid::Grid;
 
-/// Chebyshev nodes in each direction. The nearest singularity of what they represent lies on the ellipse of sum of semi-axes 4.5 or
-/// beyond (see `reach`): `4.5^-24 = 2e-16` is left.
+/// Chebyshev nodes in each direction. The nearest singularity of the function lies on or beyond the ellipse of sum of semi-axes 4.5 (see
+/// `reach`), so the error is `4.5^-24 = 2e-16`.
 pub(super) const NODES: usize = 12;
 /// The part of its period that a grid of 8 elements covers: half, and half an element.
 const COARSE: f64 = 0.5626;
-/// Periods beyond which the waves of a line of images are gone: `exp(-2 pi 6) = 4e-17`.
+/// Periods beyond which the waves of a line of images vanish: `exp(-2 pi 6) = 4e-17`.
 const FADED: f64 = 6.0;
-/// One period so many times the other: at the farthest offset, half of it less half an element (a quarter of it at least), waves of
-/// other lines are gone.
+/// Ratio of the periods from which waves of other lines vanish at the farthest offset: half the period less half an element, at least a
+/// quarter of the period.
 const MUCH_LONGER: f64 = 4.0 * FADED;
 
-/// In which direction lines of images are summed, the mean of each being added in closed form.
+/// The direction of the lines in which images are summed, the mean of each in closed form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Lines {
     /// Along x.
@@ -37,9 +37,9 @@ pub(super) enum Lines {
 /// The offsets of a grid for which images are summed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Near {
-    /// Offsets in x and in y; one at least.
+    /// Offsets in x and in y, at least one.
     pub offsets: (usize, usize),
-    /// The element's size, cut off where waves have faded.
+    /// The element's size, cut off where waves vanish.
     pub element: (f64, f64),
 }
 
@@ -50,7 +50,7 @@ impl Near {
     }
 }
 
-/// Number of offsets >= 0 in x and y: up to half the period where there is one.
+/// Number of offsets >= 0 in x and y: up to half the period in a periodic direction.
 pub(super) fn offsets((x, y): (bool, bool), grid: &Grid) -> (usize, usize) {
     let offsets = |repeats: bool, m: usize| if repeats { m / 2 + 1 } else { m };
     (offsets(x, grid.mx), offsets(y, grid.my))
@@ -67,32 +67,32 @@ pub(super) struct Far {
     directions: (bool, bool),
     lengths: (f64, f64),
     half: (f64, f64),
-    /// The direction in which images are summed.
+    /// The direction of the lines.
     pub lines: Lines,
-    /// Whether offsets reach so far across the lines that their waves are gone there, and those of other lines here.
+    /// Whether offsets reach across the lines beyond their waves, and beyond those of other lines.
     fades: bool,
-    /// Other lines on either side whose waves are not gone yet; the mean of those beyond is not in the polynomial.
+    /// Other lines on either side whose waves do not vanish; the mean of lines beyond is not in the polynomial.
     pub other_lines: usize,
     /// Near images on either side, in x and in y.
     pub images: (usize, usize),
-    /// `[j][i]`: of `T_i(2 (x/X)^2 - 1) T_j(2 (y/Y)^2 - 1)`.
+    /// `[j][i]`: the coefficients of `T_i(2 (x/X)^2 - 1) T_j(2 (y/Y)^2 - 1)`.
     coefficients: [[f64; NODES]; NODES],
 }
 
-/// Images on either side that are near: beyond them no singularity is inside the ellipse about `[-here, here]` whose semi-axes are
-/// 2.4 and 2.2 half-lengths.
+/// Near images on either side: images beyond have no singularity inside the ellipse about `[-here, here]` of semi-axes 2.4 and 2.2
+/// half-lengths.
 fn reach(length: f64, here: f64, across: f64) -> usize {
     (f64::max(2.4 * here, here + 2.2 * across) / length).ceil() as usize - 1
 }
 
-/// Offsets `0..count` of elements of size d that are nearer than `faded`, and the part of an element that is.
+/// The number of offsets `0..count` of elements of size d nearer than `faded`, and the part of an element within.
 fn cut(count: usize, d: f64, faded: f64) -> (usize, f64) {
     let near = (faded / d + 0.5).ceil().min(count as f64) as usize;
     (near.max(1), d.min(2.0 * faded))
 }
 
 impl Lines {
-    /// A pair in x and y as one along the lines and across them, and back.
+    /// A pair in x and y as a pair along and across the lines, and back.
     fn turn<A>(self, (x, y): (A, A)) -> (A, A) {
         match self {
             Lines::X => (x, y),
@@ -102,7 +102,7 @@ impl Lines {
 }
 
 impl Far {
-    /// Of a grid and, where there is a period, of coarser ones: half an element beyond half the period.
+    /// The polynomial of a grid and, in periodic directions, of coarser ones: half an element beyond half the period.
     pub fn new(directions: (bool, bool), grid: &Grid) -> Far {
         let lengths = lengths(grid);
         let lines = if directions.0 && (!directions.1 || lengths.0 <= lengths.1) { Lines::X } else { Lines::Y };
@@ -114,7 +114,7 @@ impl Far {
         let along = own_along.max(COARSE * length);
         let (mut across, mut near_lines) = (own_across.max(COARSE * width), 0);
         if fades {
-            // Across lines coarser elements reach a little farther, at most to the end.
+            // Across lines coarser elements reach farther, at most to the end.
             let ((_, count), (_, d)) = (lines.turn(offsets(directions, grid)), lines.turn((grid.dx, grid.dy)));
             across = own_across.max(f64::min((count as f64 - 0.5) * d, 1.5 * FADED * length));
         } else {
@@ -127,7 +127,7 @@ impl Far {
         far
     }
 
-    /// The sum over all but the near images of the lines whose waves are not gone, at a place.
+    /// The sum at a place over all but the near images of the lines whose waves do not vanish.
     fn value(&self, x: f64, y: f64) -> f64 {
         let (along, across) = self.lines.turn((x, y));
         let (near, near_lines) = self.lines.turn(self.images);
@@ -172,7 +172,7 @@ impl Far {
         near
     }
 
-    /// Whether it is that of a coarser grid, too.
+    /// Whether the polynomial serves a coarser grid as well.
     pub fn serves(&self, grid: &Grid) -> bool {
         let half = self.near(grid).half();
         lengths(grid) == self.lengths && half.0 <= self.half.0 && half.1 <= self.half.1
@@ -184,7 +184,7 @@ impl Far {
         [means(near.offsets.0, near.element.0 / self.half.0), means(near.offsets.1, near.element.1 / self.half.1)]
     }
 
-    /// The polynomial in x where those in y have the means `in_y`.
+    /// The polynomial in x, from the means `in_y` of the polynomials in y.
     pub fn along_x(&self, in_y: &[f64; NODES]) -> [f64; NODES] {
         let mut line = [0.0; NODES];
         for (coefficients, t) in self.coefficients.iter().zip(in_y) {
@@ -209,8 +209,8 @@ fn chebyshev_means(k: f64, d: f64) -> [f64; NODES] {
     means
 }
 
-/// The sum of 1/rho over the images of one line but the near ones, `along` its period of the given length and `across` it; the mean along
-/// it of the whole sum is `2/L log(W/across)`.
+/// The sum of 1/rho over the images of one line but the near ones, at `along` its period of the given length and `across` it. The mean of the
+/// whole sum along the line is `2/L log(W/across)`.
 ///
 /// ```text
 /// sum over n of 1/rho_n - [n != 0]/|n L|    has the mean 2/L (log(2 L/across) - gamma)
@@ -218,7 +218,7 @@ fn chebyshev_means(k: f64, d: f64) -> [f64; NODES] {
 fn line_of_images(along: f64, across: f64, length: f64, near: usize, width: f64) -> f64 {
     let harmonic: f64 = (1..=near).rev().map(|n| 1.0 / n as f64).sum();
     let constant = 2.0 / length * ((width / (2.0 * length)).ln() + EULER_GAMMA - harmonic);
-    // From here on the terms are a series in (r/(n L))^2 <= 1/100.
+    // Beyond, the terms are a series in (r/(n L))^2 <= 1/100.
     let r = along.hypot(across);
     let first_far = near + 10 + (10.0 * r / length).ceil() as usize;
     let mut sum = 0.0;

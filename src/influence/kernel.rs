@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::error::Result;
 use crate::grid::Grid;
 
-/// Where the coefficients of offsets come from. What is not said is that of an even kernel.
+/// A source of influence coefficients by offset. Default methods are those of an even kernel.
 pub trait Kernel: Any + Debug + Send + Sync {
     /// The coefficient at offset `(kx, ky)`.
     fn at(&self, kx: i64, ky: i64) -> f64;
@@ -22,14 +22,13 @@ pub trait Kernel: Any + Debug + Send + Sync {
         out.iter_mut().zip(kx..).for_each(|(value, kx)| *value = self.at(kx, ky));
     }
 
-    /// Fills `out[k]` with the mean of the coefficients at offsets `(kx + k, ky)` and `(-kx - k, -ky)`, within the table: what is symmetric of
-    /// them.
+    /// Fills `out[k]` with the symmetric part at `(kx + k, ky)`, within the table: the mean of the coefficients there and at `(-kx - k, -ky)`.
     fn fill_symmetric_row(&self, kx: i64, ky: i64, out: &mut [f64]) {
         self.fill_row(kx, ky, out);
     }
 
-    /// Fills `out[k]` with the mean of the coefficients at offsets `(+-k, +-ky)`: what is even of them, for preconditioners. A
-    /// table that ends before is carried on with its outermost coefficient.
+    /// Fills `out[k]` with the even part at `(k, ky)`, the mean of the coefficients at `(+-k, +-ky)`, for preconditioners. Beyond the end of
+    /// a table its outermost coefficient is used.
     fn fill_even_row(&self, ky: i64, out: &mut [f64]) {
         self.fill_row(0, ky, out);
     }
@@ -49,18 +48,18 @@ pub trait Kernel: Any + Debug + Send + Sync {
         true
     }
 
-    /// In which directions the coefficients repeat themselves after a length of `grid`: A is then circulant in them.
+    /// The directions in which the coefficients repeat after a length of `grid`: A is circulant in them.
     fn repeats(&self, _grid: &Grid) -> (bool, bool) {
         (false, false)
     }
 
-    /// The part that all coefficients have in common beyond those of bodies whose mean displacement is zero. It displaces by the mean pressure, so it
-    /// changes the approach of a prescribed force, and not its pressures.
+    /// The constant in all coefficients beyond those of bodies of zero mean displacement. It displaces in proportion to the mean pressure:
+    /// it changes the approach of a prescribed force, but not its pressures.
     fn constant(&self) -> f64 {
         0.0
     }
 
-    /// The same kernel without it; none where it is 0.
+    /// The kernel without its constant; none if the constant is 0.
     fn without_constant(&self) -> Option<Arc<dyn Kernel>> {
         None
     }
@@ -70,24 +69,24 @@ pub trait Kernel: Any + Debug + Send + Sync {
         false
     }
 
-    /// Added to all coefficients, this gives a uniform pressure the response asked for where it has none; 0 where it has.
+    /// A constant for all coefficients that gives a uniform pressure this response if it displaces nothing; 0 otherwise.
     fn constant_for(&self, _response: f64) -> f64 {
         0.0
     }
 
-    /// Added to all coefficients, this gives A an inverse where a uniform pressure displaces nothing; 0 where A has one.
+    /// A constant for all coefficients that makes A invertible if a uniform pressure displaces nothing; 0 otherwise.
     fn constant_for_inverse(&self) -> f64 {
         0.0
     }
 
-    /// For preconditioners, where coefficients wrapped to a period would not be positive: what a pressure wave `(kx, ky)` of
-    /// amplitude 1, constant on elements, displaces. None: the coefficients do.
+    /// The response to a pressure wave `(kx, ky)` of amplitude 1, constant on elements, for preconditioners of kernels whose coefficients,
+    /// wrapped to a period, are not positive. None: the wrapped coefficients serve.
     fn wave(&self, _grid: &Grid, _kx: f64, _ky: f64) -> Option<f64> {
         None
     }
 
-    /// The kernel of a grid coarsened from `fine` to `coarse`: of bodies computed anew for the larger element (the paper's direct
-    /// coarse-grid operator), of tables summed from the fine coefficients.
+    /// The kernel on a grid coarsened from `fine` to `coarse`: computed anew for the larger element from the bodies (the paper's direct
+    /// coarse-grid operator), summed from the fine coefficients of a table.
     fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Result<Arc<dyn Kernel>>;
 
     /// Bytes of coefficients held.

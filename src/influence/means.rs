@@ -6,19 +6,19 @@
 //! mean f = (d/2)/asinh(d/2) f = (1 + d^2/24 - 17 d^4/5760 + 367 d^6/967680 - 27859 d^8/464486400 + ...) f
 //! ```
 //!
-//! in x, then in y: one evaluation per element. At 32 elements from a singularity what is left out is 1e-12 of f.
+//! in x, then in y: one evaluation per element. At 32 elements from a singularity the omitted terms are 1e-12 of f.
 
 use crate::error::Result;
 use crate::memory::zeros;
 
-/// Neighbours on either side that a mean takes.
+/// Neighbours on either side in a mean.
 pub const HALO: usize = 4;
-/// Elements that a mean takes in one direction.
+/// Elements in a mean in one direction.
 pub const ROWS: usize = 2 * HALO + 1;
 
-/// From this distance on, in longer sides, the differences to the fourth do: the sixth is 2e-12 of 1/r^3.
+/// Distance, in longer sides, from which differences up to the fourth suffice: the sixth is 2e-12 of 1/r^3.
 const FAR: f64 = 128.0;
-/// Neighbours on either side that a mean takes there.
+/// Neighbours on either side in a mean beyond this distance.
 const FEW: usize = 2;
 
 /// `1/24, -17/5760, ..`
@@ -36,19 +36,19 @@ const MEAN: [f64; HALO + 1] = {
     ]
 };
 
-/// The same to the fourth difference.
+/// The weights of a mean to the fourth difference.
 const FAR_MEAN: [f64; FEW + 1] = {
     let [a, b, ..] = SERIES;
     [1.0 - 2.0 * a + 6.0 * b, a - 4.0 * b, b]
 };
 
-/// Means along a row: `out[k]` is that of `points[k + HALO]`.
+/// Means along a row: `out[k]` is the mean about `points[k + HALO]`.
 pub fn in_x(points: &[f64], out: &mut [f64]) {
     let n = out.len();
     combine(std::array::from_fn(|k| &points[k..k + n]), out);
 }
 
-/// Means across rows, the last [`ROWS`] of which are kept at `row % ROWS`; that of the row `middle`.
+/// Means across rows about the row `middle`; the last [`ROWS`] rows are kept at `row % ROWS`.
 pub fn in_y(rows: &[f64], middle: usize, out: &mut [f64]) {
     let n = out.len();
     let slot = |k: usize| (middle - HALO + k) % ROWS;
@@ -59,7 +59,7 @@ fn combine(rows: [&[f64]; ROWS], out: &mut [f64]) {
     pulp::Arch::new().dispatch(Combine { rows, out });
 }
 
-/// Compiled for the vectors of this machine.
+/// The weighted sum of rows, compiled for the vectors of this machine.
 struct Combine<'a> {
     rows: [&'a [f64]; ROWS],
     out: &'a mut [f64],
@@ -92,9 +92,8 @@ fn combine_few([a, b, c, d, e]: [&[f64]; 2 * FEW + 1], out: &mut [f64]) {
     }
 }
 
-/// Means of an even function at offsets `0.., 0..` less than `columns` and `rows`, in the row ky from `first(ky)` on, which grows with ky:
-/// `fill(ky, from, row)` gives its values at `(from.., ky)`; `each(ky, means)` is given the means row by row. Rows are `row_distance`
-/// apart, in longer sides.
+/// Means of an even function at offsets `0.., 0..` below `columns` and `rows`, in row ky from `first(ky)` on, which grows with ky. `fill(ky, from,
+/// row)` gives the function at `(from.., ky)`; `each(ky, means)` gets the means row by row. Rows are `row_distance` apart, in longer sides.
 pub fn means(
     (columns, rows): (usize, usize),
     row_distance: f64,
@@ -109,7 +108,7 @@ pub fn means(
     let is_far = |ky: usize| ky as f64 * row_distance >= FAR;
     for row in 0..rows + 2 * HALO {
         let ky = row.abs_diff(HALO);
-        // The values that the rows around need, and their neighbours.
+        // The values for the rows around, with their neighbours.
         let start = first(ky.saturating_sub(HALO));
         let from = start.saturating_sub(HALO);
         fill(ky, from, &mut points[HALO + from..]);

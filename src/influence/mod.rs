@@ -5,10 +5,10 @@
 //!        coupling                  kernel               diagonal
 //! ```
 //!
-//! [`Coefficients`] is this product. The kernel depends on the offset only, so that A is block Toeplitz: it is the elastic half-space's
-//! ([`HalfSpace`]), that of bodies with coatings ([`Coated`]), the sum over all images of a scene that repeats itself ([`Periodic`]), or a
-//! table of the caller's own ([`Table`], of which nothing is assumed). [`RowTables`] are Toeplitz in x only: their [`Kernel::at`] is a mean
-//! over rows. The diagonal is a compliant [`Layer`], the coupling that of contact [`Patches`]; a plain scene has neither.
+//! [`Coefficients`] is this sum. The kernel depends on the offset only, so that A is block Toeplitz: it is that of the elastic half-space
+//! ([`HalfSpace`]), of bodies with coatings ([`Coated`]), the sum over all images of a periodic scene ([`Periodic`]), or the caller's table
+//! ([`Table`], without assumptions). [`RowTables`] are Toeplitz in x only: their [`Kernel::at`] is a mean over rows. The diagonal is a compliant
+//! [`Layer`], the coupling that of contact [`Patches`]; a plain scene has neither.
 
 mod coated;
 mod coefficients;

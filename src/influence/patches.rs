@@ -1,11 +1,11 @@
-//! The coupling of several contact patches on one grid: the influence of one patch on another is scaled.
+//! Several contact patches on one grid. Coefficients between two patches are scaled by a factor.
 //!
 //! ```text
 //! A_IJ = F(patch of I, patch of J) c(I - J),    F symmetric, 1 on the diagonal, 0: independent, 1: as if there were no patches
 //! ```
 //!
-//! For patches that lie on planes of their own: wheel tread and flange on the rail, teeth of a gear, bodies with a gap between them.
-//! Where F is positive semi-definite so is A: a product by elements of two such matrices (Schur 1911).
+//! They serve patches in different planes: wheel tread and flange on the rail, teeth of a gear, bodies with a gap between them.
+//! If F is positive semi-definite, so is A, as the elementwise product of two such matrices (Schur 1911).
 
 use std::sync::Arc;
 
@@ -13,14 +13,14 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::collected;
 
-/// Names its memory in messages.
+/// The name of this memory in messages.
 const PATCHES: &str = "the patches";
 
 /// Patches and factors.
 #[derive(Clone, Debug)]
 pub struct Patches {
     pub(crate) count: usize,
-    /// Of each element.
+    /// The patch of each element.
     pub(crate) patch: Arc<Vec<u16>>,
     /// `[count][count]`.
     factors: Arc<[f64]>,
@@ -48,9 +48,9 @@ impl Patches {
         size_of_val(&self.patch[..]) + size_of_val(&self.factors[..])
     }
 
-    /// The patches of a coarser grid: an element belongs where the first of its finer ones does.
+    /// The patches of a coarser grid: an element has the patch of its first finer element.
     pub fn coarsen(&self, fine: &Grid, coarse: &Grid) -> Result<Patches> {
-        // Each has one.
+        // Each element has at least one finer element.
         let first = |i: usize| coarse.children(fine, i).next().map_or(0, |first| self.patch[first]);
         Ok(Patches { patch: Arc::new(collected((0..coarse.len()).map(first), PATCHES)?), ..self.clone() })
     }

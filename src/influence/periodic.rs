@@ -1,4 +1,4 @@
-//! Coefficients of a scene that repeats itself, in x, in y or in both: the half-space's, summed over all images.
+//! Coefficients of a scene that is periodic in x, in y or in both: the half-space's, summed over all images.
 //!
 //! ```text
 //! both          A(k) = sum over n, m of c(kx + n mx, ky + m my) - their mean over the period
@@ -7,16 +7,16 @@
 //!
 //! *The zero mode.* The sums of 1/rho diverge, by a constant. With two periods the constant is such that the mean displacement is
 //! zero: displacements, and the approach, are relative to the mean plane of the bodies. With one period the bodies are those of plane
-//! strain in the mean, whose displacement knows no infinity (Johnson, Contact Mechanics, section 2.4): it is zero, in the mean over the
-//! period, at the distance W from a load, the grid's whole width in the direction that is free. Another W would add
+//! strain in the mean, whose displacement diverges at infinity (Johnson, Contact Mechanics, section 2.4): it is set to zero, in the mean over
+//! the period, at the distance W from a load, the grid's width in the direction without a period. Another W would add
 //! `2 c F/L log(W'/W)` to the approach, and nothing to the pressures of a given force.
 //!
 //! These are the exact coefficients for pressures that are constant on elements: with two periods their transform at the wave numbers
 //! q is `sum over the aliases of q of 2 pi c/|q| sinc(qx dx/2) sinc(qy dy/2)`, 0 for q = 0 (Stanley & Kato 1997 take the first alias).
 //!
-//! *How they are summed.* Near images by the half-space's own coefficients, the others by a polynomial (see [`images`](super::images)).
-//! It serves all coarser grids of the same period. A line of images of period L along x has at a distance `|y|` of many L only its
-//! mean left, over an element
+//! *Summation.* Near images are summed by the half-space's coefficients, the others by a polynomial (see [`images`](super::images)), which
+//! serves all coarser grids of the same period. At a distance `|y|` of many L a line of images of period L along x has its mean only, over
+//! an element
 //!
 //! ```text
 //! one period    c dx 2/L  integral of  log(W/|y|) dy                   (W drops out with two)
@@ -34,24 +34,24 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{collected, zeros};
 
-/// Names its memory in messages.
+/// The name of this memory in messages.
 const PERIODIC: &str = "the coefficients of a period";
 
-/// Panels of a period over which what is smooth on it is integrated by Gauss: the singularity is then six half-panels away.
+/// Panels of a period for Gauss integration of functions that are smooth on it: the singularity is six half-panels away.
 const PANELS: usize = 12;
 
 /// Coefficients of a scene that repeats itself after a grid's length in x, in y or in both.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Periodic {
     half_space: HalfSpace,
-    /// Which directions repeat.
+    /// The periodic directions.
     x: bool,
     y: bool,
     mx: usize,
     my: usize,
-    /// Shared with coarser grids.
+    /// The far images, shared with coarser grids.
     far: Arc<Far>,
-    /// Coefficients at offsets >= 0, up to half the period where there is one; `row` of them in a row.
+    /// Coefficients at offsets >= 0, in periodic directions up to half the period; `row` of them in a row.
     table: Arc<Vec<f64>>,
     row: usize,
 }
@@ -104,8 +104,8 @@ impl Periodic {
         Ok(())
     }
 
-    /// Adds the means of lines of images: all there is at far offsets; at near ones the rest of an element that was cut off, and what
-    /// a second period changes.
+    /// Adds the means of lines of images: the whole coefficient at far offsets; at near ones the part of an element that was cut off, and
+    /// the change by a second period.
     fn add_lines(&self, grid: &Grid, near: &Near, table: &mut [f64]) -> Result<()> {
         let (length_x, length_y) = lengths(grid);
         let (row, c) = (self.row, self.half_space.compliance);
@@ -127,7 +127,7 @@ impl Periodic {
     /// Two periods: subtracts the mean of coefficients at offsets up to half of them.
     pub fn remove_mean(table: &mut [f64], grid: &Grid) {
         let row = grid.mx / 2 + 1;
-        // Offsets k and m - k are one entry, but for 0 and m/2.
+        // Offsets k and m - k share an entry, except 0 and m/2.
         let weight = |k: usize, m: usize| if k == 0 || 2 * k == m { 1.0 } else { 2.0 };
         let weights = |i: usize| weight(i % row, grid.mx) * weight(i / row, grid.my);
         let sum: f64 = table.iter().enumerate().map(|(i, value)| weights(i) * value).sum();
@@ -135,7 +135,7 @@ impl Periodic {
         table.iter_mut().for_each(|value| *value -= mean);
     }
 
-    /// The coefficients of a coarser grid. An odd count makes it longer by an element: good enough to start from.
+    /// The coefficients of a coarser grid. With an odd count it is longer by an element, which suffices for a start.
     pub fn coarsened(&self, coarse: &Grid) -> Result<Periodic> {
         let directions = (self.x, self.y);
         let far = if self.far.serves(coarse) { self.far.clone() } else { Arc::new(Far::new(directions, coarse)) };
@@ -172,7 +172,7 @@ impl Kernel for Periodic {
         self.x && self.y
     }
 
-    // The mode of zero gets about the response `2 pi c/|q|` of the longest wave.
+    // The zero mode gets about the response `2 pi c/|q|` of the longest wave.
     fn constant_for_inverse(&self) -> f64 {
         let HalfSpace { dx, dy, .. } = self.half_space;
         let longest = f64::max(self.mx as f64 * dx, self.my as f64 * dy);
@@ -195,7 +195,7 @@ struct Line {
     near: usize,
     /// W, and the period across the line if there is one.
     width: f64,
-    /// With two periods: other lines on either side that are summed already.
+    /// With two periods: other lines on either side that are already summed.
     other_lines: Option<usize>,
 }
 

@@ -4,19 +4,19 @@
 //! A_IJ = c_jy(iy, ix - jx),     u(ix, iy) = sum over jy and jx of c_jy(iy, ix - jx) p(jx, jy)
 //! ```
 //!
-//! For surfaces whose shape along y is no plane: conformal contact, an inclination that varies, a layer whose thickness does. A is
-//! Toeplitz in x only. Neither symmetric nor positive coefficients are assumed.
+//! They serve surfaces that vary along y: conformal contact, a varying inclination, a layer of varying thickness. A is
+//! Toeplitz in x only. The coefficients need not be symmetric or positive.
 //!
-//! On a coarser grid the coefficient is the mean displacement of the fine elements of one coarse element by a unit pressure on those
-//! of another: in x as for [`Table`](super::Table), in y
+//! On a coarser grid the coefficient is the mean displacement of the fine elements of one coarse element by a unit pressure on the
+//! fine elements of another. In x it is computed as for [`Table`](super::Table), in y as
 //!
 //! ```text
 //! C_J(I, k) = (c_2J(2I, k) + c_2J(2I+1, k) + c_2J+1(2I, k) + c_2J+1(2I+1, k))/2
 //! ```
 //!
-//! A row beyond the last (of an odd count) is that at the same distance, one row before.
+//! If the count is odd, a pair with a row beyond the last is replaced by the pair one row before, at the same distance.
 //!
-//! A preconditioner knows the mean over the rows at each offset.
+//! A preconditioner uses the mean over the rows at each offset.
 
 use std::any::Any;
 use std::sync::Arc;
@@ -32,15 +32,15 @@ use crate::memory::{blank, reserve, Held};
 /// Names its memory in messages.
 const TABLES: &str = "the tables of coefficients";
 
-/// The tables: of offsets >= 0 in x only, where all are even.
+/// The tables. If all are even, they hold only offsets >= 0 in x.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowTables {
     pub(crate) mx: usize,
     pub(crate) my: usize,
     even: bool,
-    /// The largest, whatever its sign.
+    /// The largest absolute value.
     largest: f64,
-    /// `[jy][iy][width]`, shared by all that hold the tables.
+    /// `[jy][iy][width]`, shared by all holders of the tables.
     pub(crate) values: Arc<Held>,
 }
 
@@ -51,7 +51,7 @@ fn are_even(cx: usize, values: &[f64], scale: f64, grid: &Grid) -> Result<bool> 
     for (k, row) in values.chunks_exact(2 * cx).enumerate() {
         let (jy, iy) = (k / my, k % my);
         let row = &row[cx + 1 - mx..cx + mx];
-        // All of a row, which the compiler can vectorise. What is even needs a look at one half.
+        // The fold has no early exit, so that the compiler vectorises it. Half of an even row is checked for finite values.
         even &= row[mx - 1..].iter().zip(row[..mx].iter().rev()).fold(true, |all, (a, b)| all & (a == b));
         if !are_finite(if even { &row[mx - 1..] } else { row }, scale) {
             let i = row.iter().position(|value| !(scale * value).is_finite()).unwrap_or(0);
@@ -73,18 +73,18 @@ fn are_even(cx: usize, values: &[f64], scale: f64, grid: &Grid) -> Result<bool> 
 }
 
 impl RowTables {
-    /// Of a kernel that is one.
+    /// The tables of a kernel, if it is of this type.
     pub fn of(kernel: &dyn Kernel) -> Option<&RowTables> {
         (kernel as &dyn Any).downcast_ref()
     }
 
     /// Tables of `rows` by `rows` by `2 cx` coefficients, `values[jy][iy][kx + cx]`, that must fit `grid`: `rows` is my, cx >= mx.
-    /// Column `-cx` never matters.
+    /// Column `-cx` is not used.
     pub fn new(cx: usize, rows: usize, values: &[f64], grid: &Grid) -> Result<RowTables> {
         RowTables::scaled(cx, rows, values, 1.0, grid)
     }
 
-    /// The same of `scale * values`.
+    /// The tables of `scale * values`.
     pub fn scaled(cx: usize, rows: usize, values: &[f64], scale: f64, grid: &Grid) -> Result<RowTables> {
         check_scale("row_tables->scale", scale)?;
         let Grid { mx, my, .. } = *grid;
@@ -104,7 +104,7 @@ impl RowTables {
             ));
         }
         let even = are_even(cx, values, scale, grid)?;
-        // Only the offsets of the grid matter, so only they are kept.
+        // Only the offsets of the grid are needed and stored.
         let mut kept = Vec::new();
         reserve(&mut kept, my * my * width(mx, even), TABLES)?;
         for row in values.chunks_exact(2 * cx) {
@@ -119,13 +119,13 @@ impl RowTables {
         self.even
     }
 
-    /// The coefficient of a loaded row jy and a row iy at offset kx, the outermost one where the table ends.
+    /// The coefficient of a loaded row jy and a row iy at offset kx. Beyond the table, the outermost coefficient is used.
     pub fn coefficient(&self, jy: usize, iy: usize, kx: i64) -> f64 {
         self.row(jy, iy)[self.column(kx)]
     }
 
-    /// The coefficients of a loaded row jy and a row iy: where all are even those at offsets 0 .. mx; else of a period, which starts at offset
-    /// 0, negative ones at its end.
+    /// The coefficients of a loaded row jy and a row iy. If all tables are even, these are offsets 0 .. mx. Otherwise they are a period from
+    /// offset 0 on, with negative offsets at its end.
     pub fn fill(&self, jy: usize, iy: usize, out: &mut [f64]) {
         let (row, mx, n) = (self.row(jy, iy), self.mx, out.len());
         if self.even {
@@ -136,18 +136,18 @@ impl RowTables {
         out[n - (mx - 1)..].copy_from_slice(&row[..mx - 1]);
     }
 
-    /// The coefficients of a loaded row jy and a row iy: at offsets `0..mx`, where all tables are even, or else from `1 - mx` on.
+    /// The coefficients of a loaded row jy and a row iy: at offsets `0..mx` if all tables are even, otherwise from `1 - mx` on.
     pub fn row(&self, jy: usize, iy: usize) -> &[f64] {
         let width = width(self.mx, self.even);
         &self.values[(jy * self.my + iy) * width..][..width]
     }
 
-    /// Where offset kx stands in a row, the outermost one where it ends.
+    /// The index of offset kx in a row. Beyond its end, the outermost index is used.
     fn column(&self, kx: i64) -> usize {
         place(kx, self.mx, self.even)
     }
 
-    /// Pairs of rows (jy, iy), `iy - jy = ky`; those furthest apart where the grid ends.
+    /// Pairs of rows (jy, iy), `iy - jy = ky`. Beyond the grid, the pairs of the largest distance are used.
     fn rows_apart(&self, ky: i64) -> impl Iterator<Item = (usize, usize)> + Clone {
         let last = self.my as i64 - 1;
         let ky = ky.clamp(-last, last);
@@ -204,7 +204,7 @@ impl Kernel for RowTables {
     fn coarsen(&self, _fine: &Grid, coarse: &Grid) -> Result<Arc<dyn Kernel>> {
         let Grid { mx, my, .. } = *coarse;
         let (half_x, half_y) = (mx < self.mx, my < self.my);
-        // The row at the same distance where one lies beyond the last.
+        // If a row lies beyond the last, the pair is shifted to rows at the same distance.
         let row = |jy: usize, iy: usize| {
             let beyond = jy.max(iy).saturating_sub(self.my - 1);
             self.row(jy.saturating_sub(beyond), iy.saturating_sub(beyond))

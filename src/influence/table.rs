@@ -1,11 +1,11 @@
 //! The caller's own influence coefficients: a table over offsets `-cx..cx-1` by `-cy..cy-1`.
 //!
 //! `A_IJ = c(ix - jx, iy - jy)`. Neither symmetric nor positive coefficients are assumed, and the table may be larger
-//! than the grid. Row `-cy` and column `-cx` never matter: no pair of elements has those offsets.
+//! than the grid. Row `-cy` and column `-cx` are unused: no pair of elements has their offsets.
 //!
 //! On a grid coarsened in x the coefficient is the mean displacement of the fine elements of one coarse element by a
-//! unit pressure on those of another, `c_H(K) = c(2K-1)/2 + c(2K) + c(2K+1)/2`, and likewise in y. Where an odd count
-//! asks for an offset just outside the table (the last coarse element sticks out), the outermost coefficient serves.
+//! unit pressure on those of another, `c_H(K) = c(2K-1)/2 + c(2K) + c(2K+1)/2`, and likewise in y. For an odd count,
+//! whose last coarse element exceeds the grid, the outermost coefficient replaces the one just outside the table.
 
 use std::sync::Arc;
 
@@ -16,21 +16,21 @@ use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
 use crate::memory::{blank, Held};
 
-/// Refuses a scale that turns coefficients around or away.
+/// Refuses a scale that is not positive and finite.
 pub(super) fn check_scale(name: &str, scale: f64) -> Result<()> {
     require(scale > 0.0 && scale.is_finite(), name, scale, "coefficients are scaled by a positive, finite number")
 }
 
-/// A table of coefficients: of offsets >= 0 only, where all are even.
+/// A table of coefficients, at offsets >= 0 only if all are even.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// Elements of the grid that it was made for.
+    /// Elements of the table's grid.
     pub(crate) cx: usize,
     pub(crate) cy: usize,
     even: bool,
-    /// `[ky][kx]`, x fastest, from offset 0 or `1 - c` on; shared by all that hold the table.
+    /// `[ky][kx]`, x fastest, from offset 0 or `1 - c` on; shared by all copies.
     pub(crate) values: Arc<Held>,
-    /// Of all values.
+    /// The extremes of all values.
     extremes: Extremes,
 }
 
@@ -41,7 +41,7 @@ impl Table {
         Table::scaled(cx, cy, values, 1.0, grid)
     }
 
-    /// The same of `scale * values`: CONTACT keeps its coefficients times G.
+    /// The table of `scale * values`: CONTACT stores coefficients times G.
     pub fn scaled(cx: usize, cy: usize, values: &[f64], scale: f64, grid: &Grid) -> Result<Table> {
         check_scale("influence.scale", scale)?;
         for (name, c, count, m) in [("cx", cx, "mx", grid.mx), ("cy", cy, "my", grid.my)] {
@@ -55,7 +55,7 @@ impl Table {
         if expected != Some(values.len()) {
             return invalid(format!("the influence table has {} values; it must have 2 cx by 2 cy", values.len()));
         }
-        // Only the offsets of the grid matter, so only they are kept: the table may be far larger.
+        // Only the offsets of the grid are kept: the given table may be far larger.
         let (Grid { mx, my, .. }, given) = (*grid, Given { cx, cy, values });
         let even = given.is_even(grid);
         let (values, extremes) = if even { given.quarter(grid, scale)? } else { given.whole(grid, scale)? };
@@ -69,12 +69,12 @@ impl Table {
         Ok(table)
     }
 
-    /// Whether it is that of a grid of this size, not of a larger one.
+    /// Whether the table is that of a grid of this size, not of a larger one.
     fn is_of(&self, grid: &Grid) -> bool {
         (self.cx, self.cy) == (grid.mx, grid.my)
     }
 
-    /// Row ky, the outermost one where the table ends.
+    /// Row ky, the outermost one beyond the table.
     fn row(&self, ky: i64) -> &[f64] {
         let (y, width) = (place(ky, self.cy, self.even), width(self.cx, self.even));
         &self.values[y * width..][..width]
@@ -88,8 +88,8 @@ impl Table {
     }
 }
 
-/// A row of the coefficients of c elements, on a grid coarsened in x or as it is. The outer two are added first: so what is even stays so
-/// to the last bit.
+/// A row of the coefficients of c elements, on a grid coarsened in x or not. The outer two are added first, so that even coefficients stay
+/// even to the last bit.
 pub(super) fn coarsen_row(row: &[f64], c: usize, even: bool, halved: bool, out: &mut [f64]) {
     let last = out.len() - 1;
     let first = if even { 0 } else { -(last as i64) / 2 };
@@ -97,7 +97,7 @@ pub(super) fn coarsen_row(row: &[f64], c: usize, even: bool, halved: bool, out: 
         let start = place(first, c, even);
         return out.copy_from_slice(&row[start..=start + last]);
     }
-    // Values beyond the ends are not of the row itself.
+    // Values beyond the ends are the outermost ones.
     for i in [0, last] {
         let [before, at, after] = [-1, 0, 1].map(|k| row[place(2 * (first + i as i64) + k, c, even)]);
         out[i] = at + 0.5 * (before + after);
@@ -110,7 +110,7 @@ pub(super) fn coarsen_row(row: &[f64], c: usize, even: bool, halved: bool, out: 
     }
 }
 
-/// Where an offset stands among those kept, the outermost one where they end.
+/// The place of an offset in a row, the outermost one beyond its end.
 pub(super) fn place(k: i64, c: usize, even: bool) -> usize {
     let last = c as i64 - 1;
     match even {

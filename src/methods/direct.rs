@@ -1,13 +1,13 @@
-//! Few elements in contact: the equations on C are solved directly, by Cholesky's method.
+//! The direct solution of the equations on C by Cholesky's method, for few elements in contact.
 //!
 //! ```text
 //! prescribed approach   A p = approach - h                         on C
 //! prescribed force      A x = 1, A y = h,  p = approach x - y,     sum of p dx dy = force
-//! 4.1  elements with p < 0 leave C, and again, until none does
+//! 4.1  elements with p < 0 leave C; repeated until none leaves
 //! ```
 //!
-//! Below some fifty elements that is faster than an iteration; who enters C the loop tells. Where there are more, or the matrix is not
-//! positive definite, or a pressure would exceed its limit, another method takes over.
+//! Below some fifty elements this is faster than an iteration. The loop determines the elements that enter C. If C has more elements, the matrix is
+//! not positive definite, or a pressure would exceed its limit, another method takes over.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::{factor, solve};
@@ -22,28 +22,28 @@ use crate::memory::blank;
 use crate::methods::{Change, Policy, Step, Task};
 use crate::scene::Load;
 
-/// Elements in contact, and of the grid, up to which this is faster. Measured: `cargo bench -- dense`.
+/// The most elements in contact, and in the grid, for which this is faster. Measured: `cargo bench -- dense`.
 const MOST_IN_CONTACT: usize = 64;
 const LARGEST_GRID: usize = 32 * 32;
 
-/// Coefficients, and memory for as many elements as there may be.
+/// Coefficients, and memory for the most elements in contact.
 pub struct Direct {
     grid: Grid,
     influence: Coefficients,
-    /// Coefficients at offsets `1 - mx..mx` and `0..my`, x fastest, once they are needed.
+    /// Coefficients at offsets `1 - mx..mx` and `0..my`, x fastest. Filled when first needed.
     table: Vec<f64>,
     is_filled: bool,
     elements: Vec<usize>,
-    /// The same as runs in rows: the first element of each, and how many they are.
+    /// The elements in contact as runs in rows: the first element and the length of each.
     runs: Vec<(usize, usize)>,
     matrix: Vec<f64>,
-    /// One right-hand side, or two: h and 1.
+    /// One right-hand side, or two (h and 1).
     right: Vec<f64>,
     scratch: MemBuffer,
 }
 
 impl Direct {
-    /// On a small grid with even coefficients and an inverse; none on others.
+    /// The method on a small grid with even coefficients and an inverse. None on other grids.
     pub fn new(influence: &Coefficients, grid: &Grid) -> Result<Option<Direct>> {
         let suits = influence.is_even(grid) && !influence.depends_on_place() && !influence.is_mean_free();
         if grid.len() > LARGEST_GRID || !suits {
@@ -77,7 +77,7 @@ impl Direct {
         self.is_filled = true;
     }
 
-    /// The matrix of the elements, column by column: of each run a piece of a row of the table.
+    /// Fills the matrix of the elements, column by column. Each run is a piece of a row of the table.
     fn fill_matrix(&mut self) {
         if !self.is_filled {
             self.fill_table();
@@ -100,7 +100,7 @@ impl Direct {
         }
     }
 
-    /// The first of the right-hand sides becomes p. False if it cannot.
+    /// Replaces the first right-hand side by p. Returns false on failure.
     fn solve(&mut self, state: &mut State) -> bool {
         let n = self.elements.len();
         self.fill_matrix();
@@ -141,7 +141,7 @@ impl<S: AdmissibleSet> Step<S> for Direct {
         Policy { exchanged_by_loop: true, step_is_cycle: false, chatter: 0, patience: 12, progress: 1.0 }
     }
 
-    /// p on C, those that leave it being found on the way.
+    /// Computes p on C, and removes the elements that leave C.
     fn step(&mut self, task: &mut Task<'_, '_, S>) -> Result<Change> {
         let Task { state, set, goal, monitor, .. } = task;
         let gives_up = Change { gives_up: true, ..Change::default() };

@@ -1,18 +1,18 @@
 //! Flexible GMRES (Saad 1993), for a field of K numbers per element and a border of K numbers, right-preconditioned.
-//! K is 2 if nothing else is said: tractions and creepages.
+//! K is 2 by default: tractions and creepages.
 //!
 //! `x = sum_j y_j z_j` with `z_j` the preconditioned vectors; the products of the z_j are kept, so that the product of x costs none.
-//! Where the preconditioner M is the same linear map for all directions they need not be kept: `x = M sum_j y_j v_j`, with the basis v that is kept
-//! anyway. Of many directions the products need not be kept, either: x has one product. A direction then takes a third of the memory ([`Kept`]).
+//! If the preconditioner M is the same linear map for all directions, the z_j need not be kept: `x = M sum_j y_j v_j`, with the basis v. With many
+//! directions the products need not be kept either: x takes one product. A direction then takes a third of the memory ([`Kept`]).
 //!
-//! Vectors and their products are stored in the precision T, double if nothing else is said; sums and borders are always double. x and its product
-//! belong to each other to the precision T, and x is a step: what a step leaves wrong is a part of the step, and the steps become small.
+//! Vectors and their products are stored in the precision T, double by default; sums and borders are always double. x and its product are consistent
+//! to the precision T. As x is a step, this error is relative to the step, and steps become small.
 
 use super::fields::{self as passes, dot_one as dot, plus, Fields, Stored};
 use crate::error::Result;
 use crate::threads::Threads;
 
-/// A field, and a border: of friction tractions or slips, and creepages or forces; of adhesion pressures, and the approach or the force.
+/// A field and a border: in friction tractions or slips, and creepages or forces; in adhesion pressures, and the approach or the force.
 pub struct Bordered<const K: usize = 2, T = f64> {
     pub field: Vec<[T; K]>,
     pub border: [f64; K],
@@ -34,12 +34,12 @@ pub struct Direction<const K: usize = 2, T = f64> {
 /// A direction, and `H` of it.
 pub type Turned<const K: usize, T> = (Direction<K, T>, Bordered<K, T>);
 
-/// The fields that a solve keeps of each direction, beside the basis.
+/// The fields kept for each direction, beside the basis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kept {
     /// Preconditioned vectors and their products.
     All,
-    /// The product alone, while there are no more directions than this number; nothing from then on.
+    /// The product alone, up to this number of directions; none beyond.
     Products(usize),
 }
 
@@ -48,7 +48,7 @@ pub trait System<const K: usize = 2, T: Stored = f64> {
     /// A preconditioned vector, its product with A, and `H` of it.
     fn direction(&mut self, v: &Bordered<K, T>, fields: &mut Fields<K>) -> Result<Turned<K, T>>;
 
-    /// The fields that a solve keeps. A system may keep fewer than all if its preconditioner is the same linear map for each direction.
+    /// The fields kept. A system may keep fewer than all if its preconditioner is the same linear map for each direction.
     fn kept(&self) -> Kept {
         Kept::All
     }
@@ -70,11 +70,11 @@ pub struct Combination<const K: usize = 2, T = f64> {
     pub vectors: Vec<(f64, Bordered<K, T>)>,
     /// The sum of these is the product of its field.
     pub products: Vec<(f64, Vec<[T; K]>)>,
-    /// Products are stored in this unit.
+    /// The unit of stored products.
     pub unit: f64,
-    /// The norm of what is left of r, relative to that of r.
+    /// The norm of the residual, relative to that of r.
     pub left: f64,
-    /// Directions.
+    /// Number of directions.
     pub count: usize,
 }
 
@@ -86,16 +86,16 @@ struct Triangle {
     rest: Vec<f64>,
 }
 
-/// Until when.
+/// The stopping criteria.
 #[derive(Clone, Copy, Debug)]
 pub struct Until {
-    /// The residual is at most this.
+    /// Residual at which a solve stops.
     pub target: f64,
-    /// Or there are so many directions.
+    /// Most directions.
     pub most: usize,
 }
 
-/// Solves `H x = r`; `weight`: of borders in the inner product.
+/// Solves `H x = r`; `weight`: the weight of borders in the inner product.
 pub fn solve<const K: usize, T: Stored>(
     system: &mut dyn System<K, T>,
     r: Bordered<K>,
@@ -137,7 +137,7 @@ pub fn solve<const K: usize, T: Stored>(
 }
 
 impl Kept {
-    /// Gives back what is not kept of directions, of which the last is new.
+    /// Returns the fields of directions that are not kept, the last direction being new.
     fn forget<const K: usize, T: Stored>(self, directions: &mut [Direction<K, T>], fields: &mut Fields<K>) {
         let Kept::Products(most) = self else { return };
         let count = directions.len();
@@ -151,7 +151,7 @@ impl Kept {
     }
 }
 
-/// The solution from the basis, by one more preconditioned vector, and one more product where they are not kept.
+/// The solution from the basis, by one more preconditioned vector, and one more product if products are not kept.
 fn again<const K: usize, T: Stored>(
     system: &mut dyn System<K, T>,
     basis: &[Bordered<K, T>],
@@ -173,7 +173,7 @@ fn again<const K: usize, T: Stored>(
     Ok(Combination { vectors: vec![(1.0, z)], products, unit: 1.0, left: 1.0, count: y.len() })
 }
 
-/// Takes from w what lies along the basis, as modified Gram and Schmidt do; returns the coefficients, and the norm of what is left.
+/// Orthogonalises w against the basis by modified Gram-Schmidt. Returns the coefficients, and the norm of the rest.
 fn orthogonalise<const K: usize, T: Stored>(
     threads: &Threads,
     w: &mut Bordered<K, T>,
@@ -200,7 +200,7 @@ fn scale<const K: usize, T: Stored>(threads: &Threads, v: &mut Bordered<K, T>, a
 }
 
 impl<const K: usize, T: Stored> Direction<K, T> {
-    /// Gives its fields back.
+    /// Returns the fields.
     fn give(self, fields: &mut Fields<K>) {
         [self.z.field, self.product]
             .into_iter()
@@ -210,14 +210,14 @@ impl<const K: usize, T: Stored> Direction<K, T> {
 }
 
 impl<const K: usize, T: Stored> Combination<K, T> {
-    /// Of directions with these factors.
+    /// The combination of directions with factors y.
     fn of(directions: Vec<Direction<K, T>>, y: &[f64]) -> Combination<K, T> {
         let (vectors, products) =
             directions.into_iter().zip(y).map(|(direction, y)| ((*y, direction.z), (*y, direction.product))).unzip();
         Combination { vectors, products, unit: 1.0, left: 1.0, count: y.len() }
     }
 
-    /// Adds x to `to`, and the product of its field to `product`; gives its fields back.
+    /// Adds x to `to`, and the product of its field to `product`; returns the fields.
     pub fn add_to<S: Stored>(
         self,
         to: &mut Bordered<K, S>,
@@ -237,7 +237,7 @@ impl<const K: usize, T: Stored> Combination<K, T> {
 }
 
 impl Triangle {
-    /// Rotates a column into the triangle, `below` its element below the diagonal. False: it is no direction.
+    /// Rotates a column into the triangle, `below` its element below the diagonal. False: the direction is dependent.
     fn add(&mut self, mut column: Vec<f64>, below: f64) -> bool {
         let k = column.len() - 1;
         for (i, &(c, s)) in self.rotations.iter().enumerate() {

@@ -10,24 +10,24 @@ use crate::threads::Threads;
 /// Elements of a block: both fields of it stay in the nearest cache.
 pub const BLOCK: usize = 1024;
 
-/// Fields of one length that are used again; of vectors of the plane if nothing else is said.
+/// A pool of fields of one length, by default of vectors in the plane.
 #[derive(Default)]
 pub struct Fields<const K: usize = 2> {
     free: Vec<Vec<[f64; K]>>,
     single: Vec<Vec<[f32; K]>>,
-    /// Who touches new fields first: the system clears their pages then.
+    /// The threads that touch new fields first, at which the system clears their pages.
     threads: Threads,
 }
 
-/// The precision that fields are stored in.
+/// The precision of stored fields.
 pub trait Stored: Real {
-    /// Values below this part of the largest of a field that was solved for are the round-off of products and of storage.
+    /// Round-off of products and storage, relative to the largest value of a solution.
     const ROUND_OFF: f64;
 
-    /// Those of a pool.
+    /// The fields of this precision in a pool.
     fn of_pool<const K: usize>(fields: &mut Fields<K>) -> &mut Vec<Vec<[Self; K]>>;
 
-    /// A field times a factor, stored so; gives the field back where it is another one.
+    /// A field times a factor in this precision; a field no longer needed goes back to the pool.
     fn stored<const K: usize>(
         threads: &Threads,
         field: Vec<[f64; K]>,
@@ -75,12 +75,12 @@ impl Stored for f32 {
 }
 
 impl<const K: usize> Fields<K> {
-    /// None yet; new ones are first touched by these threads together.
+    /// An empty pool, whose new fields are first touched by these threads together.
     pub fn touched_by(threads: &Threads) -> Fields<K> {
         Fields { threads: threads.clone(), ..Fields::default() }
     }
 
-    /// A field of n elements, which holds anything.
+    /// A field of n elements with undefined values.
     pub fn take(&mut self, n: usize) -> Result<Vec<[f64; K]>> {
         self.take_of(n)
     }
@@ -109,7 +109,7 @@ impl<const K: usize> Fields<K> {
         T::of_pool(self).push(field);
     }
 
-    /// Leaves fields of fewer elements than n: grown they would take the place of others.
+    /// Drops fields of fewer elements than n, so that they are not enlarged in place of freed ones.
     pub fn leave_smaller(&mut self, n: usize) {
         self.free.retain(|field| field.capacity() >= n);
         self.single.retain(|field| field.capacity() >= n);
@@ -151,7 +151,7 @@ pub fn add_and_square<const K: usize, T: Real>(threads: &Threads, to: &mut [[T; 
     add_and_sum(threads, to, a, v, |_, to| dot_of_block(to, to))
 }
 
-/// `to += a v`, and then the sum of what `of` makes of each block of it, which starts at an element.
+/// `to += a v`, and then the sum of `of(first element, block)` over the blocks of `to`.
 fn add_and_sum<const K: usize, T: Real>(
     threads: &Threads,
     to: &mut [[T; K]],
@@ -235,7 +235,7 @@ pub fn largest(threads: &Threads, n: usize, f: impl Fn(usize) -> f64 + Sync + Se
     largest.into_iter().fold(0.0, f64::max)
 }
 
-/// Calls `work(first element, block)` on each of the blocks that several fields were cut into, and adds up what it returns.
+/// Calls `work(first element, block)` on each block of several fields, and adds up the results.
 pub fn over<B: Send, const K: usize>(
     threads: &Threads,
     blocks: impl Iterator<Item = B>,
@@ -251,7 +251,7 @@ pub fn over<B: Send, const K: usize>(
     blocks.into_iter().map(|(_, sums)| sums).fold([0.0; K], added)
 }
 
-/// Four sums side by side: one would wait for each addition.
+/// `v . w` of a block, in four sums: one sum would wait for each addition.
 #[inline(always)]
 fn dot_of_block<const K: usize, T: Real>(v: &[[T; K]], w: &[[T; K]]) -> f64 {
     let mut sums = Sums::new();
@@ -272,7 +272,7 @@ pub fn plus<const K: usize>(v: [f64; K], a: f64, w: [f64; K]) -> [f64; K] {
     std::array::from_fn(|k| v[k] + a * w[k])
 }
 
-/// `v + a w` of one element, stored so.
+/// `v + a w` of one element, in the precision of v.
 #[inline(always)]
 fn plus_of<const K: usize, S: Real, T: Real>(v: [S; K], a: f64, w: [T; K]) -> [S; K] {
     std::array::from_fn(|k| S::of(v[k].to_double() + a * w[k].to_double()))

@@ -1,4 +1,4 @@
-//! The methods, each whole in its folder. To the solver's loop each of them is a [`Step`].
+//! The methods, each in its folder. Each is a [`Step`] of the solver's loop.
 
 pub mod direct;
 pub mod extension;
@@ -15,12 +15,12 @@ pub use task::Task;
 use crate::contact::{AdmissibleSet, State};
 use crate::error::Result;
 
-/// Where a solve starts from.
+/// The start of a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// No pressures.
+    /// p = 0.
     Nothing,
-    /// The caller's.
+    /// The caller's guess.
     Given,
     /// The last solution.
     Previous,
@@ -28,36 +28,36 @@ pub enum Start {
 
 /// One step of a method, between two steps of the active set.
 pub trait Step<S: AdmissibleSet> {
-    /// Its name in messages.
+    /// The name in messages.
     fn name(&self) -> &'static str;
 
-    /// Gets ready for `state`: memory, and what was learnt from the solve before is forgotten.
+    /// Prepares for `state`: makes memory and forgets the solve before.
     fn begin(&mut self, _state: &State) -> Result<()> {
         Ok(())
     }
 
-    /// Changes p; `state.u_is` says what u is worth afterwards.
+    /// Changes p, and sets the freshness `state.u_is` of u.
     fn step(&mut self, task: &mut Task<'_, '_, S>) -> Result<Change>;
 
-    /// When it is given up, and when elements that change sides keep an answer from being one.
+    /// The conditions under which the loop gives the method up, or accepts a state although elements change sides.
     fn policy(&self) -> Policy;
 }
 
 /// The measures of one step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Change {
-    /// rms over C of the change of p; infinite where it proves nothing.
+    /// rms over C of the change of p; infinite if it proves nothing.
     pub update: f64,
     /// Elements that the step itself moved into or out of C.
     pub changes: u64,
-    /// Whether the step can do no more on this scene.
+    /// Whether the step can make no more progress on this scene.
     pub gives_up: bool,
 }
 
-/// How a method goes through the loop.
+/// The policy of the loop for a method.
 #[derive(Clone, Copy, Debug)]
 pub struct Policy {
-    /// Whether the loop takes steps (4.1) and (4.2) for it. NORM takes its own step 3, at once and before the next solve.
+    /// Whether the loop makes steps (4.1) and (4.2). NORM makes its own step 3, at once and before the next solve.
     pub exchanged_by_loop: bool,
     /// Whether the loop counts each step as a cycle. Other methods count their own iterations.
     pub step_is_cycle: bool,
@@ -65,6 +65,6 @@ pub struct Policy {
     pub chatter: u32,
     /// Steps without progress after which the method is given up.
     pub patience: u32,
-    /// Progress: the violation falls below this part of the least so far.
+    /// Part of the least violation so far below which a violation is progress.
     pub progress: f64,
 }

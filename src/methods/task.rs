@@ -10,18 +10,18 @@ pub struct Task<'a, 'm, S> {
     pub problem: &'a mut Problem,
     /// The unknowns.
     pub state: &'a mut State,
-    /// The least of their undeformed distances; infinite if there is no surface.
+    /// The least undeformed distance of the state; infinite if there is no surface.
     pub lowest: f64,
-    /// The pressures that are admissible.
+    /// The admissible pressures.
     pub set: S,
     /// The goal.
     pub goal: Goal,
-    /// Who counts and watches.
+    /// Counts products and reports progress.
     pub monitor: &'a mut Monitor<'m>,
 }
 
 impl<S: AdmissibleSet> Task<'_, '_, S> {
-    /// p carries the prescribed force, u = A p by a fresh product, and the approach fits.
+    /// Makes p carry the prescribed force, u = A p by a fresh product, and the approach fit both.
     pub fn refresh(&mut self) -> Result<()> {
         self.problem.refresh(self.state, self.set)
     }

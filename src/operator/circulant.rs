@@ -1,8 +1,8 @@
 //! The inverse of a circulant near A, as a preconditioner (Strang 1986, T. Chan 1988).
 //!
-//! Its period is that of the grid itself, a quarter of the work of a padded one at the same number of iterations. It is one element
-//! longer than the grid, so that the coefficient at offset -m is the true one; where there is only one row (or column) that direction
-//! has the period 1.
+//! The period is that of the grid: a product costs a quarter of a padded one, and the number of iterations is the same. The period is
+//! one element longer than the grid, so that the coefficient at offset -m is the true one. A direction of one row (or column) has the
+//! period 1.
 
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -35,7 +35,7 @@ impl<T: Real> Operator<T> {
         Operator::scaled_inverse(coefficients, 1.0, grid, period, threads)
     }
 
-    /// The same of coefficients times a factor, a power of two.
+    /// [`Operator::inverse_circulant`] for coefficients times a factor, a power of two.
     pub fn scaled_inverse(
         coefficients: &Coefficients,
         factor: f64,
@@ -62,11 +62,11 @@ impl<T: Real> Operator<T> {
     }
 }
 
-/// The part of the shortest period's wave number at which a wave of none is taken: of the same response as all that a period does not
-/// hold. Measured.
+/// The constant wave gets the response at this part of the smallest wave number, which stands for all waves longer than the period.
+/// Measured.
 const MEAN_WAVE: f64 = 0.45;
 
-/// The displacement by the wave of a bin.
+/// The response to the wave of a bin.
 fn wave_of(coefficients: &Coefficients, grid: &Grid, (px, py): (usize, usize), (x, y): (usize, usize)) -> f64 {
     let number = |bin: usize, p: usize, d: f64| 2.0 * PI * bin as f64 / (p as f64 * d);
     let (mut kx, ky) = (number(x, px, grid.dx), number(y, py, grid.dy));

@@ -1,5 +1,5 @@
-//! `u = A p` by direct summation: the naive twin of [`Operator`](super::Operator), the oracle of its tests, right for every effect; and
-//! the matrix of the small systems that are factorised.
+//! `u = A p` by direct summation: the naive twin of [`Operator`](super::Operator) for every effect, the oracle of its tests. Also the
+//! matrix of small systems that are factorised.
 
 use crate::grid::Grid;
 use crate::influence::Coefficients;
@@ -13,7 +13,7 @@ pub fn apply(coefficients: &Coefficients, grid: &Grid, p: &[f64], u: &mut [f64])
             *u = loaded().map(|(j, p)| coefficients.entry(grid, i, j) * p).sum();
         });
     }
-    // Each offset once.
+    // Each offset is evaluated once.
     let (width, height) = (2 * grid.mx - 1, 2 * grid.my - 1);
     let (mx, my) = (grid.mx as i64, grid.my as i64);
     let offsets = (0..width * height).map(|k| ((k % width) as i64 - (mx - 1), (k / width) as i64 - (my - 1)));
@@ -27,11 +27,11 @@ pub fn apply(coefficients: &Coefficients, grid: &Grid, p: &[f64], u: &mut [f64])
     }
 }
 
-/// The matrix of the elements with the indices `elements` only, column by column; `coefficient(x, y)` is that of an offset.
+/// The matrix of the elements `elements`, column by column, from the coefficients `coefficient(x, y)` of offsets.
 pub fn fill_matrix(grid: &Grid, elements: &[usize], coefficient: impl Fn(i64, i64) -> f64, matrix: &mut Vec<f64>) {
     matrix.clear();
     matrix.reserve(elements.len() * elements.len());
-    // A division takes longer than all else: one for each column and element of a row, not for each pair.
+    // Divisions dominate the time: there is one for each column and row of elements, not for each pair.
     for &j in elements {
         let (mut row, mut end) = (0, grid.mx);
         let (jx, jy) = ((j % grid.mx) as i64, (j / grid.mx) as i64);

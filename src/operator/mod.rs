@@ -24,6 +24,6 @@ pub enum Precision {
     Auto,
     /// Double precision throughout.
     Double,
-    /// Single precision inside, where it helps.
+    /// Single precision for inner work, if that is faster.
     Mixed,
 }

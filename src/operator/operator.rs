@@ -1,4 +1,4 @@
-//! `u = A p`: a product by FFT, with the diagonal and the coupling that the coefficients may have.
+//! `u = A p`: a product by FFT, with the diagonal and the coupling of the coefficients, if any.
 //!
 //! A is block Toeplitz, so it is a part of a block circulant, of the period that [`periods`](super::periods) chooses.
 //!
@@ -17,15 +17,15 @@ use crate::influence::{Coefficients, Patches};
 use crate::memory::{computed, reserve};
 use crate::threads::Threads;
 
-/// Names its memory in messages.
+/// The name of this memory in messages.
 const DIAGONAL: &str = "the operator's diagonal";
 
 /// The operator of one grid.
 pub struct Operator<T: Real> {
     product: Product<T>,
-    /// Products with pressures that reach farther are wrong. Only even coefficients make use of it.
+    /// The reach of pressures for which products are right. Only even coefficients use it.
     reach: Reach,
-    /// The diagonal of A beyond the coefficients; empty: nothing.
+    /// The diagonal of A beyond the coefficients; empty if there is none.
     diagonal: Vec<T>,
     /// Patches between which A is scaled.
     coupling: Option<Patches>,
@@ -37,14 +37,14 @@ impl<T: Real> Operator<T> {
         Operator::scaled(coefficients, 1.0, grid, threads)
     }
 
-    /// Of coefficients times a factor, a power of two: no digit changes.
+    /// The operator of coefficients times a power of two, which changes no digit.
     pub fn scaled(coefficients: &Coefficients, factor: f64, grid: &Grid, threads: &Threads) -> Result<Operator<T>> {
         let mut operator = Operator::of_period(grid, periods(coefficients, grid, full_reach(grid)), threads)?;
         operator.renew(coefficients, factor, grid, &mut SetUp::default())?;
         Ok(operator)
     }
 
-    /// For products with pressures within a reach.
+    /// The operator for pressures within a reach.
     pub fn within(reach: Reach, coefficients: &Coefficients, grid: &Grid, threads: &Threads) -> Result<Operator<T>> {
         let mut operator = Operator::of_period(grid, periods(coefficients, grid, reach), threads)?;
         operator.reach = reach;
@@ -62,18 +62,18 @@ impl<T: Real> Operator<T> {
         Ok(Operator::by(Product::new((grid.mx, grid.my), period, threads)?, grid))
     }
 
-    /// By a product alone.
+    /// The operator of a product, without diagonal and coupling.
     pub(super) fn by(product: Product<T>, grid: &Grid) -> Operator<T> {
         Operator { product, reach: full_reach(grid), diagonal: Vec::new(), coupling: None }
     }
 
-    /// The threads of its products.
+    /// The threads of the products.
     pub fn threads(&self) -> &Threads {
         self.product.threads()
     }
 
-    /// Takes other coefficients, times a factor, on the same `grid`: plans and memory are kept where they fit. Not to be used after an
-    /// error, before it is renewed again.
+    /// Takes other coefficients, times a factor, on the same `grid`, and keeps plans and memory if they fit. After an error the operator must be
+    /// renewed before use.
     pub fn renew(&mut self, coefficients: &Coefficients, factor: f64, grid: &Grid, set_up: &mut SetUp) -> Result<()> {
         let (period, threads) = (periods(coefficients, grid, self.reach), self.threads().clone());
         let elements = (grid.mx, grid.my);
@@ -118,7 +118,7 @@ impl<T: Real> Operator<T> {
         mx * my
     }
 
-    /// Whether A has more on its diagonal than the coefficients.
+    /// Whether A has a diagonal beyond the coefficients.
     pub fn has_diagonal(&self) -> bool {
         !self.diagonal.is_empty()
     }
@@ -128,7 +128,7 @@ impl<T: Real> Operator<T> {
         self.product.bytes() + size_of_val(&self.diagonal[..])
     }
 
-    /// The sizes that its products need: the workspace of one operator serves another of the same needs.
+    /// The sizes of the products' memory: the workspace of one operator serves another of the same needs.
     pub fn needs(&self) -> Needs {
         let masked = self.coupling.as_ref().map_or(0, |_| self.elements());
         Needs { room: self.product.room(), masked }
@@ -174,7 +174,7 @@ impl<T: Real> Operator<T> {
     }
 }
 
-/// Coefficients on a grid, as products ask for them.
+/// Coefficients on a grid, for products.
 struct OnGrid<'a>(&'a Coefficients, &'a Grid);
 
 impl toeplitz::Coefficients for OnGrid<'_> {
@@ -222,7 +222,7 @@ impl<T: Real> Workspace<T> {
     }
 }
 
-/// `u = A p` with patches, by products `multiply(p, u)` without factors: one for each patch,
+/// `u = A p` with patches, by one product `multiply(p, u)` without factors for each patch,
 ///
 /// ```text
 /// u on patch a = A (sum over patches b of F(a, b) p on b)

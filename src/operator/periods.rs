@@ -1,10 +1,10 @@
 //! The periods of products.
 //!
 //! ```text
-//! A is block Toeplitz: a part of a block circulant of period px * py, which must keep the offsets apart that occur
+//! A is block Toeplitz, a part of a block circulant of period px * py, which must keep all occurring offsets apart
 //! any p                        -(m-1)..m-1:     2m - 1, or 2m - 2 when the coefficients are even (m-1 and -(m-1) are then alike)
 //! p within a [`Reach`]         -reach..reach:   2 reach, when the coefficients are even
-//! A circulant in a direction   m: nothing is padded
+//! A circulant in a direction   m: no padding
 //! ```
 
 use toeplitz::lengths::{good_length, have_stages, length_for_stages};
@@ -15,7 +15,7 @@ use crate::influence::Coefficients;
 /// The largest offsets, in x and y, between elements that carry pressure and elements that are displaced.
 pub type Reach = (usize, usize);
 
-/// That of pressures anywhere on a grid.
+/// The reach of pressures anywhere on a grid.
 pub(super) fn full_reach(grid: &Grid) -> Reach {
     (grid.mx - 1, grid.my - 1)
 }
@@ -35,8 +35,8 @@ pub(super) fn periods(coefficients: &Coefficients, grid: &Grid, reach: Reach) ->
     }
 }
 
-/// Periods of at least `least` for products by even coefficients, in directions without a period of the scene. Either both rows and columns go
-/// through our own FFT stages or none of them. A machine without vectors has no such stages, but the same periods.
+/// Periods of at least `least` for products by even coefficients, in directions without a period of the scene. Either both rows and columns use the
+/// FFT stages of the crate toeplitz, or neither. A machine without vectors has no such stages, but the same periods.
 pub(crate) fn even_periods(coefficients: &Coefficients, grid: &Grid, least: (usize, usize)) -> (usize, usize) {
     let repeats = coefficients.repeats(grid);
     let periods = |length: fn(usize) -> usize| {

@@ -10,26 +10,26 @@ use crate::threads::Threads;
 /// Names its memory in messages.
 const WORKSPACE: &str = "the product's workspace";
 
-/// Memory that a product needs, so that it allocates nothing.
+/// Memory for a product, which then allocates nothing.
 pub struct Workspace<T: Real> {
     pub(super) memory: Memory<T>,
-    /// With patches: p scaled for one of them, and its product.
+    /// With patches: p scaled for one patch, and its product.
     pub(super) masked: [Vec<T>; 2],
-    /// And p, where u takes its place.
+    /// With patches: a copy of p, if u overwrites it.
     pub(super) given: Vec<T>,
 }
 
-/// Numbers of values that the products of an operator need.
+/// The sizes of memory that the products of an operator need.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
 pub struct Needs {
-    /// Transforms.
+    /// For transforms.
     pub(super) room: Room,
     /// Elements of a grid with patches.
     pub(super) masked: usize,
 }
 
 impl Needs {
-    /// The sizes that either needs.
+    /// The larger of both sizes.
     #[must_use]
     pub fn max(self, other: Needs) -> Needs {
         Needs { room: self.room.max(other.room), masked: self.masked.max(other.masked) }
@@ -37,7 +37,7 @@ impl Needs {
 }
 
 impl<T: Real> Workspace<T> {
-    /// Memory for products that need no more.
+    /// Memory for products with these needs.
     pub fn of(needs: Needs, threads: &Threads) -> Result<Workspace<T>> {
         let memory = |n| zeros(n, WORKSPACE);
         Ok(Workspace {
@@ -47,7 +47,7 @@ impl<T: Real> Workspace<T> {
         })
     }
 
-    /// It is not needed for a while.
+    /// Lets the memory rest, which is not needed for a while.
     pub fn rest(&mut self) {
         self.memory.rest();
     }

@@ -1,12 +1,12 @@
-//! The ledger: what a solve knew when, one row per grid.
+//! The ledger: results and costs of a solve, one row per grid.
 
 use crate::contact::{Certificate, Outline, State, Survey};
 use crate::scene::Load;
 
-/// The state of affairs on one grid.
+/// The measures of the result on one grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measures {
-    /// How well the conditions hold.
+    /// How well the contact conditions hold.
     pub certificate: Certificate,
     /// The approach.
     pub approach: f64,
@@ -16,16 +16,16 @@ pub struct Measures {
     pub max_pressure: f64,
     /// Elements in contact.
     pub contact_count: usize,
-    /// Those of them on the first or last row or column of the grid.
+    /// Elements in contact on the first or last row or column of the grid.
     pub edge_count: usize,
-    /// Their area.
+    /// The area of the elements in contact.
     pub contact_area: f64,
-    /// The same, corrected for the elements along the outline; negative when errors are not estimated.
+    /// The contact area corrected for the elements along the outline; negative when errors are not estimated.
     pub corrected_area: f64,
 }
 
 impl Measures {
-    /// Measures a state that was surveyed; without the corrected area.
+    /// The measures of a surveyed state, without the corrected area.
     pub fn of(state: &State, survey: &Survey) -> Measures {
         Measures {
             certificate: survey.certificate(),
@@ -39,7 +39,7 @@ impl Measures {
         }
     }
 
-    /// The one of force and approach that the load does not prescribe.
+    /// The force if the approach is prescribed, else the approach.
     pub fn found(&self, load: Load) -> f64 {
         match load {
             Load::Approach(_) => self.force,
@@ -48,30 +48,30 @@ impl Measures {
     }
 }
 
-/// Estimated errors (module `estimates`). Negative: not known, because it was not asked for, or, with its bit in `untrusted`,
-/// because the grid does not resolve the contact, or the peak is singular.
+/// Estimated errors (module `estimates`). Negative: unknown, as no estimates were requested, or, with its bit in `untrusted`, as the grid
+/// does not resolve the contact, or the peak is singular.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiscretisationError {
-    /// Of the force (of the approach, when the force is prescribed).
+    /// The error of the force (of the approach, when the force is prescribed).
     pub force: f64,
-    /// Of the largest pressure.
+    /// The error of the largest pressure.
     pub max_pressure: f64,
-    /// Of the contact area by counting elements.
+    /// The error of the contact area by counting elements.
     pub contact_area: f64,
-    /// Of the corrected contact area.
+    /// The error of the corrected contact area.
     pub corrected_area: f64,
-    /// Of the pressures: rms of the error over that of p.
+    /// The error of the pressures: rms of the error over rms of p.
     pub pressure: f64,
     /// Bits: see [`DiscretisationError::FORCE`] and the following.
     pub untrusted: u32,
 }
 
 impl DiscretisationError {
-    /// In `untrusted`: the error of the force or the approach.
+    /// Bit of `untrusted`: the error of the force or the approach.
     pub const FORCE: u32 = 1;
-    /// Of the largest pressure.
+    /// Bit of `untrusted`: the error of the largest pressure.
     pub const MAX_PRESSURE: u32 = 2;
-    /// Of the pressures.
+    /// Bit of `untrusted`: the error of the pressures.
     pub const PRESSURE: u32 = 4;
 }
 
@@ -89,7 +89,7 @@ impl Default for DiscretisationError {
     }
 }
 
-/// One row of the ledger: what was known on one grid, and what it had cost by then.
+/// One row of the ledger: the measures of one grid, and the cost up to its end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LedgerRow {
     /// Elements in x.
@@ -100,11 +100,11 @@ pub struct LedgerRow {
     pub cycles: u64,
     /// Seconds since the solve began.
     pub seconds: f64,
-    /// Work units since then: products, each weighted by its elements over those of the finest grid.
+    /// Work units since the solve began: products, each weighted by its elements over those of the finest grid.
     pub work_units: f64,
-    /// The measures of that grid.
+    /// The measures of the grid.
     pub measures: Measures,
-    /// And how far it was off.
+    /// The estimated errors.
     pub error: DiscretisationError,
 }
 
@@ -113,8 +113,8 @@ pub struct LedgerRow {
 pub struct Ledger {
     /// Coarsest grid first.
     pub rows: Vec<LedgerRow>,
-    /// Whether errors are to be estimated: then rows have a corrected area.
+    /// Whether errors are estimated: then rows have a corrected area.
     pub estimates: bool,
-    /// Of the contact area of the last row, if errors are to be estimated.
+    /// The outline of the contact area of the last row, if errors are estimated.
     pub outline: Outline,
 }

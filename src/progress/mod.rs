@@ -1,4 +1,4 @@
-//! Goals of loops, why they end, their counters, and who may cancel them.
+//! Loops: goals, outcomes, counters, cancellation.
 
 mod criterion;
 mod ledger;
@@ -24,16 +24,16 @@ pub struct Progress {
     pub active_set_changes: u64,
     /// Seconds since the solve began.
     pub seconds: f64,
-    /// Work units since then.
+    /// Work units since the solve began.
     pub work_units: f64,
     /// rms over C of the last change of p.
     pub update: f64,
-    /// Relative residual over C, as far as it is known.
+    /// Relative residual over C, if known.
     pub residual: f64,
 }
 
 impl Progress {
-    /// After a part of work that has no cycles: a depth of subsurface stresses, an entry of a table. These count as cycles.
+    /// The progress of work without cycles: a depth of subsurface stresses or an entry of a table counts as a cycle.
     pub fn of_part(grid: &Grid, cycles: u64, seconds: f64) -> Progress {
         Progress {
             mx: grid.mx,
@@ -48,7 +48,7 @@ impl Progress {
     }
 }
 
-/// Told the progress after each cycle; says whether to cancel.
+/// Called with the progress after each cycle; true cancels.
 pub type ProgressCallback<'a> = &'a mut dyn FnMut(&Progress) -> bool;
 
 /// Counters. All but the work units start anew on each grid.
@@ -64,13 +64,13 @@ pub struct Counters {
     pub active_set_steps: u64,
     /// rms over C of the last change of p.
     pub update: f64,
-    /// Relative residual over C, as far as the last cycle knew it.
+    /// Relative residual over C, as of the last cycle.
     pub residual: f64,
     /// Products on all grids, in products on the finest.
     pub work_units: f64,
 }
 
-/// Counts what a solve does, asks the caller whether to go on, and keeps the ledger.
+/// Counts the work of a solve, calls the caller's progress callback, and keeps the ledger.
 pub struct Monitor<'a> {
     began: Instant,
     callback: Option<ProgressCallback<'a>>,
@@ -79,19 +79,19 @@ pub struct Monitor<'a> {
     pub count: Counters,
     /// The measures of each grid.
     pub ledger: Ledger,
-    /// Of the state of the grid that is closed next, where it was surveyed last.
+    /// The last survey of the grid to be closed next, if it still holds.
     pub survey: Option<Survey>,
 }
 
 impl<'a> Monitor<'a> {
-    /// The clock starts. `rows` lends its memory; `estimates`: whether errors are to be estimated.
+    /// Starts the clock. `rows` lends its memory; `estimates`: whether errors are estimated.
     pub fn new(callback: Option<ProgressCallback<'a>>, mut rows: Vec<LedgerRow>, estimates: bool) -> Monitor<'a> {
         rows.clear();
         let ledger = Ledger { rows, estimates, ..Ledger::default() };
         Monitor { began: Instant::now(), callback, cancelled: false, count: Counters::default(), ledger, survey: None }
     }
 
-    /// Of work that nobody watches.
+    /// A monitor without a callback.
     pub fn silent() -> Monitor<'a> {
         Monitor::new(None, Vec::new(), false)
     }
@@ -101,12 +101,12 @@ impl<'a> Monitor<'a> {
         self.began.elapsed().as_secs_f64()
     }
 
-    /// A new grid: its own counts start.
+    /// Begins a grid with counts of its own.
     pub fn enter_grid(&mut self) {
         self.count = Counters { work_units: self.count.work_units, ..Counters::default() };
     }
 
-    /// Counts products on other grids than the current one: work only.
+    /// Counts products on other grids than the current one, as work only.
     pub fn count_work(&mut self, work: f64) {
         self.count.work_units += work;
     }
@@ -125,7 +125,7 @@ impl<'a> Monitor<'a> {
         self.tell(grid, changes, update, residual)
     }
 
-    /// Tells the caller, who is not asked again after having cancelled.
+    /// Calls the callback, which is not called again after it cancelled.
     fn tell(&mut self, grid: &Grid, changes: u64, update: f64, residual: f64) -> bool {
         if let (Some(callback), false) = (&mut self.callback, self.cancelled) {
             let progress = Progress {
@@ -143,7 +143,7 @@ impl<'a> Monitor<'a> {
         !self.cancelled
     }
 
-    /// An iteration of the tangential problem is done, of which nothing is counted here; false when the caller cancels.
+    /// Reports an iteration of the tangential problem, which is not counted; false when the caller cancels.
     pub fn tangential_done(&mut self, grid: &Grid, residual: f64) -> bool {
         self.tell(grid, 0, 0.0, residual)
     }
@@ -162,7 +162,7 @@ impl<'a> Monitor<'a> {
         }
     }
 
-    /// Writes the ledger row of the current grid: what is known of `state`, whose u is A p.
+    /// Writes the ledger row of the current grid from `state`, whose u is A p.
     pub fn close_grid(&mut self, state: &State) {
         let survey = self.survey.take().unwrap_or_else(|| Survey::of(state));
         let mut measures = Measures::of(state, &survey);

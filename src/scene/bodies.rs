@@ -22,18 +22,18 @@ impl Bodies {
         (0..2).map(|b| self.compliance_of(b)).sum()
     }
 
-    /// Of body b, `(1 - nu)/(2 G)`.
+    /// `(1 - nu)/(2 G)` of body b.
     pub fn compliance_of(&self, b: usize) -> f64 {
         (1.0 - self.poisson_ratio[b]) / (2.0 * self.shear_modulus[b])
     }
 
-    /// The coupling of the normal and the tangential problem of half-spaces: `(1 - 2 nu1)/G1 - (1 - 2 nu2)/G2`; 0 where bodies are alike.
+    /// The coupling of the normal and the tangential problem of half-spaces: `(1 - 2 nu1)/G1 - (1 - 2 nu2)/G2`; 0 for like bodies.
     pub fn unlike(&self) -> f64 {
         let of = |b: usize| (1.0 - 2.0 * self.poisson_ratio[b]) / self.shear_modulus[b];
         of(0) - of(1)
     }
 
-    /// The first elastic constant that is another one than that of the bodies of a set-up; none if all are the same.
+    /// The first elastic constant that differs from that of the bodies of a set-up; none if all are equal.
     pub fn differs(&self, of_set_up: &Bodies) -> Option<String> {
         let constants = |bodies: &Bodies| {
             let ([g0, g1], [nu0, nu1]) = (bodies.shear_modulus, bodies.poisson_ratio);
@@ -44,7 +44,7 @@ impl Bodies {
         Some(format!("{} is {}; this solver was set up for {}", now.0, now.1, then.1))
     }
 
-    /// Refuses what is no material, one body by itself: either may be rigid.
+    /// Refuses invalid materials, each body by itself: either may be rigid.
     pub fn check_each(&self) -> Result<()> {
         for i in 0..2 {
             let (modulus, ratio) = (self.shear_modulus[i], self.poisson_ratio[i]);
@@ -62,7 +62,7 @@ impl Bodies {
         Ok(())
     }
 
-    /// Refuses what is no material, and two rigid bodies.
+    /// Refuses invalid materials, and two rigid bodies.
     pub fn check(&self) -> Result<()> {
         self.check_each()?;
         if self.shear_modulus.iter().all(|modulus| modulus.is_infinite()) {

@@ -12,7 +12,7 @@ pub enum Load {
 }
 
 impl Load {
-    /// Refuses what is no load.
+    /// Refuses an invalid load.
     pub fn check(&self) -> Result<()> {
         let (name, value) = match *self {
             Load::Approach(approach) => ("approach", approach),

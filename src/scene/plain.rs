@@ -1,4 +1,4 @@
-//! The part of a scene that every scene has and every effect may read.
+//! The part of a scene without effects, which every effect may read.
 
 use super::{Bodies, Load};
 use crate::blocks;
@@ -21,7 +21,7 @@ pub struct Plain<'a> {
 }
 
 impl Plain<'_> {
-    /// Refuses a grid and distances that are none. Returns the least, infinite where there is no surface at all.
+    /// Refuses an invalid grid and distances that are no numbers. Returns the least distance, infinite without a surface.
     pub fn check_distance(&self, threads: &Threads) -> Result<f64> {
         self.grid.check()?;
         let (h, n) = (self.undeformed_distance, self.grid.len());
@@ -36,7 +36,7 @@ impl Plain<'_> {
             (f64::INFINITY, true),
             #[inline(always)]
             |block| {
-                // Of all of them first, which the compiler can vectorise.
+                // All elements at once: the compiler vectorises this.
                 let h = &h[block];
                 let all = h.iter().fold(!0, |all: u64, v| all & u64::from(is_number(v)).wrapping_neg());
                 (least(h), all != 0)
@@ -53,7 +53,7 @@ impl Plain<'_> {
         }
     }
 
-    /// Refuses a force that there is no surface for: the lowest is infinitely far.
+    /// Refuses a force without a surface, if the lowest distance is infinite.
     pub fn check_surface(&self, lowest: f64) -> Result<()> {
         match self.load {
             Load::Force(force) if force > 0.0 && lowest.is_infinite() => Err(Error::Infeasible(format!(

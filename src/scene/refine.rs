@@ -1,4 +1,4 @@
-//! The undeformed distance on a finer grid over the same rectangle, from the one that is given.
+//! The undeformed distance on a finer grid over the same rectangle, from the given one.
 
 use crate::error::Result;
 use crate::grid::Grid;
@@ -6,10 +6,9 @@ use crate::memory::zeros;
 
 /// The values `h` of `grid` at the centres of a grid with `parts` elements for each one in both directions.
 ///
-/// By cubics through the four nearest centres in each direction (of fewer elements, the polynomial through all): exact for cubics,
-/// and without roughness that the data do not have. Parts of an element without surface (+infinity) have none; where one is
-/// among the four, the line through the element and its neighbour with surface is taken, on the side of the part if there is
-/// one, else a constant.
+/// By cubics through the four nearest centres in each direction (with fewer elements, the polynomial through all): exact for cubics,
+/// and without additional roughness. Parts of an element without surface (+infinity) have none. If one of the four has none, the line
+/// through the element and its neighbour with surface is used, on the side of the part if possible, else a constant.
 pub fn refine(h: &[f64], grid: &Grid, parts: usize) -> Result<Vec<f64>> {
     let (mx, my) = (grid.mx, grid.my);
     let (fine_mx, fine_my) = (mx * parts, my * parts);
@@ -56,7 +55,7 @@ impl Part {
         if (first..first + count).any(|j| value(j).is_infinite()) {
             return self.beside_a_hole(i, m, value);
         }
-        // At the border of the grid the four nearest centres lie otherwise.
+        // At the border of the grid the four nearest centres are not around the point.
         let mut weights = self.weights;
         if first as i64 != wanted || count < 4 {
             lagrange(i as f64 + self.offset - first as f64, &mut weights[..count]);
@@ -80,7 +79,7 @@ impl Part {
     }
 }
 
-/// The first of the four nearest centres, from the element in which the point lies.
+/// The first of the four nearest centres, relative to the element of the point.
 fn first_node(offset: f64) -> i64 {
     if offset < 0.0 {
         -2

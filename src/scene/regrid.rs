@@ -6,8 +6,8 @@ use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::{collected, zeros};
 
-/// The grid over the rectangle of `grid` with twice the elements in both directions, so many times; with half of them, rounded, and at least
-/// one, if the number is negative.
+/// The grid over the rectangle of `grid` with the elements of both directions doubled `doublings` times. A negative number halves them,
+/// rounded, down to one.
 pub fn scaled(grid: &Grid, doublings: i32) -> Result<Grid> {
     let Grid { mx, my, dx, dy } = *grid;
     if doublings >= 0 {
@@ -24,8 +24,8 @@ pub fn scaled(grid: &Grid, doublings: i32) -> Result<Grid> {
     Grid::new(fewer_x, fewer_y, length(mx, fewer_x, dx), length(my, fewer_y, dy))
 }
 
-/// The undeformed distance `h` of `grid` at the centres of a coarser grid: the weighted mean of the four centres around each that have a
-/// surface, or none if fewer than two have one (of a centre that is one of `grid`, its own).
+/// The undeformed distance `h` of `grid` at the centres of a coarser grid: the weighted mean of those of the four centres around each that
+/// have a surface. With fewer than two there is no surface; a centre that coincides with one of `grid` has its value.
 pub fn sample(h: &[f64], grid: &Grid, coarse: &Grid) -> Result<Vec<f64>> {
     let columns: Vec<[(usize, f64); 2]> = (0..coarse.mx).map(|i| between(i, coarse.mx, grid.mx)).collect();
     let mut sampled = zeros(coarse.len(), "undeformed distances of a coarser grid")?;
@@ -48,13 +48,13 @@ pub fn sample(h: &[f64], grid: &Grid, coarse: &Grid) -> Result<Vec<f64>> {
 
 /// The two of `m` centres around centre i of `coarse`, with their weights.
 fn between(i: usize, coarse: usize, m: usize) -> [(usize, f64); 2] {
-    // Whole numbers until the end, so that a centre in the middle is there exactly.
+    // Integers until the end, so that coinciding centres are exact.
     let (twice, whole) = ((2 * i + 1) * m - coarse, 2 * coarse);
     let (first, part) = (twice / whole, (twice % whole) as f64 / whole as f64);
     [(first, 1.0 - part), ((first + 1).min(m - 1), part)]
 }
 
-/// From one grid to another.
+/// The transfer from one grid to another.
 struct Regrid {
     from: Grid,
     to: Grid,
@@ -98,9 +98,9 @@ impl Regrid {
     }
 }
 
-/// The elements out of `m` that element i of `to` covers, with the parts of it that they are.
+/// The elements out of `m` that element i of `to` covers, with the part of element i that each covers.
 fn parts(i: usize, to: usize, m: usize) -> Vec<(usize, f64)> {
-    // In units of 1/(to m) of the whole length.
+    // Lengths are in units of 1/(to m) of the whole.
     let (start, end) = (i * m, (i + 1) * m);
     let part = |x: usize| (end.min((x + 1) * to) - start.max(x * to)) as f64 / m as f64;
     (start / to..end.div_ceil(to)).map(|x| (x, part(x))).collect()
@@ -125,10 +125,10 @@ pub struct Regridded {
 impl Regridded {
     /// A scene on the grid `to`. `surface`: the undeformed distance on it; none: that of the scene, [refined](refine) by a whole ratio or
     /// [sampled](sample). Compliances, limits, coefficients of friction, weights and tractions are means over the elements. A step of
-    /// transient rolling stays as long as it is; a step of steady rolling that is one element long stays one element long.
+    /// transient rolling keeps its length; a step of steady rolling of one element stays one element long.
     ///
     /// # Errors
-    /// `Unsupported`: own coefficients, which are those of one grid; tractions before that a solver keeps.
+    /// `Unsupported`: own coefficients, which belong to one grid; previous tractions kept by a solver.
     pub fn new(scene: &Scene<'_>, to: Grid, surface: Option<Vec<f64>>) -> Result<Regridded> {
         check_other_grids(scene)?;
         let from = scene.grid;
@@ -156,7 +156,7 @@ impl Regridded {
             None => distance(scene.undeformed_distance, &from, &to)?,
         };
         let patches = scene.patches.map(|patches| regrid.at_centres(patches.patch)).transpose()?;
-        // Where there is no patch there is no surface, also in a scene of which the patches are left out.
+        // Without a patch there is no surface, also in a scene whose patches are left out.
         for (h, patch) in undeformed_distance.iter_mut().zip(patches.iter().flatten()) {
             if *patch < 0 {
                 *h = f64::INFINITY;
@@ -184,7 +184,7 @@ impl Regridded {
         })
     }
 
-    /// `scene`, which this was made of, on the other grid.
+    /// The scene of [`Regridded::new`] on the other grid.
     pub fn scene<'a>(&'a self, scene: &Scene<'a>) -> Scene<'a> {
         let per_element = |values: &'a Option<Vec<f64>>, uniform: Coefficient<'a>| {
             values.as_ref().map_or(uniform, |values| Coefficient::PerElement(values))
@@ -219,7 +219,7 @@ impl Regridded {
     }
 }
 
-/// h on another grid: by cubics on one with a whole number of elements for each one, else by samples.
+/// h on another grid: refined by cubics if each element becomes a whole number of elements, else sampled.
 fn distance(h: &[f64], from: &Grid, to: &Grid) -> Result<Vec<f64>> {
     let (x, y) = (to.mx / from.mx, to.my / from.my);
     if x == y && x >= 1 && to.mx == x * from.mx && to.my == y * from.my {

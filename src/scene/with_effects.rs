@@ -1,4 +1,4 @@
-//! The scene: what every one has, and the effects that it names.
+//! The scene: the plain scene and its named effects.
 
 use super::{Bodies, Load, Plain};
 use crate::effects::list::with_effects;
@@ -34,12 +34,12 @@ macro_rules! define_scene {
 with_effects!(define_scene);
 
 impl<'a> Scene<'a> {
-    /// The adhesion, if anything attracts.
+    /// The adhesion, if its work is not 0 everywhere.
     pub fn attraction(&self) -> Option<&Adhesion<'a>> {
         self.adhesion.as_ref().filter(|adhesion| adhesion.attracts())
     }
 
-    /// The same without its effects.
+    /// The scene without its effects.
     pub fn plain(&self) -> Plain<'a> {
         let Scene { grid, undeformed_distance, bodies, load, .. } = *self;
         Plain { grid, undeformed_distance, bodies, load }

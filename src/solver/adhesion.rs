@@ -1,5 +1,5 @@
-//! Scenes with adhesion: they are solved on their own grids, by [`adhesion`](crate::adhesion); contact problems whose attraction stands still by the
-//! methods of every other scene.
+//! Scenes with adhesion. [`adhesion`](crate::adhesion) solves them on separate grids. The methods of all other scenes solve the contact problems
+//! with frozen attraction.
 
 use std::mem::MaybeUninit;
 
@@ -17,7 +17,7 @@ use crate::methods::{Start, Task};
 use crate::progress::{Goal, Monitor, Outcome, Progress};
 use crate::scene::{Load, Scene};
 
-/// The solver of contact problems whose attraction stands still: the methods of AUTO.
+/// The solver of contact problems with frozen attraction: the methods of AUTO.
 struct Plain(Methods);
 
 impl Frozen for Plain {
@@ -42,7 +42,7 @@ impl Frozen for Plain {
             let grid = Grid { mx, my, ..own_grid };
             !monitor.cycle_done(&grid, active_set_changes, update, residual)
         };
-        // It counts for itself: a cycle on a coarser grid of its own is none of this one.
+        // A separate monitor, because cycles on coarser grids are not cycles of this grid.
         let mut own = Monitor::new(Some(&mut tell), Vec::new(), false);
         let goal = Goal { criterion: Criterion::Residual, tolerance, max_cycles };
         let mut task = Task { problem, state, lowest, set: NonNegative, goal, monitor: &mut own };
@@ -62,8 +62,8 @@ impl Solver {
         Some(|i| solver.split(&self.state, i))
     }
 
-    /// Writes what `which` takes of the contact pressure and the attraction of each element of the last result; without adhesion all of the pressures
-    /// are contact pressures.
+    /// Writes `which` of the contact pressure and the attraction of each element of the last result; without adhesion all pressures are contact
+    /// pressures.
     pub fn write_part(&self, to: &mut [MaybeUninit<f64>], which: impl Fn((f64, f64)) -> f64 + Sync + Send) {
         let (state, split) = (&self.state, self.adhesion());
         let parts = |i: usize| split.as_ref().map_or((state.p[i], 0.0), |split| split(i));
@@ -75,8 +75,8 @@ impl Solver {
         });
     }
 
-    /// Looks for the least force that an equilibrium has: from the load of the scene, and from bodies that are pressed together, the approach goes down
-    /// until nothing is in contact. The result is the state of the least force on these ways.
+    /// Searches the least force of an equilibrium. The approach decreases from the load of the scene, and from bodies pressed together, until nothing
+    /// is in contact. The result is the state of the least force on both branches.
     pub fn pull_off(
         &mut self,
         scene: &Scene<'_>,
@@ -94,7 +94,7 @@ impl Solver {
         })
     }
 
-    /// Solves a scene with adhesion, which is checked. `lowest`: the least distance.
+    /// Solves a checked scene with adhesion. `lowest`: the least distance.
     pub(super) fn solve_adhesive(
         &mut self,
         (scene, lowest): (&Scene<'_>, f64),
@@ -104,7 +104,7 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
         check_options(options)?;
-        // The compression by the mean pressure is a part of the approach here, whatever the load.
+        // Here the approach contains the compression by the mean pressure, for any load.
         self.suit(Load::Approach(0.0))?;
         check::range((scene, lowest), &self.problem, self.set_up.largest_influence, None)?;
         if !self.problem.symmetric {
@@ -194,7 +194,7 @@ impl Solver {
     }
 }
 
-/// The arrays of a state in the hands of a solver of adhesion. The state has them again whatever happens, so that the next solve works.
+/// The arrays of a state lent to a solver of adhesion. The state gets them back even after an error, so that the next solve works.
 struct Lent<'a> {
     solver: &'a mut adhesion::Solver,
     state: &'a mut State,
@@ -216,7 +216,7 @@ impl Drop for Lent<'_> {
     }
 }
 
-/// Refuses options that adhesion is not solved with.
+/// Refuses options that exclude adhesion.
 fn check_options(options: &Options) -> Result<()> {
     let (name, rule) = match options {
         Options { method: Method::Norm | Method::Multigrid | Method::FullMultigrid, .. } => {

@@ -1,5 +1,5 @@
-//! Friction of bodies that attract each other. Contact pressures q bound the tractions, not the total ones, which may pull (Derjaguin 1934); a
-//! shear strength tau0 of the contact adds to them:
+//! Friction of adhesive bodies. The contact pressures q bound the tractions, not the total pressures, which may pull (Derjaguin 1934). A shear
+//! strength tau0 of the contact adds to the bound:
 //!
 //! ```text
 //! |tractions| <= mu q + tau0  in C,     0 outside
@@ -14,7 +14,7 @@ use crate::memory::zeros;
 use crate::progress::Monitor;
 use crate::scene::{Friction, Scene};
 
-/// Pressures and coefficients of a tangential problem with that bound: 1 on C, and the bound itself.
+/// The bound as pressures and coefficients of a tangential problem: pressures 1 on C, and the bound as coefficient.
 pub struct Bound {
     /// 1 on C, 0 outside.
     pub pressing: Vec<f64>,
@@ -22,7 +22,7 @@ pub struct Bound {
 }
 
 impl Bound {
-    /// Of contact pressures q of n elements; C are those with q > 0.
+    /// The bound from contact pressures q of n elements; C are elements with q > 0.
     pub fn new(friction: &Friction<'_>, strength: f64, n: usize, q: impl Fn(usize) -> f64) -> Result<Bound> {
         let field = || zeros::<f64>(n, "the bound of friction");
         let (mut pressing, mut bound) = (field()?, field()?);
@@ -41,7 +41,7 @@ impl Bound {
     }
 }
 
-/// Hands friction and pressures of a tangential problem on, `q` being the contact pressures: with adhesion those of its [bound](Bound).
+/// Calls `solve` with friction and pressures for contact pressures `q`. With adhesion they are those of the [bound](Bound).
 pub fn bounded<R>(
     scene: &Scene<'_>,
     friction: &Friction<'_>,
@@ -54,7 +54,7 @@ pub fn bounded<R>(
     solve(&bound.of(friction), &bound.pressing)
 }
 
-/// Refuses friction that changes the pressures.
+/// Rejects friction that changes the pressures.
 pub fn check_alike(scene: &Scene<'_>) -> Result<()> {
     if scene.friction.is_none() || !is_of_unlike_bodies(scene)? {
         return Ok(());
@@ -75,7 +75,7 @@ impl Solver {
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, Option<Report>)> {
         let (Some(friction), Some(found)) = (&scene.friction, &self.adhesion) else {
-            // There is no step before any more.
+            // There is no previous step any more.
             self.friction.iter_mut().for_each(|before| before.forget());
             return Ok((stop, None));
         };

@@ -1,4 +1,4 @@
-//! Many problems at once: whole solves are spread over threads, each on one of them.
+//! Many problems at once: whole solves are spread over threads, each on one thread.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -15,7 +15,7 @@ use crate::threads::Threads;
 pub struct Problem<'a> {
     /// The undeformed distance and the load; grid, bodies and influence coefficients must be those of the solver.
     pub scene: Scene<'a>,
-    /// Where to start, if the options say GIVEN, and the contact area if it is FIXED.
+    /// The start, with GIVEN, and the contact area, with FIXED.
     pub guess: Option<Guess<'a>>,
 }
 
@@ -25,7 +25,7 @@ impl Solver {
     /// order, with what [`solve`](Self::solve) returns for it and, if that is no error, its result; what it returns stands at
     /// `i` of what the batch returns.
     ///
-    /// A problem that is refused does not keep the others from being solved. Results have the same bits as those of one solve
+    /// A refused problem does not affect the others. Results have the same bits as those of one solve
     /// after the other with one thread. PREVIOUS is refused, and so is a problem whose friction [continues](crate::scene::Previous::Kept): the
     /// order of the solves is not known. This solver's own [`state`](Self::state) stays as it is.
     pub fn solve_batch<R: Send>(
@@ -47,7 +47,7 @@ impl Solver {
         Ok(results.flatten().collect())
     }
 
-    /// Refuses options that no problem of a batch can be solved with.
+    /// Refuses options that exclude a batch.
     pub(crate) fn check_batch(&self, options: &Options) -> Result<()> {
         self.set_up.check_options(options)?;
         if options.initial_guess == InitialGuess::Previous {
@@ -59,7 +59,7 @@ impl Solver {
         Ok(())
     }
 
-    /// Refuses a problem that would go on from whatever its worker solved last.
+    /// Refuses a problem that would continue from its worker's last solve.
     pub(crate) fn check_problem(scene: &Scene<'_>) -> Result<()> {
         match effects::continuing(scene).next() {
             Some((.., Continues { member, instead, .. })) => invalid(format!(
@@ -69,7 +69,7 @@ impl Solver {
         }
     }
 
-    /// Calls `work(i, worker)` for each `i < count` on whichever worker is free.
+    /// Calls `work(i, worker)` for each `i < count` on a free worker.
     pub(crate) fn distribute(&mut self, count: usize, work: impl Fn(usize, &mut Solver) + Sync + Send) -> Result<()> {
         let workers = self.problem.threads.count().min(count);
         let mut crew = std::mem::take(&mut self.workers);
@@ -80,7 +80,7 @@ impl Solver {
         let foreman = &*self;
         let take = |worker: &mut Option<Solver>| {
             if worker.is_none() {
-                // Where this fails the workers that have begun do its share.
+                // If this fails, the other workers do its share.
                 match foreman.worker() {
                     Ok(new) => *worker = Some(new),
                     Err(error) => *refusal.lock().unwrap_or_else(PoisonError::into_inner) = Some(error),

@@ -20,17 +20,17 @@ impl Beside {
     }
 }
 
-/// The undeformed distance of a scene, a copy, for a callback may change the caller's; and that with what coupled problems displace.
+/// The undeformed distance of a scene, copied as a callback may change the caller's, and the distance displaced by coupled problems.
 #[derive(Default)]
 pub struct Distances {
-    /// That of the scene.
+    /// The distance of the scene.
     pub own: Vec<f64>,
-    /// That which was made last.
+    /// The last displaced distance.
     pub displaced: Vec<f64>,
 }
 
 impl Distances {
-    /// Takes over that of the scene.
+    /// Copies the distance of the scene.
     pub fn take(&mut self, h: &[f64]) -> Result<()> {
         for values in [&mut self.own, &mut self.displaced] {
             if values.is_empty() {

@@ -1,20 +1,20 @@
-//! The best iterate of a solve: what is returned when no method reaches the goal.
+//! The best iterate of a solve. It is the result if no method reaches the goal.
 
 use crate::contact::{truncate, AdmissibleSet, Freshness, Snapshot, State, Survey};
 use crate::error::Result;
 use crate::methods::Task;
 use crate::scene::Load;
 
-/// The iterate of the least violation so far.
+/// The iterate with the least violation so far.
 #[derive(Default)]
 pub struct Best {
-    /// Infinite before there is one.
+    /// The least violation. Infinite without an iterate.
     pub violation: f64,
     found: Snapshot,
 }
 
 impl Best {
-    /// There is none yet.
+    /// Discards the iterate.
     pub fn forget(&mut self) {
         self.violation = f64::INFINITY;
     }
@@ -34,14 +34,14 @@ impl Best {
         Ok(())
     }
 
-    /// The state becomes the best iterate, with admissible pressures, the prescribed force and a fresh u = A p. With a prescribed
-    /// approach p = 0 is an iterate, too, and none worse than that is returned.
+    /// Sets the state to the best iterate, with admissible pressures, the prescribed force and a fresh u = A p. With a prescribed
+    /// approach the result is never worse than p = 0.
     pub fn restore<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<()> {
-        // The measures of the state are no longer true.
+        // The measures of the state are no longer valid.
         task.monitor.survey = None;
         let (state, set) = (&mut *task.state, task.set);
         for (i, p) in state.p.iter_mut().enumerate() {
-            // NaN is not less than anything.
+            // The comparison is false for NaN.
             *p = if p.abs() < f64::INFINITY { *p } else { 0.0 };
             if S::LIMITED && state.at_limit[i] {
                 *p = set.limit(i);

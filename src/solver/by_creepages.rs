@@ -1,12 +1,12 @@
 //! Forces on unlike bodies. If turns by force do not converge, or their last pressures cannot carry the force, turns with held creepages follow.
 //!
-//! With a creepage that is held tractions follow the pressures and the other way round, and both come together in a few turns, near full slip, too. The
-//! forces that are found so are compared with those that are given. The next creepage is that of a secant (Broyden 1965), within the two that are
-//! known to carry too much and too little where one force is given.
+//! With a held creepage the turns of tractions and pressures converge quickly, also near full slip. The resulting forces are compared with the
+//! given ones. The next creepage is that of a secant (Broyden 1965); with one force it lies between two creepages known to carry too much and too
+//! little.
 //!
-//! *Forces beyond full slip.* Near full slip forces need not fall as creepages grow: what the pressures carry changes more. So creepages about
-//! those of turns by force are looked through for one that reaches the force, and the largest force among them is approached (module
-//! [`creepage_peak`](super::creepage_peak)). A force is refused where none of them does.
+//! *Forces beyond full slip.* Near full slip forces need not fall as creepages grow, as the force that the pressures carry changes more. So
+//! creepages about those of turns by force are searched for one that reaches the force, and the largest force among them is approached (module
+//! [`creepage_peak`](super::creepage_peak)). A force that none reaches is refused.
 
 use super::creepage_peak::Peak;
 use super::creepage_trials::{Place, Trials};
@@ -19,30 +19,30 @@ use crate::friction::{dot, length, Vector};
 use crate::progress::Outcome;
 use crate::scene::{Load, Prescribed, Scene};
 
-/// Where forces miss less than this part of mu N tractions by force are tried with the same pressures, by so many products.
+/// If forces miss less than CLOSE times mu N, tractions by force are tried with the same pressures, with FINISH products.
 const CLOSE: f64 = 1e-4;
 const FINISH: usize = 30;
-/// Creepages at most.
+/// Most creepages.
 const MOST_TRIALS: u32 = 30;
-/// Creepages that are looked through, relative to those of turns by force; of two forces those from BEHIND on lie straight against them.
+/// Creepages that are searched, relative to those of turns by force. With two forces, those from BEHIND on are opposite to the force.
 const ABOUT: [f64; 14] = [1.0, 1.3, 2.0, 4.0, 16.0, 64.0, 256.0, 1e3, 1e4, FAR, 0.75, 0.5, 0.25, 0.1];
 const BEHIND: f64 = 64.0;
-/// Where turns by force leave more than that part of mu N only the far one is: before full slip pressures carry at most some hundredths more (0.9 % on
-/// a flat punch of mu = 1 or 2 on a rigid body).
+/// If turns by force miss more than this part of mu N, only the creepage FAR is tried: before full slip pressures carry at most some hundredths more
+/// (0.9 % on a flat punch of mu = 1 or 2 on a rigid body).
 const BEYOND: f64 = 3e-2;
 const FAR: f64 = 1e6;
-/// The search tries creepages, times the length rolled, up to this factor times the displacement of full slip. All elements slip long before. A solve
-/// refuses 1e30 times that displacement, and the pressures of a turn change it by less than the factor between.
+/// Largest creepage times the length rolled, over the displacement of full slip. All elements slip long before. A solve refuses 1e30 times that
+/// displacement, and the pressures of a turn change it by less than the factor between.
 const FARTHEST: f64 = 1e20;
 
-/// The directions in which forces are given.
+/// The directions of given forces.
 fn given(scene: &Scene<'_>) -> [bool; 2] {
     let prescribed = scene.friction.map_or([Prescribed::Creepage(0.0); 2], |friction| friction.prescribed);
     prescribed.map(|prescribed| matches!(prescribed, Prescribed::Force(_)))
 }
 
 impl InTurns<'_, '_, '_> {
-    /// Ends turns by force, which ended with `stop`, with creepages where that is to be tried.
+    /// Continues turns by force, which ended with `stop`, by turns with creepages if needed.
     pub(super) fn meet_by_creepages(&mut self, stop: Outcome) -> Result<Outcome> {
         let tried =
             |friction: &&mut TangentialTurn<'_>| friction.is_near() || stop == Outcome::Stagnated && friction.by_force;
@@ -86,16 +86,16 @@ impl InTurns<'_, '_, '_> {
         Ok(end)
     }
 
-    /// A place that reaches the force, among those about the creepages of turns by force; none is found, or the search ends otherwise than by convergence.
+    /// A place that reaches the force, among creepages about those of turns by force; none if there is none, or if the search does not converge.
     fn look_about(&mut self, from: Place, parts: &[f64], peak: &mut Peak) -> Result<(Option<Place>, Outcome)> {
         let given = given(self.scene);
         let wanted = self.turns.friction.as_ref().map_or([0.0; 2], TangentialTurn::wanted);
         let along = [0, 1].map(|k| if given[k] { from.creepage[k] } else { 0.0 });
-        // Without a creepage all parts are the same.
+        // For a creepage of 0 all parts are equal.
         let parts = if length(along) > 0.0 { parts } else { &parts[..1] };
         let (has_peak, mut parts) = (parts.len() > 1 && given != [true; 2], parts.iter().copied());
         while let Some(part) = parts.next().or_else(|| if has_peak { peak.next() } else { None }) {
-            // Far away both forces lie against the creepages.
+            // Far away both forces are opposite to the creepages.
             let is_far = part >= BEHIND && given == [true; 2] && length(wanted) > 0.0;
             let against = wanted.map(|force| -force / length(wanted) * length(along));
             let held = if is_far { against } else { along }.map(|c| part * c);
@@ -103,7 +103,7 @@ impl InTurns<'_, '_, '_> {
             if end != Outcome::Converged && end != Outcome::Stagnated {
                 return Ok((None, end));
             }
-            // All of it is reached, or more.
+            // The force is reached or exceeded.
             let reaches = |at: &Place| at.missing() <= self.options.tolerance || dot(at.excess, wanted) >= 0.0;
             let found = self.turns.friction.as_ref().and_then(place).filter(|_| end == Outcome::Converged);
             if let Some(place) = found.filter(reaches) {
@@ -139,7 +139,7 @@ impl InTurns<'_, '_, '_> {
                 None => break,
             };
         }
-        // The best is what a solve returns that does not converge.
+        // A solve that does not converge returns the best.
         let best = trials.best();
         if found.missing() > best.missing() {
             self.turns_with(best.creepage)?;
@@ -147,7 +147,7 @@ impl InTurns<'_, '_, '_> {
         Ok(Outcome::Stagnated)
     }
 
-    /// Turns with creepages that are held. Those that are too far find nothing: the caller did not give them.
+    /// Turns with held creepages. Creepages that are too large find nothing and are not refused, as the caller did not give them.
     fn turns_with(&mut self, creepage: Vector) -> Result<Outcome> {
         let Some(friction) = &mut self.turns.friction else { return Ok(Outcome::Stagnated) };
         if !(length(creepage) <= FARTHEST * friction.full_displacement()) {
@@ -157,7 +157,7 @@ impl InTurns<'_, '_, '_> {
         self.turn_about(&sharper(self.options), (Outcome::Converged, false))
     }
 
-    /// Tractions by force with the pressures that were found last: whether both problems are solved so.
+    /// Solves for tractions by force with the last pressures. Returns whether both problems are then solved.
     fn finish(&mut self) -> Result<bool> {
         let InTurns { solver, turns, monitor, .. } = self;
         if let Some(friction) = &mut turns.friction {
@@ -174,7 +174,7 @@ impl InTurns<'_, '_, '_> {
     }
 }
 
-/// Whether the pressures carry the same whatever they are.
+/// Whether all pressures carry the same tangential force.
 fn carries_always(scene: &Scene<'_>) -> bool {
     let is_uniform = |friction: &crate::scene::Friction<'_>| {
         matches!(friction.coefficient, Coefficient::Uniform(_))
@@ -184,7 +184,7 @@ fn carries_always(scene: &Scene<'_>) -> bool {
     matches!(scene.load, Load::Force(_)) && scene.friction.as_ref().is_some_and(is_uniform)
 }
 
-/// Where the last solve ended.
+/// The place of the last solve.
 fn place(friction: &TangentialTurn<'_>) -> Option<Place> {
     let carried = friction.found.as_ref()?.carried;
     let (excess, creepage) = friction.excess()?;

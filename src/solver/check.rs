@@ -1,4 +1,4 @@
-//! Refusals before a solve begins: scenes that differ from the set-up, guesses that are none, units out of range.
+//! Checks before a solve: scenes that differ from the set-up, invalid guesses, units out of range.
 
 use super::{Guess, InitialGuess, Method, Options, SetUp};
 use crate::contact::Problem;
@@ -7,7 +7,7 @@ use crate::error::{invalid, Error, Result};
 use crate::scene::{Load, Scene};
 
 impl SetUp {
-    /// Refuses a solve after a table could not be set.
+    /// Rejects a solve after a table could not be set.
     pub fn check_table(&self) -> Result<()> {
         if self.lacks_table {
             return invalid("influence could not be set the last time: set it again".into());
@@ -15,7 +15,7 @@ impl SetUp {
         Ok(())
     }
 
-    /// Refuses a scene or options that differ from the set-up, and effects that are not solved together. Distance and load are checked already.
+    /// Rejects a scene or options that differ from the set-up, and unsupported combinations of effects. Distance and load were checked before.
     pub fn check(&self, scene: &Scene<'_>, options: &Options, problem: &Problem) -> Result<()> {
         self.check_options(options)?;
         scene.check_free_load(options.is_fixed())?;
@@ -39,13 +39,13 @@ impl SetUp {
         )))
     }
 
-    /// Refuses a scene whose grid, bodies and effects are not those of the set-up. Its distance and its load are not looked at.
+    /// Rejects a scene whose grid, bodies or effects differ from the set-up. Its distance and its load are not checked.
     pub fn check_scene(&self, scene: &Scene<'_>, problem: &Problem) -> Result<()> {
         if let Some(difference) = scene.grid.differs(&problem.grid) {
             return invalid(difference);
         }
         effects::check_effects(scene)?;
-        // With own coefficients bodies do not count.
+        // With the caller's coefficients bodies are not used.
         if !problem.given {
             effects::check_bodies(scene)?;
         }
@@ -60,7 +60,7 @@ impl SetUp {
         }
     }
 
-    /// Refuses options that are not those of the set-up.
+    /// Rejects options that differ from the set-up.
     pub fn check_options(&self, options: &Options) -> Result<()> {
         options.check()?;
         let (now, then) = (options.cycle, self.options.cycle);
@@ -85,7 +85,7 @@ impl SetUp {
     }
 }
 
-/// Refuses a guess that is missing, too short or not finite.
+/// Rejects a guess that is missing, too short or not finite.
 pub fn guess(scene: &Scene<'_>, options: &Options, guess: Option<Guess<'_>>) -> Result<()> {
     let grid = &scene.grid;
     let fixed = options.is_fixed();
@@ -120,8 +120,8 @@ pub fn guess(scene: &Scene<'_>, options: &Options, guess: Option<Guess<'_>>) -> 
     }
 }
 
-/// Refuses units in which pressures, displacements or their squares leave the range of double precision. `lowest`: the least distance; `fixed`:
-/// a contact area that is given.
+/// Rejects units in which pressures, displacements or their squares exceed the range of double precision. `lowest` is the least distance, `fixed` a
+/// given contact area.
 pub fn range(
     (scene, lowest): (&Scene<'_>, f64),
     problem: &Problem,
@@ -130,7 +130,7 @@ pub fn range(
 ) -> Result<()> {
     let influence = problem.self_influence();
     let h = scene.undeformed_distance;
-    // The largest on the given contact area.
+    // The largest absolute value on the given contact area.
     let largest_on = |fixed: Guess<'_>, of: &dyn Fn(f64) -> f64| {
         let on_contact = h.iter().zip(fixed.contact).filter(|(h, inside)| **inside && h.is_finite());
         on_contact.fold(0.0, |largest: f64, (h, _)| largest.max(of(*h).abs()))
@@ -143,7 +143,7 @@ pub fn range(
                 None if lowest.is_finite() => (approach - lowest).max(0.0),
                 None => 0.0,
             };
-            // A single element of two periods has an influence of 0: it carries its limit. Without a depth there is no pressure.
+            // A single element with two periods has the coefficient 0 and carries its limit. Without penetration there is no pressure.
             let limit = effects::limits(scene).filter(|_| influence == 0.0).map(|limit| limit.at(0));
             let pressure = if depth == 0.0 { 0.0 } else { limit.unwrap_or(depth / influence) };
             (pressure, depth, 0.0)
@@ -162,7 +162,7 @@ pub fn range(
     }
     let in_range = |value: f64| (1e-140..1e140).contains(&value);
     let loaded = pressure != 0.0 || displacement != 0.0;
-    // A single element of two periods displaces nothing.
+    // A single element with two periods displaces nothing.
     if problem.grid.len() == 1 && problem.coefficients.is_mean_free() && in_range(pressure) {
         return Ok(());
     }

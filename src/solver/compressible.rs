@@ -1,18 +1,18 @@
-//! Coefficients of which a given force is solved without the constant that they have: see [`compression`](super::compression).
+//! Coefficients with a constant, without which a given force is solved: see [`compression`](super::compression).
 
 use crate::influence::Coefficients;
 use crate::scene::Load;
 
-/// Coefficients that have a constant, and whether the solver is set up without it.
+/// Coefficients with a constant, and whether the solver is set up without it.
 #[derive(Clone)]
 pub struct Compressible {
     pub coefficients: Coefficients,
-    /// None: neither, an attempt to change failed.
+    /// None: neither, as an attempt to change failed.
     pub is_without: Option<bool>,
 }
 
 impl Compressible {
-    /// The coefficients that a load is solved with, and this if they are not the only ones.
+    /// The coefficients for a load, and the compressible ones if there is a constant.
     pub fn of(coefficients: Coefficients, load: Load) -> (Coefficients, Option<Compressible>) {
         let Some(without) = coefficients.without_constant() else { return (coefficients, None) };
         let is_without = matches!(load, Load::Force(_));

@@ -1,7 +1,7 @@
 //! Compression by the mean pressure: coefficients with a [constant](crate::influence::Kernel::constant), as those of coatings with two periods.
 //!
-//! A constant changes no pressure of a given force, but it hides what they are off: residuals are relative to the approach. So a given force
-//! is solved without it, and the result gets it at the end. A given approach is solved with it.
+//! A constant changes no pressure of a given force, but it hides their errors: residuals are relative to the approach. So a given force is
+//! solved without the constant, which is added to the result. A given approach is solved with it.
 
 use super::{Guess, InitialGuess, Options, Solver};
 use crate::contact::{Fixed, Freshness, NonNegative, Survey};
@@ -9,11 +9,11 @@ use crate::error::Result;
 use crate::progress::{Measures, Monitor, Outcome};
 use crate::scene::{Load, Scene};
 
-/// Of the tolerance, where it has to be met once more.
+/// Factor on the tolerance of a second solve.
 const SAFETY: f64 = 0.5;
 
 impl Solver {
-    /// Takes the coefficients that a load is solved with.
+    /// Takes the coefficients for a load: without the constant for a force.
     pub(super) fn suit(&mut self, load: Load) -> Result<()> {
         let wanted = matches!(load, Load::Force(_));
         let Some(compressible) = self.set_up.compressible.as_mut().filter(|of| of.is_without != Some(wanted)) else {
@@ -34,8 +34,8 @@ impl Solver {
         Ok(())
     }
 
-    /// Where a force was given: whether the tolerance is met with the approach that the compression makes of the one found. A negative compression
-    /// brings the approach nearer to the distances, and a smaller residual is solved for; a positive one may be all that there is of them.
+    /// For a given force: whether the tolerance is met with the compression added to the approach. If not, solves once more to a smaller
+    /// residual. A negative compression makes the distances `h - approach` smaller, a positive one may dominate them.
     pub(super) fn meet_compressed(
         &mut self,
         (scene, lowest): (&Scene<'_>, f64),
@@ -63,7 +63,7 @@ impl Solver {
         }
     }
 
-    /// Whether the criterion holds with the compression, and the distances with it, in those without.
+    /// Whether the criterion holds with the compression, and the ratio of the distances with and without it.
     pub(super) fn holds_compressed(&mut self, by: f64, options: &Options) -> (bool, f64) {
         let without = Survey::of(&self.state);
         self.state.approach += by;
@@ -78,7 +78,7 @@ impl Solver {
         (holds && self.state.carries(&self.problem.threads), with.distance / without.distance)
     }
 
-    /// The compression of the result.
+    /// The compression by the mean pressure of a given force.
     pub(super) fn compression(&self, load: Load) -> f64 {
         match (&self.set_up.compressible, load) {
             (Some(of), Load::Force(force)) => of.by(force / self.problem.grid.element_area()),
@@ -86,13 +86,13 @@ impl Solver {
         }
     }
 
-    /// Adds the compression to the result of a given force: displacements, approach, and the approaches of the ledger, of which coarser grids have
-    /// another count of elements. Returns what is measured then; none where nothing is compressed.
+    /// Adds the compression to the result of a given force: displacements, approach, and the approaches of the ledger. Returns the new
+    /// measures; none without compression.
     pub(super) fn compress(&mut self, load: Load, monitor: &mut Monitor<'_>) -> Option<Measures> {
         let by = Some(self.compression(load)).filter(|by| *by != 0.0)?;
         self.state.u.iter_mut().for_each(|u| *u += by);
         self.state.approach += by;
-        // A later solve begins without it.
+        // A later solve begins without the compression.
         self.state.u_is = Freshness::Stale;
         monitor.ledger.rows.iter_mut().for_each(|row| row.measures.approach += by);
         let row = monitor.ledger.rows.last_mut()?;

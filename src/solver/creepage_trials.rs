@@ -1,29 +1,30 @@
-//! The search for the creepages of forces that are given, by turns with creepages that are held.
+//! The search for the creepages of given forces, by turns with held creepages.
 
 use crate::friction::{dot, length, Vector};
 
-/// A trial is good if it leaves at most this part of the least that was missing.
+/// A trial is good if its missing force is at most this part of the least so far.
 const PROGRESS: f64 = 0.5;
-/// Of two forces: what misses more than so many times the least goes back halfway.
+/// With two forces: a trial that misses more than this times the least is followed by one halfway back.
 const WORSE: f64 = 2.0;
-/// The first step along the creepages, relative to these, at most so many times what is missing; and no step is longer than so many times what there is.
+/// The first step along the creepages, relative to these, at most MOST_STEPS times the missing force. No step exceeds LONGEST times the
+/// creepages.
 const FIRST: f64 = 0.1;
 const MOST_STEPS: f64 = 1e6;
 const LONGEST: f64 = 0.8;
-/// Creepages of less than this part of the slips are of their order.
+/// Least size of creepages in step lengths, relative to the slips.
 const SMALL: f64 = 1e-3;
 
 /// A place in the search.
 #[derive(Clone, Copy)]
 pub struct Place {
-    /// Times the length rolled.
+    /// Creepages times the length rolled.
     pub creepage: Vector,
-    /// Of the forces, relative to mu N.
+    /// The excess of the forces, relative to mu N.
     pub excess: Vector,
 }
 
 impl Place {
-    /// What is missing of the forces, or beyond them.
+    /// The size of the excess.
     pub fn missing(&self) -> f64 {
         length(self.excess)
     }
@@ -32,19 +33,19 @@ impl Place {
 /// The creepages to try.
 pub struct Trials {
     given: [bool; 2],
-    /// How creepages go with what forces exceed by.
+    /// The change of creepages per excess of force.
     slope: [Vector; 2],
     last: Option<Place>,
-    /// Of one force: the greatest creepage that carries more, the least that carries less.
+    /// With one force: the greatest creepage that carries more, the least that carries less.
     between: [Option<f64>; 2],
     best: Place,
     bad: u32,
-    /// Creepages below that are small.
+    /// Creepages below this are small.
     small: f64,
 }
 
 impl Trials {
-    /// From a place; slips are of the order of `scale`. Across the creepages forces turn with them; along them the first step is a short one.
+    /// Begins at a place; slips are of the order of `scale`. Across the creepages forces turn with them; along them the first step is short.
     pub fn new(from: Place, given: [bool; 2], scale: f64) -> Trials {
         let only = |v: Vector| [0, 1].map(|k| if given[k] { v[k] } else { 0.0 });
         let small = SMALL * scale;
@@ -63,7 +64,7 @@ impl Trials {
         Trials { given, slope, last: None, between: [None; 2], best: from, bad: 0, small }
     }
 
-    /// The place that misses least.
+    /// The place with the least missing force.
     pub fn best(&self) -> Place {
         self.best
     }
@@ -97,7 +98,7 @@ impl Trials {
         }
     }
 
-    /// The next creepage of one force: that of the secant, if it lies where the force is.
+    /// The next creepage with one force: that of the secant if it lies between the bounds.
     fn between(&mut self, at: f64, excess: f64, secant: f64) -> f64 {
         self.between[usize::from(excess < 0.0)] = Some(at);
         match self.between {

@@ -10,7 +10,8 @@ use crate::progress::Monitor;
 use crate::scene::Scene;
 
 impl Solver {
-    /// The errors of the report and the ledger. Limits that are reached have other rims, row tables other displacements than the estimates know.
+    /// The errors of the report and the ledger. Estimates do not cover reached limits, which change the rim, and row tables, whose displacements
+    /// depend on the row.
     pub(super) fn estimate(
         &self,
         scene: &Scene<'_>,

@@ -1,26 +1,27 @@
-//! How wrong an answer is, estimated from the answer alone: no other grid is solved.
+//! Estimated errors of a solution, from one grid.
 //!
-//! *Force and approach.* A product of constant pressures on elements, taken at their centres, is that of smooth pressures but for
-//! `(1/24)(dx^2 u_xx + dy^2 u_yy)` (each element is a mean over itself), and in contact `u = approach - h`. Approaches change by the mean
-//! of such a change of h with weights q, the pressures of a flat punch of force 1 on the same contact area (Betti). At the rim, where
-//! pressures fall to 0 as a square root, elements take half of it back: so
+//! *Force and approach.* The displacement at centres by constant pressures on elements differs from that by smooth pressures by
+//! `(1/24)(dx^2 u_xx + dy^2 u_yy)` (each element is a mean over itself), and in contact `u = approach - h`. A change of h changes the approach by
+//! its mean with weights q, the pressures of a flat punch of force 1 on the same contact area (Betti). At the boundary of contact, where
+//! pressures fall to 0 as a square root, half of this cancels:
 //!
 //! ```text
 //! approach* - approach = s b,    F - F* = S s b,    b = mean with q of (dx^2 h_xx + dy^2 h_yy)/24 over C,    S = dF/d(approach)
 //! ```
 //!
-//! with s = 1/2, measured, to a third of it on 32 elements across: the rim lies on the elements as it happens. What lies along a straight
-//! outline is off by the same part everywhere, up to some times more. ([`Curvature`] has b; docs/accuracy.md the measurements.)
+//! with s = 1/2, measured. On 32 elements across s varies by a third, because the boundary lies anywhere in its elements. Along a straight outline
+//! errors do not average out and are up to a few times larger. ([`Curvature`] computes b; docs/accuracy.md has the measurements.)
 //!
-//! Where the surface itself ends pressures are infinite, and the edge lies anywhere between two centres ([`at_ends`]); a surface that
-//! jumps does so anywhere between two centres as well ([`Curvature::jumps`]). Both are of first order in the size of the elements.
+//! At ends of the surface pressures are infinite, and the end lies anywhere between two centres ([`at_ends`]). A jump of the surface also lies
+//! anywhere between two centres ([`Curvature::jumps`]). Both errors are of first order in the size of the elements.
 //!
-//! *Pressures.* Their second differences within the contact area and across its rim are what elements do not show: of the largest
-//! pressure a tenth, in the rms one half. A peak whose second difference is no small part of it is singular, or not resolved: it has no estimate.
+//! *Pressures.* Their errors are fractions of the second differences within the contact area and across its boundary: [`PEAK`] for the largest
+//! pressure,
+//! [`PRESSURES`] in the rms. A peak with a large relative second difference is singular or not resolved. It has no estimate.
 //!
-//! *The contact area* is estimated from its own outline ([`Outline`]): the correction is the error of counting, and a part of it
-//! that of the corrected area; straight pieces and straight ends of the surface are off by half an element, ends in steps by the root
-//! of their number.
+//! *The contact area* is estimated from its outline ([`Outline`]). The correction is the error of counting. A fraction of the correction is the error
+//! of the corrected area. Straight pieces and straight ends of the surface have an error of half an element. Ends in steps have the square root of
+//! their number.
 
 use std::cell::Cell;
 
@@ -30,31 +31,31 @@ use crate::contact::{at_ends, Curvature, Outline, Problem, State};
 use crate::progress::{DiscretisationError, LedgerRow};
 use crate::scene::Load;
 
-/// s: of the bend the part by which approaches are off, in the mean, and so that few are off by more.
+/// s: the error of approaches over the bend, in the mean, and as a bound for most.
 const PART: f64 = 0.5;
 const AT_MOST: f64 = 0.58;
-/// The part for straight outlines, in `pressure/E*` (a Hertz contact has a bend of `(pi/32) sides d/N` of its mean pressure over
-/// E*; along straight lines it is twice as much), and for chords of few elements: `(chord/2.5)^-2`, times the scatter, since
-/// where contact is in many places the sharpest carry most.
+/// The error for straight outlines, in `pressure/E*` (a Hertz contact has a bend of `(pi/32) sides d/N` of its mean pressure over E*; along straight
+/// lines twice as much). The chord for the error of few elements: `(chord/2.5)^-2`, times the scatter, because among many spots of contact the
+/// sharpest carry most.
 const STRAIGHT: f64 = 0.2;
 const SHORT_CHORD: f64 = 2.5;
-/// Of what single runs of elements say in the place of the mean chord: with it no map with spikes of one element misses its target.
+/// Factor on the error from single runs of elements instead of the mean chord: with it no map with spikes of one element misses its target.
 const RUNS: f64 = 0.5;
-/// Of what is uncertain of a jump, the part by which forces are off: 98 of 100 are off by less, wherever it lies.
+/// Error of forces over the uncertainty of a jump: 98 of 100 have less, wherever the jump lies.
 const JUMPS: f64 = 0.6;
-/// A peak has no estimate where pressures at ends of the surface are more than this part of it: they are singular, and grow as the root of the
-/// number of elements. With a quarter, the peak is the largest pressure for the three doublings that a search looks ahead.
+/// Pressure at ends of the surface over the peak above which the peak has no estimate: pressures at ends are singular and grow as the square root of
+/// the number of elements. With a quarter, the peak remains the largest pressure for the three doublings that a search predicts.
 const PEAK_OVER_ENDS: f64 = 0.25;
-/// With shorter chords contact is on single elements: nothing is known.
+/// Shortest chord with an estimate. Below it, contact is on single elements.
 const LEAST_CHORD: f64 = 1.5;
-/// Error of a direction of one element whose ends are those of the grid, over what is found.
+/// Relative error of a direction of one element without a period.
 const ONE_ELEMENT: f64 = 0.26;
-/// Second differences of the pressures: what of them is missed of the largest, and in the rms; and when they say that a peak is singular.
+/// Error over second differences of the pressures, of the largest and in the rms; and the relative differences of a singular and a sharp peak.
 const PEAK: f64 = 0.1;
 const PRESSURES: f64 = 0.25;
 const SINGULAR: f64 = 0.18;
 const SHARP: f64 = 0.08;
-/// Part of the correction of the contact area by which it is off, and elements along straight outlines.
+/// Error of the corrected area, over the correction, and in elements along straight outlines and edges.
 const CORRECTION_OFF: f64 = 0.3;
 const STRAIGHT_OFF: f64 = 0.4;
 const EDGE_OFF: f64 = 0.5;
@@ -64,26 +65,26 @@ pub const SECONDS_EXPONENT: f64 = 1.13;
 /// Errors of the force (or the approach) on a grid, positive.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Parts {
-    /// By the bend: of second order in the size of the elements.
+    /// The error by the bend: of second order in the size of the elements.
     pub smooth: f64,
-    /// By the bend, where chords are short: of fourth order.
+    /// The error by the bend at short chords: of fourth order.
     pub short: f64,
-    /// By ends of the surface: of first order.
+    /// The error by ends of the surface: of first order.
     pub ends: f64,
-    /// By jumps of it: of first order.
+    /// The error by jumps of the surface: of first order.
     pub jumps: f64,
     /// dF/d(approach).
     pub stiffness: f64,
-    /// By which an error of the approach was multiplied.
+    /// The factor on errors of the approach.
     by: f64,
     /// The largest pressure where the surface ends, with a border or a hole.
     pub highest_at_ends: f64,
-    /// The first in the mean, with its sign.
+    /// The mean of `smooth`, with its sign.
     likely: f64,
 }
 
 impl Parts {
-    /// Of a state; none where contact is on single elements.
+    /// The errors of a state; none if contact is on single elements.
     pub fn of(problem: &Problem, state: &State, curvature: &Curvature, outline: &Outline) -> Option<Parts> {
         let count = state.contact_count();
         let repeats = problem.coefficients.repeats(&state.grid);
@@ -93,14 +94,14 @@ impl Parts {
         }
         let force = state.force();
         let stiffness = stiffness(problem, force, curvature.displaced, count as f64 * state.grid.element_area());
-        // An error of the approach makes errors of all quantities.
+        // Errors of the approach determine the errors of all quantities.
         let (by, sign, found) = match state.load {
             Load::Force(_) => (1.0, -1.0, curvature.depth),
             Load::Approach(_) => (stiffness, 1.0, force),
         };
         let pressure = force / (count as f64 * state.grid.element_area());
         let along_lines = STRAIGHT * pressure / problem.modulus() * outline.straight_length(&state.grid) / count as f64;
-        // Where contact is in many places it is not the mean chord that counts, but that of the sharpest ones.
+        // For many spots of contact the error depends on the chord of the sharpest, not on the mean chord.
         let of_runs = (curvature.bend.abs() / (chord * chord)).max(RUNS * curvature.short);
         let short = AT_MOST * by * outline.scatter(count, repeats) * SHORT_CHORD * SHORT_CHORD * of_runs;
         let smooth = AT_MOST * by * (curvature.bend.abs() + along_lines);
@@ -112,23 +113,23 @@ impl Parts {
         (parts.error().is_finite() && stiffness.is_finite()).then_some(parts)
     }
 
-    /// Together.
+    /// The sum of all errors.
     pub fn error(&self) -> f64 {
         self.of_bend() + self.of_first_order()
     }
 
-    /// By the bend.
+    /// The errors by the bend.
     pub fn of_bend(&self) -> f64 {
         self.smooth + self.short
     }
 
-    /// Ends and jumps.
+    /// The errors by ends and jumps.
     pub fn of_first_order(&self) -> f64 {
         self.ends + self.jumps
     }
 }
 
-/// Error of the approach by ends of the surface, and the largest pressure at one.
+/// The error of the approach by ends of the surface, and the largest pressure at an end.
 fn ends(problem: &Problem, state: &State, outline: &Outline) -> (f64, f64) {
     if outline.ends(problem.coefficients.repeats(&state.grid)) == 0 {
         return (0.0, 0.0);
@@ -141,16 +142,16 @@ fn ends(problem: &Problem, state: &State, outline: &Outline) -> (f64, f64) {
     (sum / state.force(), highest.get())
 }
 
-/// Of a direction of one element that does not repeat itself, relative to what is found.
+/// The relative error of a direction of one element without a period.
 fn one_element(problem: &Problem, state: &State) -> f64 {
     let (x, y) = problem.coefficients.repeats(&state.grid);
     let is_one = |m: usize, repeats: bool| if m == 1 && !repeats { ONE_ELEMENT } else { 0.0 };
     is_one(state.grid.mx, x) + is_one(state.grid.my, y)
 }
 
-/// dF/d(approach): the force over the displacement, in the mean with the weights of a flat punch's pressures; where the bodies are half-spaces
-/// without a layer, at least that of a circle of the same area, which the mean pressure compresses in series.
-/// No number where the displacement has no mean above 0: near full contact of two periods, or with a layer.
+/// dF/d(approach): the force over the mean displacement, with a flat punch's pressures as weights. For half-spaces without a layer it is at
+/// least that of a circle of the same area, in series with the compression by the mean pressure. It is not finite unless the mean displacement is
+/// positive. That fails near full contact of two periods, or with a layer.
 fn stiffness(problem: &Problem, force: f64, displaced: f64, area: f64) -> f64 {
     let found = if displaced > 0.0 { force / displaced } else { f64::NAN };
     if problem.coefficients.has_layer() || problem.coefficients.repeats(&problem.grid) == (true, true) {
@@ -158,11 +159,11 @@ fn stiffness(problem: &Problem, force: f64, displaced: f64, area: f64) -> f64 {
     }
     let compressed = problem.coefficients.kernel().constant() / problem.grid.element_area();
     let of_circle = 2.0 * problem.modulus() * (area / std::f64::consts::PI).sqrt();
-    // The larger one, whichever is a number.
+    // `max` ignores NaN.
     found.max(1.0 / (1.0 / of_circle + compressed).max(0.0))
 }
 
-/// Relative discretisation error of the force (or the approach), from a state that is near the solution; 0 where it is not known.
+/// Relative discretisation error of the force (or the approach), from a state near the solution; 0 if unknown.
 pub fn predict(problem: &Problem, state: &State) -> f64 {
     let outline = Outline::of(state);
     let curvature = Curvature::of(problem, state, &outline);
@@ -178,8 +179,8 @@ pub fn predict(problem: &Problem, state: &State) -> f64 {
     }
 }
 
-/// Writes the errors of all rows, of which the last is that of `finest`, with its curvature and the parts of its error. What limits the
-/// answer, and what the next finer grid would bring.
+/// Writes the errors of all rows, from the curvature and error parts of `finest`, the last row. Returns the limiting error and the
+/// gain by the next finer grid.
 pub fn estimate(
     ledger: &mut [LedgerRow],
     (problem, finest, outline): (&Problem, &State, &Outline),
@@ -200,7 +201,7 @@ pub fn estimate(
     let curved = (outline.edges - outline.straight_edges) as f64;
     let straight = (outline.straight.0 + outline.straight.1) as f64;
     let lines = STRAIGHT_OFF * straight + edges_off(problem, outline) + curved.sqrt();
-    // Where forces are off, the area that carries them is off as well.
+    // An error of the force implies an error of the area.
     let carried = parts.filter(|parts| parts.of_bend() > 0.0);
     let carried = carried.map_or(0.0, |parts| parts.of_bend() / parts.by * parts.stiffness / measures.force);
     let lines = lines * finest.grid.element_area() + carried * measures.contact_area;
@@ -208,7 +209,7 @@ pub fn estimate(
     for (i, row) in ledger.iter_mut().enumerate() {
         let is_last = i + 1 == count;
         let size = (finest.grid.len() as f64 / (row.mx * row.my) as f64).sqrt();
-        // Coarser rows: off from the value without its likely error.
+        // Coarser rows: the difference from the finest value minus its likely error.
         let force = parts.map(|parts| match is_last {
             true => parts.error(),
             false => (row.measures.found(finest.load) - (found - parts.likely)).abs() + parts.of_first_order(),
@@ -237,8 +238,8 @@ pub fn estimate(
     (limit, halving)
 }
 
-/// Elements by which the contact area is off along straight ends of the surface: half of theirs if all ends are straight. A circle has
-/// four short pieces, which what is in steps makes up for.
+/// The error of the contact area along straight ends of the surface, in elements: half of these if all ends are straight. A circle has four short
+/// straight pieces, which the pieces in steps compensate.
 fn edges_off(problem: &Problem, outline: &Outline) -> f64 {
     if problem.exact_edges || outline.edges == 0 {
         return 0.0;
@@ -247,7 +248,7 @@ fn edges_off(problem: &Problem, outline: &Outline) -> f64 {
     EDGE_OFF * straight * straight / outline.edges as f64
 }
 
-/// The bits of the errors that cannot be estimated; says so in the log.
+/// The bits of the errors without an estimate, which are logged.
 fn untrusted(force: bool, max_pressure: bool, pressure: bool) -> u32 {
     let mut untrusted = 0;
     for (known, bit, what, why) in [

@@ -1,12 +1,12 @@
-//! Turns that come together slowly are extrapolated (Anderson 1965).
+//! Extrapolation of slowly converging turns (Anderson 1965).
 //!
 //! ```text
-//! x: the distance that the normal problem was solved with,   y: the one that the turn made of it,   r = y - x
+//! x: the distance of the normal problem,   y: the distance after the turn,   r = y - x
 //! g: |r - sum over j of g_j dr_j| least,                     dr_j, dy_j: changes of r and y from turn to turn, of the last ones
 //! x = y - sum over j of g_j dy_j
 //! ```
 //!
-//! Turns of unlike bodies that nearly all slip are slow in some modes: the creepage, and the sizes of what sticks.
+//! Turns of unlike bodies near full slip are slow in some modes: the creepage, and the sizes of the stick areas.
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::{factor, solve};
@@ -17,13 +17,13 @@ use crate::error::Result;
 use crate::memory::reserve;
 use crate::sums::in_blocks;
 
-/// Turns are slow where the change falls by less than this.
+/// Ratio of successive changes above which turns are slow.
 const SLOW: f64 = 0.5;
-/// Changes from turn to turn that are remembered. Of unlike bodies at .9997 of mu N and a tolerance of 1e-9, 16 x 16 elements: none, or one as Irons and
-/// Tuck have it, takes more than 50 turns, five take 15.
+/// Number of kept changes from turn to turn. Unlike bodies at .9997 of mu N and a tolerance of 1e-9, 16 x 16 elements, take more than 50 turns with
+/// none, or with one as in Irons and Tuck, and 15 with five.
 const DEPTH: usize = 5;
 
-/// Of the sum of the changes' squares, which are products of numbers that round by 1e-16.
+/// Round-off of the Gram matrix, relative to its trace: products of numbers with a round-off of 1e-16.
 const ROUND_OFF: f64 = 1e-14;
 
 /// A turn, or the change from one to the next: r and y.
@@ -33,18 +33,18 @@ struct Pair {
     y: Vec<f64>,
 }
 
-/// What it knows of the turns so far: nothing before one was slow.
+/// The turns so far: none before one was slow.
 #[derive(Debug)]
 pub struct Extrapolation {
     last: Pair,
-    /// Oldest first.
+    /// The changes, oldest first.
     changes: Vec<Pair>,
     /// The change of the last turn.
     change: f64,
 }
 
 impl Extrapolation {
-    /// Before the first turn.
+    /// The state before the first turn.
     pub fn new() -> Extrapolation {
         Extrapolation { last: Pair::default(), changes: Vec::new(), change: f64::INFINITY }
     }
@@ -57,7 +57,7 @@ impl Extrapolation {
             return Ok(());
         }
         let mut pair = if self.changes.len() < DEPTH { Pair::default() } else { self.changes.remove(0) };
-        // Where there is no surface nothing changes.
+        // Elements without a surface do not change.
         let values = || x.iter().zip(y).map(|(x, y)| if x.is_finite() { [y - x, *y] } else { [0.0; 2] });
         difference(&mut pair.r, values().map(|[r, _]| r), &self.last.r)?;
         difference(&mut pair.y, values().map(|[_, y]| y), &self.last.y)?;
@@ -72,7 +72,7 @@ impl Extrapolation {
         Ok(())
     }
 
-    /// Moves y on to where the turns lead.
+    /// Extrapolates y to the limit of the turns.
     pub fn extrapolate(&self, y: &mut [f64]) {
         let count = self.changes.len();
         if count == 0 {
@@ -89,7 +89,7 @@ impl Extrapolation {
     }
 }
 
-/// Values less those of before, if there are any.
+/// Values less the earlier ones, if there are any.
 fn difference(to: &mut Vec<f64>, values: impl ExactSizeIterator<Item = f64>, before: &[f64]) -> Result<()> {
     to.clear();
     reserve(to, values.len(), "the turns before")?;
@@ -98,7 +98,7 @@ fn difference(to: &mut Vec<f64>, values: impl ExactSizeIterator<Item = f64>, bef
     Ok(())
 }
 
-/// g of the normal equations; changes that are alike to round-off have parts of 0, nearly. None where there is no g.
+/// g of the normal equations; dependent changes have parts near 0. Empty if there is no g.
 fn least_squares(mut gram: Vec<f64>, mut right: Vec<f64>) -> Vec<f64> {
     let n = right.len();
     let trace: f64 = gram.iter().step_by(n + 1).sum();

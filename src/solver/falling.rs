@@ -1,25 +1,25 @@
-//! How an error falls from grid to grid.
+//! The decrease of an error from grid to grid.
 
-/// An error in its parts: how much each falls with a doubling of the elements in both directions, and what the residual hides.
+/// An error in parts, by their decrease with a doubling of the elements in both directions, and the part of the residual.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Falling {
-    /// The part that falls by 16: that of places of few elements.
+    /// The part that falls by 16, from places of few elements.
     pub by_sixteen: f64,
     /// The part that falls by 4.
     pub by_four: f64,
     /// The part that falls by 2.
     pub by_two: f64,
-    /// The part that stays.
+    /// The part that stays, due to the residual.
     pub hidden: f64,
 }
 
 impl Falling {
-    /// As it is.
+    /// The error on this grid.
     pub fn now(&self) -> f64 {
         self.after(0)
     }
 
-    /// After so many doublings; with a negative number before them. Not more than the second power of the elements is believed of coarser grids.
+    /// The error after doublings, or before them if negative. On coarser grids errors grow at most by 4 a halving.
     pub fn after(&self, doublings: i32) -> f64 {
         let ratio = 0.5_f64.powi(doublings);
         let by_four = self.by_four + self.by_sixteen * (ratio * ratio).min(1.0);
@@ -33,7 +33,7 @@ impl Falling {
         Falling { by_sixteen, by_four, by_two, hidden }
     }
 
-    /// Relative to a value, if that is one.
+    /// The error relative to a value, if that is finite and not 0.
     pub fn over(self, whole: f64) -> Option<Falling> {
         Some(self.times(1.0 / whole.abs())).filter(|relative| relative.now().is_finite())
     }

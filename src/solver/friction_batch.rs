@@ -13,13 +13,13 @@ use crate::memory::collected;
 use crate::scene::{Friction, Scene};
 use crate::threads::Threads;
 
-/// Solves the tangential problem of a scene for each of the entries, with pressures `[my][mx]` that are given, or with those of the
-/// scene's normal problem, which is solved once. `found(i, ended, solution)` is called for each entry, on the thread that solved it and
+/// Solves the tangential problem of a scene for each of the entries, with given pressures `[my][mx]`, or with those of the scene's normal
+/// problem, which is solved once. `found(i, ended, solution)` is called for each entry, on the thread that solved it and
 /// in no particular order, with a solution where there is one. Returns the outcome and the report of the normal problem.
 ///
-/// An entry that is refused does not keep the others from being solved. Of unlike bodies the pressures displace the surfaces sideways,
-/// but tractions do not change the pressures. `progress` is told on the calling thread: of the normal problem, and then of entries that
-/// are done, which count as cycles. When it cancels, entries that are not done end as `Outcome::Cancelled`.
+/// A refused entry does not affect the others. For unlike bodies the pressures displace the surfaces sideways, but tractions do not change
+/// the pressures. `progress` is called on the calling thread: during the normal problem, and then after each entry, which counts as a cycle.
+/// When it cancels, unfinished entries end as `Outcome::Cancelled`.
 pub fn solve_friction_batch(
     scene: &Scene<'_>,
     pressure: Option<&[f64]>,
@@ -61,8 +61,7 @@ pub fn solve_friction_batch(
 }
 
 impl Solver {
-    /// [`solve_friction_batch`] with the coefficients that this solver keeps, and with pressures that are given. What it solved last stays
-    /// as it is.
+    /// [`solve_friction_batch`] with the coefficients of this solver and given pressures. The solver's last result is unchanged.
     pub fn solve_friction_batch(
         &mut self,
         scene: &Scene<'_>,
@@ -85,7 +84,7 @@ impl Solver {
     }
 }
 
-/// The friction of a table, in which no entry has a step before.
+/// The friction of a table, whose entries have no previous step.
 fn friction_of_table<'s>(scene: &'s Scene<'_>) -> Result<&'s Friction<'s>> {
     match &scene.friction {
         None => invalid("friction is not given: there is nothing to solve".into()),
@@ -96,7 +95,7 @@ fn friction_of_table<'s>(scene: &'s Scene<'_>) -> Result<&'s Friction<'s>> {
     }
 }
 
-/// The measures of pressures that are given.
+/// The report of given pressures.
 fn of_pressures(grid: &Grid, pressure: &[f64], options: &Options) -> Report {
     Report { measures: measures(grid, pressure), tolerance: options.tolerance, ..Report::default() }
 }

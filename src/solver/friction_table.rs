@@ -1,9 +1,8 @@
-//! A table of tangential problems with the same pressures: one motion or force after the other, spread over threads.
+//! A table of tangential problems with the same pressures, one for each motion or force, spread over threads.
 //!
-//! Entries are solved in runs of [`RUN`] that stand side by side in the table. The first of a run starts from nothing, each other one
-//! from the tractions of the one before, unless that is [far](NEAR) away; what ends without its certificate is solved once more
-//! from nothing. Runs are the same whoever
-//! takes them: the results have the same bits for any number of threads.
+//! Entries are solved in runs of [`RUN`] consecutive entries. The first of a run starts from rest, each other one from the tractions of the one
+//! before, unless that is [far](NEAR) away. An entry that ends without its certificate is solved again from rest. Runs do not depend on the thread:
+//! the results have the same bits for any number of threads.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -21,17 +20,17 @@ use crate::threads::Threads;
 
 /// Entries of a run.
 pub const RUN: usize = 16;
-/// Forces that differ by more than this part of mu N are far apart: starts from steps of .03 take 16 products in the mean, of .1 they take
-/// 28, of .3 they take 49, and from nothing 25 (circles and ellipses of 35 x 35 elements).
+/// Difference of forces over mu N from which entries are far apart. Starts at a distance of .03 take 16 products in the mean, of .1 28, of .3 49,
+/// from rest 25 (circles and ellipses of 35 x 35 elements).
 const NEAR_FORCE: f64 = 0.05;
-/// Creepages and spin, times the radius of the contact area, that differ by more than this part of themselves are far apart: starts from
-/// steps of .01 take 10 products in the mean, of .1 they take 14, of .4 they take 18, and from nothing 16.
+/// Relative difference of creepages, and of spin times the radius of the contact area, from which entries are far apart. Starts at a distance of .01
+/// take 10 products in the mean, of .1 14, of .4 18, from rest 16.
 const NEAR: f64 = 0.1;
 
 /// The motion or force of one entry of a table.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Entry {
-    /// In x and in y: the force where the scene's friction prescribes forces, else the creepage.
+    /// In x and in y: the force if the scene's friction prescribes it, else the creepage.
     pub amount: [f64; 2],
     /// phi.
     pub spin: f64,
@@ -46,7 +45,7 @@ impl Entry {
         Entry { amount, spin: friction.spin }
     }
 
-    /// The friction of a table with what this entry prescribes.
+    /// The friction of a table with the motion or force of this entry.
     fn friction<'a>(&self, of: &Friction<'a>) -> Friction<'a> {
         let mut friction = Friction { spin: self.spin, ..*of };
         for (prescribed, amount) in friction.prescribed.iter_mut().zip(self.amount) {
@@ -59,7 +58,7 @@ impl Entry {
     }
 }
 
-/// How the entry of a table ended, and what was found; `Outcome::Cancelled`: it was not solved.
+/// The outcome and the report of an entry; `Outcome::Cancelled`: it was not solved.
 pub type Ended = Result<(Outcome, friction::Report)>;
 
 /// The inputs of all workers, and their common progress.
@@ -69,9 +68,9 @@ pub(super) struct Table<'a> {
     pressure: &'a [f64],
     entries: &'a [Entry],
     options: &'a Options,
-    /// Forces that differ by less are near.
+    /// Difference below which forces are near.
     near_force: f64,
-    /// Of a circle as large as the contact area.
+    /// The radius of a circle with the contact area.
     radius: f64,
     done: Done,
 }
@@ -79,7 +78,7 @@ pub(super) struct Table<'a> {
 /// The progress so far.
 #[derive(Default)]
 struct Done {
-    /// Runs that were taken, beside the first one, which is the caller's.
+    /// Runs taken, besides the first one, which is the caller's.
     taken: AtomicUsize,
     entries: AtomicUsize,
     products: Mutex<f64>,
@@ -101,8 +100,8 @@ impl<'a> Table<'a> {
         Table { scene, friction, pressure, entries, options, near_force, radius, done: Done::default() }
     }
 
-    /// Solves all entries, if `stop` of the normal problem is not CANCELLED. `crew`: workers of one thread, of which those that are missing are
-    /// made. Returns how that ended, and its seconds.
+    /// Solves all entries, unless `stop` of the normal problem is CANCELLED. `crew`: workers of one thread; missing ones are made. Returns the
+    /// outcome and the seconds.
     pub(super) fn solve(
         self,
         stop: Outcome,
@@ -114,7 +113,7 @@ impl<'a> Table<'a> {
         self.done.cancelled.store(stop == Outcome::Cancelled, Ordering::Relaxed);
         let runs = self.entries.len().div_ceil(RUN);
         let workers = threads.count().min(runs).max(1);
-        // Set up before any entry is solved: there is none that one lack of memory could lose.
+        // Set up before any entry is solved, so that lack of memory loses no entry.
         let missing = (crew.len()..workers).map(|_| Tangent::new(self.scene, self.options, &Threads::One));
         let missing = collected(missing, "the workers of a table")?;
         crew.extend(missing.into_iter().collect::<Result<Vec<_>>>()?);
@@ -129,7 +128,7 @@ impl<'a> Table<'a> {
         };
         threads.for_each_beside(
             &mut crew[..workers],
-            // On a short table others could take all runs before the caller has one: then nobody would be told, and a cancellation not be heard.
+            // On a short table others could take all runs before the caller has one: then progress would not be called, and could not cancel.
             |tangent| {
                 self.run(0, tangent, &mut told, found);
                 self.work(tangent, &mut told, found);
@@ -140,7 +139,7 @@ impl<'a> Table<'a> {
         Ok((stop, began.elapsed().as_secs_f64()))
     }
 
-    /// Takes runs until there are none left; `told` hears the residual of each entry.
+    /// Takes runs until there are none left; `told` gets the residual of each entry.
     fn work(
         &self,
         tangent: &mut Tangent,
@@ -207,7 +206,7 @@ impl<'a> Table<'a> {
             return Ok((Outcome::Cancelled, friction::Report::default()));
         }
         let friction = self.entries[i].friction(self.friction);
-        // The tables are those of the scene, which is checked.
+        // The tables are the scene's, which are checked.
         Friction { influence: None, ..friction }.check(&self.scene.grid)?;
         let turn = Turn { scene: self.scene, friction: &friction, options: self.options, threads: &Threads::One };
         let mut watch = |_: &Progress| self.is_cancelled();

@@ -1,4 +1,4 @@
-//! Questions to a handle, and the exchange of its own coefficients.
+//! The results of a handle, and the exchange of its own coefficients.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ impl Solver {
         &self.state
     }
 
-    /// The grid that it was set up for.
+    /// The grid of the set-up.
     pub fn grid(&self) -> &Grid {
         &self.problem.grid
     }
@@ -27,22 +27,22 @@ impl Solver {
         self.friction.as_deref().filter(|_| self.has_result).and_then(Tangent::solution)
     }
 
-    /// Whether nothing is estimated from the last result: pressures are at their limit, or something attracts.
+    /// Whether the last result has no estimates: pressures are at their limit, or bodies attract.
     pub(crate) fn lacks_estimates(&self) -> bool {
         self.state.has_limited() || self.is_adhesive
     }
 
-    /// Whether there is a result: of the last solve, unless that failed.
+    /// Whether there is a result: that of the last solve, unless it failed.
     pub fn has_solved(&self) -> bool {
         self.has_result
     }
 
-    /// The memory of bodies that relax, as numbers; none before the first step.
+    /// The memory of relaxing bodies, as numbers; none before the first step.
     pub(crate) fn history(&self) -> Option<Vec<f64>> {
         self.beside.histories[effects::place(Visco::NAME)?].numbers()
     }
 
-    /// They remember what another solver's did.
+    /// Takes the memory of another solver's bodies.
     pub(crate) fn take_history(&mut self, numbers: &[f64]) -> Result<()> {
         match effects::place(Visco::NAME) {
             Some(k) => self.beside.histories[k].take(numbers, &self.problem.grid),
@@ -60,8 +60,8 @@ impl Solver {
         &self.problem.coefficients
     }
 
-    /// All later solves use this table in the place of the one of the set-up; memory and plans of the operator are kept. The last result
-    /// stays. After an error the solver has no table until another one is set.
+    /// Sets the table of all later solves, in place of the one at set-up; memory and plans of the operator are kept. The last result stays. After an
+    /// error the solver has no table until another one is set.
     pub fn set_influence(&mut self, table: Table) -> Result<()> {
         if self.set_up.own_coefficients.is_none_or(|(_, layout)| layout != Layout::Offsets) {
             return invalid("influence is given, but this solver was set up without".into());
@@ -69,7 +69,7 @@ impl Solver {
         Effect::check(&table, &self.problem.grid)?;
         let coefficients = self.problem.coefficients.clone().with_kernel(Arc::new(table.clone()));
         self.set_up.largest_influence = coefficients.largest(&self.problem.grid);
-        // Everything made of the table before is dropped first: then the operator is this solver's alone.
+        // Everything made of the last table is dropped first, so that the operator is not shared.
         self.set_up.lacks_table = true;
         self.methods.forget_operator();
         self.adhesion = None;
@@ -82,17 +82,17 @@ impl Solver {
         Ok(())
     }
 
-    /// Threads that it was set up with; 0: all cores.
+    /// The number of threads at set-up; 0: all cores.
     pub fn threads(&self) -> usize {
         self.set_up.options.threads
     }
 
-    /// The options that it was set up with.
+    /// The options at set-up.
     pub(crate) fn set_up_options(&self) -> &Options {
         &self.set_up.options
     }
 
-    /// The caller's own coefficients, if there are any, as a scene of this grid names them: with the name of the effect.
+    /// The caller's coefficients, if any, in the layout of a scene of this grid, with the name of the effect.
     pub(crate) fn own_tables(&self) -> Option<(&'static str, Vec<f64>)> {
         let kernel = self.influence().kernel();
         let (mx, my) = (self.grid().mx as i64, self.grid().my as i64);

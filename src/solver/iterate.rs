@@ -1,16 +1,16 @@
-//! The loop: every promise about an answer is kept here, whichever method makes the steps.
+//! The loop: all promises about a result are kept here, for all methods.
 //!
 //! ```text
 //! repeat
 //!    2., 3.  p = 0 in E; a step of the method on C
-//!    (4.1)   elements that would pull leave C, those above their limit go to it; then u = A p
-//!    certify where the criterion seems met: u = A p by a fresh product in double precision
+//!    (4.1)   elements with p < 0 leave C, those above their limit go to it; then u = A p
+//!    certify if the criterion seems met: u = A p by a fresh product in double precision
 //!    (4.2)   elements that penetrate enter C
 //!    5., 6.  done if the certificate holds and C stays; or go on
-//! until max_cycles, a callback that cancels, or no progress: then the best iterate is the answer
+//! until max_cycles, a callback that cancels, or no progress: then the best iterate is the result
 //! ```
 //!
-//! The order of (4.1) and (4.2) matters: with the product before the truncation the loop cycles for ever.
+//! The order of (4.1) and (4.2) matters: with the product before the truncation the loop would cycle.
 
 use super::best::Best;
 use crate::contact::{admit, all_stay, truncate, AdmissibleSet, Freshness, Survey};
@@ -18,7 +18,7 @@ use crate::error::{Error, Result};
 use crate::methods::{Change, Step, Task};
 use crate::progress::Outcome;
 
-/// Runs one method from what the state holds. Unless it converges, `best` knows the best iterate.
+/// Runs one method from the state. Unless it converges, `best` holds the best iterate.
 pub fn iterate<S: AdmissibleSet>(
     method: &mut dyn Step<S>,
     task: &mut Task<'_, '_, S>,
@@ -28,7 +28,7 @@ pub fn iterate<S: AdmissibleSet>(
     let (set, goal) = (task.set, task.goal);
     method.begin(task.state)?;
     let (mut chatter, mut least, mut since) = (0, f64::INFINITY, 0);
-    // A step need not take a cycle, but there are no more of them than cycles may be.
+    // A step need not count as a cycle, but steps are bounded by the cycles allowed.
     for _ in 0..=goal.max_cycles {
         if task.is_interrupted() {
             break;
@@ -36,7 +36,7 @@ pub fn iterate<S: AdmissibleSet>(
         // 2. p = 0 in E. 3. A step of the method on C.
         let products = task.monitor.count.matrix_products;
         let change = step(method, task)?;
-        // Without a product nothing is certified: u may be that of earlier solutions, combined.
+        // Only a product certifies: u may be a combination of earlier solutions.
         let is_certain = task.state.u_is == Freshness::Exact && task.monitor.count.matrix_products > products;
         if change.gives_up && !is_certain {
             return Ok(Outcome::Stagnated);
@@ -57,7 +57,7 @@ pub fn iterate<S: AdmissibleSet>(
         // 5. Go on if C has changed. 6. Go on if the accuracy is not reached.
         if task.state.u_is == Freshness::Exact && goal.holds(&survey, change.update, set) && task.carries() {
             chatter += u32::from(changes > 0);
-            // Where bodies fit but for round-off, that alone makes elements enter. And after a while the certificate decides, although elements change.
+            // If bodies fit up to round-off, round-off makes elements enter. After some steps the certificate decides although C changes.
             let fits = survey.residual == 0.0 && survey.violation == 0.0 && all_stay(task.state, set);
             if changes == 0 || fits || policy.exchanged_by_loop && chatter > policy.chatter {
                 task.monitor.survey = Some(last);
@@ -78,8 +78,8 @@ pub fn iterate<S: AdmissibleSet>(
     Ok(task.monitor.interrupted())
 }
 
-/// A step and its products. Coefficients of an elastic body are positive definite: where round-off says otherwise the method is at its
-/// end, and only a caller's table is refused for it.
+/// A step and its products. Coefficients of an elastic body are positive definite: if round-off violates this the method ends; only a caller's table
+/// is refused for it.
 fn step<S: AdmissibleSet>(method: &mut dyn Step<S>, task: &mut Task<'_, '_, S>) -> Result<Change> {
     let change = match method.step(task) {
         Err(Error::NotPositiveDefinite(message)) if !task.problem.given => {
@@ -93,7 +93,7 @@ fn step<S: AdmissibleSet>(method: &mut dyn Step<S>, task: &mut Task<'_, '_, S>) 
     change
 }
 
-/// Surveys the state, by a fresh product where u is none of p, or where the criterion seems met: only a fresh product certifies.
+/// Surveys the state, by a fresh product if u is stale or the criterion seems met: only a fresh product certifies.
 fn certify<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, change: &Change, left: usize) -> Result<Survey> {
     if left > 0 || task.state.u_is == Freshness::Stale {
         task.refresh()?;
@@ -111,7 +111,7 @@ fn certify<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, change: &Change, left: 
     Ok(survey)
 }
 
-/// (4.2): how many elements enter C, and the survey with them.
+/// (4.2): lets elements enter C. Returns their number, and the survey with them.
 fn let_enter<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, survey: Survey) -> (usize, Survey) {
     let penetrates = !S::FIXED && survey.violation > 0.0;
     match if penetrates { admit(task.state, task.set) } else { 0 } {

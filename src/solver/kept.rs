@@ -1,5 +1,5 @@
-//! The last complete result, copied, to go back to: what is beside the normal problem may be refused
-//! when that is solved already.
+//! A copy of the last complete result, to restore it: a problem beside the normal one may be refused
+//! after the normal problem is solved.
 
 use super::Solver;
 use crate::contact::State;
@@ -10,7 +10,7 @@ use crate::progress::LedgerRow;
 use crate::rectangle::Rectangle;
 use crate::scene::Scene;
 
-/// A copy of the last result, and of what a step in time goes on from.
+/// A copy of the last result, and of the state from which a step in time continues.
 pub struct Kept {
     state: State,
     before: (Predictor, Option<Rectangle>),
@@ -18,7 +18,7 @@ pub struct Kept {
 }
 
 impl Solver {
-    /// A copy of the last result, for scenes with something beside the normal problem.
+    /// A copy of the last result, for scenes with a problem beside the normal one.
     pub(super) fn kept(&self, scene: &Scene<'_>) -> Result<Option<Kept>> {
         if effects::beside(scene).next().is_none() || !self.has_result {
             return Ok(None);
@@ -27,7 +27,7 @@ impl Solver {
         Ok(Some(Kept { state, before: self.methods.projected_cg.last()?, ledger: self.ledger.clone() }))
     }
 
-    /// There is the last result again; without one there is none.
+    /// Restores the last result; without a copy there is none.
     pub(super) fn go_back(&mut self, kept: Option<Kept>) {
         self.has_result = kept.is_some();
         if let Some(Kept { state, before, ledger }) = kept {

@@ -1,4 +1,4 @@
-//! Products with pressures of the caller's, and the stiffness of a result.
+//! Products with the caller's pressures, and the stiffness of a result.
 
 use super::tangential_calls::finite;
 use super::{ActiveSet, Guess, InitialGuess, Method, Options, Outcome, Solver};
@@ -11,7 +11,7 @@ use crate::sums::in_blocks;
 
 /// Relative residual at which the equations of a stiffness are solved.
 const TOLERANCE: f64 = 1e-10;
-/// And that which is enough where round-off is in the way.
+/// Relative residual that suffices if round-off prevents [`TOLERANCE`].
 const ENOUGH: f64 = 1e-6;
 
 /// dF/d approach of a result.
@@ -19,7 +19,7 @@ const ENOUGH: f64 = 1e-6;
 pub struct Stiffness {
     /// A force per length.
     pub value: f64,
-    /// Relative residual of the equations that it was found by, over the contact area: 2-norms. The relative error of the value is about that.
+    /// Relative residual of its equations, 2-norms over the contact area. The relative error of the value is about this.
     pub residual: f64,
 }
 
@@ -35,7 +35,7 @@ impl Solver {
         }
         finite(&grid, pressure)?;
         self.problem.displace(pressure, displacement)?;
-        // No product of a solve.
+        // This is not a product of a solve.
         self.problem.take_products();
         if let Some(compressible) = self.set_up.compressible.as_ref().filter(|of| of.is_without == Some(true)) {
             let by = compressible.by(in_blocks(pressure.iter().copied()));
@@ -44,9 +44,9 @@ impl Solver {
         Ok(())
     }
 
-    /// dF/d approach of the last result: by how much the force grows with the approach while the contact area, pressures at their limit and
-    /// tractions stay, within the step in time of bodies that relax. `A s = 1` is solved on the contact area, and the value is the sum of `s dx dy`; 0 without contact. Where the value could not
-    /// be had, the outcome says why. The last result stays. The first call sets up another solver of one thread, which is kept.
+    /// dF/d approach of the last result. The contact area, the pressures at their limit and the tractions are held fixed, within one step in time of
+    /// bodies that relax. `A s = 1` is solved on the contact area, and the value is the sum of `s dx dy`. It is 0 without contact. The outcome says
+    /// why a value could not be computed. The last result stays valid. The first call sets up another solver of one thread and keeps it.
     pub fn stiffness(&mut self) -> Result<(Outcome, Stiffness)> {
         if !self.has_result {
             return invalid("solver has no result: no solve with it had a status >= 0".into());
@@ -77,10 +77,10 @@ impl Solver {
         Ok((stop, Stiffness { value: found.value / self.compliance, ..found }))
     }
 
-    /// The same of a contact area; this solver's own result is lost.
+    /// The stiffness of a contact area. This solver's own result is lost.
     fn stiffness_of(&mut self, contact: &[bool], options: &Options) -> Result<(Outcome, Stiffness)> {
         let (grid, own) = (self.problem.grid, self.problem.self_influence());
-        // Pressures of about 1, whatever the units are; a power of two loses no digit.
+        // Pressures of order 1 in any units; a power of two loses no digit.
         let unit = if own > 0.0 { own.log2().floor().exp2() } else { 1.0 };
         let load = Load::Approach(unit);
         self.suit(load)?;
@@ -91,7 +91,7 @@ impl Solver {
         let h: Vec<f64> = zeros(grid.len(), "distances of a stiffness")?;
         let p: Vec<f64> = zeros(grid.len(), "pressures of a stiffness")?;
         let guess = Some(Guess { pressure: &p, contact });
-        // Only grid, distance and load are asked for: effects and bodies are in the coefficients.
+        // Only grid, distance and load are used: the coefficients contain effects and bodies.
         let scene = Scene::new(grid, &h, Bodies::same(1.0, 0.0), load);
         let mut monitor = Monitor::new(None, Vec::new(), false);
         let (stop, _) = self.solve_normal((&scene, 0.0), options, guess, &mut monitor)?;

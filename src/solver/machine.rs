@@ -1,9 +1,9 @@
-//! How seconds grow with the number of elements on this machine.
+//! The growth of seconds with the number of elements on this machine.
 //!
-//! A product of n elements takes `n log n` operations, but its arrays leave one cache after the other, at other sizes on each machine. So a
-//! few products of half-spaces are timed, in a process once (by each of the threads that ask first), when seconds are first predicted: 32 x 32 to 256 x 256 elements, the least of some
-//! times each, together some milliseconds on one thread. Between these sizes growth is that of a power, beyond them that of the last two. A machine
-//! that is busy at the time cannot spoil much: powers are kept between bounds. No solve depends on it.
+//! A product of n elements takes `n log n` operations, but its arrays exceed one cache after the other, at sizes that depend on the machine. So a few
+//! products of half-spaces are timed at the first prediction of seconds in a process: 32 x 32 to 256 x 256 elements, the least of some times each, a
+//! few milliseconds on one thread. Threads that predict at the same time each measure. Between these sizes growth is that of a power, beyond them
+//! that of the last two. Bounds on the powers limit the error on a busy machine. No solve depends on it.
 
 use std::sync::OnceLock;
 use std::time::Instant;
@@ -14,42 +14,42 @@ use crate::grid::Grid;
 use crate::memory::zeros;
 use crate::scene::{Bodies, Load, Scene};
 
-/// Elements in a direction of the grids that are timed.
+/// Elements in a direction of the timed grids.
 const SIZES: [usize; 4] = [32, 64, 128, 256];
-/// Products on each; the first ones are slow.
+/// Products on each grid; the first ones are slow.
 const TIMES: usize = 4;
-/// Powers of the number of elements that are believed.
+/// Least and largest power of the number of elements.
 const POWERS: (f64, f64) = (1.0, 1.2);
-/// The power where nothing could be timed (docs/performance.md).
+/// The power without timings (docs/performance.md).
 const GROWTH: f64 = 1.08;
 /// The least and the largest power of the number of elements with which seconds of set-ups grow.
 const SETUP_GROWTH: (f64, f64) = (0.1, 1.08);
 /// The largest power of the number of elements with which seconds of a solve grow.
 const MOST_GROWTH: f64 = 1.2;
-/// Products grow by so much at most with a doubling.
+/// Largest growth of the number of products with a doubling.
 pub const MOST_MORE: f64 = 1.25;
-/// Samples with less than this part of the products of the last do not count for seconds.
+/// Least products of a sample that counts for seconds, relative to the last sample.
 const SEES: f64 = 0.5;
 
-/// What a solve cost.
+/// The cost of a solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
     pub elements: f64,
-    /// Of one thread, and the part of the set-up.
+    /// Seconds of one thread, and the part of the set-up.
     pub seconds: f64,
     pub setup: f64,
-    /// In work units.
+    /// Products in work units.
     pub products: f64,
 }
 
 /// Elements, and the seconds of a product.
 type Timed = (f64, f64);
 
-/// By how much longer products take on `to` than on `from` elements.
+/// The ratio of the times of products on `to` and on `from` elements.
 pub fn growth(from: f64, to: f64) -> f64 {
     static MACHINE: OnceLock<Vec<Timed>> = OnceLock::new();
     if MACHINE.get().is_none() {
-        // Nobody waits for the thread that measures: a child that is forked meanwhile would wait for ever. The first one to end counts.
+        // Threads do not wait for one that measures: a child forked meanwhile would wait for ever. The first result counts.
         let timed: Result<Vec<Timed>> = SIZES.into_iter().map(time).collect();
         if let Ok(timed) = timed {
             let _ = MACHINE.set(timed);
@@ -58,9 +58,9 @@ pub fn growth(from: f64, to: f64) -> f64 {
     growth_by(MACHINE.get().map_or(&[], Vec::as_slice), from, to)
 }
 
-/// Seconds of one thread on a grid of so many elements; 0 without samples. The sample that promises the least counts: others were disturbed, or are
-/// mostly overhead. Samples with half the products of the last, or fewer, hardly see the contact and do not count. Products grow as they do from sample
-/// to sample. The set-up grows as the last two samples say (that of a period hardly does). No grid takes longer than a finer one.
+/// Seconds of one thread on a grid of `elements`; 0 without samples. The sample with the least prediction counts, as others were disturbed or are
+/// mostly overhead. Samples with at most half the products of the last hardly resolve the contact and do not count. The number of products grows as
+/// from sample to sample, the set-up as from the last but one to the last (with a period it hardly grows). No grid takes longer than a finer one.
 pub fn seconds_on(samples: &[Cost], elements: f64) -> f64 {
     let seen = match samples {
         [.., before, last] => (last.setup / before.setup).ln() / (last.elements / before.elements).ln(),
@@ -79,7 +79,7 @@ pub fn seconds_on(samples: &[Cost], elements: f64) -> f64 {
     };
     match samples.first() {
         None => 0.0,
-        // A grid coarser than all samples: the first of them, carried down.
+        // A grid coarser than all samples: extrapolated from the first.
         Some(first) if first.elements > elements => carried(first),
         _ => {
             let of = |sample: &Cost| if sample.elements <= elements { carried(sample) } else { sample.seconds };
@@ -89,7 +89,7 @@ pub fn seconds_on(samples: &[Cost], elements: f64) -> f64 {
     }
 }
 
-/// Products on more elements than the last sample has: from one to the next they may grow, with friction by a fifth with a doubling.
+/// The growth of the number of products beyond the last sample, extrapolated: with friction a fifth with a doubling.
 fn more_products(samples: &[Cost], elements: f64) -> f64 {
     match samples {
         [.., before, last] => {
@@ -102,8 +102,8 @@ fn more_products(samples: &[Cost], elements: f64) -> f64 {
     }
 }
 
-/// The power of the number of elements with which the samples themselves grow, where each has `least` products: solves in turns, of unlike bodies, take more than
-/// their products. The least one from sample to sample, for others were disturbed.
+/// The power of the number of elements with which the seconds of the samples grow, if each has `least` products: solves in turns, of unlike bodies,
+/// take longer than their products. The least power from sample to sample, as others were disturbed.
 fn grown(samples: &[Cost], least: f64) -> f64 {
     let of = |pair: &[Cost]| (pair[1].seconds / pair[0].seconds).ln() / (pair[1].elements / pair[0].elements).ln();
     let seen = samples.windows(2).filter(|pair| pair[0].products >= least).map(of);

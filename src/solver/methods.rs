@@ -1,4 +1,4 @@
-//! The methods of a solver: each hands over to the next of the list ([`stages`](super::stages)) when it stalls; and how each starts from nothing.
+//! The methods of a solver, each followed by the next of the list ([`stages`](super::stages)) when it stalls, and their starts without a guess.
 
 use super::best::Best;
 use super::estimates;
@@ -16,13 +16,13 @@ use crate::methods::projected_newton::ProjectedNewton;
 use crate::methods::{Start, Step, Task};
 use crate::progress::{Outcome, UPDATE_RESIDUAL};
 
-/// A guess whose violation is larger is worth less than what the coarser grids find.
+/// Violation of a guess above which a start from the coarser grids is better.
 const WORTHLESS: f64 = 0.3;
-/// Displacements below this part of the approach are some roundings of the distances, and no step can improve a bearing area: it is the answer
-/// where the certificate holds.
+/// Displacements below this part of the approach are round-off of the distances. No step improves a bearing area then: it is the solution if
+/// its certificate holds.
 const HIDDEN: f64 = 8.0 * f64::EPSILON;
 
-/// The methods of a solver, set up when they are first asked for and kept.
+/// The methods of a solver, set up at first use and kept.
 pub struct Methods {
     pub projected_cg: ProjectedCg,
     direct: Option<Direct>,
@@ -33,19 +33,19 @@ pub struct Methods {
     shape: CycleShape,
 }
 
-/// How a solve goes on from its start.
+/// The judgement of a start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Beginning {
-    /// It satisfies the goal.
+    /// The start satisfies the goal.
     Solved,
-    /// The first method iterates from it.
+    /// The first method iterates from the start.
     GoOn,
-    /// It is discarded.
+    /// The start is discarded.
     FromNothing,
 }
 
 impl Methods {
-    /// Nothing is set up but what every solve needs.
+    /// Sets up only the methods that every solve needs.
     pub fn new(problem: &Problem, options: &Options) -> Result<Methods> {
         Ok(Methods {
             projected_cg: ProjectedCg::new(problem, options.precision),
@@ -58,8 +58,7 @@ impl Methods {
         })
     }
 
-    /// Solves from what the state holds, as `from` says, and the survey of it. An `error_ratio` of the options may raise the tolerance of
-    /// the goal.
+    /// Solves from the state, a start of the kind `from`, and its survey. An `error_ratio` of the options may raise the tolerance of the goal.
     pub fn solve<S: AdmissibleSet>(
         &mut self,
         task: &mut Task<'_, '_, S>,
@@ -105,7 +104,7 @@ impl Methods {
         Ok(stop)
     }
 
-    /// How the solve goes on from its start.
+    /// Judges the start.
     fn take_over<S: AdmissibleSet>(
         &mut self,
         stage: Stage,
@@ -123,9 +122,9 @@ impl Methods {
             admit(state, set);
             return Ok(Beginning::FromNothing);
         }
-        // With limits it is not known what grows with the load.
+        // With limits pressures do not scale with the load.
         if on_coarser_grids && from == Start::Previous && !S::LIMITED {
-            // It finds the contact area by itself.
+            // The prediction includes the contact area.
             self.projected_cg.predict(state, &task.problem.threads)?;
         } else if survey.violation > 0.0 {
             admit(state, set);
@@ -133,8 +132,8 @@ impl Methods {
         Ok(Beginning::GoOn)
     }
 
-    /// The next method goes on from the best iterate, or from nothing where that is worth nothing; from what the direct solve leaves, having done
-    /// nothing, as it is.
+    /// Prepares the next method: from the best iterate, or from p = 0 if that is useless. A direct solve that did nothing leaves the state as it
+    /// is.
     fn hand_over<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) -> Result<()> {
         if stage != Stage::ProjectedCg {
             log::info!("no further progress on this scene: {stage:?} takes over");
@@ -147,7 +146,7 @@ impl Methods {
         Ok(())
     }
 
-    /// A start from nothing, which may be the answer. An `error_ratio` may raise the tolerance of the goal.
+    /// A start without a guess, which may be the solution. An `error_ratio` may raise the tolerance of the goal.
     fn start<S: AdmissibleSet>(
         &mut self,
         stage: Stage,
@@ -158,7 +157,7 @@ impl Methods {
         let (self_influence, threads) = (task.problem.self_influence(), &task.problem.threads);
         match stage {
             Stage::Direct | Stage::ProjectedCg if !S::FIXED => {
-                // A guess that is worth nothing is gone.
+                // A useless guess is dropped.
                 if from != Start::Nothing {
                     task.state.unload();
                 }
@@ -186,7 +185,7 @@ impl Methods {
         }
         if error_ratio > 0.0 {
             let predicted = estimates::predict(task.problem, task.state);
-            // An answer whose residual is larger than that is none, however coarse the grid.
+            // A solution with a larger residual is useless, however coarse the grid.
             let enough = (error_ratio * predicted).min(UPDATE_RESIDUAL);
             task.goal.tolerance = task.goal.tolerance.max(enough);
         }
@@ -210,19 +209,19 @@ impl Methods {
         iterate(method, task, &mut self.best)
     }
 
-    /// Lets go of the operator, which gets other coefficients: nothing is solved before [`renew`](Self::renew).
+    /// Releases the operator, which gets other coefficients. Call [`renew`](Self::renew) before the next solve.
     pub fn forget_operator(&mut self) {
         self.multigrid = None;
     }
 
-    /// The problem has other coefficients.
+    /// Takes the problem's other coefficients.
     pub fn renew(&mut self, problem: &Problem) -> Result<()> {
         self.projected_cg.renew(problem);
         self.direct = Direct::new(&problem.coefficients, &problem.grid)?;
         Ok(())
     }
 
-    /// Lets go of what another admissible set needed.
+    /// Frees the memory of another admissible set.
     pub fn forget_iterates(&mut self) {
         self.best = Best::default();
     }
@@ -236,7 +235,7 @@ impl Methods {
     }
 }
 
-/// Whether the state that was surveyed satisfies the goal before any step; then the monitor has the survey.
+/// Whether a surveyed state satisfies the goal before any step. If so, the monitor gets the survey.
 fn is_solved<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, survey: Survey) -> bool {
     let holds = task.goal.holds(&survey, 0.0, task.set) && task.carries();
     if holds {
@@ -245,7 +244,7 @@ fn is_solved<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, survey: Survey) -> bo
     holds
 }
 
-/// Whether `p'Ap < 0`: where an iteration diverges by an indefinite A, p is all of such a direction.
+/// Whether `p'Ap < 0`: when an iteration diverges by an indefinite A, p is dominated by such a direction.
 fn has_negative_energy(problem: &mut Problem, state: &mut State) -> Result<bool> {
     problem.displace(&state.p, &mut state.u)?;
     state.u_is = Freshness::Exact;

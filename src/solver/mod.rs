@@ -1,4 +1,4 @@
-//! How a scene is solved: the options, THE loop (`iterate`), the methods and their order, the report.
+//! The solve of a scene: the options, the loop (`iterate`), the methods and their order, the report.
 //!
 //! A [`Solver`] is set up once for a grid and a pair of bodies (operators, transforms, grids) and then solves any number of
 //! undeformed distances and loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call.
@@ -77,17 +77,16 @@ use compressible::Compressible;
 use methods::Methods;
 use tangential::Tangent;
 
-/// Operators and grids for many solves on one grid and one pair of bodies. One thread at a time.
+/// Operators and grids for many solves on one grid and one pair of bodies. Only one thread at a time may use a solver.
 ///
-/// It holds the last complete result, or none: after a solve that was refused before it began, or for its friction, the result is that of the
-/// solve before; after another one that failed on the way there is none.
+/// A solver holds the last complete result, or none. After a solve that was refused before it began, or for its friction, it holds the
+/// result of the solve before; after any other failed solve it holds none.
 ///
-/// A solve from nothing or from a given guess has the same result, to the last bit, whatever was solved before. After a first
-/// solve, further ones by the same method and from the same kind of start allocate no memory (with one thread), but for two
-/// operators. PROJECTED_CG (and AUTO) work on a window around the contact area, whose operator is set up anew when its size
-/// changes; the operators of the last few sizes are kept, of up to 128 x 128 elements each. From 128 x 128 elements on, products with
-/// pressures on a part of the grid have an operator of a shorter period, which is set up anew when the pressures reach farther or less
-/// far. From 4096 x 4096 elements on, where memory is scarce, what a solve needs at its beginning is set up for each solve.
+/// The bits of a solve that starts from nothing or from a given guess do not depend on earlier solves. With one thread, repeated solves by the same
+/// method and from the same kind of start allocate no memory, with three exceptions. PROJECTED_CG (and AUTO) work on a window around the
+/// contact area, whose operator is set up anew when its size changes; the operators of the last few sizes, up to 128 x 128 elements each, are
+/// kept. From 128 x 128 elements on, products with pressures on a part of the grid have an operator of a shorter period, which is set up anew
+/// when the extent of the pressures changes. From 4096 x 4096 elements on the operators of the start of a solve are set up for each solve.
 pub struct Solver {
     problem: contact::Problem,
     set_up: SetUp,
@@ -98,23 +97,23 @@ pub struct Solver {
     /// One limit per element of the scene being solved; empty if there is none.
     limits: Vec<f64>,
     ledger: Vec<LedgerRow>,
-    /// The problems beside the normal one, kept from step to step.
+    /// The further problems of a scene, kept from step to step.
     beside: Beside,
-    /// Of scenes with friction.
+    /// The tangential problem of scenes with friction.
     friction: Option<Box<Tangent>>,
-    /// Of scenes with adhesion.
+    /// The solver of scenes with adhesion.
     adhesion: Option<Box<crate::adhesion::Solver>>,
-    /// Whether the last result is one of a scene with adhesion.
+    /// Whether the scene of the last result had adhesion.
     is_adhesive: bool,
-    /// The memory of bodies, and the distances of their step; empty where they remember nothing.
+    /// The memory of visco-elastic bodies, and the distances of their step; empty without memory.
     remembered: Vec<f64>,
-    /// Of the bodies in the last result, in that of the set-up: 1 where they remember nothing.
+    /// The compliance of the bodies in the last result, relative to that at set-up: 1 without memory.
     compliance: f64,
-    /// Tangential coefficients of the caller's own.
+    /// The caller's tangential coefficients.
     own_tables: Option<Arc<KeptInfluence>>,
-    /// For tables of tangential problems: of one thread each, made when first needed.
+    /// Tangential problems of one thread each, for tables: set up when first needed.
     crew: Vec<Tangent>,
-    /// For batches: solvers of one thread, made when first needed.
+    /// Solvers of one thread each, for batches: set up when first needed.
     workers: Vec<Option<Solver>>,
     setup_seconds: f64,
 }
@@ -124,15 +123,15 @@ pub struct Solver {
 struct SetUp {
     /// The values that later scenes may not change.
     named: Named,
-    /// The effect with coefficients of the caller's own, and their layout.
+    /// The effect with the caller's coefficients, and their layout.
     own_coefficients: Option<(&'static str, Layout)>,
-    /// Whether the last table could not be set: then there is none.
+    /// Whether the last table could not be set, so that there is none.
     lacks_table: bool,
     /// The effect, if any, for which the multigrid methods have no smoother or no coarser grids.
     without_multigrid: Option<&'static str>,
-    /// The largest coefficient, whatever its sign.
+    /// The largest absolute coefficient.
     largest_influence: f64,
-    /// Where the coefficients have a constant.
+    /// The constant of the coefficients, if they have one.
     compressible: Option<Compressible>,
     /// Smoother, sweeps, precision, and the threads asked for.
     options: Options,
@@ -146,20 +145,19 @@ pub fn solve(scene: &Scene<'_>, options: &Options) -> Result<(Solver, Outcome, R
 }
 
 impl Solver {
-    /// Sets up operators and grids; of `scene` the grid, the bodies and the effects matter. It may be without an undeformed distance: an empty
-    /// one.
+    /// Sets up operators and grids from the grid, the bodies and the effects of `scene`. Its undeformed distance may be empty.
     pub fn new(scene: &Scene<'_>, options: &Options) -> Result<Solver> {
         Ok(Solver::set_up(scene, options, !scene.undeformed_distance.is_empty())?.0)
     }
 
-    /// The same, and the least distance of the scene, which is checked.
+    /// [`Solver::new`] with the least distance of the scene, which is checked.
     pub(crate) fn for_scene(scene: &Scene<'_>, options: &Options) -> Result<(Solver, f64)> {
         Solver::set_up(scene, options, true)
     }
 
     fn set_up(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<(Solver, f64)> {
         let began = Instant::now();
-        // The scene is refused first; threads that cannot be had, and options that are none, after it.
+        // The scene is refused first, then invalid options and unavailable threads.
         let threads = options.check().and_then(|()| Ok(Threads::new(options.threads)?));
         let lowest = if !has_surface {
             scene.check_effects_and_bodies()?;
@@ -212,7 +210,7 @@ impl Solver {
         })
     }
 
-    /// Solves for the undeformed distance and the load of `scene`; the rest of it must be as at the set-up.
+    /// Solves for the undeformed distance and the load of `scene`, whose other members must be those of the set-up.
     pub fn solve(
         &mut self,
         scene: &Scene<'_>,
@@ -226,7 +224,7 @@ impl Solver {
         self.solve_checked((scene, lowest), options, guess, progress)
     }
 
-    /// The same for a scene whose distance and load are checked, with its least distance.
+    /// [`Solver::solve`] for a scene whose distance and load are checked, with its least distance.
     pub(crate) fn solve_checked(
         &mut self,
         (scene, lowest): (&Scene<'_>, f64),
@@ -238,7 +236,7 @@ impl Solver {
         self.on_surface((scene, lowest), |solver, scene| solver.solve_step_in_time(scene, options, guess, progress))
     }
 
-    /// Solves with the undeformed distance that the effects of a scene make of its own.
+    /// Solves with the undeformed distance after the scene's effects on it.
     fn on_surface<R>(
         &mut self,
         (scene, lowest): (&Scene<'_>, f64),
@@ -250,7 +248,7 @@ impl Solver {
         solve(self, (scene, lowest))
     }
 
-    /// A scene that is checked, whose bodies remember nothing, or whose distances have what they remember.
+    /// Solves a checked scene of bodies without memory, or whose distances contain the memory.
     fn solve_surface(
         &mut self,
         (scene, lowest): (&Scene<'_>, f64),

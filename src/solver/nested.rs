@@ -11,7 +11,7 @@ use crate::progress::{Goal, Monitor, Outcome};
 use crate::scene::Load;
 use crate::threads::Threads;
 
-/// Cycles at most on the coarser grids: they only prepare the next finer one. On the coarsest NORM takes the place of cycles.
+/// Most cycles on the coarser grids, which only prepare the next finer one, and most iterations of NORM on the coarsest.
 const COARSE_CYCLES: u64 = 30;
 const COARSEST_ITERATIONS: u64 = 1000;
 
@@ -19,7 +19,7 @@ const COARSEST_ITERATIONS: u64 = 1000;
 pub struct FullMultigrid {
     multigrid: Multigrid,
     workspace: Workspace,
-    /// The finest of them first.
+    /// The coarser grids, finest first.
     coarser: Vec<(Problem, State)>,
     best: Best,
 }
@@ -49,7 +49,7 @@ impl FullMultigrid {
         self.multigrid.bytes() + coarser
     }
 
-    /// A start from nothing: each grid is solved from the pressures of the next coarser one.
+    /// A start without a guess: each grid is solved from the pressures of the next coarser one.
     pub fn start<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>, norm: &mut Norm) -> Result<()> {
         let count = self.coarser.len();
         if count == 0 {
@@ -83,7 +83,7 @@ impl FullMultigrid {
         Ok(())
     }
 
-    /// The undeformed distance and the load of all coarser grids; p = 0.
+    /// Restricts the undeformed distance and the load to all coarser grids; p = 0.
     fn restrict(&mut self, fine: &State, highest: f64) {
         for l in 0..self.coarser.len() {
             let (finer, coarser) = self.coarser.split_at_mut(l);
@@ -94,8 +94,8 @@ impl FullMultigrid {
         }
     }
 
-    /// Coarser grid l: the coarsest by NORM from step 1, the others by V-cycles from what they hold. What a grid does not solve is no
-    /// answer, only a start that is worth less.
+    /// Solves coarser grid l: the coarsest by NORM from step 1, the others by V-cycles from their state. A grid that is not solved only gives a worse
+    /// start.
     fn solve(&mut self, l: usize, goal: &Goal, norm: &mut Norm, monitor: &mut Monitor<'_>) -> Result<()> {
         let FullMultigrid { multigrid, workspace, coarser, best } = self;
         let coarsest = l + 1 == coarser.len();
@@ -119,7 +119,7 @@ impl FullMultigrid {
     }
 }
 
-/// p of the coarser grid, piecewise constant; contact where p > 0 or e < 0. Elements above `highest` are out of reach.
+/// Interpolates p from the coarser grid, piecewise constant; contact where p > 0 or e < 0. Elements above `highest` are out of reach.
 fn interpolate(coarse: &State, fine: &mut State, highest: f64) {
     let (coarse_grid, fine_grid) = (coarse.grid, fine.grid);
     transfer::interpolate(&fine_grid, &coarse_grid, &coarse.p, &mut fine.p, |to, value| *to = value);

@@ -1,4 +1,4 @@
-//! The normal problem of a scene, on the set of pressures that it allows.
+//! The normal problem of a scene, on its admissible set.
 
 use super::stages;
 use super::take_over;
@@ -12,7 +12,7 @@ use crate::progress::{Monitor, Outcome};
 use crate::scene::{PressureLimit, Scene};
 
 impl Solver {
-    /// The normal problem, on the set of pressures that the scene allows. `lowest`: the least distance.
+    /// Solves the normal problem on the scene's admissible set. `lowest`: the least distance.
     pub(super) fn solve_normal(
         &mut self,
         (scene, lowest): (&Scene<'_>, f64),
@@ -28,7 +28,7 @@ impl Solver {
         }
     }
 
-    /// With limits, of which a copy is made: a callback may write into the caller's.
+    /// Solves with limits, which are copied, as a callback may change the caller's.
     fn run_limited(
         &mut self,
         (scene, lowest): (&Scene<'_>, f64),
@@ -52,7 +52,7 @@ impl Solver {
             }
         };
         let mut outcome = self.run((scene, lowest), set, options, guess, monitor);
-        // An element that e hardly holds at its limit is there by the rounding of an equal pressure.
+        // An element at its limit with e near 0 is there by round-off of an equal pressure.
         let on_the_way = self.state.reached_limit && {
             let scale = Survey::of(&self.state).scale;
             let held = |i: usize| self.state.deformed_distance(i) < -options.tolerance * scale;
@@ -60,7 +60,7 @@ impl Solver {
         };
         let converged = matches!(outcome, Ok((Outcome::Converged, _)));
         if on_the_way && converged && options.initial_guess != InitialGuess::Previous {
-            // Only iterates reached a limit: the answer is that of the scene without any, to the last bit.
+            // Only iterates reached a limit: the result has the bits of the scene without limits.
             monitor.ledger.rows.clear();
             monitor.enter_grid();
             self.methods.forget_iterates();
@@ -75,7 +75,7 @@ impl Solver {
         outcome
     }
 
-    /// Solves on an admissible set, with the distances that the state has. Returns the tolerance that was aimed at, too.
+    /// Solves on an admissible set, with the distances of the state. Returns the outcome and the tolerance used.
     fn run<S: AdmissibleSet>(
         &mut self,
         (scene, lowest): (&Scene<'_>, f64),
@@ -87,7 +87,7 @@ impl Solver {
         let Solver { problem, state, methods, set_up, has_result, .. } = self;
         let multigrid = set_up.without_multigrid.is_none();
         let stages = stages::stages::<S>(options.method, problem.symmetric, multigrid);
-        // The last result is gone from here on, unless this solve comes to an end.
+        // From here on the last result is lost, unless this solve completes.
         let solved = std::mem::replace(has_result, false);
         if options.initial_guess != InitialGuess::Previous || !solved {
             methods.projected_cg.forget_windows();
@@ -118,7 +118,7 @@ impl Solver {
     }
 }
 
-/// Where no iteration converges, the answer may be p at its limit everywhere.
+/// If no iteration converges, tests p at its limit everywhere.
 fn look_at_full_limits<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<Option<Outcome>> {
     let found = take_over::full_at_limits(task.problem, task.state, task.set, &task.goal)?;
     task.count_products();

@@ -1,4 +1,4 @@
-//! How a scene is solved. The defaults suit everybody.
+//! The options of a solve. The defaults suit all scenes.
 
 use crate::error::{invalid, require, Error, Result};
 use crate::methods::multigrid::CycleShape;
@@ -15,26 +15,26 @@ pub enum Method {
     Norm,
     /// One V-cycle per active-set step (section 4.1).
     Multigrid,
-    /// The same, nested over the grids (section 4.3).
+    /// V-cycles nested over the grids (section 4.3).
     FullMultigrid,
     /// Nested iteration with projected, preconditioned conjugate gradients; needs symmetric influence coefficients.
     ProjectedCg,
 }
 
-/// Who chooses the contact area.
+/// Whether the contact area is found or given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ActiveSet {
-    /// The contact conditions.
+    /// The contact conditions determine it.
     #[default]
     Free,
-    /// The caller: the equations are solved on the given elements only (NORM's inner solve). Pressures may be negative.
+    /// The caller gives it: the equations are solved on the given elements only (NORM's inner solve). Pressures may be negative.
     Fixed,
 }
 
-/// Where the iteration starts.
+/// The start of the iteration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum InitialGuess {
-    /// Nothing is known.
+    /// No guess.
     #[default]
     None,
     /// The given pressures and contact area.
@@ -57,20 +57,20 @@ pub struct Guess<'a> {
 pub struct Options {
     /// The method.
     pub method: Method,
-    /// The V-cycle, where the method has one.
+    /// The V-cycle, for methods with one.
     pub cycle: CycleShape,
     /// Free or given contact area.
     pub active_set: ActiveSet,
-    /// Where to start.
+    /// The start.
     pub initial_guess: InitialGuess,
     /// See [`Criterion`]; between 0 and 1.
     pub tolerance: f64,
-    /// Which number has to become small.
+    /// The measure of the tolerance.
     pub criterion: Criterion,
-    /// If positive: may stop once the residual is below this part of the estimated discretisation error (relative, of the force or
-    /// approach, whichever is not prescribed), as the start from nothing suggests it by full multigrid or projected conjugate gradients.
+    /// If positive: may stop once the residual is below this part of the estimated discretisation error (relative, of the force or the approach,
+    /// whichever is not prescribed). A start without a guess, by full multigrid or projected conjugate gradients, gives the estimate.
     pub error_ratio: f64,
-    /// Cycles (of multigrid) or iterations (of conjugate gradients) on the finest grid at most.
+    /// Most cycles (of multigrid) or iterations (of conjugate gradients) on the finest grid.
     pub max_cycles: usize,
     /// Threads; 0: all cores.
     pub threads: usize,
@@ -98,7 +98,7 @@ impl Default for Options {
     }
 }
 
-/// The coarsest grid is solved by elimination, in each cycle: of 16^2 unknowns in some milliseconds, of 64^2 in 20 seconds.
+/// Largest coarsest grid, in a direction: elimination in each cycle takes milliseconds for 16^2 unknowns, 20 seconds for 64^2.
 const LARGEST_COARSEST: usize = 16;
 /// More sweeps than this are a mistake.
 const MOST_SWEEPS: usize = 100;
@@ -106,7 +106,7 @@ const MOST_SWEEPS: usize = 100;
 const MOST_THREADS: usize = 1024;
 
 impl Options {
-    /// Refuses what makes no sense.
+    /// Refuses invalid options.
     pub fn check(&self) -> Result<()> {
         let tolerance = self.tolerance;
         require(
@@ -140,7 +140,7 @@ impl Options {
         Ok(())
     }
 
-    /// The same where several grids are solved, each from nothing.
+    /// Refuses options that are invalid for solves of several grids without a guess.
     pub(super) fn check_several_grids(&self) -> Result<()> {
         self.check()?;
         if self.is_fixed() {

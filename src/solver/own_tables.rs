@@ -1,4 +1,4 @@
-//! The tangential coefficients of the caller's own that a solver has: later scenes need not name them, and name no others.
+//! The caller's tangential coefficients of a solver: later scenes need not name them, and may not name others.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -9,8 +9,8 @@ use crate::error::{invalid, Error, Result};
 use crate::scene::{Bodies, Friction, Load, Scene};
 
 impl Solver {
-    /// A scene with the tangential coefficients of this solver; refuses others. `own` are those, held apart: so this solver may change
-    /// while the scene borrows them. Beside normal coefficients of the caller's own the bodies are not read.
+    /// A scene with the tangential coefficients of this solver; refuses others. `own` holds these coefficients, so that this solver may change while
+    /// the scene borrows them. With the caller's normal coefficients the bodies are not read.
     pub(super) fn with_own_tables<'s>(
         &self,
         scene: &'s Scene<'_>,
@@ -28,7 +28,7 @@ impl Solver {
             (Some(given), Some(own)) if !own.is(given) => {
                 refused(&format!("holds other coefficients than this solver has; {SET_THEM}"))
             }
-            // Tables that are none are refused first.
+            // Invalid tables are refused first.
             (Some(_), None) => Effect::check(friction, &self.problem.grid)
                 .and_then(|()| refused("is given, but this solver was set up without: set up another one with it")),
             _ if bodies != scene.bodies => Ok(Cow::Owned(Scene { bodies, ..scene.clone() })),
@@ -36,7 +36,7 @@ impl Solver {
         }
     }
 
-    /// The tangential coefficients of the caller's own, if it has some.
+    /// The caller's tangential coefficients, if any.
     pub(crate) fn own_tangential_tables(&self) -> Option<&KeptInfluence> {
         self.own_tables.as_deref()
     }
@@ -53,7 +53,7 @@ impl Solver {
         Effect::check(friction, &self.problem.grid)
     }
 
-    /// All later solves with friction use these tables. The last result stays.
+    /// Sets the tables of all later solves with friction. The last result stays.
     pub fn set_tangential_influence(&mut self, friction: &Friction<'_>) -> Result<()> {
         self.check_tangential_influence(friction)?;
         let Some(given) = &friction.influence else { return Ok(()) };
@@ -73,7 +73,7 @@ impl Solver {
         Ok(())
     }
 
-    /// A solver of friction with the tables that the scene names.
+    /// A solver of friction with the scene's tables.
     fn tangent_of(&self, friction: &Friction<'_>) -> Result<Tangent> {
         let (bodies, load) = (Bodies::same(1.0, 0.0), Load::Approach(0.0));
         let scene = Scene { friction: Some(*friction), ..Scene::new(self.problem.grid, &[], bodies, load) };

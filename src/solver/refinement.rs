@@ -1,4 +1,4 @@
-//! Accuracy instead of a grid: finer and finer grids until the estimated errors are small enough.
+//! Solution to an accuracy: successively finer grids until the estimated errors are small enough.
 
 mod accuracy;
 mod next_grid;
@@ -25,17 +25,17 @@ use next_grid::{Next, Past};
 use outlook::{History, Outlook, Values};
 use solved::Solved;
 
-/// Writes the undeformed distance of a grid over the rectangle of the scene; says whether to cancel.
+/// Writes the undeformed distance of a grid over the rectangle of the scene. Returns true to cancel.
 pub type SurfaceCallback<'a> = &'a mut dyn FnMut(&Grid, &mut [f64]) -> bool;
 
 /// The end of a search for an accuracy.
 pub struct Refinement {
-    /// Converged: the target is met. IterationLimit: a limit is in the way of the next grid. Cancelled: by the surface or the
-    /// progress callback. Stagnated: the target is below round-off, or no estimate is to be had.
+    /// Converged: the target is met. IterationLimit: a limit forbids the next grid. Cancelled: by the surface or the progress
+    /// callback. Stagnated: the target is below round-off, or there is no estimate.
     pub stop: Outcome,
-    /// Why, and the best that was reached, in words.
+    /// The reason, and the best error reached, in words.
     pub reason: String,
-    /// The solver of the grid that was used, with its result and ledger; `None` when cancelled before there was one.
+    /// The solver of the grid used, with its result and ledger; `None` if cancelled before the first.
     pub solver: Option<Solver>,
     /// The last solve of that solver.
     pub report: Report,
@@ -45,15 +45,15 @@ pub struct Refinement {
     pub seconds: f64,
 }
 
-/// The solve on one grid: solved, or the outcome, the reason, and what was found by then.
+/// The solve on one grid: solved, or the outcome, the reason, and the result so far.
 type OnGrid = std::result::Result<Solved, (Outcome, String, Option<Solved>)>;
 
-/// Solves on the grid of `scene`, then on finer ones with twice (4, 8 times) the elements in both directions, each from
-/// nothing, until the estimated relative errors are at most the targets, with [enough](Quantity::enough_across) elements across the contact in both directions. `surface`
-/// writes the undeformed distance of each grid (that of `scene` is then not read); without one the scene's is [refined](crate::scene::refine).
+/// Solves on the grid of `scene`, then on finer ones with twice (4, 8 times) the elements in both directions, until the estimated
+/// relative errors are at most the targets, with [enough](Quantity::enough_across) elements across the contact in both directions. `surface` writes
+/// the undeformed distance of each grid (that of `scene` is then not read); without one the scene's is [refined](crate::scene::refine).
 ///
-/// The first grid is solved whatever the limits are. A finer grid that runs out of time or cycles counts only if it is estimated to be
-/// the better one all the same, and none that is cancelled; else the result is that of the grid before.
+/// The first grid is solved regardless of the limits. The result of a finer grid that runs out of time or cycles is used only if its estimated error
+/// is smaller. A cancelled one is never used. Otherwise the result is that of the grid before.
 pub fn solve_to_accuracy(
     scene: &Scene<'_>,
     options: &Options,
@@ -79,7 +79,7 @@ pub fn solve_to_accuracy(
                 history.add(doublings, &solved.values, &mut solved.outlook);
                 solved
             }
-            // Coarser grids than the scene's only tell of errors.
+            // Coarser grids than the scene's only serve estimates.
             Ok(Err((stop, ..))) if doublings < 0 && stop != Outcome::Cancelled => {
                 doublings += 1;
                 continue;
@@ -115,14 +115,14 @@ pub fn solve_to_accuracy(
     Ok(Refinement::of(best, stop, why, began.elapsed().as_secs_f64()))
 }
 
-/// The coarsest grid of the history, in doublings of the scene's: two halvings where enough elements are left in the shorter direction.
+/// The coarsest grid of the history, in doublings of the scene's: two halvings if enough elements remain in the shorter direction.
 fn first_of_history(grid: &Grid, least: usize) -> i32 {
-    // A grid of four rows tells nothing. A line has one.
+    // A grid of four rows gives no errors. A line has one row.
     let elements = if grid.mx.min(grid.my) == 1 { grid.mx.max(grid.my) } else { grid.mx.min(grid.my) };
     -[4, 2].into_iter().filter(|parts| elements / parts >= least).count().try_into().unwrap_or(0)
 }
 
-/// The better of the last solution and an unfinished one, by their estimated errors. These include what the residual may hide.
+/// The better of the last solution and an unfinished one, by their estimated errors, which include those of the residual.
 fn better(last: Option<Solved>, unfinished: Option<Solved>, accuracy: &Accuracy) -> Option<Solved> {
     let worst = |solved: &Option<Solved>| {
         let excesses = solved.as_ref().map(|solved| accuracy.excesses(&solved.outlook));
@@ -167,7 +167,7 @@ fn check(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<()> 
     scene.check_area(None)
 }
 
-/// Solves on the [scaled] grid, and takes the values of `wanted`. `late`: asked after each cycle; true ends the solve.
+/// Solves on the [scaled] grid, and takes the values of `wanted`. `late` is called after each cycle. It returns true to end the solve.
 fn on_grid(
     scene: &Scene<'_>,
     (options, wanted): (&Options, &[Quantity]),
@@ -181,7 +181,7 @@ fn on_grid(
     let mut written = None;
     if let Some(surface) = surface {
         let mut h = zeros(grid.len(), "undeformed distances")?;
-        // Elements that the callback leaves out are refused.
+        // Elements that the callback does not write are refused.
         h.fill(f64::NAN);
         if surface(&grid, &mut h) {
             return Ok(Err((Outcome::Cancelled, on("the surface callback cancelled"), None)));

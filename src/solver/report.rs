@@ -1,4 +1,4 @@
-//! The report of a solve: its results, its cost, and its course.
+//! The report of a solve: its results, its cost, and its history.
 
 use super::falling::Falling;
 use super::Method;
@@ -14,23 +14,23 @@ pub enum Limit {
     /// Not known.
     #[default]
     Unknown,
-    /// The grid: a smaller tolerance would change nothing.
+    /// The grid. A smaller tolerance would not improve the accuracy.
     Grid,
-    /// The tolerance: the residual may hide an error larger than that of the grid.
+    /// The tolerance. The residual may correspond to a larger error than that of the grid.
     Tolerance,
 }
 
 /// Cost and error with elements of half the size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Halving {
-    /// Seconds of a solve, at the growth of the time with the number of elements that was measured: n^1.13 (docs/performance.md).
+    /// Seconds of a solve, with the measured growth n^1.13 in the number of elements (docs/performance.md).
     pub seconds: f64,
     /// The error of the force (or the approach) on this and finer grids, if it is known.
     pub error: Option<Falling>,
 }
 
 impl Halving {
-    /// Error of the force (or the approach) that would be left; negative: not known.
+    /// The error of the force (or the approach) after halving. Negative if not known.
     pub fn force(&self) -> f64 {
         self.error.map_or(-1.0, |error| error.after(1))
     }
@@ -42,55 +42,55 @@ impl Default for Halving {
     }
 }
 
-/// Results and cost of a solve; grid by grid: [`Solver::ledger`](super::Solver::ledger).
+/// Results and cost of a solve. [`Solver::ledger`](super::Solver::ledger) has them for each grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
     /// The counters of the finest grid.
     pub count: Counters,
     /// The result.
     pub measures: Measures,
-    /// And how far it is off.
+    /// The discretisation error of the result.
     pub error: DiscretisationError,
-    /// The tolerance that was aimed at: that of the options, or what `error_ratio` made of it.
+    /// The tolerance of the solve: that of the options, or the one that follows from `error_ratio`.
     pub tolerance: f64,
     /// The limit of the accuracy.
     pub limit: Limit,
-    /// Cost and error of the next finer grid; negative: not known.
+    /// Cost and error of the next finer grid. Negative values are not known.
     pub halving: Halving,
-    /// Seconds of set-up: 0 when the solver was set up before.
+    /// Seconds of set-up. 0 if the solver was set up before.
     pub setup_seconds: f64,
     /// Seconds of the solve.
     pub solve_seconds: f64,
     /// Bytes held by operators and unknowns.
     pub bytes: u64,
-    /// Of the tangential problem, if the scene has friction.
+    /// The report of the tangential problem, if the scene has friction.
     pub friction: Option<friction::Report>,
-    /// Of adhesion, if the scene has any.
+    /// The report of adhesion, if the scene has any.
     pub adhesion: Option<adhesion::Report>,
-    /// Of the step in time, if bodies relax.
+    /// The report of the step in time, if bodies relax.
     pub visco: Option<visco::Report>,
 }
 
 impl Report {
-    /// From the counters of a solve and its last ledger row, the finest grid's; errors are not estimated yet.
+    /// A report from the counters of a solve and its last ledger row, that of the finest grid. Errors are estimated later.
     pub(super) fn of(monitor: &Monitor<'_>, tolerance: f64) -> Report {
         let last = monitor.ledger.rows.last();
         let measures = last.map(|row| row.measures).unwrap_or_default();
         Report { count: monitor.count, measures, tolerance, ..Report::default() }
     }
 
-    /// Products of the tangential problem; 0 without one.
+    /// Products of the tangential problem. 0 without friction.
     pub(super) fn tangential_products(&self) -> f64 {
         self.friction.map_or(0.0, |found| found.products)
     }
 
-    /// The larger one of the relative residuals of the normal and the tangential problem.
+    /// The larger of the relative residuals of the normal and the tangential problem.
     pub(super) fn residual(&self) -> f64 {
         let normal = self.measures.certificate.residual;
         self.friction.map_or(normal, |found| normal.max(found.certificate.residual))
     }
 
-    /// Says in the log how a solve went.
+    /// Logs the summary of a solve.
     pub(super) fn log(&self, method: Method, grid: &Grid, stop: Outcome) {
         let (Grid { mx, my, .. }, residual) = (grid, self.measures.certificate.residual);
         let Counters { cycles, work_units, .. } = self.count;
@@ -102,7 +102,7 @@ impl Report {
         }
     }
 
-    /// A sentence on the limit of the answer and on a finer grid; none when they are not known.
+    /// A sentence on the limit of the accuracy and on a finer grid. None if they are not known.
     pub fn advice(&self) -> Option<String> {
         let what = match self.limit {
             Limit::Unknown => return None,

@@ -1,14 +1,14 @@
-//! Which methods solve a scene, in which order, and with how many cycles each.
+//! The methods that solve a scene, their order, and their cycles.
 
 use super::options::Method;
 use crate::contact::AdmissibleSet;
 
-/// A method has this part of the cycles that are left, then the next one takes over. It has at least LEAST_SHARE of them, or half of what is left. AUTO of a
-/// plain scene: 400, 240, 144, and the rest of 1000 for NORM, which ends on every area of contact.
+/// The fraction of the remaining cycles that a method may use before the next one follows. It is at least LEAST_SHARE cycles, or half of the rest.
+/// AUTO of a plain scene has 400, 240, 144, and the rest of 1000 for NORM, which converges on every contact area.
 const SHARE: f64 = 0.4;
 const LEAST_SHARE: u64 = 60;
-/// The cycles of PROJECTED_CG with limits at most. Most scenes with limits take fewer; where it takes more it mostly goes round in circles, and the
-/// projected Newton method goes on from its best iterate.
+/// Most cycles of PROJECTED_CG with limits. Most scenes with limits take fewer. After more, the method usually cycles, and the projected Newton
+/// method continues from its best iterate.
 const LIMITED_SHARE: u64 = 100;
 
 /// A method of the list.
@@ -22,8 +22,7 @@ pub enum Stage {
     Norm,
 }
 
-/// Cycles up to which a method may go on before the next takes over, of which so many are done: a part of those that are left, so that every method of the list
-/// has its turn.
+/// The cycle count at which a method ends, from the cycles done: a fraction of the rest, so that cycles remain for every method of the list.
 pub fn share<S: AdmissibleSet>(stage: Stage, done: u64, most: u64) -> u64 {
     let left = most.saturating_sub(done);
     let share = LEAST_SHARE.min(left / 2).max((SHARE * left as f64) as u64);
@@ -35,7 +34,7 @@ pub fn stages<S: AdmissibleSet>(method: Method, symmetric: bool, multigrid: bool
     use Stage::{Direct, FullMultigrid, Norm, ProjectedCg, ProjectedNewton, VCycles};
     match method {
         Method::Norm => &[Norm],
-        // Around limits V-cycles may go round in circles.
+        // With limits V-cycles may cycle between contact areas.
         Method::Multigrid if S::LIMITED && symmetric => &[VCycles, ProjectedNewton],
         Method::FullMultigrid if S::LIMITED && symmetric => &[FullMultigrid, ProjectedNewton],
         Method::Multigrid => &[VCycles],

@@ -1,4 +1,4 @@
-//! The problems beside the normal one: friction, and those of effects that are coupled with it.
+//! The further problems of a scene: friction, and effects that are coupled with the normal problem.
 
 use super::beside::Beside;
 use super::tangential::{Tangent, Turn};
@@ -12,7 +12,7 @@ use crate::progress::{Monitor, Outcome};
 use crate::scene::{Friction, Scene};
 
 impl Solver {
-    /// Refuses a step that continues from what is not there.
+    /// Checks that a step that continues has a previous state.
     pub(super) fn check_continues(&self, scene: &Scene<'_>) -> Result<()> {
         for (k, name, Continues { from, .. }) in effects::continuing(scene) {
             let has_step = match name {
@@ -29,7 +29,7 @@ impl Solver {
         Ok(())
     }
 
-    /// Solves the problems of a scene beside the normal one, which ended with `stop`. Returns a report of friction, too.
+    /// Solves the further problems of a scene, after the normal problem ended with `stop`. The report includes friction.
     pub(super) fn solve_beside(
         &mut self,
         scene: &Scene<'_>,
@@ -58,7 +58,7 @@ impl Solver {
         outcome
     }
 
-    /// All of it, and what was asked for beside. Without a result the last step stays. What was cancelled stays so.
+    /// Solves all of them, with the requested derivatives. Without a result the last step stays. A cancelled solve stays cancelled.
     fn solve_step(
         &mut self,
         tangent: Option<&mut Tangent>,
@@ -70,7 +70,7 @@ impl Solver {
         let threads = self.problem.threads.clone();
         check_derivatives(scene, tangent.as_deref())?;
         let last = tangent.as_deref().map_or(Ok(None), Tangent::last)?;
-        // Of unlike bodies derivatives follow when the turns are over.
+        // Derivatives of unlike bodies are computed after the iteration between both problems.
         let follow = tangent.as_deref().is_some_and(|tangent| !tangent.is_of_like_bodies());
         let during =
             scene.friction.map(|friction| Friction { sensitivities: friction.sensitivities && !follow, ..friction });
@@ -98,7 +98,7 @@ impl Solver {
         }
     }
 
-    /// The derivatives of the tangential forces of unlike bodies, if they are asked for.
+    /// The derivatives of the tangential forces of unlike bodies, if they are requested.
     fn add_derivatives(&mut self, turns: &mut Turns<'_>, scene: &Scene<'_>, monitor: &mut Monitor<'_>) -> Result<()> {
         let Some(TangentialTurn { tangent, turn, found: Some(found), .. }) = &mut turns.friction else { return Ok(()) };
         let wanted = scene.friction.as_ref().filter(|friction| friction.sensitivities && !tangent.is_of_like_bodies());
@@ -111,7 +111,7 @@ impl Solver {
     }
 }
 
-/// Refuses derivatives of unlike bodies' forces where something else displaces, too: they leave that out.
+/// Rejects derivatives of unlike bodies' forces if an effect adds displacements, which the derivatives do not include.
 fn check_derivatives(scene: &Scene<'_>, tangent: Option<&Tangent>) -> Result<()> {
     let wanted = scene.friction.is_some_and(|friction| friction.sensitivities)
         && tangent.is_some_and(|tangent| !tangent.is_of_like_bodies());

@@ -1,4 +1,4 @@
-//! Where a solve starts from: nothing, the caller's guess, or the solution before.
+//! The start of a solve: p = 0, the caller's guess, or the last solution.
 
 use std::ops::Range;
 
@@ -11,13 +11,13 @@ use crate::progress::{Goal, Monitor};
 use crate::scene::{Load, Scene};
 use crate::threads::Threads;
 
-/// A guess with a larger residual, relative to `h - approach` over C, is discarded: p = 0 has a residual of 1.
+/// Residual of a guess, relative to `h - approach` over C, above which it is discarded; p = 0 has 1.
 const WORSE_THAN_NONE: f64 = 1e3;
 
-/// A force within this part of the greatest one counts as the greatest: the sum of the limits has this round-off.
+/// Relative distance from the greatest force that counts as 0: round-off of the sum of the limits.
 const FULL: f64 = 1e-12;
 
-/// Takes over the undeformed distance: a copy, for a callback may change the caller's.
+/// Copies the undeformed distance, as a callback may change the caller's.
 pub fn take_distance(state: &mut State, given: &[f64], threads: &Threads) {
     let mx = state.grid.mx;
     threads.for_a_pass(given.len()).for_each_plain_row(&mut state.h, mx, |y, row| {
@@ -25,8 +25,8 @@ pub fn take_distance(state: &mut State, given: &[f64], threads: &Threads) {
     });
 }
 
-/// Takes over the load and the start; the state has the undeformed distance already. Afterwards u is A p, or the start is nothing. `solved`: whether
-/// `state` holds the last solution. Returns the survey of a start that is not nothing.
+/// Takes the load and the start; the state has the undeformed distance. Afterwards u is A p, or p = 0. `solved`: whether `state` holds the
+/// last solution. Returns the survey of a start other than p = 0.
 pub fn take_over<S: AdmissibleSet>(
     problem: &mut Problem,
     state: &mut State,
@@ -45,24 +45,24 @@ pub fn take_over<S: AdmissibleSet>(
     }
     if from == Start::Nothing {
         state.forget();
-        // The result of the solve before is nothing to start from.
+        // The last result is no start.
         if let Load::Force(_) = scene.load {
             state.approach = 0.0;
         }
         return Ok(nothing);
     }
     clean(state, set);
-    // Pressures of zero are no guess.
+    // p = 0 is no guess.
     if !S::FIXED && state.p.iter().all(|p| *p == 0.0) {
         state.forget();
         return Ok(nothing);
     }
     let is_scaled = balance(problem, state, set)?;
     monitor.count_products(problem.take_products(), 1.0);
-    // A guess that is far worse than none costs time, or cannot be computed with.
+    // A guess far worse than p = 0 costs time, or overflows.
     let mut survey = Survey::by(state, &problem.threads);
     if is_scaled && options.goal().holds(&survey, 0.0, set) {
-        // Perhaps this is the answer: only a product of its own says so, not one that was scaled with the load.
+        // This may be the solution, which only a fresh product certifies, not one scaled with the load.
         problem.refresh(state, set)?;
         monitor.count_products(problem.take_products(), 1.0);
         survey = Survey::by(state, &problem.threads);
@@ -113,10 +113,10 @@ fn take_pressures(state: &mut State, options: &Options, guess: Option<Guess<'_>>
     }
 }
 
-/// Pressures that are admissible, on elements of C that have a surface.
+/// Makes pressures admissible, on elements of C with a surface.
 fn clean<S: AdmissibleSet>(state: &mut State, set: S) {
     for start in (0..state.p.len()).step_by(state.grid.mx) {
-        // Few rows have anything to clean, and this the compiler can vectorise.
+        // Few rows need a change; the compiler vectorises this test.
         let row = start..start + state.grid.mx;
         let (p, h, contact) = (&state.p[row.clone()], &state.h[row.clone()], &state.contact[row.clone()]);
         let elements = p.iter().zip(h).zip(contact).zip(row.clone());
@@ -144,7 +144,7 @@ fn clean<S: AdmissibleSet>(state: &mut State, set: S) {
     state.project(set);
 }
 
-/// Makes p carry the prescribed force, and u = A p. Where u is exact both are scaled, without a product. Returns whether they were.
+/// Makes p carry the prescribed force, and u = A p. If u is exact, both are scaled without a product. Returns whether they were scaled.
 fn balance<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -> Result<bool> {
     if state.u_is != Freshness::Exact {
         problem.refresh(state, set)?;
@@ -163,8 +163,8 @@ fn balance<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -
     Ok(factor != Some(1.0))
 }
 
-/// Whether a prescribed force is the greatest that the limits allow, but for round-off. Then all elements are at their limit. No iteration finds
-/// that: what an element in contact would carry is round-off.
+/// Whether a prescribed force is the greatest within the limits, up to round-off. Then all elements are at their limit. No iteration finds
+/// this: the force of an element in contact would be round-off.
 pub fn fills_limits<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -> Result<bool> {
     let Load::Force(force) = state.load else { return Ok(false) };
     if !S::LIMITED {
@@ -181,8 +181,8 @@ pub fn fills_limits<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, 
     Ok(true)
 }
 
-/// By approach, with two periods: puts all p at their limits and returns the survey, if that solves the problem. A uniform p displaces nothing there.
-/// The energy is linear along it, so that no search direction leads to it.
+/// By approach, with two periods: puts all p at their limits and returns the survey, if that solves the problem. A uniform p displaces
+/// nothing: the energy is linear along it, so that no search direction leads there.
 pub fn full_at_limits<S: AdmissibleSet>(
     problem: &mut Problem,
     state: &mut State,
@@ -206,7 +206,7 @@ pub fn full_at_limits<S: AdmissibleSet>(
     Ok(None)
 }
 
-/// All elements with a surface at their limit.
+/// Puts all elements with a surface at their limit.
 fn put_at_limits<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set: S) -> Result<()> {
     for i in 0..state.p.len() {
         let at_limit = state.h[i].is_finite();
@@ -235,7 +235,7 @@ pub fn is_without_contact(state: &mut State, lowest: f64, fixed: bool) -> bool {
     nothing
 }
 
-/// Whether a given contact area, on which the surface is even, is to carry no force: then p = 0 solves the problem. No iteration finds that: the
+/// Whether a given contact area with an even surface carries no force, so that p = 0 solves the problem. No iteration finds this: the
 /// distances are 0, and no residual is small relative to them.
 pub fn is_even_without_force<S: AdmissibleSet>(state: &mut State) -> bool {
     if !S::FIXED || state.load != Load::Force(0.0) {

@@ -1,4 +1,4 @@
-//! Friction, after the normal problem: the tangential problem with the pressures that were found, and for unlike bodies both in turns.
+//! Friction, after the normal problem: the tangential problem with its pressures, and for unlike bodies both in turns.
 
 use super::unlike_bodies::UnlikeBodies;
 use super::{Options, Outcome};
@@ -12,22 +12,22 @@ use crate::progress::Monitor;
 use crate::scene::{Friction, Prescribed, Scene};
 use crate::threads::Threads;
 
-/// Where pressures carry less than the force that is given, this part of what they carry is solved for: nearly all elements slip then, and the next
-/// pressures carry what those of full slip do to 1e-4 (tests/friction/unlike_forces.rs).
+/// Force to solve for if pressures carry less than the given one, relative to the force that they carry. Nearly all elements slip then, and the next
+/// pressures carry the force of full slip to 1e-4 (tests/friction/unlike_forces.rs).
 const IN_REACH: f64 = 1.0 - 1e-7;
 
 /// The state of a solver for scenes with friction.
 pub struct Tangent {
     solver: Solver,
-    /// Of unlike bodies.
+    /// The coupling of unlike bodies.
     unlike: Option<UnlikeBodies>,
 }
 
-/// The inputs that stand still while normal and tangential problem are solved in turns.
+/// The constant inputs of turns of the normal and the tangential problem.
 pub struct Turn<'a> {
     /// The scene, with its own undeformed distance.
     pub scene: &'a Scene<'a>,
-    /// Its friction.
+    /// The friction of the scene.
     pub friction: &'a Friction<'a>,
     /// The options.
     pub options: &'a Options,
@@ -36,13 +36,13 @@ pub struct Turn<'a> {
 }
 
 impl<'a> Turn<'a> {
-    /// From the tractions that the caller gave, or from those before the step.
+    /// The start: the caller's tractions, or those before the step.
     pub fn start(&self) -> Start<'a> {
         self.friction.initial.map_or(Start::Before, Start::Given)
     }
 }
 
-/// The coupling of the tractions of a scene with its pressures; none where its bodies are alike.
+/// The coupling of the tractions of a scene with its pressures; none for like bodies.
 fn coupling(scene: &Scene<'_>) -> Result<Option<Source>> {
     Ok(match scene.friction.as_ref().and_then(|friction| friction.influence) {
         Some(own) => CrossTables::new(&own)?.map(Source::Tables),
@@ -56,7 +56,7 @@ pub fn is_of_unlike_bodies(scene: &Scene<'_>) -> Result<bool> {
 }
 
 impl Tangent {
-    /// For a scene's grid and bodies.
+    /// The tangential problem of a scene's grid and bodies.
     pub fn new(scene: &Scene<'_>, options: &Options, threads: &Threads) -> Result<Tangent> {
         let Grid { dx, dy, .. } = scene.grid;
         let own = scene.friction.as_ref().and_then(|friction| friction.influence);
@@ -86,7 +86,7 @@ impl Tangent {
         self.solver.into_solution()
     }
 
-    /// The same with the last result of another one, which had other coefficients.
+    /// Takes the last result of another one with other coefficients.
     pub fn with_last_of(mut self, mut other: Tangent) -> Tangent {
         self.solver.take_last_of(&mut other.solver);
         if let (Some(unlike), Some(before)) = (&mut self.unlike, &mut other.unlike) {
@@ -100,12 +100,12 @@ impl Tangent {
         self.unlike.is_none()
     }
 
-    /// Whether both have a coating.
+    /// Whether both bodies have a coating.
     pub fn is_of_coated_bodies(&self) -> bool {
         self.solver.tangential().is_coated()
     }
 
-    /// There is no last result any more.
+    /// Forgets the last result.
     pub fn forget(&mut self) {
         self.solver.forget();
     }
@@ -149,8 +149,9 @@ impl Tangent {
         self.solver.solve(&request, &mut |grid, residual| monitor.tangential_done(grid, residual))
     }
 
-    /// The same with the pressures of a normal problem that ended with `stop`. Those of one that did not converge, or that is solved once more for unlike
-    /// bodies, may be too small for the forces. Then the forces are [a little less](IN_REACH) than they carry, and the refusal is returned, too.
+    /// Solves with the pressures of a normal problem that ended with `stop`. If it did not converge, or is to be solved again for unlike bodies, its
+    /// pressures may be too small for the forces. Then the forces are [a little less](IN_REACH) than the pressures carry, and the refusal is returned
+    /// as well.
     pub fn solve_after(
         &mut self,
         stop: Outcome,
@@ -176,36 +177,36 @@ impl Tangent {
         }
     }
 
-    /// By how much the last forces exceed those that are given, and the creepages found with them, times the length rolled.
+    /// The excess of the last forces over the given ones, and the creepages found with them, times the length rolled.
     pub fn excess(&self, friction: &Friction<'_>, found: &Report) -> (Vector, Vector) {
         (self.solver.excess(friction, found), self.solver.offset())
     }
 
-    /// What the tractions of full slip displace, by the pressures of the last result.
+    /// The displacement by the tractions of full slip at the pressures of the last result.
     pub fn full_displacement(&self) -> f64 {
         self.solver.full_displacement()
     }
 
-    /// Adds what the last tractions displace along the normal to an undeformed distance: nothing where bodies are alike.
+    /// Adds the displacements along the normal by the last tractions to an undeformed distance: none for like bodies.
     pub fn displace(&mut self, distance: &mut [f64]) {
         if let (Some(unlike), Some(solution)) = (&mut self.unlike, self.solver.solution()) {
             unlike.displace(&solution.traction, distance);
         }
     }
 
-    /// Both problems of unlike bodies, linear: see [`UnlikeBodies`] and [`Solver::change`]. None where bodies are alike.
+    /// The parts of the linearised problem of unlike bodies: see [`UnlikeBodies`] and [`Solver::change`]. None for like bodies.
     pub fn both(&mut self) -> Option<(&mut Solver, &mut UnlikeBodies)> {
         Some((&mut self.solver, self.unlike.as_mut()?))
     }
 
-    /// The step is done: the next one may continue from its pressures.
+    /// Keeps the pressures of a finished step for the next one.
     pub fn keep_pressures(&mut self, p: &[f64]) {
         if let Some(unlike) = &mut self.unlike {
             unlike.keep_pressures(p);
         }
     }
 
-    /// The last result, to [go back](Tangent::go_back) to; of like bodies nothing: it is replaced only when a solve has come to its end.
+    /// A copy of the last result, to [restore](Tangent::go_back) it; none for like bodies, whose result is replaced only by a completed solve.
     pub fn last(&self) -> Result<Option<Last>> {
         match self.unlike {
             Some(_) => self.solver.last(),
@@ -213,7 +214,7 @@ impl Tangent {
         }
     }
 
-    /// Several turns ended without a result: there is the last one.
+    /// Restores the last result after turns without a result.
     pub fn go_back(&mut self, last: Option<Last>) {
         if self.unlike.is_some() {
             self.solver.go_back(last);

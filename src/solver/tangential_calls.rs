@@ -1,4 +1,4 @@
-//! Calls that solve the tangential problem alone, with pressures that are given.
+//! Calls that solve the tangential problem alone, with given pressures.
 
 use std::borrow::Cow;
 
@@ -15,7 +15,7 @@ use crate::sums::in_blocks;
 use crate::threads::Threads;
 
 impl Solver {
-    /// The solver of friction, to be put back; made where there is none.
+    /// Takes the solver of friction, to be put back; made if there is none.
     pub(super) fn take_tangent(&mut self, scene: &Scene<'_>, options: &Options) -> Result<Box<Tangent>> {
         match self.friction.take() {
             Some(tangent) => Ok(tangent),
@@ -23,7 +23,7 @@ impl Solver {
         }
     }
 
-    /// [`solve_tangential`] with what this solver keeps: coefficients, and the tractions of the step before.
+    /// [`solve_tangential`] with this solver's coefficients and the tractions of the step before.
     pub fn solve_tangential(
         &mut self,
         scene: &Scene<'_>,
@@ -41,12 +41,12 @@ impl Solver {
         let solved = alone(&mut tangent, &turn, pressure, progress);
         let tangent = &*self.friction.insert(tangent);
         let (stop, report) = solved?;
-        // A solve that ends has a result.
+        // A completed solve has a result.
         let Some(solution) = tangent.solution() else { return invalid("there is no result".into()) };
         Ok((stop, solution, report))
     }
 
-    /// The friction of a scene, which must be as at the set-up. Its distance and its load are not looked at.
+    /// The friction of a scene, which must be that of the set-up. Its distance and its load are not used.
     pub(super) fn check_tangential<'s>(&self, scene: &'s Scene<'_>, options: &Options) -> Result<&'s Friction<'s>> {
         let friction = scene.tangential()?;
         self.set_up.check_options(options)?;
@@ -54,15 +54,15 @@ impl Solver {
         Ok(friction)
     }
 
-    /// The tractions, slip and stick area that were found last, with pressures of the normal problem or with given ones.
+    /// The last tractions, slip and stick area, with pressures of the normal problem or with given ones.
     pub fn tractions(&self) -> Option<&Solution> {
         self.friction.as_deref().and_then(Tangent::solution)
     }
 }
 
-/// Solves the tangential problem of a scene alone, with pressures that are given: `[my][mx]`; those that are not positive count as no
-/// contact. Its distance and its load are not looked at. Of unlike bodies the pressures displace the surfaces sideways, but the tractions do not
-/// change the pressures. With adhesion they are contact pressures q.
+/// Solves the tangential problem of a scene alone, with given pressures `[my][mx]`; elements without positive pressure are not in contact. The
+/// scene's distance and load are not used. For unlike bodies the pressures displace the surfaces sideways, but the tractions do not change the
+/// pressures. With adhesion the pressures are contact pressures q.
 pub fn solve_tangential(
     scene: &Scene<'_>,
     pressure: &[f64],
@@ -79,7 +79,7 @@ pub fn solve_tangential(
     Ok((stop, tangent.into_solution(), report))
 }
 
-/// One step with pressures that are given.
+/// One step with given pressures.
 fn alone(
     tangent: &mut Tangent,
     turn: &Turn<'_>,
@@ -100,7 +100,7 @@ fn alone(
     Ok((stop, Report { measures, friction, tolerance, solve_seconds, ..Report::default() }))
 }
 
-/// The pressures of what is in contact: negative ones are 0. Refuses those that are not one finite value per element.
+/// The pressures with negative ones set to 0. Refuses all but one finite value per element.
 pub(super) fn positive<'a>(grid: &Grid, pressure: &'a [f64]) -> Result<Cow<'a, [f64]>> {
     finite(grid, pressure)?;
     if pressure.iter().all(|p| *p >= 0.0) {
@@ -116,7 +116,7 @@ pub(super) fn finite(grid: &Grid, pressure: &[f64]) -> Result<()> {
     check_values("pressure", pressure, grid, error::finite)
 }
 
-/// The measures of pressures that are given.
+/// The measures of given pressures.
 pub(super) fn measures(grid: &Grid, pressure: &[f64]) -> Measures {
     let pressing = || pressure.iter().filter(|p| **p > 0.0);
     Measures {

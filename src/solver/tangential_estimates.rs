@@ -1,28 +1,28 @@
-//! How wrong the forces of a tangential problem are, estimated from a solve from rest: no other grid is solved for it.
+//! Estimated errors of the tangential forces, from a solve from rest on one grid.
 //!
 //! *Shift.* With a parabola's pressures the force of a shift is the difference of two normal forces, that on C and that on the stick area
-//! (Jager 1997; Ciavarella 1998). Approaches of both are off by the same part of the bend of h within an element ([`estimates`]), so that
-//! most of it goes out; what the outline makes of it is left, and more of it the fewer elements lie across the contact:
+//! (Jager 1997; Ciavarella 1998). The approaches of both have an error of the same part of the bend of h within an element ([`estimates`]),
+//! so that most of it cancels. The error from the outline of the contact remains, which is larger with fewer elements across:
 //!
 //! ```text
 //! e = PART bend/depth (1 + (CHORD/elements across)^2) mu N
 //! ```
 //!
-//! *Steady rolling* is of first order in the step: what the next coarser grid of the nested iteration has, with these pressures, differs
-//! by about what is missing (with spin by half of it), `e = ROLLING |F - F_coarse|`, and a part of the above.
+//! *Steady rolling* is of first order in the step: the difference to the next coarser grid of the nested iteration, with these pressures, is
+//! about the error (with spin half of it), `e = ROLLING |F - F_coarse|`, plus a part of the above.
 //!
-//! *With an approach that is given* the normal force is off by its own error e_N, and with it the tangential one: by `mu e_N` where all slips,
-//! else by less, `mu e_N (1 - (1 - F/(mu N))^(1/3))` with a parabola's pressures. Jumps of the surface are off by the same.
+//! *With a given approach* the error e_N of the normal force adds to the tangential one: `mu e_N` in full slip, else less,
+//! `mu e_N (1 - (1 - F/(mu N))^(1/3))` with a parabola's pressures. The same holds for jumps of the surface.
 //!
-//! *Where the surface ends within the contact* ([`at_ends`]) tractions are singular as pressures are, and the force is off as the normal
-//! one is, with the traction in the place of the pressure. If the normal force is given, this part goes to 0 as the contact approaches full slip.
+//! *Where the surface ends within the contact* ([`at_ends`]) tractions are singular like pressures, and the error of the force is that of the
+//! normal one with the traction in place of the pressure. If the normal force is given, this part goes to 0 towards full slip.
 //!
-//! *Where mu jumps* the jump lies anywhere between two centres, and with it `mu p` of what slips there ([`at_jumps`]).
+//! *Where mu jumps* the jump lies anywhere between two centres, and with it that of `mu p` on slip ([`at_jumps`]).
 //!
-//! Where a force is prescribed, the creepage has the error: `e/(dF/dxi)`, with `dF/dxi = (F/xi) (1 - F/(mu N))^(1/3)`, which is that of
-//! Cattaneo's and of Carter's curve or less. A residual R leaves an error of R mu N at most (docs/friction.md). PART, CHORD and ROLLING are
-//! measured, on balls and ellipses of 7 to 54 elements across (docs/notes/2026-11-friction.md; `tests/friction/estimates.rs` keeps to them).
-//! So do flat punches and jumps of mu, on 11 to 68 elements across.
+//! With a prescribed force the creepage has the error `e/(dF/dxi)`, with `dF/dxi = (F/xi) (1 - F/(mu N))^(1/3)`, which is that of
+//! Cattaneo's and of Carter's curve or less. A residual R adds an error of at most R mu N (docs/friction.md). PART, CHORD and ROLLING are
+//! measured on balls and ellipses of 7 to 54 elements across (docs/notes/2026-11-friction.md) and tested (`tests/friction/estimates.rs`).
+//! They hold for flat punches and jumps of mu on 11 to 68 elements across.
 //!
 //! [`estimates`]: super::estimates
 
@@ -33,21 +33,22 @@ use crate::friction::{Report, Solution, Vector, SLIP};
 use crate::rectangle::Rectangle;
 use crate::scene::{Friction, Load, Motion, Prescribed};
 
-/// Of the bend, relative to the depth, the part by which forces of a shift are off.
+/// Relative error of the force of a shift, over the bend relative to the depth.
 const PART: f64 = 0.3;
-/// With fewer elements across than that the outline matters more.
+/// Elements across at which the outline's error equals the rest.
 const CHORD: f64 = 13.0;
-/// With shorter chords nothing is known.
+/// Shortest chord with an estimate, in elements.
 const LEAST_CHORD: f64 = 1.5;
-/// In steady rolling: of the difference to the coarser grid, of what a shift would be off, and of the difference in the other direction.
+/// Factors in steady rolling: on the difference to the coarser grid, on the error of a shift, on the difference in the other direction.
 const ROLLING: f64 = 3.0;
 const ROLLING_SHIFT: f64 = 3.0;
 const ACROSS: f64 = 0.25;
-/// Of unlike bodies a shift is off by up to 3.4 times as much: pressures push sideways, and force and creepage do not begin at 0 together.
+/// Factor for shifts of unlike bodies, measured up to 3.4 times the estimate: pressures displace sideways, so force and creepage do not
+/// vanish together.
 const UNLIKE: f64 = 8.0;
-/// Of coated bodies by up to 1.5 times as much: the shifts of no parabola on no half-space.
+/// Factor for shifts of coated bodies, measured up to 1.5 times the estimate: neither parabola nor half-space.
 const COATED: f64 = 2.0;
-/// With a normal force that is given, ends matter by that much of `(1 - F/(mu N))^(1/3)`, and by 1 at most.
+/// With a given normal force, the factor on errors at ends is this times `(1 - F/(mu N))^(1/3)`, at most 1.
 const BEFORE_SLIP: f64 = 2.0;
 
 /// A solved scene with friction.
@@ -64,7 +65,7 @@ pub struct Solved<'a> {
     pub solution: &'a Solution,
     /// Whether the bodies are alike.
     pub alike: bool,
-    /// Whether they have a coating.
+    /// Whether the bodies have a coating.
     pub coated: bool,
 }
 
@@ -121,7 +122,7 @@ pub fn estimate(solved: &Solved<'_>, found: &Report) -> Vector {
 }
 
 impl Solved<'_> {
-    /// By ends of the surface, in each direction. `stuck`: `(1 - F/(mu N))^(1/3)`.
+    /// The error from ends of the surface, in each direction. `stuck`: `(1 - F/(mu N))^(1/3)`.
     fn ends(&self, parts: &Parts, stuck: f64) -> Vector {
         if parts.ends == 0.0 {
             return [0.0; 2];
@@ -135,7 +136,7 @@ impl Solved<'_> {
         sums.map(|sum| of_rest * sum * parts.stiffness / state.force())
     }
 
-    /// Where all slips: mu times the error of the normal force.
+    /// In full slip: mu times the error of the normal force.
     fn by_the_normal_force(&self, parts: &Parts, carried: f64) -> f64 {
         let of_normal = match self.state.load {
             Load::Force(_) => parts.jumps * parts.stiffness,
@@ -144,7 +145,7 @@ impl Solved<'_> {
         of_normal * carried / self.state.force()
     }
 
-    /// By jumps of mu.
+    /// The error from jumps of mu.
     fn jumps(&self) -> f64 {
         let Solved { problem, state, friction, solution, .. } = self;
         let Coefficient::PerElement(mu) = friction.coefficient else { return 0.0 };

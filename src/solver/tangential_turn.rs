@@ -1,4 +1,4 @@
-//! The tangential problem of a step, as one that is [coupled](Coupled) with the normal problem.
+//! The tangential problem of a step, [coupled](Coupled) with the normal problem.
 
 use super::tangential::{Tangent, Turn};
 use super::{Options, Outcome};
@@ -9,30 +9,30 @@ use crate::friction::{length, Report, Start, Vector};
 use crate::progress::Monitor;
 use crate::scene::{Friction, Prescribed};
 
-/// Its solver, and the results so far.
+/// The solver of the tangential problem, and the results so far.
 pub struct TangentialTurn<'a> {
-    /// Its solver.
+    /// The solver.
     pub tangent: &'a mut Tangent,
     /// The step.
     pub turn: Turn<'a>,
-    /// Of the last solve, with the products and the seconds of all.
+    /// The report of the last solve, with the products and seconds of all.
     pub found: Option<Report>,
-    /// Creepages, times the length rolled, that turns are taken with in the place of forces that are given.
+    /// Creepages, times the length rolled, that turns hold instead of the given forces.
     pub held: Option<Vector>,
-    /// Products of a turn at most.
+    /// Most products of a turn.
     pub most: usize,
     /// Whether turns by force may be followed by turns with creepages.
     pub by_force: bool,
-    /// Why the last pressures do not carry the forces that are given.
+    /// Why the last pressures do not carry the given forces.
     refusal: Option<Error>,
 }
 
-/// Residuals below that cannot be made much smaller.
+/// Residuals below this are round-off.
 pub const ROUND_OFF: f64 = 1e-11;
-/// Turns by a force of more than that part of mu N make this part of the products: turns with creepages can follow.
+/// Turns by a force above NEAR times mu N get BY_FORCE of the products, so that turns with creepages can follow.
 const NEAR: f64 = 0.8;
 const BY_FORCE: f64 = 0.6;
-/// Tolerances of turns with creepages, relative to the options': the forces of two of them are compared. Below the least is round-off.
+/// Tolerance of turns with creepages, relative to the options', as the forces of two turns are compared; and its least value, round-off.
 const SHARPER: f64 = 0.1;
 const LEAST_TOLERANCE: f64 = 1e-13;
 
@@ -42,55 +42,55 @@ pub fn sharper(options: &Options) -> Options {
 }
 
 impl<'a> TangentialTurn<'a> {
-    /// Of which nothing is solved yet.
+    /// The tangential problem before its first solve.
     pub fn new(tangent: &'a mut Tangent, turn: Turn<'a>) -> TangentialTurn<'a> {
         let Friction { prescribed, .. } = turn.friction;
         let by_force = prescribed.iter().any(|prescribed| matches!(prescribed, Prescribed::Force(_)));
-        // Below round-off there is nothing to be gained.
+        // Tolerances below round-off gain nothing.
         let is_attainable = turn.options.tolerance >= LEAST_TOLERANCE;
         let by_force = by_force && is_attainable && !tangent.is_of_like_bodies() && !turn.friction.has_law();
         TangentialTurn { tangent, turn, found: None, held: None, most: usize::MAX, by_force, refusal: None }
     }
 
-    /// Iterations that the options leave.
+    /// Iterations left by the options.
     fn left(&self) -> usize {
         let done = self.found.as_ref().map_or(0, |found| found.products as usize);
         let share = if self.is_near() { BY_FORCE } else { 1.0 };
         ((share * self.turn.options.max_cycles as f64).ceil() as usize).saturating_sub(done)
     }
 
-    /// By how much the last forces exceed those that are given, and the creepages with them, times the length rolled.
+    /// The excess of the last forces over the given ones, and the creepages, times the length rolled.
     pub fn excess(&self) -> Option<(Vector, Vector)> {
         Some(self.tangent.excess(self.turn.friction, self.found.as_ref()?))
     }
 
-    /// Whether turns are taken by a force that lets nearly all slip.
+    /// Whether turns are by a force at which nearly all of C slips.
     pub fn is_near(&self) -> bool {
         let wanted = length(self.wanted());
         self.by_force && self.found.as_ref().is_some_and(|found| wanted > NEAR * found.carried)
     }
 
-    /// Whether only round-off is left of the last solve.
+    /// Whether the residual of the last solve is round-off.
     pub fn is_at_round_off(&self) -> bool {
         self.found.as_ref().is_some_and(|found| found.certificate.residual.max(found.missing) < ROUND_OFF)
     }
 
-    /// Whether the last pressures do not carry the forces that are given.
+    /// Whether the last pressures do not carry the given forces.
     pub fn is_refused(&self) -> bool {
         self.refusal.is_some()
     }
 
-    /// That is forgotten, and returned.
+    /// Removes the refusal and returns it.
     pub fn take_refusal(&mut self) -> Option<Error> {
         self.refusal.take()
     }
 
-    /// Refuses it so.
+    /// Sets the refusal.
     pub fn refuse_by(&mut self, refusal: Option<Error>) {
         self.refusal = refusal;
     }
 
-    /// A refusal with the largest force of creepages that were looked through; it exceeds the one that is given by `excess` times mu N.
+    /// The refusal with the largest force of the creepages searched, which exceeds the given one by `excess` times mu N.
     pub fn with_largest(&self, refusal: Error, excess: Option<f64>) -> Error {
         let carried = self.found.as_ref().map_or(0.0, |found| found.carried);
         let wanted = length(self.wanted());
@@ -103,7 +103,7 @@ impl<'a> TangentialTurn<'a> {
         }
     }
 
-    /// The forces that are given, 0 where none is.
+    /// The given forces; 0 in directions without one.
     pub fn wanted(&self) -> Vector {
         self.turn.friction.prescribed.map(|prescribed| match prescribed {
             Prescribed::Force(force) => force,
@@ -117,12 +117,12 @@ impl<'a> TangentialTurn<'a> {
         slips.fold(0.0, |largest: f64, slip| largest.max(length(*slip)))
     }
 
-    /// What the tractions of full slip displace, by the pressures of the last result.
+    /// The displacement by the tractions of full slip at the pressures of the last result.
     pub fn full_displacement(&self) -> f64 {
         self.tangent.full_displacement()
     }
 
-    /// The forces that were found are those that are given, to the tolerance.
+    /// Accepts forces that differ from the given ones by `missing`, within the tolerance.
     pub fn accept(&mut self, missing: f64) {
         self.refusal = None;
         self.found.iter_mut().for_each(|found| found.missing = missing);
@@ -140,13 +140,13 @@ impl Coupled for TangentialTurn<'_> {
             None => turn.start(),
         };
         let (outcome, mut found, refusal) = self.tangent.solve_after(stop, &turn, &state.p, start, monitor)?;
-        // Those of a normal problem that is not solved refuse nothing.
+        // Pressures of an unsolved normal problem refuse nothing.
         self.refusal = refusal.filter(|_| stop == Outcome::Converged);
         if let Some(before) = &self.found {
             (found.products, found.seconds) = (found.products + before.products, found.seconds + before.seconds);
         }
         self.found = Some(found);
-        // Tractions that only lead to the next pressures need no more than that.
+        // Refused tractions only serve to find the next pressures: the turn counts as converged.
         Ok(if self.refusal.is_some() && outcome != Outcome::Cancelled { Outcome::Converged } else { outcome })
     }
 

@@ -1,5 +1,5 @@
-//! The problems that are coupled with the normal one: those that displace the undeformed distance are solved in turns with it, the others once,
-//! with its pressures.
+//! The problems coupled with the normal one. Problems that displace the undeformed distance are solved in turns with it. The others are
+//! solved once, with its pressures.
 
 use super::beside::Distances;
 use super::extrapolation::Extrapolation;
@@ -12,37 +12,38 @@ use crate::error::Result;
 use crate::progress::{Monitor, Outcome};
 use crate::scene::Scene;
 
-/// Turns at most: for unlike bodies each brings both problems together by 4 to 30 times.
+/// Most turns. For unlike bodies each turn reduces the change of the distance by a factor of 4 to 30.
 const MOST_TURNS: u32 = 50;
 
-/// The problems that are coupled with a normal one.
+/// The problems coupled with a normal one.
 pub struct Turns<'a> {
     /// The tangential problem.
     pub friction: Option<TangentialTurn<'a>>,
-    /// Those of other effects.
+    /// The problems of other effects.
     pub others: Vec<Box<dyn Coupled + 'a>>,
-    /// Their displacements.
+    /// The displacements by all problems.
     pub distances: &'a mut Distances,
 }
 
 impl<'a> Turns<'a> {
-    /// All of them.
+    /// All coupled problems.
     pub fn all(&mut self) -> impl Iterator<Item = &mut (dyn Coupled + 'a)> {
         let friction = self.friction.iter_mut().map(|friction| friction as &mut (dyn Coupled + 'a));
         self.others.iter_mut().map(|coupled| &mut **coupled).chain(friction)
     }
 
-    /// Those that displace, or those that do not.
+    /// The problems that displace the distance, or those that do not.
     fn that(&mut self, displace: bool) -> impl Iterator<Item = &mut (dyn Coupled + 'a)> {
         self.all().filter(move |coupled| coupled.displaces() == displace)
     }
 
-    /// Whether there is more than one turn.
+    /// Whether any problem displaces the distance, so that turns are needed.
     pub fn displace(&mut self) -> bool {
         self.that(true).next().is_some()
     }
 
-    /// Solves those that displace, or those that do not, with the pressures of a normal problem that ended with `stop`. Returns the worst outcome.
+    /// Solves the problems that displace, or those that do not, with the pressures of a normal problem that ended with `stop`. Returns the worst
+    /// outcome.
     pub(super) fn solve(
         &mut self,
         displace: bool,
@@ -53,15 +54,15 @@ impl<'a> Turns<'a> {
         self.that(displace).try_fold(stop, |so_far, coupled| Ok(worse(so_far, coupled.solve(stop, state, monitor)?)))
     }
 
-    /// The undeformed distance with what is displaced, and by how much that has changed where pressures act (in C and at a limit): rms
-    /// relative to `h - approach`. No change at all: none on the whole grid.
+    /// The undeformed distance with all displacements, and its change where pressures act (in C and at a limit), as rms relative to
+    /// `h - approach`. None: no change on the whole grid.
     pub(super) fn distance(&mut self, state: &State) -> (&[f64], Option<f64>) {
         let (own, mut displaced) = (&self.distances.own, std::mem::take(&mut self.distances.displaced));
         displaced.copy_from_slice(own);
         self.that(true).for_each(|coupled| coupled.displace(&mut displaced));
         let (mut changes, mut distances, mut differs) = (0.0, 0.0, false);
         for (i, displaced) in displaced.iter().enumerate() {
-            // One element alone displaces others, not itself.
+            // A single loaded element displaces others but not itself, so h may differ outside C only.
             differs |= *displaced != state.h[i];
             if state.touches(i) {
                 changes += (displaced - state.h[i]).powi(2);
@@ -74,19 +75,19 @@ impl<'a> Turns<'a> {
     }
 }
 
-/// A scene that is solved in turns.
+/// The solve of a scene in turns.
 pub(super) struct InTurns<'s, 't, 'm> {
     pub(super) solver: &'s mut Solver,
     pub(super) turns: &'s mut Turns<'t>,
     pub(super) scene: &'s Scene<'s>,
     pub(super) options: &'s Options,
     pub(super) monitor: &'s mut Monitor<'m>,
-    /// Of the normal problem so far.
+    /// Cycles of the normal problem so far.
     cycles: usize,
 }
 
 impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
-    /// Of which the normal problem is solved.
+    /// The turns of a scene whose normal problem is solved.
     pub(super) fn new(
         solver: &'s mut Solver,
         turns: &'s mut Turns<'t>,
@@ -96,11 +97,11 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
         InTurns { solver, turns, scene, options, monitor, cycles: 0 }
     }
 
-    /// Both problems of unlike bodies, and whatever else displaces the undeformed distance, are solved in turns until the certificate of the
-    /// normal one holds with what was found last (Panagiotopoulos 1975); then what displaces nothing. The normal problem ended with `stop`.
+    /// Solves all problems that displace the undeformed distance in turns with the normal one, until the certificate of the normal problem holds
+    /// with the last displacements (Panagiotopoulos 1975). Then solves the problems that displace nothing. The normal problem ended with `stop`.
     pub(super) fn solve(mut self, stop: Outcome) -> Result<Outcome> {
         if self.options.initial_guess != InitialGuess::Previous {
-            // Turns go on from each other, not from what was solved before.
+            // Each turn starts from the one before, not from earlier solves.
             self.solver.methods.projected_cg.forget_solutions();
         }
         let stop = match self.turns.displace() {
@@ -112,15 +113,15 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
         Ok(stop)
     }
 
-    /// The turns with what displaces.
+    /// The turns with the problems that displace.
     fn meet(&mut self, stop: Outcome) -> Result<Outcome> {
         self.turns.distances.take(&self.solver.state.h)?;
         let stop = self.turn_about(self.options, (stop, true))?;
         self.meet_by_creepages(stop)
     }
 
-    /// The same once, as friction says: by force, or with creepages that are held. The normal problem ended with `stop`; `is_met`: with the distances that
-    /// the state has.
+    /// One series of turns, by force or with held creepages. The normal problem ended with `stop`; `is_met` tells whether it was solved with the
+    /// distances of the state.
     pub(super) fn turn_about(&mut self, options: &Options, (mut stop, is_met): (Outcome, bool)) -> Result<Outcome> {
         let again = Options { initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*options };
         let mut extrapolation = Extrapolation::new();
@@ -128,7 +129,7 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
             let InTurns { solver, turns, .. } = self;
             let so_far = turns.solve(true, stop, &solver.state, self.monitor)?;
             let (distance, change) = turns.distance(&solver.state);
-            // Without a displacement the normal problem stays solved.
+            // Without a change the normal problem stays solved.
             let Some(change) = change.or((solved == 0 && !is_met).then_some(0.0)) else { return Ok(so_far) };
             extrapolation.turn(&solver.state.h, distance, change)?;
             let holds = solver.holds_with((distance, change), (self.scene, options), self.monitor);
@@ -138,7 +139,7 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
             if solved == MOST_TURNS {
                 break;
             }
-            // The work of all turns together is bounded by what the caller said.
+            // The caller's limit bounds the work of all turns together.
             let left = options.max_cycles.saturating_sub(self.cycles);
             if left == 0 || !turns.that(true).all(|coupled| coupled.has_work_left()) {
                 return Ok(Outcome::IterationLimit);
@@ -150,7 +151,7 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
         Ok(Outcome::Stagnated)
     }
 
-    /// The normal problem once more, with the displaced distance.
+    /// Solves the normal problem again with the displaced distance.
     fn solve_displaced(&mut self, options: &Options) -> Result<Outcome> {
         let InTurns { solver, monitor, .. } = self;
         monitor.ledger.rows.pop();
@@ -165,8 +166,7 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
 }
 
 impl Solver {
-    /// Takes the normal certificate of the pressures with the distance that was made last, which changed it by `change`: that is reported.
-    /// Says whether it holds.
+    /// Makes and reports the certificate of the normal problem with the last distance, which changed by `change`. Returns whether it holds.
     pub(super) fn holds_with(
         &mut self,
         (distance, change): (&[f64], f64),

@@ -7,14 +7,14 @@ use crate::grid::Grid;
 use crate::memory::zeros;
 use crate::threads::Threads;
 
-/// Names its memory in messages.
+/// The name of this memory in messages.
 const FIELDS: &str = "the coupling of unlike bodies";
 
-/// Both products, and what they displace.
+/// The products of the coupling, and their displacements.
 pub struct UnlikeBodies {
     source: Source,
     here: Coupling,
-    /// Of rolling: at the places before the step, which are so many elements away.
+    /// In rolling: the offset in elements of the places before the step, and the product there.
     there: Option<((f64, f64), Coupling)>,
     sideways: Vec<Vector>,
     along_normal: Vec<f64>,
@@ -22,13 +22,13 @@ pub struct UnlikeBodies {
     last_pressure: Vec<f64>,
 }
 
-/// Which pressures there were before a step.
+/// The pressures before a step.
 enum Before {
     /// None: from rest.
     None,
-    /// Those of now: in steady rolling, and where tractions are given.
+    /// The present ones: in steady rolling, and with given tractions.
     Same,
-    /// Those of the last result.
+    /// The pressures of the last result.
     Last,
 }
 
@@ -43,7 +43,7 @@ impl Before {
 }
 
 impl UnlikeBodies {
-    /// On a grid.
+    /// The coupling on a grid.
     pub fn new(grid: &Grid, source: Source, threads: &Threads) -> Result<UnlikeBodies> {
         let n = grid.len();
         Ok(UnlikeBodies {
@@ -56,7 +56,7 @@ impl UnlikeBodies {
         })
     }
 
-    /// The last pressures are those of another one.
+    /// Takes the last pressures of another one.
     pub fn take_last_of(&mut self, other: &mut UnlikeBodies) {
         std::mem::swap(&mut self.last_pressure, &mut other.last_pressure);
     }
@@ -73,8 +73,7 @@ impl UnlikeBodies {
         &self.sideways
     }
 
-    /// The sideways displacements by pressures p, less those before the step: from rest none; where tractions are given, the pressures
-    /// before were the same.
+    /// The sideways displacements by pressures p, less those before the step: none from rest; with given tractions those of the same pressures.
     pub fn displace_sideways(
         &mut self,
         grid: &Grid,
@@ -103,10 +102,10 @@ impl UnlikeBodies {
         Ok(())
     }
 
-    /// Adds by how much the last [sideways displacements](UnlikeBodies::displace_sideways) change where the pressures change by dp.
+    /// Adds the change of the last [sideways displacements](UnlikeBodies::displace_sideways) by a change dp of the pressures.
     pub fn add_change(&mut self, friction: &Friction<'_>, dp: &[f64], to: &mut [Vector]) {
         match (Before::of(friction), friction.motion) {
-            // Both changes are the same.
+            // The changes before and after the step cancel.
             (Before::Same, Motion::Shift) => {}
             (Before::Same, _) => {
                 self.here.add_sideways(dp, 1.0, to);
@@ -123,14 +122,14 @@ impl UnlikeBodies {
         self.here.along_normal(traction, to);
     }
 
-    /// Adds what tractions displace along the normal to an undeformed distance.
+    /// Adds the displacements along the normal by tractions to an undeformed distance.
     pub fn displace(&mut self, traction: &[Vector], distance: &mut [f64]) {
         let UnlikeBodies { here, along_normal, .. } = self;
         here.along_normal(traction, along_normal);
         distance.iter_mut().zip(along_normal).for_each(|(distance, displaced)| *distance += *displaced);
     }
 
-    /// The step is done: the next one may continue from its pressures.
+    /// Keeps the pressures of a finished step for the next one.
     pub fn keep_pressures(&mut self, p: &[f64]) {
         self.last_pressure.copy_from_slice(p);
     }

@@ -1,16 +1,16 @@
-//! How the tangential forces of unlike bodies change with the creepages and the spin: both problems together, linear.
+//! Derivatives of the tangential forces of unlike bodies by the creepages and the spin: both problems, linearised.
 //!
-//! While C and the elements that slip stay the same, with the load given, a change dw of the rigid slip changes tractions and pressures by
+//! At fixed C and slip area, with the load given, a change dw of the rigid slip changes tractions and pressures by
 //!
 //! ```text
-//! (P A P + D) z = -P (dw + T dp + A mu dp n),    dq = z + mu dp n     what slips follows its bound
+//! (P A P + D) z = -P (dw + T dp + A mu dp n),    dq = z + mu dp n     on slip q follows its bound
 //! Azz dp + L dq - d = 0 on C,    dp = 0 elsewhere, at a limit too       d = 0 with an approach given; else sum dp = 0
 //! ```
 //!
-//! T: what pressures displace sideways, less what they did before the step; L: what tractions displace along the normal. Each problem by
-//! itself is one that is solved anyway: the tangential one [with its pressures held](crate::friction::Report::sensitivities), the normal one
-//! on a contact area that is given, with the undeformed distance L dq. One after the other they make a map `dp -> M dp + b`, whose fixed point
-//! the least residual over the directions so far finds (Eisenstat, Elman and Schultz 1983): each turn brings it nearer by 4 to 30 times.
+//! T dp is the sideways displacement by pressures, less that before the step; L dq is the displacement along the normal by tractions. Each
+//! problem has a solver: the tangential one [with its pressures held](crate::friction::Report::sensitivities), the normal one on a given
+//! contact area with the undeformed distance L dq. One after the other they make a map `dp -> M dp + b`. Its fixed point is found by
+//! minimising the residual over all directions so far (Eisenstat, Elman and Schultz 1983): each turn reduces it by a factor of 4 to 30.
 
 use super::options::Method;
 use super::stages;
@@ -25,13 +25,13 @@ use crate::methods::{Start, Task};
 use crate::progress::{Criterion, Goal, Monitor};
 use crate::scene::Load;
 
-/// The residual of the fixed point, relative.
+/// Relative residual of the fixed point.
 const TOLERANCE: f64 = 1e-6;
-/// And of each normal problem.
+/// Relative residual of each normal problem.
 const NORMAL: f64 = 1e-7;
-/// Turns at most.
+/// Most turns.
 const MOST_TURNS: usize = 30;
-/// Names its memory in messages.
+/// The name of this memory in messages.
 const FIELDS: &str = "the sensitivities of unlike bodies";
 
 /// Both problems, linear about the last result.
@@ -40,7 +40,7 @@ struct Linear<'a> {
     tangential: &'a mut friction::Solver,
     unlike: &'a mut UnlikeBodies,
     turn: &'a Turn<'a>,
-    /// Of the normal problem: h is L dq, p is dp.
+    /// The state of the normal problem: h is L dq, p is dp.
     state: State,
     /// dw with T dp on entry, dq on return.
     tractions: Vec<Vector>,
@@ -48,7 +48,7 @@ struct Linear<'a> {
     products: f64,
 }
 
-/// A direction of the pressures, and its part of the residual, of length 1.
+/// A direction of the pressures, and its residual, which has norm 1.
 struct Direction {
     dp: Vec<f64>,
     left: Vec<f64>,
@@ -74,7 +74,7 @@ impl Solver {
         let mut state = State::new(grid, (load, 0.0), &self.problem.threads)?;
         state.contact.copy_from_slice(&self.state.contact);
         state.round_off = self.state.round_off;
-        // dw of the order of a slip that all of mu p displaces, so that dp is of the order of p.
+        // dw is of the order of the displacement by mu p, so that dp is of the order of p.
         let largest = self.state.p.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
         let unit = largest * self.problem.self_influence();
         let tractions = zeros(n, FIELDS)?;
@@ -122,7 +122,7 @@ impl Linear<'_> {
         Ok(Some(self.tangential.resultant(friction.spin_centre, &self.tractions).map(|value| value / scale)))
     }
 
-    /// The next direction is the residual; none where round-off is reached.
+    /// The next direction, from the residual; none at round-off.
     fn direction(&mut self, residual: &[f64], directions: &[Direction]) -> Result<Option<Direction>> {
         let mut new = Direction { dp: zeros(residual.len(), FIELDS)?, left: zeros(residual.len(), FIELDS)? };
         new.dp.copy_from_slice(residual);
@@ -141,7 +141,7 @@ impl Linear<'_> {
         Ok(Some(new))
     }
 
-    /// One problem after the other: the pressures' change by that of the tractions, by a change `rigid` of the slip and by dp.
+    /// Both problems in turn: the change of the pressures by that of the tractions, from a change `rigid` of the slip and from dp.
     fn turn(&mut self, rigid: Option<(usize, f64)>, dp: &[f64], to: &mut [f64]) -> Result<()> {
         self.tractions(rigid, dp)?;
         self.unlike.along_normal(&self.tractions, &mut self.state.h);
@@ -150,7 +150,7 @@ impl Linear<'_> {
         Ok(())
     }
 
-    /// dq, by a creepage of so much, if any, and by dp.
+    /// dq by a change of a creepage, if any, and by dp.
     fn tractions(&mut self, rigid: Option<(usize, f64)>, dp: &[f64]) -> Result<()> {
         let Turn { scene, friction, .. } = self.turn;
         self.tractions.fill([0.0; 2]);
@@ -162,7 +162,7 @@ impl Linear<'_> {
         self.tangential.change(friction, dp, &mut self.tractions)
     }
 
-    /// dp on C, with the undeformed distance that the state has.
+    /// dp on C, with the undeformed distance of the state.
     fn pressures(&mut self) -> Result<()> {
         let Linear { solver: Solver { problem, methods, set_up, .. }, state, turn, .. } = self;
         state.p.fill(0.0);

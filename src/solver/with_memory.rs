@@ -1,4 +1,4 @@
-//! Steps of bodies that remember: see [`Memory`].
+//! Steps of bodies with memory: see [`Memory`].
 
 use super::{Guess, Options, Outcome, ProgressCallback, Report, Solver};
 use crate::contact::{lowest, Freshness};
@@ -8,7 +8,7 @@ use crate::memory::zeros;
 use crate::scene::{Load, Scene};
 
 impl Solver {
-    /// Solves a scene that is checked, with the undeformed distance that its effects make: bodies may remember the steps before.
+    /// Solves a checked scene, whose undeformed distance contains its effects. Bodies may have a memory of earlier steps.
     pub(super) fn solve_step_in_time(
         &mut self,
         (scene, lowest): (&Scene<'_>, f64),
@@ -22,8 +22,8 @@ impl Solver {
         }
     }
 
-    /// Solves a step of a scene that is checked, as a problem of other lengths; `k`: the effect. A step that is refused, or fails, leaves what the
-    /// bodies remember.
+    /// Solves a step of a checked scene as a problem of scaled lengths; `k`: the effect. A step that is refused or fails leaves the memory of
+    /// the bodies unchanged.
     fn solve_with_memory(
         &mut self,
         (scene, k, memory): (&Scene<'_>, usize, &dyn Memory),
@@ -65,7 +65,7 @@ impl Solver {
         outcome
     }
 
-    /// Lengths of the result, of the report and of the ledger, which are those of the problem that was solved.
+    /// Scales the lengths of the result, the report and the ledger from those of the problem solved.
     fn lengthen(&mut self, s: f64, load: Load, report: &mut Report) {
         let state = &mut self.state;
         state.u.iter_mut().for_each(|u| *u *= s);
@@ -74,9 +74,9 @@ impl Solver {
             state.approach = approach;
         }
         let approach = state.approach;
-        // Of a force that is given it is the approach that is off.
+        // With a given force the error is that of the approach.
         let of_found = if matches!(load, Load::Force(_)) { s } else { 1.0 };
-        // A negative value says: not known.
+        // Negative: unknown.
         let lengthened = |value: f64| if value > 0.0 { value * of_found } else { value };
         for row in &mut self.ledger {
             row.measures.approach *= s;

@@ -6,7 +6,7 @@ use crate::grid::Grid;
 /// Names of the components, in their order.
 pub const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "xz", "yz"];
 
-/// Which loads there are: pressure, traction in x, traction in y.
+/// Which loads act: pressure, traction in x, traction in y.
 pub type Loaded = [bool; 3];
 
 /// A half-space with loads on the elements of a grid.
@@ -16,7 +16,7 @@ pub struct Body {
     pub grid: Grid,
     /// nu, in (-1, 0.5].
     pub poisson_ratio: f64,
-    /// Whether all repeats itself after a grid's length in x and in y. Lateral strains have mean zero.
+    /// Whether the loads are periodic with the grid's length in x and in y. Lateral strains have mean zero.
     pub periodic: bool,
 }
 
@@ -37,7 +37,7 @@ impl Body {
         (self.grid.dx / self.unit(), self.grid.dy / self.unit())
     }
 
-    /// A length in that unit. Where its square would vanish it is 0, and where that would overflow it is cut off: stresses are 0 there.
+    /// A length in that unit. It is 0 if its square would underflow. It is cut off if its square would overflow, where stresses are 0.
     pub(super) fn in_units(&self, length: f64) -> f64 {
         let ratio = (length / self.unit()).clamp(-1e150, 1e150);
         if ratio.abs() < 1e-100 {

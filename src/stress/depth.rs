@@ -17,7 +17,7 @@ pub struct Wanted {
     pub maximum_shear: bool,
     /// The principal stresses.
     pub principal: bool,
-    /// And their directions.
+    /// The directions of the principal stresses.
     pub directions: bool,
 }
 
@@ -35,10 +35,10 @@ impl Wanted {
     }
 }
 
-/// The stresses at one depth, `[my][mx]` each; empty: not asked for.
+/// The stresses at one depth, `[my][mx]` each; empty: not wanted.
 #[derive(Clone, Debug, Default)]
 pub struct Depth {
-    /// xx, yy, zz, xy, xz, yz; all of them where anything else is asked for.
+    /// xx, yy, zz, xy, xz, yz; all of them if any scalar is wanted.
     pub stress: [Vec<f64>; 6],
     /// The von Mises stress.
     pub von_mises: Vec<f64>,
@@ -46,20 +46,20 @@ pub struct Depth {
     pub maximum_shear: Vec<f64>,
     /// The principal stresses, the largest first.
     pub principal: [Vec<f64>; 3],
-    /// The unit vectors of their directions.
+    /// The unit vectors of the principal directions.
     pub directions: [Vec<[f64; 3]>; 3],
 }
 
-/// The largest value of a field, and where it is.
+/// The largest value of a field, and its place.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Maximum {
     /// The value.
     pub value: f64,
-    /// Which of the depths.
+    /// The index of the depth.
     pub depth: usize,
-    /// The element above.
+    /// The element above, in x.
     pub ix: usize,
-    /// The same in y.
+    /// The element above, in y.
     pub iy: usize,
 }
 
@@ -74,7 +74,7 @@ impl Maximum {
     }
 }
 
-/// One depth, and the memory that it is computed in.
+/// One depth, and the memory of its computation.
 pub(super) struct DepthMemory {
     workspace: Workspace,
     pub depth: Depth,
@@ -100,7 +100,7 @@ impl DepthMemory {
         Ok(DepthMemory { workspace: product.workspace(wanted.needs())?, depth })
     }
 
-    /// All that is wanted at depth z.
+    /// Computes all wanted stresses at depth z.
     pub fn compute(&mut self, product: &Product<'_>, wanted: &Wanted, z: f64) {
         product.enter(z, &mut self.workspace);
         for (c, out) in self.depth.stress.iter_mut().enumerate() {

@@ -22,8 +22,8 @@
 //! V_xy  1/R              V_yz  z/(R (R + X))    V_zz   -(V_xx + V_yy)                 W_xxx  -(W_xyy + V_x)
 //! ```
 //!
-//! Logarithms are those of quotients, and `R + Y = (X^2 + z^2)/(R - Y)` where Y < 0, so that nothing cancels near the element. At
-//! z = 0 nothing is special but the edges, where stresses by tractions are infinite.
+//! Logarithms are taken of quotients, and `R + Y = (X^2 + z^2)/(R - Y)` for Y < 0, so that nothing cancels near the element. At z = 0 only
+//! the edges are special: stresses by tractions are infinite there.
 
 use std::f64::consts::PI;
 
@@ -33,7 +33,7 @@ use super::tensor::Tensor;
 /// Two values per direction: those of the edges at - and +.
 type Edges = [f64; 2];
 
-/// The derivatives of the potentials that the stresses are made of.
+/// The derivatives of the potentials in the stresses.
 #[derive(Default)]
 struct Potentials {
     vx: f64,
@@ -52,7 +52,7 @@ struct Potentials {
     wxyy: f64,
 }
 
-/// The stresses at `(x, y, z)`, from the centre of an element `dx` by `dy`, by unit loads: those wanted.
+/// The stresses at `(x, y, z)` from the centre of an element `dx` by `dy`, by the unit loads in `loaded`.
 pub fn stresses(body: &Body, loaded: Loaded, (x, y, z): (f64, f64, f64), (dx, dy): (f64, f64)) -> [Tensor; 3] {
     let edges = |x: f64, d: f64| [x - 0.5 * d, x + 0.5 * d];
     let f = potentials(edges(x, dx), edges(y, dy), z);
@@ -102,7 +102,7 @@ fn potentials(x: Edges, y: Edges, z: f64) -> Potentials {
         let over = sign / (r + z);
         f.wxxy -= x * over;
         f.wxyy -= y * over;
-        // All others stand with a factor z.
+        // All others have a factor z.
         if z > 0.0 {
             let over_r = sign / r;
             let (to_y, to_x) = (over_r * inverse_of_sum(r, y, x2 + z2), over_r * inverse_of_sum(r, x, y2 + z2));

@@ -2,10 +2,10 @@
 //!
 //! By the distance between the centres, in longer sides of an element:
 //!
-//! * below [`NEAR`] the closed form of [`element`](super::element), whose corner differences lose digits as the distance grows;
+//! * below [`NEAR`] the closed form of [`element`](super::element), whose corner differences lose digits with the distance;
 //! * below [`FAR`] point forces at 4 x 4 Gauss points of the element;
-//! * beyond, point forces at the centres of the elements, of which means over elements are made (see [`means`](crate::influence::means)):
-//!   one evaluation per element, and no cancellation however far it is.
+//! * beyond, point forces at the centres of the elements, from which means over elements follow (see [`means`](crate::influence::means)):
+//!   one evaluation per element, and no cancellation at any distance.
 
 use super::body::{Body, Loaded};
 use super::element;
@@ -14,9 +14,9 @@ use crate::error::Result;
 use crate::influence::means::{in_x, in_y, HALO, ROWS};
 use crate::memory::zeros;
 
-/// Up to this distance the closed form.
+/// The closed form is used up to this distance.
 const NEAR: f64 = 12.0;
-/// Up to this distance Gauss points.
+/// Gauss points are used up to this distance.
 const FAR: f64 = 32.0;
 /// Nodes and weights of the 4-point Gauss-Legendre rule on [-1/2, 1/2] (Abramowitz & Stegun 25.4).
 const GAUSS: [(f64, f64); 4] = [
@@ -26,7 +26,7 @@ const GAUSS: [(f64, f64); 4] = [
     (0.430_568_155_797_026_3, 0.173_927_422_568_726_93),
 ];
 
-/// Whether a kernel is odd in x and in y: by the load and the component.
+/// Whether the kernel of a load and component is odd in x and in y.
 pub fn is_odd(load: usize, component: usize) -> (bool, bool) {
     let (x, y) = match component {
         0..=2 => (false, false),
@@ -37,19 +37,19 @@ pub fn is_odd(load: usize, component: usize) -> (bool, bool) {
     (x != (load == 1), y != (load == 2))
 }
 
-/// The kernels that are wanted.
+/// The requested kernels.
 #[derive(Clone, Copy, Debug)]
 pub struct Asked {
     /// The loads.
     pub loaded: Loaded,
     /// The components.
     pub components: [bool; 6],
-    /// Offsets in x and in y: less than that.
+    /// The number of offsets from 0 in x and in y.
     pub offsets: (usize, usize),
 }
 
 impl Asked {
-    /// Each kernel: its load and component.
+    /// The load and component of each kernel.
     pub fn list(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let loads = (0..3).filter(|&load| self.loaded[load]);
         loads.flat_map(|load| (0..6).filter(|&c| self.components[c]).map(move |c| (load, c)))
@@ -60,16 +60,16 @@ impl Asked {
         self.list().count()
     }
 
-    /// Where a kernel stands in the list, if it was asked for.
+    /// The position of a kernel in the list, if it was requested.
     pub fn place(&self, load: usize, component: usize) -> Option<usize> {
         self.list().position(|of| of == (load, component))
     }
 }
 
-/// Kernels of one depth, and the memory that they are computed in.
+/// Kernels of one depth, and the memory for their computation.
 pub struct Kernels {
     asked: Asked,
-    /// Of each kernel asked for, `[ky][kx]`.
+    /// The table `[ky][kx]` of each requested kernel.
     tables: Vec<f64>,
     /// Point forces along one row, per kernel, and means in x of the last rows.
     points: Vec<f64>,
@@ -77,7 +77,7 @@ pub struct Kernels {
 }
 
 impl Kernels {
-    /// Memory for the kernels asked for.
+    /// Allocates memory for the requested kernels.
     pub fn new(asked: Asked) -> Result<Kernels> {
         let (what, (mx, my)) = ("the kernels of a depth", asked.offsets);
         Ok(Kernels {
@@ -88,18 +88,18 @@ impl Kernels {
         })
     }
 
-    /// The table of a load and component, if it was asked for.
+    /// The table of a load and component, if it was requested.
     pub fn table(&self, load: usize, component: usize) -> Option<&[f64]> {
         let n = self.asked.offsets.0 * self.asked.offsets.1;
         self.asked.place(load, component).map(|k| &self.tables[k * n..(k + 1) * n])
     }
 
-    /// Computes all at depth z, in units of `body.unit()`.
+    /// Computes all kernels at depth z, in units of `body.unit()`.
     pub fn compute(&mut self, body: &Body, z: f64) {
         self.combine(body, &[(z, 1.0)]);
     }
 
-    /// Computes sums of the kernels of some depths, in units of `body.unit()`, times factors.
+    /// Computes weighted sums of the kernels of some depths, in units of `body.unit()`.
     pub fn combine(&mut self, body: &Body, depths: &[(f64, f64)]) {
         self.fill_far(body, depths);
         let least = depths.iter().fold(f64::INFINITY, |least, (z, _)| z.min(least));
@@ -142,10 +142,10 @@ impl Kernels {
         }
     }
 
-    /// Gauss points and the closed form, at the offsets at which the least depth is near.
+    /// Gauss points and the closed form, at the offsets that are near at the least depth.
     fn fill_near(&mut self, body: &Body, depths: &[(f64, f64)], least: f64) {
         let ((mx, my), (dx, dy)) = (self.asked.offsets, body.element());
-        // Offsets in x at which the distance is less than that.
+        // The number of offsets in x with a distance below `distance`.
         let within = |distance: f64, y: f64, z: f64| {
             let x2 = distance * distance - y * y - z * z;
             if x2 > 0.0 {
@@ -185,7 +185,7 @@ impl Kernels {
     }
 }
 
-/// Places in a row with its neighbours, rounded up to whole lanes.
+/// The length of a row with its halo, rounded up to whole lanes.
 fn width(mx: usize) -> usize {
     (mx + 2 * HALO).next_multiple_of(LANES)
 }

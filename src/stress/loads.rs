@@ -7,7 +7,7 @@ use crate::grid::{check_values, Grid};
 use crate::memory::collected;
 use crate::scene::Patches;
 
-/// Pressures and tractions, `[my][mx]`; none: not there. Tractions act on the body considered, in the directions of x and y.
+/// Pressures and tractions, `[my][mx]`, each optional. Tractions act on the body considered, in the directions of x and y.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Loads<'a> {
     /// p: positive presses.
@@ -16,16 +16,16 @@ pub struct Loads<'a> {
     pub traction_x: Option<&'a [f64]>,
     /// qy.
     pub traction_y: Option<&'a [f64]>,
-    /// Contact patches: below an element of one, the loads of another count times the factor between both.
+    /// Contact patches: below an element of one patch, the loads of another count times the factor between both.
     pub patches: Option<Patches<'a>>,
 }
 
-/// Elements that are stressed by the same loads: those of a patch, or all.
+/// Elements stressed by the same loads: those of a patch, or all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// All elements, by the loads as they are.
+    /// All elements, with unscaled loads.
     All,
-    /// Those of a patch.
+    /// The elements of a patch.
     Patch(usize),
 }
 
@@ -35,7 +35,7 @@ impl<'a> Loads<'a> {
         Loads { pressure: Some(pressure), ..Loads::default() }
     }
 
-    /// All three.
+    /// Pressure and both tractions.
     pub(super) fn list(&self) -> [Option<&'a [f64]>; 3] {
         [self.pressure, self.traction_x, self.traction_y]
     }
@@ -44,19 +44,19 @@ impl<'a> Loads<'a> {
         self.list().map(|load| load.is_some())
     }
 
-    /// The parts of the grid that are stressed by loads of their own.
+    /// The parts of the grid with loads of their own.
     pub(super) fn parts(&self) -> Vec<Part> {
         let Some(patches) = self.coupled() else { return vec![Part::All] };
         let has = |patch: &usize| (0..patches.patch.len()).any(|i| patches.of(i) == *patch);
         (0..patches.count).filter(has).map(Part::Patch).collect()
     }
 
-    /// Patches that do not all feel each other as if there were none.
+    /// The patches, unless all factors are 1.
     pub(super) fn coupled(&self) -> Option<&Patches<'a>> {
         self.patches.as_ref().filter(|patches| patches.factors.iter().any(|factor| *factor != 1.0))
     }
 
-    /// The loads that stress a part: what each of these is times the factor of its patch.
+    /// The loads on a part: each load times the factor of its patch.
     pub(super) fn on(&self, part: Part, load: &[f64]) -> Result<Vec<f64>> {
         let factor = |i: usize| match (self.coupled(), part) {
             (Some(patches), Part::Patch(patch)) => patches.factor(patch, i),
@@ -79,7 +79,7 @@ impl<'a> Loads<'a> {
         }
     }
 
-    /// A power of two near the largest load: what is computed of loads of about 1 neither overflows nor fades away.
+    /// A power of two near the largest load: stresses of loads of about 1 neither overflow nor underflow.
     pub(super) fn scale(&self) -> f64 {
         let values = self.list().into_iter().flatten().flatten();
         let largest = values.fold(0.0, |largest: f64, value| largest.max(value.abs()));

@@ -9,15 +9,15 @@
 //! ```
 //!
 //! The kernels depend on the Poisson ratio, not on the shear modulus. Near its element a kernel has a closed form (`element`), which
-//! cancels far away, where point forces serve (`point_force`); `kernels` puts them together. At each depth sums over elements are
-//! products by FFT (`product`); each kernel is even or odd in x and in y, so its spectrum is real or imaginary, and one quadrant is
-//! tabulated. At places off the centres the sum is direct (`points`).
+//! cancels far away, where point forces are used (`point_force`); `kernels` combines them. At each depth sums over elements are products by
+//! FFT (`product`). Each kernel is even or odd in x and in y, so its symbol is real or imaginary, and one quadrant is tabulated. At places off
+//! the centres the sum is direct (`points`).
 //!
-//! Contact patches that feel each other by factors have one product each (`loads`).
+//! Contact patches coupled by factors have one product each (`loads`).
 //!
-//! Where the loads repeat themselves, kernels are sums over waves (`periodic`).
+//! For periodic loads kernels are sums over waves (`periodic`).
 //!
-//! Depths are worked on by several threads, one each. Nothing of the size of the grid is kept per depth: each is handed over when done.
+//! Threads work on one depth each. No array of the size of the grid is kept per depth: each depth is handed over when done.
 
 mod body;
 mod depth;
@@ -49,11 +49,11 @@ use depth::DepthMemory;
 use periodic::Waves;
 use product::Product;
 
-/// The stresses at all depths: `each(k, depth)` is told what is wanted at `depths[k]`, in their order, on the calling thread, and after
-/// it `progress`, where a cycle is a depth. True: all were done; false: the caller cancelled.
+/// The stresses at all depths: calls `each(k, depth)` with the wanted stresses at `depths[k]`, in order, on the calling thread, and then `progress`,
+/// for which a cycle is a depth. True: all depths are done; false: the caller cancelled.
 ///
 /// # Errors
-/// `NotFinite`: a load or a depth is no number; `InvalidArgument`: an array of another size than the grid, no load, a negative depth, a
+/// `NotFinite`: a load or a depth is not finite; `InvalidArgument`: an array of another size than the grid, no load, a negative depth, a
 /// Poisson ratio out of range; `Unsupported`: a period, very slender elements, and a depth of less than their longer side; `OutOfMemory`.
 pub fn subsurface_stress(
     body: &Body,

@@ -1,4 +1,4 @@
-//! The half-space of a scene whose stresses are computed, with the loads on it: what the effects of the scene say of it.
+//! The half-space and the loads for the stresses of a scene, with its effects.
 
 use super::{Body, Loads};
 use crate::effects::{self, Stresses};

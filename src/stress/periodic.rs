@@ -1,7 +1,7 @@
-//! Kernels of a load that repeats itself in both directions.
+//! Kernels of a load that is periodic in both directions.
 //!
-//! *Below an element's side* the spectrum: a wave `(kx, ky)`, `k = |(kx, ky)|`, of the load fades with the depth as `E = exp(-k z)`, so that
-//! few aliases of the waves of the grid are left. With `h = 1 - 2 nu`, per unit wave of pressure and of traction in x:
+//! *Deeper than an element's side* the spectrum is used. A wave `(kx, ky)`, `k = |(kx, ky)|`, of the load decays with the depth as `E = exp(-k z)`,
+//! so that few aliases of the grid's waves remain. With `h = 1 - 2 nu`, per unit wave of pressure and of traction in x:
 //!
 //! ```text
 //!       pressure                                   traction in x
@@ -14,17 +14,17 @@
 //! ```
 //!
 //! each times `sinc(kx dx/2) sinc(ky dy/2)`. The mean of the load, k = 0, gives `szz = -p`, `sxz = -qx`, `syz = -qy`, and
-//! `sxx = syy = -nu/(1 - nu) p`: a half-space whose mean does not stretch sideways.
+//! `sxx = syy = -nu/(1 - nu) p`: the mean lateral strain is 0.
 //!
-//! *Nearer the surface* too many aliases would be left. There the kernel is carried on from depths `z_j = 1, 2, ..., 10` sides by a
-//! polynomial in z, and what that misses is summed over images in space:
+//! *Nearer the surface* too many aliases would remain. There the kernel is extrapolated from depths `z_j = 1, 2, ..., 10` sides by a
+//! polynomial in z, and the error of this polynomial is summed over images in space:
 //!
 //! ```text
 //! K(z) = sum over j of w_j K(z_j)  +  sum over images of [k(z) - sum over j of w_j k(z_j)],    w_j Lagrange's weights at z
 //! ```
 //!
-//! The bracket is a tenth difference of a function of z/r: it falls off as `10!/r^12`, and is gone at [`REACH`] sides. Both sums over j are
-//! taken before anything else is: the waves fade by `sum w_j exp(-k z_j)`, and one table of brackets is summed over the images.
+//! The bracket is a tenth difference of a function of z/r. It decays as `10!/r^12`, and is negligible from [`REACH`] sides on. Both sums over j are
+//! evaluated first: the waves decay by `sum w_j exp(-k z_j)`, and one table of brackets is summed over the images.
 
 use super::body::Body;
 use super::kernels::{is_odd, Asked, Kernels};
@@ -42,22 +42,22 @@ pub const MOST_SLENDER: f64 = 64.0;
 pub struct Waves {
     asked: Asked,
     aliased: Aliased,
-    /// Of each kernel asked for, `[bin in x][bin in y]`, both >= 0: what is real of its spectrum.
+    /// The spectrum of each requested kernel, `[bin in x][bin in y]`, both >= 0. Imaginary spectra are stored without i.
     spectrum: Vec<f64>,
     bins: (usize, usize),
-    /// Near the surface: brackets of single elements, and the sum over images at offsets up to half the period. Set up when needed.
+    /// For depths near the surface: brackets of single elements, and the sum over images at offsets up to half the period. Set up when needed.
     images: Option<Images>,
 }
 
 struct Images {
     brackets: Kernels,
     reach: (usize, usize),
-    /// Of each kernel, `[ky][kx]`.
+    /// The sum over images of each kernel, `[ky][kx]`.
     folded: Vec<f64>,
 }
 
 impl Waves {
-    /// Memory for the kernels asked for, where `asked.offsets` are those up to half the period; `near`: of depths near the surface, too.
+    /// Memory for the requested kernels, with `asked.offsets` up to half the period. `near`: including depths near the surface.
     pub fn new(body: &Body, asked: Asked, near: bool) -> Result<Waves> {
         let grid = &body.grid;
         let bins = (grid.mx / 2 + 1, grid.my / 2 + 1);
@@ -81,7 +81,7 @@ impl Waves {
         z < 1.0
     }
 
-    /// Refuses what has too many images.
+    /// Rejects elements with too many images.
     pub fn check(body: &Body, depth: f64) -> Result<()> {
         let (dx, dy) = body.element();
         if Waves::is_near(body.in_units(depth)) && dx.min(dy) < 1.0 / MOST_SLENDER {
@@ -94,7 +94,7 @@ impl Waves {
         Ok(())
     }
 
-    /// Computes all at depth z, in longer sides.
+    /// Computes all kernels at depth z, in longer sides.
     pub fn compute(&mut self, body: &Body, z: f64) {
         let fading = Fading::new(z);
         if let (Fading::Near(weights), Some(images)) = (&fading, &mut self.images) {
@@ -114,12 +114,12 @@ impl Waves {
         });
     }
 
-    /// Bins in x and in y that have not faded at the depth that was computed; there are no waves in the others.
+    /// The numbers of bins in x and in y with waves at the computed depth. Waves in the other bins have decayed.
     pub fn left(&self) -> (usize, usize) {
         self.aliased.left
     }
 
-    /// The real parts of a spectrum, `[bin in x][bin in y]`, of the bins that are left.
+    /// The spectrum of a kernel, `[bin in x][bin in y]`, in the bins with waves. An imaginary one is without i.
     pub fn spectrum(&self, load: usize, component: usize) -> Option<&[f64]> {
         let n = self.bins.0 * self.bins.1;
         let k = self.asked.place(load, component)?;
@@ -157,7 +157,7 @@ impl Images {
     }
 }
 
-/// Offsets `|k + n m| < reach` of all images, and the sign of a kernel there.
+/// Offsets `|k + n m| < reach` of all images, and the signs of a kernel there.
 fn images(k: usize, m: usize, reach: usize, odd: bool) -> impl Iterator<Item = (usize, f64)> {
     let above = (k..reach).step_by(m).map(|place| (place, 1.0));
     // k <= m/2 < m.

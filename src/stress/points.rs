@@ -1,4 +1,4 @@
-//! Stresses at places of the caller's, by direct summation over the loaded elements: right at any place, and the oracle of the product.
+//! Stresses at given points, by direct summation over the loaded elements: valid at any place, and the oracle of the product.
 
 use super::body::Body;
 use super::kernels;
@@ -13,7 +13,8 @@ use crate::threads::Threads;
 ///
 /// # Errors
 /// `Unsupported`: a period; `InvalidArgument`: a negative depth, a point on the edge of an element at the surface, to within rounding of its
-/// coordinates, where stresses jump or are infinite, or with patches a point that no element is above; otherwise as [`subsurface_stress`](super::subsurface_stress).
+/// coordinates, where stresses jump or are infinite, or with patches a point that no element is above; otherwise as
+/// [`subsurface_stress`](super::subsurface_stress).
 pub fn stress_at_points(
     body: &Body,
     loads: &Loads<'_>,
@@ -57,7 +58,7 @@ fn check(body: &Body, loads: &Loads<'_>, i: usize, [x, y, z]: [f64; 3]) -> Resul
     Ok(())
 }
 
-/// The rounding of coordinates, relative to the grid and to themselves: that of some thousand additions, or of an origin as far away.
+/// Round-off of coordinates, relative to the larger of grid and coordinate: of 4096 additions, or of an origin 4096 lengths away.
 const ROUNDING: f64 = 4096.0 * f64::EPSILON;
 
 /// A coordinate among the edges of m elements of size d.
@@ -70,7 +71,7 @@ struct Line {
 impl Line {
     fn of(x: f64, d: f64, m: usize) -> Line {
         let length = m as f64 * d;
-        // Less than an element, of which edges are the two ends at most.
+        // At most 1e-3 of an element, so that only the nearest edge is tested.
         let rounding = (ROUNDING * length.max(x.abs())).min(1e-3 * d);
         let nearest = (x / d).round().clamp(0.0, m as f64) * d;
         let is_inside = x >= -rounding && x <= length + rounding;
@@ -78,7 +79,7 @@ impl Line {
     }
 }
 
-/// The same place counted from the outer corner of element (0, 0).
+/// The point relative to the outer corner of element (0, 0).
 fn from_corner(grid: &Grid, [x, y, z]: [f64; 3]) -> [f64; 3] {
     [x + 0.5 * grid.mx as f64 * grid.dx, y + 0.5 * grid.my as f64 * grid.dy, z]
 }
@@ -88,7 +89,7 @@ fn at_point(body: &Body, loads: &Loads<'_>, point: [f64; 3]) -> Tensor {
     let [x, y, z] = from_corner(grid, point);
     let (loaded, list) = (loads.loaded(), loads.list());
     let scale = loads.scale();
-    // Of patches on a common edge that of the element beyond.
+    // On a common edge, the patch of the next element.
     let above = |x: f64, d: f64, m: usize| ((x / d) as usize).min(m - 1);
     let patches = loads.coupled().map(|patches| {
         let i = grid.index(above(x, grid.dx, grid.mx), above(y, grid.dy, grid.my));

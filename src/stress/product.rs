@@ -1,9 +1,9 @@
 //! Sums over elements at one depth, by FFT.
 //!
-//! Loads are transformed once; a stress is the sum of their products by kernels, of those of a component at one depth ([`ParityProduct`]).
+//! Loads are transformed once. A stress component at one depth is the sum of the loads' products by its kernels ([`ParityProduct`]).
 //!
-//! With a period nothing is padded, and the waves that have faded at a depth are left out. Where patches scale what elements feel, each has
-//! loads and products of its own; kernels are those of all.
+//! With a period there is no padding, and waves that have decayed at a depth are left out. With patches each patch has loads and products of its
+//! own, with common kernels.
 
 use toeplitz::fft::{good_length, Complex};
 use toeplitz::{ParityMemory, ParityProduct, Term};
@@ -16,10 +16,10 @@ use crate::error::Result;
 use crate::memory::zeros;
 use crate::scene::Patches;
 
-/// Names its memory in messages.
+/// The name of this memory in messages.
 const STRESS: &str = "the stresses of a depth";
 
-/// The transform of each load, `[bin in x][bin in y]`, over its number of values; none: no such load.
+/// The transform of each load, `[bin in x][bin in y]`, over its number of values; none if there is no such load.
 type Spectra = [Option<Vec<Complex<f64>>>; 3];
 
 /// Products with the loads of one body, of all depths.
@@ -44,21 +44,21 @@ enum Source {
 /// Memory for the products of one depth.
 pub struct Workspace {
     source: Source,
-    /// Whether the depth that was entered is near the surface.
+    /// Whether the entered depth is near the surface.
     near: bool,
     /// Bins in x and in y, from 0 on, that are not 0 at this depth.
     left: (usize, usize),
     memory: ParityMemory,
-    /// Of the kernels of one component, where tables were transformed: `[load][bin in x][bin in y >= 0]`.
+    /// The symbols of one component's tabulated kernels: `[load][bin in x][bin in y >= 0]`.
     spectrum: Vec<f64>,
-    /// Of the stresses: `[iy][bin in x]`.
+    /// The transform of the stresses: `[iy][bin in x]`.
     stress: Vec<Complex<f64>>,
-    /// Of patches: the stresses that one patch would have everywhere.
+    /// With patches: the stresses of one patch's loads on the whole grid.
     field: Vec<f64>,
 }
 
 impl<'a> Product<'a> {
-    /// Transforms the loads, which were checked.
+    /// Transforms the checked loads.
     pub fn new(body: &Body, loads: &Loads<'a>, near: bool) -> Result<Product<'a>> {
         let period = |m: usize| if body.periodic { m } else { good_length(2 * m - 1) };
         let (px, py) = (period(body.grid.mx), period(body.grid.my));
@@ -78,7 +78,7 @@ impl<'a> Product<'a> {
         Ok(Product { body: *body, transforms, parts, patches: loads.patches, scale, near })
     }
 
-    /// Which loads there are.
+    /// Whether each load is given.
     fn loaded(&self) -> [bool; 3] {
         self.parts[0].1.each_ref().map(Option::is_some)
     }
@@ -126,7 +126,7 @@ impl<'a> Product<'a> {
         }
     }
 
-    /// Component c at the depth that was entered.
+    /// Component c at the entered depth.
     pub fn component(&self, c: usize, workspace: &mut Workspace, out: &mut [f64]) {
         for load in (0..3).filter(|&load| self.loaded()[load]) {
             self.transform_table(load, c, workspace);
@@ -144,7 +144,7 @@ impl<'a> Product<'a> {
         }
     }
 
-    /// S of one kernel, where it is tabulated.
+    /// The symbol of one tabulated kernel.
     fn transform_table(&self, load: usize, c: usize, workspace: &mut Workspace) {
         let (nb, half) = self.transforms.bins();
         let Workspace { source, memory, spectrum, near, .. } = workspace;
@@ -161,7 +161,7 @@ impl<'a> Product<'a> {
         }
     }
 
-    /// Products with all loads, and back in y.
+    /// Multiplies all loads and transforms back in y.
     fn multiply(&self, loads: &Spectra, c: usize, workspace: &mut Workspace) {
         let (nb, half) = self.transforms.bins();
         let Workspace { source, spectrum, memory, stress, left, near, .. } = workspace;

@@ -3,7 +3,7 @@
 /// The six components, in the order xx, yy, zz, xy, xz, yz; positive in tension.
 pub type Tensor = [f64; 6];
 
-/// Sweeps of Jacobi's method at most: it converges quadratically, and six reach round-off.
+/// Most sweeps of Jacobi's method: it converges quadratically, and six reach round-off.
 const SWEEPS: usize = 12;
 
 /// Principal stresses, the largest first, and the unit vectors of their directions.
@@ -16,7 +16,7 @@ pub struct Principal {
 }
 
 impl Principal {
-    /// Half of what the largest and the smallest principal stress differ by.
+    /// Half the difference of the largest and the smallest principal stress.
     pub fn maximum_shear(&self) -> f64 {
         0.5 * (self.stresses[0] - self.stresses[2])
     }
@@ -33,7 +33,7 @@ pub fn von_mises([xx, yy, zz, xy, xz, yz]: Tensor) -> f64 {
     scale * (0.5 * normal + 3.0 * (square(xy) + square(xz) + square(yz))).sqrt()
 }
 
-/// Principal stresses by Jacobi's cyclic rotations: accurate also where two of them are alike (Golub & Van Loan, section 8.5).
+/// Principal stresses by Jacobi's cyclic rotations: accurate also for nearly equal ones (Golub & Van Loan, section 8.5).
 pub fn principal(tensor: Tensor) -> Principal {
     let scale = largest(&tensor);
     let [xx, yy, zz, xy, xz, yz] = if scale > 0.0 { tensor.map(|value| value / scale) } else { tensor };
@@ -55,7 +55,7 @@ pub fn principal(tensor: Tensor) -> Principal {
     }
 }
 
-/// Turns by the angle that makes `a[p][q]` zero.
+/// Rotates by the angle that makes `a[p][q]` zero.
 fn rotate(a: &mut [[f64; 3]; 3], v: &mut [[f64; 3]; 3], p: usize, q: usize) {
     let off = a[p][q];
     // Too small to change the diagonal.

@@ -7,23 +7,23 @@ use super::point_force::{Lanes, Values, LANES};
 use crate::error::Result;
 use crate::memory::zeros;
 
-/// `exp(-37) = 9e-17`: waves that have faded.
+/// k z beyond which waves are dropped: `exp(-37) = 9e-17`.
 const FADED: f64 = 37.0;
-/// Of a bin, at depths of at least an element's longer side: `2 FADED/(2 pi) + 1`.
+/// Most aliases of a bin at depths of at least an element's longer side: `2 FADED/(2 pi) + 1`.
 const MOST_ALIASES: usize = 13;
-/// Depths that a kernel is carried on from to the surface: 1, 2, ... sides.
+/// Nodes of the extrapolation of a kernel to the surface: depths of 1, 2, ... sides.
 pub const NODES: usize = 10;
 
-/// How waves fade: by `exp(-k z)`; nearer the surface than a side by what Lagrange's polynomial in z makes of that at the nodes.
+/// The decay of waves: `exp(-k z)`, or nearer to the surface than a side Lagrange's polynomial in z through its values at the nodes.
 pub enum Fading {
-    /// Of a depth of a side and more.
+    /// A depth of a side or more.
     Deep(f64),
-    /// By the weights of the nodes.
+    /// The weights of the nodes.
     Near([f64; NODES]),
 }
 
 impl Fading {
-    /// Of the depth z, in longer sides.
+    /// The decay at the depth z, in longer sides.
     pub fn new(z: f64) -> Fading {
         if z >= 1.0 {
             return Fading::Deep(z);
@@ -35,7 +35,7 @@ impl Fading {
         }))
     }
 
-    /// The wave number from which on all has faded.
+    /// The wave number beyond which waves are dropped.
     fn most(&self) -> f64 {
         match self {
             Fading::Deep(z) => FADED / z,
@@ -43,7 +43,7 @@ impl Fading {
         }
     }
 
-    /// `E = exp(-k z)` and `z E`, or what stands for them, where no k is less than `least`.
+    /// `E = exp(-k z)` and `z E`, or their extrapolations, where no k is less than `least`.
     #[inline(always)]
     fn of(&self, k: &Lanes, least: f64) -> (Lanes, Lanes) {
         match self {
@@ -54,7 +54,7 @@ impl Fading {
             Fading::Near(weights) => {
                 let x = exp_of_minus(k);
                 let (mut e, mut ze) = ([0.0; LANES], [0.0; LANES]);
-                // Of deeper nodes nothing is left: weights are up to 252 = exp(5.6).
+                // Deeper nodes contribute less than exp(-FADED): weights are up to 252 = exp(5.6).
                 let nodes = ((FADED + 5.6) / least.max(1.0)) as usize + 1;
                 for (j, weight) in weights.iter().enumerate().take(nodes).rev() {
                     let of_depth = (j as f64 + 1.0) * weight;
@@ -69,7 +69,7 @@ impl Fading {
     }
 }
 
-/// Waves of one direction: the wave numbers of its bins and of their aliases, and what an element makes of them.
+/// Waves of one direction: the wave numbers of the bins and their aliases, and the mean of each over an element.
 struct Direction {
     /// Period of the wave numbers: `2 pi` over an element's side.
     period: f64,
@@ -94,7 +94,7 @@ impl Direction {
         self.bins.next_multiple_of(LANES)
     }
 
-    /// Sets up what is up to `most`, and tells how many bins have any of it.
+    /// Sets up the wave numbers up to `most`. Returns the number of bins with any.
     fn enter(&mut self, most: f64) -> usize {
         let width = self.width();
         let place = |bin: usize| bin.min(self.bins - 1) as f64 / self.m as f64;
@@ -124,7 +124,7 @@ impl Direction {
         (self.numbers[place], self.means[place])
     }
 
-    /// The same of bins from `first` on.
+    /// Wave numbers and means of an alias of the bins from `first` on.
     fn of_lanes(&self, alias: usize, first: usize) -> (Lanes, Lanes) {
         let place = alias * self.width() + first;
         let lanes = |values: &[f64]| std::array::from_fn(|i| values[place + i]);
@@ -135,7 +135,7 @@ impl Direction {
 /// The spectra of the kernels of one depth.
 pub struct Aliased {
     directions: [Direction; 2],
-    /// Bins in x and in y with waves that have not faded: all others are 0.
+    /// Bins in x and in y with waves that are not dropped; the spectra of all others are 0.
     pub left: (usize, usize),
 }
 
@@ -147,7 +147,7 @@ impl Aliased {
         Ok(Aliased { directions, left: (0, 0) })
     }
 
-    /// Computes the spectra: `store(bin in x, first bin in y, spectra)` is told all that are left.
+    /// Computes the spectra, and calls `store(bin in x, first bin in y, spectra)` for all bins in `left`.
     pub fn compute(
         &mut self,
         body: &Body,
@@ -165,7 +165,7 @@ impl Aliased {
                 let mut sum: Values = [[[0.0; LANES]; 6]; 3];
                 cpu.dispatch(AddAliases { nu, loaded, x: (x, i), y: (y, first), fading, sum: &mut sum });
                 if i == 0 && first == 0 {
-                    // The mean of the load does not stretch sideways.
+                    // The mean of the load causes no lateral strain.
                     let sideways = 2.0 * nu - nu / (1.0 - nu);
                     (sum[0][0][0], sum[0][1][0]) = (sum[0][0][0] + sideways, sum[0][1][0] + sideways);
                 }
@@ -175,7 +175,7 @@ impl Aliased {
     }
 }
 
-/// Adds all aliases of a bin in x and of bins in y from one on; compiled for the vectors of this machine, as all that it calls.
+/// Adds all aliases of a bin in x and of a lane of bins in y. Compiled for the vectors of this machine, with all functions called.
 struct AddAliases<'a> {
     nu: f64,
     loaded: Loaded,
@@ -248,7 +248,7 @@ fn add(
     }
 }
 
-/// A traction along the first of two directions; `place` says where its components stand.
+/// Adds a traction along the first of two directions; `place` has the places of its components.
 #[inline(always)]
 fn by_traction(nu: f64, (l, m, e, kz): (&Lanes, &Lanes, &Lanes, &Lanes), place: [usize; 6], sum: &mut [Lanes; 6]) {
     for i in 0..LANES {
@@ -281,7 +281,7 @@ fn exp_of_minus(x: &Lanes) -> Lanes {
     })
 }
 
-/// `1/n!`: the first that is left out is 4e-18 at ln(2)/2.
+/// `1/n!`: the first omitted term is 4e-18 at ln(2)/2.
 const TAYLOR: [f64; 14] = {
     let mut terms = [1.0; 14];
     let mut n = 1;

@@ -1,10 +1,10 @@
 //! One step of time of one body, by any of three forms:
 //!
 //! * relaxation: u is linear in the step, so a held approach is exact;
-//! * creep: w is linear in the step, so a held load is exact where pressures stand still;
-//! * backward Euler, of first order, as tamaas has it (Frérot et al. 2020).
+//! * creep: w is linear in the step, so a held load is exact where pressures are constant;
+//! * backward Euler, of first order, as in tamaas (Frérot et al. 2020).
 //!
-//! With `e = exp(-x)` and `g = (1 - e)/x` the first two are exponential integrators: nothing limits the step but what is linear in it.
+//! With `e = exp(-x)` and `g = (1 - e)/x` the first two are exponential integrators: only the linear interpolation limits the step.
 
 use super::modes::Mode;
 use super::series::Series;
@@ -16,11 +16,11 @@ pub enum Form {
     Relaxation,
     /// The pressures.
     Creep,
-    /// Neither: both are those at the end of the step.
+    /// Neither: both have their values at the end of the step.
     BackwardEuler,
 }
 
-/// `q after = m q + before w0 + now w`, `u = w + r.q`: of a body whose w was `w0`.
+/// `q after = m q + before w0 + now w`, `u = w + r.q`, for a body with `w0` before the step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
     r: Vec<f64>,
@@ -35,7 +35,7 @@ pub struct Map {
 }
 
 impl Map {
-    /// A step of `dt` >= 0. Without time all forms are one: the body gives way at once.
+    /// A step of `dt` >= 0. For dt = 0 all forms agree: the instantaneous response.
     pub fn new(series: &Series, dt: f64, form: Form) -> Map {
         match form {
             Form::Creep if dt > 0.0 => Map::creep(series, dt),
@@ -52,7 +52,7 @@ impl Map {
         let (r, n) = (series.fractions.clone(), series.len());
         let weights: Vec<(f64, f64, f64)> = series.times.iter().map(|t| weights(*t)).collect();
         let sum = |of: fn(&(f64, f64, f64)) -> f64| r.iter().zip(&weights).map(|(r, w)| r * of(w)).sum::<f64>();
-        // u (1 - sum of r (1 - g)) = w + sum of r (e q + (g - e) u0); what is left of the modulus is no difference.
+        // u (1 - sum of r (1 - g)) = w + sum of r (e q + (g - e) u0); the stiffness is summed without differences.
         let (of_u0, stiffness) = (sum(|w| w.2), series.rest + sum(|w| w.0 + w.2));
         let mut map = Map::empty(r);
         for (k, (e, now, before)) in weights.iter().enumerate() {
@@ -73,7 +73,7 @@ impl Map {
         for mode in Mode::of(series) {
             let x = mode.rate * dt;
             let (e, now, before) = weights(x);
-            // Of slow modes 1/rate is no number.
+            // 1/rate of slow modes overflows.
             let (now, before) = match x < SMALL {
                 true => (dt * slow(x).0, dt * slow(x).1),
                 false => (now / mode.rate, before / mode.rate),
@@ -116,7 +116,7 @@ impl Map {
         1.0 + self.of_now
     }
 
-    /// u where w is 0 after the step.
+    /// u after the step for w = 0.
     #[inline]
     pub fn history(&self, q: &[f64], w0: f64) -> f64 {
         self.of_q.iter().zip(q).map(|(of, q)| of * q).sum::<f64>() + self.of_before * w0
@@ -133,7 +133,7 @@ impl Map {
     }
 }
 
-/// Below this, differences are series.
+/// x below which differences are computed by series.
 const SMALL: f64 = 0.1;
 
 /// `(exp(-x), 1 - g, g - exp(-x))` with `g = (1 - exp(-x))/x`.

@@ -1,20 +1,20 @@
-//! Bodies that relax: Prony series, and one step of time of them.
+//! Relaxing bodies: Prony series, and one step in time.
 //!
-//! The shear modulus of a body falls from G at once to less, at a constant Poisson ratio:
+//! The shear modulus of a body decreases from the instantaneous G, at a constant Poisson ratio:
 //!
 //! ```text
 //! G(t) = G (1 - sum of r_k (1 - exp(-t/t_k))),   r_k = G_k/G,   sum of r_k <= 1
 //! ```
 //!
-//! Each branch k is a spring and a dashpot in series. With w, what the body would give way at once (its share of A p), and q_k, what the dashpots
-//! have given way,
+//! Each branch k is a spring and a dashpot in series. With w, the instantaneous displacement of the body (its share of A p), and q_k, the
+//! displacements of the dashpots,
 //!
 //! ```text
 //! u = w + sum of r_k q_k,     t_k dq_k/dt = u - q_k
 //! ```
 //!
-//! So a step is linear in q, in w before it and in w after it ([`Map`]): an elastic problem with another compliance and a displacement that is known.
-//! (The same equations with stresses of the branches in the place of q: Kaliske & Rothert 1997; of contact: Panek & Kalker 1980.)
+//! So a step is linear in q, in w before it and in w after it ([`Map`]): an elastic problem with another compliance and a known displacement.
+//! (The same equations with stresses of the branches instead of q: Kaliske & Rothert 1997; for contact: Panek & Kalker 1980.)
 
 mod map;
 mod modes;
@@ -28,12 +28,12 @@ pub use series::{Series, MOST};
 /// The results of a step in time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
-    /// Since the bodies were at rest.
+    /// The time since the bodies were at rest.
     pub time: f64,
-    /// The difference of the form of the step and another one: rms of the displacements in contact, over that of h - approach.
+    /// The difference between the form of the step and another form: rms of the displacements in contact, over that of h - approach.
     pub step_error: f64,
-    /// The same of all steps since then, added up as lengths: nothing of them is taken for forgotten.
+    /// The step errors of all steps since rest, added up as lengths, without decay.
     pub time_error: f64,
-    /// The compliance of the bodies in the step, in that at once.
+    /// The compliance of the bodies in the step, relative to the instantaneous one.
     pub compliance: f64,
 }

@@ -1,12 +1,12 @@
-//! How a body creeps: the modes of its dashpots under a given w.
+//! The creep of a body: the modes of its dashpots under a given w.
 //!
 //! ```text
 //! t_k dq_k/dt = w + sum of r_l q_l - q_k,    q_k = sum over modes of v_i/(1 - t_k lambda_i),    dv_i/dt = -lambda_i v_i + w/N_i
 //! sum of r_k/(1 - t_k lambda_i) = 1,         N_i = sum of r_k t_k/(1 - t_k lambda_i)^2
 //! ```
 //!
-//! Between any two rates `1/t_k` there is one lambda, and one below all of them, which is 0 for a fluid. A root is found as its distance from the nearest
-//! of the rates next to it, by bisection of its bits: so all its digits are right, and those of `1 - t_k lambda_i`.
+//! There is one lambda between any two rates `1/t_k`, and one below all rates, which is 0 for a fluid. A root is found as its distance from the
+//! nearer neighbouring rate, by bisection of its bits: all digits of lambda and of `1 - t_k lambda_i` are right.
 
 use super::series::Series;
 
@@ -40,7 +40,7 @@ impl Mode {
 fn root(series: &Series, i: usize) -> (f64, Vec<f64>) {
     let Series { fractions, times, rest } = series;
     let excess = |less: &[f64]| fractions.iter().zip(less).map(|(r, less)| r / less).sum::<f64>() - 1.0;
-    // From 0 on: nothing cancels where little of the modulus is left.
+    // Relative to 0: no cancellation if the long-time modulus is small.
     let from_zero = |rate: f64| {
         let term = |(r, t): (&f64, &f64)| r * t * rate / (1.0 - t * rate);
         fractions.iter().zip(times).map(term).sum::<f64>() - rest
@@ -68,7 +68,7 @@ fn root(series: &Series, i: usize) -> (f64, Vec<f64>) {
     ((1.0 - d) / times[o], from(o, d))
 }
 
-/// Where `is_before` ends between 0 and this, to the last bit.
+/// The end of the range with `is_before` between 0 and `most`, to the last bit.
 fn bisect(most: f64, is_before: impl Fn(f64) -> bool) -> f64 {
     let (mut low, mut high) = (0u64, most.to_bits());
     while high - low > 1 {

@@ -1,17 +1,18 @@
-//! Coefficients of bodies that relax and roll steadily: material comes in at the leading edge, and gives way while it passes.
+//! Coefficients of viscoelastic bodies in steady rolling. Material enters at the leading edge and creeps while it passes.
 //!
-//! Material at x was at `x + V s` a time s ago. With the creep of a body, `J(t)/J(0) = 1 + sum of c_i (1 - exp(-lambda_i t))` (its [modes](super::modes):
-//! `c_i = 1/(N_i lambda_i)`), and its coefficients at once a,
+//! Material at x was at `x + V s` a time s ago. With the creep of a body, `J(t)/J(0) = 1 + sum of c_i (1 - exp(-lambda_i t))` (its
+//! [modes](super::modes): `c_i = 1/(N_i lambda_i)`), and its instantaneous coefficients a,
 //!
 //! ```text
 //! a_v(x, y) = a(x, y) + sum of c_i W_i(x, y),       W(x, y) = 1/L integral over s > 0 of exp(-s/L) a(x + s, y),   L = V/lambda
 //! W(x) = 1/L integral over 0 < s < dx of exp(-s/L) a(x + s)  +  exp(-dx/L) W(x + dx)
 //! ```
 //!
-//! a is smooth but at the edges of the element, where intervals end and panels become short: in its own row down to a part of its shorter side, in
-//! other rows down to the distance from the edge, which is short itself where elements are long in x. Lengths are in elements, times those in which one
-//! passes: of such a time that is below [`SHORTEST`] W is a, and of one above [`LONGEST_TIME`] nothing, to all digits, so they are taken for these. Element
-//! sizes and compliances are taken apart into a number near 1 and a power of two, which the table is multiplied by in the end.
+//! a is smooth except at the edges of the element. Intervals end there, and panels get shorter towards them: in the element's own row down to a
+//! fraction of its shorter side, in other rows down to the distance from the edge. That distance is short if elements are long in x. Lengths are in
+//! elements, and times in passages of one element. To all digits, W is a for a time below [`SHORTEST`], and 0 for a time above [`LONGEST_TIME`]. So
+//! such times are set to these bounds. Element sizes and compliances are split into a number near 1 and a power of two. The table is multiplied by
+//! that power at the end.
 
 use super::modes::Mode;
 use super::series::Series;
@@ -23,53 +24,53 @@ use crate::powers::{apart, times_power};
 
 /// Nodes of a panel.
 const NODES: usize = 12;
-/// Panels are at most so many L long, and what decays for longer than so many L is nothing.
+/// The longest panel, and the distance after which `exp(-s/L)` is negligible (4e-18), in L.
 const LONGEST: f64 = 2.0;
 const DECAYED: f64 = 40.0;
-/// Panels beside an edge: each ends at this part of the distance at which it begins, so 12 nodes give 14 digits,
+/// Panels next to an edge: each ends at this fraction of the distance at which it begins, so that 12 nodes give 14 digits.
 const SHORTER: f64 = 0.35;
-/// and the last one is this part of the shorter side of the element: there the slope of `a` grows as a logarithm, which the rule knows to 5e-5 of the
-/// square of its length.
+/// The last panel at an edge is this fraction of the shorter side of the element. The slope of `a` grows there as a logarithm. The rule integrates it
+/// with an error of 5e-5 of the square of the panel's length.
 const FINEST: f64 = 1e-5;
-/// Nothing changes within so many elements.
+/// Below this length in elements no value changes.
 const NOTHING: f64 = 1e-17;
-/// Far away a panel is at most this part of the distance.
+/// Far away a panel is at most this fraction of the distance.
 const OF_DISTANCE: f64 = 0.5;
-/// Powers of two of times, in passages of an element. Within the shorter one the slope of `a` changes nothing. The longer one exceeds 1e14 (the slowest
-/// mode over its branch's time), times 1e14 (the largest weight of a mode), times 1e16 (all digits).
+/// Bounds of times as powers of two, in passages of an element. Within the shorter time the slope of `a` has no effect. The longer time exceeds
+/// 1e14 (the slowest mode over its branch's time), times 1e14 (the largest weight of a mode), times 1e16 (all digits): 1e44 < 2^200.
 const SHORTEST: i32 = -100;
 const LONGEST_TIME: i32 = 200;
 const WHAT: &str = "a row of coefficients";
 
-/// A body: its compliance at once `(1 - nu)/(2 G)`, and how it relaxes.
+/// A body: its instantaneous compliance `(1 - nu)/(2 G)`, and its relaxation.
 pub struct RollingBody {
-    /// At once.
+    /// The instantaneous compliance.
     pub compliance: f64,
-    /// Of its modulus.
+    /// The series of its modulus.
     pub series: Series,
 }
 
-/// A part of the coefficients: W times `weight`, with the decay length L in elements; a itself without one.
+/// One term of the coefficients: W times `weight`, with the decay length L in elements. Without L the term is a itself.
 pub struct Part {
     weight: f64,
     length: Option<f64>,
 }
 
-/// A row of elements, whose coefficients at once, N of them, are known between offsets, too.
+/// A row of elements. Its N instantaneous coefficients are functions of a continuous offset.
 pub struct Row<'a, const N: usize> {
-    /// Those at an offset in x.
+    /// The coefficients at an offset in x.
     pub at: &'a dyn Fn(f64) -> [f64; N],
     /// The length of panels at the edges of the loaded element: [`finest`].
     pub finest: f64,
-    /// Of panels.
+    /// The quadrature rule of a panel.
     pub rule: &'a [(f64, f64)],
 }
 
-/// The length of panels at the edges of the loaded element, ky rows away, of elements dy wide.
+/// The length of panels at the edges of the loaded element in a row ky away, for elements of width dy.
 pub fn finest(ky: usize, dy: f64) -> f64 {
     match ky {
         0 => (FINEST * dy.min(1.0)).max(NOTHING),
-        // As far as the edge is away.
+        // The distance of the edge.
         _ => ((ky as f64 - 0.5) * dy).max(NOTHING),
     }
 }
@@ -89,7 +90,7 @@ impl<const N: usize> Row<'_, N> {
         sum.map(|sum| d / length * sum)
     }
 
-    /// The same of an interval, in panels that are short beside L.
+    /// The same for an interval, in panels that are short compared with L.
     fn interval(&self, kx: f64, (from, to): (f64, f64), length: f64) -> [f64; N] {
         let to = to.min(DECAYED * length);
         if !(to > from) {
@@ -101,7 +102,7 @@ impl<const N: usize> Row<'_, N> {
         (0..panels as usize).fold([0.0; N], |sum, k| plus(sum, 1.0, panel(k)))
     }
 
-    /// From an offset to the next.
+    /// The integral from an offset to the next.
     fn element(&self, kx: i64, length: f64) -> [f64; N] {
         let (x, mut sum, mut far) = (kx as f64, [0.0; N], 0.5);
         let between = |far: f64, near: f64| {
@@ -116,7 +117,7 @@ impl<const N: usize> Row<'_, N> {
         plus(sum, 1.0, between(far, 0.0))
     }
 
-    /// W far ahead.
+    /// W at an offset, by integration to the end.
     fn tail(&self, kx: i64, length: f64) -> [f64; N] {
         let (mut sum, mut s) = ([0.0; N], 0.0);
         while s < DECAYED * length {
@@ -127,7 +128,7 @@ impl<const N: usize> Row<'_, N> {
         sum
     }
 
-    /// Adds a part of the offsets `-cx..=cx`.
+    /// Adds a term at the offsets `-cx..=cx`.
     pub fn add(&self, part: &Part, cx: usize, out: &mut [[f64; N]]) {
         let Some(length) = part.length else {
             let at = |k: usize| (self.at)(k as f64 - cx as f64);
@@ -145,7 +146,7 @@ impl<const N: usize> Row<'_, N> {
     }
 }
 
-/// A series with the times in which an element passes in the place of its times.
+/// The series with its times in passages of an element.
 fn by_elements(series: &Series, dx: f64, speed: f64) -> Option<Series> {
     let ((d, of_d), (v, of_v)) = (apart(dx), apart(speed.abs()));
     let passing = |t: &f64| {
@@ -157,7 +158,7 @@ fn by_elements(series: &Series, dx: f64, speed: f64) -> Option<Series> {
     Series::new(1.0, &series.fractions, &times)
 }
 
-/// The parts of body `b`, with compliances in units of 2 to this power; refuses what creeps for ever.
+/// The terms of body `b`, with compliances in units of `2^power`. Rejects bodies that creep for ever.
 pub fn parts(b: usize, body: &RollingBody, power: i32, dx: f64, speed: f64) -> Result<Vec<Part>> {
     let mut parts = Vec::new();
     let compliance = times_power(body.compliance, -power);
@@ -184,7 +185,7 @@ pub fn parts(b: usize, body: &RollingBody, power: i32, dx: f64, speed: f64) -> R
     Ok(parts)
 }
 
-/// Refuses what no table is of; returns the greatest compliance.
+/// Checks the inputs of a table. Returns the largest compliance.
 pub fn check((cx, cy): (usize, usize), (dx, dy): (f64, f64), bodies: &[RollingBody; 2], speed: f64) -> Result<f64> {
     require(speed.is_finite() && speed != 0.0, "speed", speed, "it must be finite, and not 0")?;
     if cx == 0 || cy == 0 {
@@ -197,19 +198,19 @@ pub fn check((cx, cy): (usize, usize), (dx, dy): (f64, f64), bodies: &[RollingBo
     Ok(most)
 }
 
-/// The rule of panels.
+/// The quadrature rule of a panel.
 pub fn rule() -> Vec<(f64, f64)> {
     gauss_legendre(NODES)
 }
 
-/// Why coefficients are refused.
+/// The reason that a message names for invalid coefficients.
 pub const OUT_OF_RANGE: &str = "element sizes, moduli and times take it out of the range of numbers";
 
-/// The coefficients of two bodies that roll steadily towards +x at a speed, or towards -x at one below 0, as a table of the offsets
-/// `-cx..cx` by `-cy..cy`.
+/// The coefficients of two bodies in steady rolling, as a table of the offsets `-cx..cx` by `-cy..cy`. They roll towards +x for a positive
+/// speed, towards -x for a negative one.
 ///
 /// # Errors
-/// `InvalidArgument`, `NotFinite`: sizes that are none, a speed of 0, coefficients beyond the range of numbers. `Unsupported`: a body that creeps for
+/// `InvalidArgument`, `NotFinite`: invalid sizes, a speed of 0, coefficients beyond the range of numbers. `Unsupported`: a body that creeps for
 /// ever. `OutOfMemory`.
 pub fn rolling_table(
     (cx, cy): (usize, usize),

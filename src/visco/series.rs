@@ -1,11 +1,11 @@
-//! A Prony series, in order.
+//! A Prony series, sorted by time.
 
-/// Branches of a body at most.
+/// Most branches of a body.
 pub const MOST: usize = 32;
 
-/// The rounding of a sum of moduli.
+/// Relative round-off of a sum of moduli: [`MOST`] additions, 32 EPSILON = 7e-15.
 const ROUNDING: f64 = 1e-14;
-/// Times that differ by less than this part are one.
+/// Relative difference below which times are equal.
 const EQUAL: f64 = 1e-9;
 
 /// `r_k` and `t_k`, the longest time first, all of them positive, no two times equal to nine digits.
@@ -15,12 +15,12 @@ pub struct Series {
     pub fractions: Vec<f64>,
     /// `t_k`.
     pub times: Vec<f64>,
-    /// `1 - sum of r_k`: what is left of the modulus in the end; 0: a fluid.
+    /// `1 - sum of r_k`: the long-time modulus, relative; 0: a fluid.
     pub rest: f64,
 }
 
 impl Series {
-    /// Branches of these moduli and times of a body of modulus G at once. None where they add up to more than G.
+    /// Branches of these moduli and times of a body of instantaneous modulus G. None if they add up to more than G.
     pub fn new(g: f64, modulus: &[f64], time: &[f64]) -> Option<Series> {
         let counts = |modulus: f64| modulus > f64::EPSILON * g;
         let mut branches: Vec<(f64, f64)> = time

@@ -6,7 +6,7 @@
 //!
 //! // The caller's thread and one of a pool.
 //! let threads = Threads::new(2)?;
-//! // An array of 1e6 values, or an error that says what it was for.
+//! // An array of 1e6 values, or an error that names its purpose.
 //! let mut values: Vec<f64> = memory::zeros(1_000_000, "the example")?;
 //! threads.for_each_plain_row(&mut values, 1000, |row, values| values.fill(row as f64));
 //! let mut sums = Sums::new();
@@ -17,10 +17,10 @@
 //! # Ok::<(), par::OutOfMemory>(())
 //! ```
 //!
-//! | module | what it holds |
+//! | module | contents |
 //! |---|---|
-//! | [`threads`] | one pool for a process, and work that is cut into pieces: the bits of a result do not depend on the number of threads |
-//! | [`memory`] | arrays whose lack of memory is an error, and the memory of arrays that are gone, for later ones |
+//! | [`threads`] | one pool for a process, and work in pieces: the bits of a result do not depend on the number of threads |
+//! | [`memory`] | arrays with fallible allocation, and memory kept for later arrays |
 //! | [`sums`] | sums in a fixed order, which the compiler can vectorise |
 
 #![warn(missing_docs)]
@@ -33,7 +33,7 @@ pub mod threads;
 
 pub use error::{OutOfMemory, Result};
 
-/// The examples of what crates.io shows.
+/// Runs the examples of the readme on crates.io as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

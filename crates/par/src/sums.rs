@@ -1,13 +1,13 @@
 //! Sums over elements in lanes, for passes over slices of one length, and the least of values.
 //!
-//! Each sum is taken in lanes, which depend neither on the threads nor on the vectors of the machine: nor do the bits of the sums. Where a pass
-//! is compiled for those vectors (`pulp`), so is what is inlined here.
+//! Each sum is taken in lanes. Neither the lanes nor the bits of the sums depend on the threads or on the vectors of the machine. The functions are
+//! inlined, so that they are compiled for these vectors in a pass that is (`pulp`).
 
 use std::array::from_fn;
 
-/// Parts of each sum: an addition does not wait for the one before.
+/// Lanes of each sum: an addition does not wait for the one before.
 const LANES: usize = 4;
-/// The same of single sums, and of comparisons.
+/// Lanes of single sums and of comparisons.
 const WIDE: usize = 8;
 
 /// Terms of a block.
@@ -41,13 +41,13 @@ impl<const K: usize> Default for Sums<K> {
 }
 
 impl<const K: usize> Sums<K> {
-    /// Nothing yet.
+    /// Sums of no terms.
     pub fn new() -> Sums<K> {
         Sums([[0.0; LANES]; K])
     }
 
-    /// Adds `terms(values of a, values of b)` of all elements of some slices, one at least, which are of one length. Lanes are loaded first: the
-    /// compiler cannot tell that indices into several slices are inside, and then does not vectorise (3.5 times the time).
+    /// Adds `terms(values of a, values of b)` of all elements of one or more slices of equal length. Lanes are loaded first: the compiler cannot
+    /// prove that indices into several slices are in range, and would not vectorise (3.5 times the time).
     #[inline(always)]
     pub fn add<T: Value, const A: usize, const B: usize>(
         &mut self,
@@ -76,13 +76,13 @@ impl<const K: usize> Sums<K> {
         self.0 = sums;
     }
 
-    /// Their values.
+    /// The values of the sums.
     pub fn values(&self) -> [f64; K] {
         self.0.map(|lanes| lanes.iter().sum())
     }
 }
 
-/// The sum of `a - from + b` where it `counts`, and in how many places it does. Several at a time: that the compiler can vectorise.
+/// The sum of `a - from + b` over places that count, and their number, in lanes that the compiler vectorises.
 #[inline(always)]
 pub fn sum_where((a, from): (&[f64], f64), b: &[f64], counts: &[bool]) -> (f64, u64) {
     let term = |a: f64, b: f64, counts: bool| if counts { a - from + b } else { 0.0 };
@@ -98,7 +98,7 @@ pub fn sum_where((a, from): (&[f64], f64), b: &[f64], counts: &[bool]) -> (f64, 
     (sums.iter().sum::<f64>() + of_rest.sum::<f64>(), count)
 }
 
-/// The sum of values that are met one after the other: in blocks, the sums of which are added. 262144 equal terms in one sum are off by 4e-12.
+/// The sum of the values of an iterator, in blocks whose sums are added. One sum of 262144 equal terms has an error of 4e-12.
 pub fn in_blocks(mut values: impl Iterator<Item = f64>) -> f64 {
     let (mut all, mut next) = (0.0, values.next());
     while let Some(first) = next {
@@ -113,7 +113,7 @@ pub fn mean(values: &[f64]) -> f64 {
     in_blocks(values.iter().copied()) / values.len() as f64
 }
 
-/// The lesser of two values; of equal ones the second, whatever the sign of a zero.
+/// The lesser of two values; the second if they are equal, for any sign of zero.
 #[inline(always)]
 pub fn lesser(a: f64, b: f64) -> f64 {
     if a < b {
@@ -123,7 +123,7 @@ pub fn lesser(a: f64, b: f64) -> f64 {
     }
 }
 
-/// The least of some values that are numbers; infinite if there are none. Several at a time: that the compiler can vectorise.
+/// The least of some values that are not NaN; infinite if there are none. In lanes that the compiler vectorises.
 #[inline(always)]
 pub fn least(values: &[f64]) -> f64 {
     let (lanes, rest) = pulp::as_arrays::<WIDE, f64>(values);

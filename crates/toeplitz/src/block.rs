@@ -1,5 +1,5 @@
-//! The kernel of the fused product: blocks of columns of a row-major matrix, worked on by several threads at once, and
-//! prefetches. Only this file has unsafe code.
+//! The kernel of the fused product: blocks of columns of a row-major matrix, shared among threads, and prefetches. Only this
+//! file has unsafe code.
 
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -12,12 +12,12 @@ pub const BLOCK: usize = 16;
 /// Rows that are gathered at a time.
 const TILE: usize = 8;
 
-/// A column of this many values or more has a gap of [`GAP`] behind it. Without one columns would be a power of two apart, and would share few lines
-/// of the nearest cache.
+/// Least length of columns with a gap of [`GAP`] behind them: otherwise columns would be a power of two apart, and would share few lines of the
+/// nearest cache.
 const LONG: usize = 512;
 const GAP: usize = 8;
 
-/// Values from the beginning of a column in a block to that of the next.
+/// Values from the start of a column in a block to that of the next.
 pub fn room_of_column(length: usize) -> usize {
     if length < LONG {
         length
@@ -26,23 +26,23 @@ pub fn room_of_column(length: usize) -> usize {
     }
 }
 
-/// The real and imaginary parts of complex values, in turns.
+/// The interleaved real and imaginary parts of complex values.
 pub fn parts<T: Scalar>(values: &[Complex<T>]) -> &[T] {
     // SAFETY: a Complex is two values of T in the order of C (`repr(C)`), so the slice holds twice as many of them.
     unsafe { std::slice::from_raw_parts(values.as_ptr().cast(), 2 * values.len()) }
 }
 
-/// The same, to be written.
+/// The mutable [`parts`].
 pub fn parts_mut<T: Scalar>(values: &mut [Complex<T>]) -> &mut [T] {
     // SAFETY: as above; the values are borrowed mutably.
     unsafe { std::slice::from_raw_parts_mut(values.as_mut_ptr().cast(), 2 * values.len()) }
 }
 
-/// Bytes of a line of the caches; where it is longer, some are prefetched twice.
+/// Bytes of a line of the caches; longer lines are prefetched twice.
 const LINE: usize = 64;
 
-/// Prefetches so many values from `first` on, which are needed soon: they arrive while something else is computed. It is a hint, whatever
-/// stands there; of values that do not begin at a line the last line is left out.
+/// Prefetches `count` values from `first` on during other work. This is a hint, valid for any address; if `first` is not at the start of a line, the
+/// last line is left out.
 #[inline(always)]
 pub fn prefetch<V>(first: *const V, count: usize) {
     #[cfg(target_arch = "x86_64")]
@@ -55,7 +55,7 @@ pub fn prefetch<V>(first: *const V, count: usize) {
     let _ = (first, count, LINE);
 }
 
-/// One block of columns of a row-major matrix: no two of them overlap.
+/// One block of columns of a row-major matrix. Blocks do not overlap.
 pub struct Block<'a, T> {
     data: *mut Complex<T>,
     rows: usize,
@@ -80,7 +80,7 @@ pub fn blocks_of<'a, T: Scalar>(
     columns.step_by(count).map(move |first| matrix.part(first, count.min(end - first)))
 }
 
-/// Calls `work` on each block of columns of the matrix `data`, `width` columns wide, with the scratch of the thread that does it.
+/// Calls `work` on each block of columns of the matrix `data`, `width` columns wide, with the scratch of the calling thread.
 pub fn for_each_block<T: Scalar, S: Send>(
     data: &mut [Complex<T>],
     width: usize,
@@ -98,7 +98,7 @@ impl<'a, T: Scalar> Block<'a, T> {
         Block { rows: data.len() / width, data: data.as_mut_ptr(), width, first: 0, columns: width, owner: PhantomData }
     }
 
-    /// Some of its columns. Those who call it give each column to one block, and do not use this one.
+    /// A part of the columns. Callers give each column to one block, and do not use this one.
     fn part(&self, first: usize, columns: usize) -> Block<'a, T> {
         assert!(first >= self.first && first + columns <= self.first + self.columns);
         Block { first, columns, ..*self }
@@ -188,7 +188,7 @@ impl<'a, T: Scalar> Block<'a, T> {
         }
     }
 
-    /// The same, to be written.
+    /// The block's mutable part of a row.
     #[inline(always)]
     pub fn row_mut(&mut self, row: usize) -> &mut [Complex<T>] {
         assert!(row < self.rows);

@@ -1,15 +1,15 @@
-//! A matrix by the coefficients of its offsets.
+//! A Toeplitz matrix, given by its coefficients at offsets.
 
 /// Coefficients `c(k)` and `c(-k)` that differ by no more than this, relative to the largest, count as equal: tables are often written in
 /// single precision.
 pub const SYMMETRY: f64 = 1e-7;
 
-/// Coefficients that need not be even. Those of an element J act on element I at the offset `k = I - J`.
+/// Coefficients that need not be even. Element J acts on element I by the coefficient at the offset `k = I - J`.
 pub trait Coefficients: Sync {
-    /// Those at offsets `(kx, ky)`, `(kx + 1, ky)`, ...
+    /// Fills `out` with the coefficients at offsets `(kx, ky)`, `(kx + 1, ky)`, ...
     fn fill_row(&self, kx: i64, ky: i64, out: &mut [f64]);
 
-    /// Their symmetric parts `(c(k) + c(-k))/2`, likewise.
+    /// Fills `out` with the symmetric parts `(c(k) + c(-k))/2`, likewise.
     fn fill_symmetric_row(&self, kx: i64, ky: i64, out: &mut [f64]);
 
     /// Whether `c(k) = c(-k)` to within [`SYMMETRY`].
@@ -22,7 +22,7 @@ pub struct Even<F, G> {
     pub given: (usize, usize),
     /// `fill(ky, row)` gives the coefficients at offsets `(0.., ky)`.
     pub fill: F,
-    /// The part of each value of the symbol that is kept, before normalisation.
+    /// Applied to each value of the symbol before normalisation.
     pub finish: G,
 }
 
@@ -44,6 +44,6 @@ pub struct EvenMatrix<F, G> {
     pub is_coupled: bool,
     /// `fill(component, ky, row)` gives xx (component 0), yy (1) or xy (2) at offsets `(0.., ky)`.
     pub fill: F,
-    /// The parts of xx, yy and xy of each value of the symbol that are kept, before normalisation.
+    /// Applied to xx, yy and xy of each value of the symbol before normalisation.
     pub finish: G,
 }

@@ -1,11 +1,11 @@
-//! The y direction of a product where A is block Toeplitz.
+//! The y direction of a product by a block Toeplitz matrix.
 //!
 //! ```text
 //! u_I = sum_J c(ix - jx, iy - jy) p_J = [F^-1 (S . F p)]_I,    S = F c,  p padded with zeros to px * py
 //! ```
 //!
-//! Per block of columns: by even coefficients as [`LaneColumns`] have them, where the machine has vectors; by others, they are gathered,
-//! transformed, multiplied, transformed back and scattered.
+//! Blocks of columns with even coefficients are done by [`LaneColumns`] on machines with vectors. Others are gathered, transformed, multiplied,
+//! transformed back and scattered.
 
 use std::ops::Range;
 
@@ -29,7 +29,7 @@ use par::Result;
 /// Transforms in y, and the symbol.
 pub(crate) struct Convolution<T: Real> {
     pub columns: ColumnTransform<T>,
-    /// By an even symbol, of rows and columns in lanes.
+    /// Transforms of rows and columns in lanes, for an even symbol.
     by_lanes: Option<(LaneRows<T>, LaneColumns<T>)>,
     symbol: Symbol<T>,
 }
@@ -37,27 +37,27 @@ pub(crate) struct Convolution<T: Real> {
 impl<T: Real> Convolution<T> {
     /// Transforms of a period; the symbol is still to be computed.
     pub fn new((px, py): (usize, usize)) -> Result<Convolution<T>> {
-        // No plan is made in vain: one of a grid of one row is as large as the grid.
+        // Plans are made only if used: that of a grid of one row is as large as the grid.
         let by_lanes = if have_stages((px, py)) { LaneRows::new(px)?.zip(LaneColumns::new(py)?) } else { None };
         Ok(Convolution { columns: ColumnTransform::new(py)?, by_lanes, symbol: Symbol::Even(Vec::new()) })
     }
 
-    /// How an even symbol of so many columns is kept.
+    /// The storage of an even symbol of this number of columns.
     fn order(&self, columns: usize) -> EvenOrder<'_, T> {
         EvenOrder { by_lanes: self.by_lanes.as_ref().map(|(_, columns)| columns), columns, py: self.columns.length() }
     }
 
-    /// The transforms of rows that fit the columns, if these are in lanes.
+    /// The transforms of rows in lanes, if the symbol uses lanes.
     pub fn lanes(&self) -> Option<&LaneRows<T>> {
         self.lanes_if_even().filter(|_| matches!(self.symbol, Symbol::Even(_)))
     }
 
-    /// The same whatever the coefficients are now.
+    /// The transforms of rows in lanes, for any present coefficients.
     pub fn lanes_if_even(&self) -> Option<&LaneRows<T>> {
         self.by_lanes.as_ref().map(|(rows, _)| rows)
     }
 
-    /// The same in another precision, times a factor; `px` is the period in x.
+    /// The convolution in another precision, times a factor; `px` is the period in x.
     pub fn in_precision<S: Real>(&self, px: usize, factor: f64, threads: &Threads) -> Result<Convolution<S>> {
         let mut other = Convolution::new((px, self.columns.length()))?;
         other.symbol = self.symbol.in_precision(factor, threads)?;
@@ -104,7 +104,7 @@ impl<T: Real> Convolution<T> {
         });
     }
 
-    /// Computes the symbol of even coefficients, in the memory that there is; `px` is the period in x.
+    /// Computes the symbol of even coefficients in the present memory; `px` is the period in x.
     pub fn set_even<F, G>(&mut self, even: &Even<F, G>, px: usize, threads: &Threads, set_up: &mut SetUp) -> Result<()>
     where
         F: Fn(i64, &mut [f64]) + Sync + Send,
@@ -125,7 +125,7 @@ impl<T: Real> Convolution<T> {
         Ok(())
     }
 
-    /// Takes a symbol of even coefficients, `value(x, y)` of the bins >= 0; `px` is the period in x.
+    /// Takes the symbol `value(x, y)` of even coefficients at the bins >= 0; `px` is the period in x.
     pub fn set_values(&mut self, (nb, px): (usize, usize), value: impl Fn(usize, usize) -> f64) -> Result<()> {
         let (py, order) = (self.columns.length(), self.order(nb));
         let scale = 1.0 / (px as f64 * py as f64);

@@ -1,10 +1,10 @@
-//! Lengths of transforms that are fast.
+//! Lengths of fast transforms.
 
-/// The longest stage of our own.
+/// The longest stage of this crate.
 pub(crate) const LONGEST: usize = 5;
 
-/// Work of a transform of length `2^a 3^b 5^c` by rustfft relative to one of `2^a 3^b` with many twos: measured, in single precision, where it
-/// matters more. What is left of a twos, fours and eights is vectorised badly, and so are fives, unless one stands beside many twos alone.
+/// Work of a transform of length `2^a 3^b 5^c` by rustfft relative to one of `2^a 3^b` with many twos: measured in single precision, where it
+/// differs more. Lengths with few twos are vectorised badly, and so are fives, except a single five beside many twos.
 fn relative_work(twos: u32, threes: u32, fives: u32) -> f64 {
     let of_twos = [3.0, 1.5, 1.25, 1.1].get(twos as usize).copied().unwrap_or(1.0);
     let of_fives = match (threes > 0, fives) {
@@ -17,13 +17,13 @@ fn relative_work(twos: u32, threes: u32, fives: u32) -> f64 {
     of_twos * of_fives
 }
 
-/// The even `2^a 3^b 5^c >= n` the transform of which by rustfft is fastest: lengths with a large prime factor cost six times as much.
+/// The even `2^a 3^b 5^c >= n` with the fastest transform by rustfft: lengths with a large prime factor cost six times as much.
 pub fn good_length(n: usize) -> usize {
     length_of_least_work(n, relative_work)
 }
 
-/// The length for stages of our own: the even `2^a 3^b 5^c >= n` of which products go through them fastest. Measured: a stage of 3 takes as
-/// long as two of 2, one of 5 as three of 2, and what goes between memory and vectors as ten.
+/// The length for stages of this crate: the even `2^a 3^b 5^c >= n` with the fastest products. Measured: a stage of 3 takes as long as two of
+/// 2, one of 5 as three of 2, and the transfer between memory and vectors as ten.
 pub fn length_for_stages(n: usize) -> usize {
     length_of_least_work(n, |twos, threes, fives| f64::from(10 + twos + 2 * threes + 3 * fives))
 }
@@ -48,17 +48,17 @@ fn length_of_least_work(n: usize, relative_work: impl Fn(u32, u32, u32) -> f64) 
     best
 }
 
-/// Whether products of these periods go through stages of our own, in both directions, on a machine that has vectors.
+/// Whether products of these periods use stages of this crate in both directions, on a machine with vectors.
 pub fn have_stages((px, py): (usize, usize)) -> bool {
     px % 2 == 0 && has_stages(px / 2) && has_stages(py)
 }
 
-/// Whether there are stages for a length: none up to the longest radix, which are one stage.
+/// Whether there are stages for a length: not up to the longest radix, where one stage suffices.
 fn has_stages(length: usize) -> bool {
     length > LONGEST && radices(length).is_some()
 }
 
-/// Factors of a length: a four first, the other fours last, what else there is between them.
+/// Factors of a length: a four first, the other fours last, the other factors between.
 pub(crate) fn radices(length: usize) -> Option<Vec<usize>> {
     let (mut rest, mut fours, mut others) = (length, 0, Vec::new());
     while rest > 0 && rest % 4 == 0 {

@@ -1,4 +1,4 @@
-//! Products by block Toeplitz matrices of two levels, by FFT; also by those that are Toeplitz in x only.
+//! Products by block Toeplitz matrices of two levels, by FFT; also by matrices that are Toeplitz in x only.
 //!
 //! ```text
 //! u_I = sum_J c(I - J) p_J = [F^-1 (S . F p)]_I       I, J elements of a grid of mx * my,   S = F c, the symbol
@@ -9,10 +9,10 @@
 //! any other c                                         S is complex
 //! ```
 //!
-//! p is padded with zeros to a period `px * py` that keeps the offsets apart, and nothing of the padding is stored: only rows that hold
-//! values are transformed in x, and blocks of columns are transformed in y, multiplied by S and transformed back while they are in the
-//! nearest cache. Even products of lengths `2^a 3^b 5^c` go through stages of this crate, one row or column in each lane of the machine's
-//! vectors; others through rustfft. No bit depends on the number of threads or on the length of vectors.
+//! p is padded with zeros to a period `px * py` that keeps the offsets apart. The padding is not stored: only rows with values are
+//! transformed in x, and blocks of columns are transformed in y, multiplied by S and transformed back in the nearest cache. Even products of
+//! lengths `2^a 3^b 5^c` use stages of this crate, one row or column in each SIMD lane, others rustfft. No bit depends on the number of
+//! threads or on the length of vectors.
 //!
 //! ```
 //! use par::threads::Threads;
@@ -28,15 +28,15 @@
 //! # Ok::<(), par::OutOfMemory>(())
 //! ```
 //!
-//! | module | what it holds |
+//! | module | contents |
 //! |---|---|
 //! | [`Product`] | the product of one matrix |
-//! | [`VectorProduct`] | the same of two components, by a symmetric matrix of each offset |
+//! | [`VectorProduct`] | the product of two components, by a symmetric matrix of each offset |
 //! | [`ParityProduct`] | sums of products by kernels that are even or odd in either direction |
-//! | [`coefficients`] | what a matrix is made of |
+//! | [`coefficients`] | the coefficients of a matrix |
 //! | [`fft`] | transforms of rows and columns: stages in lanes, and any length |
-//! | [`plan`] | plans that the threads of a process share |
-//! | [`dense`] | the same product term by term, the oracle of tests |
+//! | [`plan`] | plans shared by the threads of a process |
+//! | [`dense`] | the product term by term, the oracle of tests |
 
 #![warn(missing_docs)]
 #![deny(unsafe_code)]

@@ -1,11 +1,11 @@
-//! For tests of the C boundary: a panic in the core, on demand. Not in any library that is built without the feature.
+//! A panic in the core on demand, for tests of the C boundary. Libraries built without the feature do not contain it.
 
 use std::sync::atomic::{AtomicI64, Ordering};
 
-/// Blocks of columns that products multiply until one panics; below 0: none does.
+/// The number of blocks of columns that products multiply before one panics. Below 0 there is no panic.
 pub static BLOCKS: AtomicI64 = AtomicI64::new(-1);
 
-/// Panics when its time has come.
+/// Counts a block, and panics after the last one.
 pub fn at_a_block() {
     if BLOCKS.load(Ordering::Relaxed) >= 0 && BLOCKS.fetch_sub(1, Ordering::Relaxed) == 0 {
         panic!("on demand of a test");

@@ -1,22 +1,22 @@
-//! Products of loads by kernels of any parity: sums over some loads, each with a kernel of its own, which change often.
+//! Products of loads by kernels of any parity: sums over loads, each with its own kernel, which changes often.
 //!
 //! ```text
 //! u = F^-1 sum over loads of i^(number of odd directions) S . F load
 //! ```
 //!
-//! A kernel that is even in both directions has a real, even symbol S; each direction in which it is odd makes that a factor i, and S odd in this
-//! direction. Loads are padded with zeros to a period and transformed once; of each kernel one quadrant is tabulated, or half of S is known. Two real
-//! rows a, b make one complex row `a + i b`, so that rows are transformed at half the price. All is of any length, and of one thread.
+//! A kernel that is even in both directions has a real, even symbol S. In each direction in which it is odd, the symbol has a factor i and S is odd.
+//! Loads are padded with zeros to a period and transformed once. One quadrant of each kernel is tabulated, or half of S is known. Two real rows a, b
+//! make one complex row `a + i b`, which halves the cost of row transforms. All lengths are possible; products use one thread.
 
 use crate::fft::any_length::ColumnTransform;
 use crate::real::Complex;
 use par::memory::zeros;
 use par::Result;
 
-/// Columns that are transformed at a time: as many values side by side as two cache lines hold.
+/// Columns transformed at a time: values of two cache lines.
 const BLOCK: usize = 8;
 
-/// Names its memory in messages.
+/// The name of this memory in messages.
 const KERNELS: &str = "the transforms of kernels";
 
 /// Products of one period.
@@ -25,9 +25,9 @@ pub struct ParityProduct {
     columns: ColumnTransform<f64>,
 }
 
-/// Memory for them.
+/// Memory for these products.
 pub struct ParityMemory {
-    /// Of one kernel: transforms in x, `[ky][bin in x]`.
+    /// Transforms in x of one kernel, `[ky][bin in x]`.
     in_x: Vec<f64>,
     row: Vec<Complex<f64>>,
     columns: Vec<Complex<f64>>,
@@ -56,7 +56,7 @@ impl ParityProduct {
         (self.rows.length(), self.columns.length())
     }
 
-    /// Bins in x and in y, none of them negative.
+    /// Numbers of bins >= 0 in x and in y.
     pub fn bins(&self) -> (usize, usize) {
         (self.rows.length() / 2 + 1, self.columns.length() / 2 + 1)
     }
@@ -207,7 +207,7 @@ impl ParityProduct {
             for bin in 0..left {
                 let (a, b) = (one[bin], second(bin));
                 row[bin] = Complex::new(a.re - b.im, a.im + b.re);
-                // The bin of the opposite wave has the conjugate of both.
+                // The bin of the opposite wave has the conjugates of both.
                 if bin > 0 && 2 * bin != px {
                     row[px - bin] = Complex::new(a.re + b.im, b.re - a.im);
                 }
@@ -229,14 +229,14 @@ fn put(values: &mut [Complex<f64>], k: usize, value: Complex<f64>, odd: bool) {
     }
 }
 
-/// The last of so many values: half a period away what is odd is its own opposite.
+/// Sets the value half a period away to 0 for odd values, which are their own opposite there.
 fn close(values: &mut [Complex<f64>], given: usize, odd: bool) {
     if odd && 2 * (given - 1) == values.len() {
         values[given - 1] = Complex::default();
     }
 }
 
-/// The spectra of two rows that were transformed as one: of even rows they are real, of odd ones imaginary.
+/// The transforms of two rows transformed as one: real for even rows, imaginary for odd ones.
 fn both(value: Complex<f64>, odd: bool) -> (f64, f64) {
     if odd {
         (value.im, -value.re)
@@ -245,7 +245,7 @@ fn both(value: Complex<f64>, odd: bool) -> (f64, f64) {
     }
 }
 
-/// Puts `i^(number of odd directions) S . load` of one column, where S is given at bins in y >= 0.
+/// Puts `i^(number of odd directions) S . load` of one column, with S given at bins in y >= 0.
 fn put_product(
     column: &mut [Complex<f64>],
     load: &[Complex<f64>],

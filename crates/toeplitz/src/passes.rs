@@ -1,5 +1,5 @@
-//! Passes of transforms, compiled in this crate, once for each precision. A crate that multiplies would compile generic ones again, in each
-//! of its builds: they took half of it.
+//! Passes of transforms, compiled in this crate, once for each precision. A crate that multiplies compiles generic passes again in each
+//! build: two fifths of the optimiser's time.
 
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
-//! Plans of transforms, which all threads of the process share: a second product of the same period costs no planning.
+//! Plans of transforms, shared by all threads of the process: a second product of the same period costs no planning.
 //!
-//! A plan depends on its length only, so that no bit of a result depends on what was planned before. The least recently used plans go first
-//! when they are more than the process may keep; those in use live on with who uses them.
+//! A plan depends on its length only, so that no bit of a result depends on earlier plans. Beyond the bound of kept plans the least recently used
+//! are dropped first; plans in use live until their last user drops them.
 
 use std::any::{Any, TypeId};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -9,12 +9,12 @@ use std::sync::{Arc, Mutex};
 
 use par::{threads, Result};
 
-/// Names its memory in messages.
+/// The name of this memory in messages.
 pub(crate) const PLAN: &str = "the plans of transforms";
 
-/// Bytes of plans that are kept at most, unless the caller says how many: those of periods up to 4096 x 4096 take less than 2 MiB.
+/// Default bound on the bytes of kept plans: those of periods up to 4096 x 4096 take less than 2 MiB.
 const MOST_KEPT: usize = 16 << 20;
-/// As many as the caller allows.
+/// The caller's bound on the bytes of kept plans.
 static ALLOWED: AtomicUsize = AtomicUsize::new(MOST_KEPT);
 
 /// Tables of a length, computed once.
@@ -31,15 +31,15 @@ struct Known {
     plan: Arc<dyn Any + Send + Sync>,
 }
 
-/// The least recently used first.
+/// The kept plans, least recently used first.
 static KNOWN: Mutex<Vec<Known>> = Mutex::new(Vec::new());
 
-/// The plan of a length, which is made if nobody has.
+/// The plan of a length, made at the first call.
 pub(crate) fn shared<P: Plan>(length: usize, make: impl FnOnce() -> Result<P>) -> Result<Arc<P>> {
     if let Some(known) = find(length) {
         return Ok(known);
     }
-    // The others do not wait for it. Two threads may make the same.
+    // Made without the lock, so that other threads do not wait. Two threads may make the same plan.
     let plan = Arc::new(make()?);
     let bytes = plan.bytes();
     if let Some(mut known) = threads::lock(&KNOWN) {
@@ -60,7 +60,7 @@ fn shrink(known: &mut Vec<Known>) {
     known.drain(..old);
 }
 
-/// Keeps no more than so many bytes of plans from here on.
+/// Sets the bound on the bytes of kept plans.
 pub fn keep_at_most(bytes: usize) {
     ALLOWED.store(bytes, Ordering::Relaxed);
     if let Some(mut known) = threads::lock(&KNOWN) {
@@ -68,7 +68,7 @@ pub fn keep_at_most(bytes: usize) {
     }
 }
 
-/// The plan of a length if it is known.
+/// The kept plan of a length, if any.
 pub(crate) fn find<P: Plan>(length: usize) -> Option<Arc<P>> {
     let mut known = threads::lock(&KNOWN)?;
     let i = known.iter().position(|known| known.length == length && known.kind == TypeId::of::<P>())?;
@@ -76,14 +76,14 @@ pub(crate) fn find<P: Plan>(length: usize) -> Option<Arc<P>> {
     known.last()?.plan.clone().downcast().ok()
 }
 
-/// Forgets all plans. Those in use live on with who uses them.
+/// Drops all plans. Plans in use live until their last user drops them.
 pub fn release() {
     if let Some(mut known) = threads::lock(&KNOWN) {
         *known = Vec::new();
     }
 }
 
-/// Bytes of the plans that are kept.
+/// Bytes of the kept plans.
 pub fn kept() -> usize {
     threads::lock(&KNOWN).map_or(0, |known| known.iter().map(|known| known.bytes).sum())
 }

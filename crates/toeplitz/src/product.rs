@@ -1,6 +1,6 @@
-//! `u = A p` on a grid: transforms in x of the rows that hold values, the y direction, and transforms back in x.
+//! `u = A p` on a grid: transforms in x of the rows with values, the y direction, and transforms back in x.
 //!
-//! In y A is Toeplitz, too, or there is a matrix for each bin in x.
+//! In y, A is Toeplitz as well, or there is a matrix for each bin in x.
 
 use par::threads::Threads;
 use par::Result;
@@ -15,8 +15,7 @@ use crate::rows::Rows;
 use crate::set_up::SetUp;
 use crate::workspace::{Memory, Room};
 
-/// Products by one block Toeplitz matrix on a grid of `mx * my` elements, or by one that is Toeplitz in x only. Arrays on it are `[my][mx]`, x
-/// fastest.
+/// Products by one block Toeplitz matrix on a grid of `mx * my` elements, or by one that is Toeplitz in x only. Arrays are `[my][mx]`, x fastest.
 pub struct Product<T: Real> {
     rows: Rows<T>,
     columns: Columns<T>,
@@ -29,13 +28,13 @@ enum Columns<T: Real> {
 }
 
 impl<T: Real> Product<T> {
-    /// Plans of a period, at least as long as the grid in either direction; the symbol is still to be computed. An error: there is no memory.
+    /// Makes the plans of a period, at least as long as the grid in either direction, without the symbol. Fails without memory.
     pub fn new(grid: (usize, usize), period: (usize, usize), threads: &Threads) -> Result<Product<T>> {
         let columns = Columns::Toeplitz(Convolution::new(period)?);
         Ok(Product { rows: Rows::new(grid, period.0, threads)?, columns })
     }
 
-    /// By coefficients of each loaded row and each row, with a period in x that keeps the offsets apart.
+    /// A product by coefficients of each loaded row and each row, with a period in x that keeps the offsets apart.
     pub fn per_row<F: Fn(usize, usize, &mut [f64]) + Sync + Send>(
         grid: (usize, usize),
         of: &OfRows<F>,
@@ -46,7 +45,7 @@ impl<T: Real> Product<T> {
         Ok(Product { rows: Rows::new(grid, px, threads)?, columns })
     }
 
-    /// A whole product of even coefficients, `c(kx, ky) = c(-kx, ky) = c(kx, -ky)`, which are given at offsets >= 0.
+    /// A complete product of even coefficients, `c(kx, ky) = c(-kx, ky) = c(kx, -ky)`, given at offsets >= 0.
     pub fn even(
         (mx, my): (usize, usize),
         c: impl Fn(usize, usize) -> f64 + Sync + Send,
@@ -59,7 +58,7 @@ impl<T: Real> Product<T> {
         Ok(product)
     }
 
-    /// A whole product of any coefficients.
+    /// A complete product of any coefficients.
     pub fn uneven(grid: (usize, usize), coefficients: &impl Coefficients, threads: &Threads) -> Result<Product<T>> {
         let period = (good_length(2 * grid.0 - 1), good_length(2 * grid.1 - 1));
         let mut product = Product::new(grid, period, threads)?;
@@ -72,7 +71,7 @@ impl<T: Real> Product<T> {
         (self.rows.mx, self.rows.my)
     }
 
-    /// The periods in x and y; None where A is Toeplitz in x only.
+    /// The periods in x and y; None if A is Toeplitz in x only.
     pub fn period(&self) -> Option<(usize, usize)> {
         match &self.columns {
             Columns::Toeplitz(columns) => Some((self.rows.transform.length(), columns.columns.length())),
@@ -80,7 +79,7 @@ impl<T: Real> Product<T> {
         }
     }
 
-    /// The threads of its products.
+    /// The threads of the products.
     pub fn threads(&self) -> &Threads {
         &self.rows.threads
     }
@@ -93,7 +92,7 @@ impl<T: Real> Product<T> {
         }
     }
 
-    /// The sizes that its products need; they do not depend on the coefficients.
+    /// The sizes of the products' memory, which do not depend on the coefficients.
     pub fn room(&self) -> Room {
         match &self.columns {
             Columns::Toeplitz(columns) => {
@@ -104,12 +103,12 @@ impl<T: Real> Product<T> {
         }
     }
 
-    /// Memory for its products.
+    /// Memory for the products.
     pub fn memory(&self) -> Result<Memory<T>> {
         Memory::new(self.room(), self.threads())
     }
 
-    /// Computes the symbol of even coefficients. After an error it is not to be used before it is set again.
+    /// Computes the symbol of even coefficients. After an error the product must be set again before use.
     pub fn set_even<F, G>(&mut self, even: &Even<F, G>, set_up: &mut SetUp) -> Result<()>
     where
         F: Fn(i64, &mut [f64]) + Sync + Send,
@@ -125,12 +124,12 @@ impl<T: Real> Product<T> {
         toeplitz(&mut self.columns).set_uneven(by, grid, px, &self.rows.threads, set_up)
     }
 
-    /// Takes an even symbol that is known: `value(x, y)` of the bins `0 ..= px/2`, `0 ..= py/2`, without the normalisation `1/(px py)`.
+    /// Takes a known even symbol `value(x, y)` at the bins `0 ..= px/2`, `0 ..= py/2`, without the normalisation `1/(px py)`.
     pub fn set_values(&mut self, value: impl Fn(usize, usize) -> f64) -> Result<()> {
         toeplitz(&mut self.columns).set_values((self.rows.transform.bins(), self.rows.transform.length()), value)
     }
 
-    /// The same product in another precision, times a factor.
+    /// The product in another precision, times a factor.
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<Product<S>> {
         let (px, threads) = (self.rows.transform.length(), &self.rows.threads);
         let columns = match &self.columns {
@@ -157,13 +156,13 @@ impl<T: Real> Product<T> {
         }
     }
 
-    /// The second half: u.
+    /// The second half of a product: u.
     pub fn back(&self, u: &mut [T], memory: &mut Memory<T>) {
         assert_eq!(u.len(), self.rows.mx * self.rows.my, "values of another grid");
         self.rows.back(u, memory, self.lanes());
     }
 
-    /// The second half: `write(first element, values of u, values of A p)` takes some rows at a time.
+    /// The second half of a product: `write(first element, values of u, values of A p)` gets some rows at a time.
     pub fn back_with(&self, u: &mut [T], memory: &mut Memory<T>, write: impl Fn(usize, &mut [T], &[T]) + Sync + Send) {
         assert_eq!(u.len(), self.rows.mx * self.rows.my, "values of another grid");
         self.rows.back_with(u, memory, self.lanes(), write);
@@ -177,7 +176,7 @@ impl<T: Real> Product<T> {
     }
 }
 
-/// Those whose symbol is set.
+/// The convolution, whose symbol is to be set.
 fn toeplitz<T: Real>(columns: &mut Columns<T>) -> &mut Convolution<T> {
     match columns {
         Columns::Toeplitz(columns) => columns,
@@ -185,7 +184,7 @@ fn toeplitz<T: Real>(columns: &mut Columns<T>) -> &mut Convolution<T> {
     }
 }
 
-/// The shortest fast period of even coefficients: offsets `m - 1` and `-(m - 1)` are alike.
+/// The shortest fast period of even coefficients, for which offsets `m - 1` and `-(m - 1)` coincide.
 pub fn even_period((mx, my): (usize, usize)) -> (usize, usize) {
     let of = |length: fn(usize) -> usize| (length(2 * mx - 2), length(2 * my - 2));
     let by_stages = of(length_for_stages);

@@ -1,12 +1,12 @@
-//! The y direction of a product where A is Toeplitz in x only: rows of the grid have coefficients of their own.
+//! The y direction of a product by a matrix that is Toeplitz in x only: rows of the grid have coefficients of their own.
 //!
 //! ```text
 //! u^(iy, kx) = sum over jy of S_kx(jy, iy) p^(jy, kx),     ^: the transform in x
 //! ```
 //!
-//! For each of the `px/2 + 1` bins kx a matrix of my by my: real where the coefficients are even in x, or else a real and an imaginary one.
-//! That is `my^2 (mx + 1)` numbers, twice as many if not even, and as many multiplications of a complex number: a product reads all of
-//! them (of the loaded rows), which takes longer than the transforms.
+//! Each of the `px/2 + 1` bins kx has a matrix of my by my: real if the coefficients are even in x, else a real and an imaginary one. These are
+//! `my^2 (mx + 1)` numbers, twice as many if not even, and as many multiplications of a complex number. A product reads all numbers of the loaded
+//! rows, which takes longer than the transforms.
 
 use std::ops::Range;
 
@@ -21,21 +21,21 @@ use par::memory::{blank, computed, keep, zeros};
 use par::threads::Threads;
 use par::{OutOfMemory, Result};
 
-/// Names its memory in messages.
+/// The name of this memory in messages.
 const MATRICES: &str = "the row tables' transforms";
 
 /// Coefficients of the elements of a loaded row jy on those of a row iy.
 pub struct OfRows<F> {
-    /// Whether they are even in x.
+    /// Whether the coefficients are even in x.
     pub are_even: bool,
-    /// `fill(jy, iy, values)` gives, of even ones, those at offsets `(0..)`; of others those of a period: at offsets >= 0, 0 where there are none, and
-    /// negative ones at its end.
+    /// `fill(jy, iy, values)` gives even coefficients at offsets `(0..)`, others over a period: offsets >= 0 first, negative ones at its end, 0
+    /// between.
     pub fill: F,
     /// The vectors that they multiply.
     pub factor: f64,
 }
 
-/// The matrices, with the normalisation `1/px` folded in.
+/// The matrices, with the normalisation `1/px`.
 pub(crate) struct RowMatrices<T: Real> {
     /// Rows of the grid.
     my: usize,
@@ -46,7 +46,7 @@ pub(crate) struct RowMatrices<T: Real> {
 }
 
 impl<T: Real> RowMatrices<T> {
-    /// Of coefficients on a grid, with a period in x.
+    /// The matrices of coefficients on a grid, with a period in x.
     pub fn new<F: Fn(usize, usize, &mut [f64]) + Sync + Send>(
         grid: (usize, usize),
         of: &OfRows<F>,
@@ -60,7 +60,7 @@ impl<T: Real> RowMatrices<T> {
         }
     }
 
-    /// Two of their rows are transformed at a time, one as the real and one as the imaginary part.
+    /// Even coefficients: two rows share a transform, as its real and imaginary parts.
     fn even<F: Fn(usize, usize, &mut [f64]) + Sync + Send>(
         (mx, my): (usize, usize),
         of: &OfRows<F>,
@@ -71,7 +71,7 @@ impl<T: Real> RowMatrices<T> {
         let mut values = matrices(my, 1, px / 2 + 1)?;
         let nan = Complex::new(f64::NAN, f64::NAN);
         let mut pairs = blank(my.div_ceil(2) * px, nan, MATRICES)?;
-        // Rows may be long: their scratch is as large as an array of the grid then.
+        // Rows may be long, so that their scratch is as large as an array of the grid.
         let piece = |_| Ok((zeros(2 * mx, MATRICES)?, zeros(transform.scratch_length(), MATRICES)?));
         let mut pieces: Vec<(Vec<f64>, Vec<_>)> = (0..threads.count()).map(piece).collect::<Result<_>>()?;
         let scale = of.factor / px as f64;
@@ -83,7 +83,7 @@ impl<T: Real> RowMatrices<T> {
                 (of.fill)(jy, (iy + 1).min(my - 1), other);
                 period.iter_mut().zip(one).zip(other).for_each(|((value, re), im)| *value = Complex::new(*re, *im));
                 let (given, rest) = period.split_at_mut(mx);
-                // Of the shortest period, 2 mx - 2, the outermost offsets are one.
+                // In the shortest period, 2 mx - 2, the outermost offsets coincide.
                 let mirrored = (mx - 1).min(rest.len());
                 let zeros = rest.len() - mirrored;
                 rest[..zeros].fill(Complex::default());
@@ -138,7 +138,7 @@ impl<T: Real> RowMatrices<T> {
         Ok(RowMatrices { my, planes, values })
     }
 
-    /// The same in another precision, times a factor.
+    /// The matrices in another precision, times a factor.
     pub fn in_precision<S: Real>(&self, factor: f64) -> Result<RowMatrices<S>> {
         let values = computed(self.values.iter().map(|value| S::of(factor * value.to_double())), MATRICES)?;
         Ok(RowMatrices { my: self.my, planes: self.planes, values })
@@ -149,13 +149,13 @@ impl<T: Real> RowMatrices<T> {
         size_of_val(&self.values[..])
     }
 
-    /// The sizes that products need.
+    /// The sizes of the products' memory.
     pub fn room(&self, rows: &Rows<T>) -> Room {
         let room = rows.room(self.my, 0);
         Room { row: room.row.max(2 * self.my), ..room }
     }
 
-    /// Multiplies rows that were transformed in x, of which `loaded` hold values.
+    /// Multiplies rows transformed in x, of which `loaded` hold values.
     pub fn apply(&self, rows: &Rows<T>, loaded: Range<usize>, memory: &mut Memory<T>) {
         let Memory { bins, pieces, .. } = memory;
         let (nb, length) = (rows.transform.bins(), self.my);
@@ -195,7 +195,7 @@ impl<T: Real> Drop for RowMatrices<T> {
     }
 }
 
-/// Memory for the matrices, all of which is written before it is read.
+/// Memory for the matrices, all written before it is read.
 fn matrices<T: Real>(my: usize, planes: usize, bins: usize) -> Result<Vec<T>> {
     let size = (my * my).checked_mul(planes * bins);
     let size = size.ok_or_else(|| OutOfMemory(format!("no memory for {my} * {my} * {bins} values of {MATRICES}")))?;

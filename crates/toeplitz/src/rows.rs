@@ -1,4 +1,4 @@
-//! The transforms in x of a memory: of those rows only that hold pressures, and back.
+//! The transforms in x: of the rows with pressures only, and back.
 
 use std::ops::Range;
 
@@ -19,9 +19,9 @@ pub struct Rows<T: Real> {
     pub mx: usize,
     /// Elements in y.
     pub my: usize,
-    /// Of one row.
+    /// The transform of one row.
     pub transform: RowTransform<T>,
-    /// Who transforms.
+    /// The threads of the transforms.
     pub threads: Threads,
 }
 
@@ -31,12 +31,12 @@ impl<T: Real> Rows<T> {
         Ok(Rows { mx, my, transform: RowTransform::new(period)?, threads: threads.clone() })
     }
 
-    /// The memory of products whose columns are not in lanes and need so many values of scratch.
+    /// The memory of products whose columns are not in lanes, with `scratch` values for columns.
     pub fn room(&self, period_in_y: usize, scratch: usize) -> Room {
         self.room_with(None, period_in_y, scratch)
     }
 
-    /// The same with these transforms or without.
+    /// The memory of products, with transforms in lanes or without.
     pub(crate) fn room_with(&self, lanes: Option<&LaneRows<T>>, period_in_y: usize, scratch: usize) -> Room {
         Room {
             bins: self.bins(lanes),
@@ -52,8 +52,7 @@ impl<T: Real> Rows<T> {
         lanes.map_or(self.transform.at_a_time(), LaneRows::at_a_time)
     }
 
-    /// Rows that a block of bins has room for in lanes: a group of rows that are transformed together may begin at the last row of
-    /// the grid, and is always whole.
+    /// Rows of a block of bins in lanes: a group of rows transformed together may begin at the last row of the grid, and is always whole.
     pub(crate) fn height(&self, lanes: &LaneRows<T>) -> usize {
         self.my + lanes.at_a_time() - 1
     }
@@ -68,18 +67,18 @@ impl<T: Real> Rows<T> {
         (&mut bins[..lanes.blocks() * self.height(lanes) * BLOCK], &mut memory.pieces)
     }
 
-    /// Bins of all rows, with these transforms or without.
+    /// Number of bins of all rows, with transforms in lanes or without.
     fn bins(&self, lanes: Option<&LaneRows<T>>) -> usize {
         let in_vectors = |lanes: &LaneRows<T>| lanes.blocks() * self.height(lanes) * BLOCK + before_a_line::<T>();
         lanes.map_or(0, in_vectors).max(self.my * self.transform.bins())
     }
 
-    /// Scratch that transforms need, with these or without.
+    /// Length of the transforms' scratch, in lanes or without.
     fn scratch_length(&self, lanes: Option<&LaneRows<T>>) -> usize {
         lanes.map_or(0, LaneRows::scratch_length).max(self.transform.scratch_length())
     }
 
-    /// Transforms the rows that hold values, in lanes or without; returns which.
+    /// Transforms the rows with values, in lanes or without. Returns these rows.
     pub(crate) fn forward(&self, p: &[T], memory: &mut Memory<T>, lanes: Option<&LaneRows<T>>) -> Range<usize> {
         let (loaded, together, mx) = (rows_with_pressure(p, self.mx), self.at_a_time(lanes), self.mx);
         if let Some(lanes) = lanes {
@@ -100,7 +99,7 @@ impl<T: Real> Rows<T> {
         loaded
     }
 
-    /// Those rows of blocks, as many at a time as are transformed together: the last of them may lie beyond `rows`.
+    /// These rows of blocks, in groups that are transformed together: the last group may end beyond `rows`.
     fn some_rows<'a>(
         &self,
         lanes: &LaneRows<T>,
@@ -117,7 +116,7 @@ impl<T: Real> Rows<T> {
         self.each_back(u, memory, lanes, |_, u, piece, inverse| inverse(u, &mut piece.scratch));
     }
 
-    /// The same; `write(first element, values of u, values)` takes some of them.
+    /// Transforms all rows back; `write(first element, values of u, values)` gets some rows at a time.
     pub(crate) fn back_with(
         &self,
         u: &mut [T],
@@ -133,7 +132,7 @@ impl<T: Real> Rows<T> {
         });
     }
 
-    /// `work(i, values of u, piece, inverse)` for all rows that are transformed together; `inverse(rows, scratch)` transforms them.
+    /// Calls `work(i, values of u, piece, inverse)` for each group of rows transformed together; `inverse(rows, scratch)` transforms a group.
     fn each_back(
         &self,
         u: &mut [T],
@@ -158,9 +157,9 @@ impl<T: Real> Rows<T> {
     }
 }
 
-/// The run of rows outside of which `p` is zero.
+/// The range of rows outside of which `p` is zero.
 fn rows_with_pressure<T: Real>(p: &[T], mx: usize) -> Range<usize> {
-    // All of a row, which the compiler can vectorise.
+    // All of a row: the compiler vectorises this.
     let loaded = |row: &[T]| row.iter().fold(false, |any, &value| any | (value != T::zero()));
     let Some(first) = p.chunks_exact(mx).position(loaded) else { return 0..0 };
     let last = p.chunks_exact(mx).rposition(loaded).unwrap_or(first);

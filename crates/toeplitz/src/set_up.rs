@@ -1,6 +1,6 @@
-//! How a symbol is computed, in double precision for either precision of the operator: transforms in x of all rows of coefficients, then
-//! in y of blocks of columns. Two columns whose transforms are real share a complex one, one as its real and one as its imaginary part.
-//! Here rows and columns are transformed by themselves; [`set_up_lanes`](crate::set_up_lanes) has even coefficients in lanes.
+//! The computation of a symbol, in double precision for either precision of the operator: transforms in x of all rows of coefficients, then in y
+//! of blocks of columns. Two columns with real transforms share a complex one, as its real and imaginary parts. Here rows and columns are
+//! transformed one by one; [`set_up_lanes`](crate::set_up_lanes) does even coefficients in lanes.
 
 use crate::coefficients::{Coefficients, Even, Parity};
 use crate::fft::any_length::ColumnTransform;
@@ -13,10 +13,10 @@ use par::memory::{keep, unwritten};
 use par::threads::Threads;
 use par::Result;
 
-/// Names its memory in messages.
+/// The name of this memory in messages.
 pub(crate) const COEFFICIENTS: &str = "the influence coefficients";
 
-/// Memory that a symbol is computed in. An operator whose coefficients change often keeps it.
+/// The memory of a symbol's computation, kept by operators whose coefficients change often.
 #[derive(Default)]
 pub struct SetUp {
     real: Vec<f64>,
@@ -31,7 +31,7 @@ impl Drop for SetUp {
     }
 }
 
-/// That of one piece of the work.
+/// The memory of one piece of the work.
 #[derive(Default)]
 pub(crate) struct Piece {
     pub(crate) row: Vec<f64>,
@@ -41,7 +41,7 @@ pub(crate) struct Piece {
 }
 
 impl Piece {
-    /// Memory for so many values of rows, of a column or the bins of rows, and of scratch for rows.
+    /// Makes memory for values of rows, for a column or the bins of rows, and for scratch of rows.
     pub(crate) fn fit(&mut self, (row, column, rows): (usize, usize, usize)) -> Result<()> {
         unwritten(&mut self.row, row, f64::NAN, COEFFICIENTS, &Threads::One)?;
         unwritten(&mut self.column, column, Complex::default(), COEFFICIENTS, &Threads::One)?;
@@ -56,7 +56,7 @@ impl Drop for Piece {
     }
 }
 
-/// The transforms of both directions, and who does them.
+/// The transforms of both directions, and their threads.
 pub(crate) struct Transforms<'a> {
     rows: RowTransform<f64>,
     columns: ColumnTransform<f64>,
@@ -64,7 +64,7 @@ pub(crate) struct Transforms<'a> {
 }
 
 impl<'a> Transforms<'a> {
-    /// Of a period.
+    /// The transforms of a period.
     pub fn new((px, py): (usize, usize), threads: &'a Threads) -> Result<Transforms<'a>> {
         Ok(Transforms { rows: RowTransform::new(px)?, columns: ColumnTransform::new(py)?, threads })
     }
@@ -78,7 +78,7 @@ impl<'a> Transforms<'a> {
         1.0 / (px as f64 * py as f64)
     }
 
-    /// Pieces that suit transforms of both directions.
+    /// Fits pieces to the transforms of both directions.
     fn suit(&self, pieces: &mut Vec<Piece>) -> Result<()> {
         let (px, py) = self.period();
         pieces.resize_with(self.threads.count(), Piece::default);
@@ -90,8 +90,7 @@ impl<'a> Transforms<'a> {
         Ok(())
     }
 
-    /// The symbol of even coefficients, of the period that there is: half of each column, and an even number of these, the last of which may be
-    /// there twice.
+    /// The symbol of even coefficients: half of each column. Columns are padded to an even number by repeating the last.
     pub fn of_even<T: Real, F, G>(
         &self,
         even: &Even<F, G>,
@@ -193,7 +192,7 @@ impl<'a> Transforms<'a> {
     ) -> Result<()> {
         let (py, nb) = (self.columns.length(), self.rows.bins());
         self.suit(pieces)?;
-        // Rows 0..my, then 1-my..=-1, as they stand in a period.
+        // Rows 0..my, then 1-my..=-1, as in a period.
         self.of_rows(2 * my - 1, in_x, pieces, mx, |kx, i, row| {
             let ky = if i < my { i as i64 } else { i as i64 - (2 * my as i64 - 1) };
             coefficients.fill_row(kx, ky, row);

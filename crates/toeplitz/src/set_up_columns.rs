@@ -1,4 +1,4 @@
-//! Columns of a symbol that is set up: gathered from a matrix of rows, and converted to the precision of products.
+//! Columns during the set-up of a symbol: gathered from a matrix of rows, and converted to the precision of products.
 
 use std::ops::Range;
 
@@ -7,10 +7,10 @@ use crate::coefficients::Parity;
 use crate::passes::Real;
 use crate::real::Complex;
 
-/// Columns of complex numbers, or pairs of real ones, that are gathered at a time: the pairs of a block, whole cache lines.
+/// Columns of complex numbers, or pairs of real ones, gathered at a time: the pairs of a block, whole cache lines.
 pub(crate) const PAIRS: usize = BLOCK / 2;
 
-/// A column times a factor, in another precision. Compiled for the vectors of this machine, as the next.
+/// A column times a factor, in another precision. Compiled for the vectors of this machine.
 pub(crate) struct Scaled<'a, T> {
     pub(crate) column: &'a [Complex<f64>],
     pub(crate) scale: f64,
@@ -29,7 +29,7 @@ impl<T: Real> pulp::NullaryFnOnce for Scaled<'_, T> {
     }
 }
 
-/// Its real and its imaginary parts.
+/// The real and imaginary parts of a column. Compiled for the vectors of this machine.
 pub(crate) struct Parts<'a, T> {
     pub(crate) column: &'a [Complex<f64>],
     pub(crate) scale: f64,
@@ -57,7 +57,7 @@ pub(crate) fn gather<V: Copy>(
     (block, py): (&mut [V], usize),
     to: usize,
 ) {
-    // Of a known number the compiler makes one step.
+    // With a constant number the compiler unrolls the loop.
     match block.len() / py {
         PAIRS => copy_columns(matrix, rows, (first, PAIRS), (block, py), to),
         count => copy_columns(matrix, rows, (first, count), (block, py), to),
@@ -80,7 +80,7 @@ fn copy_columns<V: Copy>(
     }
 }
 
-/// A period of even coefficients in row ky, or of odd ones, of which `fill` gives those at offsets 0 .. `given`.
+/// Fills a period in row ky with even or odd coefficients, given by `fill` at offsets 0 .. `given`.
 pub(crate) fn fill_period(ky: i64, given: usize, row: &mut [f64], parity: Parity, fill: impl Fn(i64, &mut [f64])) {
     let px = row.len();
     row.fill(0.0);

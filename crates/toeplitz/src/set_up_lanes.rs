@@ -1,7 +1,7 @@
-//! How the symbol of even coefficients, or of odd ones, is computed where products go through stages of our own: rows and columns in lanes.
-//! The stages leave bins in the order in which products want them.
+//! The computation of the symbol of even or odd coefficients for products by stages of this crate: rows and columns in lanes. The stages leave bins
+//! in the order of the products.
 //!
-//! Columns c and c + 8 of a block share a complex transform, one as its real and one as its imaginary part: so no bit depends on the length of
+//! Columns c and c + 8 of a block share a complex transform, as its real and imaginary parts: no bit depends on the length of
 //! vectors. Odd coefficients have imaginary transforms in either direction: with a and b real and odd, `F(a + i b) = i F_a - F_b`, both of them
 //! real.
 
@@ -26,10 +26,10 @@ use par::Result;
 
 /// Columns that are the real parts of a block's transforms.
 const HALF: usize = BLOCK / 2;
-/// Complex numbers in whose memory the real values of a row of a block stand.
+/// Complex numbers whose memory holds the real values of a row of a block.
 const PLACE: usize = BLOCK / 2;
 
-/// The transforms of both directions, and who does them.
+/// The transforms of both directions, and their threads.
 pub(crate) struct LaneTransforms<'a> {
     pub(crate) rows: LaneRows<f64>,
     pub(crate) plan: Arc<EvenPlan<f64>>,
@@ -39,12 +39,12 @@ pub(crate) struct LaneTransforms<'a> {
 }
 
 impl<'a> LaneTransforms<'a> {
-    /// Of a period; None where this has no plan, or the machine no vectors.
+    /// The transforms of a period; None if it has no plan, or the machine no vectors.
     pub fn new(period: (usize, usize), threads: &'a Threads) -> Result<Option<LaneTransforms<'a>>> {
         LaneTransforms::on(pulp::Arch::new(), period, threads)
     }
 
-    /// With the vectors of these instructions; no bit depends on them.
+    /// [`LaneTransforms::new`] with the vectors of these instructions, on which no bit depends.
     pub(crate) fn on(
         arch: pulp::Arch,
         (px, py): (usize, usize),
@@ -53,7 +53,7 @@ impl<'a> LaneTransforms<'a> {
         LaneTransforms::with(arch, LaneRows::on(arch, px)?, (px, py), threads)
     }
 
-    /// The same also on a machine without vectors.
+    /// [`LaneTransforms::new`] that serves machines without vectors as well.
     pub fn of_any(
         arch: pulp::Arch,
         (px, py): (usize, usize),
@@ -144,7 +144,7 @@ impl<'a> LaneTransforms<'a> {
 }
 
 impl Parity {
-    /// 1 where real coefficients have an imaginary transform.
+    /// 1 if real coefficients have an imaginary transform, else 0.
     fn swapped(self) -> usize {
         usize::from(self == Parity::Odd)
     }
@@ -154,13 +154,13 @@ impl Parity {
 struct SymbolOfBlock<'a, T, G> {
     plan: &'a EvenPlan<f64>,
     parity: Parity,
-    /// Coefficients transformed in x, `[ky][column]` at offsets ky >= 0; and how many rows there are.
+    /// Coefficients transformed in x, `[ky][column]` at offsets ky >= 0, and the number of rows.
     in_x: (&'a [f64], usize),
-    /// Columns that mean something.
+    /// Number of defined columns.
     columns: usize,
-    /// The part of each value that is kept.
+    /// Applied to each value of the symbol.
     value: G,
-    /// `[kept row][column]`; zero in columns that mean nothing.
+    /// `[kept row][column]`; zero in undefined columns.
     out: &'a mut [T],
     memory: &'a mut [Complex<f64>],
 }
@@ -179,7 +179,7 @@ impl<T: Real, G: Fn(f64) -> f64> WithSimd for SymbolOfBlock<'_, T, G> {
             let load = inlined(
                 #[inline(always)]
                 |row: usize| -> C<f64, S> {
-                    // Offset -ky stands at py - ky.
+                    // Offset -ky is at py - ky.
                     let ky = row.min(length - row);
                     if ky >= given {
                         return zero;
@@ -198,7 +198,7 @@ impl<T: Real, G: Fn(f64) -> f64> WithSimd for SymbolOfBlock<'_, T, G> {
                 for (q, row) in rows.iter().enumerate() {
                     let values: &[f64] = pulp::bytemuck::cast_slice(row);
                     let out = &mut out[(kept.first + q) * BLOCK..][..BLOCK];
-                    // Of odd ones `i F_a - F_b`, times i for the direction x.
+                    // Odd coefficients: `i F_a - F_b`, times i for the direction x.
                     let (first, signs) = match parity {
                         Parity::Even => ([column, column + HALF], [1.0, 1.0]),
                         Parity::Odd => ([column + HALF, column], [1.0, -1.0]),

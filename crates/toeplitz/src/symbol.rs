@@ -1,15 +1,15 @@
-//! The transform of the coefficients, by which a product multiplies.
+//! The transform of the coefficients. A product multiplies by it.
 //!
 //! ```text
 //! S = F c / (px py),   one column of it per x bin,    k an offset (kx, ky)
 //!
-//! c(kx, ky) = c(-kx, ky) = c(kx, -ky)    S real and even: a half of each column is kept, of columns in vectors in another order
+//! c(kx, ky) = c(-kx, ky) = c(kx, -ky)    S real and even: half of each column is stored; columns in vectors have another order
 //! c(k) = c(-k)                           S real
 //! any other c                            S complex
 //! ```
 //!
-//! A table may be symmetric to within round-off only ([`Coefficients`](crate::coefficients::Coefficients)). In single precision, the rounding of which
-//! is as large, its symmetric part `(c(k) + c(-k))/2`, the symbol of which is the real part of S, serves in its place.
+//! A table may be symmetric to within round-off only ([`Coefficients`](crate::coefficients::Coefficients)). Single
+//! precision has a rounding error as large as that. There the symmetric part `(c(k) + c(-k))/2` replaces the table. Its symbol is the real part of S.
 
 use std::mem::take;
 
@@ -28,13 +28,13 @@ pub(crate) const SYMBOL: &str = "the operator's spectrum";
 /// Values that are converted at a time.
 const PIECE: usize = 1 << 12;
 
-/// The symbol, the normalisation folded in. Real ones have an even number of columns: the last may be there twice.
+/// The symbol, including the normalisation. A real symbol has an even number of columns, so the last column may be stored twice.
 pub(crate) enum Symbol<T: Real> {
-    /// Blocks of columns as [`LaneColumns`] have them; without, `py/2 + 1` values a column.
+    /// Blocks of columns in the order of [`LaneColumns`]. Without lanes, `py/2 + 1` values a column.
     Even(Vec<T>),
     /// `py` values a column.
     Symmetric(Vec<T>),
-    /// `py` complex values a column, and whether their imaginary parts are no more than the round-off of a symmetric table.
+    /// `py` complex values a column, and whether their imaginary parts are only the round-off of a symmetric table.
     General(Vec<Complex<T>>, bool),
 }
 
@@ -47,12 +47,12 @@ impl<T: Real> Drop for Symbol<T> {
     }
 }
 
-/// Whether what a table may lack of symmetry is less than the rounding of T.
+/// Whether the admissible asymmetry of a table is below the rounding of T.
 pub(crate) fn is_coarse<T: Real>() -> bool {
     T::epsilon().to_double() >= SYMMETRY
 }
 
-/// How the columns of an even symbol are kept: `columns` in all, of period py.
+/// The order of an even symbol of `columns` columns, of period py.
 #[derive(Clone, Copy)]
 pub(crate) struct EvenOrder<'a, T: Real> {
     pub by_lanes: Option<&'a LaneColumns<T>>,
@@ -61,7 +61,7 @@ pub(crate) struct EvenOrder<'a, T: Real> {
 }
 
 impl<T: Real> EvenOrder<'_, T> {
-    /// Values of a column, where columns are not in vectors.
+    /// Values of a column without lanes.
     pub fn half(&self) -> usize {
         self.py / 2 + 1
     }
@@ -71,7 +71,7 @@ impl<T: Real> EvenOrder<'_, T> {
         BLOCK * self.by_lanes.map_or(self.half(), LaneColumns::kept_rows)
     }
 
-    /// Values in all: of whole blocks, or of an even number of columns, the last of which may be there twice.
+    /// The number of values: of whole blocks, or of an even number of columns. The last column may be stored twice.
     pub fn len(&self) -> usize {
         match self.by_lanes {
             Some(_) => self.columns.div_ceil(BLOCK) * self.block(),
@@ -81,7 +81,7 @@ impl<T: Real> EvenOrder<'_, T> {
 }
 
 impl<T: Real> Symbol<T> {
-    /// The same in another precision, times a factor.
+    /// The symbol in another precision, times a factor.
     pub fn in_precision<S: Real>(&self, factor: f64, threads: &Threads) -> Result<Symbol<S>> {
         let convert = |value: T| S::of(factor * value.to_double());
         let real = |from: &[T]| converted(from, |from| convert(*from), S::nan(), threads);
@@ -106,7 +106,7 @@ impl<T: Real> Symbol<T> {
         }
     }
 
-    /// Memory for another real one.
+    /// Takes the memory for another real symbol.
     pub fn take_real(&mut self) -> Vec<T> {
         match self {
             Symbol::Even(values) | Symbol::Symmetric(values) => take(values),
@@ -114,7 +114,7 @@ impl<T: Real> Symbol<T> {
         }
     }
 
-    /// Memory for another complex one.
+    /// Takes the memory for another complex symbol.
     pub fn take_complex(&mut self) -> Vec<Complex<T>> {
         match self {
             Symbol::Even(_) | Symbol::Symmetric(_) => Vec::new(),
@@ -122,7 +122,7 @@ impl<T: Real> Symbol<T> {
         }
     }
 
-    /// Multiplies transformed columns, which are not in vectors, of length py, the first of which has x bin `first`.
+    /// Multiplies transformed columns of length py without lanes. The first has x bin `first`.
     pub fn multiply(&self, first: usize, order: EvenOrder<'_, T>, columns: &mut [Complex<T>]) {
         let py = order.py;
         for (column, bin) in columns.chunks_exact_mut(py).zip(first..) {
@@ -146,8 +146,8 @@ impl<T: Real> Symbol<T> {
     }
 }
 
-/// A column times its symbol: bins of which that is kept, and those beyond, mirrored. Compiled for the vectors of this machine; no bit
-/// depends on them.
+/// A column times its symbol: the bins with a stored value, and the mirrored bins. Compiled for the vector instructions of this machine,
+/// on which no bit depends.
 struct Multiply<'a, T: Real> {
     lower: &'a mut [Complex<T>],
     upper: &'a mut [Complex<T>],
@@ -157,7 +157,7 @@ struct Multiply<'a, T: Real> {
 impl<T: Real> pulp::NullaryFnOnce for Multiply<'_, T> {
     type Output = ();
 
-    // Loops over slices of one length, which the compiler can vectorise.
+    // The slices of one loop have the same length, so that the compiler vectorises it.
     #[inline(always)]
     fn call(self) {
         let Multiply { lower, upper, s } = self;
@@ -176,7 +176,7 @@ impl<T: Real> pulp::NullaryFnOnce for Multiply<'_, T> {
     }
 }
 
-/// A symbol made of another one.
+/// A symbol converted from another one.
 pub(crate) fn converted<A: Sync, B: Copy + Send + Sync + 'static>(
     from: &[A],
     convert: impl Fn(&A) -> B + Sync + Send,

@@ -4,8 +4,8 @@
 //! (ux, uy)_I = sum_J [xx xy; xy yy](I - J) (qx, qy)_J
 //! ```
 //!
-//! Rows and columns of both components go through stages of our own, in lanes, on each machine. Without xy a component displaces in its own
-//! direction only: one that is zero takes no time, and its displacements are exactly 0.
+//! Rows and columns of both components are transformed by this crate's own stages, in lanes, on every machine. Without xy a component displaces in
+//! its own direction only. Then a zero component takes no time, and its displacements are exactly 0.
 
 use std::ops::Range;
 
@@ -45,7 +45,7 @@ pub fn vector_period((least_x, least_y): (usize, usize)) -> (usize, usize) {
 }
 
 impl<T: Real> VectorProduct<T> {
-    /// Of coefficients that are even or odd, with a [period](vector_period).
+    /// The product of coefficients that are even or odd, with a [period](vector_period).
     pub fn even<F, G>(
         grid: (usize, usize),
         period: (usize, usize),
@@ -60,7 +60,7 @@ impl<T: Real> VectorProduct<T> {
         VectorProduct::of(grid, period, symbol, threads)
     }
 
-    /// Of a symbol: `of(kx, ky)` gives its [xx, yy, xy] at the bins of a [period](vector_period) that are not negative. xx and yy are even, xy is odd.
+    /// The product of a symbol. `of(kx, ky)` returns its [xx, yy, xy] at the bins >= 0 of a [period](vector_period). xx and yy are even, xy is odd.
     pub fn of_waves(
         grid: (usize, usize),
         period: (usize, usize),
@@ -70,12 +70,12 @@ impl<T: Real> VectorProduct<T> {
         VectorProduct::of(grid, period, transforms(period, threads)?.of_waves(is_coupled, of)?, threads)
     }
 
-    /// The same taken `n` elements further on in x. The period keeps apart offsets of so many elements more.
+    /// The displacements `n` elements further on in x. The period must be long enough for so many more offsets.
     pub fn further_on(self, n: i64) -> Result<VectorProduct<T>> {
         self.at(Place::FurtherOn(n))
     }
 
-    /// The same less what it is `n` elements further on in x, likewise.
+    /// The displacements minus those `n` elements further on in x, with the same condition.
     pub fn less_further_on(self, n: i64) -> Result<VectorProduct<T>> {
         self.at(Place::LessFurtherOn(n))
     }
@@ -85,8 +85,8 @@ impl<T: Real> VectorProduct<T> {
         Ok(self)
     }
 
-    /// Of any coefficients: `fill(kx, ky, [xx, yy, xy])` gives those of the offsets `(kx, ky)`, `(kx + 1, ky)`, ...; xy is read where they are
-    /// coupled.
+    /// The product of general coefficients. `fill(kx, ky, [xx, yy, xy])` sets those of the offsets `(kx, ky)`, `(kx + 1, ky)`, ... xy is used if the
+    /// components are coupled.
     pub fn uneven(
         grid: (usize, usize),
         is_coupled: bool,
@@ -111,7 +111,7 @@ impl<T: Real> VectorProduct<T> {
         Ok(VectorProduct { mx, my, rows, columns, symbol, px, threads: threads.clone() })
     }
 
-    /// The same in another precision.
+    /// The product in another precision.
     pub fn in_precision<S: Real>(&self) -> Result<VectorProduct<S>> {
         let period = (self.px, self.columns.length());
         VectorProduct::of((self.mx, self.my), period, self.symbol.in_precision(&self.threads)?, &self.threads)
@@ -132,7 +132,7 @@ impl<T: Real> VectorProduct<T> {
         self.symbol.is_uncoupled()
     }
 
-    /// Rows of the grid that are transformed together: what [`apply`](Self::apply) writes comes in so many.
+    /// Rows of the grid that are transformed together. [`apply`](Self::apply) writes so many rows at a time.
     pub fn rows_at_a_time(&self) -> usize {
         self.rows.at_a_time()
     }
@@ -149,7 +149,7 @@ impl<T: Real> VectorProduct<T> {
         Memory::new(room, &self.threads)
     }
 
-    /// Rows of a block of bins: a group of rows that are transformed together may begin at the last row of the grid.
+    /// Rows of a block of bins. A group of rows that are transformed together may begin at the last row of the grid.
     fn height(&self) -> usize {
         self.my + self.rows.at_a_time() - 1
     }
@@ -158,9 +158,9 @@ impl<T: Real> VectorProduct<T> {
         self.rows.blocks() * self.height() * BLOCK
     }
 
-    /// `u = A q`. q is zero outside the rows `loaded` of either component; `load(component, first row, rows)` gives some of these rows.
-    /// `write(piece, first row, [ux, uy])` takes some rows of u; `pieces` are what it writes to, one for each
-    /// [`rows_at_a_time`](Self::rows_at_a_time).
+    /// `u = A q`. q is zero outside the rows `loaded` of each component. `load(component, first row, rows)` returns some of these rows.
+    /// `write(piece, first row, [ux, uy])` stores some rows of u in one of the `pieces`. There is one piece for each
+    /// [`rows_at_a_time`](Self::rows_at_a_time) rows.
     pub fn apply<P: Send>(
         &self,
         loaded: [Range<usize>; 2],
@@ -209,7 +209,7 @@ impl<T: Real> VectorProduct<T> {
         });
     }
 
-    /// Those rows of a component, as many at a time as are transformed together: the last of them may lie beyond.
+    /// The loaded rows of a component, in groups that are transformed together. The last group may extend beyond them.
     fn some_rows<'a>(
         &self,
         bins: &'a mut [Complex<T>],
@@ -235,7 +235,7 @@ impl<T: Real> VectorProduct<T> {
         });
     }
 
-    /// The same of one component alone.
+    /// The same for one component alone.
     fn multiply_one(&self, component: usize, bins: &mut [Complex<T>], loaded: &Range<usize>, scratch: &mut [Piece<T>]) {
         let length = self.height() * BLOCK;
         self.threads.share(bins.chunks_exact_mut(length).enumerate(), scratch, |(b, block), piece| {

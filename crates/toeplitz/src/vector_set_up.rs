@@ -1,4 +1,4 @@
-//! How the symbol of products of two components is computed, in double precision for either precision of the product.
+//! Set-up of the symbol for products of two components, in double precision for both precisions of the product.
 
 use pulp::{Simd, WithSimd};
 
@@ -40,7 +40,7 @@ impl LaneTransforms<'_> {
             let even = Even { given: of.given, fill, finish: |value| value };
             self.of_plane((&even, parity), set_up, (of_block, plane * of_plane), &mut transformed)?;
         }
-        // The transforms have 1/(px py) in them, what is kept of them has it once.
+        // Each transform contains 1/(px py). The stored symbol contains it once.
         let (px, py) = self.period();
         let scale = px as f64 * py as f64;
         let symbol = self.of_bins(planes, |block, k| {
@@ -52,7 +52,7 @@ impl LaneTransforms<'_> {
         symbol
     }
 
-    /// The symbol itself, of coefficients that are even or odd: `of(kx, ky)` gives its [xx, yy, xy] at bins that are not negative.
+    /// Sets the symbol of coefficients that are even or odd from its values: `of(kx, ky)` gives its [xx, yy, xy] at bins that are not negative.
     pub(crate) fn of_waves<T: Real>(
         &self,
         is_coupled: bool,
@@ -65,7 +65,7 @@ impl LaneTransforms<'_> {
         })
     }
 
-    /// Of the values at place k of each block.
+    /// The symbol from the values at place k of each block.
     fn of_bins<T: Real>(
         &self,
         planes: usize,
@@ -87,8 +87,8 @@ impl LaneTransforms<'_> {
         Ok(VectorSymbol { values, planes, of_plane, is_even: true, factors: Vec::new() })
     }
 
-    /// The symbol of any coefficients: `fill(kx, ky, [xx, yy, xy])` gives those of the offsets `(kx, ky)`, `(kx + 1, ky)`, ...; xy is read where
-    /// they are coupled.
+    /// The symbol of general coefficients. `fill(kx, ky, [xx, yy, xy])` sets those of the offsets `(kx, ky)`, `(kx + 1, ky)`, ... xy is used if the
+    /// components are coupled.
     pub(crate) fn of_general_matrix<T: Real>(
         &self,
         (mx, my): (usize, usize),
@@ -116,7 +116,7 @@ impl LaneTransforms<'_> {
         Ok(VectorSymbol { values, planes, of_plane, is_even: false, factors: Vec::new() })
     }
 
-    /// The transforms in x of all rows of coefficients: rows 0 .. my, then 1 - my .. -1, as they stand in a period.
+    /// The transforms in x of all rows of coefficients: rows 0 .. my, then 1 - my .. -1, as in a period.
     fn matrix_in_x(
         &self,
         (mx, my): (usize, usize),
@@ -146,17 +146,17 @@ impl LaneTransforms<'_> {
     }
 }
 
-/// The first values, so many three times.
+/// The first three parts of `length` values each.
 fn split_in_three<A>(values: &mut [A], length: usize) -> [&mut [A]; 3] {
     let (a, rest) = values.split_at_mut(length);
     let (b, rest) = rest.split_at_mut(length);
     [a, b, &mut rest[..length]]
 }
 
-/// The symbol of one block of columns, in double precision, kept in another.
+/// The symbol of one block of columns, computed in double precision and stored in T.
 struct GeneralColumns<'a, T> {
     plan: &'a EvenPlan<f64>,
-    /// Coefficients transformed in x, `[ky][part][column]` at offsets ky >= 0, then < 0; and how many are not negative.
+    /// Coefficients transformed in x, `[ky][part][column]` at offsets ky >= 0, then < 0. The second value is the number of offsets ky >= 0.
     in_x: (&'a [f64], usize),
     scale: f64,
     /// `[row][part][column]`.
@@ -179,7 +179,7 @@ impl<T: Real> WithSimd for GeneralColumns<'_, T> {
             let load = inlined(
                 #[inline(always)]
                 |row: usize| -> C<f64, S> {
-                    // Offset -ky stands at py - ky.
+                    // Offset -ky has index py - ky.
                     let row = match length - row {
                         _ if row < my => row,
                         negative if negative < my => 2 * my - 1 - negative,

@@ -1,8 +1,8 @@
 //! The symbol of products of two components: a symmetric matrix `[xx, xy; xy, yy]` of each wave.
 //!
 //! ```text
-//! xx, yy even in both directions, xy odd in both      all real; of the wave -ky: xx, yy, -xy. Half of each column is kept
-//! the same, taken n elements further on in x          times exp(2 pi i n kx/px), one complex number for each column ([`Place`])
+//! xx, yy even in both directions, xy odd in both      all real; for the wave -ky: xx, yy, -xy. Half of each column is kept
+//! the same, n elements further on in x                times exp(2 pi i n kx/px), one complex number for each column ([`Place`])
 //! any other coefficients                              complex: whole columns are kept, in the order of the stages
 //! ```
 
@@ -19,16 +19,15 @@ use par::memory::{keep, unwritten};
 use par::threads::Threads;
 use par::Result;
 
-/// The symbol, the normalisation folded in.
+/// The symbol, with the normalisation.
 pub(crate) struct VectorSymbol<T: Real> {
-    /// `[block of columns][plane]`, planes xx, yy and, where both are coupled, xy: even and odd ones `[kept row][column]`, others
-    /// `[row][part][column]`.
+    /// `[block of columns][plane]`, planes xx, yy and, if coupled, xy: even and odd ones `[kept row][column]`, others `[row][part][column]`.
     pub values: Vec<T>,
     pub planes: usize,
     /// Values of a plane of a block.
     pub of_plane: usize,
     pub is_even: bool,
-    /// `[block of columns][part][column]`: what even and odd ones are multiplied by; empty: nothing.
+    /// `[block of columns][part][column]`: factors on even and odd planes; empty: none.
     pub factors: Vec<T>,
 }
 
@@ -38,12 +37,12 @@ impl<T: Real> Drop for VectorSymbol<T> {
     }
 }
 
-/// The part of the displacements that a product returns.
+/// The displacements that a product returns.
 #[derive(Clone, Copy)]
 pub(crate) enum Place {
-    /// Those so many elements further on in x: `exp(2 pi i n kx/px)`.
+    /// Displacements n elements further on in x: `exp(2 pi i n kx/px)`.
     FurtherOn(i64),
-    /// Those of each element less those so many elements further on: `1 - exp(2 pi i n kx/px)`.
+    /// Displacements of each element less those n elements further on: `1 - exp(2 pi i n kx/px)`.
     LessFurtherOn(i64),
 }
 
@@ -68,7 +67,7 @@ pub(crate) fn factors<T: Real>(place: Place, px: usize, blocks: usize, threads: 
 }
 
 impl<T: Real> VectorSymbol<T> {
-    /// The same in another precision.
+    /// The symbol in another precision.
     pub fn in_precision<S: Real>(&self, threads: &Threads) -> Result<VectorSymbol<S>> {
         let convert = |from: &[T]| converted(from, |value| S::of(value.to_double()), S::nan(), threads);
         let VectorSymbol { planes, of_plane, is_even, .. } = *self;
@@ -90,7 +89,7 @@ impl<T: Real> VectorSymbol<T> {
         &self.values[(block * self.planes + plane) * self.of_plane..][..self.of_plane]
     }
 
-    /// Multiplies a block of columns of both components, which are coupled.
+    /// Multiplies a block of columns of both coupled components.
     pub fn multiply(&self, columns: &LaneColumns<T>, block: usize, of: Blocks<'_, T, 2>, memory: &mut [Complex<T>]) {
         let planes = [0, 1, 2].map(|plane| self.plane(block, plane));
         match (self.is_even, self.factors_of(block)) {
@@ -103,7 +102,7 @@ impl<T: Real> VectorSymbol<T> {
         }
     }
 
-    /// The same of one component alone.
+    /// Multiplies a block of columns of one component.
     pub fn multiply_one(
         &self,
         columns: &LaneColumns<T>,
@@ -122,7 +121,7 @@ impl<T: Real> VectorSymbol<T> {
         }
     }
 
-    /// What the columns of a block are multiplied by, if they are displaced.
+    /// The factors of the columns of a block, if they are displaced.
     fn factors_of(&self, block: usize) -> Option<&[T]> {
         self.factors.chunks_exact(2 * BLOCK).nth(block)
     }

@@ -7,10 +7,10 @@ use par::Result;
 use crate::passes::Real;
 use crate::real::Complex;
 
-/// Names its memory in messages.
+/// The name of this memory in messages.
 const WORKSPACE: &str = "the product's workspace";
 
-/// Numbers of values that a product needs. Memory for one product serves all that need no more.
+/// The sizes of a product's memory. Memory for one product serves all with sizes up to these.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Room {
     /// Bins of all rows.
@@ -26,7 +26,7 @@ pub struct Room {
 }
 
 impl Room {
-    /// Room for either product.
+    /// The sizes for either product.
     #[must_use]
     pub fn max(self, other: Room) -> Room {
         Room {
@@ -39,19 +39,19 @@ impl Room {
     }
 }
 
-/// Memory that a product needs, so that it allocates nothing.
+/// The memory of a product, which allocates nothing itself.
 pub struct Memory<T: Real> {
     /// `[my][px/2 + 1]`: the rows, transformed in x. In lanes, blocks of columns `[block][row][part][column]`.
     pub bins: Vec<Complex<T>>,
     /// One for each thread.
     pub pieces: Vec<Piece<T>>,
-    /// Bins that a product needs, at rest or not.
+    /// Most bins of a product, at rest or not.
     most: usize,
 }
 
 /// The buffers of one thread.
 pub struct Piece<T: Real> {
-    /// The block of columns that was worked on last.
+    /// The last block of columns.
     pub(crate) block: usize,
     /// Values of rows.
     pub row: Vec<T>,
@@ -62,7 +62,7 @@ pub struct Piece<T: Real> {
 }
 
 impl<T: Real> Memory<T> {
-    /// Memory for products that need no more than this.
+    /// Memory for products of at most these sizes.
     pub fn new(room: Room, threads: &Threads) -> Result<Memory<T>> {
         let piece = |_| {
             let (columns, scratch) = (blank(room.columns, nan(), WORKSPACE)?, blank(room.scratch, nan(), WORKSPACE)?);
@@ -73,13 +73,13 @@ impl<T: Real> Memory<T> {
         Ok(Memory { bins, pieces: (0..room.pieces).map(piece).collect::<Result<_>>()?, most: room.bins })
     }
 
-    /// Wakes bins, so many at least.
+    /// Makes at least this number of bins.
     pub(crate) fn wake(&mut self, least: usize, threads: &Threads) {
         let n = self.bins.len().max(least);
         wake(&mut self.bins, n, nan(), threads);
     }
 
-    /// It is not needed for a while.
+    /// Gives the memory of bins back until the next product.
     pub fn rest(&mut self) {
         rest(&mut self.bins);
     }
@@ -89,7 +89,7 @@ impl<T: Real> Memory<T> {
         self.most * size_of::<Complex<T>>()
     }
 
-    /// Bytes that threads work with.
+    /// Bytes of the threads' buffers.
     pub fn bytes_of_pieces(&self) -> usize {
         let of = |Piece { row, columns, scratch, .. }: &Piece<T>| {
             size_of_val(&row[..]) + size_of_val(&columns[..]) + size_of_val(&scratch[..])
@@ -99,8 +99,8 @@ impl<T: Real> Memory<T> {
 }
 
 impl<T: Real> Piece<T> {
-    /// Where the block stands that is worked on after block b, one of so many, each of `length` values: as b came from the one before; at first
-    /// the one beside b away from the end. Used to prefetch only.
+    /// The place of the probable next block after block b, each of `length` values: in the direction from the last block to b, at first away from the
+    /// end. Used to prefetch only.
     pub(crate) fn next_block(
         &self,
         b_at: *const Complex<T>,

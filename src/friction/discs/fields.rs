@@ -1,12 +1,12 @@
 //! The fields of a block of elements of C.
 
-/// How many there are.
+/// The number of fields.
 pub const FIELDS: usize = 23;
 
 /// A field of both components.
 type Both<'a> = [&'a mut [f64]; 2];
 
-/// The fields of one block, one after the other.
+/// The fields of one block, stored consecutively.
 pub struct Fields<'a> {
     /// g.
     pub bound: &'a mut [f64],
@@ -18,24 +18,24 @@ pub struct Fields<'a> {
     pub slip: Both<'a>,
     pub q: Both<'a>,
     pub u: Both<'a>,
-    /// n, 0 where C sticks.
+    /// n, 0 on stick.
     pub normal: Both<'a>,
     /// `P(-s)`.
     pub projected: Both<'a>,
-    /// The preconditioned residual; and what is to be multiplied.
+    /// The preconditioned residual, or the field to be multiplied.
     pub z: Both<'a>,
     /// t.
     pub direction: Both<'a>,
-    /// That of t at the length at which a step is held back.
+    /// The chord of t at the length of the forecast.
     pub chord: Both<'a>,
-    /// A of the chord and the deferred corrections.
+    /// A times the chord and the deferred corrections.
     pub product: Both<'a>,
     /// The deferred corrections.
     pub deferred: Both<'a>,
 }
 
 impl<'a> Fields<'a> {
-    /// Of the values of a block.
+    /// The fields in the values of a block.
     pub fn of(values: &'a mut [f64]) -> Fields<'a> {
         let length = values.len() / FIELDS;
         let mut rest = values;

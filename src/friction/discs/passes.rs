@@ -6,7 +6,7 @@ use super::super::disc::{Disc, Units};
 use super::super::lanes::{pass, Arithmetic};
 use super::fields::Fields;
 
-/// Predicts what slips: squares of what is left of the slip, and of u. z is what the preconditioner is given.
+/// Predicts the elements in slip. Returns the squares of the residual slip and of u. z becomes the input of the preconditioner.
 pub struct Predict<'a, 'b> {
     pub fields: &'a mut Fields<'b>,
     pub units: Units,
@@ -38,7 +38,7 @@ impl WithSimd for Predict<'_, '_> {
     }
 }
 
-/// z, the preconditioned residual, of what the preconditioner made of it; the sum of `z.(A + D) t` of the last direction.
+/// Computes the preconditioned residual z from the preconditioner's output, and the sum of `z.(A + D) t` with the last direction.
 pub struct Precondition<'a, 'b> {
     pub fields: &'a mut Fields<'b>,
     pub units: Units,
@@ -69,7 +69,7 @@ impl WithSimd for Precondition<'_, '_> {
     }
 }
 
-/// The direction t, and its chord at the length f. z is the chord with the deferred corrections.
+/// Computes the direction t and its chord at the length f. z is the chord with the deferred corrections.
 pub struct Direct<'a, 'b> {
     pub fields: &'a mut Fields<'b>,
     pub units: Units,
@@ -104,7 +104,7 @@ impl WithSimd for Direct<'_, '_> {
     }
 }
 
-/// The sums of `t.(A + D) t` and of `t` times the projected residual, of the chord where C sticks.
+/// Computes the sums of `t.(A + D) t` and of `t` times the projected residual, with the chord in place of t on stick.
 pub struct Energy<'a, 'b> {
     pub fields: &'a mut Fields<'b>,
     pub units: Units,
@@ -133,8 +133,8 @@ impl WithSimd for Energy<'_, '_> {
     }
 }
 
-/// Goes so far along the chord at the length f and predicts what slips there: squares of what is left of the slip, of u, of the deferred
-/// corrections and of the ways that elements went. z is what the preconditioner is given.
+/// Moves along the chord at the length f and predicts the elements in slip there. Returns the squares of the residual slip, of u, of the deferred
+/// corrections and of the changes of tractions. z becomes the input of the preconditioner.
 pub struct Go<'a, 'b> {
     pub fields: &'a mut Fields<'b>,
     pub units: Units,

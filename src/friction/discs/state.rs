@@ -13,11 +13,11 @@ use crate::memory::unwritten;
 use crate::methods::fields::over;
 use crate::operator::fft::Real;
 
-/// Names its memory in messages.
+/// The name of this memory in messages.
 const MEMORY: &str = "the iteration on discs";
 
 impl<T: Real> Discs<T> {
-    /// Takes a state over.
+    /// Makes memory and copies a state.
     pub fn load(&mut self, problem: &Problem, state: &State) -> Result<()> {
         let (places, all, threads) = (&problem.places, problem.grid.len(), problem.threads());
         unwritten(&mut self.fields, FIELDS * places.length(), f64::NAN, MEMORY, threads)?;
@@ -55,7 +55,7 @@ impl<T: Real> Discs<T> {
         Ok(())
     }
 
-    /// q and u of a state; no correction is deferred.
+    /// Copies q and u of a state, with no deferred corrections.
     pub fn take(&mut self, problem: &Problem, state: &State) {
         let Units { traction, displacement, .. } = self.units;
         let (places, to_q, to_u) = (&problem.places, 1.0 / traction, 1.0 / displacement);
@@ -71,7 +71,7 @@ impl<T: Real> Discs<T> {
         });
     }
 
-    /// q and u for a state.
+    /// Copies q and u to a state.
     pub fn give(&mut self, problem: &Problem, state: &mut State) {
         let Units { traction, displacement, .. } = self.units;
         let places = &problem.places;

@@ -1,4 +1,4 @@
-//! Bounds by slips, and what they leave of the conditions.
+//! Bounds from slips, and the residuals of the conditions with them.
 
 use super::super::certificate::{scale, Certificate};
 use super::super::plane::{clip, dot, square};
@@ -8,12 +8,12 @@ use super::march::March;
 use super::STEEP;
 use crate::methods::fields;
 
-/// Bounds by the slips of what slipped in the last step.
+/// Updates the bounds from the slips of elements that slipped in the last step.
 pub(super) fn lag(problem: &mut Problem, state: &State, tangent: &Tangent, march: &mut March) {
     follow(problem, state, tangent, march, None);
 }
 
-/// The same; with rho, where a bound rises, as far as both `|q| + rho slip` and that of the new bound and slip are the same.
+/// [`lag`]; with rho, a rising bound g follows from `g(slip') + rho slip' = |q| + rho slip`.
 pub(super) fn follow(problem: &mut Problem, state: &State, tangent: &Tangent, march: &mut March, rho: Option<f64>) {
     let law = march.law;
     let mut bound = std::mem::take(&mut problem.bound);
@@ -30,7 +30,7 @@ pub(super) fn follow(problem: &mut Problem, state: &State, tangent: &Tangent, ma
     problem.bound = bound;
 }
 
-/// The larger of what is left of the slips and of the bounds: on slip the slip across q and `|q| - g`, on stick the slip.
+/// The larger residual of the slips and of the bounds: on slip the slip across q and `|q| - g`, on stick the slip.
 pub(super) fn worst(problem: &Problem, state: &State, tangent: &Tangent) -> f64 {
     let of = |k: usize| {
         let (q, g) = (state.q[k], problem.bound[k]);
@@ -55,8 +55,8 @@ pub(super) fn worst(problem: &Problem, state: &State, tangent: &Tangent) -> f64 
     slips.max(bounds)
 }
 
-/// A fresh product for a certificate, of tractions on their circles. Where bounds rise these stay as they are: the way to the circles
-/// changes slips, and bounds by more than the way.
+/// Moves tractions onto their circles, with a fresh product for a certificate. If bounds rise steeply tractions are unchanged: a move to the circles
+/// would change the slips, and bounds by more than the move.
 pub(super) fn settle(problem: &mut Problem, state: &mut State, tangent: &Tangent, march: &March) {
     match march.rises > STEEP {
         true => problem.refresh_unclipped(state),
@@ -64,7 +64,7 @@ pub(super) fn settle(problem: &mut Problem, state: &mut State, tangent: &Tangent
     }
 }
 
-/// Elements that slip go onto their circles, those that stick stay inside; a fresh product.
+/// Moves slipping elements onto their circles and keeps sticking ones inside, with a fresh product.
 pub(super) fn onto_circles(problem: &mut Problem, state: &mut State, tangent: &Tangent) {
     let (bound, threads) = (&problem.bound, problem.threads().clone());
     fields::map(&threads, &mut state.q, |k, q| match tangent.side[k] {
@@ -80,7 +80,7 @@ pub(super) fn onto_circles(problem: &mut Problem, state: &mut State, tangent: &T
     problem.refresh_unclipped(state);
 }
 
-/// Bounds of what slips become what it carries; the larger residual of both certificates.
+/// Sets the bounds of slipping elements to their |q|. Returns the larger residual of both certificates.
 pub(super) fn freeze(problem: &mut Problem, state: &State, tangent: &Tangent, march: &mut March) -> f64 {
     lag(problem, state, tangent, march);
     let of = |k: usize| match tangent.side[k] {

@@ -1,13 +1,13 @@
-//! Solutions by name, where there are several: Coulomb's problem is solved with the bounds of the last slips, in turns (CONTACT's way).
+//! Named solutions of a problem with several. Coulomb's problem is solved in turns, each with the bounds of the last slips (as in CONTACT).
 //!
 //! ```text
 //! LOW:  the first bounds are those of no slip        HIGH: those of any speed
 //! ```
 //!
-//! Bounds that rise with the slip, on a layer that hardens or by a memory of less, are damped.
+//! Bounds that rise with the slip are damped. They occur on a layer that hardens, or with a memory of smaller bounds.
 //!
-//! Each turn begins from the tractions of the last one, and its tolerance falls as the bounds settle. The result has the certificate of a solve without
-//! a branch. Turns may have no end, or go around: then the result is that of the turn that left least.
+//! Each turn starts from the tractions of the last one. Its tolerance falls as the bounds converge. The result has the certificate of a solve without
+//! a branch. Turns may diverge or cycle. Then the result is that of the turn with the least residual.
 
 use super::super::levels::Level;
 use super::super::plane::Vector;
@@ -19,26 +19,27 @@ use crate::error::Result;
 use crate::memory::zeros;
 use crate::progress::Outcome;
 
-/// Turns at most, and those without a residual below this part of the least one.
+/// The most turns, and the most turns in a row without a residual below the fraction `GAIN` of the least one.
 const MOST: u32 = 400;
 const PATIENCE: u32 = 60;
 const GAIN: f64 = 0.95;
-/// A turn solves to this part of what its bounds are off by; the first one to this residual, and all below this part of the tolerance.
+/// The tolerance of a turn: this fraction of the error of its bounds, but at most `FIRST`, as in the first turn, and at least the fraction `ENOUGH`
+/// of the tolerance.
 const INNER: f64 = 0.05;
 const FIRST: f64 = 1e-3;
 const ENOUGH: f64 = 0.3;
-/// Where a turn leaves more than the one before, bounds that rise go from then on by this part of the way that they went, but by so much at least.
+/// If a residual grows from turn to turn, the steps of rising bounds are reduced by this factor from then on, down to the least factor.
 const DAMPED: f64 = 0.7;
 const LEAST_DAMPING: f64 = 0.01;
-/// From this residual on tractions go onto the circles before a turn: it takes those that are near a circle as on it.
+/// Below this residual tractions are projected onto the circles before a turn, because the turn counts those near a circle as on it.
 const NEAR: f64 = 1e-6;
-/// A length beyond all slips, whose square is a number.
+/// A length beyond all slips, whose square does not overflow.
 const ANY: f64 = 1e150;
 
 /// The progress of the turns.
 pub struct Turns {
     pub made: u32,
-    /// The part of their change by which bounds that rise go.
+    /// The fraction of their change by which rising bounds move.
     pub damping: f64,
     least: f64,
     since: u32,
@@ -55,7 +56,7 @@ impl Turns {
         (INNER * self.last).clamp(ENOUGH * tolerance, FIRST.max(ENOUGH * tolerance))
     }
 
-    /// Takes what is left after a turn; how it ends, if it does.
+    /// Takes the residual after a turn. Returns the outcome if the turns end.
     pub fn end(&mut self, left: f64, tolerance: f64) -> Option<Outcome> {
         self.made += 1;
         if !(left < self.last) {
@@ -70,7 +71,7 @@ impl Turns {
         }
     }
 
-    /// Whether further turns are given up.
+    /// Whether further turns are useless.
     pub fn are_in_vain(&self) -> bool {
         self.since > PATIENCE || self.made >= MOST
     }
@@ -88,9 +89,9 @@ pub fn begin(problem: &mut Problem, march: &mut March, is_high: bool) {
     });
 }
 
-/// The turn that left least so far.
+/// The turn with the least residual so far.
 pub struct Best {
-    /// Its tractions, and the bounds that they were found with.
+    /// Its tractions, and their bounds.
     q: Vec<Vector>,
     bound: Vec<f64>,
     left: f64,
@@ -99,13 +100,13 @@ pub struct Best {
 }
 
 impl Best {
-    /// None yet, of n elements.
+    /// Memory for n elements, without a turn.
     pub fn new(n: usize) -> Result<Best> {
         let what = "the best of turns";
         Ok(Best { q: zeros(n, what)?, bound: zeros(n, what)?, left: f64::INFINITY, last: zeros(n, what)? })
     }
 
-    /// Takes it for the last turn, whose bounds are renewed again.
+    /// Restores it as the last turn, and renews its bounds.
     pub fn restore(&mut self, level: &mut Level, march: &mut March) -> Result<()> {
         if !self.left.is_finite() {
             return Ok(());
@@ -118,7 +119,7 @@ impl Best {
     }
 }
 
-/// Bounds by the slips that a turn has found; what is left with these.
+/// Computes the bounds from the slips of a turn. Returns the residual with these bounds.
 pub fn renew(level: &mut Level, march: &mut March, best: &mut Best) -> Result<f64> {
     let Level { problem, state, memory, .. } = level;
     let tangent = &mut memory.tangent;
@@ -138,8 +139,8 @@ pub fn renew(level: &mut Level, march: &mut March, best: &mut Best) -> Result<f6
     Ok(left)
 }
 
-/// The bounds of the next turn where this one left too much. Those that rise with the slip go no farther than slips follow, and by a part
-/// of that: their changes and those of slips chase each other otherwise.
+/// Sets the bounds of the next turn. Bounds that rise with the slip move only as far as the slips follow, and by a fraction of that.
+/// Otherwise their changes and those of the slips would alternate.
 pub fn go_on(level: &mut Level, march: &mut March, (turns, best): (&Turns, &Best)) {
     let Level { problem, state, memory, .. } = level;
     if march.rises > STEEP {
@@ -152,7 +153,7 @@ pub fn go_on(level: &mut Level, march: &mut March, (turns, best): (&Turns, &Best
     }
 }
 
-/// A fresh state. Returns the larger residual of both certificates.
+/// Recomputes the state. Returns the larger residual of both certificates.
 pub fn certify(level: &mut Level, march: &mut March) -> f64 {
     let Level { problem, state, memory, .. } = level;
     bounds::settle(problem, state, &memory.tangent, march);

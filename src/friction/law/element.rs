@@ -1,21 +1,21 @@
-//! One element under a law: its bound as a function of its slip and of what its particle carries, and the slip that goes with a traction.
+//! One element under a law: its bound as a function of the slip and of the particle's state, and the slip of a traction.
 
 use crate::effects::{FrictionLaw, PlasticLayer};
 
-/// Times the yield limit of fresh material: softening ends there.
+/// Least yield limit by softening, relative to that of fresh material.
 const SOFTEST: f64 = 1e-3;
-/// Times the coefficient at rest: it does not fall below.
+/// Least coefficient, relative to that at rest.
 const LEAST: f64 = 1e-9;
-/// Steps of the search for a slip, which is bracketed, and its precision.
+/// Most steps of the bracketed search for a slip, and its relative precision.
 const STEPS: u32 = 80;
 const PRECISION: f64 = 1e-14;
 
 /// The state of a particle of the interface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Particle {
-    /// Its coefficient of friction.
+    /// The coefficient of friction.
     pub coefficient: f64,
-    /// Its yield limit, a traction.
+    /// The yield limit, a traction.
     pub yield_limit: f64,
 }
 
@@ -26,7 +26,7 @@ pub struct Law {
     pub layer: Option<PlasticLayer>,
     /// The slip velocity of a slip of 1, in the caller's units.
     pub rate: f64,
-    /// The duration of a step, in these.
+    /// The duration of a step, in the caller's units.
     pub duration: f64,
 }
 
@@ -37,7 +37,7 @@ pub struct Place {
     pub coefficient: f64,
 }
 
-/// Derivatives by the slip, by the coefficient and by the yield limit that the particle had.
+/// Derivatives by the slip, and by the coefficient and the yield limit of the particle before the step.
 type Slope = [f64; 3];
 
 /// The bound, and the particle afterwards, with their derivatives.
@@ -46,23 +46,23 @@ pub struct Response {
     pub bound: f64,
     pub slope: Slope,
     pub particle: Particle,
-    /// Of its coefficient and of its yield limit.
+    /// The derivatives of the particle's coefficient and yield limit.
     pub slopes: [Slope; 2],
-    /// Whether it is the layer that bounds the traction.
+    /// Whether the layer bounds the traction.
     pub yields: bool,
 }
 
-/// The behaviour of an element under a traction that slip relieves.
+/// The response of an element to a traction that slip relieves.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Resolved {
     pub slips: bool,
     pub response: Response,
-    /// Derivatives of the bound, the coefficient and the yield limit by the traction and by what the particle had.
+    /// Derivatives of the bound, the coefficient and the yield limit by the traction and by the particle's state before the step.
     pub linear: [Slope; 3],
 }
 
 impl Law {
-    /// At a slip, of a particle.
+    /// The response at a slip, from the particle's state `had` before the step.
     pub fn at(&self, slip: f64, place: Place, had: Particle) -> Response {
         let Place { pressure, coefficient } = place;
         let (mut mu, mut of_mu) = (coefficient, [0.0; 3]);
@@ -112,7 +112,7 @@ impl Law {
         }
     }
 
-    /// The slip by which the bound plus rho times the slip is a traction, with derivatives; none where the bound at rest carries it.
+    /// The slip at which the bound plus rho times the slip equals a traction, with derivatives; no slip if the bound at rest carries it.
     pub fn resolve(&self, traction: f64, rho: f64, place: Place, had: Particle) -> Resolved {
         let at_rest = self.at(0.0, place, had);
         let slips = traction > at_rest.bound;
@@ -125,7 +125,7 @@ impl Law {
         Resolved { slips, response, linear: [by(slope), by(slopes[0]), by(slopes[1])] }
     }
 
-    /// By Newton's method in a bracket.
+    /// The response on slip, by Newton's method in a bracket.
     fn slipping(&self, traction: f64, rho: f64, (place, had): (Place, Particle), at_rest: Response) -> Response {
         let (mut low, mut high) = (0.0, traction / rho);
         let (mut slip, mut found) = (0.0, at_rest);

@@ -6,30 +6,30 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::collected;
 
-/// A grid, and what its particles had.
+/// The particles of a grid and their states.
 pub struct March {
     pub grid: Grid,
     pub law: Law,
     places: Vec<Place>,
     /// The state of each element's particle: before the step, or fresh.
     had: Vec<Particle>,
-    /// In steady rolling with memory how many elements upstream a particle was a step before.
+    /// In steady rolling with memory: the elements between a particle's place and the one a step before, upstream.
     upstream: Option<(isize, isize)>,
-    /// How steeply bounds fall and rise with the slip, each times an element's influence on itself.
+    /// The largest slopes with which bounds fall and rise with the slip, times an element's influence on itself.
     pub falls: f64,
     pub rises: f64,
-    /// Of each element, by the last [`resolve`](March::resolve).
+    /// The result of the last [`resolve`](March::resolve) on each element.
     resolved: Vec<Resolved>,
-    /// The state of each, on the way.
+    /// The state of each particle during a march.
     carries: Vec<Particle>,
-    /// Whether the particle of each has met the contact, on the way.
+    /// Whether each particle has entered the contact, during a march.
     entered: Vec<bool>,
 }
 
 const WHAT: &str = "a law of friction";
 
 impl March {
-    /// Of elements and of what their particles had.
+    /// The particles of elements with their states before the step.
     pub fn new(
         (grid, law): (Grid, Law),
         motion: Motion,
@@ -53,13 +53,13 @@ impl March {
         })
     }
 
-    /// The findings of the last [`resolve`](March::resolve) on an element.
+    /// The result of the last [`resolve`](March::resolve) on an element.
     pub fn resolved(&self, k: usize) -> &Resolved {
         &self.resolved[k]
     }
 
-    /// Calls `each(k, place, what its particle had)` in the order in which particles pass; it returns what they carry then. In steady rolling they
-    /// are fresh until they enter the contact, wherever the grid begins.
+    /// Calls `each(k, place, state before)` in the order in which particles pass; it returns the state afterwards. In steady rolling particles are
+    /// fresh until they enter the contact, wherever the grid begins.
     pub fn go(&mut self, mut each: impl FnMut(usize, Place, Particle) -> Particle) {
         let March { places, had, carries, entered, .. } = self;
         in_order(&self.grid, self.upstream, |k, upstream| {
@@ -69,7 +69,7 @@ impl March {
         });
     }
 
-    /// The slips by which bounds plus rho times them are `traction(k)`.
+    /// Finds the slips at which the bound plus rho times the slip is `traction(k)`.
     pub fn resolve(&mut self, rho: f64, traction: impl Fn(usize) -> f64) {
         let (mut resolved, law) = (std::mem::take(&mut self.resolved), self.law);
         self.go(|k, place, had| {
@@ -80,7 +80,7 @@ impl March {
         self.resolved = resolved;
     }
 
-    /// How bounds change, by the last resolved, with tractions on slip by `traction(k)`: calls `each(k, that)`.
+    /// Calls `each(k, change of the bound)` for changes `traction(k)` of tractions on slip, linearised at the last resolved state.
     pub fn change(&mut self, traction: impl Fn(usize) -> f64, mut each: impl FnMut(usize, f64)) {
         let March { resolved, carries, entered, .. } = self;
         in_order(&self.grid, self.upstream, |k, upstream| {
@@ -94,7 +94,7 @@ impl March {
     }
 }
 
-/// Calls `each(k, the element upstream on the grid)` so that what is upstream comes first.
+/// Calls `each(k, the element upstream)`, upstream elements first.
 fn in_order(grid: &Grid, upstream: Option<(isize, isize)>, mut each: impl FnMut(usize, Option<usize>)) {
     let Grid { mx, my, .. } = *grid;
     let (x, y) = upstream.unwrap_or_default();

@@ -1,24 +1,24 @@
-//! How steeply bounds fall with the slip, of whatever its particle has: `law_slope` of a report.
+//! The largest slope with which bounds fall with the slip, for any state of the particle: `law_slope` of a report.
 //!
-//! Of an element of pressure p, with mu at rest, memory c and the part t = c/(c + dt max(v, v0)) that a particle keeps of its coefficient m:
+//! For an element of pressure p, with mu at rest, memory c and the part t = c/(c + dt max(v, v0)) that a particle keeps of its coefficient m:
 //!
 //! ```text
 //! -dg/dv = p mu [(1 - t) (-f') + (-t') (1 - f)] + p (m - mu) (-t')        f: mu_s(v)/mu
 //! ```
 //!
-//! Both parts in v are not negative, so that the largest is that of an element on the hull of the pairs `(p mu, p (m - mu))`. In steady
-//! rolling m is at most the largest coefficient that the particle has met.
+//! Both factors in v are not negative, so an element on the hull of the pairs `(p mu, p (m - mu))` has the largest slope. In steady rolling m is at
+//! most the largest coefficient on the particle's way.
 
 use super::element::{Law, Particle};
 use super::march::March;
 use crate::error::Result;
 use crate::memory::zeros;
 
-/// Slip velocities to a factor of two, and factors of two about each half speed and about the speed of the memory.
+/// Slip velocities per factor of two, and factors of two about each half speed and about the speed of the memory.
 const EACH: i32 = 8;
 const REACH: i32 = 20;
 
-/// Sets how steeply bounds fall and rise, each slope times the influence of its element on itself.
+/// Sets the largest slopes with which bounds fall and rise, each times the influence of its element on itself.
 pub fn measure(march: &mut March, influence: impl Fn(usize) -> f64) -> Result<()> {
     let law = march.law;
     let softening = law.layer.map_or(0.0, |layer| (-layer.hardening).max(0.0));
@@ -51,7 +51,7 @@ pub fn measure(march: &mut March, influence: impl Fn(usize) -> f64) -> Result<()
     Ok(())
 }
 
-/// The largest slope upwards: of what particles lack of the coefficient at rest, and of a layer that hardens.
+/// The largest upward slope: of particles below the coefficient at rest, and of a hardening layer.
 fn rises(march: &mut March, influence: impl Fn(usize) -> f64) -> f64 {
     let law = march.law;
     let hardening = law.layer.map_or(0.0, |layer| layer.hardening.max(0.0));
@@ -67,7 +67,7 @@ fn rises(march: &mut March, influence: impl Fn(usize) -> f64) -> f64 {
     steepest
 }
 
-/// Of points those that are farthest in a direction of which no part is negative.
+/// The points that are farthest in some direction with components >= 0.
 fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     points.sort_unstable_by(|a, b| b[0].total_cmp(&a[0]).then(b[1].total_cmp(&a[1])));
     let mut count = 0;
@@ -76,7 +76,7 @@ fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
         if count > 0 && point[1] <= points[count - 1][1] {
             continue;
         }
-        // The last one lies within where the way turns from it.
+        // The last point lies inside if the path turns inwards there.
         let turn = |[a, b]: [[f64; 2]; 2]| (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0]);
         while count > 1 && turn([points[count - 2], points[count - 1]]) <= 0.0 {
             count -= 1;
@@ -89,14 +89,14 @@ fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 }
 
 impl Law {
-    /// Whether coefficients follow the slip with delay.
+    /// Whether the law has a memory.
     fn remembers(&self) -> bool {
         self.fall.is_some_and(|law| law.memory_distance > 0.0)
     }
 
-    /// At slip velocities what slopes have by the bound at rest, and by what a particle has beyond.
+    /// The factors of the slope at slip velocities: of the bound at rest, and of the particle's coefficient beyond.
     fn slopes(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
-        // Below the kink of a linear law, which is one of them.
+        // Just below the velocities, one of which is the kink of a linear law.
         let below = 1.0 - 2.0 * f64::EPSILON;
         let place = move |h: f64, k: i32| below * h * (f64::from(k) / f64::from(EACH)).exp2();
         let places = move |h: f64| (-EACH * REACH..=EACH * REACH).map(move |k| place(h, k));
@@ -106,7 +106,7 @@ impl Law {
                 let (value, slope) = law.at(v);
                 let whole = c + dt * v.max(law.memory_speed);
                 let kept = if c > 0.0 { c / whole } else { 0.0 };
-                // From memory_speed on, there too.
+                // From memory_speed on, inclusive.
                 let forgets = if c > 0.0 && v >= law.memory_speed { c * dt / (whole * whole) } else { 0.0 };
                 [((kept - 1.0) * slope + forgets * (1.0 - value)) * self.rate, forgets * self.rate]
             };

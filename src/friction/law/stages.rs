@@ -1,16 +1,16 @@
 //! The two stages of a solve with a law.
 //!
-//! 1. lagged: before each step of Newton's method for fixed bounds these are renewed by the slips of the step before, on what slipped in it;
-//! 2. from a residual of [`SWITCH`] on Newton's method with the derivatives of the bounds ([`system`](super::system)); where it does not gain, a few
-//!    lagged steps come between.
+//! 1. lagged: before each Newton step with fixed bounds, the bounds of slipping elements are updated from the slips of the step before;
+//! 2. below a residual of [`SWITCH`], Newton's method with the derivatives of the bounds ([`system`](super::system)); without progress a few
+//!    lagged steps follow.
 //!
-//! Where forces are given both steps are bordered by the creepages, and the iteration begins with the solution of Coulomb's law: the least
-//! creepage that carries them.
+//! With given forces both steps are bordered by the creepages. The iteration then begins with the solution of Coulomb's law, the least
+//! creepage that carries the forces.
 //!
-//! Where bounds rise steeply with the slip, on a layer that hardens or by a memory of less, they cannot lag behind it: all steps are Newton's.
+//! If bounds rise steeply with the slip, by hardening of a layer or by a memory of lower bounds, they must not lag. Then all steps are Newton's.
 //!
-//! The result lies on its circles (but where bounds rise steeply), with a fresh product, and is certified twice: the conditions with bounds `g = |q|` that stand still, and
-//! `R_g = rms(|q| - g(slip))/rms g(0)` over C of what slips, by a march with the slips of that product.
+//! The result lies on its circles (unless bounds rise steeply), with a fresh product. It has two certificates: that of the conditions with
+//! fixed bounds `g = |q|`, and `R_g = rms(|q| - g(slip))/rms g(0)` over the slip area, by a march with the slips of that product.
 
 use super::super::forces::Forces;
 use super::super::plane::{plus, square, Vector};
@@ -26,26 +26,27 @@ use crate::error::Result;
 use crate::methods::fields::{self, Fields};
 use crate::progress::Outcome;
 
-/// Newton's method takes over from this residual on.
+/// Residual below which steps are Newton's.
 const SWITCH: f64 = 1e-2;
-/// It is worth its steps where each leaves at most this part of the least residual so far; if not, so many lagged steps follow.
+/// A Newton step must reduce the residual to this part of the least so far; if not, HELD lagged steps follow.
 const PROGRESS: f64 = 0.7;
 const HELD: u32 = 5;
-/// Residual of the linear solves; the last one ends at this part of the tolerance, but gains at least so much.
+/// Relative residual of linear solves, Newton and lagged. The last one ends at ENOUGH times the tolerance, at most at the relative residual
+/// LEAST_GAIN.
 const INNER: f64 = 0.2;
 const INNER_LAGGED: f64 = 0.35;
 const ENOUGH: f64 = 0.5;
 const LEAST_GAIN: f64 = 0.5;
 const DIRECTIONS: usize = 40;
-/// Of the natural map in Newton steps, times the inverse of an element's influence on itself: more than the largest slope of a bound, so that each
-/// element has one state. 2 took 15 to 36 products where 4 takes 15 to 24 (192 x 176 elements to 1e-6).
+/// rho of the natural map in Newton steps, over the inverse of an element's influence on itself: more than the largest slope of a bound, so
+/// that each element has one state. 4 takes 15 to 24 products, 2 takes 15 to 36 (192 x 176 elements to 1e-6).
 const RHO: f64 = 4.0;
-/// Farther than [`SWITCH`] it is so many times the largest slope downwards, at least, and not more.
+/// Above [`SWITCH`], rho is at least this times the largest downward slope, and at most as below it.
 const ABOVE: f64 = 2.0;
-/// Steps without a residual below this part of the least one, after which it ends.
+/// Steps without a residual below GAIN times the least, after which the iteration ends.
 const PATIENCE: u32 = 15;
 const GAIN: f64 = 0.9;
-/// Where the certificate of what converged is not met, the iteration goes on to this part of the tolerance, so many times in all.
+/// Factor on the tolerance after a converged iteration whose certificate fails, and the most certificates.
 const TIGHTER: f64 = 0.1;
 const CERTIFICATES: u32 = 3;
 
@@ -58,7 +59,7 @@ struct Course {
     hardens: bool,
 }
 
-/// How it ended: the larger of both certificates' residuals.
+/// The outcome, and the larger of both certificates' residuals.
 pub struct Ended {
     pub outcome: Outcome,
     pub residual: f64,
@@ -71,7 +72,7 @@ struct Best {
     worst: f64,
 }
 
-/// Iterates from what the state holds. `has_slipped`: what slips is that of the state; else nothing has slipped yet.
+/// Iterates from the state. `has_slipped` tells whether the state has a slip area. Otherwise no element has slipped yet.
 pub fn solve(
     problem: &mut Problem,
     state: &mut State,
@@ -124,7 +125,7 @@ fn iterate(
 ) -> Result<Outcome> {
     let Goal { tolerance, limit, watch, .. } = goal;
     let (made, cap) = (problem.operators.products, 1.0 / compliance(problem));
-    // A bound that hardens, or rises steeply by its memory, follows the slip too steeply to lag behind it.
+    // A bound that hardens, or rises steeply by its memory, must not lag behind the slip.
     let hardens = march.law.layer.is_some_and(|layer| layer.hardening != 0.0) || march.rises > STEEP;
     let mut course = Course { least: f64::INFINITY, since: 0, held: 0, was_newton: false, hardens };
     let mut is_fresh = false;
@@ -172,24 +173,24 @@ fn iterate(
     }
 }
 
-/// Whether creepages run away from a force that no creepage meets.
+/// Whether the creepages diverge because no creepage carries the force.
 fn is_far(problem: &Problem) -> bool {
     !(problem.rms_rigid() / problem.displaced_by_bounds() < LARGEST_RATIO)
 }
 
-/// rho of a Newton step, from that of a step for bounds that stand still.
+/// rho of a Newton step, from that of a step with fixed bounds.
 fn rho_of_newton(problem: &Problem, march: &March, worst: f64, rho: f64) -> f64 {
     let near = RHO / problem.operators.self_influence;
     match march.law.fall {
         None => rho,
         Some(_) if worst < SWITCH => near,
-        // Far from a solution slips would turn tractions around by it.
+        // Far from a solution slips would reverse tractions with this rho.
         Some(_) => rho.max(ABOVE * march.falls / problem.operators.self_influence).min(near),
     }
 }
 
 impl Course {
-    /// Whether the next step is Newton's; none: it ends.
+    /// Whether the next step is Newton's. None if the iteration ends.
     fn next(&mut self, worst: f64) -> Option<bool> {
         let mut is_newton = self.hardens || worst < SWITCH && self.held == 0;
         if is_newton && !self.hardens && self.was_newton && worst > PROGRESS * self.least {

@@ -1,4 +1,4 @@
-//! The linear system of a Newton step with a law, whose unknowns have both components on slip, too.
+//! The linear system of a Newton step with a friction law. Elements in slip have both components as unknowns, too.
 //!
 //! ```text
 //! stick:        B x                                        = -s
@@ -6,10 +6,11 @@
 //! slip along n: b0 (n.x - change of g by n.x - rho n.(B x)) = b0 n.x0               b0: an element's influence on itself
 //! ```
 //!
-//! where forces are given with `B x + c` in the place of B x, c the change of the creepages, and `sum x = F/(dx dy) - sum q`. The border is
-//! eliminated as without a law, by `Y_k`, the preconditioned column of c_k.
+//! With prescribed forces `B x + c` replaces B x, where c is the change of the creepages, and `sum x = F/(dx dy) - sum q`. The border is
+//! eliminated as without a law, with `Y_k`, the preconditioned column of c_k.
 //!
-//! Preconditioned on stick and along t as without a law, along n by `1/(b0 (1 - g_T (1 - rho b0)))`, g_T the own derivative of g by the traction.
+//! The preconditioner on stick and along t is that without a law. Along n it is `1/(b0 (1 - g_T (1 - rho b0)))`, where g_T is the derivative of g by
+//! the element's own traction.
 
 use super::super::forces::{sum_of, Forces};
 use super::super::plane::{add, dot, plus, Vector};
@@ -22,24 +23,24 @@ use crate::error::Result;
 use crate::methods::fgmres::{self, Bordered, Direction, System, Until};
 use crate::methods::fields::{self, Fields};
 
-/// The system at the state that the tangent and the march hold.
+/// The system at the state of the tangent and the march.
 struct RadialSystem<'a> {
     problem: &'a mut Problem,
     tangent: &'a Tangent,
     march: &'a mut March,
     rho: f64,
     forces: Forces,
-    /// Y of the forces that are given, and the inverse of their sums.
+    /// Y of the prescribed forces, and the inverse of the matrix of its sums.
     border: [Vec<Vector>; 2],
     inverse: [Vector; 2],
     scratch: Vec<Vector>,
     along: Vec<Vector>,
 }
 
-/// Determinants below this part of the largest product are none.
+/// A determinant below this fraction of its largest product counts as 0.
 const SINGULAR: f64 = 1e-8;
 
-/// The inverse of what sums change by creepages. It is not symmetric where bounds are carried from element to element.
+/// The inverse of the derivatives of sums by creepages. It is not symmetric if bounds are carried from element to element.
 fn inverse(matrix: [Vector; 2]) -> [Vector; 2] {
     let [[a, b], [c, d]] = matrix;
     let (determinant, largest) = (a * d - b * c, [a, b, c, d].into_iter().fold(0.0, |most: f64, m| most.max(m.abs())));
@@ -50,7 +51,7 @@ fn inverse(matrix: [Vector; 2]) -> [Vector; 2] {
 }
 
 impl RadialSystem<'_> {
-    /// Y and the sums of it.
+    /// Computes Y and its sums.
     fn set_border(&mut self, fields: &mut Fields) -> Result<()> {
         let n = self.problem.bound.len();
         let mut matrix = [[0.0; 2]; 2];
@@ -71,7 +72,7 @@ impl RadialSystem<'_> {
         Ok(())
     }
 
-    /// The creepages for what sums of z have too much; z without what these make.
+    /// Computes the creepages that correct an excess in the sums of z, and subtracts their effect from z.
     fn balance(&self, too_much: Vector, z: &mut [Vector]) -> Vector {
         let (rest, [upper, lower]) = (self.forces.only_given(too_much), self.inverse);
         let by = self.forces.only_given([dot(upper, rest), dot(lower, rest)]);
@@ -131,7 +132,7 @@ impl System for RadialSystem<'_> {
     }
 }
 
-/// One step of Newton's method, solved to `inner` of its right-hand side, with so many directions at most.
+/// One Newton step. Its linear system is solved to the relative residual `inner`, with so many directions at most.
 pub fn step(
     problem: &mut Problem,
     state: &mut State,

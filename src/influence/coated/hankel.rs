@@ -1,7 +1,8 @@
-//! The radial functions by quadrature of their Hankel integrals: what the table of [`Radial`](super::Radial) is made from.
+//! The radial functions by quadrature of their Hankel integrals, for the table of [`Radial`](super::Radial).
 //!
-//! Panels in `v = asinh(rho/2)` have polynomials through the values at 16 Chebyshev nodes: singularities at `Im v = pi/2` are six
-//! half-widths away, `(6.3 + sqrt(6.3^2 - 1))^-16 = 3e-18`. The values come from Gauss-Legendre in s near 0, and from Ogata's rule beyond.
+//! Panels in `v = asinh(rho/2)` have polynomials through the values at 16 Chebyshev nodes. Singularities at `Im v = pi/2` are 6.3
+//! half-widths away, so the error is `(6.3 + sqrt(6.3^2 - 1))^-16 = 3e-18`. Values come from Gauss-Legendre in s near 0, and from Ogata's
+//! rule beyond.
 
 use super::polynomial::{chebyshev, clenshaw, node};
 use super::quadrature::{gauss_legendre, hankel_rule};
@@ -9,12 +10,12 @@ use super::response::Response;
 
 /// Nodes of a panel in v.
 const N: usize = 16;
-/// Panels in v are at most that wide.
+/// Largest width of a panel in v.
 const PANEL: f64 = 0.5;
-/// B - 1 is below 1e-15 from there on, for layers up to 1e4 times stiffer: `4 s^2 exp(-2 s)`.
+/// The s from which B - 1 is negligible, for layers up to 1e4 times stiffer: `4 s^2 exp(-2 s)` is 1.5e-16 there.
 const S_MAX: f64 = 22.0;
 
-/// F on panels in v: Chebyshev coefficients of `F_1 sqrt(1 + rho^2/4)` where s-quadrature serves, and of `F_B0 rho`.
+/// F on panels in v: Chebyshev coefficients of `F_1 sqrt(1 + rho^2/4)` on panels of quadrature in s, and of `F_B0 rho`.
 pub struct Hankel {
     width: f64,
     layer: Vec<[f64; N]>,
@@ -22,7 +23,7 @@ pub struct Hankel {
 }
 
 impl Hankel {
-    /// Up to a distance; `pole` is the length L of the nearest pole of B.
+    /// F up to the distance `last`; `pole` is the length L of the nearest pole of B.
     pub fn new(transfer: &dyn Response, pole: f64, last: f64) -> Hankel {
         let v_max = (0.5 * last).asinh();
         let count = (v_max / PANEL).ceil();
@@ -71,7 +72,7 @@ fn far_value(transfer: &dyn Response, pole: f64, rho: f64) -> f64 {
 }
 
 /// Nodes s, and weights times B - 1, for distances up to `rho_max`: composite 24-point Gauss-Legendre on panels of at most 30 radians of
-/// J0, for which it leaves `(15 e/96)^48 = 2e-18`; the first one ends at half the distance of the nearest pole, and later ones grow fourfold.
+/// J0, with the error `(15 e/96)^48 = 2e-18`. The first panel ends at half the distance of the nearest pole, later ends grow up to fourfold.
 fn near_rule(transfer: &dyn Response, pole: f64, rho_max: f64) -> Vec<(f64, f64)> {
     let gauss = gauss_legendre(24);
     let width = f64::min(1.5, 30.0 / rho_max);

@@ -1,23 +1,23 @@
-//! Tables that were made: scenes of the same materials share them.
+//! A cache of tables. Scenes with the same materials share them.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// A layer's materials: G1/G2 and both Poisson ratios.
 type Materials = [f64; 3];
 
-/// Tables that are kept: some 20 kB each.
+/// The most tables in the cache. Each has about 20 kB.
 const MOST: usize = 16;
 
-/// The tables of some materials, the latest last.
+/// Tables with their materials, the latest last.
 pub struct Known<T>(Mutex<Vec<(Materials, Arc<T>)>>);
 
 impl<T> Known<T> {
-    /// None yet.
+    /// An empty cache.
     pub const fn new() -> Known<T> {
         Known(Mutex::new(Vec::new()))
     }
 
-    /// The table of some materials: made once.
+    /// The table of some materials. It is computed once.
     pub fn get(&self, materials: Materials, make: impl FnOnce() -> T) -> Arc<T> {
         let known = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, table)) = known().iter().find(|(of, _)| *of == materials) {

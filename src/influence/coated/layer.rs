@@ -2,8 +2,8 @@
 //!
 //! The integral over an element, by the larger of its distance and t, in longer sides of an element:
 //!
-//! * beyond [`FAR`] from the values at the centres of the element and its neighbours (see [`means`]): one evaluation per element;
-//! * before, by tensor Gauss, or up to [`CORNERS`] diagonals by corner differences of `S(x, y) = integral from 0 to x and 0 to y of F`,
+//! * beyond [`FAR`], by values at the centres of the element and its neighbours (see [`means`]): one evaluation per element;
+//! * nearer, by tensor Gauss, or up to [`CORNERS`] diagonals by corner differences of `S(x, y) = integral from 0 to x and 0 to y of F`,
 //!
 //! ```text
 //! S(x, y) = t^2 (T(x, y) + T(y, x)),    T(a, b) = integral from 0 to asinh(b/a) of M(a cosh(u)/t)/cosh(u) du
@@ -19,11 +19,11 @@ use crate::grid::Grid;
 use crate::influence::{means, HalfSpace, Kernel};
 use crate::memory::zeros;
 
-/// Beyond this the stencil serves.
+/// Distance beyond which the stencil of neighbours is used.
 const FAR: f64 = 32.0;
-/// Diagonals of an element up to which corner differences serve.
+/// Diagonals of an element up to which corner differences are used.
 const CORNERS: f64 = 2.5;
-/// Points a side of tensor Gauss, below these distances.
+/// Points a side of tensor Gauss below these distances.
 const POINTS: [(f64, usize); 2] = [(12.0, 7), (FAR, 4)];
 
 /// The correction of one layer on a grid.
@@ -36,7 +36,7 @@ pub struct Layer<'a> {
 }
 
 impl Layer<'_> {
-    /// Adds `(c/t) integral of F`, with the base that suits each offset; from [`first_of_half`] on in each row.
+    /// Adds `(c/t) integral of F`, with the base of each offset, from [`first_of_half`] on in each row.
     pub fn add(&self, c: f64, table: &mut [f64]) -> Result<()> {
         let Grid { mx, my, dx, dy } = self.grid;
         let (far, row_distance) = (FAR * dx.max(dy), dy / dx.max(dy));
@@ -46,7 +46,7 @@ impl Layer<'_> {
             move |ky: usize, first: usize, row: &mut [f64]| {
                 let y = ky as f64 * dy / self.t;
                 let skipped = usize::from(ky == 0 && base == Base::Substrate);
-                // No mean is asked for near 0.
+                // Means near 0 are not used.
                 row[..skipped].fill(0.0);
                 let x = (first + skipped) as f64 * dx / self.t;
                 self.radial.fill_f((x, dx / self.t, y), base, &mut row[skipped..]);
@@ -75,7 +75,7 @@ impl Layer<'_> {
         Ok(())
     }
 
-    /// The offsets that are not far.
+    /// Adds the offsets that are not far.
     fn add_near(&self, c: f64, table: &mut [f64]) -> Result<()> {
         let Grid { mx, my, dx, dy } = self.grid;
         let h = dx.max(dy);
@@ -96,7 +96,7 @@ impl Layer<'_> {
                     *value += c * self.gauss(rule, (x, y), here);
                     continue;
                 }
-                // The half-space has the base that is usual here.
+                // The half-space has the usual base at this offset.
                 let less = 1.0 - self.radial.transfer.substrate;
                 let other = match (base, here) {
                     (Base::Layer, Base::Substrate) => less,
@@ -146,7 +146,7 @@ impl Corners {
         };
         let mut values = zeros((columns + 1) * (rows + 1), COATED)?;
         for (i, value) in values.iter_mut().enumerate() {
-            // Corners at half-integer offsets, from 1/2 on; those at -1/2 are their opposites.
+            // Corners at half-integer offsets, from 1/2 on; values at -1/2 are the opposites.
             let (x, y) = ((i % (columns + 1)) as f64 + 0.5, (i / (columns + 1)) as f64 + 0.5);
             *value = layer.t * (side(x * dx, y * dy) + side(y * dy, x * dx));
         }

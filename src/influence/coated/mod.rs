@@ -5,8 +5,8 @@
 //! ```
 //!
 //! with L the integral of 1/r ([`HalfSpace`]), and a radial correction F_b ([`Radial`]) to a half-space of the layer's material, b = 1, at
-//! distances below t, to one of the substrate's, b = B0, beyond. With one of them alone, either digits are lost or a singularity is left
-//! under the integral. A body without a coating has b = 1 and no correction.
+//! distances below t, to one of the substrate's, b = B0, beyond. With one base alone, either digits are lost or the integrand has a
+//! singularity. A body without a coating has b = 1 and no correction.
 
 mod hankel;
 mod known;
@@ -46,7 +46,7 @@ pub(crate) use quadrature::gauss_legendre;
 /// One body: its coating, or none.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoatedBody {
-    /// `(1 - nu)/(2 pi G)` of what is at the surface.
+    /// `(1 - nu)/(2 pi G)` of the material at the surface.
     pub compliance: f64,
     /// Thickness, and radial functions.
     pub layer: Option<(f64, Arc<Radial>)>,
@@ -72,7 +72,7 @@ pub struct Coated {
 impl Coated {
     /// The coefficients of a grid.
     pub fn new(bodies: [CoatedBody; 2], grid: &Grid) -> Result<Coated> {
-        // A compliance of 1/pi E* = 1: the integral of 1/r.
+        // With the compliance 1/(pi E*) = 1 coefficients are integrals of 1/r.
         Coated::with_half_space(bodies, HalfSpace::new(grid.dx, grid.dy, PI), grid)
     }
 
@@ -82,7 +82,7 @@ impl Coated {
             let first = first_of_half(grid, ky);
             half_space.fill_row(first as i64, ky as i64, &mut row[first..]);
             let [one, two] = bodies.each_ref().map(|body| body.first_of_substrate(grid, ky));
-            // Each body changes its base where its thickness is reached.
+            // The base of each body changes at a distance of its thickness.
             let ends = [first, one.min(two).max(first), one.max(two).max(first), row.len()];
             for ends in ends.windows(2) {
                 let factor: f64 =
@@ -101,7 +101,7 @@ impl Coated {
     }
 }
 
-/// Fills in the others, a few rows at a time: these share what is read at once.
+/// Fills in the other half by symmetry, a few rows at a time, which share cache lines.
 fn mirror(grid: &Grid, table: &mut [f64]) {
     const ROWS: usize = 8;
     let Grid { mx, my, .. } = *grid;
@@ -133,7 +133,7 @@ impl CoatedBody {
         self.layer.as_ref().map_or(grid.mx, |(t, _)| first_beyond(*t, grid, ky))
     }
 
-    /// `u/p` of a uniform pressure under which nothing stretches sideways: the compression of the layer.
+    /// `u/p` of a uniform pressure without lateral strain: the compression of the layer.
     fn of_mean(&self) -> f64 {
         self.layer.as_ref().map_or(0.0, |(t, radial)| 2.0 * PI * self.compliance * t * radial.transfer.of_mean)
     }
@@ -163,7 +163,7 @@ impl Kernel for Coated {
         out.iter_mut().zip(kx..).for_each(|(value, kx)| *value = self.at(kx, ky));
     }
 
-    // The aliases that matter: k and k - 2 pi/d in each direction. Of all of them sin(k d/2) is the same, but for its sign.
+    // The largest aliases: k and k - 2 pi/d in each direction. All have the same |sin(k d/2)|.
     fn wave(&self, grid: &Grid, kx: f64, ky: f64) -> Option<f64> {
         let aliases = |k: f64, d: f64| {
             let half = 0.5 * k * d;

@@ -1,11 +1,11 @@
-//! Which offsets of a row are computed, and how.
+//! The offsets of a row to be computed.
 
 use crate::grid::Grid;
 
-/// Names its memory in messages.
+/// The name of this memory in messages.
 pub(super) const COATED: &str = "the coefficients of a coating";
 
-/// The first offset in a row that is computed: of square elements the others are those of `(ky, kx)`.
+/// The first offset computed in a row: for square elements, earlier ones equal those of `(ky, kx)`.
 pub(super) fn first_of_half(grid: &Grid, ky: usize) -> usize {
     if grid.dx == grid.dy && grid.my <= grid.mx {
         ky.min(grid.mx)
@@ -14,7 +14,7 @@ pub(super) fn first_of_half(grid: &Grid, ky: usize) -> usize {
     }
 }
 
-/// The first offset in a row whose distance is not below this, or the row's end.
+/// The first offset in a row at this distance or more, or the row's end.
 pub(super) fn first_beyond(distance: f64, grid: &Grid, ky: usize) -> usize {
     let y = ky as f64 * grid.dy;
     if y >= distance {

@@ -1,14 +1,14 @@
-//! Coated bodies in a scene that repeats itself in both directions.
+//! Coated bodies in a scene with two periods.
 //!
-//! The half-space of the layer's material has its coefficients of [`Periodic`]. To them come the sums over [`waves`](super::waves) of what the
-//! coating changes.
+//! The half-space of the layer's material has the coefficients of [`Periodic`]. The changes by the coating are added as sums over
+//! [`waves`](super::waves).
 //!
-//! *The mean.* As without a coating, the mean displacement of the half-spaces below is zero. A uniform pressure p, under which nothing stretches
-//! sideways, compresses the layer by `p t/M`, with the oedometric modulus `M = 2 G (1 - nu)/(1 - 2 nu)`. All coefficients have it in common
+//! *The mean.* As without a coating, the mean displacement of the half-spaces below is zero. A uniform pressure p compresses the layer by
+//! `p t/M` without lateral strain, with the oedometric modulus `M = 2 G (1 - nu)/(1 - 2 nu)`. This is a constant in all coefficients
 //! ([`Kernel::constant`]).
 //!
-//! *Coarser grids.* Where elements become too long for sums over waves, coefficients are means of those of the finer grid: the displacement of
-//! four elements, in the mean, by a pressure on four.
+//! *Coarser grids.* If elements are too long for sums over waves, coefficients are means over the finer grid: the mean displacement of four
+//! elements by a pressure on four.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -20,15 +20,15 @@ use crate::grid::Grid;
 use crate::influence::Periodic;
 use crate::memory::zeros;
 
-/// Elements that are longer, in thicknesses, have too many aliases,
+/// Longest element in thicknesses. Longer elements have too many aliases.
 const LONGEST: f64 = 16.0;
-/// and where those of a coarser grid are, joining elements costs less.
+/// Longest element of a coarser grid in thicknesses. For longer elements, means over the finer grid are cheaper.
 const LONGEST_COARSE: f64 = 4.0;
 
 /// Coefficients of a period.
 #[derive(Clone, Debug)]
 pub struct CoatedPeriodic {
-    /// The bodies and the half-space of the layers; none where finer elements were joined.
+    /// The bodies and the half-space of the layers; none for joined elements.
     sums: Option<([CoatedBody; 2], Periodic)>,
     /// Coefficients without their constant, at offsets up to half the period, `[ky][kx]`.
     table: Arc<Vec<f64>>,
@@ -37,7 +37,7 @@ pub struct CoatedPeriodic {
     /// The displacement by a uniform pressure of 1.
     mean: f64,
     has_mean: bool,
-    /// About what the longest wave displaces.
+    /// The approximate response of the longest wave.
     longest: f64,
 }
 
@@ -84,7 +84,7 @@ impl CoatedPeriodic {
         Ok(CoatedPeriodic { sums: None, table: Arc::new(table), mx: coarse.mx, my: coarse.my, ..self.clone() })
     }
 
-    /// Without the constant.
+    /// The coefficient without the constant.
     fn own(&self, kx: i64, ky: i64) -> f64 {
         let folded = |k: i64, m: usize| {
             let k = k.unsigned_abs() as usize % m;
@@ -139,7 +139,7 @@ impl Kernel for CoatedPeriodic {
         self.share(response)
     }
 
-    // The mean counts as no stiffer than the longest wave: it is a wave that is not alone in a contact area.
+    // The mean gets at least the response of the longest wave, because a contact area couples the mean with waves.
     fn constant_for_inverse(&self) -> f64 {
         (self.share(self.longest) - self.constant()).max(0.0)
     }

@@ -28,7 +28,7 @@ pub fn clenshaw(coefficients: &[f64], x: f64) -> f64 {
     x * one - two + coefficients[0]
 }
 
-/// The number of Chebyshev coefficients after which the others add up to no more than that.
+/// The least number of Chebyshev coefficients whose remainder adds up to at most `allowed`.
 pub fn terms(coefficients: &[f64], allowed: f64) -> usize {
     let mut dropped = 0.0;
     let is_needed = |c: &f64| {
@@ -40,7 +40,7 @@ pub fn terms(coefficients: &[f64], allowed: f64) -> usize {
 
 /// The first Chebyshev coefficients as coefficients of powers.
 pub fn powers<const M: usize>(chebyshev: &[f64]) -> [f64; M] {
-    // T_k by its recursion, added up.
+    // The sum of c[k] T_k, each T_k by its recursion.
     let (mut before, mut now) = ([0.0; M], [0.0; M]);
     (before[0], now[1]) = (1.0, 1.0);
     let mut sum = [0.0; M];
@@ -68,7 +68,7 @@ pub fn integral<const N: usize, const M: usize>(polynomial: &[f64; N], factor: f
     integral
 }
 
-/// By Horner's scheme.
+/// The polynomial at x, by Horner's scheme.
 #[inline]
 pub fn evaluate(polynomial: &[f64], x: f64) -> f64 {
     polynomial.iter().rev().fold(0.0, |sum, c| sum * x + c)

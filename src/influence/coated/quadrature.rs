@@ -22,15 +22,15 @@ pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
     (0..n).map(node).collect()
 }
 
-/// The mesh size of the coarsest of Ogata's rules. Its nodes begin at `pi^2 h/3`; what is integrated may vary on ten times that scale.
+/// The mesh size h of the coarsest of Ogata's rules. Its nodes begin at `pi^2 h/3`; the integrand may vary on ten times this scale.
 const MESH: f64 = 0.004;
-/// Beyond, its nodes are zeros of J0.
+/// Argument of psi beyond which nodes are zeros of J0.
 const LAST: f64 = 3.6;
-/// Rules: each has half the mesh size of the one before.
+/// Number of rules, each with half the mesh size of the one before.
 const RULES: usize = 8;
 
 /// Nodes x and weights w such that `integral from 0 to infinity of f(x) J0(x) dx = sum of w f(x)` (Ogata 2005), for f that varies on a
-/// scale of `scale`, or on longer ones:
+/// scale of `scale` or longer:
 ///
 /// ```text
 /// x = (pi/h) psi(h xi),  w = pi (Y0/J1)(pi xi) J0(x) psi'(h xi),  psi(t) = t tanh(pi/2 sinh t),  pi xi the zeros of J0

@@ -5,20 +5,20 @@
 //! F_B0(rho) = F_1(rho) + (1 - B0)/rho
 //! ```
 //!
-//! with b = 1, the layer's own half-space, or b = B0 = B(0), the substrate's. F_1 is smooth at 0; F_B0 falls off as `1/rho^3`. Of both,
-//! all singularities lie at `w = 4 + rho^2 <= 0`. So on a quarter of an octave of w, `[2^k, 1.25 2^k]` say, polynomials of degree 13 have
-//! `(9 + sqrt 80)^-14 = 3e-18`, of a function that is `w^-5/2` near 0; which quarter is in the bits of w, and M is an integral of it,
-//! `rho drho = dw/2`. Below rho = 2 they are those of F_1, beyond of F_B0.
+//! with b = 1, the layer's own half-space, or b = B0 = B(0), the substrate's. F_1 is smooth at 0; F_B0 decays as `1/rho^3`. All
+//! singularities of both lie at `w = 4 + rho^2 <= 0`. So on a quarter of an octave of w, as `[2^k, 1.25 2^k]`, polynomials of degree 13 have
+//! the error `(9 + sqrt 80)^-14 = 3e-18` for a function like `w^-5/2` near 0. The bits of w tell the quarter, and M is an integral of the
+//! polynomial, `rho drho = dw/2`. Below rho = 2 the polynomials are those of F_1, beyond those of F_B0.
 //!
-//! The values come from quadrature ([`Hankel`]). At `rho > 100 L`, with L the distance of the nearest pole of B, 1/s say, the Taylor
-//! coefficients of B serve:
+//! The values come from quadrature ([`Hankel`]). At `rho > 100 L`, with 1/L the distance of the nearest pole of B, the Taylor coefficients of
+//! B serve:
 //!
 //! ```text
 //! F_B0 = -B2/rho^3 + 9 B4/rho^5 - 225 B6/rho^7 + 11025 B8/rho^9 - 893025 B10/rho^11
 //! M_B0 = B1 + B2/rho - 3 B4/rho^3 + 45 B6/rho^5 - 1575 B8/rho^7 + 99225 B10/rho^9
 //! ```
 //!
-//! L is about `1.75 mu` for stiff layers: the length over which they spread a load as membranes.
+//! L is about `1.75 mu` for stiff layers, the length over which they spread a load as membranes.
 
 use super::hankel::Hankel;
 use super::polynomial::{chebyshev, evaluate, integral, node, powers, terms};
@@ -26,10 +26,10 @@ use super::quadrature::gauss_legendre;
 use super::response::{Response, TERMS};
 use super::transfer::Transfer;
 
-/// Coefficients of a polynomial in w at most, of degree 13, and of its integral.
+/// Most coefficients of a polynomial in w, of degree 13, and of its integral.
 const P: usize = 14;
 const OF_INTEGRAL: usize = P + 1;
-/// Bound on the omitted terms of a polynomial, in the half-space's `b/rho` there.
+/// Bound on the omitted terms of a polynomial, relative to the half-space's `b/rho`.
 const LEFT_OUT: f64 = 1e-15;
 /// w at rho = 2.
 const SMOOTH: f64 = 8.0;
@@ -49,11 +49,11 @@ pub struct Radial<R = Transfer> {
     /// B.
     pub transfer: R,
     taylor: [f64; TERMS],
-    /// Of w from 4 on.
+    /// The panels of w from 4 on.
     panels: Vec<Panel>,
-    /// `M_1/rho^2` on the first of them.
+    /// `M_1/rho^2` on the first panel.
     mean: [f64; P],
-    /// Where they end.
+    /// The w at which the panels end.
     far: f64,
     /// B at [`FIRST`] and on, eight values an octave.
     roughly: Vec<f64>,
@@ -63,7 +63,7 @@ pub struct Radial<R = Transfer> {
 #[derive(Clone, Debug, PartialEq)]
 struct Panel {
     f: [f64; P],
-    /// Coefficients of f that are not zero: fewer far away, where F is small beside the half-space.
+    /// Coefficients of f above [`LEFT_OUT`]: fewer far away, where F is small beside the half-space.
     terms: usize,
     m: [f64; OF_INTEGRAL],
 }
@@ -74,17 +74,17 @@ impl Panel {
     }
 }
 
-/// Where the rough values of B begin and how many octaves they take.
+/// The first place of the rough values of B, and their octaves.
 const FIRST: f64 = 1.0 / (1u64 << 32) as f64;
 const OCTAVES: usize = 38;
 
 impl<R: Response> Radial<R> {
-    /// The table of a layer: takes milliseconds.
+    /// Makes the table of a layer, which takes milliseconds.
     pub fn new(transfer: R) -> Radial<R> {
         let taylor = transfer.taylor();
         let scale = transfer.substrate().max(1.0);
         let pole = (6..TERMS).map(|k| (taylor[k].abs() / scale).powf(1.0 / k as f64)).fold(0.5, f64::max);
-        // Octaves of w up to there.
+        // Octaves of w up to rho = 100 L.
         let octaves = ((50.0 * pole).powi(2) + 1.0).log2().ceil() as usize;
         let far = 4.0 * (1u64 << octaves) as f64;
         let hankel = Hankel::new(&transfer, pole, (far - 4.0).sqrt());
@@ -106,7 +106,7 @@ impl<R: Response> Radial<R> {
         Radial { transfer, taylor, panels, mean, far, roughly }
     }
 
-    /// F and M where w lies between these; M is `before` at the lower end.
+    /// F and M for w between `low` and `high`; M is `before` at the lower end.
     fn panel(hankel: &Hankel, transfer: &R, (low, high): (f64, f64), before: f64) -> Panel {
         let rho = |x: f64| (0.5 * (low + high) + 0.5 * (high - low) * x - 4.0).max(0.0).sqrt();
         let is_near = high <= SMOOTH;
@@ -122,7 +122,7 @@ impl<R: Response> Radial<R> {
     fn mean(first: &Panel) -> [f64; P] {
         let rule = gauss_legendre(P.div_ceil(2));
         let value = |place: f64| {
-            // Of the way from w = 4 on: where rho^2 is 0.
+            // The part of the panel from w = 4, where rho^2 is 0.
             let way = 0.5 * (1.0 + place);
             let f = |(x, weight): &(f64, f64)| weight * evaluate(first.f(), 2.0 * way * x - 1.0);
             0.5 * rule.iter().map(f).sum::<f64>()
@@ -130,7 +130,7 @@ impl<R: Response> Radial<R> {
         powers(&chebyshev(&std::array::from_fn::<f64, P, _>(|i| value(node(i, P)))))
     }
 
-    /// How many panels there are.
+    /// The number of panels.
     pub(super) fn panels(&self) -> usize {
         self.panels.len()
     }
@@ -149,12 +149,12 @@ impl<R: Response> Radial<R> {
         low + (high - low) * (s - place) / width
     }
 
-    /// F at a distance rho in thicknesses; for the substrate as base rho > 0.
+    /// F at a distance rho in thicknesses, which is positive with the substrate as base.
     pub fn f(&self, rho: f64, base: Base) -> f64 {
         self.f_at_square(rho * rho, base)
     }
 
-    /// F by the square of rho.
+    /// F at a square of rho.
     pub fn f_at_square(&self, rho2: f64, base: Base) -> f64 {
         let w = 4.0 + rho2;
         let (value, of) = if w < self.far {
@@ -171,8 +171,7 @@ impl<R: Response> Radial<R> {
         }
     }
 
-    /// `out[k]` is F at distance `sqrt((x + k dx)^2 + y^2)`, all in thicknesses, x and y >= 0: a run of places at a time that have
-    /// their polynomial in common.
+    /// `out[k]` is F at distance `sqrt((x + k dx)^2 + y^2)`, all in thicknesses, x and y >= 0: a run of places with one polynomial at a time.
     pub fn fill_f(&self, (x, dx, y): (f64, f64, f64), base: Base, out: &mut [f64]) {
         let w = |k: usize| {
             let x = x + k as f64 * dx;
@@ -190,7 +189,7 @@ impl<R: Response> Radial<R> {
                 return;
             }
             let (panel, (low, high)) = panel_of(start);
-            // The first place beyond the panel, to within rounding: its polynomial holds there, too.
+            // The first place beyond the panel up to round-off, where its polynomial still holds.
             let beyond = ((high - 4.0 - y * y).max(0.0).sqrt() - x) / dx;
             let end = if beyond < out.len() as f64 { (beyond as usize).max(first) + 1 } else { out.len() };
             let (polynomial, middle, scale) = (self.panels[panel].f(), 0.5 * (low + high), 2.0 / (high - low));
@@ -226,7 +225,7 @@ impl<R: Response> Radial<R> {
         }
     }
 
-    /// `M/rho^2` by the square of rho; of the layer as base also where that is 0.
+    /// `M/rho^2` at a square of rho, which may be 0 with the layer as base.
     pub fn mean_at_square(&self, rho2: f64, base: Base) -> f64 {
         let (w, (low, high), rho) = (4.0 + rho2, ends_of(0), rho2.sqrt());
         let less = 1.0 - self.transfer.substrate();
@@ -254,7 +253,7 @@ impl<R: Response> Radial<R> {
     }
 }
 
-/// Places that are computed at a time: a loop over them is vectorised.
+/// Places computed at a time, in vectorised loops.
 const LANES: usize = 8;
 const OFFSETS: [f64; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
@@ -277,13 +276,13 @@ fn fill_run(polynomial: &[f64], (x, dx, shift, scale): (f64, f64, f64, f64), run
     }
 }
 
-/// The panel of w >= 4, and its ends: exponent and first two digits are its number.
+/// The panel of w >= 4, and its ends. Its number is the exponent and the first two bits of w.
 pub(super) fn panel_of(w: f64) -> (usize, (f64, f64)) {
     let panel = (w.to_bits() >> 50) as usize - FIRST_PANEL;
     (panel, ends_of(panel))
 }
 
-/// Exponent and first digits of 4.
+/// Exponent and first two bits of 4.
 const FIRST_PANEL: usize = (1023 + 2) << 2;
 
 /// The ends of a panel.

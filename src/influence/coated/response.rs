@@ -1,6 +1,6 @@
-//! What a bonded layer makes of the waves of a load.
+//! The response of a bonded layer to the waves of a load.
 
-/// Taylor coefficients that are kept.
+/// Number of Taylor coefficients.
 pub const TERMS: usize = 12;
 
 /// The displacement of a surface with a layer by a wave, over that of a half-space of the layer's material: a function of `s = k t` that is 1 for
@@ -19,7 +19,7 @@ pub trait Response {
     fn taylor(&self) -> [f64; TERMS];
 }
 
-/// The Taylor coefficients of a quotient, by those of both.
+/// The Taylor coefficients of a quotient, from those of numerator and denominator.
 pub(super) fn quotient(n: impl Fn(i32) -> f64, d: impl Fn(i32) -> f64) -> [f64; TERMS] {
     let mut taylor = [0.0; TERMS];
     for k in 0..TERMS {

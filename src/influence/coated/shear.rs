@@ -1,7 +1,7 @@
-//! How a bonded layer on a half-space gives way to waves of tractions, along the wave and across it.
+//! The responses of a bonded layer on a half-space to traction waves, along and across the wave vector.
 //!
-//! A traction along its wave vector displaces the surface along by `(1 - nu1)/(G1 k) L(k t)` times its amplitude. That is plane strain, with lambda,
-//! kappa, th and D of [`Transfer`]:
+//! A traction wave along its wave vector displaces the surface in that direction by `(1 - nu1)/(G1 k) L(k t)` times its amplitude. This is
+//! plane strain, with lambda, kappa, th and D of [`Transfer`]:
 //!
 //! ```text
 //! L(s) = N/D,    N = 1 - 4 s kappa th - lambda kappa th^2
@@ -9,13 +9,15 @@
 //! N = (1 - lambda kappa) + 2 lambda kappa th (sinh 2s - 2s) - 4 s kappa (1 - lambda) th                 stiff: lambda > 0, kappa > 0
 //! ```
 //!
-//! One across its wave vector displaces by `1/(G1 k) T(k t)`: antiplane shear, a line of one impedance that ends on another.
+//! A traction wave across its wave vector displaces by `1/(G1 k) T(k t)`. This is antiplane shear, a line of one impedance terminated by
+//! another:
 //!
 //! ```text
 //! T(s) = (mu + tanh s)/(1 + mu tanh s),    T(s) - 1 = 2 kappa' th/(1 - kappa' th),    kappa' = (mu - 1)/(mu + 1)
 //! ```
 //!
-//! L(0) = B(0) and T(0) = mu are the substrate. On a rigid body L = s/(1 - nu1) and T = s for small s: a layer of compliance t/G1, compressible or not.
+//! L(0) = B(0) and T(0) = mu are the substrate's. On a rigid body L = s/(1 - nu1) and T = s for small s: a layer of compliance t/G1,
+//! compressible or not.
 
 use super::response::{quotient, Response, TERMS};
 use super::transfer::{term, Fade, Transfer, PLAIN};
@@ -25,7 +27,7 @@ use super::transfer::{term, Fade, Transfer, PLAIN};
 pub struct Along(Transfer);
 
 impl Along {
-    /// Of a layer of shear modulus `mu` times the substrate's, with both Poisson ratios.
+    /// L of a layer of shear modulus `mu` times the substrate's, with both Poisson ratios.
     pub fn new(mu: f64, nu: [f64; 2]) -> Along {
         Along(Transfer::new(mu, nu))
     }
@@ -69,7 +71,7 @@ impl Response for Along {
         self.0.substrate
     }
 
-    // lambda is written as 1 less what it lacks: of stiff layers it is nearly 1, and the rest begins with s^3.
+    // lambda = 1 - less_lambda: it is nearly 1 for stiff layers, and the terms of lambda = 1 begin with s^3.
     fn taylor(&self) -> [f64; TERMS] {
         let Transfer { kappa, less_lambda, less_both, .. } = self.0;
         let stiff = |k: i32| if k < 3 { 0.0 } else { -4.0 * term(-2.0, k - 1) - term(-4.0, k) };
@@ -87,7 +89,7 @@ pub struct Across {
 }
 
 impl Across {
-    /// Of a layer of shear modulus `mu` times the substrate's.
+    /// T of a layer of shear modulus `mu` times the substrate's.
     pub fn new(mu: f64) -> Across {
         Across { mu }
     }
@@ -109,7 +111,7 @@ impl Response for Across {
     }
 
     fn taylor(&self) -> [f64; TERMS] {
-        // sinh and cosh by turns.
+        // cosh has the even terms, sinh the odd ones.
         let of = |even: f64, odd: f64| move |k: i32| if k % 2 == 0 { even } else { odd } * term(1.0, k);
         quotient(of(self.mu, 1.0), of(1.0, self.mu))
     }

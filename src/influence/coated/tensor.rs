@@ -1,4 +1,4 @@
-//! Both radial functions that the displacements by a traction are made of, on panels of `w = 4 + rho^2` as those of [`Radial`].
+//! The two radial functions I and Q of the displacements by a traction, on the panels of [`Radial`] in `w = 4 + rho^2`.
 //!
 //! With F and g of L and of T (`tractions.rs`) the kernel is, in x and y from the traction,
 //!
@@ -7,7 +7,8 @@
 //! I = (1 - nu1) g(L) + F(T) - g(T),   Q = ((1 - nu1) (F - 2 g)(L) - (F - 2 g)(T))/rho^2
 //! ```
 //!
-//! Up to rho = 2 the panels have them for the layer as base, beyond for the substrate, as those of [`Radial`]. Another base differs by `1/rho` in I and by `1/rho^3` in Q.
+//! Up to rho = 2 the panels hold I and Q with the layer as base, beyond with the substrate, as in [`Radial`]. The other base adds a
+//! multiple of `1/rho` to I and of `1/rho^3` to Q.
 
 use super::polynomial::{chebyshev, evaluate, node, powers};
 use super::radial::{ends_of, panel_of, Base, Radial};
@@ -29,7 +30,7 @@ pub struct Tensor {
 }
 
 impl Tensor {
-    /// Of a layer of `mu` times the substrate's shear modulus, with both Poisson ratios.
+    /// The functions of a layer of `mu` times the substrate's shear modulus, with both Poisson ratios.
     pub fn new(mu: f64, nu: [f64; 2]) -> Tensor {
         let (along, across) = (Radial::new(Along::new(mu, nu)), Radial::new(Across::new(mu)));
         let count = along.panels().min(across.panels());
@@ -56,7 +57,7 @@ impl Tensor {
         [all, (self.kept * turning(of_along) - turning(of_across)) / rho2]
     }
 
-    /// I and Q by the square of rho; of the substrate as base rho > 0.
+    /// I and Q at a square of rho, which is positive where the substrate is the base.
     pub fn at_square(&self, rho2: f64, base: Base) -> [f64; 2] {
         let w = 4.0 + rho2;
         let (panel, (low, high)) = panel_of(w);

@@ -1,4 +1,4 @@
-//! What tractions on coated surfaces displace beyond what they displace on half-spaces.
+//! Displacements by tractions on coated surfaces, less those on half-spaces.
 //!
 //! With the responses L along and T across the wave vector ([`Along`], [`Across`]) a traction wave displaces by `(1/(G1 k))` times
 //!
@@ -6,9 +6,9 @@
 //! ((1 - nu1) L k k^T/k^2 + T (1 - k k^T/k^2)) q
 //! ```
 //!
-//! The inverse transform of `(B - b)/k k_i k_j/k^2` is `d_i d_j Psi/(2 pi t)` in lengths of t, with a function of the distance rho alone. Its Laplacian is
-//! the radial function F_b of B, and its slope `M_b/rho` ([`Radial`]). As for pressures b = 1, a half-space of the layer's material, serves at distances
-//! below t, and b = B(0), the substrate, beyond:
+//! The inverse transform of `(B - b)/k k_i k_j/k^2` is `d_i d_j Psi/(2 pi t)` in lengths of t, with a function of the distance rho alone. Its
+//! Laplacian is the radial function F_b of B, and its slope `M_b/rho` ([`Radial`]). As for pressures b = 1, a half-space of the layer's material,
+//! serves at distances below t, and b = B(0), the substrate, beyond:
 //!
 //! ```text
 //! d_x d_x Psi = g + (F - 2 g) cos^2       X = integral over the element       g = M/rho^2
@@ -18,9 +18,9 @@
 //! Axx = (1 - nu1) X(L) + Y(T),    Ayy = (1 - nu1) Y(L) + X(T),    Axy = (1 - nu1) Z(L) - Z(T)       in 1/(2 pi G1) of one body
 //! ```
 //!
-//! Up to [`CORNERS`] diagonals of the element X and Y are differences over its corners of `T(x, y)` and of `T(y, x)` as of the normal coefficients
-//! (`layer.rs`), and Z is one of Psi, whose differences along an edge are integrals of its slope. Beyond, and of layers that are much thicker than elements
-//! are long, tensor Gauss serves, at any offset: steps of rolling go between the centres.
+//! Up to [`CORNERS`] diagonals of the element X and Y are differences over its corners of `T(x, y)` and of `T(y, x)`, as in the normal
+//! coefficients (`layer.rs`). Z is a difference of Psi, whose differences along an edge are integrals of its slope. Beyond, and for layers
+//! much thicker than elements are long, tensor Gauss serves. Offsets need not be whole: steps of rolling end between the centres.
 
 use std::sync::{Arc, OnceLock};
 
@@ -30,12 +30,12 @@ use super::radial::{Base, Radial};
 use super::response::Response;
 use super::tensor::Tensor;
 
-/// Times the shear modulus of what is below.
+/// Shear modulus of the layer over that of the substrate from which the layer spreads loads as a membrane.
 const MEMBRANE: f64 = 30.0;
 /// Diagonals of an element up to which differences over its corners serve.
 const CORNERS: f64 = 2.5;
-/// Points a side of tensor Gauss up to these distances, in longer sides of an element: `(n!)^4/((2n + 1)((2n)!)^2) r^-2n` is at most 3e-13 of a function
-/// like 1/r; of the last rule from 400 on.
+/// Points a side of tensor Gauss up to these distances, in longer sides of an element. The relative error on a function like 1/r,
+/// `(n!)^4/((2n + 1)((2n)!)^2) r^-2n`, is at most 3e-13 where a rule begins; the last rule begins at 400.
 const POINTS: [(f64, usize); 4] = [(12.0, 7), (40.0, 4), (400.0, 3), (f64::INFINITY, 2)];
 /// Points of the rule for lines.
 const LINE: usize = 40;
@@ -55,24 +55,24 @@ impl Coat {
         Coat { tensor: KNOWN.get([mu, nu[0], nu[1]], || Tensor::new(mu, nu)), t }
     }
 
-    /// Whether it is so much stiffer than what is below that it spreads loads as a membrane, over many elements.
+    /// Whether the coating is so much stiffer than the substrate that it spreads loads as a membrane, over many elements.
     pub fn is_membrane(&self) -> bool {
         self.tensor.across.transfer.substrate() >= MEMBRANE
     }
 
-    /// What a wave of tractions of this wave number displaces along it and across it, in `1/(G1 k)` of one body.
+    /// The responses along and across a traction wave of wave number k, in `1/(G1 k)` of one body.
     pub fn of_wave(&self, k: f64) -> [f64; 2] {
         let Tensor { along, across, kept, .. } = &*self.tensor;
         [kept * along.transfer.at(k * self.t), across.transfer.at(k * self.t)]
     }
 
-    /// The same in other units of length.
+    /// The coat in other units of length.
     pub fn in_units_of(&self, length: f64) -> Coat {
         Coat { t: self.t / length, ..self.clone() }
     }
 
-    /// The half-space that the coefficients at an offset are made of, and what is to be added to `pi G1` times its Axx, Ayy, Axy, both bodies'; offsets are
-    /// in elements `dx` by `dy`.
+    /// The base half-space of the coefficients at an offset, and the terms to be added to `pi G1` times its Axx, Ayy, Axy (both bodies).
+    /// Offsets are in elements `dx` by `dy`.
     pub fn at(&self, (x, y): (f64, f64), (dx, dy): (f64, f64)) -> (Base, [f64; 3]) {
         let place = Place::new([x.abs() * dx, y.abs() * dy].map(|x| x / self.t), [dx / self.t, dy / self.t]);
         let sign = match (x, y) {
@@ -93,7 +93,7 @@ impl Coat {
 struct Place {
     /// x and y of the offset, not negative.
     at: [f64; 2],
-    /// Of the element.
+    /// The element's sides.
     size: [f64; 2],
     base: Base,
     /// The rule of tensor Gauss; none: differences over the corners.
@@ -103,7 +103,7 @@ struct Place {
 impl Place {
     fn new(at: [f64; 2], size: [f64; 2]) -> Place {
         let (distance, longer) = (at[0].hypot(at[1]), size[0].max(size[1]));
-        // Both functions are smooth on a scale of t, too.
+        // F and g are smooth on the scale t as well, which is 1 here.
         let smooth = distance.max(1.0) / longer;
         let is_near = smooth <= POINTS[0].0 && distance <= CORNERS * size[0].hypot(size[1]);
         let rule = POINTS.iter().position(|(last, _)| smooth <= *last).unwrap_or(POINTS.len() - 1);
@@ -152,7 +152,7 @@ fn side<R: Response>((radial, base): (&Radial<R>, Base), a: f64, b: f64) -> f64 
     let at = |(u, w): &(f64, f64)| {
         let cosh = (end * u).cosh();
         let m = match base {
-            // M of a near place by what has all its digits.
+            // The mean keeps all digits where M is small.
             Base::Layer => radial.mean_at_square((height * cosh).powi(2), base) * (height * cosh) * height,
             Base::Substrate => radial.m(height * cosh, base) / cosh,
         };

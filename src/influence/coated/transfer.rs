@@ -8,8 +8,8 @@
 //! B(s) = N/D,    N = 1 + 4 s kappa th - lambda kappa th^2,    D = 1 - (lambda + kappa + 4 kappa s^2) th + lambda kappa th^2
 //! ```
 //!
-//! B(0) = mu (1 - nu2)/(1 - nu1) is the substrate, B(infinity) = 1 the layer. Both N and D cancel for small s, the more the stiffer the
-//! layer is. So they are written as sums of what remains, with
+//! B(0) = mu (1 - nu2)/(1 - nu1) is the substrate, B(infinity) = 1 the layer. N and D suffer from cancellation for small s, the more the stiffer the
+//! layer is. So they are written as sums without cancellation, with
 //!
 //! ```text
 //! 1 - lambda kappa = B(0) (1 - lambda)(1 - kappa)
@@ -20,7 +20,7 @@
 
 use super::response::{quotient, Response, TERMS};
 
-/// Beyond, exponentials are so small that nothing cancels.
+/// Beyond this s, exponentials are below exp(-40) = 4e-18, so that nothing cancels.
 pub(super) const PLAIN: f64 = 20.0;
 
 /// B of one layer.
@@ -40,7 +40,7 @@ pub struct Transfer {
 }
 
 impl Transfer {
-    /// Of a layer of shear modulus `mu` times the substrate's, with both Poisson ratios.
+    /// The function for a layer of `mu` times the substrate's shear modulus, with both Poisson ratios.
     pub fn new(mu: f64, [nu1, nu2]: [f64; 2]) -> Transfer {
         let (one, two) = (1.0 + mu * (3.0 - 4.0 * nu2), mu + 3.0 - 4.0 * nu1);
         let (less_lambda, less_kappa) = (4.0 * (1.0 - nu1) / one, 4.0 * (1.0 - nu1) / two);
@@ -64,7 +64,7 @@ impl Transfer {
         fade.th * (lambda + kappa * grows - 2.0 * lambda * kappa * fade.th) / self.denominator(s, fade)
     }
 
-    /// D, of which all loads have the same.
+    /// D, which is the same for all loads.
     pub(super) fn denominator(&self, s: f64, Fade { th, less }: Fade) -> f64 {
         let Transfer { lambda, kappa, .. } = *self;
         if kappa < 0.0 || s > PLAIN {
@@ -81,14 +81,14 @@ impl Transfer {
             + 4.0 * kappa * even
     }
 
-    /// The Taylor coefficients of the quotient by D of what has the coefficients `n(k)`.
+    /// The Taylor coefficients of the quotient of a series with the coefficients `n(k)` by D.
     pub(super) fn over_denominator(&self, n: impl Fn(i32) -> f64) -> [f64; TERMS] {
         let (a, b, c) = (self.less_lambda, self.less_kappa, self.less_both);
         let d = |k: i32| match k {
             0 => a * b,
             _ => {
                 let quadratic = if k >= 2 { 4.0 * term(-2.0, k - 2) } else { 0.0 };
-                // Of two equal layers of infinite stiffness: 4 th (sinh^2 s - s^2), which begins with s^4.
+                // The limit of infinite stiffness: 4 th (sinh^2 s - s^2), which begins with s^4.
                 let stiff = if k < 4 { 0.0 } else { term(-4.0, k) - 2.0 * term(-2.0, k) - quadratic };
                 stiff + (a + b) * term(-2.0, k) + b * quadratic - c * term(-4.0, k)
             }
@@ -126,7 +126,7 @@ impl Response for Transfer {
         self.substrate
     }
 
-    // By the series of N and D, which are written with `1 - lambda` and `1 - kappa` so that they do not cancel for stiff layers.
+    // From the series of N and D in terms of `1 - lambda` and `1 - kappa`, which avoid cancellation for stiff layers.
     fn taylor(&self) -> [f64; TERMS] {
         let n = |k: i32| match k {
             0 => self.less_both,
@@ -141,7 +141,7 @@ pub(super) fn term(x: f64, k: i32) -> f64 {
     (1..=k).fold(1.0, |product, i| product * x / f64::from(i))
 }
 
-/// `th = exp(-2 s)` and `th - 1`, both with all their digits.
+/// `th = exp(-2 s)` and `th - 1`, both to full precision.
 #[derive(Clone, Copy)]
 pub(super) struct Fade {
     pub(super) th: f64,

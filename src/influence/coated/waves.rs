@@ -1,10 +1,10 @@
 //! The response of a coating to the waves of a period.
 //!
-//! Per wave k of the grid and its aliases `k + 2 pi (a/dx, b/dy)` that is `2 pi c (B(k t) - 1)/k sinc(kx dx/2) sinc(ky dy/2)`, which fades as
-//! `exp(-2 k t)`. Thin coatings have many aliases. The first of them, and of slender elements those along the longer side, are computed for
-//! each wave. The sum of all others is a smooth function of the wave on `[0, pi/dx] x [0, pi/dy]`: its singularities are those of `1/k`, at
-//! least as far from each end as half of that length is long, so that n Chebyshev nodes in each direction leave `r^-n` of it,
-//! `r + 1/r = 2 + 2 sqrt(2)`: 1e-16 for n = 24. They carry it to all waves; on grids with fewer waves it is summed for each.
+//! The response to wave k is the sum over k and its aliases `k + 2 pi (a/dx, b/dy)` of `2 pi c (B(k t) - 1)/k sinc(kx dx/2) sinc(ky dy/2)`,
+//! which decays as `exp(-2 k t)`. Thin coatings have many aliases. The first aliases, for slender elements those along the longer side, are
+//! computed for each wave. The sum of all others is a smooth function of the wave on `[0, pi/dx] x [0, pi/dy]`. Its singularities are those
+//! of `1/k`, at a distance from each end of at least half the interval. Interpolation at n Chebyshev nodes in each direction thus has the
+//! error `r^-n`, `r + 1/r = 2 + 2 sqrt(2)`: 1e-16 for n = 24. On grids with fewer waves the sum is taken for each wave.
 
 use std::f64::consts::PI;
 
@@ -15,13 +15,13 @@ use crate::grid::Grid;
 use crate::memory::{collected, zeros};
 use crate::operator::fft::{ColumnTransform, Complex};
 
-/// `exp(-2 k t) (k t)^2` is below 1e-15 there.
+/// The k t beyond which aliases are dropped: `exp(-2 k t) (k t)^2` is 1.7e-15 there.
 const FADED: f64 = 20.0;
-/// Nodes of the polynomial that carries aliases, in each direction.
+/// Nodes of the interpolation of aliases, in each direction.
 const NODES: usize = 24;
 /// Columns that are transformed at a time.
 const BLOCK: usize = 8;
-/// Names its memory in messages.
+/// The name of this memory in messages.
 const WAVES: &str = "the waves of a coating";
 
 /// Bins of a period that are not negative.
@@ -29,7 +29,7 @@ pub fn bins(grid: &Grid) -> (usize, usize) {
     (grid.mx / 2 + 1, grid.my / 2 + 1)
 }
 
-/// Adds what waves meet, `[bin in y][bin in x]`.
+/// Adds the responses to all waves, `[bin in y][bin in x]`.
 pub fn add(body: &CoatedBody, grid: &Grid, waves: &mut [f64]) -> Result<()> {
     let Some((t, _)) = body.layer else { return Ok(()) };
     let directions = [(grid.dx, grid.mx), (grid.dy, grid.my)];
@@ -41,7 +41,7 @@ pub fn add(body: &CoatedBody, grid: &Grid, waves: &mut [f64]) -> Result<()> {
     let [x, y] = directions.map(|(d, m)| Direction::new(d / t, m));
     let (x, y, nearest) = (x?, y?, nearest(grid));
     let mut values = zeros(x.places.len() * y.places.len(), WAVES)?;
-    let (columns, is_symmetric) = (x.places.len(), grid.dx == grid.dy && x.is_carried() && y.is_carried());
+    let (columns, is_symmetric) = (x.places.len(), grid.dx == grid.dy && x.is_interpolated() && y.is_interpolated());
     for (row, in_y) in y.places.iter().enumerate() {
         for (column, in_x) in x.places.iter().enumerate().skip(if is_symmetric { row } else { 0 }) {
             let value = others(body, nearest, in_x, in_y);
@@ -59,7 +59,7 @@ pub fn add(body: &CoatedBody, grid: &Grid, waves: &mut [f64]) -> Result<()> {
             let values = &values[place * in_x.len()..][..in_x.len()];
             in_x.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
         });
-        match x.is_carried() {
+        match x.is_interpolated() {
             false => waves.iter_mut().zip(&in_x).for_each(|(wave, value)| *wave += value),
             true => x.weights.chunks_exact(row).zip(&in_x).for_each(|(weights, value)| {
                 waves.iter_mut().zip(weights).for_each(|(wave, weight)| *wave += weight * value);
@@ -71,12 +71,12 @@ pub fn add(body: &CoatedBody, grid: &Grid, waves: &mut [f64]) -> Result<()> {
 
 /// The aliases that are computed for each wave: numbers in x and in y up to these, of either sign; one of both is 0.
 fn nearest(grid: &Grid) -> (i64, i64) {
-    // Where the wave number is below that of the shortest wave across.
+    // Aliases of a wave number below that of the shortest wave in the other direction.
     let last = |ratio: f64| (0.5 * (1.0 + ratio)).ceil().min(1e6) as i64 - 1;
     (last(grid.dx / grid.dy).max(0), last(grid.dy / grid.dx).max(0))
 }
 
-/// The nearest aliases; the wave of none is left out.
+/// Adds the nearest aliases; the constant wave is left out.
 fn add_nearest(body: &CoatedBody, grid: &Grid, waves: &mut [f64]) -> Result<()> {
     let Some((t, radial)) = &body.layer else { return Ok(()) };
     let ((row, rows), (last_x, last_y)) = (bins(grid), nearest(grid));
@@ -125,7 +125,8 @@ fn others(body: &CoatedBody, (last_x, last_y): (i64, i64), in_x: &Place, in_y: &
     2.0 * PI * body.compliance * t * sum
 }
 
-/// An alias of a wave in one direction: `k t`, and the mean of the wave over an element of d thicknesses, half of which is `angle` long.
+/// An alias of a wave in one direction: `k t`, and the mean of the wave over an element of d thicknesses; the wave turns by `angle` over
+/// half of the element.
 fn alias(d: f64, angle: f64, number: i64) -> (f64, f64) {
     let half = angle + PI * number as f64;
     let mean = if half == 0.0 { 1.0 } else { angle.sin() / half };
@@ -135,7 +136,7 @@ fn alias(d: f64, angle: f64, number: i64) -> (f64, f64) {
 /// The aliases of a wave in one direction that have not faded: their numbers, `k t`, and the mean of each over an element.
 type Place = Vec<(i64, (f64, f64))>;
 
-/// One direction: where aliases are summed, and how they are carried to the bins.
+/// One direction: the places at which aliases are summed, and the interpolation from these to the bins.
 struct Direction {
     bins: usize,
     places: Vec<Place>,
@@ -144,7 +145,7 @@ struct Direction {
 }
 
 impl Direction {
-    /// Of m elements of size d, in thicknesses.
+    /// The direction of m elements of size d, in thicknesses.
     fn new(d: f64, m: usize) -> Result<Direction> {
         let bins = m / 2 + 1;
         let angle_of = |bin: usize| PI * bin as f64 / m as f64;
@@ -176,27 +177,27 @@ impl Direction {
         (-last..=last).map(|a| (a, alias(d, angle, a))).filter(|(_, (s, _))| s.abs() <= FADED).collect()
     }
 
-    fn is_carried(&self) -> bool {
+    fn is_interpolated(&self) -> bool {
         !self.weights.is_empty()
     }
 
-    /// The places that a bin takes values from, and their weights.
+    /// Calls `take(place, weight)` for each place that a bin is interpolated from.
     fn each(&self, bin: usize, mut take: impl FnMut(usize, f64)) {
-        match self.is_carried() {
+        match self.is_interpolated() {
             false => take(bin, 1.0),
             true => (0..self.places.len()).for_each(|place| take(place, self.weights[place * self.bins + bin])),
         }
     }
 }
 
-/// Sums of cosines: the coefficients at offsets up to half the period that have these waves.
+/// The coefficients at offsets up to half the period with these responses: sums of cosines.
 pub fn coefficients(waves: &[f64], grid: &Grid) -> Result<Vec<f64>> {
     let (mx, my, (row, rows)) = (grid.mx, grid.my, bins(grid));
     let (x, y) = (ColumnTransform::<f64>::new(mx)?, ColumnTransform::<f64>::new(my)?);
     let mut scratch = x.scratch()?;
     y.fit(&mut scratch)?;
     let mut in_x: Vec<f64> = zeros(row * rows, WAVES)?;
-    // Even data have a real transform: two rows, or columns, are one complex one.
+    // Even data have a real transform: two rows, or columns, share one complex transform.
     let mut line: Vec<Complex<f64>> = zeros(mx, WAVES)?;
     for (waves, in_x) in waves.chunks(2 * row).zip(in_x.chunks_mut(2 * row)) {
         if waves.iter().all(|wave| *wave == 0.0) {
@@ -230,7 +231,7 @@ pub fn coefficients(waves: &[f64], grid: &Grid) -> Result<Vec<f64>> {
     Ok(table)
 }
 
-/// Fills a period with what is even.
+/// Fills a period with an even sequence.
 fn mirrored(line: &mut [Complex<f64>], value: impl Fn(usize) -> Complex<f64>) {
     let m = line.len();
     for i in 0..m / 2 + 1 {

@@ -1,7 +1,7 @@
 //! The passes of the extension over some rows, with sums over boxes of elements.
 //!
-//! They are compiled for the vectors of this machine; no bit depends on them. They work on chunks of a row, and skip those far from the rim of
-//! C.
+//! They are compiled for the vector instructions of this machine, on which no bit depends. They work on chunks of a row and skip chunks far from the
+//! boundary of C.
 
 use std::ops::Range;
 
@@ -11,12 +11,12 @@ use crate::operator::fft::Real;
 /// Elements of a box in each direction.
 pub(super) const BOX: usize = 2 * REACH + 1;
 pub(super) const REACH: usize = 4;
-/// Elements of a row that are worked on together, or not at all where they are far from the rim of C.
+/// Elements of a row that are processed together. A chunk far from the boundary of C is skipped.
 pub(super) const CHUNK: usize = 64;
-/// Rows that are worked on together: they share much of their boxes.
+/// Rows that are processed together. Their boxes overlap largely.
 pub(super) const ROWS: usize = 4;
-/// Chunks whose columns are summed, then by threes, before the first of them is summed across: what was just written in one vector cannot be
-/// read in another.
+/// Chunks whose columns are summed, then by threes, before the first of them is summed across. A load that overlaps two recent stores would stall
+/// until they are in the cache.
 const TOGETHER: usize = 2;
 /// Columns of a chunk's boxes.
 const LENGTH: usize = CHUNK + BOX - 1;
@@ -94,7 +94,7 @@ impl<T: Real> pulp::NullaryFnOnce for Extend<'_, T> {
     }
 }
 
-/// The shares that elements outside C in a row pass on to near elements of C.
+/// The shares that elements outside C in a row give to nearby elements of C.
 pub(super) struct Share<'a, T> {
     /// Of this row.
     pub(super) values: &'a [T],
@@ -139,7 +139,7 @@ impl<T: Real> pulp::NullaryFnOnce for Collect<'_, T> {
     fn call(self) {
         let Collect { shares, mx, y, rim, values } = self;
         let (count, chunks) = (values.len() / mx, mx.div_ceil(CHUNK));
-        // Of all rows together: nothing is collected from chunks that have nothing to give.
+        // Chunks without shares in any of these rows are skipped.
         let rows = y.saturating_sub(REACH) * chunks..rim.len().min((y + count + REACH) * chunks);
         box_sums(
             (shares, mx),
@@ -158,7 +158,7 @@ impl<T: Real> pulp::NullaryFnOnce for Collect<'_, T> {
     }
 }
 
-/// `1/(n + c)`; 0 where n is.
+/// `1/(n + c)`; 0 if n is 0.
 #[inline(always)]
 fn share<T: Real>(near: u16, absent: T) -> T {
     let part = T::one() / (T::from_u16(near).unwrap_or_default() + absent);
@@ -170,8 +170,8 @@ fn share<T: Real>(near: u16, absent: T) -> T {
 }
 
 /// Sums over the boxes around the elements of some rows of a grid, up to [`ROWS`], `mx` elements in each, for those chunks that are
-/// `wanted(row, chunk)`; `value` makes the summands of what the grid holds. Calls `take(row, chunk, its elements among those of the rows, sums)`, rows
-/// counted from the first; sums beyond the elements have no meaning.
+/// `wanted(row, chunk)`; `value` makes the summands of what the grid holds. Calls `take(row, chunk, its elements among those of the rows, sums)`,
+/// rows counted from the first; sums beyond the elements have no meaning.
 #[inline(always)]
 fn box_sums<A: Copy, B: Summand>(
     (from, mx): (&[A], usize),
@@ -227,7 +227,7 @@ fn column_sums<A: Copy, B: Summand>(
             }
         }
     }
-    // Columns move to their place in the box.
+    // Shifts the columns to their position in the box.
     let (up, down) = ((first + REACH).saturating_sub(start), start.saturating_sub(first + REACH));
     if up + down > 0 {
         for columns in &mut columns {
@@ -239,7 +239,7 @@ fn column_sums<A: Copy, B: Summand>(
     columns
 }
 
-/// Sums of nine rows each, from the first of these, the second, .. on: what all four have is summed once.
+/// Four sums of nine rows, which start at the first, second, third and fourth row. The rows that all four share are summed once.
 #[inline(always)]
 fn sums_of_four<A: Copy, B: Summand>(rows: [&[A]; ROWS - 1 + BOX], value: impl Fn(A) -> B) -> [[B; LENGTH]; ROWS] {
     let (rows, mut sums) = (rows.map(|row| &row[..LENGTH]), [[B::zero(); LENGTH]; ROWS]);
@@ -255,7 +255,7 @@ fn sums_of_four<A: Copy, B: Summand>(rows: [&[A]; ROWS - 1 + BOX], value: impl F
     sums
 }
 
-/// Sums of three neighbouring columns; the last two have no meaning.
+/// Sums of three neighbouring columns. The last two values are not valid.
 #[inline(always)]
 fn sums_of_three<B: Summand>(columns: &[B; LENGTH]) -> [B; LENGTH] {
     let mut sums = *columns;
@@ -265,7 +265,7 @@ fn sums_of_three<B: Summand>(columns: &[B; LENGTH]) -> [B; LENGTH] {
     sums
 }
 
-/// Sums of [`BOX`] neighbouring columns, of those of three.
+/// Sums of [`BOX`] neighbouring columns, from the sums of three.
 #[inline(always)]
 fn sums_across<B: Summand>(threes: &[B; LENGTH]) -> [B; CHUNK] {
     let mut sums = [B::zero(); CHUNK];

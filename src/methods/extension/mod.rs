@@ -6,17 +6,17 @@
 //! (E r, M E r) >= (r, (A on C)^-1 r)
 //! ```
 //!
-//! equality holds for the displacement of what would take r away. Zero outside is the worst: a step at the rim has an energy that grows
-//! with the number of elements across a piece of C, and a rough surface has much rim. So E r is a mean of what is near,
+//! equality holds for the displacement by the pressures that solve for r on C. Zero outside is the worst: the energy of a step at the rim
+//! grows with the number of elements across a piece of C, and a rough surface has much rim. So E r is a mean of the values near,
 //!
 //! ```text
 //! E r = r on C,   (sum over B of r)/(n + c) outside,    B: the box of 9 x 9 elements around, n of them in C, c: an eighth of B
 //! ```
 //!
-//! and E^T M E, symmetric and positive definite for any E, takes the place of M. With a box of 7 or 13 elements at 512 x 512, or a c of half or twice
-//! that, the iterations differ by one. A compliant layer makes A diagonal, where elements know nothing of each other: c grows by the square of
-//! an element's influence on itself relative to that without a layer. Measured (tolerance 1e-6, iterations on the finest grid, zero outside
-//! and with boxes): rough surface by force 512 14 and 8, 1024 16 and 9, by approach 512 20 and 11; ellipse by force 512 6 and 3.
+//! and E^T M E, symmetric and positive definite for any E, replaces M. With a box of 7 or 13 elements at 512 x 512, or half or twice c, the
+//! number of iterations differs by one. A compliant layer makes A more diagonal and elements independent: c grows by the square of an
+//! element's influence on itself relative to that without a layer. Measured (tolerance 1e-6, iterations on the finest grid, zero outside and
+//! with boxes): rough surface by force 512 14 and 8, 1024 16 and 9, by approach 512 20 and 11; ellipse by force 512 6 and 3.
 //!
 //! The normal problem extends one field, the tangential problem one for each component.
 
@@ -58,12 +58,12 @@ pub struct Extension<T: Real, const K: usize> {
 }
 
 impl<T: Real, const K: usize> Extension<T, K> {
-    /// On `grid`; none on one that is too small.
+    /// The extension on `grid`; none if the grid is too small to gain.
     pub fn if_worthwhile(grid: &Grid, threads: &Threads) -> Result<Option<Extension<T, K>>> {
         (grid.len() >= LEAST && grid.mx.min(grid.my) >= NARROW).then(|| Extension::new(grid, threads)).transpose()
     }
 
-    /// Memory for a contact area on `grid`; values are to be [woken](Extension::wake), and elements to be counted.
+    /// Memory for a contact area on `grid`. Before use, call [`Extension::wake`] and [`Extension::count`].
     fn new(grid: &Grid, threads: &Threads) -> Result<Extension<T, K>> {
         let mut values = Vec::new();
         reserve(&mut values, K * grid.len(), WHAT)?;
@@ -77,7 +77,7 @@ impl<T: Real, const K: usize> Extension<T, K> {
         })
     }
 
-    /// Counts the elements of C near each, in boxes of rows of which `has_changed(elements)`; C is where `is_inside` an element of this value.
+    /// Counts the elements of C in each box near rows for which `has_changed(elements)`. C are the elements of values with `is_inside`.
     pub fn count<A: Copy + Sync>(
         &mut self,
         values: &[A],
@@ -100,7 +100,7 @@ impl<T: Real, const K: usize> Extension<T, K> {
         T::of(ABSENT * in_a_box as f64 * compliance * compliance)
     }
 
-    /// values = E z of component k, of z that is zero outside C.
+    /// values = E z of component k, for z zero outside C.
     fn extend(&mut self, k: usize, z: &[T], compliance: f64) {
         let absent = self.absent(compliance);
         let Extension { mx, my, values, near, rim, threads, .. } = self;
@@ -112,7 +112,7 @@ impl<T: Real, const K: usize> Extension<T, K> {
         });
     }
 
-    /// values = E^T values on C; elsewhere they have no meaning. `shares` is overwritten.
+    /// values = E^T values on C, undefined elsewhere. `shares` is overwritten.
     fn collect(&self, values: &mut [T], shares: &mut [T], compliance: f64) {
         let (mx, chunks, absent) = (self.mx, self.mx.div_ceil(CHUNK), self.absent(compliance));
         let Extension { near, rim, threads, .. } = self;
@@ -127,7 +127,7 @@ impl<T: Real, const K: usize> Extension<T, K> {
         });
     }
 
-    /// `to = E^T M E from`, from being zero outside C; to has no meaning there.
+    /// `to = E^T M E from` for `from` zero outside C, where `to` is undefined.
     pub fn between(
         &mut self,
         from: [&[T]; K],
@@ -145,12 +145,12 @@ impl<T: Real, const K: usize> Extension<T, K> {
         self.values = values;
     }
 
-    /// It is not needed for a while.
+    /// Frees memory until the next [`Extension::wake`].
     pub fn rest(&mut self) {
         rest(&mut self.values);
     }
 
-    /// Before it is used, at first or again.
+    /// Makes memory before the first use or the next.
     pub fn wake(&mut self) {
         wake(&mut self.values, K * self.mx * self.my, T::nan(), &self.threads);
     }
@@ -162,7 +162,7 @@ impl<T: Real, const K: usize> Extension<T, K> {
 }
 
 impl<T: Real> Extension<T, 1> {
-    /// z = E^T M E z; z is zero outside C before, and of no meaning there afterwards.
+    /// z = E^T M E z for z zero outside C, where the result is undefined.
     pub fn around(&mut self, z: &mut Vec<T>, compliance: f64, apply: impl FnOnce(&mut [T])) {
         self.extend(0, z, compliance);
         let mut values = std::mem::take(&mut self.values);

@@ -2,9 +2,9 @@
 
 use crate::operator::fft::Real;
 
-/// A value that can be added up.
+/// A value that box sums add up.
 pub trait Summand: Copy {
-    /// 0.
+    /// The value 0.
     fn zero() -> Self;
 
     /// The sum of two.

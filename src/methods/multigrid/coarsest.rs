@@ -9,7 +9,7 @@ use crate::grid::Grid;
 use crate::influence::Coefficients;
 use crate::operator::dense;
 
-/// The elimination, and memory for as many elements as it has met so far.
+/// The elimination, with memory for the largest number of elements so far.
 pub struct Coarsest {
     elements: Vec<usize>,
     matrix: Vec<f64>,
@@ -17,12 +17,12 @@ pub struct Coarsest {
     permutation: Vec<usize>,
     inverse: Vec<usize>,
     scratch: MemBuffer,
-    /// Since they were last asked for.
+    /// Multiplications since the last [`Coarsest::take_multiplications`].
     multiplications: f64,
 }
 
 impl Coarsest {
-    /// No memory yet.
+    /// An elimination without memory.
     pub fn new() -> Coarsest {
         Coarsest {
             elements: Vec::new(),

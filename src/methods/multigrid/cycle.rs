@@ -22,7 +22,7 @@ pub struct CycleShape {
     pub pre_sweeps: usize,
     /// n2, sweeps after it.
     pub post_sweeps: usize,
-    /// omega; 0: what suits the smoother.
+    /// omega; 0: the smoother's default.
     pub relaxation: f64,
     /// The coarsest grid has at most this many elements in each direction.
     pub coarsest: usize,
@@ -46,7 +46,7 @@ impl CycleShape {
     }
 }
 
-/// The multigrid solver: a hierarchy of grids and what a cycle needs on each of them.
+/// The multigrid solver: a hierarchy of grids, with the memory of a cycle on each.
 pub struct Multigrid {
     /// The levels; `levels[0]` is the finest.
     pub levels: Vec<Level>,

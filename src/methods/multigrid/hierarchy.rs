@@ -1,9 +1,9 @@
 //! The grids of the multigrid method, finest first, each with its own operator.
 //!
-//! Standard coarsening joins 2 x 2 elements. Where a count is odd the last coarse element covers what is left: it keeps
-//! the doubled size in its coefficients, and only its part inside the grid carries anything. A direction is left alone
-//! once it has no more than `coarsest` elements, or while its elements are over twice as long as those of the other
-//! direction (slender elements are joined along their short side first).
+//! Standard coarsening joins 2 x 2 elements. If a count is odd, the last coarse element covers the single remaining one. It keeps
+//! the doubled size in its coefficients, and only its part inside the grid carries pressure. A direction is not coarsened
+//! if it has at most `coarsest` elements, or while its elements are more than twice as long as in the other
+//! direction (slender elements are first joined along their short side).
 
 use std::sync::Arc;
 
@@ -23,14 +23,14 @@ pub struct Level {
     pub influence: Coefficients,
     /// `u = A p` on it.
     pub operator: Arc<Operator<f64>>,
-    /// The work of one product, that on the finest grid being 1 (a work unit).
+    /// The work of one product, in work units: products on the finest grid.
     pub work: f64,
     pub(super) smoother: Smoother,
     pub(super) correction: Vec<f64>,
     pub(super) defect: Vec<f64>,
     pub(super) residual: Vec<f64>,
     pub(super) contact: Vec<bool>,
-    /// Products since they were last asked for.
+    /// Products since the last query.
     pub(super) products: u64,
 }
 
@@ -56,7 +56,7 @@ impl Level {
         })
     }
 
-    /// `r = d - A v` on the contact area, zero outside, unless the smoother keeps it so.
+    /// `r = d - A v` on the contact area, zero outside, unless the smoother maintains it.
     pub(super) fn update_residual(&mut self, workspace: &mut Workspace<f64>) {
         if self.smoother.keeps_residual() {
             return;
@@ -68,7 +68,7 @@ impl Level {
         }
     }
 
-    /// One sweep; the residual is used up, or kept up to date.
+    /// One sweep. It overwrites the residual or updates it.
     pub(super) fn smooth(&mut self, relaxation: f64, workspace: &mut Workspace<f64>) {
         let Level { operator, smoother, correction, residual, contact, products, .. } = self;
         smoother.sweep(correction, residual, contact, relaxation, |changes, product| {
@@ -111,7 +111,7 @@ pub(super) fn levels(problem: &mut Problem, kind: SmootherKind, coarsest: usize)
     Ok(levels)
 }
 
-/// The next coarser grid; none when both directions have at most `coarsest` elements.
+/// The next coarser grid. None if both directions have at most `coarsest` elements.
 pub fn coarsen(grid: &Grid, coarsest: usize) -> Option<Grid> {
     let (more_x, more_y) = (grid.mx > coarsest, grid.my > coarsest);
     let x = more_x && (!more_y || grid.dx <= 2.0 * grid.dy);

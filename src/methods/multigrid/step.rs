@@ -1,6 +1,6 @@
 //! The multigrid-based algorithm (section 4.1 of the paper) as a step: one V-cycle.
 //!
-//! Step 2 restricts the system to C, step 3 is the cycle; steps (4.1) and (4.2), and who decides to go on, are the loop's.
+//! Step 2 restricts the system to C, step 3 is the cycle; steps (4.1), (4.2) and the decision to go on are the loop's.
 
 use super::Multigrid;
 use crate::contact::{AdmissibleSet, Freshness, State};
@@ -87,13 +87,13 @@ impl<S: AdmissibleSet> Step<S> for Cycles<'_> {
     }
 }
 
-/// With a prescribed force: what one cycle makes of a unit approach, `response = B 1` with B the cycle. The change of
-/// the approach that gives p + B r + amount * response the prescribed force is then a Newton step. A cycle that is not
-/// linear is at least homogeneous, so amount * response is what it makes of that change; and where it lowers the
-/// energy (v, A v)/2 - (1, v) from v = 0, the sum of the response is positive, so the step exists.
+/// With a prescribed force: the response of one cycle to a unit approach, `response = B 1` with B the cycle. The change
+/// `amount` of the approach with which p + B r + amount * response carries the prescribed force is a Newton step. A
+/// nonlinear cycle is homogeneous, so amount * response is its response to that change. As the cycle lowers the energy
+/// (v, A v)/2 - (1, v) from v = 0, the sum of the response is positive, so the step exists.
 #[derive(Default)]
 struct UnitApproach {
-    /// The contact area that the response is for; empty: none yet.
+    /// The contact area of the response; empty: none yet.
     contact: Vec<bool>,
     /// Empty with a prescribed approach.
     response: Vec<f64>,
@@ -121,7 +121,7 @@ impl UnitApproach {
         copy(multigrid.correction_product(l).unwrap_or_default(), &mut self.product);
     }
 
-    /// u = u + A v + amount * A response, from `A v` if that is known; whether it is.
+    /// u = u + A v + amount * A response, if `A v` is known. Returns whether it is.
     fn displace(&self, product: Option<&[f64]>, u: &mut [f64]) -> bool {
         let Some(product) = product else { return false };
         u.iter_mut().zip(product).for_each(|(u, value)| *u += value);

@@ -1,12 +1,12 @@
 //! Transfer between a grid and the next coarser one (section 4.2 of the paper, figure 3).
 //!
 //! A coarse element covers up to 2 x 2 fine ones, its children: four by standard coarsening, fewer at the end of an odd
-//! count or where one direction is left alone.
+//! count or if one direction is not coarsened.
 
 use crate::grid::{children, Grid};
 use crate::threads::Threads;
 
-/// Coarse elements of a row that are interpolated together.
+/// Coarse elements of a row interpolated together.
 const BLOCK: usize = 32;
 
 /// Restriction by the mean over all children. Defects in the exterior area are zero, and count.
@@ -16,7 +16,7 @@ pub fn restrict_mean(fine: &Grid, coarse: &Grid, from: impl Fn(usize) -> f64 + S
 }
 
 /// Restriction of the undeformed distance: the mean over the children that have a surface, `+infinity` if none has. Distances above
-/// `highest` count as that.
+/// `highest` count as `highest`.
 pub fn restrict_distance(fine: &Grid, coarse: &Grid, h: &[f64], highest: f64, to: &mut [f64], threads: &Threads) {
     let add = |(sum, count): (f64, f64), h: &f64| match *h {
         f64::INFINITY => (sum, count),
@@ -34,7 +34,7 @@ pub fn restrict_distance(fine: &Grid, coarse: &Grid, h: &[f64], highest: f64, to
             match second {
                 Some(second) => row.iter_mut().zip(first.zip(second)).for_each(|(to, children)| {
                     *to = mean(match children {
-                        // Mostly: this the compiler unrolls.
+                        // The common case, which the compiler unrolls.
                         ([a, b], [c, d]) => [a, b, c, d].into_iter().fold((0.0, 0.0), add),
                         (first, second) => first.iter().chain(second).fold((0.0, 0.0), add),
                     });
@@ -53,7 +53,7 @@ pub fn restrict_contact(fine: &Grid, coarse: &Grid, contact: &[bool], to: &mut [
     collect(fine, coarse, to, add, |(inside, count)| 2 * inside >= count);
 }
 
-/// Every coarse element gets what `result` makes of what `add` has collected from its children.
+/// Every coarse element gets `result` of the values that `add` collects from its children.
 fn collect<A: Default, B>(
     fine: &Grid,
     coarse: &Grid,
@@ -81,7 +81,7 @@ pub fn interpolate(fine: &Grid, coarse: &Grid, from: &[f64], to: &mut [f64], com
     }
 }
 
-/// The same in row y of the fine grid.
+/// Piecewise constant interpolation in row y of the fine grid.
 #[inline(always)]
 pub fn interpolate_row(
     fine: &Grid,
@@ -105,8 +105,8 @@ pub fn interpolate_row(
     }
 }
 
-/// Linear interpolation between the centres of the coarse elements, constant beyond the outermost and beside values that are not known
-/// (`+infinity`, outside a window).
+/// Linear interpolation between the centres of the coarse elements, constant beyond the outermost and beside unknown values (`+infinity`, outside a
+/// window).
 pub fn interpolate_linearly(fine: &Grid, coarse: &Grid, from: &[f64], to: &mut [f64], threads: &Threads) {
     let mix = |near: f64, far: f64| if far == f64::INFINITY { near } else { 0.75 * near + 0.25 * far };
     threads.for_a_pass(fine.len()).for_each_plain_row(
@@ -126,7 +126,7 @@ pub fn interpolate_linearly(fine: &Grid, coarse: &Grid, from: &[f64], to: &mut [
                 row.iter_mut().enumerate().for_each(|(x, to)| *to = at(x));
                 return;
             }
-            // Blocks of coarse elements, with a neighbour on each side: loops that the compiler can vectorise.
+            // Blocks of coarse elements, with a neighbour on each side: the compiler vectorises these loops.
             let mut mixed = [0.0; BLOCK + 2];
             for (children, first) in row.chunks_mut(2 * BLOCK).zip((0..).step_by(BLOCK)) {
                 let count = children.len().div_ceil(2);

@@ -12,27 +12,26 @@ use crate::error::{Error, Result};
 use crate::methods::Task;
 use crate::scene::Load;
 
-/// The residual of the exact solution, relative to the terms of the difference that it is: a product by FFT is
-/// good to some units of round-off.
+/// The residual of the exact solution, relative to the terms of its difference: a product by FFT has an error of
+/// some units of round-off.
 const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 
-/// When the inner iteration stops.
+/// The stopping criteria of the inner iteration.
 #[derive(Clone, Copy, Debug)]
 pub struct InnerStop {
-    /// 2-norm over C of the residual, recursively updated, at which it stops.
+    /// 2-norm over C of the recursively updated residual.
     pub residual: f64,
     /// Or: rms of the last change of p at most this part of the rms of p (NORM's own criterion); 0: not used.
     pub update: f64,
     /// With `update`: the residual has to be at most this as well.
     pub believed: f64,
-    /// 2-norm over C of `h - approach`: what residuals are told relative to.
+    /// 2-norm over C of `h - approach`, the scale of reported residuals.
     pub distance: f64,
-    /// Iterations at most.
+    /// Most iterations.
     pub iterations: usize,
 }
 
-/// Conjugate gradients from the state's p, whose u = A p is known. Updates p; u is not kept up to date. Returns the update: rms over C
-/// of the last change of p.
+/// Conjugate gradients from the state's p, with u = A p. Updates p but not u. Returns the update: rms over C of the last change of p.
 pub fn conjugate_gradients<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, workspace: &mut Workspace) -> Result<f64> {
     let Task { problem, state, monitor, .. } = task;
     let n = state.p.len();
@@ -49,14 +48,14 @@ pub fn conjugate_gradients<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, works
     let mut rr: f64 = dot(r, r);
     let mut update = 0.0;
     let noise = noise(state, (0..n).filter(|&i| contact[i]), &state.u);
-    // Of bodies that fit but for round-off there are no distances.
+    // Bodies that fit up to round-off have no distances.
     let aim = stop.residual.max(f64::EPSILON * norm_of_distance(state).max(rr.sqrt()));
     for _ in 0..stop.iterations {
         if !(rr.sqrt() > aim) {
             break;
         }
         if stop.update > 0.0 && rr.sqrt() <= noise {
-            // On few elements the solution is exact after few iterations, the last of which was no small update.
+            // On few elements the solution is exact after few iterations, although the last update was not small.
             return Ok(0.0);
         }
         problem.displace(direction, product)?;
@@ -74,7 +73,7 @@ pub fn conjugate_gradients<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, works
         for (r, q) in r.iter_mut().zip(&*product) {
             *r -= step * q;
         }
-        // A mean that round-off left once would add up in the directions, until they are nothing else.
+        // A mean from round-off would accumulate in the directions until it dominates.
         project(r);
         let before = std::mem::replace(&mut rr, dot(r, r));
         update = step.abs() * (dot(direction, direction) / count).sqrt();
@@ -90,7 +89,7 @@ pub fn conjugate_gradients<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, works
     Ok(update)
 }
 
-/// Zero outside C, and with a prescribed force of mean zero over the `count` elements of C.
+/// Sets values outside C to 0 and, with a prescribed force, makes the mean over the `count` elements of C zero.
 fn project(values: &mut [f64], contact: &[bool], count: Option<f64>) {
     let mut sum = 0.0;
     for (value, &inside) in values.iter_mut().zip(contact) {
@@ -105,7 +104,7 @@ fn project(values: &mut [f64], contact: &[bool], count: Option<f64>) {
     }
 }
 
-/// The round-off of a residual on `elements`, whose displacement is `u`: a smaller residual is noise, and so is its curvature.
+/// The round-off of a residual on `elements` with displacement `u`: a smaller residual is noise, and so is its curvature.
 pub(super) fn noise(state: &State, elements: impl Iterator<Item = usize>, u: &[f64]) -> f64 {
     let terms = |i: usize| (state.approach - state.h[i]).abs() + u[i].abs();
     ROUND_OFF * elements.map(|i| terms(i) * terms(i)).sum::<f64>().sqrt()

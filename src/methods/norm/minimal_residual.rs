@@ -1,5 +1,5 @@
-//! Restarted GMRES (Saad & Schultz 1986) for the equations on a fixed contact area when A is not symmetric: a table of the caller's own
-//! need not be, and conjugate gradients would then converge to something else, or not at all.
+//! Restarted GMRES (Saad & Schultz 1986) for the equations on a fixed contact area with an A that is not symmetric, as the caller's table may be:
+//! conjugate gradients would converge to something else or not at all.
 
 use super::conjugate_gradients::noise;
 use super::{InnerStop, Workspace};
@@ -15,12 +15,12 @@ const RESTART: usize = 40;
 /// Memory for the directions and the small system of their coefficients.
 #[derive(Default)]
 pub(super) struct Krylov {
-    /// The elements in contact; what follows has one value for each of them.
+    /// The elements in contact; all vectors have one value for each.
     elements: Vec<usize>,
     /// One direction after the other.
     basis: Vec<f64>,
     change: Vec<f64>,
-    /// [`RESTART`] values a column: of the triangle that Givens rotations make of the Hessenberg matrix.
+    /// [`RESTART`] values a column: the triangle of the Hessenberg matrix after Givens rotations.
     columns: Vec<f64>,
     rotations: Vec<(f64, f64)>,
     right: Vec<f64>,
@@ -28,7 +28,7 @@ pub(super) struct Krylov {
 }
 
 impl Krylov {
-    /// Room for the directions of a state's contact area.
+    /// Makes memory for the directions of a state's contact area.
     fn begin(&mut self, state: &State) -> Result<()> {
         reserve(&mut self.elements, state.p.len(), "GMRES")?;
         self.elements.clear();
@@ -55,15 +55,15 @@ impl Krylov {
         }
     }
 
-    /// A new direction, from the product of the last. Returns the residual that is left, and whether there is nothing new in the
-    /// direction; none of a singular system: the best that this space holds is taken.
+    /// Adds a direction, from the product of the last. Returns the remaining residual, and whether the direction is dependent; none for a singular
+    /// system, for which the best of this space is taken.
     fn add(&mut self, product: &[f64], project: impl Fn(&mut [f64])) -> Option<(f64, bool)> {
         let (k, m) = (self.rotations.len(), self.elements.len());
         self.basis.extend(self.elements.iter().map(|&i| product[i]));
         let (basis, w) = self.basis.split_at_mut((k + 1) * m);
         self.columns.resize((k + 1) * RESTART, 0.0);
         let column = &mut self.columns[k * RESTART..];
-        // Twice, and the mean each time: what round-off leaves of it no residual would show.
+        // Twice, and the mean each time: no residual would show a mean left by round-off.
         for _ in 0..2 {
             project(w);
             for (h, v) in column.iter_mut().zip(basis.chunks_exact(m)) {
@@ -89,7 +89,7 @@ impl Krylov {
         Some((self.right[k + 1].abs(), below <= f64::EPSILON * diagonal))
     }
 
-    /// The change of p on C: the combination of the directions that leaves the least residual, by back substitution.
+    /// The change of p on C: the combination of the directions with the least residual, by back substitution.
     fn combine(&mut self) -> &[f64] {
         let Krylov { elements, basis, change, columns, rotations, right, y } = self;
         let k = rotations.len();
@@ -108,7 +108,7 @@ impl Krylov {
     }
 }
 
-/// GMRES from the state's p, whose u = A p is known. With a prescribed force, corrections keep mean zero over C. Returns the update:
+/// GMRES from the state's p, with u = A p. With a prescribed force, corrections keep mean zero over C. Returns the update:
 /// rms over C of the last change of p.
 pub fn minimal_residual<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, workspace: &mut Workspace) -> Result<f64> {
     let Task { problem, state, monitor, .. } = task;
@@ -132,7 +132,7 @@ pub fn minimal_residual<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, workspac
         residual.extend(krylov.elements.iter().map(|&i| state.approach - state.h[i] - product[i]));
         project(residual);
         let beta = norm(residual);
-        // A true residual that is round-off stays that, restart after restart.
+        // A true residual at round-off does not decrease by restarts.
         let stays = beta > 0.5 * before && beta <= noise(state, krylov.elements.iter().copied(), product);
         if beta <= aim || iterations >= stop.iterations || stays {
             return Ok(update);

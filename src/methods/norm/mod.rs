@@ -31,7 +31,7 @@ impl Workspace {
         (self.residual.len() + self.direction.len() + self.product.len()) * size_of::<f64>()
     }
 
-    /// Room for all that conjugate gradients on n elements need.
+    /// Memory for conjugate gradients on n elements.
     pub(crate) fn reserve(&mut self, n: usize) -> Result<()> {
         for values in [&mut self.residual, &mut self.direction, &mut self.product] {
             reserve(values, n, "NORM's workspace")?;

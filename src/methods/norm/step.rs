@@ -1,5 +1,5 @@
-//! NORM as a step: steps 3 and 2 of section 3. The inner solve on C starts from p = 0 as in the paper, or from the pressures that the solve
-//! starts with.
+//! NORM as a step: steps 3 and 2 of section 3. The inner solve on C starts from p = 0 as in the paper, or from the initial pressures of the
+//! solve.
 
 use super::{conjugate_gradients, minimal_residual, InnerStop};
 use crate::contact::{admit, norm_of_distance, residual_norm, truncate};
@@ -12,7 +12,7 @@ use crate::scene::Load;
 
 /// Restarts of an inner solve whose recursive residual was met but the true one was not.
 const RESTARTS: u32 = 8;
-/// Where an inner solve ends at round-off, violations of this size are round-off too.
+/// If an inner solve ends at round-off, violations of this relative size are round-off too.
 const FLOOR: f64 = 1e-12;
 
 /// The method, and its memory, kept from one solve to the next.
@@ -23,11 +23,11 @@ pub struct Norm {
     /// Restarts of this inner solve, and the true residual before the last.
     restarts: u32,
     last_residual: f64,
-    /// The part of the tolerance that the inner solve aims at: less where its result leaves the complementarity above the tolerance.
+    /// The inner tolerance as a fraction of the tolerance. It shrinks if a result leaves the complementarity above the tolerance.
     aim: f64,
     /// rms over C of the last change of p.
     update: f64,
-    /// How the step goes on after the last inner solve.
+    /// The beginning of the next step.
     next: Next,
     /// The state before a trial.
     before: Snapshot,
@@ -37,12 +37,12 @@ pub struct Norm {
 /// The beginning of the next step.
 #[derive(Clone, Copy, Default, PartialEq)]
 enum Next {
-    /// An inner solve from the pressures there are.
+    /// An inner solve from the current pressures.
     #[default]
     GoOn,
-    /// Step 3: the contact conditions of an inner solve that ended.
+    /// Step 3: the contact conditions after an inner solve.
     Exchange,
-    /// The state before the trial, and one element of it.
+    /// Step 3 for one element of the state before the trial.
     ExchangeOne,
 }
 
@@ -52,7 +52,7 @@ impl Norm {
         2 * self.u_before.len() * size_of::<f64>() + self.inner.bytes()
     }
 
-    /// 2. The equations on the contact area, from the pressures there are. Returns the update.
+    /// Step 2: solves the equations on the contact area from the current pressures. Returns the update.
     fn solve<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<f64> {
         let Task { problem, state, goal, monitor, .. } = task;
         if state.contact_count() == 0 {
@@ -71,13 +71,13 @@ impl Norm {
             false => minimal_residual(task, stop, &mut self.inner)?,
         };
         task.monitor.count.update = update;
-        // Directions of mean zero leave the force as it is but for rounding, which many of them add up.
+        // Directions of mean zero keep the force except for round-off, which accumulates over many directions.
         refresh(task)?;
         Ok(update)
     }
 
-    /// The action after an inner solve that leaves `violators`. The recursive residual certifies nothing: if the true one is not met, it
-    /// goes on from there. False if nothing is left to do.
+    /// Chooses the next action after an inner solve that leaves `violators`. The recursive residual is no certificate. If the true residual is too
+    /// large, the inner solve continues. Returns false if nothing is left to do.
     fn judge<S: AdmissibleSet>(&mut self, state: &State, set: S, goal: &Goal, update: f64, violators: u64) -> bool {
         let residual = residual_norm(state);
         let residual_holds = residual <= goal.residual() * norm_of_distance(state);
@@ -96,8 +96,8 @@ impl Norm {
         violators > 0
     }
 
-    /// Step 3: elements that would pull leave, those that penetrate enter: all at once, or one where that may cycle. Returns whether an inner
-    /// solve is to follow; if not, the state is a trial: perhaps the violations are within the tolerance.
+    /// Step 3: elements with p < 0 leave, and elements with e < 0 enter. All change at once, or only one if that may cycle. Returns whether an inner
+    /// solve follows. If not, the state is a trial, because the violations may be within the tolerance.
     fn exchange<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<bool> {
         let (state, set) = (&mut *task.state, task.set);
         if self.guard.allows_all(violators(state, set)) {
@@ -113,7 +113,7 @@ impl Norm {
         Ok(false)
     }
 
-    /// One element changes sides: the last of those that should.
+    /// Exchanges one element: the last violator.
     fn exchange_one<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
         self.before.give_back(state);
         state.u.copy_from_slice(&self.u_before);
@@ -129,13 +129,13 @@ impl Norm {
     }
 }
 
-/// Whether a trial leaves no more than round-off may be: then there is nothing to exchange.
+/// Whether the violations of a trial are round-off. Then there is nothing to exchange.
 fn is_at_round_off<S: AdmissibleSet>(task: &Task<'_, '_, S>) -> bool {
     let floor = Goal { tolerance: FLOOR.max(task.goal.tolerance), ..task.goal };
     floor.holds(&Survey::of(task.state), 0.0, task.set)
 }
 
-/// p = 0 on C, from where an inner solve starts; elements at their limit keep their pressures.
+/// Sets p = 0 on C for the start of an inner solve. Elements at their limit keep their pressures.
 fn start_from_zero<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<()> {
     let (state, set) = (&mut *task.state, task.set);
     let held = S::LIMITED && state.has_limited();
@@ -150,8 +150,8 @@ fn start_from_zero<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<()> {
     Ok(())
 }
 
-/// p on C carries what is left of the force beside the elements at their limit, and u = A p. Nobody changes sides: a p beyond its limit
-/// is for the next exchange.
+/// Scales p on C to carry the force that the elements at their limit leave, and computes u = A p. No element is exchanged: the next exchange
+/// handles a p beyond its limit.
 fn refresh<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<()> {
     let Task { problem, state, set, .. } = task;
     let beside_limits = S::LIMITED && state.has_limited();
@@ -187,7 +187,7 @@ impl<S: AdmissibleSet> Step<S> for Norm {
     }
 
     fn policy(&self) -> Policy {
-        // The guard keeps it finite.
+        // The guard against cycling bounds the number of steps.
         Policy { exchanged_by_loop: false, step_is_cycle: false, chatter: 0, patience: u32::MAX, progress: 1.0 }
     }
 
@@ -200,7 +200,7 @@ impl<S: AdmissibleSet> Step<S> for Norm {
     }
 
     fn step(&mut self, task: &mut Task<'_, '_, S>) -> Result<Change> {
-        // 3. A new contact area by the contact conditions. 1. The first one is there.
+        // 3. A new contact area by the contact conditions. The first one (step 1) is given.
         let from_zero = match self.next {
             Next::GoOn => task.state.p.iter().all(|p| *p == 0.0),
             Next::Exchange => {
@@ -220,10 +220,10 @@ impl<S: AdmissibleSet> Step<S> for Norm {
         if from_zero {
             start_from_zero(task)?;
         }
-        // 2. The equations on it.
+        // 2. The equations on the contact area.
         let update = self.solve(task)?;
         self.update = update;
-        // 4. Repeat where the conditions do not hold.
+        // 4. Repeat if the conditions do not hold.
         let Task { state, set, goal, monitor, .. } = task;
         monitor.count.active_set_steps += 1;
         let changes = if S::FIXED { 0 } else { violators(state, *set) as u64 };

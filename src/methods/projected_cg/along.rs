@@ -1,11 +1,11 @@
-//! Steps along the deflation direction d beside those along t:
+//! Steps along the deflation direction d in addition to those along t:
 //!
 //! ```text
 //! t has mean zero over C, as under a prescribed force
 //! gamma = (r - alpha q, d)/(d, w),  p = p + alpha t + gamma d,  u = u + alpha q + gamma w
 //! ```
 //!
-//! Elements that are not in C at the start are taken out of d, and by one product out of w.
+//! Elements not in C at the start are removed from d, and by one product from w.
 
 use super::deflation::{Deflation, Last};
 use super::deflation_passes::{Change, Restrict, Subtract};
@@ -19,16 +19,16 @@ use crate::operator::fft::Real;
 use crate::rectangle::Rectangle;
 use crate::sums::Sums;
 
-/// A change carries force if its sum is at least this part of the sum of its absolute values; rolling moves pressures without any.
+/// Ratio of the sum of a change to the sum of its absolute values from which it carries force; rolling moves pressures without force.
 const CARRIES: f64 = 0.5;
-/// A first step along d that changes e by less than this part of the residual waits for the next.
+/// Least change of e by a first step along d, relative to the residual.
 const WORTHWHILE: f64 = 0.1;
-/// A change of less than this part of the pressures is their rounding.
+/// A change below this part of the pressures is round-off.
 const LEAST: f64 = 1e-6;
 
 impl<T: Real> Iteration<T> {
-    /// Takes the change from the last solution, if there is one, to `state`, the part of a grid of `mx` columns in the window; none if it
-    /// carries no force. Returns the products that this takes.
+    /// Makes the deflation direction from the change of `state`, the part of a grid of `mx` columns in the window, since the last solution; none if
+    /// it carries no force. Returns the products that this takes.
     pub fn deflate_by_change(
         &mut self,
         state: &State,
@@ -77,7 +77,7 @@ impl<T: Real> Iteration<T> {
         self.deflation.measure();
     }
 
-    /// d becomes the change on C alone; z loses what it held. Returns the products that this takes.
+    /// Restricts d to C; z is overwritten. Returns the products that this takes.
     pub(super) fn restrict_deflation(&mut self, state: &State) -> u64 {
         let is_there = self.deflation.is_there();
         let (Deflation { d, .. }, z) = (&mut self.deflation, &mut self.z);
@@ -103,7 +103,7 @@ impl<T: Real> Iteration<T> {
         Step { rt, tq, tt, t1, pp, rd, qd, energy: None }
     }
 
-    /// gamma beside a step of length alpha; 0 where no change is known.
+    /// gamma for a step of length alpha along t; 0 without a deflation direction.
     pub(super) fn gamma(&self, step: &Step, alpha: f64) -> f64 {
         let gamma = (step.rd - alpha * step.qd) / self.deflation.energy;
         if self.deflation.is_there() && gamma.is_finite() {
@@ -113,7 +113,7 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// After a step of length gamma: u moved along w, of which elements that left d before are a part; for them a correction is deferred. Those that have just left
+    /// After a step of length gamma along w, which contains elements that left d before: defers a correction for these. Elements that have just left
     /// C leave d.
     pub(super) fn leave_deflation(&mut self, gamma: f64) {
         if !self.deflation.is_there() {
@@ -131,7 +131,7 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// Before the first step: p and u move along d to the least energy, if that is worth a pass over u.
+    /// Before the first step: moves p and u along d to the least energy, if that is worth a pass over u.
     pub(super) fn step_along_deflation(&mut self, state: &mut State) {
         if !self.deflation.is_there() {
             return;

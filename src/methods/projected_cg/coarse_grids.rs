@@ -1,10 +1,9 @@
-//! The coarser grids: where a solve from nothing begins (nested iteration, section 4.3 of the paper). Each grid starts from the
-//! pressures of the next coarser one, piecewise constant, and its displacements, linearly interpolated.
+//! The coarser grids for a start without a guess (nested iteration, section 4.3 of the paper). Each grid starts from the pressures of the next
+//! coarser one, piecewise constant, and its displacements, linearly interpolated.
 //!
-//! With two periods A is free of a mean, so that the mean of e is that of `h - approach` on every grid: an approach beyond the mean of
-//! a grid's h has no solution there, and one close to it a huge pressure. A grid of an odd count covers more than a period; its h is
-//! shifted to the mean of the finest one, and is feasible where that is. What a coarser grid found is worth nothing where its residual
-//! is larger than that of p = 0 (that is 1): then the next grid starts without it.
+//! With two periods u has mean zero, so the mean of e is that of `h - approach` on every grid: an approach beyond the mean of a grid's h has no
+//! solution there, and one close to it a huge pressure. A grid of an odd count covers more than a period; its h is shifted to the mean of the finest
+//! grid, and is feasible if that is. If the residual of a coarser grid exceeds that of p = 0, which is 1, the next grid starts from p = 0.
 
 use std::f64::consts::PI;
 use std::iter::successors;
@@ -31,22 +30,22 @@ use crate::threads::Threads;
 
 /// The coarsest grid has at most this many elements in each direction.
 const COARSEST: usize = 8;
-/// Where the coarsest grid is solved well enough: its elements are larger than that is small.
+/// Tolerance on the coarsest grid: its discretisation error is larger.
 const COARSEST_TOLERANCE: f64 = 1e-3;
-/// Iterations at most on the coarsest grid, and on those between. With 3 to 5 of these all products together are as many, or up to 1.1 times as many.
+/// Most iterations on the coarsest grid, and on those between. With 3 to 5 of the latter all products together are 1.0 to 1.1 times as many.
 const COARSEST_ITERATIONS: u64 = 50;
 const COARSE_ITERATIONS: u64 = 2;
-/// Where elements are at their limit: on 48 scenes (`examples/pressure_limits`) 4, 5, 6, 8 take at most 6.0, 3.2, 3.3, 3.6 times the
-/// work of the plain scene.
+/// Iterations with elements at their limit: on 48 scenes (`examples/pressure_limits`) 4, 5, 6, 8 take at most 6.0, 3.2, 3.3, 3.6 times the work of
+/// the plain scene.
 const LIMITED_ITERATIONS: u64 = 5;
-/// Where the force is found for the approach: three forces (60 lines then take 85 products at most on the finest grid; with two or four 130 and 110).
+/// Iterations with a search for the force, of three forces: 60 lines then take at most 85 products on the finest grid, 130 and 110 with two and four.
 const FORCE_ITERATIONS: u64 = 6;
 
 /// One coarser grid.
 pub(super) struct Coarse {
     pub(super) level: Level,
     pub(super) state: State,
-    /// Limits of the pressures, while a scene has any.
+    /// Limits of the pressures, if a scene has any.
     limits: Vec<f64>,
 }
 
@@ -57,15 +56,15 @@ pub struct CoarseGrids {
     /// The coarsest last.
     pub(super) grids: Vec<Coarse>,
     threads: Threads,
-    /// Whether the coefficients are those of the finest grid now.
+    /// Whether the coefficients are up to date with the finest grid.
     are_current: bool,
-    /// The result of the last start on the finest of them.
+    /// The survey of the last start on the finest of these grids.
     found: Survey,
     find_force: FindForce,
 }
 
 impl CoarseGrids {
-    /// The grids below `grid`; their operators follow when they are needed.
+    /// The grids below `grid`; their operators are made when needed.
     pub fn new(grid: &Grid, influence: &Coefficients, precision: Precision, threads: &Threads) -> Result<CoarseGrids> {
         let below = || successors(coarsen(grid, COARSEST), |grid| coarsen(grid, COARSEST));
         let mut grids = sparse(below().count(), "coarser grids")?;
@@ -84,12 +83,12 @@ impl CoarseGrids {
         Ok(CoarseGrids { finest, grids, threads, are_current: true, found, find_force })
     }
 
-    /// The finest grid has other coefficients.
+    /// Notes other coefficients on the finest grid.
     pub fn forget_coefficients(&mut self) {
         self.are_current = false;
     }
 
-    /// Takes those of the finest grid, `grid`, if that has others.
+    /// Takes the coefficients of the finest grid, `grid`, if they changed.
     pub fn renew(&mut self, grid: &Grid, influence: &Coefficients) -> Result<()> {
         if self.are_current {
             return Ok(());
@@ -114,12 +113,12 @@ impl CoarseGrids {
         self.grids.iter_mut().for_each(|grid| grid.level.forget_window());
     }
 
-    /// Solves on the coarser grids; the task's state gets what they found. Returns what its u is.
+    /// Solves on the coarser grids, and copies their solution to the task's state. Returns the freshness of its u.
     pub fn start<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<Freshness> {
         let (count, self_influence) = (self.grids.len(), task.problem.self_influence());
         let Task { state: fine, lowest, set, goal, monitor, .. } = task;
         if count == 0 {
-            // A guess that was worth nothing is gone.
+            // Drops a useless guess.
             fine.p.fill(0.0);
             fine.u.fill(0.0);
             fine.start(self_influence);
@@ -169,7 +168,7 @@ impl CoarseGrids {
         Ok(displacement)
     }
 
-    /// The distances, the load and the limits of all coarser grids. Elements above `highest` are out of reach.
+    /// Restricts distances, load and limits to all coarser grids. Elements above `highest` are out of reach.
     fn restrict<S: AdmissibleSet>(&mut self, fine: &mut State, set: S, highest: f64) -> Result<()> {
         let threads = self.threads.clone();
         for l in 0..self.grids.len() {
@@ -188,8 +187,8 @@ impl CoarseGrids {
         Ok(())
     }
 
-    /// The error of p on the finest grid by the rounding of a u in single precision, relative to p (rms over what presses). Errors of
-    /// `EPSILON u` that change from element to element, all wave numbers k alike, take pressures of `E* |k|/2` times themselves.
+    /// The error of p on the finest grid from a u in single precision, relative to p (rms over elements with pressure). Errors `EPSILON u` with a
+    /// white spectrum over wave numbers k correspond to pressures of `E* |k|/2` times themselves.
     pub fn noise(&self, fine: &Problem) -> f64 {
         let Some(Coarse { state, .. }) = self.grids.first() else { return 0.0 };
         let Survey { squares, contact_count, .. } = self.found;
@@ -229,7 +228,7 @@ impl CoarseGrids {
         Ok(end)
     }
 
-    /// Limits of the coarser grids: means over the elements joined, infinite where one of them is. Nothing is at its limit.
+    /// Restricts limits to the coarser grids: means over the elements joined, infinite if one is. No element is at its limit.
     fn restrict_limits<S: AdmissibleSet>(&mut self, fine: &State, set: S) -> Result<()> {
         for l in 0..self.grids.len() {
             let (finer, coarser) = self.grids.split_at_mut(l);
@@ -255,7 +254,7 @@ impl CoarseGrids {
     }
 }
 
-/// Pressures beyond their limit are at it.
+/// Truncates pressures to their limit.
 fn truncate_to<S: AdmissibleSet>(state: &mut State, set: S) {
     if !state.reached_limit && !set.any_beyond(0, state.p.iter().copied()) {
         return;
@@ -269,7 +268,7 @@ fn truncate_to<S: AdmissibleSet>(state: &mut State, set: S) {
     }
 }
 
-/// Shifts the distances of a coarser grid to the mean of the finer one's; not where elements have no surface, which leave e its freedom.
+/// Shifts the distances of a coarser grid to the mean of the finer one's, unless elements have no surface, which leaves the mean of e free.
 pub fn shift_to_mean(fine: &[f64], coarse: &mut [f64]) {
     let shift = mean(fine) - mean(coarse);
     if shift.is_finite() {
@@ -277,8 +276,8 @@ pub fn shift_to_mean(fine: &[f64], coarse: &mut [f64]) {
     }
 }
 
-/// The pressures of the coarser grid, piecewise constant (what smoother interpolation would add the preconditioner kills), its
-/// contact area, and its displacements, linearly interpolated. Elements above `highest` are out of reach.
+/// Interpolates from the coarser grid: pressures piecewise constant (the preconditioner removes the difference to smoother interpolation), contact
+/// area, and displacements linearly. Elements above `highest` are out of reach.
 fn prolong(coarse: &State, fine: &mut State, highest: f64, threads: &Threads) {
     let (from, to) = (coarse.grid, fine.grid);
     transfer::interpolate_linearly(&to, &from, &coarse.u, &mut fine.u, threads);
@@ -291,7 +290,7 @@ fn prolong(coarse: &State, fine: &mut State, highest: f64, threads: &Threads) {
         |y, p, contact| {
             transfer::interpolate_row(&to, &from, &coarse.p, y, p, |to, value| *to = value);
             for ((p, inside), h) in p.iter_mut().zip(contact).zip(&h[y * to.mx..]) {
-                // Without a branch, which the compiler can vectorise.
+                // Without a branch, so that the compiler vectorises this.
                 *p = if h.is_infinite() | (*h > highest) { 0.0 } else { *p };
                 *inside = *p > 0.0;
             }

@@ -1,8 +1,8 @@
 //! The deflation direction: a direction d whose displacement w = A d is known, so that a step along it costs no product.
 //!
-//! Under a prescribed approach the residual has a part that is uniform over C. What removes it is the pressure of a flat punch on C, to
-//! which no few products with M come near, because M knows nothing of the rim. A small change of the load changes p by nearly that
-//! pressure, so the change of p since the last solution in time serves for d. Module `uniform` has another.
+//! Under a prescribed approach the residual has a part that is uniform over C. The pressure of a flat punch on C removes it, but a few
+//! products with M do not approximate this pressure, because M ignores the rim. A small change of the load changes p by nearly this
+//! pressure, so the change of p since the last solution in time serves for d. Module `uniform` has another direction.
 //!
 //! An element that leaves C later is removed from d but not from w = A d and from (d, w); the missing part is added to the deferred corrections.
 
@@ -17,7 +17,7 @@ use crate::sums::Sums;
 pub struct Last<'a> {
     /// p.
     pub p: &'a [f64],
-    /// u = A p; none: a product finds what the change displaces.
+    /// u = A p; none: w takes a product.
     pub u: Option<&'a [f64]>,
 }
 
@@ -26,26 +26,26 @@ pub struct Last<'a> {
 pub(super) struct Deflation<T> {
     pub(super) d: Vec<T>,
     pub(super) w: Vec<T>,
-    /// (d, w); 0 while there is no such direction.
+    /// (d, w); 0 without a direction.
     pub(super) energy: f64,
     /// The sums of d^2, and of w^2 over the elements of d.
     length: f64,
     pub(super) size: f64,
-    /// Whether d is of C, not of the last change (modules `uniform` and `flat_punch`).
+    /// Whether d follows from C, not from the last change (modules `uniform` and `flat_punch`).
     pub(super) is_uniform: bool,
     /// Elements of C when d was made.
     pub(super) elements: u64,
-    /// Elements that left C, which are 0 in d but not in what w is of.
+    /// Elements that left C: they are 0 in d, but w contains their displacements.
     pub(super) outside: Vec<(usize, f64)>,
 }
 
 impl<T> Deflation<T> {
-    /// There is no such direction.
+    /// Drops the direction.
     pub(super) fn forget(&mut self) {
         self.energy = 0.0;
     }
 
-    /// Whether there is one.
+    /// Whether there is a direction.
     pub(super) fn is_there(&self) -> bool {
         self.energy > 0.0
     }
@@ -57,7 +57,7 @@ impl<T> Deflation<T> {
 }
 
 impl<T: Real> Deflation<T> {
-    /// d and w; t and q where gamma is 0, so that nothing else is read.
+    /// d and w; t and q if gamma is 0, so that no other memory is read.
     pub(super) fn beside<'a>(&'a self, gamma: f64, t: &'a [T], q: &'a [T]) -> (&'a [T], &'a [T]) {
         if gamma == 0.0 {
             (t, q)
@@ -66,7 +66,7 @@ impl<T: Real> Deflation<T> {
         }
     }
 
-    /// Elements that left d.
+    /// The number of elements that left d.
     pub(super) fn left(&self) -> usize {
         self.outside.len()
     }
@@ -76,7 +76,7 @@ impl<T: Real> Deflation<T> {
         self.length.sqrt()
     }
 
-    /// Memory for d and w; elements that left are forgotten.
+    /// Makes memory for d and w, and forgets the elements that left.
     pub(super) fn reserve(&mut self, n: usize) -> Result<()> {
         for values in [&mut self.d, &mut self.w] {
             reserve(values, n, "the change of the last step")?;
@@ -86,19 +86,19 @@ impl<T: Real> Deflation<T> {
         Ok(())
     }
 
-    /// For later iterations.
+    /// Keeps the memory for later solves.
     pub(super) fn keep(&mut self) {
         keep([&mut self.d, &mut self.w]);
     }
 
-    /// w is A d from now on.
+    /// Measures d and w = A d.
     pub(super) fn measure(&mut self) {
         let mut sums = Sums::new();
         sums.add([], [&self.d, &self.w], |[], [d, w]| measures(d, w));
         self.take_measures(sums.values());
     }
 
-    /// Takes (d, w), and the sums of d^2 and of w^2, from a pass; no direction where single precision did not hold w.
+    /// Takes (d, w), and the sums of d^2 and of w^2, from a pass. Drops the direction if w is out of the range of single precision.
     pub(super) fn take_measures(&mut self, [energy, length, size]: [f64; 3]) {
         let energy = if energy.is_finite() { energy } else { 0.0 };
         (self.energy, self.length, self.size) = (energy, length, size);

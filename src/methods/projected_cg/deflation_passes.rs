@@ -1,16 +1,15 @@
-//! The passes over a change of the pressures d and its displacements w. They are compiled for the vectors of this machine, on which no bit
-//! depends.
+//! The passes over a change of the pressures d and its displacements w, compiled for the vectors of this machine, on which no bit depends.
 
 use crate::operator::fft::Real;
 use crate::sums::Sums;
 
-/// A row of d and w, from what there is now and what there was before with the factor of its units.
+/// A row of d and w: the present values less the earlier ones, times the factor of their units.
 pub(super) struct Change<'a, T> {
     pub(super) p: (&'a [f64], &'a [f64], f64),
     pub(super) u: (&'a [f64], &'a [f64], f64),
     pub(super) d: &'a mut [T],
     pub(super) w: &'a mut [T],
-    /// Of d, |d| and |p|, and the measures of d and w.
+    /// The sums of d, |d| and |p|, and the measures of d and w.
     pub(super) sums: &'a mut Sums<6>,
 }
 
@@ -30,7 +29,7 @@ impl<T: Real> pulp::NullaryFnOnce for Change<'_, T> {
     }
 }
 
-/// Moves the values outside C from d to z, whose own values are lost; returns whether there are any.
+/// Moves the values outside C from d to z, which is overwritten. Returns whether there are any.
 pub(super) struct Restrict<'a, T> {
     pub(super) d: &'a mut [T],
     pub(super) z: &'a mut [T],
@@ -71,8 +70,8 @@ impl<T: Real> pulp::NullaryFnOnce for Subtract<'_, T> {
     }
 }
 
-/// The part of an element in (d, w), and in the sums of d^2 and of w^2 over the elements of d. An infinite w makes (d, w) NaN where d is 0: such a
-/// change is none.
+/// An element's terms of (d, w) and of the sums of d^2 and of w^2 over the elements of d. An infinite w makes (d, w) NaN at d = 0, which rejects the
+/// change.
 #[inline(always)]
 pub(super) fn measures(d: f64, w: f64) -> [f64; 3] {
     [d * w, d * d, if d == 0.0 { 0.0 } else { w * w }]

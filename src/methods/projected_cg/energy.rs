@@ -4,7 +4,7 @@
 //! p = c p, u = c u,  c = (p, approach - h)/(p, u)
 //! ```
 //!
-//! The sums after a step are known before it, from sums over C that the step length needs anyway, but for the few elements that are truncated:
+//! The sums after a step follow from sums over C for the step length, except those of the few truncated elements:
 //!
 //! ```text
 //! (p + alpha t, approach - h) = (p, approach - h) + alpha (t, approach - h)
@@ -19,8 +19,8 @@ use crate::operator::fft::Real;
 use crate::scene::Load;
 
 impl<T: Real> Iteration<T> {
-    /// After a step: p carries the prescribed force, or is scaled to the least energy; `update` takes the factor. `limited`: whether an element was
-    /// at its limit, for then p is not scaled by approach; `sums` as below.
+    /// After a step: makes p carry the prescribed force, or scales it to the least energy; `update` gets the factor. `limited`: whether an element
+    /// was at its limit; by approach p is then not scaled. `sums`: see [`Iteration::least_energy`].
     pub(super) fn scale_to_load<S: AdmissibleSet>(
         &mut self,
         state: &mut State,
@@ -38,9 +38,9 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// By approach: scales p, and the deferred corrections with it, to the least energy `(p, u)/2 + (p, h - approach)`, u as `update` will leave it; `update` takes
-    /// the factor. It costs no product. Where p moves along the deflation direction instead, or pressures have reached a limit, it only follows a
-    /// product that corrected a truncation. `sums`: `(p, approach - h)` and `(p, u)`, if they are known.
+    /// By approach: scales p and the deferred corrections to the least energy `(p, u)/2 + (p, h - approach)`, u being that after `update`, which gets
+    /// the factor. Costs no product. If p moves along the deflation direction, or pressures reached a limit, only after a product that corrected a
+    /// truncation. `sums`: `(p, approach - h)` and `(p, u)`, if known.
     pub(super) fn least_energy<S: AdmissibleSet>(
         &mut self,
         state: &mut State,
@@ -57,14 +57,14 @@ impl<T: Real> Iteration<T> {
         let (work, energy) = sums.unwrap_or_else(|| self.work_and_energy(state, update));
         let factor = work / energy;
         if factor.is_finite() && factor > 0.0 {
-            // On one element that is the solution, and no direction is left.
+            // On one element this is the solution, without a direction left.
             self.is_scaled = scales && self.segments.count() > 1;
             update.factor = factor;
             self.scale(state, factor);
         }
     }
 
-    /// `(p, approach - h)` and `(p, u)`, u as `update` will leave it.
+    /// `(p, approach - h)` and `(p, u)`, u being that after `update`.
     fn work_and_energy(&mut self, state: &State, update: &Update) -> (f64, f64) {
         let (_, w) = self.deflation.beside(update.gamma, &self.t, &self.q);
         let (State { h, u, p, .. }, products) = (state, [&self.q[..], &self.z, w]);
@@ -77,7 +77,7 @@ impl<T: Real> Iteration<T> {
         (work, energy)
     }
 
-    /// `(p, approach - h)` and `(p, u)` after a step that truncated elements: those behind the first `included`.
+    /// `(p, approach - h)` and `(p, u)` after a step that truncated elements, those after the first `included`.
     pub(super) fn after_truncation(
         &self,
         state: &State,
@@ -92,7 +92,7 @@ impl<T: Real> Iteration<T> {
     }
 }
 
-/// Whether sums that were predicted are those of a pass, to the rounding of the larger: the first may nearly cancel.
+/// Whether predicted sums equal those of a pass, to round-off of the larger: the first may nearly cancel.
 fn near((a, b): (f64, f64), (c, d): (f64, f64)) -> bool {
     let size = c.abs().max(d.abs());
     !((a - c).abs() > 1e-6 * size || (b - d).abs() > 1e-6 * size)

@@ -1,4 +1,4 @@
-//! Steps (4.1) and (4.2) within the iteration: who leaves C with p, and who enters it with u.
+//! Steps (4.1) and (4.2) within the iteration: elements leave C in the update of p, and enter C in the update of u.
 
 use super::formulas::{Entering, Leaving, Moved, MovedU};
 use super::step_sums::Update;
@@ -7,8 +7,8 @@ use crate::contact::{enter, leave, AdmissibleSet, State};
 use crate::operator::fft::Real;
 
 impl<T: Real> Iteration<T> {
-    /// p = p + alpha t + gamma d on C, and 4.1: elements beyond a bound, and those held back by the forecast, leave for it; the correction of u by
-    /// their gains is deferred. Returns how many.
+    /// p = p + alpha t + gamma d on C, and (4.1): elements beyond a bound, and those clipped by the forecast, leave for it; the correction of u by
+    /// their truncation is deferred. Returns their number.
     pub(super) fn update_pressures<S: AdmissibleSet>(
         &mut self,
         state: &mut State,
@@ -43,14 +43,14 @@ impl<T: Real> Iteration<T> {
         (truncation.count() - before) as u64
     }
 
-    /// z = A d: a product corrects all of u.
+    /// z = A d: makes the deferred corrections of u by a product.
     pub(super) fn correct_now(&mut self) {
         self.truncation.take(&mut self.z);
         self.operator.apply_in_place(&mut self.z, &mut self.workspace);
     }
 
-    /// u = factor (u + alpha q + gamma w + A d), and 4.2. Returns how many elements enter. One pass over the grid, because its arrays are longer
-    /// than the caches.
+    /// u = factor (u + alpha q + gamma w + A d), and (4.2). Returns the number of elements that enter. One pass over the grid, as its arrays exceed
+    /// the caches.
     pub(super) fn update_displacements<S: AdmissibleSet>(&mut self, state: &mut State, update: &Update) -> u64 {
         let (q, (_, w)) = (&self.q[..], self.deflation.beside(update.gamma, &self.t, &self.q));
         let limited = S::LIMITED && state.has_limited();

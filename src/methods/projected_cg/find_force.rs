@@ -1,4 +1,4 @@
-//! Lines in plane strain with two periods, by approach: the force that has the approach.
+//! Lines in plane strain with two periods, by approach: the search for the force of the approach.
 //!
 //! The mean of the pressure displaces nothing there. Near full contact the force changes by far more than the approach, and iterations that change
 //! both at once take 110 to 390 products. With a force they take 20 to 60, as on other lines. So the force follows from a secant,
@@ -9,16 +9,16 @@
 //!
 //! and each force is solved loosely (module `mean_gap`: why m).
 //!
-//! *Approach of a force.* A mean of e over C, with weights of the sum 1, is the approach of the solution but for the product of two errors: that
-//! of p, and that of the weights as pressures of a flat punch on C. The change of p with the force is such a pressure.
+//! *Approach of a force.* A mean of e over C, with weights of sum 1, is the approach of the solution up to the product of two errors: that of
+//! p, and that of the weights as pressures of a flat punch on C. The change of p with the force is such a pressure.
 //!
-//! *Start of a force.* p is extrapolated along its change with the force. For the first larger force a uniform pressure is added instead. It displaces
-//! nothing. Elements then leave C, which is faster than entering it.
+//! *Start of a force.* p is extrapolated along its change with the force. For the first larger force a uniform pressure, which displaces
+//! nothing, is added instead. Elements then leave C, which is faster than entering it.
 //!
 //! *Near the force* p moves along its change in each step by approach (module `along`).
 //!
-//! Measured on 600 random lines of 64 to 8000 elements, tolerances from 1e-4 to 1e-8: 51 products in the median, 98 of 100 take less than 155, the worst 355. With
-//! approaches as means over C and no extrapolation: 152 in the median, 10 of 100 take more than 300.
+//! Measured on 600 random lines of 64 to 8000 elements, tolerances from 1e-4 to 1e-8: median 51 products, 98 % below 155, at most 355. With
+//! approaches as means over C and no extrapolation: median 152, 10 % above 300.
 
 use super::deflation::Last;
 use super::level_task::LevelTask;
@@ -31,27 +31,27 @@ use crate::progress::Goal;
 use crate::scene::Load;
 use crate::sums::{in_blocks, mean};
 
-/// The residual to which the first force is solved; the next ones to this part of the distance between approaches.
+/// Residual of the solve of the first force; of the next ones, relative to the distance between approaches.
 const LOOSE: f64 = 0.1;
 const PART: f64 = 0.3;
-/// Changes of the force are at most by this factor (60 lines of 3000 and 9600 elements take 85 products at most; with 4 they take 400); p is extrapolated by at most so many times its last
-/// change.
+/// Largest factor of a change of the force (60 lines of 3000 and 9600 elements take at most 85 products; with 4 they take 400), and largest
+/// extrapolation of p, in its last change.
 const FURTHEST: f64 = 2.0;
 const FURTHEST_P: f64 = 4.0;
-/// A force is near if m has to change by this part of its last change at most, and by so much.
+/// A force is near if m has to change by at most this part of its last change, and by less than this.
 const NEAR: (f64, f64) = (0.3, 0.5);
-/// The approach may be off by this part of the tolerance, beside the residual.
+/// Allowed error of the approach, relative to the tolerance.
 const ENOUGH: f64 = 0.5;
-/// Forces at most, and iterations at most along the change of p, unless these have brought the residual to this part.
+/// Most forces; most iterations along the change of p, unless these reduced the residual to this part.
 const MOST: usize = 20;
 const ALONG: u64 = 40;
 const BROUGHT: f64 = 0.1;
-/// What u of single precision leaves of the residual, and of the approach.
+/// Round-off of u in single precision, in the residual and in the approach.
 const ROUNDING: f64 = 1e-6;
-/// A part of the elements in C from which on a uniform pressure is added.
+/// The part of the elements in C above which a uniform pressure is added.
 const MANY: f64 = 0.25;
 
-/// Pressures of a force, and its approach to a residual.
+/// Pressures of a force, with its approach and residual.
 #[derive(Default)]
 struct Known {
     p: Vec<f64>,
@@ -65,26 +65,26 @@ struct Known {
 pub(super) struct FindForce {
     /// The last force with a gap, and its m.
     last: Option<(f64, f64)>,
-    /// The least force without one.
+    /// The least force without a gap.
     full: Option<f64>,
     /// An earlier solution, from which the last one differs by more than its residual.
     before: Known,
     /// The residual to which the next force is solved.
     tolerance: Option<f64>,
-    /// Whether steps along the change of p have met the goal; have failed.
+    /// Whether steps along the change of p met the goal, and whether they failed.
     is_near: bool,
     has_failed: bool,
 }
 
 impl FindForce {
-    /// Whether the force is to be found for the approach.
+    /// Whether the approach is solved by a search for the force.
     pub(super) fn serves<S: AdmissibleSet>(task: &LevelTask<'_, '_, S>, goal: &Goal) -> bool {
         let by_approach = matches!(task.state.load, Load::Approach(_));
         let presses = || in_blocks(task.state.p.iter().copied()) > 0.0;
         by_approach && !S::FIXED && !S::LIMITED && !goal.by_update() && task.level.is_mean_free_line() && presses()
     }
 
-    /// Another grid, or another solve.
+    /// Begins another grid or another solve.
     pub(super) fn begin(&mut self) {
         *self = FindForce {
             before: Known { p: std::mem::take(&mut self.before.p), ..Known::default() },
@@ -98,7 +98,7 @@ impl FindForce {
         size_of_val(&self.before.p[..])
     }
 
-    /// Solves by approach as by several forces, with at most `at_once` iterations for each.
+    /// Solves by approach with several forces, at most `at_once` iterations for each.
     pub(super) fn run<S: AdmissibleSet>(
         &mut self,
         task: &mut LevelTask<'_, '_, S>,
@@ -145,7 +145,7 @@ impl FindForce {
         Ok(End::Stagnated)
     }
 
-    /// Solves by the force that p carries; finds its approach. `mean`: that of h.
+    /// Solves by the force that p carries, and finds its approach. `mean`: the mean of h.
     fn run_force<S: AdmissibleSet>(
         &mut self,
         task: &mut LevelTask<'_, '_, S>,
@@ -168,7 +168,7 @@ impl FindForce {
         Ok((end, Found { wanted, force, approach, residual: goal.tolerance, size, mean }))
     }
 
-    /// Whether steps along the change of p go on from here.
+    /// Whether steps along the change of p follow.
     fn goes_along(&self, found: &Found) -> bool {
         let Known { p, approach, .. } = &self.before;
         let (m, missing) = (found.m(found.approach), found.m(found.wanted) - found.m(found.approach));
@@ -203,9 +203,9 @@ impl FindForce {
         }
     }
 
-    /// Iterates by approach, along the change of p in each step. p is as before where that fails.
+    /// Iterates by approach, along the change of p in each step. Restores p on failure.
     fn run_along<S: AdmissibleSet>(&mut self, task: &mut LevelTask<'_, '_, S>, goal: &Goal) -> Result<End> {
-        // A fresh u is of double precision, others of single.
+        // A fresh u is in double precision, otherwise in single precision.
         let start = computed(task.state.p.iter().copied(), "pressures by approach")?;
         let last = Last { p: &self.before.p, u: None };
         let end = task.run(task.state.u_is, Some(last), goal)?;
@@ -229,7 +229,7 @@ impl FindForce {
         Some(sum / weights).filter(|approach| approach.is_finite()).unwrap_or(state.approach)
     }
 
-    /// p of the next force; false where there is no next force.
+    /// Sets p for the next force; false if there is none.
     fn change(&mut self, state: &mut State, found: &Found) -> Result<bool> {
         if !(found.force > 0.0 && found.force.is_finite()) {
             return Ok(false);

@@ -1,8 +1,8 @@
-//! Lines in plane strain: which elements enter C, and the deflation direction.
+//! Lines in plane strain: the entry of elements into C, and the deflation direction.
 //!
-//! By approach the residual's mean over C is what the force lacks. What removes it is the pressure of a flat punch on C, to which joined pieces
-//! (module `punches`) are near: that is the deflation direction. With two periods it displaces next to nothing near full contact; there the force is
-//! found for the approach (module `find_force`).
+//! By approach the residual's mean over C is due to the missing force. The pressure of a flat punch on C removes it: joined pieces (module `punches`)
+//! approximate this pressure, the deflation direction. With two periods it displaces almost nothing near full contact; then the force is found for
+//! the approach (module `find_force`).
 
 use super::preconditioner::Preconditioner;
 use super::vectors::Iteration;
@@ -11,8 +11,8 @@ use crate::operator::fft::Real;
 use crate::scene::Load;
 use crate::sums::Sums;
 
-/// An element enters from so many standard deviations of the residual on. Three lines of 9600 elements with two periods take 43, 66 and 48 products
-/// with 3, and 58, 80 and 62 with 10 (by force, from a uniform pressure). With 1 they do not end.
+/// Penetration at which an element enters, in standard deviations of the residual. Three lines of 9600 elements with two periods take 43, 66 and 48
+/// products with 3, and 58, 80 and 62 with 10 (by force, from a uniform pressure). With 1 they do not end.
 const ALLOWED: f64 = 3.0;
 
 impl<T: Real> Iteration<T> {
@@ -21,7 +21,7 @@ impl<T: Real> Iteration<T> {
         self.preconditioner.as_ref().is_some_and(Preconditioner::has_punches)
     }
 
-    /// Before the first iteration: whether pieces of C move as flat punches, and what elements are allowed.
+    /// Before the first iteration: chooses whether pieces of C move as flat punches, and the allowed penetration.
     pub(super) fn choose_punches(&mut self, state: &State) {
         self.allowance = 0.0;
         let Some(m) = &mut self.preconditioner else { return };
@@ -33,9 +33,9 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// An exterior element enters only if it penetrates by more than the mean of the residual, which z holds, and three standard deviations. Smaller
-    /// penetrations are as uncertain as the residual; most such elements would leave at once. By approach the mean may be negative: as by
-    /// force, a distance counts from its mean over C.
+    /// Sets the penetration from which exterior elements enter: the mean of the residual, in z, plus [`ALLOWED`] standard deviations. Smaller
+    /// penetrations are as uncertain as the residual; most such elements would leave at once. By approach the mean may be negative: as by force,
+    /// distances count from their mean over C.
     pub(super) fn find_allowance(&mut self) {
         let mut sums = Sums::new();
         sums.add([], [&self.z], |[], [r]| [r, r * r]);
@@ -44,7 +44,7 @@ impl<T: Real> Iteration<T> {
         self.allowance = mean + ALLOWED * (squares / count - mean * mean).max(0.0).sqrt();
     }
 
-    /// The deflation direction becomes the pressure of a flat punch on C, of mean 1 there.
+    /// Makes the deflation direction the pressure of a flat punch on C, of mean 1 there.
     pub(super) fn press_flat(&mut self, state: &State) {
         self.count_near(state);
         self.preconditioner.iter_mut().for_each(|m| m.press_flat(&mut self.deflation.d));

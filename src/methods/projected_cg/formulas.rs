@@ -6,14 +6,14 @@ use super::segments::{Becomes, Holds, Terms, Vector, Wanted};
 use super::step_sums::Update;
 use crate::contact::AdmissibleSet;
 
-/// An element was held back if the forecast step leaves it this part of its pressure at most: single precision's rounding.
+/// An element was clipped if the forecast step leaves at most this part of its pressure: round-off of single precision.
 pub(super) const HELD_BACK: f64 = 1e-6;
 
-/// The sum of `h - approach + u`, u as `update` will leave it but for w.
+/// The sum of `h - approach + u`, u being that after `update` without w.
 #[derive(Clone, Copy)]
 pub(super) struct Distance<'a> {
     pub(super) update: &'a Update,
-    /// Of the last iteration: the mean of equal distances is that distance, to the last digit.
+    /// The approach of the last iteration: the mean of equal distances is then exact.
     pub(super) approach: f64,
 }
 
@@ -67,7 +67,7 @@ impl Terms<0, 3, 4> for Conjugate {
     }
 }
 
-/// `t = z - mean + beta t`, held back at p = 0 where the step of the forecast would take p below.
+/// `t = z - mean + beta t`, clipped so that the forecast step does not take p below 0.
 #[derive(Clone, Copy)]
 pub(super) struct Direction {
     pub(super) mean: f64,
@@ -86,7 +86,7 @@ impl Becomes<1, 1> for Direction {
     }
 }
 
-/// `t = t - shift`, held back as by [`Direction`].
+/// `t = t - shift`, clipped as by [`Direction`].
 #[derive(Clone, Copy)]
 pub(super) struct Lowered {
     pub(super) shift: f64,
@@ -101,7 +101,7 @@ impl Becomes<1, 0> for Lowered {
     }
 }
 
-/// The sums of t and of |t|, and how many elements are not held back.
+/// The sums of t and of |t|, and the number of elements that are not clipped.
 #[derive(Clone, Copy)]
 pub(super) struct Free {
     pub(super) forecast: f64,
@@ -115,7 +115,7 @@ impl Terms<1, 1, 3> for Free {
     }
 }
 
-/// (r, t), (t, q), (t, t), of |t|, (p, p).
+/// (r, t), (t, q), (t, t), the sum of |t|, (p, p).
 #[derive(Clone, Copy)]
 pub(super) struct StepSums {
     pub(super) approach: f64,
@@ -129,7 +129,7 @@ impl Terms<3, 2, 5> for StepSums {
     }
 }
 
-/// (r, t), (t, q), (t, t), of |t|, (p, p); and with `d = approach - h` (p, d), (t, d), (p, u), (p, q).
+/// (r, t), (t, q), (t, t), the sum of |t|, (p, p); and with `d = approach - h` (p, d), (t, d), (p, u), (p, q).
 impl Terms<3, 2, 9> for StepSums {
     #[inline(always)]
     fn of<S: Simd>(&self, [h, u, p]: [Vector<S>; 3], [t, q]: [Vector<S>; 2]) -> [Vector<S>; 9] {
@@ -138,7 +138,7 @@ impl Terms<3, 2, 9> for StepSums {
     }
 }
 
-/// (r, t), (t, q), (t, t), of |t|, (p, p); and with a deflation direction d (r, d), (q, d).
+/// (r, t), (t, q), (t, t), the sum of |t|, (p, p); and with a deflation direction d (r, d), (q, d).
 impl Terms<3, 3, 7> for StepSums {
     #[inline(always)]
     fn of<S: Simd>(&self, [h, u, p]: [Vector<S>; 3], [t, q, d]: [Vector<S>; 3]) -> [Vector<S>; 7] {
@@ -147,7 +147,7 @@ impl Terms<3, 3, 7> for StepSums {
     }
 }
 
-/// `(p, approach - h)` and (p, u), u as `update` will leave it before it is scaled.
+/// `(p, approach - h)` and (p, u), u being that after `update` before scaling.
 #[derive(Clone, Copy)]
 pub(super) struct WorkAndEnergy<'a> {
     pub(super) approach: f64,
@@ -201,8 +201,8 @@ impl Becomes<0, 2> for Moved {
     }
 }
 
-/// Step (4.1): elements that this move takes beyond a bound, and those that the forecast step leaves next to nothing of their pressure, or of what is
-/// left to their limit.
+/// Step (4.1): elements that this move takes beyond a bound, and clipped elements, whose pressure or distance from the limit the forecast step
+/// reduces to round-off.
 #[derive(Clone, Copy)]
 pub(super) struct Leaving<Set> {
     pub(super) moved: Moved,
@@ -234,7 +234,7 @@ impl<Set: AdmissibleSet> Wanted<2> for Leaving<Set> {
     }
 }
 
-/// `u = factor (u + alpha q + gamma w + A d)`, of q, or of q, w and z, which holds A d where that is known.
+/// `u = factor (u + alpha q + gamma w + A d)`, from q, or from q, w and z, which holds A d if it is known.
 #[derive(Clone, Copy)]
 pub(super) struct MovedU<'a>(pub(super) &'a Update);
 
@@ -259,7 +259,7 @@ pub(super) struct Entering<'a> {
     pub(super) approach: f64,
     /// Whether the contact area is given.
     pub(super) is_fixed: bool,
-    /// Which are at their limit; none: no element is.
+    /// Whether elements are at their limit; empty: none is.
     pub(super) held: &'a [bool],
 }
 

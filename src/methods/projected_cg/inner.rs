@@ -9,19 +9,17 @@ use crate::operator::fft::Real;
 use crate::operator::{Operator, Precision};
 use crate::threads::Threads;
 
-/// Operators of windows that are kept at most, and elements of each: theirs are small beside those of the whole grid.
+/// Most kept operators of windows, and most elements of each. They are small compared with the operator of the whole grid.
 const MOST_KEPT: usize = 8;
 const LARGEST_KEPT: usize = 128 * 128;
 
-/// The iteration in the precision asked for, and operators of other windows, the last that was left last: in many small problems the
-/// same few sizes come back.
+/// The iteration in one of the precisions, and operators of other windows, the most recent last. Many small problems use the same few window sizes.
 pub(super) enum Inner {
     Single(Iteration<f32>, Vec<(Grid, Operators<f32>)>),
     Double(Iteration<f64>, Vec<(Grid, Operators<f64>)>),
 }
 
-/// The parts of the operators of a window: the coefficients, taken times a factor, and of the whole grid the operator in double
-/// precision, if it is the window.
+/// The inputs of the operators of a window: the coefficients, a factor on them, and the operator in double precision if the window is the whole grid.
 #[derive(Clone, Copy)]
 pub(super) struct MadeOf<'a> {
     pub(super) influence: &'a Coefficients,
@@ -44,7 +42,7 @@ impl MadeOf<'_> {
         Iteration::new(self.operators(grid)?, grid, self.threads)
     }
 
-    /// The iteration goes on from one grid with another.
+    /// Moves the iteration from one grid to another.
     fn turn<T: Real>(
         &self,
         iteration: &mut Iteration<T>,
@@ -65,7 +63,7 @@ impl MadeOf<'_> {
 }
 
 impl Inner {
-    /// On `grid`.
+    /// The iteration on `grid`.
     pub fn new(from: MadeOf<'_>, grid: &Grid, precision: Precision) -> Result<Inner> {
         Ok(match precision {
             Precision::Double => Inner::Double(from.iteration(grid)?, Vec::new()),
@@ -73,12 +71,12 @@ impl Inner {
         })
     }
 
-    /// Whether the operators of a window are kept for the next of its size.
+    /// Whether the operators of a window are kept for later windows of the same size.
     pub fn keeps(grid: &Grid) -> bool {
         grid.len() <= LARGEST_KEPT
     }
 
-    /// Goes on from one grid with another. Not to be used after an error.
+    /// Moves from one grid to another. After an error the iteration must not be used.
     pub fn turn_to(&mut self, made_of: MadeOf<'_>, grids: (&Grid, &Grid)) -> Result<()> {
         match self {
             Inner::Single(iteration, kept) => made_of.turn(iteration, kept, grids),
@@ -86,7 +84,7 @@ impl Inner {
         }
     }
 
-    /// Takes other coefficients, on the same grid. Not to be used after an error.
+    /// Takes other coefficients on the same grid. After an error the iteration must not be used.
     pub fn renew(&mut self, made_of: MadeOf<'_>, grid: &Grid) -> Result<()> {
         let MadeOf { influence, factor, whole, .. } = made_of;
         match self {
@@ -110,7 +108,7 @@ impl Inner {
     }
 }
 
-/// The same call of the iteration in either precision.
+/// A call of the iteration in either precision.
 macro_rules! in_either {
     ($inner:expr, $iteration:ident => $call:expr) => {
         match $inner {

@@ -11,35 +11,36 @@
 //! 4.2  elements with e < 0 enter C
 //! ```
 //!
-//! z and t have mean zero over C, so directions carry no force. Where elements are held back, t is lowered until its sum is 0 again. Only the error
-//! of the forecast is truncated then; with a prescribed force p is scaled to carry the force again. With a prescribed approach p is
+//! z and t have mean zero over C, so directions carry no force. If elements are clipped, t is lowered until its sum is 0 again. Then only the error
+//! of the forecast is truncated. With a prescribed force p is scaled to carry the force again. With a prescribed approach p is
 //! scaled to the least energy after each step (module `energy`), or moves along the last change in time (module `along`), or along a deflation
 //! direction where few elements carry much of the force (module `uniform`).
 //!
-//! Why t is lowered: scaling p by one part in a hundred changes u by as much, and the depth of a spike may be a thousand times the roughness of all
-//! other elements. Held back and not lowered, directions carry force, which scaling takes from the spike: C goes and comes back for ever. Measured on
-//! planes of 128 x 128 with a spike: 10 to 12 iterations on the finest grid; without, 23, 745 or no end. On rough surfaces it saves one product of
-//! ten.
+//! Why t is lowered: scaling p by one percent changes u by one percent, and the depth of a spike may be a thousand times the roughness of all other
+//! elements. Clipped directions that are not lowered carry force. Scaling then takes this force from the spike, and C alternates for ever. Measured
+//! on planes of 128 x 128 with a spike: 10 to 12 iterations on the finest grid; without lowering 23, 745, or no convergence. On rough surfaces
+//! lowering saves one product in ten.
 //!
-//! Directions carry force only by approach, and there on a given C, after an element has reached its limit, or while p cannot be scaled (p = 0).
+//! Directions carry force only with a prescribed approach, in three cases: on a given C, after an element has reached its limit, or while p = 0
+//! cannot be scaled.
 //!
-//! Why: a residual that is uniform over C is the displacement of a flat punch on C, to which M does not come near in few products; p is nearer to its
-//! pressure. Measured, with directions that may carry force, and now (products to 1e-6, by approach): ellipse 16 11.5 and 8.5, 64 11 and 8, 512 4.9 and
-//! 4.3; rough surface 512 19.3 and 11.
+//! Why: a uniform residual over C is the displacement of a flat punch on C. M approximates the punch's pressure poorly, and p approximates it better.
+//! Measured products to 1e-6 with a prescribed approach, first with directions that carry force, then without: ellipse 16 x 16 11.5 and 8.5, 64 x 64
+//! 11 and 8, 512 x 512 4.9 and 4.3; rough surface 512 x 512 19.3 and 11.
 //!
 //! *Truncation without a product:* module `truncation`.
 //!
-//! *After a large truncation.* What is truncated adds to the pressures; from pressures that are far too large (a coarse grid's h is a
-//! mean, which sees full contact of white noise) all of C may go and come back in turn, for ever. Scaling stops that: measured on 66 scenes
-//! of white noise by approach, 19 were not solved without it, none with it.
+//! *After a large truncation.* Truncation increases the sum of p. Pressures may be far too large: a coarse grid's h is a mean, with which white noise
+//! is in full contact. Then all of C may leave and enter in turn, for ever. Scaling prevents that. Measured on 66 scenes of white noise with a
+//! prescribed approach: 19 failed without scaling, none with it.
 //!
-//! *The first step* after a prolongation needs no direction: where u is only near A p, [`Iteration::correct`] makes one step of
-//! a fixed length, truncates, and then computes u: one product for what would take three. A prediction from earlier solutions, whose u
-//! is A p, may be negative; it is truncated. Where the correction of that is large the first step has the length of the forecast: then its
-//! product includes all of it.
+//! *The first step* after a prolongation needs no conjugate direction. If u only approximates A p, [`Iteration::correct`] makes one step of
+//! a fixed length, truncates, and then computes u. This takes one product instead of three. A prediction from earlier solutions, whose u
+//! is A p, may be negative and is truncated. If the correction of this truncation is large, the first step has the length of the forecast.
+//! Then its product includes the whole correction.
 //!
-//! *Precision.* p and u are double. t, q and z may be single: their rounding errors are relative to the change that is made, not to
-//! p, so that directions of single precision lead to a solution of double precision.
+//! *Precision.* p and u are double. t, q and z may be single: their rounding errors are relative to the change of p, not to p.
+//! So directions in single precision lead to a solution in double precision.
 
 use super::search::{Search, FIRST_FORECAST};
 use super::step_sums::{Step, Update};
@@ -48,22 +49,23 @@ use crate::contact::{AdmissibleSet, NonNegative, State};
 use crate::operator::fft::Real;
 use crate::progress::Goal;
 
-/// A correction is deferred when it is at most this part of the step, both as sums of absolute pressures. Measured: between 0.02
-/// and 0.4 the number of products hardly depends on it.
+/// A correction is deferred if it is at most this fraction of the step, both as sums of absolute pressures. Measured: the number of
+/// products hardly varies for values from 0.02 to 0.4.
 pub(super) const DEFERRED: f64 = 0.1;
-/// The length of a first step that is not searched for: `2/(1 + 4)`, the best for all eigenvalues between 1 and 4.
+/// The length of a first step without a direction: `2/(1 + 4)`, the optimum for eigenvalues from 1 to 4.
 const FIRST_STEP: f64 = 0.4;
-/// A step is at most so many times as long as the forecast. Elements were held back for a step of that length: by a longer one far more would be
-/// truncated than it gains. Strips of two periods do not converge without.
+/// The longest step over the forecast one. Elements were clipped for the forecast length, and a longer step truncates far more than
+/// it gains. Strips of two periods do not converge without this bound.
 const LONGEST: f64 = 2.0;
-/// The rounding of directions leaves short waves in p that the residual hardly shows: residuals are not reduced by more than this
-/// many roundings without a fresh u.
+/// The rounding of directions leaves short waves in p that are hardly visible in the residual. So without a fresh u the residual is
+/// reduced to no less than this many roundings of its first value.
 const ROUNDINGS: f64 = 800.0;
-/// Iterations without a new least residual after which the contact area may be cycling: another method takes over. Measured: on 162
-/// scenes (ellipse, rough surface, wheel and rail, white noise) 20 and 40 are the same.
+/// Iterations without a new least residual after which another method takes over, because the contact area may cycle. Measured on 162
+/// scenes (ellipse, rough surface, wheel and rail, white noise): 20 and 40 give the same results.
 const PATIENCE: u32 = 20;
-/// The part of the least residual that a new one has to be after an element has reached its limit. Measured on random scenes with limits that took more
-/// than 120 products: half of them, for 1. On one rough surface of 256 x 256 iterations stand still for nine times and go on: no less patience.
+/// After an element has reached its limit, a new residual counts as progress only below this fraction of the least one. Measured on random scenes
+/// with limits that took more than 120 products with a fraction of 1: half as many products. PATIENCE stays as it is: on one rough surface of 256 x
+/// 256 elements nine iterations bring no progress and later ones do.
 const PROGRESS_AT_LIMITS: f64 = 0.7;
 /// The measures of one iteration.
 #[derive(Clone, Copy, Debug)]
@@ -72,31 +74,31 @@ pub struct Cycle {
     pub changes: u64,
     /// rms over C of the change of p.
     pub update: f64,
-    /// rms over C of p before it.
+    /// rms over C of p before the iteration.
     pub pressure: f64,
-    /// Relative residual over C after it.
+    /// Relative residual over C after the iteration.
     pub residual: f64,
-    /// Products it took.
+    /// Products in the iteration.
     pub products: u64,
 }
 
 /// How the iteration on one grid ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// The criterion holds, as far as the recursively updated u tells.
+    /// The criterion holds with the recursively updated u.
     Met,
     /// The iterations allowed are used up.
     Limit,
     /// The caller cancelled.
     Cancelled,
-    /// The search direction is no longer one: round-off, or an operator that is not positive definite.
+    /// `(t, q) <= 0`, by round-off or because the operator is not positive definite.
     Breakdown,
-    /// Nothing is gained any more.
+    /// There is no progress any more.
     Stagnated,
 }
 
 impl<T: Real> Iteration<T> {
-    /// One step of a fixed length from a u that is near A p, with 4.2 before and 4.1 after it. Then u is no longer near A p.
+    /// One step of a fixed length from a u that approximates A p, with 4.2 before and 4.1 after it. Afterwards u does not approximate A p.
     pub fn correct<S: AdmissibleSet>(&mut self, state: &mut State, set: S) {
         self.deflation.forget();
         if self.preconditioner.is_some() {
@@ -122,7 +124,7 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// Iterates from a state whose u is A p; p may be negative. `after_cycle` is told of every iteration and says whether to go on.
+    /// Iterates from a state whose u is A p; p may be negative. `after_cycle` receives each iteration and returns whether to continue.
     pub fn run<S: AdmissibleSet>(
         &mut self,
         state: &mut State,
@@ -180,7 +182,7 @@ impl<T: Real> Iteration<T> {
         } else if S::LIMITED {
             update.factor = self.carry_beside_limits(state).unwrap_or(1.0);
         }
-        // The truncation of a prediction is corrected before its residual is looked at.
+        // The truncation of a prediction is corrected before its residual is used.
         let products = u64::from(self.deflation.is_there() && self.truncation.sum() > 0.0);
         if products > 0 {
             self.correct_now();
@@ -194,11 +196,11 @@ impl<T: Real> Iteration<T> {
         let products = products + self.deflate::<S>(state, is_mean_free) + self.restrict_deflation(state);
         self.step_along_deflation(state);
         let first = if self.truncation.sum() > 0.0 { FIRST_STEP } else { FIRST_FORECAST };
-        // Without a preconditioner the first forecast is missing.
+        // Without a preconditioner there is no first forecast.
         Search { products, ..Search::new(self.preconditioner.as_ref().map(|_| first)) }
     }
 
-    /// One iteration, r being what z holds; none where there is no direction.
+    /// One iteration, with r in z. None if there is no direction.
     fn iterate<S: AdmissibleSet>(&mut self, state: &mut State, set: S, search: &mut Search) -> Option<Cycle> {
         // z = M r, t = max(z + beta t, -p/alpha'), and the deferred correction
         self.precondition(state);
@@ -260,7 +262,7 @@ impl<T: Real> Iteration<T> {
         })
     }
 
-    /// alpha; that of the forecast where its product includes a large correction: at first, and where elements are at their limit.
+    /// alpha. It is the forecast if the product includes a large correction: in the first step, and while elements are at their limit.
     fn step_length(&self, step: &Step, search: &mut Search, limited: bool) -> f64 {
         let alpha = step.rt / step.tq;
         search.tq = step.tq;

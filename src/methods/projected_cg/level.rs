@@ -18,11 +18,11 @@ use crate::threads::Threads;
 struct Windowed {
     window: Rectangle,
     inner: Inner,
-    /// Of the last iteration.
+    /// The units of the last iteration.
     units: Scaling,
     /// The window's part of the state; none when the window is the whole grid, in the scene's own units.
     part: Option<State>,
-    /// Whether it is of the coefficients that there are now.
+    /// Whether the iteration has the present coefficients.
     is_current: bool,
 }
 
@@ -34,14 +34,14 @@ pub struct Level {
     threads: Threads,
     /// None before the first iteration.
     windowed: Option<Windowed>,
-    /// Of the window's pressures, in its units, while a scene has limits.
+    /// The limits of the window's pressures, in its units, if a scene has limits.
     limits: Vec<f64>,
-    /// The window that the next one is to be like, if it serves; none: it is chosen by itself.
+    /// The window to reuse if it fits; none: the next window depends on the state only.
     current: Option<Rectangle>,
 }
 
 impl Level {
-    /// Nothing is set up before it is needed.
+    /// A level without operators, which are set up when needed.
     pub fn new(grid: Grid, influence: Coefficients, precision: Precision, threads: &Threads) -> Level {
         Level {
             grid,
@@ -59,7 +59,7 @@ impl Level {
         self.window(state).is_full(&self.grid)
     }
 
-    /// Takes other coefficients on the same grid. What the window holds is kept for them, and follows when it is needed.
+    /// Takes other coefficients on the same grid. The window's operators are kept, and updated when needed.
     pub fn renew(&mut self, influence: Coefficients) {
         self.influence = influence;
         if let Some(windowed) = &mut self.windowed {
@@ -72,7 +72,7 @@ impl Level {
         self.influence.self_influence()
     }
 
-    /// The threads of its passes.
+    /// The threads of the passes.
     pub fn threads(&self) -> &Threads {
         &self.threads
     }
@@ -82,12 +82,12 @@ impl Level {
         &self.influence
     }
 
-    /// Whether it is a line in plane strain on which a uniform pressure displaces nothing.
+    /// Whether the grid is a line in plane strain on which a uniform pressure displaces nothing.
     pub(super) fn is_mean_free_line(&self) -> bool {
         self.influence.is_mean_free() && Punches::serve(&self.influence, &self.grid)
     }
 
-    /// The next window is chosen by itself, so that a result does not depend, in the last bits, on the solve before.
+    /// Forgets the window, so that the bits of the next result do not depend on the solve before.
     pub fn forget_window(&mut self) {
         self.current = None;
     }
@@ -97,7 +97,7 @@ impl Level {
         self.current.clone()
     }
 
-    /// The next window is chosen as after an iteration on this one.
+    /// Makes `window` the last window.
     pub fn go_back_to(&mut self, window: Option<Rectangle>) {
         self.current = window;
     }
@@ -108,8 +108,8 @@ impl Level {
         self.influence.bytes() + self.windowed.as_ref().map_or(0, windowed)
     }
 
-    /// Works on the part of `state` in the window around the contact area; takes p, C and the approach from there. `whole`: the
-    /// operator of the whole grid, where there is one.
+    /// Works on the part of `state` in the window around the contact area, then copies p, C and the approach back. `whole`: the operator of the whole
+    /// grid, if there is one.
     pub(super) fn on_window<S: AdmissibleSet, R>(
         &mut self,
         (state, set): (&mut State, S),
@@ -144,20 +144,20 @@ impl Level {
         Ok(result)
     }
 
-    /// The window's part of the state is not needed for a while.
+    /// Frees the window's part of the state until it is needed.
     pub fn rest(&mut self) {
         let part = self.windowed.as_mut().and_then(|windowed| windowed.part.as_mut());
         part.into_iter().for_each(State::rest);
     }
 
-    /// The u of the last iteration, for what follows on other grids; infinite outside the window.
+    /// Copies the u of the last iteration, for other grids; infinite outside the window.
     pub fn take_displacements(&self, state: &mut State) {
         if let Some(Windowed { window, part: Some(part), .. }) = &self.windowed {
             window.insert(&self.grid, &part.u, &mut state.u, f64::INFINITY, &self.threads);
         }
     }
 
-    /// The window that an iteration from `state` works on.
+    /// The window of an iteration from `state`.
     pub fn window(&self, state: &State) -> Rectangle {
         match self.influence.depends_on_place() {
             false => window::around(state, self.current.as_ref(), self.influence.is_even(&self.grid), &self.threads),

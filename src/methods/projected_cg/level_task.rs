@@ -1,4 +1,4 @@
-//! A state on one grid, with everything that its iteration takes.
+//! A state on one grid, with the inputs of its iteration.
 
 use super::deflation::Last;
 use super::inner::{in_either, Inner};
@@ -9,21 +9,21 @@ use crate::error::Result;
 use crate::operator::Operator;
 use crate::progress::{Goal, Monitor};
 
-/// A state on one grid, with everything that its iteration takes but the goal.
+/// A state on one grid, with the inputs of its iteration except the goal.
 pub(super) struct LevelTask<'a, 'm, S> {
     pub(super) level: &'a mut Level,
     pub(super) state: &'a mut State,
     pub(super) set: S,
-    /// The operator of the whole grid in double precision, where the problem has one.
+    /// The operator of the whole grid in double precision, if the problem has one.
     pub(super) whole: Option<&'a Operator<f64>>,
-    /// Elements of the finest grid: products count as parts of one there.
+    /// Elements of the finest grid, for the work of products.
     pub(super) finest: usize,
     pub(super) monitor: &'a mut Monitor<'m>,
 }
 
 impl<S: AdmissibleSet> LevelTask<'_, '_, S> {
-    /// Iterates on the window around the contact area, from displacements of this freshness; `last`: the solution before, in time. Outside the window
-    /// u is not known afterwards.
+    /// Iterates on the window around the contact area, from displacements of this freshness; `last`: the solution before in time. Outside the window
+    /// u is unknown afterwards.
     pub(super) fn run(&mut self, mut displacement: Freshness, last: Option<Last<'_>>, goal: &Goal) -> Result<End> {
         let LevelTask { level, state, set, whole, finest, monitor } = self;
         if displacement != Freshness::Exact {
@@ -53,7 +53,7 @@ impl<S: AdmissibleSet> LevelTask<'_, '_, S> {
         })?
     }
 
-    /// Improves p where u is near A p and known in all of the contact area, without a product; u is not known afterwards.
+    /// Improves p without a product, if u is near A p and known in all of the contact area; u is unknown afterwards.
     pub(super) fn correct(&mut self) -> Result<()> {
         let LevelTask { level, state, set, whole, .. } = self;
         state.carry_force(*set, level.threads());

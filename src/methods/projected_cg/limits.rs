@@ -1,24 +1,21 @@
 //! Limits of the pressures, `0 <= p <= p_max`.
 //!
-//! The limit is a second bound: elements are held back and truncated at both, and what was truncated at its limit enters C again where
-//! e > 0. With a prescribed force pressures at their limit cannot be scaled up. What is missing of the force,
+//! The limit is a second bound: steps are clipped and pressures truncated at both, and elements truncated at their limit enter C again if e > 0. With
+//! a prescribed force pressures at their limit cannot be scaled up. The missing force,
 //!
 //! ```text
 //! m = force/(dx dy) - sum of p,
 //! ```
 //!
-//! the next direction restores, evenly over C: sum of t = m/alpha'. And the approach moves on by what an approach in proportion to the
-//! force would: by m/(sum of p) of (p, approach - h)/(sum of p). Without that, a thin C between what is at its limit and the exterior
-//! area stays where it is while all that is missing goes through it. Where far too much is carried, all of p is scaled down, which
-//! no limit forbids, and what was at its limit enters C.
+//! is restored by the next direction, evenly over C: sum of t = m/alpha'. The approach moves as if in proportion to the force, by m/(sum of p) of
+//! (p, approach - h)/(sum of p). Otherwise a thin C between elements at their limit and the exterior area would stay in place while it carries all of
+//! m. If the force is exceeded by far, all of p is scaled down, which no limit forbids, and elements at their limit enter C.
 //!
-//! Elements that are held back go to their limit and, where that was not the answer, enter C again. While the residual on C is far above
-//! their e, they wait: directions stay conjugate, and C settles first ("proportioning", Dostal, *Optimal Quadratic Programming
-//! Algorithms* (2009), section 5.8).
+//! Clipped elements go to their limit and enter C again if that was wrong. While the residual on C is far above their e, they wait: directions stay
+//! conjugate, and C converges first ("proportioning", Dostal, *Optimal Quadratic Programming Algorithms* (2009), section 5.8).
 //!
-//! By approach no scaling keeps C from going and coming back. Instead the step is shortened to the least energy wherever a product has
-//! just corrected all of u: both ends of it are known exactly then. The next product includes a large deferred correction whole, by a step of the length of the
-//! forecast.
+//! By approach no scaling prevents C from oscillating. Instead the step is shortened to the least energy whenever a product has just corrected all of
+//! u, as both ends of the step are then exact. The next product includes a large deferred correction as a whole, by a step of the forecast length.
 
 use super::formulas::Carried;
 use super::formulas::HELD_BACK;
@@ -36,12 +33,12 @@ use crate::scene::Load;
 /// and 7.3, 4.2, 3.3, 3.3, 3.3 in the worst of 48.
 const WAITS: f64 = 0.4;
 
-/// Too much force by this part is scaled away. Measured on 36 scenes (ellipse and rough surface of 64 to 256, limits of 0.3 to 0.9 of
+/// Relative excess of force above which p is scaled down. Measured on 36 scenes (ellipse and rough surface of 64 to 256, limits of 0.3 to 0.9 of
 /// the greatest pressure): without, the work is 1.16 times as much in the mean and 2.2 times in the worst.
 const TOO_MUCH: f64 = 0.05;
 
 impl Beyond {
-    /// Nothing is known of an iteration before.
+    /// Forgets the iteration before.
     pub(super) fn forget(&mut self) {
         (self.missing, self.shift, self.residual, self.went_back) = (0.0, 0.0, 0.0, false);
     }
@@ -55,13 +52,13 @@ impl Beyond {
 }
 
 impl<T: Real> Iteration<T> {
-    /// Memory that a scene with limits needs beyond that of one without.
+    /// Makes the additional memory of a scene with limits.
     pub fn reserve_for_limits(&mut self) -> Result<()> {
         Ok(reserve(&mut self.limits.known, self.t.len(), "pressures with a limit")?)
     }
 
-    /// Where elements are at their limit: carries the force as far as p and the deferred corrections can be scaled, and notes what is missing. Returns
-    /// the factor of the scaling; none where no element is at its limit.
+    /// With elements at their limit: scales p and the deferred corrections to carry the force as far as possible, and stores the missing force.
+    /// Returns the factor of the scaling; none if no element is at its limit.
     pub(super) fn carry_beside_limits(&mut self, state: &mut State) -> Option<f64> {
         (self.limits.missing, self.limits.shift) = (0.0, 0.0);
         let Load::Force(force) = state.load else { return None };
@@ -83,14 +80,14 @@ impl<T: Real> Iteration<T> {
         let loaded = state.p.iter().zip(&state.h).filter(|(p, _)| **p > 0.0);
         let depth = loaded.map(|(p, h)| p * (state.approach - h)).sum::<f64>() / carried;
         self.limits.missing = pressures - carried;
-        // An approach that is twice as deep is far enough for one step.
+        // One step at most doubles the depth.
         let shift = (self.limits.missing / carried).min(1.0) * depth;
         self.limits.shift = if shift.is_finite() { shift } else { 0.0 };
         Some(1.0)
     }
 
-    /// Scales p, and the deferred corrections with it, to carry the prescribed force; returns the factor, with which u is to be scaled. On a given
-    /// area a force that is next to nothing is no measure of p: directions keep it, but for round-off, which the next certificate finds.
+    /// Scales p and the deferred corrections to carry the prescribed force. Returns the factor, with which u is to be scaled. On a given area a
+    /// negligible force is no measure of p: directions keep it up to round-off, which the next certificate finds.
     pub(super) fn carry_force<S: AdmissibleSet>(&mut self, state: &mut State) -> f64 {
         let Load::Force(force) = state.load else { return 1.0 };
         if S::FIXED && state.is_cancelled(&self.threads) {
@@ -116,7 +113,7 @@ impl<T: Real> Iteration<T> {
         factor
     }
 
-    /// Elements that the forecast step would take beyond their limit are held back at it.
+    /// Clips the step of elements that the forecast step would take beyond their limit.
     pub(super) fn hold_at_limit<S: AdmissibleSet>(&mut self, state: &State, set: S, forecast: f64) {
         let [] = self.segments.sum_changing(&state.contact, &mut self.t, |block, t| {
             for (elements, local) in block.segments() {
@@ -133,7 +130,7 @@ impl<T: Real> Iteration<T> {
         });
     }
 
-    /// Whether this step takes an element to its limit, or nearly.
+    /// Whether this step brings an element to its limit or close to it.
     pub(super) fn reaches_limit<S: AdmissibleSet>(
         &mut self,
         state: &State,
@@ -154,7 +151,7 @@ impl<T: Real> Iteration<T> {
         reached > 0.0
     }
 
-    /// With a limit: keeps the pressures that u knows of.
+    /// With a limit: keeps the pressures that u belongs to.
     pub(super) fn remember(&mut self, state: &State) {
         self.limits.known.clear();
         self.limits.known.extend_from_slice(&state.p);
@@ -163,8 +160,8 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// With a limit, where a product has just corrected all of u: goes back along the change d of the pressures that u learns of, to the
-    /// least energy between, `s = -(d, e)/(d, A d)` of it. Elements that left for a bound return to C.
+    /// With a limit, after a product that corrected all of u: goes back along the change d of the pressures to the least energy, the part
+    /// `s = -(d, e)/(d, A d)` of d. Elements that left for a bound return to C.
     pub(super) fn step_back<S: AdmissibleSet>(&mut self, state: &mut State, set: S, update: &mut Update) {
         debug_assert!(update.gamma == 0.0, "with limits nothing is predicted");
         let (mut work, mut energy) = (0.0, 0.0);
@@ -176,7 +173,7 @@ impl<T: Real> Iteration<T> {
             }
         }
         let s = work / energy;
-        // By force the change has a mean, whose energy is not known before p is scaled: going back each time goes round in circles.
+        // By force the change has a mean, whose energy is unknown before p is scaled: going back each time would cycle.
         let not_again = std::mem::take(&mut self.limits.went_back) && matches!(state.load, Load::Force(_));
         if !(s > 0.0 && s < 1.0) || not_again {
             return;

@@ -1,15 +1,16 @@
 //! Lines in plane strain with two periods, by approach: the mean gap of a force.
 //!
-//! The mean of u is 0, so `mean of h - approach` is the mean gap. Near full contact it falls to nothing while the force goes on to grow. Its logarithm m falls in
-//! proportion to the force where contact is more than some percent of a rough line: on lines of 9600 elements the slope changes by a tenth from .35 to .99
-//! of contact. So secants and extrapolations use m.
+//! The mean of u is 0, so `mean of h - approach` is the mean gap. Near full contact it tends to 0 while the force grows. Its logarithm m falls
+//! linearly with the force if contact covers more than some percent of a rough line: on lines of 9600 elements the slope changes by a tenth from
+//! .35 to .99 of contact. So secants and extrapolations use m.
 
-/// The first change of the force: ln F changes by as much as m does. Where m is no logarithm: as much as the approach is off, relative, in this range.
+/// Range of the first relative change of the force if m is no logarithm: it is the relative error of the approach. Otherwise ln F changes by the
+/// change of m.
 const FIRST: (f64, f64) = (1e-3, 0.03);
-/// A mean gap below this part of the wanted one is none: contact is full, or the solution loose.
+/// A mean gap below this part of the wanted one counts as 0: contact is full, or the solution loose.
 const LEAST_GAP: f64 = 0.1;
 
-/// What is wanted, and what the last force has.
+/// The wanted approach, and the results of the last force.
 pub(super) struct Found {
     pub(super) wanted: f64,
     pub(super) force: f64,
@@ -22,27 +23,27 @@ pub(super) struct Found {
 }
 
 impl Found {
-    /// m of an approach; the negative approach where there is no mean gap.
+    /// m of an approach; the negative approach if there is no mean gap.
     pub(super) fn m(&self, approach: f64) -> f64 {
         self.mean.map_or(-approach, |mean| (mean - approach).max(LEAST_GAP * (mean - self.wanted)).ln())
     }
 
-    /// Whether contact is full, as far as a loose solution tells.
+    /// Whether contact is full, or seems so in a loose solution.
     pub(super) fn is_full(&self) -> bool {
         self.mean.is_some_and(|mean| mean - self.approach <= LEAST_GAP * (mean - self.wanted))
     }
 
-    /// Whether it is full and its residual larger than the gap that is wanted.
+    /// Whether the residual exceeds the wanted gap, so that full contact may be due to it.
     pub(super) fn may_be_loose(&self) -> bool {
         self.is_full() && self.mean.is_some_and(|mean| self.residual * self.size > mean - self.wanted)
     }
 
-    /// How far the approach is off, relative.
+    /// The relative error of the approach.
     pub(super) fn off(&self) -> f64 {
         (self.wanted - self.approach).abs() / self.size
     }
 
-    /// The force without another one before.
+    /// The next force after the first one.
     pub(super) fn first_change(&self) -> f64 {
         let change = self.m(self.approach) - self.m(self.wanted);
         match self.mean {

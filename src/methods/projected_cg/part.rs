@@ -1,4 +1,4 @@
-//! The window's part of a state: how the iteration gets it, in units of its own, and gives it back.
+//! The window's part of a state: its copy to the iteration, in the iteration's units, and back.
 
 use super::scaling::Scaling;
 use crate::contact::{AdmissibleSet, Freshness, State};
@@ -8,7 +8,7 @@ use crate::operator::reserve;
 use crate::rectangle::Rectangle;
 use crate::threads::Threads;
 
-/// `part` becomes the window's part of a state, in the iteration's units. One array after the other: what has been extracted rests.
+/// Copies the window's part of a state to `part`, in the iteration's units. Memory of each array is freed after its copy.
 pub(super) fn enter<S: AdmissibleSet>(
     (window, units): (&Rectangle, &Scaling),
     state: &mut State,
@@ -49,7 +49,7 @@ pub(super) fn enter<S: AdmissibleSet>(
     Ok(())
 }
 
-/// The state takes p, C and the approach from the window's part of it.
+/// Copies p, C and the approach from the window's part back to the state.
 pub(super) fn leave<S: AdmissibleSet>(
     (window, units): (&Rectangle, &Scaling),
     part: &mut State,

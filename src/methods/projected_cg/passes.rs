@@ -1,4 +1,4 @@
-//! The passes over the contact area, each over its segments; what they compute is in `formulas`.
+//! The passes over the segments of the contact area; their formulas are in `formulas`.
 
 use super::formulas::{Conjugate, Direction, Distance, Free, Lowered, Residual, Scale, StepSums};
 use super::step_sums::{Energy, Step, Update};
@@ -7,24 +7,24 @@ use crate::contact::State;
 use crate::operator::fft::Real;
 use crate::scene::Load;
 
-/// A direction without force has at most this part of the sum of |t|.
+/// Largest force of a direction without force, relative to the sum of |t|.
 const SMALL_FORCE: f64 = 1e-2;
-/// Steps of Newton's method at most.
+/// Most Newton steps.
 const LOWERINGS: u32 = 8;
 
-/// No array of the iteration's precision.
+/// No arrays of the iteration's precision.
 pub(super) const fn none<'a, T>() -> [&'a [T]; 0] {
     []
 }
 
 impl<T: Real> Iteration<T> {
-    /// The segments of a contact area of which nothing is known.
+    /// Finds the segments of a contact area from scratch.
     pub(super) fn find_contact(&mut self, state: &State) {
         self.segments.change_all();
         self.segments.find(&state.contact);
     }
 
-    /// With a prescribed force, where there is no deflation direction: the approach is the mean over C of h + u, u as `update` will leave it.
+    /// With a prescribed force and no deflation direction: sets the approach to the mean over C of h + u, u being that after `update`.
     pub(super) fn fit_approach(&mut self, state: &mut State, update: &Update) {
         if matches!(state.load, Load::Approach(_)) {
             return;
@@ -64,12 +64,12 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// Whether directions need not carry force: p is scaled to it, or to the least energy, or moves along the deflation direction.
+    /// Whether directions need no force: p is scaled to the force or to the least energy, or moves along the deflation direction.
     fn is_without_force(&self, state: &State) -> bool {
         matches!(state.load, Load::Force(_)) || self.deflation.is_there() || self.is_scaled
     }
 
-    /// z = E^T M E r, r being what z holds (module [`extension`](crate::methods::extension)).
+    /// z = E^T M E z (module [`extension`](crate::methods::extension)).
     pub(super) fn precondition(&mut self, state: &State) {
         let without_force = self.is_without_force(state);
         self.count_near(state);
@@ -78,7 +78,7 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// For the preconditioner: counts elements of C and finds its pieces where C has changed.
+    /// Updates the preconditioner after a change of C: counts its elements and finds its pieces.
     pub(super) fn count_near(&mut self, state: &State) {
         let Some(preconditioner) = &mut self.preconditioner else { return };
         let (segments, before) = (&self.segments, self.counted.replace(self.segments.version()));
@@ -92,8 +92,8 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// t = z + beta t on C, 0 outside; of mean zero over C, but for what is missing, where it need not carry force; held back by the forecast,
-    /// if there is one, at p = 0. `tq` is (t, q) of the last direction, 0 if there is none.
+    /// t = z + beta t on C, 0 outside. Without force, t has mean zero over C, plus the missing force. With a forecast, steps are clipped at p = 0.
+    /// `tq` is (t, q) of the last direction, 0 if there is none.
     pub(super) fn direct(&mut self, state: &State, tq: f64, forecast: Option<f64>) {
         let without_force = self.is_without_force(state);
         let missing = self.limits.missing / forecast.unwrap_or(1.0);
@@ -113,8 +113,8 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// Lowers t where it is not held back until its sum over C is `missing`: elements that are held back would add to the force. The sum falls
-    /// with the shift, convex: Newton's method comes from one side.
+    /// Lowers t where it is not clipped until its sum over C is `missing`, as clipped elements would add to the force. The sum is a convex function
+    /// of the shift: Newton's method converges from one side.
     fn remove_force(&mut self, state: &State, missing: f64, forecast: f64) {
         for _ in 0..LOWERINGS {
             let (t, formula) = (&self.t[..], Free { forecast });
@@ -140,7 +140,7 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// The mean over C that is taken from z + beta t, and beta. Directions without force have the sum `missing`; others may have any.
+    /// The mean over C to subtract from z + beta t, and beta. Directions without force have the sum `missing`, others any sum.
     fn conjugate(&mut self, state: &State, missing: Option<f64>, tq: f64) -> (f64, f64) {
         if missing.is_none() && tq <= 0.0 {
             return (0.0, 0.0);
@@ -157,7 +157,7 @@ impl<T: Real> Iteration<T> {
         (missing.map_or(0.0, |missing| (z1 + beta * t1 - missing) / count), beta)
     }
 
-    /// The sums over C that the step length needs, and those of the energy where p is scaled.
+    /// The sums over C for the step length, and those of the energy if p is scaled.
     pub(super) fn step(&mut self, state: &State) -> Step {
         if self.deflation.is_there() {
             return self.step_beside_deflation(state);

@@ -1,11 +1,11 @@
-//! The preconditioner: the inverse of a circulant near A; where A has a diagonal of its own, a mix of several.
+//! The preconditioner: the inverse of a circulant near A. If A contains the diagonal of a layer, it is a mix of several inverses.
 //!
 //! ```text
 //! M = sum over levels c_l of W_l (A + c_l)^-1 W_l
 //! ```
 //!
-//! W_l, diagonal, picks the elements whose compliance is near c_l (see [`Layer::levels`](crate::influence::Layer::levels)), so that
-//! M is symmetric and positive definite. It is applied as E^T M E (module [`extension`](crate::methods::extension)), with an E for each level.
+//! The diagonal matrix W_l selects the elements whose compliance is near c_l (see [`Layer::levels`](crate::influence::Layer::levels)), so that M is
+//! symmetric and positive definite. It is applied as E^T M E (module [`extension`](crate::methods::extension)), with a separate E for each level.
 
 use super::punches::Punches;
 use crate::error::Result;
@@ -17,29 +17,29 @@ use crate::operator::fft::Real;
 use crate::operator::{zeros, Operator, Workspace};
 use crate::threads::Threads;
 
-/// One circulant, and its weights; none: 1.
+/// One circulant and its weights. Without weights they are 1.
 struct Part<T: Real> {
     inverse: Operator<T>,
     weights: Vec<T>,
-    /// An element's influence on itself, relative to that without a layer.
+    /// An element's coefficient on itself, relative to that without a layer.
     compliance: f64,
 }
 
 /// M, and the memory that a mix needs.
 pub struct Preconditioner<T: Real> {
     parts: Vec<Part<T>>,
-    /// Of a mix: r, a term of the sum, and M 1.
+    /// For a mix: r, a term of the sum, and M 1.
     right: Vec<T>,
     term: Vec<T>,
     unit: Vec<T>,
-    /// Of a line in plane strain.
+    /// The flat punches of a line in plane strain.
     punches: Option<Punches>,
-    /// Whether they are in use.
+    /// Whether the punches are in use.
     has_punches: bool,
 }
 
 impl<T: Real> Preconditioner<T> {
-    /// Of an operator, the coefficients of which are taken times `factor`; none if the circulant is not positive.
+    /// The preconditioner of an operator whose coefficients are multiplied by `factor`. None if the circulant is not positive.
     pub fn new(
         influence: &Coefficients,
         factor: f64,
@@ -68,35 +68,36 @@ impl<T: Real> Preconditioner<T> {
         }))
     }
 
-    /// An operator, the workspace of which products by M need.
+    /// An operator that determines the workspace of products by M.
     pub fn inverse(&self) -> &Operator<T> {
         &self.parts[0].inverse
     }
 
-    /// Whether it moves the pieces of C as flat punches.
+    /// Whether it treats the components of C as flat punches.
     pub(super) fn has_punches(&self) -> bool {
         self.has_punches
     }
 
-    /// Moves the pieces of C as flat punches, on a line in plane strain; not by approach where a punch may displace nothing. Returns whether that is new.
+    /// Treats the components of C as flat punches from now on, for a line in plane strain. With a prescribed approach it does not if a punch may
+    /// displace nothing. Returns whether this is a change.
     pub(super) fn use_punches(&mut self, by_approach: bool) -> bool {
         let serves = |punches: &Punches| !(by_approach && punches.is_mean_free());
         let before = std::mem::replace(&mut self.has_punches, self.punches.as_ref().is_some_and(serves));
         before != self.has_punches
     }
 
-    /// Of a line in plane strain: the pieces of another C.
+    /// For a line in plane strain: finds the components of a new C.
     pub(super) fn find_pieces(&mut self, contact: &[bool]) {
         self.punches.iter_mut().filter(|_| self.has_punches).for_each(|punches| punches.find(contact));
     }
 
-    /// Of a line in plane strain: d becomes the pressure of a flat punch on the C that was found last, of mean 1 there.
+    /// For a line in plane strain: sets d to the pressure of a flat punch on the last C, with mean 1 there.
     pub(super) fn press_flat(&mut self, d: &mut [T]) {
         self.punches.iter_mut().for_each(|punches| punches.press_flat(d));
     }
 
-    /// z = E^T M E z, z being zero outside C. For directions without force: a mix is no multiple of 1 on a uniform
-    /// residual, so that the residual's constant (with a prescribed force, the approach) is chosen such that z has mean zero:
+    /// z = E^T M E z, z being zero outside C. Directions carry no force. A mix maps a uniform residual to a field that is not
+    /// uniform. So the residual's constant (with a prescribed force, the approach) is chosen such that z has mean zero:
     /// `z = M z - (1, M z)/(1, M 1) M 1`.
     pub fn apply(
         &mut self,
@@ -129,7 +130,7 @@ impl<T: Real> Preconditioner<T> {
         z.iter_mut().zip(&*unit).for_each(|(z, unit)| *z = *z - amount * *unit);
     }
 
-    /// z = M z, without residuals beside C.
+    /// z = M z, without an extension of residuals beyond C.
     pub fn apply_alone(&mut self, z: &mut [T], workspace: &mut Workspace<T>) {
         let Preconditioner { parts, right, term, .. } = self;
         match &parts[..] {
@@ -145,7 +146,7 @@ impl<T: Real> Preconditioner<T> {
     }
 }
 
-/// z = M z of a mix, the terms of which are extended each for itself.
+/// z = M z for a mix. Each term has its own extension.
 fn mix<T: Real>(
     parts: &[Part<T>],
     z: &mut [T],
@@ -166,7 +167,7 @@ fn mix<T: Real>(
     }
 }
 
-/// z = E^T M E z; z = M z where there is no extension.
+/// z = E^T M E z. Without an extension z = M z.
 fn extended<T: Real>(
     extension: &mut Option<Extension<T, 1>>,
     z: &mut Vec<T>,

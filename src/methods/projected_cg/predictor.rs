@@ -1,9 +1,9 @@
-//! Time stepping: where to start from, given the last two solutions.
+//! Time stepping: the start from the last two solutions.
 //!
-//! With p_1 the last solution and p_0 the one before it, the start is `p_1 + s_1 p_1 + s_2 d`: what grows or shrinks with the load, and
-//! d, the change of the last step, for bodies go on rolling as they rolled. The s are those of the least energy
-//! `(p, A p)/2 + (p, h - approach)` (Fischer 1998 projects on earlier solutions so); as all u are known, they cost no product.
-//! With a prescribed force s_1 follows from the force, and d carries none.
+//! With p_1 the last solution and p_0 the one before it, the start is `p_1 + s_1 p_1 + s_2 d`. The first correction follows a change of
+//! load, the second the motion: d = p_1 - p_0 is the change of the last step. s_1 and s_2 minimise the energy
+//! `(p, A p)/2 + (p, h - approach)` (a projection on earlier solutions, Fischer 1998); as all u are known, they cost no product.
+//! With a prescribed force s_1 follows from the force, and d has the sum 0.
 
 use std::mem::{swap, take};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,7 +18,7 @@ use crate::scene::Load;
 use crate::sums::Sums;
 use crate::threads::Threads;
 
-/// A change whose energy is this part of its own without what is of p is that of rounding.
+/// If d less its part along p has at most this part of the energy of d, it is round-off.
 const NOISE: f64 = 1e-9;
 
 /// The solution before the last; empty before there is one.
@@ -26,7 +26,7 @@ const NOISE: f64 = 1e-9;
 pub struct Predictor {
     p: Vec<f64>,
     u: Vec<f64>,
-    /// Whether u is of other coefficients than those of now.
+    /// Whether u belongs to earlier coefficients.
     is_of_others: bool,
 }
 
@@ -36,7 +36,7 @@ impl Predictor {
         (self.p.len() + self.u.len()) * size_of::<f64>()
     }
 
-    /// A copy.
+    /// Copies it; memory is fallible.
     pub fn copy(&self) -> Result<Predictor> {
         let copy = |values: &[f64]| -> Result<Vec<f64>> {
             let mut copy = zeros(values.len(), "the solution before")?;
@@ -46,7 +46,7 @@ impl Predictor {
         Ok(Predictor { p: copy(&self.p)?, u: copy(&self.u)?, is_of_others: self.is_of_others })
     }
 
-    /// The coefficients are others from now on: u is near A p.
+    /// Notes a change of coefficients: u is only near A p.
     pub fn forget_coefficients(&mut self) {
         self.is_of_others = true;
     }
@@ -56,8 +56,8 @@ impl Predictor {
         Last { p: &self.p, u: Some(&self.u) }
     }
 
-    /// Moves `state` from the last solution (its u is A p) on, and keeps that. Returns what u is then, in the window that `window`
-    /// chooses for it; elsewhere u is not known. p may be negative: the iteration truncates it and corrects u.
+    /// Extrapolates `state` from the last solution, whose u is A p, and keeps the last solution. Returns the freshness of u in the window
+    /// that `window` chooses; elsewhere u is unknown. p may be negative: the iteration truncates it and corrects u.
     pub fn predict(
         &mut self,
         state: &mut State,
@@ -67,13 +67,13 @@ impl Predictor {
         let is_of_others = take(&mut self.is_of_others);
         let n = state.p.len();
         if self.p.is_empty() {
-            // A change of nothing.
+            // The change d is 0.
             (self.p, self.u) = (zeros(n, "the solution before")?, zeros(n, "the solution before")?);
             self.p.copy_from_slice(&state.p);
             self.u.copy_from_slice(&state.u);
         }
         let (now, before) = self.shares(state);
-        // The last solution is kept where the one before it was, and the state moves on from that.
+        // The last solution replaces the one before it, which the state's memory now holds.
         swap(&mut self.p, &mut state.p);
         swap(&mut self.u, &mut state.u);
         let (last_p, last_u, mx) = (&self.p[..], &self.u[..], state.grid.mx);
@@ -126,7 +126,7 @@ impl Predictor {
         if !(scale.is_finite() && scale > 0.0) {
             scale = 1.0;
         }
-        // d - share p, conjugate to p, or without a force of its own
+        // d - share p, conjugate to p, or of sum 0 with a prescribed force
         let work = share * pe - de;
         let energy = dv - share * (2.0 * du - share * pu);
         let step = work / energy;
@@ -138,7 +138,7 @@ impl Predictor {
     }
 }
 
-/// C is where p is not 0; what presses where there is no surface does not any more. Returns whether anything did.
+/// Takes the elements with p other than 0 as C. Sets p to 0 where there is no surface. Returns whether any p was set.
 #[inline(always)]
 fn touch(p: &mut [f64], h: &[f64], contact: &mut [bool]) -> bool {
     let mut none = false;

@@ -1,19 +1,19 @@
 //! Lines in plane strain: the preconditioner's part for the forces of the pieces of C.
 //!
-//! M takes the residual as 0 outside C. For a residual that is uniform over many pieces of C this is far from the truth: its energy grows with the number of
-//! pieces, and conjugate gradients take some 100 iterations. In plane strain the force of a piece displaces all others, so that such residuals matter.
-//! Here M works on residuals without the mean of each piece, and finds pressures without a force on each piece. The forces follow
-//! from the means. With g_i the pressure of a flat punch on piece i, of the force 1:
+//! M treats the residual as 0 outside C. For a residual that is uniform over many pieces of C this is a poor approximation: its energy grows with the
+//! number of pieces, and conjugate gradients take about 100 iterations. In plane strain the force of a piece displaces all others, so such residuals
+//! matter. Here M works on residuals without the mean of each piece, and finds pressures without a force on each piece. The forces follow from the
+//! means. With g_i the pressure of a flat punch on piece i, of the force 1:
 //!
 //! ```text
 //! Q = 1 - sum over pieces of 1_i g_i^T
 //! M' = Q^T M Q + sum over joints of (g_l - g_r)(g_l - g_r)^T/s + g g^T/(g, A g)
 //! ```
 //!
-//! A joint makes one punch of two neighbours l and r, `g = a g_l + (1 - a) g_r` with the least energy `(g, A g)`; then g_l - g_r, of the energy s, is
-//! conjugate to g. Pieces within 4 elements are joined, then within 8, and so on; the last joint has all of C. A punch is described by its centre and its
-//! energy. Two punches displace each other as forces at their centres do. A piece of n elements displaces itself as a force n/4 elements away does
-//! (exact for a logarithm; Johnson, Contact Mechanics, section 2.7).
+//! A joint combines two neighbouring punches l and r to one, `g = a g_l + (1 - a) g_r` with the least energy `(g, A g)`; then g_l - g_r, of the
+//! energy s, is conjugate to g. Pieces within 4 elements are joined, then within 8, and so on; the last joint has all of C. A punch is described by
+//! its centre and its energy. Two punches displace each other like forces at their centres. A piece of n elements displaces itself like a force n/4
+//! elements away (exact for a logarithm; Johnson, Contact Mechanics, section 2.7).
 //!
 //! Measured on rough lines of 9600 elements with two periods, Hurst exponents of 0.3 and 0.8, conjugate gradients on the C of the solution: 24 to
 //! 52 iterations, with M alone 32 to more than 400.
@@ -24,13 +24,14 @@ use crate::influence::Coefficients;
 use crate::memory::{reserve, zeros};
 use crate::operator::fft::Real;
 
-/// Elements of a line from which on it is used.
+/// Least elements of a line with punches.
 const LEAST: usize = 64;
-/// Pieces of at most so many elements have the energy of their g; that of longer ones is read from the kernel.
+/// Elements of a piece up to which its energy is computed from g; that of longer ones is read from the kernel.
 const SHORT: usize = 8;
 /// The least energy of a joint relative to that of one element. Coefficients of elastic bodies are above it.
 const LEAST_ENERGY: f64 = 1e-3;
-/// Forces are doubled: M' A has its least eigenvalues on them. With 1 conjugate gradients take up to 1.25 times as many iterations, with 4 as many.
+/// Factor on the forces, which have the least eigenvalues of M' A. With 1 conjugate gradients take up to 1.25 times as many iterations, with 4 the
+/// same.
 const FORCES: f64 = 2.0;
 const WHAT: &str = "the pieces of a line";
 
@@ -46,7 +47,7 @@ fn along(influence: &Coefficients, grid: &Grid, k: usize) -> f64 {
 /// A piece of C, or several joined.
 #[derive(Clone, Copy, Default)]
 struct Punch {
-    /// In elements.
+    /// The centre, in elements.
     centre: f64,
     energy: f64,
 }
@@ -74,18 +75,18 @@ pub(super) struct Punches {
     pieces: Vec<(u32, u32)>,
     /// g of the pieces, per element.
     weights: Vec<f64>,
-    /// Of the pieces, then of the joints in their order.
+    /// The punches of the pieces, then of the joints in their order.
     punches: Vec<Punch>,
     joints: Vec<Joint>,
-    /// Of each punch: the mean residual, then the force.
+    /// The mean residual of each punch, then its force.
     values: Vec<f64>,
-    /// Punches that are not joined yet.
+    /// Punches not yet joined.
     open: Vec<u32>,
 }
 
 impl Punches {
-    /// Whether a grid is a line in plane strain: a logarithm falls by the same over each doubling of the distance, coefficients of short elements by half
-    /// of that.
+    /// Whether a grid is a line in plane strain, with a logarithmic kernel: this falls by the same amount over each doubling of the distance, the
+    /// kernel 1/r of short elements by half as much each time.
     pub(super) fn serve(influence: &Coefficients, grid: &Grid) -> bool {
         let n = grid.len();
         let fall = |k: usize| along(influence, grid, k) - along(influence, grid, 2 * k);
@@ -93,7 +94,7 @@ impl Punches {
         is_line && !influence.depends_on_place() && fall(n / 8) > 0.5 * fall(1)
     }
 
-    /// On a line in plane strain; none elsewhere. The coefficients are taken times `factor`.
+    /// The punches of a line in plane strain, for coefficients times `factor`; none for other grids.
     pub(super) fn if_plane_strain(influence: &Coefficients, factor: f64, grid: &Grid) -> Result<Option<Punches>> {
         if !Punches::serve(influence, grid) {
             return Ok(None);
@@ -106,7 +107,7 @@ impl Punches {
         Ok(Some(Punches { is_mean_free: influence.is_mean_free(), ..punches }))
     }
 
-    /// Of coefficients at offsets 0, 1, ... along the line, and its period in elements.
+    /// Punches from coefficients at offsets 0, 1, ... along the line, and its period in elements.
     fn new(kernel: Vec<f64>, period: Option<f64>) -> Result<Punches> {
         let n = kernel.len();
         let mut punches = Punches {
@@ -134,7 +135,7 @@ impl Punches {
         self.is_mean_free
     }
 
-    /// The pieces of C and their joints.
+    /// Finds the pieces of C and their joints.
     pub(super) fn find(&mut self, contact: &[bool]) {
         self.find_pieces(contact);
         self.punches.clear();
@@ -167,7 +168,7 @@ impl Punches {
         }
     }
 
-    /// g on the elements of a piece: that of a flat punch at their middles, with the sum 1.
+    /// Sets g on the elements of a piece: the pressure of a flat punch at their middles, with the sum 1.
     fn set_weights(&mut self, start: usize, end: usize) {
         let weights = &mut self.weights[start..end];
         let (mut sum, length) = (0.0, (end - start) as f64);
@@ -196,7 +197,7 @@ impl Punches {
         self.kernel[k] + (distance - k as f64) * (self.kernel[k + 1] - self.kernel[k])
     }
 
-    /// Joins neighbours whose centres are in the same window of so many elements.
+    /// Joins neighbours whose centres are in the same window of `length` elements.
     fn join_within(&mut self, length: f64) {
         let window = |punch: Punch| (punch.centre / length) as usize;
         let mut kept = 0_usize;
@@ -228,7 +229,7 @@ impl Punches {
         self.punches.len() as u32 - 1
     }
 
-    /// z = Q r: takes the means of the pieces from r, which z holds.
+    /// z = Q z: subtracts the means of the pieces.
     pub(super) fn take_means<T: Real>(&mut self, z: &mut [T]) {
         for (&(start, end), mean) in self.pieces.iter().zip(&mut self.values) {
             let piece = start as usize..end as usize;
@@ -238,7 +239,7 @@ impl Punches {
         }
     }
 
-    /// z = Q^T z, and the pressures of the forces that belong to the means; `without_force`: their sum is 0.
+    /// z = Q^T z, plus the pressures of the forces from the means; `without_force`: the sum of the forces is 0.
     pub(super) fn give_forces<T: Real>(&mut self, z: &mut [T], without_force: bool) {
         self.find_forces(without_force);
         for (&(start, end), force) in self.pieces.iter().zip(&self.values) {
@@ -249,7 +250,7 @@ impl Punches {
         }
     }
 
-    /// Forces of the pieces from their means.
+    /// Finds the forces of the pieces from their means.
     fn find_forces(&mut self, without_force: bool) {
         let Punches { values, joints, punches, pieces, .. } = self;
         for (k, Joint { left, right, part, .. }) in joints.iter().enumerate() {
@@ -262,7 +263,7 @@ impl Punches {
         self.distribute();
     }
 
-    /// Forces of the pieces from that of the last joint, and the means.
+    /// Distributes the force of the last joint to the pieces, with the means.
     fn distribute(&mut self) {
         let Punches { values, joints, pieces, .. } = self;
         for (k, Joint { left, right, part, energy }) in joints.iter().enumerate().rev() {
@@ -272,7 +273,7 @@ impl Punches {
         }
     }
 
-    /// d becomes g of the last joint, of mean 1 on C; it is 0 elsewhere before.
+    /// Sets d, which is 0 outside C, to g of the last joint, of mean 1 on C.
     pub(super) fn press_flat<T: Real>(&mut self, d: &mut [T]) {
         self.values.fill(0.0);
         if let Some(value) = self.values.last_mut() {

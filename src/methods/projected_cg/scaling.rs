@@ -6,24 +6,24 @@ use crate::contact::State;
 use crate::scene::Load;
 use crate::threads::Threads;
 
-/// Exponents of two up to which numbers stay as they are. Sums over 2^24 elements, a tolerance of 2^-40 and the inverse of A leave
-/// room in the range 2^-126 to 2^127 then.
+/// Largest exponent of two of numbers that are not scaled. With sums over 2^24 elements, a tolerance of 2^-40 and the inverse of A, results stay
+/// within 2^-126 to 2^127.
 const AS_IT_IS: i32 = 48;
 
 /// Factors from the scene's units to the iteration's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scaling {
-    /// Of influence coefficients.
+    /// The factor of influence coefficients.
     pub influence: f64,
-    /// Of lengths.
+    /// The factor of lengths.
     pub length: f64,
 }
 
 impl Scaling {
-    /// The scene's own.
+    /// The scene's units.
     pub const SAME: Scaling = Scaling { influence: 1.0, length: 1.0 };
 
-    /// Those that suit a state, where an element's influence on itself is `self_influence`.
+    /// The scaling for a state with the `self_influence` of an element.
     pub fn for_state(state: &State, self_influence: f64, threads: &Threads) -> Scaling {
         let alone = match state.load {
             Load::Approach(_) => 0.0,
@@ -35,12 +35,12 @@ impl Scaling {
         Scaling { influence: towards_one(self_influence), length: if suits { 1.0 } else { to_one(length) } }
     }
 
-    /// Of pressures: u = A p holds in both units.
+    /// The factor of pressures: u = A p holds in both units.
     pub fn pressure(&self) -> f64 {
         self.length / self.influence
     }
 
-    /// Converts what the iteration reads.
+    /// Converts the state to the iteration's units.
     pub fn convert(&self, state: &mut State) {
         let (length, pressure) = (self.length, self.pressure());
         state.h.iter_mut().chain(&mut state.u).for_each(|value| *value *= length);
@@ -52,7 +52,7 @@ impl Scaling {
         };
     }
 
-    /// Converts what the iteration wrote back.
+    /// Converts the state back to the scene's units.
     pub fn convert_back(&self, state: &mut State) {
         let (length, pressure) = (1.0 / self.length, 1.0 / self.pressure());
         state.u.iter_mut().for_each(|u| *u *= length);
@@ -61,7 +61,7 @@ impl Scaling {
     }
 }
 
-/// The largest |h - approach| of elements in contact, or below the approach: found for each block of rows, then among the blocks.
+/// The largest |h - approach| of elements in contact or below the approach, by blocks of rows.
 fn farthest(state: &State, threads: &Threads) -> f64 {
     blocks::fold(
         &state.grid,
@@ -73,7 +73,7 @@ fn farthest(state: &State, threads: &Threads) -> f64 {
     )
 }
 
-/// That of a block, several at a time: that the compiler can vectorise.
+/// The largest |h - approach| of a block, in lanes that the compiler vectorises.
 #[inline(always)]
 fn farthest_of(h: &[f64], contact: &[bool], approach: f64) -> f64 {
     const LANES: usize = 8;
@@ -104,7 +104,7 @@ fn exponent(value: f64) -> i32 {
     (value.to_bits() >> 52 & 0x7ff) as i32 - 1023
 }
 
-/// 1 for a value that may stay as it is, or else what brings it to [1, 2).
+/// 1 for a value within [`AS_IT_IS`], else the power of two that brings it to [1, 2).
 fn towards_one(value: f64) -> f64 {
     if exponent(value).abs() <= AS_IT_IS {
         1.0
@@ -115,7 +115,7 @@ fn towards_one(value: f64) -> f64 {
 
 /// The power of two that brings a value to [1, 2); 1 where there is none.
 fn to_one(value: f64) -> f64 {
-    // 2^1022 and beyond have an inverse that is not normal.
+    // The inverse of 2^1022 and beyond is not normal.
     if value.is_normal() && value > 0.0 && exponent(value) < 1022 {
         2f64.powi(-exponent(value))
     } else {

@@ -1,32 +1,32 @@
-//! Between two iterations: the forecast of the step length, and the direction that the next one is conjugate to.
+//! The state between two iterations: the forecast of the step length, and the slope of the last direction.
 
-/// The forecast of the first alpha: that step leaves what is smooth, of which the eigenvalues are near 1. And the range of the later
-/// forecasts, each the last alpha.
+/// The forecast of the first alpha, whose step removes smooth errors, with eigenvalues near 1; and the range of later forecasts, each of which
+/// is the last alpha.
 pub(super) const FIRST_FORECAST: f64 = 0.9;
 const FORECASTS: (f64, f64) = (0.3, 1.0);
-/// A forecast that alpha is further away from than by this factor was worth nothing.
+/// Factor between forecast and alpha beyond which the forecast failed.
 const FAR_OFF: f64 = 3.0;
 
-/// The step lengths and slopes that an iteration leaves to the next.
+/// Step lengths and slopes passed from one iteration to the next.
 pub(super) struct Search {
     /// alpha', if there is one.
     pub(super) forecast: Option<f64>,
-    /// Directions that are held back may fail to descend: then the next is not, nor conjugate to this one.
+    /// Whether steps may be clipped. Clipped directions may fail to descend; then the next one is neither clipped nor conjugate to this one.
     pub(super) may_hold_back: bool,
-    /// (t, q); 0 where the next direction is conjugate to none.
+    /// (t, q); 0 if the next direction is conjugate to none.
     pub(super) tq: f64,
     pub(super) is_first: bool,
-    /// Products that no iteration has counted yet.
+    /// Products not yet counted.
     pub(super) products: u64,
 }
 
 impl Search {
-    /// Before the first iteration.
+    /// The state before the first iteration.
     pub(super) fn new(forecast: Option<f64>) -> Search {
         Search { forecast, may_hold_back: true, tq: 0.0, is_first: true, products: 0 }
     }
 
-    /// The forecast, unless it was far off: then it holds nobody back.
+    /// The forecast, unless it was [`FAR_OFF`].
     pub(super) fn believed(&mut self, alpha: f64) -> Option<f64> {
         let good = self.forecast.filter(|forecast| self.may_hold_back && within_factor(alpha, *forecast, FAR_OFF));
         self.may_hold_back = !self.may_hold_back || good.is_some();
@@ -36,7 +36,7 @@ impl Search {
         good
     }
 
-    /// The next forecast: this alpha, within the usual range where it is near that.
+    /// Makes this alpha the next forecast, clamped to the usual range if it is near that.
     pub(super) fn expect(&mut self, alpha: f64, preconditioned: bool) {
         let usual = alpha.clamp(FORECASTS.0, FORECASTS.1);
         let near = preconditioned && within_factor(alpha, usual, FAR_OFF);

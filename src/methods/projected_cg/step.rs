@@ -1,8 +1,8 @@
 //! The production method as a step: projected conjugate gradients on the window around the contact area, in single precision
-//! directions, until the recursively updated residual says that the goal is reached. Only the loop's certificate, a fresh product on
-//! the full grid in double precision, decides whether it is.
+//! directions, until the recursively updated residual meets the goal. Only the loop's certificate, a fresh product on the full grid in
+//! double precision, decides.
 //!
-//! A solve from nothing begins on the coarser grids (`coarse_grids`), a step in time from what the last ones found (`predictor`).
+//! A solve without a guess starts on the coarser grids (`coarse_grids`), a step in time from the last solutions (`predictor`).
 
 use std::sync::Arc;
 
@@ -22,47 +22,47 @@ use crate::rectangle::Rectangle;
 use crate::scene::Load;
 use crate::threads::Threads;
 
-/// The iteration aims at this part of the tolerance: deferred corrections and the rounding of single precision must still pass the certificate,
-/// and on a full contact of flat bodies, where A is worst conditioned, p be within ten tolerances (tests/random_problems.rs). Work over
-/// 40 cases at 0.5, 0.75, 0.9: 1, 0.98, 0.96.
+/// The tolerance of the iteration over the goal's. The certificate must hold with deferred corrections and round-off of single precision, and on a
+/// full contact of flat bodies, where A is worst conditioned, p must be within ten tolerances (tests/random_problems.rs). Work over 40 cases at 0.5,
+/// 0.75, 0.9: 1, 0.98, 0.96.
 const AIM: f64 = 0.75;
-/// The same for tolerances below single precision's rounding, which then leaves noise in p beside the residual. Eight seeds of that test, 3200
-/// solves: 2 are more than ten tolerances off (largest 10.5), at 0.75 some 18 (largest 20).
+/// The ratio for tolerances below the round-off of single precision, which then adds noise to p beside the residual. In eight seeds of that test,
+/// 3200 solves, 2 exceed ten tolerances (largest 10.5), with 0.75 about 18 (largest 20).
 const FINE_AIM: f64 = 0.5;
-/// The first u on the finest grid is of single precision if the noise that this may leave in p is at most so many tolerances. Errors
-/// of transforms are some tenth of `EPSILON u`: what is left is below ten tolerances in the largest pressure.
+/// Bound on the noise in p, in tolerances, with which the first u on the finest grid is in single precision. Errors of transforms are about a tenth
+/// of `EPSILON u`: the error of the largest pressure is then below ten tolerances.
 const NOISE: f64 = 25.0;
-/// Iterations at most before a certificate: with the [patience](Step::policy) of three of them, what does not halve its violation in 180
-/// iterations is handed over. Whatever converges needs fewer for all of its digits, or halves it in some 40.
+/// Most iterations before a certificate. With the [patience](Step::policy) of three certificates, an iteration that does not halve its violation in
+/// 180 iterations ends. Convergent ones need fewer for all digits, or halve it in about 40.
 const ROUND: u64 = 60;
-/// An iteration that stagnates above this residual does so on the contact area, which a fresh u does not change; below it, by rounding.
+/// An iteration that stagnates above this residual does so by the contact area, which a fresh u does not change; below, by round-off.
 const STALLED: f64 = 0.1;
-/// Where contact is scattered, the first iteration on the finest grid ends at this residual: elements outside the window that enter bring back one of about
-/// that, and what was reached below is lost.
+/// Residual at which the first iteration on the finest grid ends if contact is scattered: elements that enter from outside the window raise the
+/// residual to about this, so that smaller residuals are wasted.
 const LOOK: f64 = 1e-2;
-/// A last update is believed where the residual by a fresh product is at most this many times the recursive one.
+/// Largest ratio of the residual by a fresh product to the recursive one for a valid last update.
 const BELIEVED: f64 = 2.0;
 
 /// The method's windows, operators and coarser grids.
 pub struct ProjectedCg {
     pub(super) finest: Level,
-    /// None before it is first needed.
+    /// None before the first use.
     coarse: Option<CoarseGrids>,
     predictor: Predictor,
     /// With criterion UPDATE: p before the last step.
     before: Vec<f64>,
     /// Whether the solve began with a prediction.
     predicted: bool,
-    /// Whether the solve begins on the finest grid from what coarser ones found.
+    /// Whether the solve begins on the finest grid from the coarser ones.
     is_new: bool,
     precision: Precision,
     find_force: FindForce,
-    /// Of the last step: the recursive residual that it ended with, relative.
+    /// The relative recursive residual at the end of the last step.
     recursive: f64,
 }
 
 impl ProjectedCg {
-    /// Sets up nothing: that follows when it is first needed.
+    /// The method without operators, which are set up at first use.
     pub fn new(problem: &Problem, precision: Precision) -> ProjectedCg {
         ProjectedCg {
             finest: Level::new(problem.grid, problem.coefficients.clone(), precision, &problem.threads),
@@ -77,13 +77,13 @@ impl ProjectedCg {
         }
     }
 
-    /// The next solve chooses its windows by itself, so that its result does not depend, in the last bits, on the solve before.
+    /// Forgets the windows, so that the bits of the next result do not depend on the solve before.
     pub fn forget_windows(&mut self) {
         self.finest.forget_window();
         self.coarse.iter_mut().for_each(CoarseGrids::forget_windows);
     }
 
-    /// A copy of what a step in time goes on from, beside the last solution itself.
+    /// A copy of the state from which a step in time continues, besides the last solution.
     pub fn last(&self) -> Result<(Predictor, Option<Rectangle>)> {
         Ok((self.predictor.copy()?, self.finest.current_window()))
     }
@@ -93,18 +93,18 @@ impl ProjectedCg {
         self.finest.current_window()
     }
 
-    /// The next one is chosen as after an iteration on this one.
+    /// Makes `window` the last window.
     pub fn go_back_to(&mut self, window: Option<Rectangle>) {
         self.finest.go_back_to(window);
     }
 
-    /// A step in time goes on from there.
+    /// Restores the state of a step in time.
     pub fn go_back(&mut self, (predictor, window): (Predictor, Option<Rectangle>)) {
         self.predictor = predictor;
         self.finest.go_back_to(window);
     }
 
-    /// The problem has other coefficients: memory and plans are kept for them, and what is not computed here follows when it is needed.
+    /// Takes the problem's other coefficients, and keeps memory and plans; operators are updated when needed.
     pub fn renew(&mut self, problem: &Problem) {
         self.finest.renew(problem.coefficients.clone());
         self.coarse.iter_mut().for_each(CoarseGrids::forget_coefficients);
@@ -121,7 +121,7 @@ impl ProjectedCg {
             + self.predictor.bytes()
     }
 
-    /// From nothing: what the coarser grids find.
+    /// A start without a guess: from the coarser grids.
     pub fn start<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<()> {
         let coarse = coarse_grids(&mut self.coarse, task.problem, self.precision)?;
         task.state.u_is = coarse.start(task)?;
@@ -143,13 +143,13 @@ impl ProjectedCg {
         Ok(())
     }
 
-    /// Another solve begins.
+    /// Begins another solve.
     pub fn begin_anew(&mut self) {
         (self.predicted, self.is_new) = (false, false);
         self.find_force.begin();
     }
 
-    /// A step in time: moves `state` on from the last solution.
+    /// A step in time: extrapolates `state` from the last solution.
     pub fn predict(&mut self, state: &mut State, threads: &Threads) -> Result<()> {
         let finest = &self.finest;
         state.u_is = self.predictor.predict(state, |state| finest.window(state), threads)?;
@@ -157,12 +157,12 @@ impl ProjectedCg {
         Ok(())
     }
 
-    /// There is no solution before the last any more.
+    /// Forgets the solution before the last.
     pub fn forget_solutions(&mut self) {
         self.predictor = Predictor::default();
     }
 
-    /// The problem's operator for any p, where the window is the whole grid and the problem needs that operator anyway: the window's one is a copy of it.
+    /// The problem's operator for any p, if the window is the whole grid and the problem needs this operator: the window's operator is a copy.
     fn whole_operator(&self, problem: &mut Problem, state: &State) -> Result<Option<Arc<Operator<f64>>>> {
         match self.finest.fills_grid(state) {
             true => problem.operator_if_needed(&state.p),
@@ -180,7 +180,7 @@ impl ProjectedCg {
         LevelTask { level: &mut self.finest, state, set: *set, whole, finest: problem.grid.len(), monitor }
     }
 
-    /// The update of the last step, as far as it proves anything: not where u was of single precision, or a correction was deferred.
+    /// The update of the last step; infinite if u was in single precision or a correction was deferred.
     fn update(&self, state: &State, was: Freshness, last: f64) -> f64 {
         if was != Freshness::Exact {
             return f64::INFINITY;

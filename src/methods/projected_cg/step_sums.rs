@@ -1,4 +1,4 @@
-//! Sums over C of a step, and what becomes of u.
+//! Sums over C of a step, and the update of u.
 
 /// The new u: factor (u + alpha q + gamma w + A d), w of the deflation direction.
 #[derive(Clone, Copy)]
@@ -16,7 +16,7 @@ impl Default for Update {
     }
 }
 
-/// Sums over C: (r, t), (t, q), (t, t), of |t|, (p, p); and (r, d), (q, d), 0 where there is no deflation direction.
+/// Sums over C: (r, t), (t, q), (t, t), the sum of |t|, (p, p); and (r, d), (q, d), 0 without a deflation direction.
 pub(super) struct Step {
     pub(super) rt: f64,
     pub(super) tq: f64,
@@ -29,7 +29,8 @@ pub(super) struct Step {
 }
 
 impl Step {
-    /// The 2-norm of the change of p, at most: the sum of what the step along t, that along d, of which the length is given, and the scaling change.
+    /// A bound on the 2-norm of the change of p: the sum of the changes by the step along t, by that along d, whose length is given, and by the
+    /// scaling.
     pub(super) fn change(&self, alpha: f64, along_d: f64, factor: f64) -> f64 {
         alpha.abs() * self.tt.sqrt() + along_d + (factor - 1.0).abs() * self.pp.sqrt()
     }
@@ -46,7 +47,7 @@ pub(super) struct Energy {
 }
 
 impl Energy {
-    /// The correction that t includes on an element of C is no part of the step.
+    /// Subtracts a correction in t on an element of C, which is no part of the step.
     pub(super) fn leave_out(&mut self, correction: f64, (depth, u, q): (f64, f64, f64)) {
         self.td -= correction * depth;
         self.pq_tu -= correction * u;

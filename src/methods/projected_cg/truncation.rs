@@ -1,11 +1,11 @@
-//! Truncation without a product. After step (4.1) u lacks `A d`, d being what the truncated elements gained. A product of its own
-//! would repair that, and costs as much as half an iteration. Two things avoid it:
+//! Truncation without a product of its own. After step (4.1) u lacks `A d`, where d is the change of p by truncation. An extra product
+//! would correct u, but it costs half an iteration. Two measures avoid it:
 //!
-//! - All eigenvalues of M A on C are at least 1 and few exceed 4, so alpha is known beforehand to within some ten percent. Elements that the
-//!   forecast step would truncate are clipped before the product, and d is only the error of the forecast.
-//! - Where d is small against the step, the correction of u is deferred: the next direction is `t + d/alpha'`, so that its product contains `A d`. If
-//!   alpha differs from alpha', the rest `d (1 - alpha/alpha')` stays to be corrected. It shrinks by that factor at each iteration; the fresh product of
-//!   the certificate corrects what is left of it at the end.
+//! - All eigenvalues of M A on C are at least 1 and few exceed 4, so alpha can be forecast to within some ten percent. Elements that the
+//!   forecast step would truncate are clipped before the product. Then d is only the error of the forecast.
+//! - If d is small compared with the step, the correction of u is deferred. The next direction is `t + d/alpha'`, so that its product contains
+//!   `A d`. If alpha differs from alpha', the rest `d (1 - alpha/alpha')` remains to be corrected. It shrinks by this factor at each iteration.
+//!   At the end the fresh product of the certificate corrects the remainder.
 
 use super::step_sums::Step;
 use crate::contact::State;
@@ -13,34 +13,34 @@ use crate::error::Result;
 use crate::memory::{keep, reserve};
 use crate::operator::fft::Real;
 
-/// Truncated elements, and the d of each: u still lacks `A d`.
+/// The truncated elements with their d. u still lacks `A d`.
 #[derive(Default)]
 pub(super) struct Truncation {
     gains: Vec<(usize, f64)>,
 }
 
 impl Truncation {
-    /// Room for n elements.
+    /// Reserves capacity for n elements.
     pub(super) fn reserve(&mut self, n: usize) -> Result<()> {
         Ok(reserve(&mut self.gains, n, "truncated elements")?)
     }
 
-    /// Nothing is to be corrected.
+    /// Removes all: u needs no correction.
     pub(super) fn clear(&mut self) {
         self.gains.clear();
     }
 
-    /// Element i has gained d.
+    /// Adds element i, whose p changed by d.
     pub(super) fn push(&mut self, i: usize, d: f64) {
         self.gains.push((i, d));
     }
 
-    /// How many there are; those that come later stand behind them.
+    /// The number of entries. Later entries follow them.
     pub(super) fn count(&self) -> usize {
         self.gains.len()
     }
 
-    /// The elements and their d.
+    /// The entries: elements with their d.
     pub(super) fn gains(&self) -> &[(usize, f64)] {
         &self.gains
     }
@@ -55,7 +55,7 @@ impl Truncation {
         self.gains.iter_mut().for_each(|gain| gain.1 *= factor);
     }
 
-    /// Elements that gain once more; each then stands once.
+    /// Adds entries, and merges those of one element.
     pub(super) fn extend(&mut self, gains: impl Iterator<Item = (usize, f64)>) {
         self.gains.extend(gains);
         self.gains.sort_unstable_by_key(|gain| gain.0);
@@ -68,7 +68,7 @@ impl Truncation {
         });
     }
 
-    /// For later iterations.
+    /// Keeps the entries for later iterations.
     pub(super) fn keep(&mut self) {
         keep([&mut self.gains]);
     }
@@ -80,7 +80,7 @@ impl Truncation {
         }
     }
 
-    /// After the product q = A t: t without the correction, and what alpha leaves of it.
+    /// After the product q = A t: removes the correction from t, and reduces the entries to the rest that alpha leaves.
     pub(super) fn exclude<T: Real>(
         &mut self,
         (t, q): (&mut [T], &[T]),
@@ -100,7 +100,7 @@ impl Truncation {
         self.gains.retain(|gain| gain.1 != 0.0);
     }
 
-    /// z = d, and nothing is to be corrected.
+    /// Moves the entries to z = d.
     pub(super) fn take<T: Real>(&mut self, z: &mut [T]) {
         z.fill(T::zero());
         for (i, d) in self.gains.drain(..) {

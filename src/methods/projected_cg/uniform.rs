@@ -1,24 +1,24 @@
-//! By approach: a direction that moves the mean of p where scaling cannot.
+//! By approach: a direction that changes the mean of p if scaling cannot.
 //!
 //! Directions carry no force, and p is scaled to the least energy (module `energy`). That fails in two kinds of scenes:
 //!
-//! - One element carries much of the force: a grain of dust, the spike of an interferometer. Scaling then fits the depth of that element, and a
-//!   hundredth of that depth is more than the roughness of all others.
+//! - One element carries much of the force: a grain of dust, the spike of an interferometer. Scaling then fits the depth of that element, of
+//!   which a hundredth exceeds the roughness of all others.
 //! - Two periods, near full contact: the mean of p displaces nothing, so the least energy does not determine it.
 //!
-//! There p moves in each step along d, as along a change of the last step (module `deflation`), and is not scaled:
+//! In these, p moves in each step along d, as along a change of the last step (module `deflation`), and is not scaled:
 //!
 //! ```text
 //! d = 1 on C;   w = A d: one product
 //! ```
 //!
-//! On a line in plane strain d is the pressure of a flat punch instead (module `flat_punch`), whatever the surface.
+//! On a line in plane strain d is the pressure of a flat punch instead (module `flat_punch`), for any surface.
 //!
-//! d is made anew when a quarter of C has left it. Elements that left take corrections in each step, so that this costs less than it saves; and
-//! where C is found late, as around a spike on which the coarse grids see nothing else, d is first made then.
+//! d is made anew when a quarter of C has left it: elements that left need corrections in each step, so this saves time. If C is found late, as
+//! around a spike that hides all else on coarse grids, d is first made then.
 //!
-//! Measured by approach: 180 planes of 80 x 80 with one spike, many, or plateaus, 5 to 31 iterations, 15 in the median, by force 5 to 29 and 14;
-//! without d most with spikes take more than 60.
+//! Measured: 180 planes of 80 x 80 with one spike, many, or plateaus take 5 to 31 iterations by approach (median 15), 5 to 29 by force (median
+//! 14). Without d most of those with spikes take more than 60.
 
 use super::iteration::Cycle;
 use super::vectors::Iteration;
@@ -27,16 +27,15 @@ use crate::operator::fft::Real;
 use crate::scene::Load;
 use crate::sums::{in_blocks, Sums};
 
-/// Pressures of more than so many times the mean are those of few elements.
+/// Ratio to the mean above which pressures are those of few elements.
 const FEW: f64 = 8.0;
-/// They carry much if what they have beyond that is this part of the force.
+/// Part of the force beyond this ratio from which few elements carry much.
 const MUCH: f64 = 0.01;
-/// Where this part of C has changed, d is made anew.
+/// d is made anew when one part in this many of C has changed.
 const ANOTHER: u64 = 4;
 
 impl<T: Real> Iteration<T> {
-    /// Makes the deflation direction, where the load needs one and no change is known. Without memory for it there is none. Returns the products
-    /// that this takes.
+    /// Makes the deflation direction, if the load needs one, no change is known and there is memory. Returns the products that this takes.
     pub(super) fn deflate<S: AdmissibleSet>(&mut self, state: &State, is_mean_free: bool) -> u64 {
         let by_approach = matches!(state.load, Load::Approach(_));
         let is_known = self.deflation.is_there() && !self.deflation.is_uniform;
@@ -44,7 +43,7 @@ impl<T: Real> Iteration<T> {
             return 0;
         }
         let is_nearly_full = is_mean_free && 2 * self.segments.count() > state.p.len();
-        // Below a layer that differs between elements, few carry much for another reason, and 1 is no direction.
+        // With a layer that differs between elements, few carry much for another reason, and 1 is no useful direction.
         let is_of_few =
             !is_nearly_full && !self.operator.has_diagonal() && few_carry_much(state, self.segments.count());
         let is_plane_strain = self.is_plane_strain();
@@ -64,7 +63,7 @@ impl<T: Real> Iteration<T> {
         1
     }
 
-    /// Whether so much of C has changed that a direction on it is to be made anew, or for the first time.
+    /// Whether C has changed so much that its direction is to be made anew, or first.
     pub(super) fn is_another_area(&self, cycle: &Cycle, iterations: u64) -> bool {
         let count = self.segments.count() as u64;
         if self.deflation.is_there() {
@@ -76,7 +75,7 @@ impl<T: Real> Iteration<T> {
     }
 }
 
-/// Whether few elements of C, which has `count` of them, carry much of the force.
+/// Whether few of the `count` elements of C carry much of the force.
 fn few_carry_much(state: &State, count: usize) -> bool {
     let sum = in_blocks(state.p.iter().map(|p| p.max(0.0)));
     let (mean, mut sums) = (sum / count as f64, Sums::new());

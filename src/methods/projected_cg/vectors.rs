@@ -21,20 +21,20 @@ use crate::threads::Threads;
 /// Parts beyond the plain iteration.
 #[derive(Default)]
 pub(super) struct Beyond {
-    /// The part of a prescribed force that is missing, as a sum of pressures.
+    /// The missing part of a prescribed force, as a sum of pressures.
     pub(super) missing: f64,
-    /// How far the approach moves on for that.
+    /// The change of the approach for it.
     pub(super) shift: f64,
     /// The sum of e^2 over C, of the last iteration.
     pub(super) residual: f64,
-    /// Whether the step before went back to the least energy.
+    /// Whether the last step returned to the state of least energy.
     pub(super) went_back: bool,
-    /// The p with u = A p: the pressures before this iteration, less the corrections not yet made.
+    /// The p with u = A p: the pressures before this iteration, minus the deferred corrections.
     pub(super) known: Vec<f64>,
 }
 
 impl Beyond {
-    /// Whether the force is carried.
+    /// Whether the pressures carry the prescribed force.
     pub(super) fn carries(&self, state: &State, goal: &Goal) -> bool {
         self.missing.abs() <= goal.tolerance * state.p.iter().sum::<f64>()
     }
@@ -47,8 +47,7 @@ pub struct Operators<T: Real> {
 }
 
 impl<T: Real> Operators<T> {
-    /// On `grid`; `operator` is that of the coefficients times `factor`. Where the preconditioner's circulant is not positive, the iteration
-    /// does without.
+    /// A and M on `grid`; `operator` is that of the coefficients times `factor`. Without M if the circulant is not positive.
     pub fn new(
         operator: Operator<T>,
         influence: &Coefficients,
@@ -65,7 +64,7 @@ impl<T: Real> Operators<T> {
     }
 }
 
-/// Names its memory in messages.
+/// The name of this memory in messages.
 const DIRECTIONS: &str = "search directions";
 
 /// Operator, preconditioner and directions of one grid.
@@ -73,7 +72,7 @@ pub struct Iteration<T: Real> {
     pub(super) operator: Operator<T>,
     pub(super) preconditioner: Option<Preconditioner<T>>,
     pub(super) extension: Option<Extension<T, 1>>,
-    /// The version of C that the extension and the preconditioner know.
+    /// The version of C in the extension and the preconditioner.
     pub(super) counted: Option<u64>,
     pub(super) workspace: Workspace<T>,
     pub(super) t: Vec<T>,
@@ -82,13 +81,13 @@ pub struct Iteration<T: Real> {
     pub(super) segments: Segments,
     /// Elements that were truncated without a product.
     pub(super) truncation: Truncation,
-    /// The direction that costs no product.
+    /// The deflation direction, which takes no product.
     pub(super) deflation: Deflation<T>,
     /// On a line in plane strain: the penetration up to which elements stay outside.
     pub(super) allowance: f64,
     /// By approach: whether p is scaled to the least energy after each step.
     pub(super) is_scaled: bool,
-    /// With limits.
+    /// The state of limits.
     pub(super) limits: Beyond,
     pub(super) threads: Threads,
 }
@@ -124,7 +123,7 @@ impl<T: Real> Iteration<T> {
         })
     }
 
-    /// Goes on with another grid; returns the operators of the one before. Not to be used after an error.
+    /// Moves to another grid. Returns the operators of the previous grid. After an error the iteration must not be used.
     pub fn turn_to(&mut self, operators: Operators<T>, grid: &Grid, threads: &Threads) -> Result<Operators<T>> {
         let n = grid.len();
         let left = Operators {
@@ -143,8 +142,8 @@ impl<T: Real> Iteration<T> {
         Ok(left)
     }
 
-    /// Takes other coefficients, times `factor`, on the same grid, of which `whole` is the operator in double precision if that is
-    /// known: plans and memory are kept where they fit. Not to be used after an error.
+    /// Takes other coefficients, times `factor`, on the same grid, and keeps plans and memory if they fit. `whole` is the operator in double
+    /// precision, if known. After an error the iteration must not be used.
     pub fn renew(
         &mut self,
         influence: &Coefficients,
@@ -167,20 +166,20 @@ impl<T: Real> Iteration<T> {
         Ok(())
     }
 
-    /// Of the operator, and of the preconditioner if there is one.
+    /// The needs of the operator, and of the preconditioner if there is one.
     fn needs(&self) -> [Option<Needs>; 2] {
         let inverse = self.preconditioner.as_ref().map(|m| m.inverse().needs());
         [Some(self.operator.needs()), inverse]
     }
 
-    /// It is not needed for a while.
+    /// Releases memory until the next [`Iteration::wake`].
     pub fn rest(&mut self) {
         self.workspace.rest();
         self.extension.iter_mut().for_each(Extension::rest);
         [&mut self.t, &mut self.q, &mut self.z].into_iter().for_each(rest);
     }
 
-    /// Before it is used, at first or again, on a grid of n elements.
+    /// Allocates memory before the next use, on a grid of n elements.
     pub fn wake(&mut self, n: usize) {
         self.extension.iter_mut().for_each(Extension::wake);
         let threads = &self.threads;
@@ -197,7 +196,7 @@ impl<T: Real> Iteration<T> {
         products + extension + directions + self.deflation.bytes()
     }
 
-    /// t and q become those of no direction.
+    /// Sets t = q = 0, so that there is no last direction.
     pub(super) fn forget_directions(&mut self, mx: usize) {
         let clear = |_, t: &mut [T], q: &mut [T]| {
             t.fill(T::zero());
@@ -220,7 +219,7 @@ impl<T: Real> Iteration<T> {
     }
 }
 
-/// Memory for products by either.
+/// Memory for products by the operator and the preconditioner.
 fn workspace<T: Real>(operator: &Operator<T>, preconditioner: &Option<Preconditioner<T>>) -> Result<Workspace<T>> {
     Workspace::new(once(operator).chain(preconditioner.as_ref().map(Preconditioner::inverse)))
 }

@@ -1,8 +1,8 @@
-//! The window: the part of the grid that the iteration works on.
+//! The window: the part of the grid of the iteration.
 //!
-//! Products cost by the area they cover, and contact is often a small part of the potential contact area. So the iteration works on
-//! the smallest rectangle around the contact area and a margin around it; that nothing outside it penetrates is checked on the full grid
-//! afterwards, and the window grows where something does.
+//! The cost of a product is proportional to its area, and contact is often a small part of the potential contact area. So the iteration works on the
+//! smallest rectangle around the contact area with a margin. Penetration outside is checked on the full grid afterwards, and the window grows if
+//! there is any.
 
 use std::ops::Range;
 
@@ -13,21 +13,20 @@ use crate::operator::length_for_stages;
 use crate::rectangle::Rectangle;
 use crate::threads::Threads;
 
-/// Elements around the contact area, at least, in a new window: one for what may enter, one for an area that still moves (with two of these cold
-/// calls on ellipse 64 and wheel-rail y4_82kN took 1.07 and 1.13 times as long, with none the same). And the part of its length that comes to
-/// them on each side: with 1/32 cold calls on ellipses of 512 to 2048 took 1.03 to 1.06 times as long.
+/// Least margin of a new window in elements: one for entering elements, one for an area that still moves. With two for the latter, cold calls on
+/// ellipse 64 and wheel-rail y4_82kN took 1.07 and 1.13 times as long. With none they took the same time. Additional margin on each side: the length
+/// of the area divided by this. With 32, cold calls on ellipses of 512 to 2048 took 1.03 to 1.06 times as long.
 const MARGIN: usize = 2;
 const PART: usize = 64;
-/// A window of more than this part of the grid is not worth its own operator. With 0.6 steps in time on ellipse 64 and 256 and on both wheel-rail
-/// contacts took 1.1 to 1.2 times as long, cold calls 1.0 to 1.35; with 0.95 as long.
+/// Largest part of the grid for a window with its own operator. With 0.6, steps in time on ellipse 64 and 256 and on both wheel-rail
+/// contacts took 1.1 to 1.2 times as long, and cold calls 1.0 to 1.35 times. With 0.95 they took the same time.
 const WORTHWHILE: f64 = 0.85;
 /// A window stays while contact spans more than this part of it.
 const FILLED: f64 = 0.3;
-/// Windows are not worth it on grids of fewer elements.
+/// Least elements of a grid with windows.
 const SMALLEST_GRID: usize = 64 * 64;
 
-/// The window for a contact area, with a margin of a part of its size; the whole grid where a window is not worthwhile. `even`: whether the
-/// kernel is.
+/// The window for a contact area, with a margin; the whole grid if a window is not worthwhile. `even`: whether the kernel is even.
 pub(super) fn around(state: &State, current: Option<&Rectangle>, even: bool, threads: &Threads) -> Rectangle {
     let grid = &state.grid;
     let full = Rectangle::full(grid);
@@ -41,7 +40,7 @@ pub(super) fn around(state: &State, current: Option<&Rectangle>, even: bool, thr
     let span = |range: &Range<usize>, m: usize| {
         let margin = MARGIN + range.len() / PART;
         let (start, end) = (range.start.saturating_sub(margin), (range.end + margin).min(m));
-        // An even kernel of k elements has the period 2k - 2, another one 2k - 1: fill it.
+        // The period is 2k - 2 for k elements of an even kernel, else 2k - 1: the window fills it.
         let (less, length): (_, fn(usize) -> usize) = if even { (2, length_for_stages) } else { (1, good_length) };
         let length = ((length(2 * (end - start) - less) + less) / 2).min(m);
         let start = start.saturating_sub((length - (end - start)) / 2).min(m - length);
@@ -55,7 +54,7 @@ pub(super) fn around(state: &State, current: Option<&Rectangle>, even: bool, thr
     }
 }
 
-/// Whether a window still serves a contact area: there is room for what may enter, and it is not far too large.
+/// Whether a window still serves a contact area: it has a margin for entering elements, and is not far too large.
 fn serves(window: &Rectangle, area: &Rectangle, grid: &Grid) -> bool {
     let has_room = |outer: &Range<usize>, inner: &Range<usize>, m: usize| {
         (outer.start == 0 || outer.start < inner.start) && (outer.end == m || inner.end < outer.end)
@@ -64,7 +63,7 @@ fn serves(window: &Rectangle, area: &Rectangle, grid: &Grid) -> bool {
     has_room(&window.x, &area.x, grid.mx) && has_room(&window.y, &area.y, grid.my) && fills
 }
 
-/// The smallest rectangle that holds the contact area, and what is at its limit; none when it is empty.
+/// The smallest rectangle with the contact area and all elements at their limit; none if both are empty.
 fn area(state: &State, threads: &Threads) -> Option<Rectangle> {
     let any = |row: &[bool]| row.iter().fold(false, |any, inside| any | inside);
     let around = |elements: &[bool]| Rectangle::around_values(elements, &state.grid, threads, any);

@@ -1,15 +1,15 @@
-//! Bounds: the elements that are free, those that stay where they are, and pressures that are at a bound but for rounding.
+//! Bounds: free elements, elements that stay at a bound, and pressures at a bound up to round-off.
 
 use crate::contact::{AdmissibleSet, State};
 use crate::scene::Load;
 use crate::sums::in_blocks;
 
-/// A pressure that is nearer to a bound, relative to the limit or to the mean pressure, is there. Where nearly all is at a bound, the one element that
-/// carries the rounding of the force must not rule the approach.
+/// Distance from a bound, relative to the limit or the mean pressure, that counts as 0. If nearly all elements are at a bound, the one
+/// that carries the round-off of the force must not determine the approach.
 const AT_BOUND: f64 = 1e-12;
 
-/// e on elements with a surface, and the free elements. With a prescribed force and C empty the approach is between those that hold the elements at
-/// their limit, and those that the exterior ones reach: both are free where these are in the wrong order.
+/// e on elements with a surface, and the free elements. With a prescribed force and C empty the approach is midway between the one that
+/// holds all elements at their limit and the one at which an exterior element touches. If these are in the wrong order, both kinds are free.
 pub(super) fn find_free<S: AdmissibleSet>(state: &State, set: S, distance: &mut [f64], free: &mut [bool]) {
     let approach = match state.load {
         Load::Force(_) if !state.contact.contains(&true) => between(state),
@@ -23,7 +23,7 @@ pub(super) fn find_free<S: AdmissibleSet>(state: &State, set: S, distance: &mut 
     }
 }
 
-/// Elements at a bound that t leads out of are not free, or `all` of those at a bound. Returns whether there are any.
+/// Unfrees the elements at a bound that t would violate, or `all` at a bound. Returns whether there are any.
 pub(super) fn keep_at_bounds<S: AdmissibleSet>(
     (state, set): (&State, S),
     t: &[f64],
@@ -40,7 +40,7 @@ pub(super) fn keep_at_bounds<S: AdmissibleSet>(
     any
 }
 
-/// With limits: pressures that are at a bound but for rounding.
+/// With limits: sets pressures to a bound that they equal up to round-off.
 pub(super) fn snap<S: AdmissibleSet>(state: &mut State, set: S) {
     if !S::LIMITED {
         return;
@@ -55,7 +55,7 @@ pub(super) fn snap<S: AdmissibleSet>(state: &mut State, set: S) {
     }
 }
 
-/// C = {0 < p < limit}; returns how many elements changed sides.
+/// C = {0 < p < limit}. Returns the number of elements that changed sides.
 pub(super) fn find_contact<S: AdmissibleSet>(state: &mut State, set: S) -> u64 {
     let mut changes = 0;
     for i in 0..state.p.len() {

@@ -1,7 +1,7 @@
 //! The Newton direction: some preconditioned conjugate gradients of `A t = -e` on the free elements.
 //!
-//! By approach with two periods a uniform pressure on all elements displaces nothing, and on nearly all of them little: conjugate gradients
-//! would take many iterations for the mean of t. It comes first, and all others are conjugate to it:
+//! By approach with two periods a uniform pressure displaces nothing on all elements, and little on nearly all of them: conjugate gradients
+//! would take many iterations for the mean of t. So the uniform direction comes first, and all others are conjugate to it:
 //!
 //! ```text
 //! t = a 1 on the free elements,   a = (1, r)/(1, A 1)
@@ -14,18 +14,18 @@ use crate::methods::Task;
 use crate::scene::Load;
 use crate::sums::in_blocks;
 
-/// The residual of a direction, relative to e on the free elements: its bounds change before more of it is worth its products.
+/// Relative residual of a direction, to e on the free elements: the set of free elements changes before more accuracy pays.
 const ENOUGH: f64 = 0.25;
-/// And relative to the residual that is asked for: no more than that is needed.
+/// Residual of a direction over the residual wanted, below which no iteration goes.
 const NEEDED: f64 = 0.3;
-/// A uniform pressure on all elements displaces nothing but round-off, which is less than this part of the displacement of each element by itself. On all
-/// but one it displaces as much as that one does.
+/// A uniform pressure displaces nothing if its displacement is below this part of that of each element by itself: on all elements it is
+/// round-off, on all but one as large as that of the one.
 const ROUND_OFF: f64 = 1e-10;
-/// Where it displaces nothing, t goes to the nearest bound at least, and as if it displaced so much of that.
+/// If a uniform pressure displaces nothing, t takes it as displacing this part of the elements' own, and goes to the nearest bound at least.
 const TAKEN: f64 = 1e-2;
 
 impl ProjectedNewton {
-    /// t.
+    /// Finds t.
     pub(super) fn find_direction<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<()> {
         let by_force = matches!(task.state.load, Load::Force(_));
         self.t.fill(0.0);
@@ -43,7 +43,7 @@ impl ProjectedNewton {
             }
             let norm = dot(&self.r, &self.r).sqrt();
             if k == 0 {
-                // Few elements that violate their bounds are less than what C may have: they are solved for all the same.
+                // A few violating elements may be below the residual allowed in C: they are solved for all the same.
                 let needed = NEEDED * task.goal.tolerance * scale;
                 target = if norm > needed { needed.max(ENOUGH * norm) } else { ENOUGH * norm };
             }
@@ -61,7 +61,7 @@ impl ProjectedNewton {
             if !(curvature > 0.0) {
                 break;
             }
-            self.go_along(rz / curvature);
+            self.advance(rz / curvature);
             let size = dot(&self.along, &self.along).sqrt() * rz / curvature;
             let update = size / (task.state.contact_count().max(1) as f64).sqrt();
             task.count_products();
@@ -72,7 +72,7 @@ impl ProjectedNewton {
         Ok(())
     }
 
-    /// Where it is needed: t is uniform, and A 1 is known. Returns (1, A 1), or 0, and whether a uniform pressure is as good as free.
+    /// Makes t uniform if that is needed. Returns (1, A 1), or 0, and whether a uniform pressure displaces nothing.
     fn begin_uniformly<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<(f64, bool)> {
         let count = self.free.iter().filter(|free| **free).count();
         if !task.problem.coefficients.is_mean_free() || 2 * count <= self.free.len() {
@@ -92,18 +92,18 @@ impl ProjectedNewton {
             let room = self.room(&task.state.p, task.set, amount > 0.0);
             amount = amount.abs().max(room).copysign(amount);
         }
-        self.go_along(amount);
+        self.advance(amount);
         Ok((displaced, is_free))
     }
 
-    /// How far the free elements can go `up`, or down, until the first is at a bound; 0 if none ever is.
+    /// The change, `up` or down, at which the first free element reaches a bound; 0 if none does.
     fn room<S: AdmissibleSet>(&self, p: &[f64], set: S, up: bool) -> f64 {
         let of = |(i, p): (usize, &f64)| if up { set.limit(i) - p } else { *p };
         let rooms = p.iter().enumerate().filter(|(i, _)| self.free[*i]).map(of).filter(|room| *room > 0.0);
         Some(rooms.fold(f64::INFINITY, f64::min)).filter(|room| room.is_finite()).unwrap_or(0.0)
     }
 
-    /// z = M r on the free elements; conjugate to a uniform t that came first. Returns (r, z).
+    /// z = M r on the free elements, conjugate to a uniform t. Returns (r, z).
     fn precondition(&mut self, without_mean: bool, uniform: f64) -> f64 {
         let ProjectedNewton { preconditioner, weight, free, r, z, uniform_product, .. } = self;
         z.copy_from_slice(r);
@@ -120,8 +120,8 @@ impl ProjectedNewton {
         dot(r, z)
     }
 
-    /// t and the residual, by `alpha` of the direction.
-    fn go_along(&mut self, alpha: f64) {
+    /// Moves t by `alpha` along the direction, and updates the residual.
+    fn advance(&mut self, alpha: f64) {
         for i in 0..self.t.len() {
             self.t[i] += alpha * self.along[i];
             self.r[i] -= if self.free[i] { alpha * self.along_product[i] } else { 0.0 };
@@ -129,7 +129,7 @@ impl ProjectedNewton {
     }
 }
 
-/// z on the free elements, of mean zero where t has none, conjugate to 1 where that came first.
+/// Restricts z to the free elements, makes its mean zero if that of t is, and makes it conjugate to a uniform t.
 fn finish(z: &mut [f64], free: &[bool], without_mean: bool, (uniform, product): (f64, &[f64])) {
     z.iter_mut().zip(free).filter(|(_, free)| !**free).for_each(|(z, _)| *z = 0.0);
     if without_mean {
@@ -141,7 +141,7 @@ fn finish(z: &mut [f64], free: &[bool], without_mean: bool, (uniform, product): 
     }
 }
 
-/// Takes the mean of values on the free elements, which are 0 elsewhere, from them.
+/// Subtracts the mean on the free elements from values that are 0 elsewhere.
 fn remove_mean(values: &mut [f64], free: &[bool]) {
     let count = free.iter().filter(|free| **free).count();
     let mean = in_blocks(values.iter().copied()) / count.max(1) as f64;

@@ -1,6 +1,6 @@
-//! Newton's method, projected on the admissible pressures: the method that takes over where a faster one goes round in circles (Bertsekas,
-//! *Projected Newton methods for optimization problems with simple constraints*, 1982). Every step lowers the energy
-//! `(p, A p)/2 + (p, h - approach)`, so no state comes back.
+//! Newton's method, projected on the admissible pressures, for problems on which a faster method cycles (Bertsekas, *Projected Newton
+//! methods for optimization problems with simple constraints*, 1982). Every step lowers the energy `(p, A p)/2 + (p, h - approach)`, so no
+//! state recurs.
 //!
 //! ```text
 //! free elements: p > 0 or e < 0; with limits also p < p_max or e > 0
@@ -10,10 +10,10 @@
 //! s = -(d, e)/(d, A d), at most 1;   p = p + s d
 //! ```
 //!
-//! With a prescribed force, t has mean zero on the free elements, and the projection adds a constant there with which the force is carried.
+//! With a prescribed force, t has mean zero on the free elements, and the projection adds a constant there so that p carries the force.
 //!
-//! Where bounds cut much of t off, s is small: then d is projected again from a shorter t, and the next direction has fewer conjugate gradients.
-//! Long waves of t would push many elements to a bound at which they do not stay.
+//! If bounds cut off much of t, s is small. Then d is projected again from a shorter t, and the next direction has fewer conjugate gradients:
+//! long waves of t would push many elements to a bound at which they do not stay.
 
 mod bounds;
 mod direction;
@@ -30,30 +30,30 @@ use crate::sums::in_blocks;
 
 const MEMORY: &str = "the workspace of the projected Newton method";
 
-/// Conjugate gradients of one direction at most.
+/// Most conjugate gradients of one direction.
 const MOST: u32 = 16;
-/// A step of a smaller part of d is a short one. At half of it and beyond, all of d lowers the energy, too.
+/// Steps below this part of d are short. If the best part is at least 1/2, all of d lowers the energy as well (a parabola).
 const SHORT: f64 = 0.5;
-/// Directions anew without the elements that t leads out of a bound; after that all elements at a bound stay there.
+/// Directions recomputed without the elements that t would move beyond a bound; after these all elements at a bound stay there.
 const TRIES: u32 = 3;
-/// Every step lowers the energy, but not the violation: with limits that differ by a thousand times it may stand still for more than a hundred steps.
+/// Steps lower the energy, but not always the violation: with limits that differ a thousandfold it may stagnate for over a hundred steps.
 const PATIENCE: u32 = 400;
-/// Each time that p + t leads uphill, t is taken times this.
+/// Factor on t if p + t leads uphill.
 const SHORTER: f64 = 0.25;
-/// A t that leads uphill when it is so much shorter is round-off.
+/// Shortest t, relative to the first: if it leads uphill, t is round-off.
 const ROUND_OFF: f64 = 1e-9;
 
 /// The method, and its memory, kept from one solve to the next. A must be symmetric.
 #[derive(Default)]
 pub struct ProjectedNewton {
-    /// None: the circulant is not positive, and W, the inverse of A's diagonal, stands for it.
+    /// None: the circulant is not positive, and W, the inverse of A's diagonal, replaces it.
     preconditioner: Option<(Workspace<f64>, Preconditioner<f64>)>,
     weight: Vec<f64>,
     free: Vec<bool>,
     /// e on elements with a surface.
     distance: Vec<f64>,
     t: Vec<f64>,
-    /// Of the conjugate gradients: the residual, the preconditioned one, the direction and its product, and that of 1 on the free elements.
+    /// Conjugate gradients: the residual, preconditioned residual, direction, its product, and the product of 1 on the free elements.
     r: Vec<f64>,
     z: Vec<f64>,
     along: Vec<f64>,
@@ -62,12 +62,12 @@ pub struct ProjectedNewton {
     /// d and A d.
     change: Vec<f64>,
     change_product: Vec<f64>,
-    /// Of the next direction.
+    /// Most conjugate gradients of the next direction.
     most: u32,
     began: bool,
 }
 
-/// A step from p to p + part d, and the energy that it takes.
+/// A step from p to p + part d, and its change of energy.
 #[derive(Clone, Copy, Debug)]
 struct Length {
     part: f64,
@@ -100,13 +100,13 @@ impl<S: AdmissibleSet> Step<S> for ProjectedNewton {
             self.set_up(task.problem)?;
             take_over(task)?;
         }
-        // The loop admits elements whose p is 0 still: they are free, but the approach is not theirs.
+        // The loop admits elements with p = 0: they are free, but must not determine the approach.
         find_contact(task.state, task.set);
         task.state.fit_approach(&task.problem.threads);
         find_free(task.state, task.set, &mut self.distance, &mut self.free);
         let slope = self.downhill(task)?;
         if !(slope < 0.0) {
-            // Nothing is downhill, or round-off hides it: the loop's certificate decides.
+            // No direction is downhill, up to round-off: the loop's certificate decides.
             task.refresh()?;
             let update = if slope == 0.0 { 0.0 } else { f64::INFINITY };
             return Ok(Change { update, gives_up: true, ..Change::default() });
@@ -135,7 +135,7 @@ impl ProjectedNewton {
         [weight, distance, t, r, z, along, along_product, uniform_product, change, change_product]
     }
 
-    /// The preconditioner, and W.
+    /// Makes the preconditioner and W.
     fn set_up(&mut self, problem: &Problem) -> Result<()> {
         let Problem { coefficients, grid, threads, .. } = problem;
         self.preconditioner = match Preconditioner::new(coefficients, 1.0, grid, threads)? {
@@ -148,7 +148,7 @@ impl ProjectedNewton {
         Ok(())
     }
 
-    /// t, and d, that lead downhill, as d's slope says. It is not negative where there are none.
+    /// Finds t and d that lead downhill. Returns the slope of d, which is not negative if there are none.
     fn downhill<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<f64> {
         let mut tries = 0;
         let mut slope = loop {
@@ -168,13 +168,13 @@ impl ProjectedNewton {
         Ok(slope)
     }
 
-    /// How far along d, or along a d from a shorter t where that lowers the energy more.
+    /// The step along d, or along a d from a shorter t if that lowers the energy more.
     fn search<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>, slope: f64) -> Result<Length> {
         task.problem.displace(&self.change, &mut self.change_product)?;
         let first = self.length(slope);
         let mut found = first;
         if first.part < SHORT {
-            // The first d is kept where nothing else is needed now.
+            // The first d is kept in vectors that are free now.
             std::mem::swap(&mut self.change, &mut self.r);
             std::mem::swap(&mut self.change_product, &mut self.z);
             let slope = self.project(task.state, task.set, 2.0 * first.part);
@@ -187,19 +187,19 @@ impl ProjectedNewton {
             }
         }
         self.most = if first.part < SHORT { (self.most / 2).max(1) } else { (2 * self.most).min(MOST) };
-        // All of d lowers the energy, too, and takes elements to their bounds.
+        // All of d lowers the energy as well, and moves elements to their bounds.
         let part = if found.part >= SHORT { 1.0 } else { found.part };
         Ok(Length { part, ..found })
     }
 
-    /// The part of d, of which the product is known, that lowers the energy most.
+    /// The part of d that lowers the energy most, from the product of d.
     fn length(&self, slope: f64) -> Length {
         let curvature = dot(&self.change, &self.change_product);
         let part = if curvature > 0.0 { (-slope / curvature).min(1.0) } else { 1.0 };
         Length { part, energy: part * (slope + 0.5 * part * curvature) }
     }
 
-    /// p = p + part d, u with it, and C = {0 < p < limit}. Returns how many elements changed sides.
+    /// p = p + part d, u likewise, and C = {0 < p < limit}. Returns the number of elements that changed sides.
     fn take<S: AdmissibleSet>(&mut self, state: &mut State, set: S, part: f64) -> u64 {
         for i in 0..state.p.len() {
             // p + (project(p + t) - p) may miss a bound by round-off.
@@ -212,7 +212,7 @@ impl ProjectedNewton {
     }
 }
 
-/// Admissible pressures that carry a prescribed force, C where they are positive, u = A p.
+/// Makes pressures admissible and carry a prescribed force, C from them, and u = A p.
 fn take_over<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<()> {
     let (state, set) = (&mut *task.state, task.set);
     let project = |(i, p): (usize, &mut f64)| *p = if p.is_finite() { set.project(i, *p) } else { 0.0 };

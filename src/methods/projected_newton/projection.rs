@@ -1,15 +1,15 @@
-//! The projection of p + t on the admissible pressures, which carry a prescribed force.
+//! The projection of p + t on the admissible pressures that carry a prescribed force.
 
 use super::{dot, ProjectedNewton};
 use crate::contact::{AdmissibleSet, State};
 use crate::scene::Load;
 use crate::sums::in_blocks;
 
-/// Steps to the constant at most: Newton's steps end after some, and bisections after the digits of a double.
+/// Most steps to the constant: a few Newton steps, and at most as many bisections as a double has bits.
 const STEPS: u32 = 200;
 
 impl ProjectedNewton {
-    /// d = project(p + length t) - p, and in `along` where that leads. Returns its slope (d, e).
+    /// d = project(p + length t) - p, with p + d in `along`. Returns its slope (d, e).
     pub(super) fn project<S: AdmissibleSet>(&mut self, state: &State, set: S, length: f64) -> f64 {
         let ProjectedNewton { free, distance, t, along, change, .. } = self;
         let moved = |i: usize| state.p[i] + length * t[i];
@@ -36,8 +36,8 @@ fn is_between<S: AdmissibleSet>(set: S, i: usize, p: f64) -> bool {
     p > 0.0 && p < set.limit(i)
 }
 
-/// The constant with which the sum is `wanted`. The sum grows with the constant, in pieces that are linear, whose slope is a number of elements;
-/// `size` is that of a pressure.
+/// The constant with which the sum is `wanted`. The sum is a piecewise linear, growing function of the constant, whose slope is a number of elements;
+/// `size` is the size of a pressure.
 pub(super) fn constant_for(wanted: f64, sum: impl Fn(f64) -> f64, slope: impl Fn(f64) -> usize, size: f64) -> f64 {
     let (mut low, mut high, mut constant) = (f64::NEG_INFINITY, f64::INFINITY, 0.0);
     let mut reach = size.max(f64::MIN_POSITIVE);

@@ -1,7 +1,7 @@
-//! The bill of effects: how much each quantity changes without an effect, what leaving it out saves, and whether that is allowed.
+//! The bill of effects: the change of each quantity without an effect, the savings by leaving it out, and the verdict.
 //!
-//! The scene is solved on small grids, as it is and without each of its effects. What a quantity changes by on grids of twice the elements
-//! tells the error of the change (module `quantities`). Pairs are left out, too: leaving out two is not the sum of leaving out each.
+//! The scene is solved on small grids, as it is and without each of its effects. The change from grid to grid gives the error of a change of a
+//! quantity (module `quantities`). Pairs are left out as well: the change without two effects is not the sum of the changes without each.
 
 mod asked;
 mod effort;
@@ -22,10 +22,10 @@ use crate::scene::Scene;
 use small_grids::SmallGrids;
 
 /// The bill of a scene: for each omission, and for each pair, a row for each of the quantities `wanted`. A scene without effects has none.
-/// ITERATION_LIMIT, CANCELLED: `progress` said so; rows have what was known then.
+/// ITERATION_LIMIT, CANCELLED (by `progress`): rows have the results so far.
 ///
 /// # Errors
-/// Those of the scene; `Unsupported`: own coefficients, tractions that a handle keeps, a contact area that is fixed.
+/// Those of the scene; `Unsupported`: own coefficients, tractions kept by a handle, a fixed contact area.
 pub fn effects_bill(
     scene: &Scene<'_>,
     options: &Options,

@@ -1,4 +1,4 @@
-//! Leaving out what the bill says is negligible.
+//! Omits effects that the bill shows to be negligible.
 
 use super::asked::BillOptions;
 use super::omission::Omission;
@@ -9,12 +9,12 @@ use crate::scene::Scene;
 use crate::solver::quantities::Quantity;
 use crate::solver::{InitialGuess, Options};
 
-/// An omission that a solve has made.
+/// The omissions of a solve.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Neglected {
-    /// Each of them.
+    /// The omissions.
     pub omissions: Vec<Omission>,
-    /// By how much that may be wrong, relative to the quantities; 0 where nothing was left out.
+    /// The relative error by the omissions; 0 without any.
     pub error: f64,
 }
 
@@ -22,9 +22,9 @@ pub struct Neglected {
 const KEPT: [Quantity; 3] = [Quantity::Force, Quantity::MaxPressure, Quantity::ContactArea];
 
 impl Neglected {
-    /// The omissions from `scene` that a target allows all together: each is negligible, and the rest of the scene is solved once
-    /// more on small grids. Where that changes too much, the one with the largest change comes back. What makes the result of another kind is
-    /// never left out: friction, adhesion, a step in time, and a layer in the place of a coating. Nor is a pressure limit: small grids do not see the peaks that
+    /// The omissions from `scene` that a target allows together: each is negligible, and the rest of the scene is solved again on small grids. If
+    /// this changes too much, the omission with the largest change is withdrawn. Effects that determine the kind of the result are never left out:
+    /// friction, adhesion, a step in time, and a layer in place of a coating. Nor is a pressure limit: small grids do not resolve the peaks that
     /// reach it, and a limit that no element reaches changes nothing.
     pub fn of(scene: &Scene<'_>, options: &Options, target: f64) -> Result<Neglected> {
         let asked = BillOptions { pairs: false, ..BillOptions::new(target) };
@@ -36,7 +36,7 @@ impl Neglected {
             | Omission::Adhesion
             | Omission::PressureLimit
             | Omission::Visco => true,
-            // Where there is no patch there is no surface: that stays.
+            // Elements without a patch have no surface. This stays when the patches are omitted.
             Omission::Patches => scene.patches.is_some_and(|patches| patches.patch.iter().any(|patch| *patch < 0)),
             _ => false,
         };
@@ -66,18 +66,18 @@ impl Neglected {
         Ok(Neglected::default())
     }
 
-    /// One bit for each: `1 << (number - 1)`.
+    /// One bit for each omission: `1 << (number - 1)`.
     pub fn bits(&self) -> i64 {
         self.omissions.iter().map(|one| 1 << (one.number() - 1)).sum()
     }
 
-    /// The scene without it.
+    /// The scene with the omissions.
     pub fn leave_out<'a>(&self, scene: &Scene<'a>) -> Scene<'a> {
         self.omissions.iter().fold(scene.clone(), |scene, omission| omission.leave_out(&scene))
     }
 }
 
-/// Those that a scene has.
+/// The quantities of [`KEPT`] that a scene has.
 fn kept(scene: &Scene<'_>) -> Vec<Quantity> {
     let tangential = [Quantity::TangentialForce, Quantity::Creepage];
     KEPT.into_iter().chain(tangential.into_iter().filter(|quantity| quantity.check(scene).is_ok())).collect()
@@ -105,7 +105,7 @@ fn bill(
     Ok(grids.rows())
 }
 
-/// The largest relative change without all of them; none where it is not negligible.
+/// The largest relative change with all omissions together; none if it is not negligible.
 fn together(
     scene: &Scene<'_>,
     options: &Options,

@@ -1,43 +1,43 @@
-//! Omissions: the effects that a scene names, and the refinements that it has without naming them.
+//! Omissions: the named effects of a scene, and refinements that it has without naming them.
 
 use crate::effects::replace_bodies;
 use crate::scene::{Bodies, Coefficient, Friction, Layer, Scene};
 
-/// Something that is left out, or that something simpler takes the place of.
+/// An effect that is left out or replaced by a simpler one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Omission {
-    /// The coatings: the bodies are all of the material below.
+    /// The coatings: the bodies are of the substrate's material.
     Coating,
     /// The period: the scene stands alone.
     Period,
-    /// The patches: all feel each other.
+    /// The patches: all are fully coupled.
     Patches,
     /// The thin compliant layer.
     Layer,
     /// The limit of pressures.
     PressureLimit,
-    /// Friction, with what tractions of unlike bodies do to pressures.
+    /// Friction, with the effect of tractions on pressures of unlike bodies.
     Friction,
-    /// That bodies are unlike: tractions and pressures do not feel each other.
+    /// The coupling of tractions and pressures of unlike bodies.
     Coupling,
     /// The spin.
     Spin,
     /// The tangential compliance of a third body.
     FrictionCompliance,
-    /// The coatings, in whose place a thin compliant layer is put: their limit for waves that are long beside their thickness.
+    /// The coatings, replaced by a thin compliant layer: their limit for waves much longer than their thickness.
     CoatingAsLayer,
     /// The attraction between the bodies.
     Adhesion,
     /// The law of friction: the coefficient is that at rest everywhere.
     FrictionLaw,
-    /// The yield of a third body: it carries whatever friction does.
+    /// The yield of a third body, which then carries all that friction does.
     FrictionLayer,
-    /// That bodies relax: they give way as at once.
+    /// The relaxation of the bodies, which keep their instantaneous compliance.
     Visco,
 }
 
 impl Omission {
-    /// All, in the order of their numbers in the C ABI, which begin at 1.
+    /// All omissions, in the order of their numbers in the C ABI, which begin at 1.
     pub const ALL: [Omission; 14] = [
         Omission::Coating,
         Omission::Period,
@@ -55,12 +55,12 @@ impl Omission {
         Omission::Visco,
     ];
 
-    /// Its number, from 1 on.
+    /// The number in the C ABI, from 1 on.
     pub fn number(self) -> usize {
         self as usize + 1
     }
 
-    /// Its name.
+    /// The name.
     pub fn name(self) -> &'static str {
         const NAMES: [&str; 14] = [
             "coating",
@@ -92,7 +92,7 @@ impl Omission {
         left_out
     }
 
-    /// Those that a scene has.
+    /// The omissions that a scene allows.
     pub fn of(scene: &Scene<'_>) -> Vec<Omission> {
         Omission::ALL.into_iter().filter(|omission| omission.is_in(scene)).collect()
     }
@@ -100,7 +100,7 @@ impl Omission {
     fn is_in(self, scene: &Scene<'_>) -> bool {
         let friction = scene.friction.as_ref();
         match self {
-            // Without the coatings two rigid bodies do not give way at all, and of what relaxes they are all.
+            // Rigid bodies without coatings have no compliance, and coatings on them may be all that relaxes.
             Omission::Coating => may_lose_coating(scene),
             Omission::CoatingAsLayer => may_lose_coating(scene) && as_layer(scene).is_some(),
             Omission::Period => scene.period.is_some_and(|period| period.x || period.y),
@@ -120,7 +120,7 @@ impl Omission {
         }
     }
 
-    /// Whether leaving out both is another scene than leaving out one of them.
+    /// Whether leaving out both differs from leaving out one of them.
     pub fn goes_with(self, other: Omission) -> bool {
         use Omission::{
             Coating, CoatingAsLayer, Coupling, Friction, FrictionCompliance, FrictionLaw, FrictionLayer, Layer, Spin,
@@ -132,7 +132,7 @@ impl Omission {
         self != other && !same(self, other) && !same(other, self)
     }
 
-    /// The scene without it.
+    /// The scene without the effect.
     pub fn leave_out<'a>(self, scene: &Scene<'a>) -> Scene<'a> {
         let mut left = scene.clone();
         match self {
@@ -142,7 +142,7 @@ impl Omission {
                 left.coating = None;
             }
             Omission::Period => left.period = None,
-            // Elements in no patch have no surface all the same.
+            // Elements in no patch still have no surface.
             Omission::Patches => left.patches = None,
             Omission::Layer => left.layer = None,
             Omission::Adhesion => left.adhesion = None,
@@ -182,11 +182,11 @@ fn alike(bodies: &Bodies) -> Bodies {
     Bodies::same(1.0 / compliance, ratio.min(0.5))
 }
 
-/// Of a wave that is long beside a coating: its wave number times the thickness. What a thin layer leaves out is of this order.
+/// Wave number times thickness of a long wave. The error of a thin layer is of this order.
 const LONG: f64 = 1e-3;
 
-/// The thin layer that gives way to long waves as the coatings do, together with the layer there is; none if that differs from element to
-/// element, and where the coatings are stiffer than the bodies.
+/// The thin layer with the response of the coatings to long waves, together with the scene's layer. None if that layer differs between elements, or
+/// if the coatings are stiffer than the bodies.
 fn as_layer<'a>(scene: &Scene<'a>) -> Option<Layer<'a>> {
     let there = match scene.layer {
         None => 0.0,
@@ -197,7 +197,7 @@ fn as_layer<'a>(scene: &Scene<'a>) -> Option<Layer<'a>> {
     let thickest =
         (0..2).filter_map(|body| coating.in_effect(body, &plain)).map(|layer| layer.thickness).fold(0.0, f64::max);
     let wave_number = LONG / thickest;
-    // Of half-spaces alone: 2/(E* k).
+    // Half-spaces alone have the response 2/(E* k).
     let added = coating.compliance(&plain, wave_number).ok()? - 2.0 * scene.bodies.compliance() / wave_number;
     if added < 0.0 {
         return None;

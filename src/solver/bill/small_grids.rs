@@ -1,4 +1,4 @@
-//! The small grids that a bill is made of: on each the scene is solved as it is, and without what can be left out.
+//! The small grids of a bill: on each the scene is solved as it is, and with each omission.
 
 use std::time::Instant;
 
@@ -14,22 +14,22 @@ use crate::solver::quantities::{Lack, OnGrid, Quantity, Sequence};
 use crate::solver::{Options, Outcome, ProgressCallback};
 use crate::threads::Threads;
 
-/// The effort of a bill whatever the scene's is: less than a tenth of a second, since counts do not tell all.
+/// The least effort of a bill in ns: below a tenth of a second, as counts are not exact.
 const EFFORT: f64 = 7e7;
-/// The same as a part of the scene's.
+/// The effort of a bill relative to the scene's.
 const PART: f64 = 0.05;
 /// The power of the elements with which the effort of a scene grows.
 const GROWTH: f64 = 1.1;
-/// The next grid takes so many times as long, at most.
+/// Bound on the ratio of the effort of the next grid.
 const NEXT: f64 = 5.0;
-/// Elements of the first grid in its longer direction, at least.
+/// Least elements of the first grid in its longer direction.
 const FIRST: usize = 16;
-/// Elements that change sides at once: four where a scene has two planes of symmetry. Fewer show in no area.
+/// Elements that change sides at once: four with two planes of symmetry. Areas do not resolve smaller changes.
 const JUMP: f64 = 4.0;
-/// Of the target, what residuals may hide.
+/// Tolerance of solves relative to the target.
 const TOLERANCE_PER_TARGET: f64 = 0.01;
 
-/// Refuses what has no bill.
+/// Refuses scenes without a bill.
 pub fn check(scene: &Scene<'_>, options: &Options, asked: &BillOptions) -> Result<()> {
     options.check_several_grids()?;
     let (target, seconds) = (asked.target, asked.max_seconds);
@@ -41,28 +41,28 @@ pub fn check(scene: &Scene<'_>, options: &Options, asked: &BillOptions) -> Resul
     effects::check_other_grids(scene)
 }
 
-/// Of a quantity, or why there is none.
+/// The value of a quantity, or why there is none.
 type Value = std::result::Result<f64, Lack>;
 
-/// The scene with something left out, or as it is where nothing is.
+/// The scene with an omission, or as it is.
 pub struct Variant {
     pub left_out: Vec<Omission>,
     /// By quantity: the value, on each grid.
     pub values: Vec<Value>,
     /// By quantity: the change against the scene as it is, grid by grid.
     pub changes: Vec<Sequence>,
-    /// Whether the largest pressure of the finest grid so far is no peak that its elements do not resolve.
+    /// Whether the elements of the finest grid so far resolve the peak of the pressure.
     has_peak: bool,
-    /// The largest relative change on it of all but pressures and areas.
+    /// The largest relative change on the finest grid so far of quantities other than pressures and areas.
     moved: f64,
-    /// On each grid.
+    /// The cost on each grid.
     costs: Vec<Cost>,
-    /// On the finest grid so far.
+    /// The effort on the finest grid so far.
     effort: f64,
     bytes: f64,
 }
 
-/// The largest relative change of what is no pressure and no area; without any of these infinite.
+/// The largest relative change of quantities other than pressures and areas; infinite if there are none.
 fn moved(wanted: &[Quantity], now: &[Value], before: &[Value]) -> f64 {
     let is_smooth = |quantity: &Quantity| !quantity.is_local() && !quantity.is_area();
     let of = |(quantity, (now, before)): (&Quantity, (&Value, &Value))| match (*now, *before) {
@@ -78,14 +78,14 @@ pub struct SmallGrids<'s, 'a> {
     options: Options,
     asked: BillOptions,
     wanted: Vec<Quantity>,
-    /// The first: the scene as it is.
+    /// The variants; the first is the scene as it is.
     pub variants: Vec<Variant>,
     /// Elements of the scene's grid over those of the last grid.
     ratio: f64,
 }
 
 impl<'s, 'a> SmallGrids<'s, 'a> {
-    /// `left_out`: one variant each.
+    /// The variants of the omissions `left_out`.
     pub fn new(
         scene: &'s Scene<'a>,
         options: &Options,
@@ -109,14 +109,14 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
         SmallGrids { scene, options, asked: *asked, wanted: wanted.to_vec(), variants, ratio: 1.0 }
     }
 
-    /// Solves on finer and finer grids, as long as there is time, and not beyond the scene's own.
+    /// Solves on finer and finer grids within the time, up to the scene's own.
     pub fn solve(&mut self, mut progress: Option<ProgressCallback<'_>>) -> Result<Outcome> {
         let began = Instant::now();
         if self.variants.len() < 2 {
             return Ok(Outcome::Converged);
         }
         let elements = self.scene.grid.mx.max(self.scene.grid.my);
-        // At least two grids: of one alone nothing is known of errors.
+        // At least two grids, as one alone gives no errors.
         let first = -((elements / FIRST).max(2).ilog2() as i32);
         let mut spent = 0.0;
         for doublings in first..=0 {
@@ -152,7 +152,7 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
             let watch = progress.as_mut().map(|progress| &mut **progress as ProgressCallback<'_>);
             let found = match OnGrid::solve(&left, &self.options, &self.wanted, watch) {
                 Ok(found) => found,
-                // The rest is no scene that can be solved: nothing is known of it.
+                // The variant cannot be solved, and has no values.
                 Err(Error::Infeasible(_) | Error::Unsupported(_)) if k > 0 => continue,
                 // A coarse grid alone may carry less.
                 Err(Error::Infeasible(_)) if doublings < 0 => return Ok(true),
@@ -172,7 +172,7 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
             variant.moved = moved(&self.wanted, &variant.values, &as_it_is);
             for (q, quantity) in self.wanted.iter().enumerate() {
                 if let (Ok(value), Some(Ok(before))) = (variant.values[q], as_it_is.get(q)) {
-                    // On the scene's own grid an area is what it is.
+                    // On the scene's own grid the change of an area is exact.
                     let by_elements = match quantity.is_area() && doublings < 0 {
                         true => (JUMP * grid.element_area()).min(MOVES * variant.moved * before.abs()),
                         false => 0.0,
@@ -187,7 +187,7 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
         Ok(true)
     }
 
-    /// The rows.
+    /// The rows of the bill.
     pub fn rows(&self) -> Vec<BillRow> {
         let Some((whole, variants)) = self.variants.split_first() else { return vec![] };
         let seconds = |variant: &Variant| seconds_on(&variant.costs, self.scene.grid.len() as f64);

@@ -1,13 +1,13 @@
-//! One row of the bill: a change, its error, and what follows from both.
+//! One row of the bill: a change, its error, and the verdict.
 
 use super::omission::Omission;
 use crate::solver::quantities::{Lack, Quantity, Sequence, SUM};
 
-/// An area, or a peak that elements do not resolve, changes by at most so many times the largest relative change of the other quantities. The area of a
-/// Hertz contact changes as the approach does, that of other smooth surfaces up to twice as much.
+/// Bound on the relative change of an area, or of a peak that elements do not resolve, over the largest of the other quantities. The area
+/// of a Hertz contact changes as the approach does, that of other smooth surfaces up to twice as much.
 pub const MOVES: f64 = 3.0;
 
-/// Single pressures are off by at most so many times the residual (docs/accuracy.md: a hundredth of the target for these).
+/// Bound on the relative error of single pressures over the residual (docs/accuracy.md: a hundredth of the target for these).
 const OF_RESIDUAL: f64 = 100.0;
 
 /// The verdict of a row.
@@ -15,9 +15,9 @@ const OF_RESIDUAL: f64 = 100.0;
 pub enum Verdict {
     /// The quantity changes by less than the target, its error included.
     Negligible,
-    /// It changes by more than the target, less its error.
+    /// The quantity changes by more than the target, even less its error.
     Needed,
-    /// The change is too near to the target, or its error is not known: more time decides, that is finer grids.
+    /// The change is too near to the target, or its error is unknown: finer grids, that is more time, decide.
     NotDecided,
 }
 
@@ -28,21 +28,21 @@ pub struct BillRow {
     pub omission: Omission,
     /// A second omission beside it.
     pub other: Option<Omission>,
-    /// Of which the change is.
+    /// The quantity that changes.
     pub quantity: Quantity,
-    /// The value of the scene as it is, on the last small grid; none: it has none.
+    /// The value of the scene as it is, on the last small grid, if it has one.
     pub value: Option<f64>,
-    /// Its change by leaving out.
+    /// The change by leaving out.
     pub change: Option<f64>,
-    /// How far the change may be off; none: not known.
+    /// The error of the change; none: unknown.
     pub error: Option<f64>,
-    /// Why one of them is not known.
+    /// Why value, change or error is unknown.
     pub lack: Option<Lack>,
     /// Negligible, needed, or not decided.
     pub verdict: Verdict,
-    /// Predicted seconds of the scene on its own grid with one thread, and without what is left out.
+    /// Predicted seconds of the scene on its own grid with one thread, as it is and with the omission.
     pub seconds: [f64; 2],
-    /// The same of bytes.
+    /// Predicted bytes, likewise.
     pub bytes: [f64; 2],
 }
 
@@ -52,22 +52,22 @@ pub struct Measured<'a> {
     pub value: Result<f64, Lack>,
     pub without: Result<f64, Lack>,
     pub change: &'a Sequence,
-    /// Whether the last grid is that of the scene: the change is what leaving out does there.
+    /// Whether the last grid is that of the scene, on which the change is then exact.
     pub on_own_grid: bool,
     /// Whether peaks of the pressure are known on the last grid.
     pub has_peaks: bool,
-    /// The largest relative change there of what is no pressure and no area.
+    /// The largest relative change on the last grid of quantities other than pressures and areas.
     pub moved: f64,
 }
 
 impl Measured<'_> {
-    /// How far the change may be off on the scene's grid. A peak that elements do not resolve moves as the rest does, but for a limit that peaks alone reach.
+    /// The error of the change on the scene's grid. An unresolved peak changes as the other quantities do, except by a limit that only peaks reach.
     fn error(&self, left_out: &[Omission]) -> Option<f64> {
         // A change of a sum converges, as the sum does.
         let slow = if self.quantity.is_local() { None } else { self.change.slow(SUM) };
         let falling = self.change.falling().or(slow).map(|falling| falling.now());
         match self.quantity {
-            // Whatever the changes before: it is that of the scene's grid.
+            // The change on the scene's grid counts, whatever the ones before.
             _ if self.on_own_grid => falling.or(self.change.hidden().map(|hidden| OF_RESIDUAL * hidden)),
             Quantity::MaxPressure if !self.has_peaks => {
                 let error = falling?.max(MOVES * self.moved * self.value.ok()?.abs());
@@ -77,7 +77,7 @@ impl Measured<'_> {
         }
     }
 
-    /// The row.
+    /// The row of the bill.
     pub fn row(&self, left_out: &[Omission], target: f64, seconds: [f64; 2], bytes: [f64; 2]) -> BillRow {
         let change = self.change.value();
         let error = self.error(left_out);
@@ -117,7 +117,7 @@ fn decide(value: f64, change: f64, error: f64, target: f64) -> Verdict {
     }
 }
 
-/// The value of a quantity where something is left out: without friction there are no tractions.
+/// The value of a quantity with omissions: without friction tangential forces are 0.
 pub fn without(quantity: Quantity, left_out: &[Omission], value: Result<f64, Lack>) -> Result<f64, Lack> {
     let has_no_friction = left_out.contains(&Omission::Friction);
     match (quantity, value) {

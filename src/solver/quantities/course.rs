@@ -1,39 +1,39 @@
-//! A quantity on grids of more and more elements, and its error on the last of them.
+//! A quantity on a sequence of finer grids, and its error on the last one.
 //!
-//! All but pressures and stresses at the surface are integrals of what is solved for, or lie below it: they converge, however slowly. Where their changes do not
-//! fall yet, a row of changes that fall slowly bounds the rest ([`Sequence::slow`]).
+//! All quantities except pressures and stresses at the surface are integrals of the solution, or lie below the surface. So they converge, however
+//! slowly. While their changes do not fall yet, a geometric series that falls slowly bounds the remaining changes ([`Sequence::slow`]).
 //!
-//! *Largest stresses.* Where tractions or pressures end steeply, stresses at the surface and some elements below it converge as the root of the elements.
-//! Elsewhere stresses converge with their square. On coarse elements the largest stress lies deep. Its changes from grid to grid do not tell that another one,
-//! close to the surface, will exceed it. So stresses at some depths, counted in elements, are followed, too. The error of the largest stress includes the
-//! predicted excess of each of them; if there is one, the error of the depth is the whole depth.
+//! *Largest stresses.* Where tractions or pressures end steeply, the error of stresses at the surface and some elements below it falls as the square
+//! root of the element size. Elsewhere it falls as the square of the size. On coarse elements the largest stress lies deep. Its changes from grid to
+//! grid do not show that another stress, close to the surface, will exceed it. So stresses at some depths, counted in elements, are followed too. The
+//! error of the largest stress includes the predicted excess of each. If there is an excess, the error of the depth is the whole depth.
 //!
-//! *Lucky changes.* Of two grids there is one change, which may be small by chance. Tractions have such changes often, and so have stresses at the ends of
-//! tractions and of limits: their errors are believed from three grids on ([`Course::is_believed`]). A stress some elements below the surface follows the
-//! largest pressure: while that has no estimate, because elements are too coarse for its peak, the stress is not believed either.
+//! *Lucky changes.* Two grids give one change, which may be small by chance. This is frequent for tractions, and for stresses at the ends of
+//! tractions and of limits. Their errors are trusted from three grids on ([`Course::is_believed`]). A stress some elements below the surface follows
+//! the largest pressure. While that pressure has no estimate, because elements are too coarse for its peak, the stress is not trusted either.
 
 use super::deepest::{Peak, CLOSE};
 use super::{Quantity, Sequence};
 use crate::scene::{Motion, Scene};
 use crate::solver::falling::Falling;
 
-/// A ratio by which changes of a sum fall with a doubling at least, and those of a stress close to the surface.
+/// The largest ratio of successive changes with a doubling, for a sum and for a stress close to the surface.
 pub const SUM: f64 = 2.0 / 3.0;
 const SURFACE: f64 = 0.75;
-/// From so many elements below the surface on a stress is a mean of many pressures. Where a roller's rounded ends begin, stresses at 0.6 to 1.8 elements were
-/// off by 2 to 10 % with changes of 1 % from grid to grid; from 2.8 on by less than 2 %.
+/// From this depth in elements on a stress is a mean of many pressures. Measured where a roller's rounded ends begin: stresses at 0.6 to 1.8 elements
+/// had errors of 2 to 10 % with changes of 1 % from grid to grid. From 2.8 elements on the errors were below 2 %.
 const DEEP: f64 = 4.0;
-/// Elements by which an area is off at least, over the root of their number: the outline of a circle of n elements has `3.5 sqrt(n)`, of which grids of twice
-/// the elements may agree by chance.
+/// The least error of an area in elements, over the root of their number. The outline of a circle of n elements has `3.5 sqrt(n)` elements. Two grids
+/// may agree on them by chance.
 const OUTLINE: f64 = 0.3;
 
 /// The value of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Value {
     pub value: f64,
-    /// Of a largest stress and of its depth: that stress.
+    /// The peak, for a largest stress or its depth.
     pub peak: Option<Peak>,
-    /// Of an area that is counted: its elements.
+    /// The number of elements, for an area.
     pub counted: f64,
 }
 
@@ -43,29 +43,29 @@ impl From<f64> for Value {
     }
 }
 
-/// Of one quantity.
+/// The sequence of values of one quantity.
 #[derive(Clone, Debug)]
 pub struct Course {
     quantity: Quantity,
-    /// Steady rolling: of first order in the step of the tractions, and irregular.
+    /// Steady rolling. The error is of first order in the step of the tractions, and irregular.
     rolls: bool,
-    /// The same of unlike bodies: slower on coarse grids.
+    /// Steady rolling of unlike bodies, which converges more slowly on coarse grids.
     is_slow: bool,
-    /// Whether single changes may be lucky.
+    /// Whether a single change may be small by chance.
     is_steep: bool,
     /// Whether the last grid is fine enough for the largest pressure.
     pressure_is_known: bool,
     values: Sequence,
-    /// Of a largest stress: itself, and those close to the surface.
+    /// The largest stress, and the stresses close to the surface.
     stress: Sequence,
     close: [Sequence; CLOSE.len()],
     last: Option<Peak>,
-    /// What counting elements leaves uncertain of an area.
+    /// The uncertainty of an area from counting elements.
     least: f64,
 }
 
 impl Course {
-    /// Of which no grid is solved yet.
+    /// A sequence without grids.
     pub fn of(quantity: Quantity, scene: &Scene<'_>) -> Course {
         let rolls = scene.friction.is_some_and(|friction| friction.motion == Motion::SteadyRolling);
         let rolls = rolls && quantity.is_tangential();
@@ -83,12 +83,12 @@ impl Course {
         }
     }
 
-    /// Which.
+    /// The quantity.
     pub fn quantity(&self) -> Quantity {
         self.quantity
     }
 
-    /// Adds the value on a grid with so many doublings, of which `residual` may hide this part.
+    /// Adds the value on a grid after so many doublings. `residual` is its relative uncertainty.
     pub fn add(&mut self, doublings: i32, found: Value, residual: f64) {
         self.values.add(doublings, found.value, residual * found.value.abs());
         self.last = found.peak;
@@ -101,35 +101,35 @@ impl Course {
         }
     }
 
-    /// Elements are at their limit, or attract each other: pressures end steeply there.
+    /// Notes that elements are at their limit or attract each other. Pressures end steeply there.
     pub fn reaches_limit(&mut self) {
         self.is_steep |= self.quantity.is_stress();
     }
 
-    /// Whether the last grid has an estimate of the largest pressure, or none has.
+    /// Notes whether the last grid has an estimate of the largest pressure, or none has.
     pub fn below_known_pressure(&mut self, is_known: bool) {
         self.pressure_is_known = is_known;
     }
 
-    /// Whether there are grids enough for a search to end with its error.
+    /// Whether there are enough grids for a search to accept the error.
     pub fn is_believed(&self) -> bool {
         let is_settled = self.pressure_is_known || self.last.is_none_or(|peak| peak.elements >= DEEP);
         is_settled && (!self.is_steep || self.len() > 2)
     }
 
-    /// Grids so far.
+    /// The number of grids so far.
     pub fn len(&self) -> usize {
         self.values.len()
     }
 
-    /// Whether a value that does not converge shows: in three changes.
+    /// Whether three changes are known, which show a value that does not converge.
     pub fn tells_singular(&self) -> bool {
         self.values.len() > 3
     }
 
-    /// The error on the last grid, where one grid has no estimate of it: of forces, pressures and areas only where nothing is estimated at all
-    /// (`lacks_estimates`: a single peak without an estimate is singular, or not resolved), and from three grids at least, since a value that
-    /// is infinite shows in its changes only.
+    /// The error on the last grid from the sequence, if a single grid gives no estimate. Forces, pressures and areas have one only if nothing is
+    /// estimated at all (`lacks_estimates`), because a single peak without an estimate is singular or not resolved. It then takes at least three
+    /// grids, because only the changes reveal an infinite value.
     pub fn falling(&self, lacks_estimates: bool) -> Option<Falling> {
         match (self.quantity, self.last) {
             (quantity, _) if quantity.has_estimate() && !(lacks_estimates && self.len() > 2) => None,
@@ -145,7 +145,7 @@ impl Course {
         }
     }
 
-    /// Of the largest stress as if it stayed where it is. Below the surface a stress is a mean of what acts there: it converges.
+    /// The error of the largest stress, if its position stays. Below the surface a stress is a mean of the loads and converges.
     fn of_peak(&self, peak: Peak) -> Option<Falling> {
         let (falling, slow) = (self.stress.falling(), self.stress.slow(SURFACE));
         if peak.is_near() {
@@ -155,8 +155,8 @@ impl Course {
         }
     }
 
-    /// By how much a stress close to the surface will exceed the largest one, its error included; negative: all stay below. Those that fall are slopes of the
-    /// largest one, and so are those that were as deep as that one is.
+    /// The predicted excess of a stress close to the surface over the largest one, error included. If it is negative, all stay below. Falling
+    /// stresses belong to the flank of the largest one, and so do stresses at its depth.
     fn overtakes(&self, peak: Peak, error: f64) -> f64 {
         let predicted = |(depth, stress): (&f64, &Sequence)| {
             let (change, doublings) = stress.last_change()?;
@@ -183,7 +183,7 @@ impl Course {
     }
 }
 
-/// The larger one of two errors, on this grid.
+/// The larger of two errors on this grid.
 fn larger(a: Option<Falling>, b: Option<Falling>) -> Option<Falling> {
     match (a, b) {
         (Some(a), Some(b)) => Some(if a.now() < b.now() { b } else { a }),

@@ -1,6 +1,7 @@
 //! The largest stresses below the surface, over all depths.
 //!
-//! The largest value of a depth is first taken at depths that grow by a ratio, from a quarter of an element to the length of what is loaded.
+//! The largest value of each depth is first taken at depths that grow by a ratio, from a quarter of an element to the length of the loaded
+//! part.
 //! Then parabolas through the three best depths find the largest one (successive parabolic interpolation; Brent 1973, chapter 5).
 
 use crate::contact::presses;
@@ -13,14 +14,14 @@ use crate::scene::Patches;
 use crate::stress::{subsurface_stress, Body, Depth, Loads, Wanted, MOST_SLENDER};
 use crate::threads::Threads;
 
-/// From depth to depth.
+/// The ratio of successive depths.
 const RATIO: f64 = 1.6;
-/// Of the longer side of an element: the first depth.
+/// The first depth, in longer sides of an element.
 const FIRST: f64 = 0.25;
-/// Parabolas at most, and how near they come to the depth, relative to it.
+/// Most parabolas, and the relative change of depth at which they end.
 const PARABOLAS: usize = 8;
 const NEAR: f64 = 1e-3;
-/// The depths next to the surface, in the longer side of an element: the first ones of those that are looked at.
+/// The depths next to the surface, in longer sides of an element: the first of those searched.
 pub const CLOSE: [f64; 7] = [
     0.0,
     FIRST,
@@ -36,21 +37,21 @@ pub const CLOSE: [f64; 7] = [
 pub struct Peak {
     pub value: f64,
     pub depth: f64,
-    /// The same in the longer side of an element.
+    /// The depth in longer sides of an element.
     pub elements: f64,
     /// The largest values at the depths [`CLOSE`] to the surface; 0: not known.
     pub close: [f64; CLOSE.len()],
 }
 
 impl Peak {
-    /// The larger of both.
+    /// The larger of two peaks.
     pub fn or(self, other: Peak) -> Peak {
         let larger = if other.value > self.value { other } else { self };
         let close = std::array::from_fn(|k| self.close[k].max(other.close[k]));
         Peak { close, ..larger }
     }
 
-    /// Whether it lies within an element of the surface: single pressures make it.
+    /// Whether it lies within an element of the surface, where single pressures determine it.
     pub fn is_near(&self) -> bool {
         self.elements < 1.0
     }
@@ -87,7 +88,7 @@ pub struct Surface<'a> {
 }
 
 impl<'a> Surface<'a> {
-    /// Of a result. Where it repeats itself, or where patches are given, the whole grid; else the part that is loaded.
+    /// The loads of a result: on the whole grid if it is periodic or has patches, else on the loaded part.
     pub fn of(
         (grid, periodic): (Grid, bool),
         pressure: &[f64],
@@ -111,7 +112,7 @@ impl<'a> Surface<'a> {
         Ok(Some(Surface { grid: part.grid(&grid), periodic, pressure: cut(&|i| pressure[i])?, tractions, patches }))
     }
 
-    /// The same as body 2 has it: tractions are opposite.
+    /// The loads on body 2: opposite tractions.
     pub fn of_body_2(mut self) -> Surface<'a> {
         self.tractions.iter_mut().flatten().flatten().for_each(|q| *q = -*q);
         self
@@ -125,7 +126,7 @@ impl<'a> Surface<'a> {
     /// The largest stress over all depths, and its depth, in a body of this Poisson ratio.
     pub fn peak(&self, stress: Stress, poisson_ratio: f64, threads: &Threads) -> Result<Peak> {
         let (short, long) = (self.grid.dx.min(self.grid.dy), self.grid.dx.max(self.grid.dy));
-        // Of very slender elements that repeat themselves stresses near the surface are not computed.
+        // For very slender elements of periodic bodies, stresses near the surface are not computed.
         let slender = self.periodic && long > MOST_SLENDER * short;
         let first = if slender { long } else { FIRST * long };
         let extent = (self.grid.mx as f64 * self.grid.dx).max(self.grid.my as f64 * self.grid.dy);
@@ -167,12 +168,12 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// The depth of the vertex of the parabola through three points, of which the one in the middle is the highest; between the outer two. Where
-/// the vertex is the middle itself, a little beside it.
+/// The depth of the vertex of the parabola through three points, the middle one being the highest. Stays a margin inside the outer two. If
+/// the vertex is undefined, the middle.
 fn vertex([a, b, c]: [Peak; 3]) -> f64 {
     let (left, right) = (b.depth - a.depth, c.depth - b.depth);
     let (rise, fall) = ((b.value - a.value) / left, (b.value - c.value) / right);
-    // Slopes at the middles of both parts; between them they fall linearly.
+    // rise and -fall are the slopes at the middles of both parts; the slope is linear between them.
     let z = 0.5 * (a.depth + b.depth) + 0.5 * (left + right) * rise / (rise + fall);
     let margin = 0.02;
     if z.is_finite() {

@@ -25,11 +25,11 @@ pub enum Quantity {
     ContactArea,
     /// The mean of the deformed distance over all elements with a surface.
     MeanGap,
-    /// dF/d approach, with the contact area as it is.
+    /// dF/d approach, at fixed contact area.
     Stiffness,
     /// The length of the tangential force.
     TangentialForce,
-    /// The length of the creepage, in those directions in which it is found: where the force is prescribed.
+    /// The length of the creepage, in the directions of prescribed force.
     Creepage,
     /// The moment of the tractions about the spin centre.
     SpinMoment,
@@ -37,14 +37,14 @@ pub enum Quantity {
     StickArea,
     /// The largest von Mises stress in both bodies.
     MaxVonMises,
-    /// The depth at which it is.
+    /// The depth of the largest von Mises stress.
     VonMisesDepth,
     /// The largest shear stress in both bodies.
     MaxShear,
 }
 
 impl Quantity {
-    /// All of them, in the order of their numbers in the C ABI.
+    /// All quantities, in the order of their numbers in the C ABI.
     pub const ALL: [Quantity; 12] = [
         Quantity::Force,
         Quantity::MaxPressure,
@@ -60,12 +60,12 @@ impl Quantity {
         Quantity::MaxShear,
     ];
 
-    /// Its number.
+    /// The number in the C ABI.
     pub fn number(self) -> usize {
         self as usize
     }
 
-    /// Its name, the same in C, Fortran and Python.
+    /// The name, the same in C, Fortran and Python.
     pub fn name(self) -> &'static str {
         const NAMES: [&str; 12] = [
             "force",
@@ -94,10 +94,10 @@ impl Quantity {
         matches!(self, Quantity::ContactArea | Quantity::StickArea)
     }
 
-    /// Elements across the contact, in the direction with fewer, from which on its estimate is believed. Measured on balls, ellipses, cones, two
-    /// balls, tori, superellipsoids, blunt rollers and punches anywhere between the elements: from there on at most 5 % of the estimates are below
-    /// the error, and none is below a third of it (docs/notes/2026-11-accuracy.md). Areas jump by whole rows of elements. Of what follows from
-    /// several grids the coarsest has a quarter of these elements.
+    /// The least elements across the contact, in the direction with fewer, for a valid estimate. Measured on balls, ellipses, cones, two
+    /// balls, tori, superellipsoids, blunt rollers and punches anywhere between the elements: with these, at most 5 % of the estimates are
+    /// below the error, and none is below a third of it (docs/notes/2026-11-accuracy.md). Areas jump by whole rows of elements. If an error
+    /// follows from several grids, the coarsest has a quarter of these elements.
     pub fn enough_across(self) -> usize {
         match self {
             Quantity::Force => 6,
@@ -108,13 +108,13 @@ impl Quantity {
         }
     }
 
-    /// Whether tractions make it.
+    /// Whether it is a quantity of the tangential problem.
     pub fn is_tangential(self) -> bool {
         use Quantity::{Creepage, SpinMoment, StickArea, TangentialForce};
         matches!(self, TangentialForce | Creepage | SpinMoment | StickArea)
     }
 
-    /// Whether it is a largest stress, or where that is.
+    /// Whether it is a largest stress, or its depth.
     pub fn is_stress(self) -> bool {
         matches!(self, Quantity::MaxVonMises | Quantity::VonMisesDepth | Quantity::MaxShear)
     }

@@ -1,4 +1,4 @@
-//! Quantities of a scene on its grid and on coarser ones, with their errors: a ledger for everything that can be asked.
+//! Quantities of a scene on its grid and on coarser ones, with their errors: the ledger of all quantities.
 
 use std::time::Instant;
 
@@ -11,15 +11,15 @@ use crate::solver::{Options, Outcome, ProgressCallback, Report, Solver};
 /// One quantity on one grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuantityRow {
-    /// Which.
+    /// The quantity.
     pub quantity: Quantity,
     /// The grid.
     pub grid: Grid,
-    /// Its value, if it has one.
+    /// The value, if there is one.
     pub value: Option<f64>,
-    /// How far that is off, if that is known.
+    /// The error of the value, if known.
     pub error: Option<f64>,
-    /// Why one of them is not known.
+    /// Why value or error is unknown.
     pub lack: Option<Lack>,
     /// Seconds of set-up and solve of the grid, the same for all its quantities; stresses and stiffness not included.
     pub seconds: f64,
@@ -27,27 +27,27 @@ pub struct QuantityRow {
     pub work_units: f64,
 }
 
-/// A grid that was solved.
+/// A solved grid.
 pub struct OnGrid {
     /// The grid.
     pub grid: Grid,
-    /// How the solve ended.
+    /// The outcome of the solve.
     pub outcome: Outcome,
-    /// The values of the quantities asked for, in their order.
+    /// The values of the wanted quantities, in their order.
     pub values: Vec<std::result::Result<Value, Lack>>,
     /// Errors from this grid alone.
     pub estimates: Vec<Option<f64>>,
-    /// Whether nothing is estimated from one such grid: a limit is reached, or something attracts.
+    /// Whether one such grid has no estimates: a limit is reached, or bodies attract.
     pub lacks_estimates: bool,
     /// The relative residual.
     pub residual: f64,
-    /// Its cost, and the part of the set-up.
+    /// Seconds, and the part of the set-up.
     pub seconds: f64,
     pub setup_seconds: f64,
     /// Products, in work units, and those of the tangential problem among them.
     pub work_units: f64,
     pub tangential: f64,
-    /// Bytes of its solver.
+    /// Bytes of the grid's solver.
     pub bytes: u64,
 }
 
@@ -82,14 +82,14 @@ impl OnGrid {
         })
     }
 
-    /// Whether its largest pressure is a peak that its elements resolve, as far as anything is estimated.
+    /// Whether the elements resolve the peak of the pressure, if there are estimates.
     pub fn has_peak(&self, wanted: &[Quantity]) -> bool {
         let at = wanted.iter().position(|quantity| *quantity == Quantity::MaxPressure);
         self.lacks_estimates || at.is_none_or(|at| self.estimates[at].is_some())
     }
 }
 
-/// The error that a report has.
+/// The error of a quantity in a report.
 fn estimate(scene: &Scene<'_>, report: &Report, quantity: Quantity) -> Option<f64> {
     let error = match quantity {
         Quantity::TangentialForce => of_tangential_force(scene, report),
@@ -101,7 +101,7 @@ fn estimate(scene: &Scene<'_>, report: &Report, quantity: Quantity) -> Option<f6
     Some(error).filter(|error| *error >= 0.0)
 }
 
-/// The error of the length of a tangential force that is found in both directions; negative: not known.
+/// The error of the length of a tangential force found in both directions; negative: unknown.
 fn of_tangential_force(scene: &Scene<'_>, report: &Report) -> f64 {
     let (Some(friction), Some(found)) = (&scene.friction, &report.friction) else { return -1.0 };
     let is_found = friction.prescribed.iter().all(|prescribed| matches!(prescribed, Prescribed::Creepage(_)));
@@ -114,11 +114,11 @@ fn of_tangential_force(scene: &Scene<'_>, report: &Report) -> f64 {
 }
 
 /// The values of `wanted` on the grid of the scene and on `coarser` grids with half the elements each, coarsest first, one row for each grid
-/// and quantity. Each grid is solved from nothing. Errors of force, largest pressure and area are the estimates of the report, all others
-/// follow from the grids before (module `sequence`): of the coarsest grid alone nothing is known.
+/// and quantity. Each grid is solved without a guess. Errors of force, largest pressure and area are the estimates of the report, all others
+/// follow from the grids before (module `sequence`); the coarsest grid has none.
 ///
 /// # Errors
-/// Those of a solve on any of the grids; `Unsupported`: own coefficients, kept tractions, and a contact area that is fixed.
+/// Those of a solve on any of the grids; `Unsupported`: own coefficients, kept tractions, and a fixed contact area.
 pub fn quantities(
     scene: &Scene<'_>,
     options: &Options,
@@ -133,7 +133,7 @@ pub fn quantities(
     let (mut rows, mut worst, mut before) = (Vec::new(), Outcome::Converged, None);
     for doublings in -(coarser as i32)..=0 {
         let grid = scaled(&scene.grid, doublings)?;
-        // So few elements cannot be halved any more.
+        // The grid cannot be coarsened any more.
         if before == Some(grid) {
             continue;
         }
@@ -167,7 +167,7 @@ fn row(k: usize, found: &OnGrid, doublings: i32, course: &mut Course) -> Quantit
         (Err(lack), _) => Some(lack),
         (Ok(_), Some(_)) => None,
         (Ok(_), None) if course.len() < 2 + usize::from(found.lacks_estimates) => Some(Lack::OneGrid),
-        // The report says so of one grid.
+        // The report of one grid has no estimate.
         (Ok(_), None) if course.tells_singular() || course.quantity().has_estimate() => Some(Lack::Singular),
         (Ok(_), None) => Some(Lack::Unsettled),
     };

@@ -1,20 +1,20 @@
-//! The error of a quantity from its values on grids of more and more elements.
+//! The error of a quantity from its values on finer and finer grids.
 //!
-//! With elements of size h a value is off by `c h^q`, q being 1 or 2 (Richardson). Between two grids, k doublings apart, it changes by `d`, so
-//! that `d/(2^k - 1)` is left where q = 1, and `d/(4^k - 1)` where q = 2. Areas jump from grid to grid: so no error is less than that of
-//! first order that the grid before has promised, unless both say that the order is the second.
+//! With elements of size h a value has the error `c h^q`, q = 1 or 2 (Richardson). With the change d between two grids, k doublings apart, the
+//! remaining error is `d/(2^k - 1)` for q = 1, and `d/(4^k - 1)` for q = 2. Areas jump from grid to grid: so no error is less than that of first
+//! order predicted on the grid before, unless both grids indicate second order.
 
 use crate::solver::falling::Falling;
 
-/// Changes that fall by less than this with a doubling, thrice or as often as is known, do not come to an end: the quantity is singular.
-/// A logarithm changes by the same each time, a change of first order by a half.
+/// Ratio of successive changes at a doubling above which, three times or as often as known, the quantity is singular. A logarithm has the ratio
+/// 1, first order 1/2.
 const SINGULAR: f64 = 0.8;
-/// Of the error of first order, what one of second order leaves at most: a quarter, and half of that for what is irregular.
+/// Largest error of second order, relative to that predicted at first order: a quarter, and half of that for irregularity.
 const SECOND_ORDER: f64 = 0.38;
-/// An error of second order is taken so many times, since its order is known from three grids only.
+/// Factor on an error of second order, whose order is known from three grids only.
 const MARGIN: f64 = 2.0;
 
-/// Changes of first order fall by this; slower ones are not taken to fall by more.
+/// Ratio of changes of first order, and least ratio for slower ones.
 const LEAST: f64 = 0.5;
 
 /// Values of one quantity on grids of the same rectangle, coarsest first.
@@ -31,7 +31,7 @@ struct Point {
 }
 
 impl Sequence {
-    /// Adds a grid with so many doublings, more than the one before. `hidden`: what the residual may hide of the value.
+    /// Adds a grid at `doublings`, more than the one before. `hidden`: the error of the value by the residual.
     pub fn add(&mut self, doublings: i32, value: f64, hidden: f64) {
         self.points.push(Point { doublings, value, hidden });
     }
@@ -41,7 +41,7 @@ impl Sequence {
         self.points.last().map(|point| point.value)
     }
 
-    /// What the residual may hide of the value on the last grid.
+    /// The error of the last value by the residual.
     pub fn hidden(&self) -> Option<f64> {
         self.points.last().map(|point| point.hidden)
     }
@@ -56,7 +56,7 @@ impl Sequence {
         self.points.len()
     }
 
-    /// The error on the last grid; none from one grid alone, or where the changes do not fall.
+    /// The error on the last grid; none from one grid, or if the changes do not fall.
     pub fn falling(&self) -> Option<Falling> {
         let last = self.points.last()?;
         let changes = self.changes();
@@ -77,7 +77,7 @@ impl Sequence {
         Some(Falling { by_two: found.max(promised), hidden, ..Falling::default() })
     }
 
-    /// The same of what is of first order and irregular: a small change is no second order.
+    /// The error of an irregular quantity of first order, for which a small change does not indicate second order.
     pub fn of_first_order(&self) -> Option<Falling> {
         let falling = self.falling()?;
         let [.., before, newest] = self.changes()[..] else { return Some(falling) };
@@ -85,8 +85,8 @@ impl Sequence {
         Some(Falling { by_two, by_four: 0.0, ..falling })
     }
 
-    /// The error of what converges for certain, whether its changes fall yet or not: the rest of a row of changes that fall as the last two do, by
-    /// `ratio` at least with a doubling, and by a half at most.
+    /// The error of a quantity known to converge, whether its changes fall yet or not: the rest of a geometric series with the ratio of the last
+    /// two changes, clamped between 1/2 and `ratio` at a doubling.
     pub fn slow(&self, ratio: f64) -> Option<Falling> {
         let (last, falls) = match self.changes().iter().map(|change| change.of_one().abs()).collect::<Vec<f64>>()[..] {
             [] => return None,
@@ -106,7 +106,7 @@ impl Sequence {
     }
 }
 
-/// From one grid to the next.
+/// The change from one grid to the next.
 #[derive(Clone, Copy, Debug)]
 struct Change {
     by: f64,
@@ -114,28 +114,28 @@ struct Change {
 }
 
 impl Change {
-    /// The remaining error where errors are of first order.
+    /// The remaining error at first order.
     fn first_order(&self) -> f64 {
         self.by.abs() / (2f64.powi(self.doublings) - 1.0)
     }
 
-    /// The same of second order.
+    /// The remaining error at second order.
     fn second_order(&self) -> f64 {
         self.by.abs() / (4f64.powi(self.doublings) - 1.0)
     }
 
-    /// The error of first order on the grid behind another change, as this one says.
+    /// The error of first order after the `next` change, predicted by this one.
     fn promises(&self, next: &Change) -> f64 {
         self.first_order() * 0.5_f64.powi(next.doublings)
     }
 
-    /// The change of a doubling.
+    /// The change per doubling.
     fn of_one(&self) -> f64 {
         self.by / f64::from(self.doublings)
     }
 }
 
-/// Whether the last three changes, or the two that there are, have one sign and do not fall. What the residual hides is no change.
+/// Whether the last three changes, or two if there are no more, have one sign and do not fall. Changes below `hidden` do not count.
 fn is_singular(changes: &[Change], hidden: f64) -> bool {
     let last = &changes[changes.len().saturating_sub(3)..];
     last.windows(2).all(|pair| {

@@ -15,24 +15,24 @@ use crate::sums::in_blocks;
 pub enum Lack {
     /// The scene has no friction.
     NoFriction,
-    /// The scene prescribes it.
+    /// The scene prescribes the quantity.
     Prescribed,
-    /// It is not computed with an effect of the scene.
+    /// An effect of the scene excludes it.
     Effect,
     /// There is no contact.
     NoContact,
-    /// It grows from grid to grid: it is infinite, or no grid resolves it.
+    /// The value grows from grid to grid: it is infinite, or no grid resolves it.
     Singular,
     /// One grid alone was solved.
     OneGrid,
     /// A grid was not solved.
     Unsolved,
-    /// Its changes from grid to grid do not fall yet: these grids do not tell whether it converges.
+    /// The changes from grid to grid do not decrease yet: convergence is open.
     Unsettled,
 }
 
 impl Quantity {
-    /// Refuses a quantity that a scene has on no grid.
+    /// Refuses a quantity that the scene has on no grid.
     pub fn check(self, scene: &Scene<'_>) -> Result<()> {
         let name = self.name();
         match self.lack(scene) {
@@ -46,8 +46,8 @@ impl Quantity {
         }
     }
 
-    /// Why a scene has it on no grid. Not inlined, as the functions below: taken out of the loop over quantities, questions to effects that a
-    /// scene does not name look at memory that nobody has written, which is harmless, and which valgrind tells.
+    /// Why the scene has the quantity on no grid. Not inlined, as the functions below: hoisted from the loop over quantities, the tests of
+    /// effects that a scene does not name read unwritten memory, which is harmless but reported by valgrind.
     #[inline(never)]
     fn lack(self, scene: &Scene<'_>) -> Option<Lack> {
         use Quantity::{Creepage, MaxShear, MaxVonMises, SpinMoment, StickArea, TangentialForce, VonMisesDepth};
@@ -66,14 +66,14 @@ impl Quantity {
                 let solved = [1, 2].iter().all(|body| of_scene(scene, *body, [None; 3]).is_ok());
                 (!solved).then_some(Lack::Effect)
             }
-            // That of a result whose attraction stands still would be another one.
+            // A stiffness at fixed attraction would not be that of the bodies.
             Quantity::Stiffness => scene.attraction().map(|_| Lack::Effect),
             _ => None,
         }
     }
 }
 
-/// The values of `wanted` after a solve of `scene`. Stiffness and stresses are computed here: they cost more than the solve may have.
+/// The values of `wanted` after a solve of `scene`. Stiffness and stresses are computed here, which may cost more than the solve.
 pub fn values(
     solver: &mut Solver,
     scene: &Scene<'_>,
@@ -119,7 +119,7 @@ pub fn values(
     Ok(values)
 }
 
-/// The corrected area.
+/// The corrected area, from the report or from the outline.
 fn area(solver: &Solver, report: &Report) -> f64 {
     let measures = &report.measures;
     if measures.corrected_area >= 0.0 {
@@ -172,7 +172,7 @@ fn tangential(
     }
 }
 
-/// The largest stress in both bodies: computed once.
+/// The largest stress in both bodies, computed once.
 #[inline(never)]
 fn peak(
     solver: &Solver,

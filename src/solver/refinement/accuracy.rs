@@ -1,25 +1,25 @@
-//! The accuracy that is asked for, and what it may cost.
+//! The wanted accuracy and its allowed cost.
 
 use super::outlook::Outlook;
 use crate::error::{invalid, require, Result};
 use crate::solver::falling::Falling;
 use crate::solver::quantities::Quantity;
 
-/// Elements of a grid at most, unless the caller sets a limit.
+/// Most elements of a grid, unless the caller sets a limit.
 pub(super) const MOST_ELEMENTS: u64 = 4096 * 4096;
-/// Elements that a grid can have at all.
+/// Most elements of any grid.
 pub(super) const ALL_ELEMENTS: u64 = i32::MAX as u64;
-/// Below this no estimate means anything: some hundred units of round-off.
+/// Errors below this cannot be estimated: some hundred units of round-off.
 pub(super) const ROUND_OFF: f64 = 1e-13;
-/// Residuals below this are not asked for.
+/// Least tolerance of a solve.
 const LEAST_TOLERANCE: f64 = 1e-12;
-/// The tolerance relative to the target of the force, and of the largest pressure: the residual then adds little to the error.
+/// The tolerance relative to the target of the force, and of the largest pressure, so that the residual adds little to the error.
 const TOLERANCE_PER_TARGET: f64 = 0.1;
 const TOLERANCE_PER_PRESSURE: f64 = 0.01;
 /// The accuracy that is asked for, and what it may cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
-    /// Relative errors of the quantities, by their [numbers](Quantity::number); 0: not asked for.
+    /// Relative errors of the quantities, by their [numbers](Quantity::number); 0: not wanted.
     pub targets: [f64; Quantity::ALL.len()],
     /// Seconds for all grids together; 0: no limit. A solve that takes longer than predicted is stopped.
     pub max_seconds: f64,
@@ -36,13 +36,13 @@ impl Accuracy {
         none.with(Quantity::Force, target)
     }
 
-    /// The same with a target of another quantity.
+    /// Adds a target of another quantity.
     pub fn with(mut self, quantity: Quantity, target: f64) -> Accuracy {
         self.targets[quantity.number()] = target;
         self
     }
 
-    /// The errors that have targets, relative to these.
+    /// The errors of quantities with targets, relative to these.
     pub(super) fn excesses(&self, outlook: &Outlook) -> Vec<Option<Falling>> {
         let of =
             |(quantity, target): (Quantity, f64)| outlook.falling(quantity).and_then(|falling| falling.over(target));
@@ -102,7 +102,7 @@ impl Accuracy {
     }
 }
 
-/// Refuses a relative error that says nothing: p = 0 has an error of 1.
+/// Refuses a relative error of 1 or more, which p = 0 has.
 pub(super) fn require_target(target: f64) -> Result<()> {
     require(
         target > 0.0 && target < 1.0,

@@ -1,4 +1,4 @@
-//! Which grid comes next, and whether the limits allow it.
+//! The choice of the next grid within the limits.
 
 use std::fmt;
 
@@ -16,19 +16,19 @@ pub(super) struct Past {
     pub grid: Grid,
     /// Elements across the contact area.
     pub across: (usize, usize),
-    /// How many of them suffice for all targets.
+    /// Elements across that suffice for all targets.
     pub enough: usize,
     /// The errors over their targets, where known.
     pub excesses: Vec<Option<Falling>>,
-    /// Whether there are grids enough to believe them.
+    /// Whether there are enough grids for these errors to be valid.
     pub is_believed: bool,
-    /// Whether they are predicted over several doublings: not of largest stresses, whose order three grids hardly tell.
+    /// Whether errors are predicted over several doublings: not for largest stresses, whose order three grids hardly determine.
     pub leaps: bool,
-    /// Bytes held by its solver.
+    /// Bytes held by the grid's solver.
     pub bytes: u64,
-    /// Seconds that it took: undeformed distance, set-up and solve.
+    /// Seconds of this grid: undeformed distance, set-up and solve.
     pub seconds: f64,
-    /// The power of the number of elements with which they grow.
+    /// The power of the number of elements with which the seconds grow.
     pub exponent: f64,
     /// Seconds since the first grid was begun.
     pub elapsed: f64,
@@ -37,25 +37,25 @@ pub(super) struct Past {
 /// The next grid, or the end.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Next {
-    /// Double the elements of both directions, so many times.
+    /// Double the elements of both directions this many times.
     Refine(u32),
-    /// A limit is in the way: which.
+    /// The limit that forbids the next grid.
     Limit(String),
 }
 
-/// Grids with fewer elements in the longer direction need not have an estimate.
+/// Elements in the longer direction below which a grid may lack an estimate.
 const SMALL_GRID: usize = 32;
 /// The search ends after this many larger grids without an estimate, or this many grids without contact.
 const MOST_WITHOUT: usize = 3;
-/// Predictions over more doublings are not worth much, and a grid in between costs 1/64 of the last.
+/// Most doublings of a prediction: beyond, errors are uncertain, and a grid in between costs only 1/64 of the last.
 const MOST_DOUBLINGS: u32 = 3;
-/// Powers of the number of elements with which seconds can grow.
+/// Least and largest power of the number of elements with which seconds grow.
 const EXPONENTS: (f64, f64) = (0.9, 1.25);
-/// A grid that is predicted to take so much more than the time left is tried: what it found by then may be the better answer.
+/// A grid predicted to take up to this times the time left is tried: its result when time is over may be the better one.
 const WORTH_A_TRY: f64 = 1.2;
 
 impl Past {
-    /// `seconds`: of this grid, and since the first was begun.
+    /// `seconds`: of this grid, and since the begin of the first.
     pub fn of(
         (solved, is_believed): (&Solved, bool),
         accuracy: &Accuracy,
@@ -87,7 +87,7 @@ impl Past {
         self.across.0.min(self.across.1) >= self.enough
     }
 
-    /// Whether there should be an estimate, and is none.
+    /// Whether an estimate is missing on a grid that should have one.
     pub fn lacks_estimate(&self) -> bool {
         self.grid.mx.max(self.grid.my) >= SMALL_GRID && self.worst().is_none()
     }
@@ -115,7 +115,7 @@ impl fmt::Display for Past {
 }
 
 impl Accuracy {
-    /// Whether and why it ends here.
+    /// The outcome and its reason, if the refinement ends here.
     pub(super) fn end(
         &self,
         past: &Past,
@@ -136,7 +136,7 @@ impl Accuracy {
             .then(|| (Outcome::Stagnated, "no estimate of the error can be trusted".into()))
     }
 
-    /// The next grid: the one that is predicted to meet the target, or as many doublings towards it as the limits allow.
+    /// The next grid: the one predicted to meet the target, or as many doublings towards it as the limits allow.
     pub(super) fn next(&self, past: &Past) -> Next {
         let mut doublings = self.doublings(past);
         loop {
@@ -148,7 +148,7 @@ impl Accuracy {
         }
     }
 
-    /// Doublings that the estimates and the elements across the contact ask for; one without estimates.
+    /// Doublings required by the estimates and by the elements across the contact; one without estimates.
     fn doublings(&self, past: &Past) -> u32 {
         let across = past.across.0.min(past.across.1);
         if across == 0 || !past.leaps || past.worst().is_none() {
@@ -159,7 +159,7 @@ impl Accuracy {
         (1..MOST_DOUBLINGS).find(|k| met(*k)).unwrap_or(MOST_DOUBLINGS)
     }
 
-    /// The limit that so many doublings would break, if any.
+    /// The limit that these doublings would break, if any.
     fn limit(&self, past: &Past, doublings: u32) -> Option<String> {
         let (mx, my) = ((past.grid.mx as u64) << doublings, (past.grid.my as u64) << doublings);
         let why = match past.is_resolved() {

@@ -8,7 +8,7 @@ use crate::solver::quantities::{Course, Lack, Quantity, Value};
 use crate::solver::{Report, Solver};
 use crate::threads::Threads;
 
-/// Elements in the shorter direction of a grid that a history begins with, at least.
+/// Least elements in the shorter direction of the first grid of a history.
 const LEAST: usize = 16;
 
 /// The relative errors of a solution, where they are known.
@@ -18,7 +18,7 @@ pub struct Outlook {
 }
 
 impl Outlook {
-    /// Of a solution with estimates.
+    /// The errors of a solution with estimates.
     pub fn of(solver: &Solver, report: &Report, load: Load) -> Outlook {
         let (error, measures) = (&report.error, &report.measures);
         let found = measures.found(load);
@@ -56,17 +56,17 @@ pub struct History {
 }
 
 impl History {
-    /// Of all that is wanted: where a limit is reached, or something attracts, one grid alone has no estimates.
+    /// The history of the wanted quantities. If a limit is reached or bodies attract, one grid alone has no estimates.
     pub fn of(wanted: impl Iterator<Item = Quantity>, scene: &Scene<'_>) -> History {
         History { courses: wanted.map(|quantity| Course::of(quantity, scene)).collect() }
     }
 
-    /// Whether grids below the scene's own tell of errors that it does not.
+    /// Whether errors need grids coarser than the scene's.
     pub fn needs_coarser(&self) -> bool {
         self.courses.iter().any(|course| !course.quantity().has_estimate())
     }
 
-    /// Elements in the shorter direction of the grid that it begins with, at least: fewer where three grids are needed of what lies below the surface.
+    /// Least elements in the shorter direction of the first grid: fewer if only stresses below the surface need three grids.
     pub fn least(&self, scene: &Scene<'_>) -> usize {
         let is_steep = scene.friction.is_some() || scene.pressure_limit.is_some();
         let of_several = || self.courses.iter().map(Course::quantity).filter(|quantity| !quantity.has_estimate());
@@ -77,17 +77,17 @@ impl History {
         }
     }
 
-    /// Whether there are grids enough for each error.
+    /// Whether there are enough grids for each error.
     pub fn is_believed(&self) -> bool {
         self.courses.iter().all(Course::is_believed)
     }
 
-    /// Which.
+    /// The wanted quantities.
     pub fn wanted(&self) -> Vec<Quantity> {
         self.courses.iter().map(Course::quantity).collect()
     }
 
-    /// Adds the values of a grid, and tells its outlook what they say.
+    /// Adds the values of a grid, and writes their errors to its outlook.
     pub fn add(&mut self, doublings: i32, values: &Values, outlook: &mut Outlook) {
         for (course, value) in self.courses.iter_mut().zip(&values.of) {
             let Ok(found) = *value else { continue };
@@ -96,7 +96,7 @@ impl History {
             if values.lack_estimates {
                 course.reaches_limit();
             }
-            // The values of one grid stay.
+            // Estimates from one grid are kept.
             if !course.quantity().has_estimate() || values.lack_estimates {
                 let falling = course.falling(values.lack_estimates);
                 outlook.set(course.quantity(), falling.and_then(|falling| falling.over(found.value)));
@@ -111,11 +111,11 @@ pub struct Values {
     pub of: Vec<Result<Value, Lack>>,
     /// The relative residual.
     pub residual: f64,
-    /// Whether nothing is estimated from one such grid: a limit is reached, or something attracts.
+    /// Whether one such grid has no estimates: a limit is reached, or bodies attract.
     pub lack_estimates: bool,
 }
 
-/// Elements across the contact area, along x and y; as many as need be in a direction in which it repeats itself without an end.
+/// Elements across the contact area, along x and y; unlimited in a direction in which a periodic area has no end.
 pub fn across(state: &State, repeats: (bool, bool)) -> (usize, usize) {
     let State { grid, contact, .. } = state;
     let touching = Rectangle::around_values(contact, grid, &Threads::One, |row| row.contains(&true));

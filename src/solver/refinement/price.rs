@@ -1,4 +1,4 @@
-//! One row of the price list, from samples.
+//! One row of the price list, computed from samples.
 
 use super::accuracy::{tolerance_for, MOST_ELEMENTS, ROUND_OFF};
 use super::sample::Sample;
@@ -8,17 +8,18 @@ use crate::scene::{scaled, Scene};
 use crate::solver::machine::{seconds_on, Cost, MOST_MORE};
 use crate::solver::quantities::Quantity;
 
-/// Residuals with which a grid begins fall so much with a doubling: it starts from the grid before, whose error is of this order at the rim.
+/// The ratio of the initial residuals of a grid and of the grid before it. A grid starts from the result of the grid before, whose error at the
+/// boundary of contact is of this order.
 const BEGINS: f64 = 0.35;
-/// By so much tangential products usually grow with a doubling.
+/// The usual growth of tangential products with a doubling.
 const MORE: f64 = 1.1;
-/// Elements across the contact on a sample that can be carried on.
+/// The fewest elements across the contact of a sample that can be extrapolated.
 pub(super) const ACROSS: usize = 12;
 
-/// The reason why an accuracy cannot be had.
+/// The reason why an accuracy cannot be reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Obstacle {
-    /// The largest pressure is singular, or contact on single elements: no grid is known to do.
+    /// The largest pressure is singular, or contact is on single elements. No sufficient grid is known.
     Singular,
     /// The target is below round-off.
     RoundOff,
@@ -28,11 +29,11 @@ pub enum Obstacle {
     Memory,
     /// It takes longer than `max_seconds`.
     Time,
-    /// Bodies relax, and the length of the step alone leaves more than the error that is wanted.
+    /// Bodies relax, and the error of the step length alone exceeds the target.
     Step,
 }
 
-/// Products that were counted, on a grid to a tolerance.
+/// Products counted on a grid to a tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Counted {
     pub grid: Grid,
@@ -49,13 +50,13 @@ impl Counted {
 /// The price of one accuracy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Price {
-    /// The relative error that is wanted.
+    /// The target of the relative error.
     pub target: f64,
-    /// The coarsest grid that is predicted to do, if that is known.
+    /// The coarsest sufficient grid by prediction, if it is known.
     pub grid: Option<Grid>,
-    /// The tolerance to ask for: more would be wasted.
+    /// The largest sufficient tolerance.
     pub tolerance: f64,
-    /// Relative error that this grid and tolerance are predicted to leave; negative: not known.
+    /// The predicted relative error with this grid and tolerance. Negative if not known.
     pub error: f64,
     /// Seconds of set-up and solve with the threads of the options; negative: not known.
     pub seconds: f64,
@@ -65,13 +66,13 @@ pub struct Price {
     pub work_units: f64,
     /// Bytes held by the solver; 0: not known.
     pub bytes: u64,
-    /// Why it cannot be had; none where it can.
+    /// Why the accuracy cannot be reached. None if it can.
     pub obstacle: Option<Obstacle>,
-    /// Of bodies that relax: the relative error that the length of the step leaves on any grid, beside `error`; 0: none relaxes.
+    /// The relative error of the step length on any grid, in addition to `error`. 0 if no body relaxes.
     pub time_error: f64,
 }
 
-/// Doublings from the last sample to the first grid that does, and the seconds of one thread to the tolerance of the samples.
+/// Predicts the doublings from the last sample to the first sufficient grid, and the seconds of one thread to the tolerance of the samples.
 pub(super) fn predict(
     scene: &Scene<'_>,
     samples: &[Sample],
@@ -89,8 +90,8 @@ pub(super) fn predict(
     Some((k, seconds_on(&costs, last.cost.elements * 4f64.powi(k))))
 }
 
-/// Of the seconds of a solve the part that a tolerance takes on a grid of so many doublings, and its products: those of the finest sample that is
-/// not finer. On finer grids than that the iteration begins nearer to the end.
+/// The fraction of a solve's seconds that a tolerance takes on a grid after so many doublings, and its products. They are those of the finest sample
+/// that is not finer. On finer grids the iteration starts closer to the solution.
 fn to(samples: &[Sample], doublings: i32, tolerance: f64) -> (f64, f64) {
     let at = samples.iter().rposition(|sample| sample.doublings <= doublings).unwrap_or(0);
     let Some(sample) = samples.get(at) else { return (1.0, 0.0) };
@@ -98,7 +99,7 @@ fn to(samples: &[Sample], doublings: i32, tolerance: f64) -> (f64, f64) {
     let begins = tolerance / BEGINS.powi(finer);
     if let Some((part, tangential)) = sample.between(tolerance) {
         let before = at.checked_sub(1).and_then(|before| samples[before].between(tolerance));
-        // What two samples show is irregular: half of it is believed, and half of what is usual.
+        // The growth between two samples is irregular. The prediction is its geometric mean with the usual growth.
         let seen = before.filter(|before| before.1 > 0.0).map_or(MORE, |before| tangential / before.1);
         let grows = (seen * MORE).sqrt().clamp(1.0, MOST_MORE);
         return (part, sample.normal(tolerance, begins) + tangential * grows.powi(finer));

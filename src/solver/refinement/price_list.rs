@@ -1,7 +1,7 @@
-//! The price list: costs of accuracies, before any is paid for.
+//! The price list: predicted costs of accuracies.
 //!
-//! The scene is solved on small grids, the last of which takes a small part of what the dearest accuracy does. Its errors and seconds
-//! are carried on to finer grids: errors by their orders (module `estimates`), seconds by a power of the number of elements.
+//! The scene is solved on small grids, the last of which takes a small part of the time of the dearest accuracy. Errors and seconds are
+//! extrapolated to finer grids: errors by their orders (module `estimates`), seconds by a power of the number of elements.
 
 use std::time::Instant;
 
@@ -18,29 +18,28 @@ use crate::solver::machine;
 use crate::solver::quantities::Quantity;
 use crate::solver::{Options, Outcome, ProgressCallback};
 
-/// The samples take at most this part of the seconds of the dearest accuracy, or these seconds; less a margin for the last of them.
+/// Most seconds of all samples: this part of the dearest accuracy's, or SECONDS; less a margin for the last sample.
 const PART: f64 = 0.014;
 const SECONDS: f64 = 0.035;
-/// The first sample has about so many elements in a direction.
+/// Elements of the first sample in a direction, about.
 const FIRST: usize = 32;
-/// Bound on the cost of a grid with four times as many elements, where samples have not shown it.
+/// Upper bound on the cost ratio of a grid with four times the elements, until samples show it.
 const NEXT: f64 = 5.0;
-/// The same from below.
+/// Lower bound on that ratio.
 const LEAST_NEXT: f64 = 2.0;
 
-/// On more elements contact that is still on fewer across is left alone, whatever is known.
+/// Elements of a sample beyond which an unresolved contact is accepted.
 const UNRESOLVED: f64 = 2e5;
-/// Samples at most.
+/// Most samples.
 const MOST_SAMPLES: usize = 12;
-/// Rows are counted for these seconds: those that are small.
+/// Most seconds for counting the products of small rows.
 const FOR_COUNTS: f64 = 0.005;
-/// Samples are timed again for this part of the seconds.
+/// Part of the seconds for timing samples again.
 const FOR_TIMES: f64 = 0.5;
 
-/// Predicts what each of the relative errors `targets` of a quantity costs, from solves on small grids over the rectangle of the
-/// scene. Of `accuracy` the limits are read; the rows say which of them is in the way. `surface` as in
-/// [`solve_to_accuracy`](super::solve_to_accuracy). Cancelled: by the surface, or by `progress`, which is told of each cycle; the rows then hold what
-/// was known.
+/// Predicts the cost of each of the relative errors `targets` of a quantity, from solves on small grids over the rectangle of the scene. Uses
+/// the limits of `accuracy`; a row names the limit that forbids it. `surface` as in [`solve_to_accuracy`](super::solve_to_accuracy). After
+/// a cancel by the surface or by `progress`, which is called after each cycle, the rows hold the results so far.
 pub fn cost_of_accuracy(
     scene: &Scene<'_>,
     options: &Options,
@@ -59,7 +58,7 @@ pub fn cost_of_accuracy(
     let (tolerance, loosest) = tolerances(quantity, targets, options);
     let options = Options { tolerance, estimates: true, ..*options };
     let one = Options { threads: 1, ..options };
-    // The first time in a process this times the machine, which is none of the list's own time.
+    // The first call in a process times the machine, before the list's own time begins.
     machine::growth(1.0, 1.0);
     let began = Instant::now();
     let (mut samples, mut doublings): (Vec<Sample>, i32) = (Vec::new(), first(&scene.grid));
@@ -85,7 +84,7 @@ pub fn cost_of_accuracy(
         if loosen(scene, &loose, (&mut samples, left), (&mut surface, &mut progress))? == Outcome::Cancelled {
             return Ok((Outcome::Cancelled, list(&samples)));
         }
-        // Where one grid has no estimate the error follows from three, and from four if two changes happen to be alike. A search believes no fewer.
+        // Without estimates from one grid, errors need three grids, or four if two changes happen to be equal. A search needs as many.
         let has_error = |last: &Sample| last.falling().is_some() && history.is_believed() || samples.len() > 3;
         let is_known = |last: &Sample| last.across >= ACROSS && has_error(last) || last.cost.elements > UNRESOLVED;
         let over = began.elapsed().as_secs_f64() + next > most;
@@ -101,7 +100,7 @@ pub fn cost_of_accuracy(
     })
 }
 
-/// Of the least and of the greatest target.
+/// Tolerances of solves for the least and the greatest target.
 fn tolerances(quantity: Quantity, targets: &[f64], options: &Options) -> (f64, f64) {
     let least = targets.iter().copied().fold(f64::INFINITY, f64::min);
     let tolerance = tolerance_for(quantity, least).clamp(1e-12, options.tolerance);
@@ -109,7 +108,7 @@ fn tolerances(quantity: Quantity, targets: &[f64], options: &Options) -> (f64, f
     (tolerance, tolerance_for(quantity, greatest).max(tolerance))
 }
 
-/// Solves the last sample to a loose tolerance, if that takes no more than the seconds that are `left`; else it has what the sample before has.
+/// Solves the last sample to a loose tolerance if that takes at most the seconds `left`; else it takes the cost of the sample before.
 fn loosen(
     scene: &Scene<'_>,
     options: &Options,
@@ -121,7 +120,7 @@ fn loosen(
     last.loosen(scene, options, before, callbacks)
 }
 
-/// How much faster more threads are. None: cancelled by a callback.
+/// The speed-up by more threads. None: cancelled by a callback.
 fn speed_up(
     scene: &Scene<'_>,
     options: &Options,
@@ -137,7 +136,7 @@ fn speed_up(
     })
 }
 
-/// The products of the rows whose grids take little time: these are solved. None: cancelled by a callback.
+/// The products of rows whose grids take little time, from solves. None: cancelled by a callback.
 fn count(
     scene: &Scene<'_>,
     options: &Options,
@@ -165,7 +164,7 @@ fn count(
     Ok(Some(counted))
 }
 
-/// Doublings, or with a sign halvings, from the scene's grid to the first sample.
+/// Doublings from the scene's grid to the first sample; negative: halvings.
 fn first(grid: &Grid) -> i32 {
     let halves = (0..).take_while(|k| grid.mx.max(grid.my) >> k >= 2 * FIRST && scaled(grid, -(k + 1)).is_ok());
     -(halves.count() as i32)

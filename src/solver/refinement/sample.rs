@@ -1,4 +1,4 @@
-//! Solves on small grids, from which prices are predicted.
+//! Solves on small grids for the prediction of prices.
 
 use std::time::Instant;
 
@@ -12,7 +12,7 @@ use crate::solver::machine::Cost;
 use crate::solver::quantities::Quantity;
 use crate::solver::{Options, Outcome, Progress, ProgressCallback};
 
-/// Samples are timed again, so often at most: the first solve of a size is slow, and machines are busy.
+/// Most repeated timings of a sample: the first solve of a size is slow, and machines are busy.
 const AGAIN: usize = 3;
 
 /// The callbacks of a sample: the surface, and whether to go on.
@@ -21,54 +21,54 @@ pub(super) type Callbacks<'c, 's, 'p> = (&'c mut Option<SurfaceCallback<'s>>, &'
 /// The end of a sample.
 pub(super) enum Taken {
     Sample(Box<Sample>),
-    /// By a callback.
+    /// Cancelled by a callback.
     Cancelled,
     Unsolved,
 }
 
-/// By a callback.
+/// Cancelled by a callback.
 pub(super) struct Cancelled;
 
-/// Of an iteration: the residual, seconds since the start of the surface, products of the normal problem until then.
+/// An iteration: the residual, seconds since the start of the surface, products of the normal problem so far.
 type Told = (f64, f64, f64);
 
 /// The results of a small grid.
 pub(super) struct Sample {
     pub(super) doublings: i32,
-    /// Of one thread or of all, to this tolerance.
+    /// The cost of a solve to its tolerance.
     pub(super) cost: Cost,
     /// Seconds without those of stresses and of the stiffness.
     pub(super) solve: f64,
     tolerance: f64,
-    /// In the direction with fewer of them.
+    /// Elements across the contact, in the direction with fewer.
     pub(super) across: usize,
     values: Values,
     outlook: Outlook,
     quantity: Quantity,
     pub(super) bytes: f64,
-    /// How far a step of bodies that relax may be off by its length, relative; 0: none relaxes.
+    /// The relative error of a step of relaxing bodies by its length; 0: no body relaxes.
     pub(super) time_error: f64,
-    /// Each iteration.
+    /// The iterations.
     reached: Vec<Told>,
     /// Products of the tangential problem.
     tangential: f64,
-    /// What less is needed to a looser tolerance, if that is known.
+    /// The costs of a looser tolerance, if known.
     loose: Option<Loose>,
 }
 
-/// What a loose tolerance takes of the seconds and of the tangential products of a tight one. Tangential problems tell no products, those of unlike bodies are
-/// solved once more in each turn, and a loose start on coarse grids is another one.
+/// The seconds and tangential products of a loose tolerance, relative to those of a tight one. Tangential iterations do not report products, problems
+/// of unlike bodies are solved again in each turn, and a loose start on coarse grids differs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Loose {
     tolerance: f64,
     seconds: f64,
     tangential: f64,
-    /// Products of the normal problem over those that the iterations of the tight one tell.
+    /// Products of the normal problem over those predicted by the iterations of the tight solve.
     normal: f64,
 }
 
 impl Sample {
-    /// Solves once, and again for the time as long as there are seconds to spare.
+    /// Solves once, and again for the timing within the seconds available.
     pub(super) fn take(
         scene: &Scene<'_>,
         options: &Options,
@@ -138,7 +138,7 @@ impl Sample {
         })))
     }
 
-    /// Solves once more to a loose tolerance, or takes what the sample before has where `before` is given. Cancelled: by a callback.
+    /// Solves again to a loose tolerance, or takes the costs of the sample `before`. Cancelled: by a callback.
     pub(super) fn loosen(
         &mut self,
         scene: &Scene<'_>,
@@ -170,7 +170,7 @@ impl Sample {
         Ok(Outcome::Converged)
     }
 
-    /// The products of a grid to a tolerance, where it is solved. Cancelled: by a callback.
+    /// The products of a grid to a tolerance, by a solve. Cancelled: by a callback.
     pub(super) fn count(
         scene: &Scene<'_>,
         options: &Options,
@@ -184,20 +184,20 @@ impl Sample {
         })
     }
 
-    /// How far a tolerance is on the way from the tight to the loose one, by its logarithm, with the costs of the loose one.
+    /// The place of a tolerance between the tight and the loose one, by logarithms, with the costs of the loose one.
     fn on_the_way(&self, tolerance: f64) -> Option<(f64, Loose)> {
         let loose = self.loose?;
         let at = (tolerance / self.tolerance).ln() / (loose.tolerance / self.tolerance).ln();
         Some((if at.is_finite() { at.clamp(0.0, 1.0) } else { 0.0 }, loose))
     }
 
-    /// With friction the part of the seconds to a tolerance, and tangential products, between those that were solved for. None: not known.
+    /// With friction: the part of the seconds and the tangential products to a tolerance, interpolated between the solves. None: unknown.
     pub(super) fn between(&self, tolerance: f64) -> Option<(f64, f64)> {
         let (at, loose) = self.on_the_way(tolerance).filter(|_| self.tangential > 0.0)?;
         Some((1.0 + at * (loose.seconds - 1.0), self.tangential * (1.0 + at * (loose.tangential - 1.0))))
     }
 
-    /// With the error that the values of this and coarser grids have.
+    /// The sample with the error from its values and those of coarser grids.
     pub(super) fn carried_on(mut self, history: &mut History) -> Sample {
         history.add(self.doublings, &self.values, &mut self.outlook);
         self
@@ -208,34 +208,34 @@ impl Sample {
         self.outlook.falling(self.quantity)
     }
 
-    /// Seconds and products to a residual, which on finer grids of the same tolerance is `begins`.
+    /// Seconds and products to a residual; `begins`: the tolerance on finer grids.
     pub(super) fn to(&self, tolerance: f64, begins: f64) -> (f64, f64) {
         let beyond = self.beyond(begins);
-        // Its products are told at the end only: each iteration has the same.
+        // Tangential products are reported at the end only: iterations have equal shares.
         let each = self.tangential / tangential_iterations(&self.reached).max(1.0);
         let tangential = self.tangential - each * beyond.2;
         (self.cost.seconds - beyond.0, self.normal(tolerance, begins) + tangential)
     }
 
-    /// Products of the normal problem to a residual, which on finer grids of the same tolerance is `begins`.
+    /// Products of the normal problem to a residual; `begins`: the tolerance on finer grids.
     pub(super) fn normal(&self, tolerance: f64, begins: f64) -> f64 {
         let more = self.on_the_way(tolerance).map_or(1.0, |(at, loose)| 1.0 + at * (loose.normal - 1.0));
         more * self.told(begins)
     }
 
-    /// The same as iterations tell.
+    /// Products of the normal problem to a residual, by the iterations.
     fn told(&self, tolerance: f64) -> f64 {
         self.cost.products - self.tangential - self.beyond(tolerance).1
     }
 
-    /// What is done beyond a residual: seconds, products of the normal problem, iterations of the tangential one. A solve is a row of passes, the normal problem's,
-    /// the tangential one's and their turns. A pass ends there. What follows the last iteration of a pass is needed by any residual; where residuals rise
-    /// another one has begun.
+    /// The work beyond a residual: seconds, products of the normal problem, iterations of the tangential one. A solve is a sequence of passes, of the
+    /// normal problem, the tangential one and their turns, each of which would end at the residual. Work after the last iteration of a pass is needed
+    /// by any residual. A rise of the residual begins another pass.
     fn beyond(&self, tolerance: f64) -> (f64, f64, f64) {
         let goes_on = |one: &Told, next: &Told| (one.0 <= tolerance) == (next.0 <= tolerance) && next.0 <= one.0;
         let met = self.reached.chunk_by(goes_on).filter(|met| met[0].0 <= tolerance);
         met.fold((0.0, 0.0, 0.0), |(seconds, normal, tangential), met| {
-            // An iteration of several parts is told of by each of them.
+            // An iteration of several parts is reported by each part.
             let parts = met.iter().take_while(|told| told.0 == met[0].0).count();
             let (at, end) = (&met[parts - 1..], met[met.len() - 1]);
             (seconds + end.1 - at[0].1, normal + end.2 - at[0].2, tangential + tangential_iterations(at))

@@ -1,12 +1,12 @@
-//! Large arrays: asked for, so that a lack of memory is an error and not the end of the process; and kept.
+//! Large arrays. A failed allocation is an error and does not end the process. Released arrays are kept for reuse.
 //!
-//! *Kept.* A page that the system gives is cleared and entered first, which takes as long as several passes over it: a tenth to a fifth of
-//! a whole call. So the next solver takes the arrays of one that is gone. The process keeps a number of bytes ([`keep_at_most`]); beyond it the array that was
-//! kept longest goes back to the system. [`release`] gives all of them back. Any thread may keep and take. A process
-//! forked while another thread did keeps nothing of its own: nobody waits for the lock.
+//! *Kept.* The system clears and maps each new page on its first use. That takes as long as several passes over it: a tenth to a fifth of a whole
+//! call. So the next solver reuses the arrays of one that was dropped. The process keeps a limited number of bytes ([`keep_at_most`]). Beyond it, the
+//! array that was kept longest returns to the system. [`release`] returns all of them. Any thread may keep and take arrays. If a process was forked
+//! while another thread held the lock, the child keeps nothing. Nobody waits for the lock.
 //!
-//! *At rest.* The arrays of one solve are not all needed at the same time. A large one that nobody needs for a while [rests](rest): its
-//! room stays reserved, so that it [wakes](wake) without an error, and the system has its pages.
+//! *At rest.* The arrays of one solve are not all needed at the same time. A large array that is not needed for a while [rests](rest). Its
+//! address range stays reserved, so that it [wakes](wake) without an error. Its pages return to the system.
 
 mod pages;
 
@@ -21,31 +21,31 @@ use crate::error::{OutOfMemory, Result};
 use crate::threads::Threads;
 use pages::{give_pages_back, lengthen};
 
-/// Bytes that are kept in the process, at most, unless the caller says how many: of many processes on a node, too. Measured with calls
-/// that set up anew: up to 768 x 768 elements, which keep 46 MiB, nothing is lost beside 512 MiB.
+/// The default of the largest number of bytes kept. It is small enough for many processes on one node. Measured with calls that set up
+/// anew: up to 768 x 768 elements, which keep 46 MiB, calls are as fast as with 512 MiB.
 const MOST_KEPT: usize = 112 << 20;
-/// As many as the caller allows.
+/// The current limit of the bytes kept.
 static ALLOWED: AtomicUsize = AtomicUsize::new(MOST_KEPT);
-/// Smaller blocks the allocator keeps by itself.
+/// The allocator itself keeps smaller blocks.
 const LEAST_KEPT: usize = 1 << 13;
-/// Who asks for more at once has no use for what is kept.
+/// A request of more bytes does not reuse kept arrays.
 const TOO_LARGE_TO_KEEP: usize = 96 << 20;
-/// Arrays of so many values rest: from 4096 x 4096 elements on memory is scarce, and pages that are entered again cost little beside a
-/// product.
+/// The default of the least number of values of an array that rests. From 4096 x 4096 elements on memory is scarce, and mapping pages again is cheap
+/// compared with a product.
 const RESTS: usize = 1 << 23;
-/// Of as many as the caller says.
+/// The current least number of values.
 static RESTING: AtomicUsize = AtomicUsize::new(RESTS);
 
-/// A `Vec` of some type, and what it held last.
+/// A `Vec` of some type, with its last values.
 struct Kept {
     bytes: usize,
-    /// Its type, and for how many values it has room.
+    /// Its type, and its capacity in values.
     kind: TypeId,
     room: usize,
     values: Box<dyn Any + Send>,
 }
 
-/// Kept memory, the longest first, and its bytes.
+/// The kept arrays, oldest first, and their bytes.
 struct Shelf {
     blocks: VecDeque<Kept>,
     bytes: usize,
@@ -53,7 +53,7 @@ struct Shelf {
 
 static SHELF: Mutex<Shelf> = Mutex::new(Shelf { blocks: VecDeque::new(), bytes: 0 });
 
-/// n zeros. `what` they are says the message.
+/// n zeros. `what` names them in messages.
 pub fn zeros<A: Copy + Default + Send + 'static>(n: usize, what: &str) -> Result<Vec<A>> {
     let mut v = Vec::new();
     reserve(&mut v, n, what)?;
@@ -61,8 +61,8 @@ pub fn zeros<A: Copy + Default + Send + 'static>(n: usize, what: &str) -> Result
     Ok(v)
 }
 
-/// Makes v n values long that are all written before they are read: it may hold anything, where it can a `mark`, which shows if they
-/// are not. The threads first touch its pages together.
+/// Makes v n values long. The caller writes each value before it reads it, because the values are unspecified. Where possible they are `mark`, which
+/// reveals a value that was not written. The threads touch new pages in parallel.
 pub fn unwritten<A: Copy + Send + Sync + 'static>(
     v: &mut Vec<A>,
     n: usize,
@@ -81,20 +81,20 @@ pub fn unwritten<A: Copy + Send + Sync + 'static>(
     }
     wake(v, n, mark, threads);
     if cfg!(debug_assertions) {
-        // Whatever a block held: what is read before it is written shows.
+        // A value that is read before it is written is then visible.
         v.fill(mark);
     }
     Ok(())
 }
 
-/// A new array of n values that are all written before they are read.
+/// A new array of n values. The caller writes each before it reads it.
 pub fn blank<A: Copy + Send + Sync + 'static>(n: usize, mark: A, what: &str) -> Result<Vec<A>> {
     let mut v = Vec::new();
     unwritten(&mut v, n, mark, what, &Threads::One)?;
     Ok(v)
 }
 
-/// Room for n values: what is put there later allocates nothing.
+/// Reserves capacity for n values. Pushing them later allocates nothing.
 pub fn reserve<A: Copy + Send + 'static>(v: &mut Vec<A>, n: usize, what: &str) -> Result<()> {
     if n <= v.capacity() {
         return Ok(());
@@ -108,14 +108,14 @@ pub fn reserve<A: Copy + Send + 'static>(v: &mut Vec<A>, n: usize, what: &str) -
     allocate(v, n, what)
 }
 
-/// The same where few of them may be put there: not of what is kept, so that the others take no memory.
+/// The same for an array of which few values may be used. It is no kept array, so that unused pages take no memory.
 pub fn sparse<A>(n: usize, what: &str) -> Result<Vec<A>> {
     let mut v = Vec::new();
     allocate(&mut v, n, what)?;
     Ok(v)
 }
 
-/// Room for n values from the system.
+/// Capacity for n values from the system.
 fn allocate<A>(v: &mut Vec<A>, n: usize, what: &str) -> Result<()> {
     if n.saturating_mul(size_of::<A>()) > TOO_LARGE_TO_KEEP {
         release();
@@ -124,7 +124,7 @@ fn allocate<A>(v: &mut Vec<A>, n: usize, what: &str) -> Result<()> {
     v.try_reserve_exact(n - v.len()).map_err(refused)
 }
 
-/// The smallest block that is kept for `n` values, and is not far too large for them.
+/// The smallest kept block for `n` values that is not far too large.
 fn find<A: Copy + Send + 'static>(n: usize) -> Option<Vec<A>> {
     if n.saturating_mul(size_of::<A>()) < LEAST_KEPT {
         return None;
@@ -144,12 +144,13 @@ pub fn rests(n: usize) -> bool {
     n >= RESTING.load(Ordering::Relaxed)
 }
 
-/// Arrays of n values and more may rest from here on. No result depends on it.
+/// From now on arrays of at least n values may rest. No result depends on it.
 pub fn rest_from(n: usize) {
     RESTING.store(n, Ordering::Relaxed);
 }
 
-/// Makes room for n values that wake when they are first needed, and are all written before they are read. Small arrays are awake.
+/// Reserves capacity for n values. A large array rests until it is first needed; a small one is awake. The caller writes each value before it reads
+/// it.
 pub fn asleep<A: Copy + Send + Sync + 'static>(
     v: &mut Vec<A>,
     n: usize,
@@ -164,7 +165,7 @@ pub fn asleep<A: Copy + Send + Sync + 'static>(
     }
 }
 
-/// An array that is not needed for a while: a large one is empty then.
+/// Lets an array rest that is not needed for a while. A large one is then empty.
 pub fn rest<A>(values: &mut Vec<A>) {
     if rests(values.capacity()) {
         values.clear();
@@ -172,13 +173,13 @@ pub fn rest<A>(values: &mut Vec<A>) {
     }
 }
 
-/// Makes an array that may rest n values long, in the room that it has. Its values are new where it did.
+/// Makes an array that may rest n values long, within its capacity. Its values are unspecified if it did rest.
 pub fn wake<A: Copy + Send + Sync>(values: &mut Vec<A>, n: usize, mark: A, threads: &Threads) {
     debug_assert!(n <= values.capacity(), "room for {n} values");
     lengthen(values, n, mark, threads);
 }
 
-/// Keeps the memory of arrays that nobody needs any more: they are empty then.
+/// Keeps the memory of arrays that are not needed any more. They are then empty.
 pub fn keep<A: Copy + Send + 'static, const K: usize>(arrays: [&mut Vec<A>; K]) {
     arrays.into_iter().for_each(|values| keep_one(take(values)));
 }
@@ -197,7 +198,7 @@ fn keep_one<A: Copy + Send + 'static>(values: Vec<A>) {
 }
 
 impl Shelf {
-    /// Drops what was kept first.
+    /// Drops the oldest arrays down to so many bytes.
     fn shrink_to(&mut self, most: usize) {
         while self.bytes > most {
             let Some(oldest) = self.blocks.pop_front() else { return };
@@ -206,7 +207,7 @@ impl Shelf {
     }
 }
 
-/// Values that several hold: when the last of them is gone, their memory is kept.
+/// Shared values. Their memory is kept when the last owner is dropped.
 #[derive(Debug, PartialEq)]
 pub struct Held(Vec<f64>);
 
@@ -230,14 +231,14 @@ impl Drop for Held {
     }
 }
 
-/// Gives all that is kept back to the system.
+/// Returns all kept arrays to the system.
 pub fn release() {
     if let Ok(mut shelf) = SHELF.try_lock() {
         (shelf.blocks, shelf.bytes) = (VecDeque::new(), 0);
     }
 }
 
-/// Keeps no more than so many bytes from here on.
+/// Sets the largest number of bytes kept from now on.
 pub fn keep_at_most(bytes: usize) {
     ALLOWED.store(bytes, Ordering::Relaxed);
     if let Ok(mut shelf) = SHELF.try_lock() {
@@ -245,12 +246,12 @@ pub fn keep_at_most(bytes: usize) {
     }
 }
 
-/// Bytes that are kept.
+/// Bytes kept now.
 pub fn kept() -> usize {
     SHELF.try_lock().map_or(0, |shelf| shelf.bytes)
 }
 
-/// Values that are computed, of any type: their memory is not kept.
+/// Collects computed values of any type. Their memory is not kept later.
 pub fn collected<A>(values: impl ExactSizeIterator<Item = A>, what: &str) -> Result<Vec<A>> {
     let mut collected = Vec::new();
     allocate(&mut collected, values.len(), what)?;
@@ -258,7 +259,7 @@ pub fn collected<A>(values: impl ExactSizeIterator<Item = A>, what: &str) -> Res
     Ok(collected)
 }
 
-/// An array that is computed.
+/// Collects computed values in an array.
 pub fn computed<A: Copy + Send + 'static>(values: impl ExactSizeIterator<Item = A>, what: &str) -> Result<Vec<A>> {
     let mut computed = Vec::new();
     reserve(&mut computed, values.len(), what)?;

@@ -2,18 +2,18 @@
 
 use crate::threads::Threads;
 
-/// Gives the pages within the room of an empty array back; they are entered again when they are touched.
+/// Returns the pages within the capacity of an empty array to the system, which maps them again at the next touch.
 #[cfg(target_os = "linux")]
 #[allow(unsafe_code)]
 pub(super) fn give_pages_back<A>(values: &mut Vec<A>) {
     assert!(values.is_empty());
     let (room, bytes) = (values.as_mut_ptr(), values.capacity() * size_of::<A>());
-    // SAFETY: it reads a constant of the system.
+    // SAFETY: sysconf reads a constant of the system.
     let Ok(page) = usize::try_from(unsafe { libc::sysconf(libc::_SC_PAGESIZE) }) else { return };
     let before = (room as usize).next_multiple_of(page) - room as usize;
     let whole = bytes.saturating_sub(before) / page * page;
     if whole > 0 {
-        // SAFETY: whole pages of the array's own room, which is borrowed mutably and holds no values.
+        // SAFETY: whole pages of the array's own capacity, which is borrowed mutably and holds no values.
         unsafe { libc::madvise(room.wrapping_byte_add(before).cast(), whole, libc::MADV_DONTNEED) };
     }
 }
@@ -21,11 +21,11 @@ pub(super) fn give_pages_back<A>(values: &mut Vec<A>) {
 #[cfg(not(target_os = "linux"))]
 pub(super) fn give_pages_back<A>(_: &mut Vec<A>) {}
 
-/// Bytes that one thread touches first, at least.
+/// Least bytes that one thread touches.
 const TOUCHED: usize = 1 << 19;
 
-/// Makes an array n values long, in the room that it has. The threads write many new ones together: the system clears each page at its first
-/// touch, which takes as long as several passes.
+/// Extends an array to n values within its capacity. The threads share the first writes: the system clears each page at its first touch,
+/// which takes as long as several passes.
 #[allow(unsafe_code)]
 pub(super) fn lengthen<A: Copy + Send + Sync>(values: &mut Vec<A>, n: usize, mark: A, threads: &Threads) {
     let (known, piece) = (values.len(), TOUCHED / size_of::<A>());
@@ -37,6 +37,6 @@ pub(super) fn lengthen<A: Copy + Send + Sync>(values: &mut Vec<A>, n: usize, mar
             value.write(mark);
         });
     });
-    // SAFETY: each of the values up to n has been written: the known ones before, and the others, within the room, above.
+    // SAFETY: all values up to n have been written: the known ones before, the others, within the capacity, above.
     unsafe { values.set_len(n) };
 }

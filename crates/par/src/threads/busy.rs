@@ -1,21 +1,21 @@
-//! Whether other programs use the cores. Then a worker, or the caller itself beside its workers, may stand still in the middle of its work
-//! while the others wait for it, for a few milliseconds at a time: two threads would take two to four times as long as one.
+//! Whether other programs use the cores. If so, a worker or the caller may be preempted in the middle of its work while the others wait, for
+//! a few milliseconds at a time: two threads would take two to four times as long as one.
 //!
-//! Who has lost time works alone for a while, then tries again, and waits the longer the more often it loses: so the tries together cost less
-//! than a tenth.
+//! After a loss of time the caller works alone for a while, then tries again, and works alone longer after each further loss: all tries
+//! together cost less than a tenth.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-/// Less is no loss: a thread that is interrupted by the system comes back sooner, and one that waits for a core does not.
+/// Least loss: an interrupt by the system is shorter, a wait for a core longer.
 pub(super) const LOSS: Duration = Duration::from_micros(500);
 
-/// How long the caller works alone after a loss, in nanoseconds: first, and at most. A try loses one turn of the scheduler, some 3 ms.
+/// Nanoseconds that the caller works alone after a loss: first, and most. A try loses one turn of the scheduler, about 3 ms.
 const FIRST: u64 = 30_000_000;
 const LONGEST: u64 = 960_000_000;
 
-/// When workers are asked again.
+/// The time at which work is shared again.
 #[derive(Default)]
 pub(super) struct Busy {
     began: OnceLock<Instant>,
@@ -30,12 +30,12 @@ impl Busy {
         u64::try_from(self.began.get_or_init(Instant::now).elapsed().as_nanos()).unwrap_or(u64::MAX)
     }
 
-    /// Whether workers are asked now.
+    /// Whether work is shared now.
     pub fn is_over(&self, now: u64) -> bool {
         now >= self.until.load(Ordering::Relaxed)
     }
 
-    /// Workers were asked, and time was lost by it, or not.
+    /// Notes whether shared work lost time.
     pub fn note(&self, now: u64, is_lost: bool) {
         let (until, alone) = (self.until.load(Ordering::Relaxed), self.alone.load(Ordering::Relaxed));
         if is_lost {
@@ -43,7 +43,7 @@ impl Busy {
             self.alone.store(alone, Ordering::Relaxed);
             self.until.store(now + alone, Ordering::Relaxed);
         } else if alone > 0 && now - until.min(now) > alone {
-            // It went well for as long.
+            // No loss for as long as the last wait.
             self.alone.store(0, Ordering::Relaxed);
         }
     }
@@ -54,7 +54,7 @@ impl Busy {
 #[allow(unsafe_code)]
 pub(super) fn time_of_this_thread() -> Option<Duration> {
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // SAFETY: it writes one value, which is there.
+    // SAFETY: the call writes one value, to `time`.
     let status = unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time) };
     let seconds = u64::try_from(time.tv_sec).ok()?;
     (status == 0).then(|| Duration::new(seconds, u32::try_from(time.tv_nsec).unwrap_or_default()))

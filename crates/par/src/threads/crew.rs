@@ -1,4 +1,4 @@
-//! The workers of a process, and the list of what they are asked to help with. rayon lends the threads.
+//! The workers of a process, and the list of regions that they share. rayon lends the threads.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -11,11 +11,11 @@ use crate::error::{OutOfMemory, Result};
 /// Prefix of the names of our threads.
 pub const THREAD_NAME: &str = "contact-normal-";
 
-/// So long workers look for more work before they sleep, and a caller for the end of theirs: a solve has hundreds of passes of some 10 to
-/// 1000 us, with work of one thread between them, and waking a thread that sleeps takes some 50.
+/// How long workers spin for more work before they sleep, and a caller for the end of the workers. A solve has hundreds of passes of 10 to
+/// 1000 us, with serial work between them, and waking a sleeping thread takes about 50 us.
 const AWAKE: Duration = Duration::from_micros(150);
 
-/// The workers of one process. Those of a process that was forked are none.
+/// The workers of one process. In a forked child they do not exist.
 pub(super) struct Crew {
     pub process: u32,
     shared: Arc<Shared>,
@@ -27,15 +27,15 @@ pub(super) struct Crew {
 #[derive(Default)]
 struct Shared {
     regions: Mutex<Regions>,
-    /// Regions that were ever offered: workers that are awake look at it.
+    /// The number of regions ever offered, which spinning workers watch.
     offered: AtomicUsize,
-    /// Workers that look at it.
+    /// Workers that spin.
     awake: AtomicUsize,
     is_offered: Condvar,
     is_over: AtomicBool,
 }
 
-/// Under one lock: seats are taken, and regions closed.
+/// The open regions, under one lock for taking seats and closing.
 #[derive(Default)]
 struct Regions {
     open: Vec<Arc<Region>>,
@@ -48,18 +48,18 @@ fn lock<A>(shared: &Mutex<A>) -> MutexGuard<'_, A> {
 }
 
 impl Crew {
-    /// Nobody yet.
+    /// A crew without workers.
     pub fn new() -> Crew {
         let process = std::process::id();
         Crew { process, shared: Arc::default(), lent: Mutex::default(), busy: Busy::default() }
     }
 
-    /// Workers.
+    /// The number of workers.
     pub fn len(&self) -> usize {
         lock(&self.lent).iter().map(|lent| lent.current_num_threads()).sum()
     }
 
-    /// Starts the workers that are missing to this number.
+    /// Starts workers up to this number.
     pub fn grow_to(&self, workers: usize) -> Result<()> {
         let mut lent = lock(&self.lent);
         let known = lent.iter().map(|lent| lent.current_num_threads()).sum::<usize>();
@@ -78,7 +78,7 @@ impl Crew {
     /// Calls `own` on the calling thread. Meanwhile free workers take the seats 0, 1, .. and call `work(seat)`, one worker a seat. Seats that
     /// are free when `own` returns stay empty. Returns the result of `own`, and the time that the caller then waited.
     pub fn beside<R>(&self, seats: usize, work: &(dyn Fn(usize) + Sync), own: impl FnOnce() -> R) -> (R, Duration) {
-        // SAFETY: `close` takes it off the list, whatever happens, and waits.
+        // SAFETY: `close` removes the region from the list in any case, and waits for its workers.
         let region = Arc::new(unsafe { Region::new(seats, work) });
         self.shared.open(&region, seats);
         let close = Close(&self.shared, &region);
@@ -96,7 +96,7 @@ impl Crew {
 impl Drop for Crew {
     fn drop(&mut self) {
         if self.process != std::process::id() {
-            // Its threads are those of another process, which may have held any lock: nothing is told to them.
+            // The threads belong to another process, which may have held any lock: they are not signalled.
             return std::mem::forget(std::mem::take(&mut *self.lent.get_mut().unwrap_or_else(PoisonError::into_inner)));
         }
         self.shared.is_over.store(true, Ordering::Release);
@@ -106,7 +106,7 @@ impl Drop for Crew {
 }
 
 impl Shared {
-    /// Offers a region to workers: to those that are awake, and if these are too few to others.
+    /// Offers a region to the spinning workers, and wakes others if these are too few.
     fn open(&self, region: &Arc<Region>, seats: usize) {
         let mut regions = lock(&self.regions);
         regions.open.push(region.clone());
@@ -116,11 +116,11 @@ impl Shared {
         (0..to_wake).for_each(|_| self.is_offered.notify_one());
     }
 
-    /// The life of a worker.
+    /// The loop of a worker.
     fn work(&self) {
         let mut seen = 0;
         while !self.is_over.load(Ordering::Acquire) {
-            self.look(seen);
+            self.spin(seen);
             let mut regions = lock(&self.regions);
             let (region, seat) = loop {
                 seen = self.offered.load(Ordering::Acquire);
@@ -140,8 +140,8 @@ impl Shared {
         }
     }
 
-    /// Stays awake for a while, until something new is offered.
-    fn look(&self, seen: usize) {
+    /// Spins until a new region is offered, at most for [`AWAKE`].
+    fn spin(&self, seen: usize) {
         self.awake.fetch_add(1, Ordering::Relaxed);
         let began = Instant::now();
         let is_new = || self.offered.load(Ordering::Acquire) != seen;
@@ -152,7 +152,7 @@ impl Shared {
     }
 }
 
-/// Takes a region off the list, and waits for those who have begun: also when the caller's own part panics.
+/// Removes a region from the list, and waits for workers that have begun, also when the caller's own part panics.
 struct Close<'a>(&'a Shared, &'a Arc<Region>);
 
 impl Drop for Close<'_> {

@@ -1,8 +1,8 @@
-//! The threads of one solve, or of a batch of solves: none but the caller's own, or a pool of ours.
+//! The threads of one solve, or of a batch of solves: the caller's thread alone, or a pool.
 //!
-//! Work is cut into pieces whose results do not depend on who computes them, so that the answer has the same bits for
-//! any number of threads. What the compiler inlines here is compiled for the vectors of this machine, on which no bit depends either: nothing is
-//! contracted or reordered.
+//! Work is divided into pieces whose results do not depend on the thread that computes them. So results have the same bits for
+//! any number of threads. Code inlined here is compiled for the vector instructions of this machine. No bit depends on them either, because no
+//! operations are fused or reordered.
 
 mod busy;
 #[allow(unsafe_code)] // lifetimes of work that workers share
@@ -19,27 +19,27 @@ use pool::Pool;
 
 use crate::error::Result;
 
-/// Who does the work.
+/// The threads that do the work.
 #[derive(Clone, Default)]
 pub enum Threads {
     /// The calling thread.
     #[default]
     One,
-    /// A pool of our own.
+    /// A pool of workers.
     Pool(Pool),
 }
 
-/// Elements of a grid from which on a solve is faster if several threads share its products; a product alone is from 64 x 64 on.
+/// From this number of elements on a solve is faster if several threads share its products. A single product is faster from 64 x 64 on.
 const WORTH_WAKING: usize = 110 * 110;
 
-/// How often a lock is tried before it counts as held for long.
+/// Attempts to take a lock before it counts as held for long.
 const PATIENCE: usize = 1000;
 
-/// Pieces that work is cut into, per thread: a thread held up by others leaves its share to them.
+/// Pieces of work per thread. If one thread is delayed, the others take over its pieces.
 const PIECES: usize = 8;
 
 impl Threads {
-    /// `count` threads; 0: as many as the machine has cores.
+    /// `count` threads. 0 means one per core of the machine.
     pub fn new(count: usize) -> Result<Threads> {
         let count = match count {
             0 => std::thread::available_parallelism().map_or(1, |n| n.get()),
@@ -48,7 +48,7 @@ impl Threads {
         Ok(if count == 1 { Threads::One } else { Threads::Pool(Pool::of(count)?) })
     }
 
-    /// The workers; none: the calling thread works.
+    /// The pool; none if the calling thread works alone.
     fn pool(&self) -> Option<Pool> {
         match self {
             Threads::One => None,
@@ -56,7 +56,7 @@ impl Threads {
         }
     }
 
-    /// Number of threads, each of which may need scratch of its own.
+    /// Number of threads. Each may need scratch of its own.
     pub fn count(&self) -> usize {
         match self {
             Threads::One => 1,
@@ -74,10 +74,10 @@ impl Threads {
         );
     }
 
-    /// Calls `work(piece, scratch)` on each of some pieces, with the scratch of the thread that does it.
+    /// Calls `work(piece, scratch)` on each of some pieces, with the scratch of its thread.
     ///
-    /// The threads take pieces until there are none. The caller begins at once, at the front, and does not wait for
-    /// others to wake; they begin at the back: so a thread finds in its cache much of what it worked on in the pass before.
+    /// The threads take pieces until none is left. The caller begins at once, at the front, and does not wait for the
+    /// others to wake. They begin at the back. So much of a thread's data is still in its cache from the previous pass.
     pub fn share<P: Send, S: Send>(
         &self,
         pieces: impl DoubleEndedIterator<Item = P> + ExactSizeIterator + Send,
@@ -92,7 +92,7 @@ impl Threads {
         });
     }
 
-    /// The same by one piece of code for all kinds of `work`: a build takes a fifth less.
+    /// [`share`](Self::share), compiled once for all kinds of `work`: the library has 14.5 MB of machine code instead of 19.9.
     fn hand_out<P: Send, S: Send>(
         &self,
         pieces: impl DoubleEndedIterator<Item = P> + ExactSizeIterator + Send,
@@ -125,13 +125,13 @@ impl Threads {
         vec![(); self.count()]
     }
 
-    /// Rows of each piece of work on so many.
+    /// Rows of each piece of work on `rows` rows.
     fn rows_per_piece(&self, rows: usize) -> usize {
         let pieces = if self.count() == 1 { 1 } else { PIECES * self.count() };
         rows.div_ceil(pieces).max(1)
     }
 
-    /// Calls `own(item)` for the first on the calling thread, and meanwhile `others(item)` for the rest on the others.
+    /// Calls `own(item)` for the first item on the calling thread. Meanwhile the other threads call `others(item)` for the rest.
     pub fn for_each_beside<A: Send>(
         &self,
         items: &mut [A],
@@ -223,12 +223,12 @@ impl Threads {
         );
     }
 
-    /// These threads for a pass over arrays of so many elements, which gains by them from twice as many elements on.
+    /// These threads for a pass over arrays of so many elements. A pass gains by them from twice as many elements on as a solve.
     pub fn for_a_pass(&self, elements: usize) -> Threads {
         self.suited_to(elements / 2)
     }
 
-    /// These threads for work on so many elements: the caller's own where waking the others takes longer than the work.
+    /// These threads for work on so many elements: the caller's thread alone if waking the others takes longer than the work.
     pub fn suited_to(&self, elements: usize) -> Threads {
         if elements < WORTH_WAKING {
             Threads::One
@@ -238,18 +238,18 @@ impl Threads {
     }
 }
 
-/// Ends the threads that are kept, and that no solver holds.
+/// Ends the kept threads that no solver holds.
 pub fn release() {
     Pool::release();
 }
 
-/// Threads that are kept, beside those of the callers.
+/// The number of kept threads, without the callers' threads.
 pub fn kept() -> usize {
     Pool::kept()
 }
 
-/// The lock of what the process shares; none if another thread holds it for long. A process that was forked while another thread held it
-/// would wait for ever.
+/// Takes the lock of data that the process shares. None if another thread holds it for long: a process that was forked while another thread
+/// held the lock would wait for ever.
 pub fn lock<A>(shared: &Mutex<A>) -> Option<MutexGuard<'_, A>> {
     for _ in 0..PATIENCE {
         match shared.try_lock() {

@@ -1,7 +1,7 @@
-//! The pool of a process: its workers are started when first asked for, as many as were ever asked for at once, and serve all solves.
+//! The pool of a process: workers start at the first request, as many as the largest request, and serve all solves.
 //!
-//! It is stamped with the process id: after a fork the child has no workers, so it makes a pool of its own instead of waiting for threads that are
-//! not there; so does an operator that was set up before the fork. The child touches no lock of its parent, which another thread may have held.
+//! The pool carries the process id. After a fork the child has no workers, so it makes a pool of its own instead of waiting for absent
+//! threads, also for operators set up before the fork. It touches no lock of its parent, which another thread may have held.
 
 use std::sync::atomic::{AtomicPtr, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -11,21 +11,21 @@ use super::busy::{time_of_this_thread, LOSS};
 use super::crew::Crew;
 use crate::error::Result;
 
-/// Some threads: the caller's own, and workers of the process.
+/// A number of threads: the caller's own and workers of the process.
 #[derive(Clone)]
 pub struct Pool {
-    /// With the caller's own.
+    /// The number of threads, the caller's own among them.
     count: usize,
     crew: Arc<Crew>,
 }
 
-/// The crew of a process, while it is kept.
+/// The crew of a process, until it is released.
 struct Process {
     id: u32,
     crew: Mutex<Option<Arc<Crew>>>,
 }
 
-/// That of this process; after a fork, until it is asked for, that of the parent.
+/// The record of this process; after a fork, until the first use, that of the parent.
 static PROCESS: AtomicPtr<Process> = AtomicPtr::new(std::ptr::null_mut());
 
 /// The crew of this process.
@@ -39,14 +39,14 @@ fn crew() -> MutexGuard<'static, Option<Arc<Crew>>> {
         }
         let new = Box::into_raw(Box::new(Process { id, crew: Mutex::new(None) }));
         if PROCESS.compare_exchange(known, new, Ordering::AcqRel, Ordering::Relaxed).is_err() {
-            // SAFETY: made above, and nobody has it: another thread was first.
+            // SAFETY: made above and not shared: another thread was first.
             drop(unsafe { Box::from_raw(new) });
         }
     }
 }
 
 impl Pool {
-    /// So many threads, the caller's own among them.
+    /// A pool of `count` threads, the caller's own among them.
     pub fn of(count: usize) -> Result<Pool> {
         let mut kept = crew();
         let crew = kept.get_or_insert_with(|| Arc::new(Crew::new())).clone();
@@ -54,17 +54,17 @@ impl Pool {
         Ok(Pool { count, crew })
     }
 
-    /// Ends the threads when no solver holds them.
+    /// Ends the workers as soon as no solver holds them.
     pub fn release() {
         drop(crew().take());
     }
 
-    /// Threads that are kept in this process, beside those of the callers.
+    /// The number of workers of this process.
     pub fn kept() -> usize {
         crew().as_ref().map_or(0, |crew| crew.len())
     }
 
-    /// This pool, or after a fork another one; none: it could not be made.
+    /// This pool, or a new one after a fork; none if that fails.
     pub fn here(&self) -> Option<Pool> {
         if self.crew.process == std::process::id() {
             return Some(self.clone());
@@ -77,18 +77,18 @@ impl Pool {
         self.count
     }
 
-    /// Whether it may help: not while others use the cores.
+    /// Whether sharing work may pay: not while other processes use the cores.
     pub fn may_help(&self) -> bool {
         self.crew.busy.is_over(self.crew.busy.now())
     }
 
-    /// Calls `work(item)` for items on workers that are free, and meanwhile `own` on the calling thread. What no worker has begun when that is
-    /// done is left alone.
+    /// Calls `work(item)` for items on free workers, and meanwhile `own` on the calling thread. Items that no worker has begun by the end of
+    /// `own` are left.
     pub fn beside<A: Send, R>(&self, items: &mut [A], work: &(dyn Fn(&mut A) + Sync), own: impl FnOnce() -> R) -> R {
         self.waiting(items, work, own).0
     }
 
-    /// The same with small pieces of work, of which `own` returns how many it did: notes whether time was lost by it.
+    /// As [`beside`](Self::beside), for small pieces of work, of which `own` returns the number that it did. Notes whether sharing lost time.
     pub fn share<A: Send>(&self, items: &mut [A], work: &(dyn Fn(&mut A) + Sync), own: impl FnOnce() -> u32) {
         let (began, time) = (Instant::now(), time_of_this_thread());
         let timed = || {

@@ -1,7 +1,7 @@
 //! Work of one caller that workers may share.
 //!
-//! Each worker takes a seat, under the lock of the list of regions. When the caller has done its own part it takes the region off the list: then
-//! no seat is taken any more, and it waits for those who have one. So it never waits for a worker that has not begun.
+//! Each worker takes a seat, under the lock of the list of regions. After its own part the caller removes the region from the list: no more seats are
+//! taken, and it waits for the workers with a seat. So it never waits for a worker that has not begun.
 
 use std::any::Any;
 use std::panic::{catch_unwind, AssertUnwindSafe};
@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 /// A call of `work(seat)`.
 type Call = *const (dyn Fn(usize) + Sync);
 
-/// A piece of work with which workers may help.
+/// A piece of work that workers may share.
 pub(super) struct Region {
     call: Call,
     seats: usize,
@@ -22,28 +22,28 @@ pub(super) struct Region {
     is_left: Condvar,
 }
 
-/// How the seats were left.
+/// The end of the seats.
 #[derive(Default)]
 struct End {
-    /// The caller sleeps until they are.
+    /// Whether the caller sleeps until all seats are left.
     is_awaited: bool,
     /// The payload of a worker's panic.
     panic: Option<Box<dyn Any + Send>>,
 }
 
-// SAFETY: what `call` points to is Sync, so any thread may call it; who makes a region says how long it lives.
+// SAFETY: the target of `call` is Sync, so any thread may call it; the maker of a region guarantees its lifetime.
 unsafe impl Send for Region {}
 // SAFETY: as above; all else is atomic or locked.
 unsafe impl Sync for Region {}
 
 impl Region {
-    /// So many seats, whose holders call `work(seat)`.
+    /// A region of `seats`, whose holders call `work(seat)`.
     ///
     /// # Safety
     ///
-    /// `work` lives until [`wait`](Self::wait) has returned, and after that nobody takes a seat.
+    /// `work` lives until [`wait`](Self::wait) has returned, and no seat is taken after that.
     pub unsafe fn new(seats: usize, work: &(dyn Fn(usize) + Sync)) -> Region {
-        // SAFETY: only the lifetime is another one; the caller of this function sees to it.
+        // SAFETY: only the lifetime changes, which the caller of this function guarantees.
         let call = unsafe { std::mem::transmute::<&(dyn Fn(usize) + Sync), Call>(work) };
         let (taken, left) = (AtomicUsize::new(0), AtomicUsize::new(0));
         Region { call, seats, taken, left, end: Mutex::default(), is_left: Condvar::new() }
@@ -55,9 +55,9 @@ impl Region {
         (seat < self.seats).then(|| self.taken.fetch_add(1, Ordering::Relaxed))
     }
 
-    /// Does the work of a seat, and leaves it.
+    /// Does the work of a seat, then leaves it.
     pub fn work(&self, seat: usize) {
-        // SAFETY: the seat was taken while the region stood in the list, and it is not left: so the work lives.
+        // SAFETY: the seat was taken while the region was in the list, and is not left yet, so `work` lives.
         let result = catch_unwind(AssertUnwindSafe(|| unsafe { (*self.call)(seat) }));
         let mut end = self.end.lock().unwrap_or_else(PoisonError::into_inner);
         if let Err(panic) = result {
@@ -69,7 +69,7 @@ impl Region {
         }
     }
 
-    /// Waits until all seats that were taken are left: awake for a while, then asleep, which lends the core to a worker that has none.
+    /// Waits until all taken seats are left: spins for a while, then sleeps, which frees the core for a worker without one.
     pub fn wait(&self, awake: Duration) {
         let (taken, began) = (self.taken.load(Ordering::Relaxed), Instant::now());
         let is_over = || self.left.load(Ordering::Acquire) == taken;

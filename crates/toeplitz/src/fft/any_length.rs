@@ -1,7 +1,6 @@
 //! Complex transforms of any length, by the FFT crate.
 //!
-//! Each length has a planner of its own: the crate's makes a plan from parts of the plans before it, so that bits would depend on what was
-//! planned before.
+//! Each length has a planner of its own: a shared planner reuses parts of earlier plans, so that bits would depend on the history.
 
 use std::sync::Arc;
 
@@ -13,13 +12,14 @@ use crate::passes::Real;
 use crate::plan::{shared, Plan, PLAN};
 use crate::real::Complex;
 
-/// Values that the plans of a length take while they are made, both ways, relative to it: measured at all lengths up to 100000 in steps of 257 and
-/// at longer ones, up to 2.3 where all prime factors are small, and 16.5 for primes, which go through a transform of more than twice the length.
+/// Values allocated while the plans of a length are made, both directions, relative to the length. Measured at all lengths up to 100000 in
+/// steps of 257 and at longer ones: up to 2.3 if all prime factors are small, and 16.5 for primes, which use a transform of more than twice the
+/// length.
 const RELATIVE_SIZES: [usize; 2] = [3, 17];
 /// The largest prime whose transform is one step.
 const SMALL_PRIME: usize = 31;
 
-/// Values for which room is asked before a length is planned.
+/// Values reserved before a length is planned.
 fn room(length: usize) -> usize {
     let (mut rest, mut prime) = (length, 2);
     while rest > 1 && prime <= SMALL_PRIME {
@@ -31,7 +31,7 @@ fn room(length: usize) -> usize {
     length.saturating_mul(RELATIVE_SIZES[usize::from(rest > 1)])
 }
 
-/// Makes the scratch of transforms so long, at least.
+/// Makes the scratch of transforms at least this long.
 pub fn fit<T: Real>(scratch: &mut Vec<Complex<T>>, length: usize) -> Result<()> {
     let length = scratch.len().max(length);
     reserve(scratch, length, "the scratch of transforms")?;
@@ -39,7 +39,7 @@ pub fn fit<T: Real>(scratch: &mut Vec<Complex<T>>, length: usize) -> Result<()> 
     Ok(())
 }
 
-/// The scratch of transforms, so long.
+/// Scratch of this length.
 pub fn scratch_of<T: Real>(length: usize) -> Result<Vec<Complex<T>>> {
     let mut scratch = Vec::new();
     fit(&mut scratch, length)?;
@@ -60,12 +60,12 @@ impl<T: Real> Plan for ColumnTransform<T> {
 }
 
 impl<T: Real> ColumnTransform<T> {
-    /// Plans for columns of length `n`. The FFT crate cannot refuse where there is no memory: room for its plans is asked for before.
+    /// Plans for columns of length `n`. The FFT crate aborts without memory, so room for its plans is tested before.
     pub fn new(n: usize) -> Result<ColumnTransform<T>> {
         Ok((*shared(n, || ColumnTransform::planned(n))?).clone())
     }
 
-    /// A plan that nobody has made before.
+    /// Makes a new plan.
     fn planned(n: usize) -> Result<ColumnTransform<T>> {
         drop(sparse::<Complex<T>>(room(n), PLAN)?);
         let [forward, inverse] = T::plans(n);
@@ -77,7 +77,7 @@ impl<T: Real> ColumnTransform<T> {
         self.forward.len()
     }
 
-    /// Scratch that both directions need.
+    /// Scratch for both directions.
     pub fn scratch(&self) -> Result<Vec<Complex<T>>> {
         scratch_of(self.scratch_length())
     }
@@ -87,18 +87,18 @@ impl<T: Real> ColumnTransform<T> {
         fit(scratch, self.scratch_length())
     }
 
-    /// Its length.
+    /// The length of the scratch.
     pub fn scratch_length(&self) -> usize {
         let length = |fft: &dyn Fft<T>| fft.get_inplace_scratch_len().max(fft.get_outofplace_scratch_len());
         length(&*self.forward).max(length(&*self.inverse))
     }
 
-    /// That of transforms to another place.
+    /// The length of the scratch of transforms out of place.
     pub fn scratch_to(&self) -> usize {
         self.forward.get_outofplace_scratch_len().max(self.inverse.get_outofplace_scratch_len())
     }
 
-    /// Transforms one column to another place; it is overwritten.
+    /// Transforms one column out of place; `column` is overwritten.
     pub fn forward_to(&self, column: &mut [Complex<T>], to: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
         self.forward.process_outofplace_with_scratch(column, to, scratch);
     }
@@ -108,7 +108,7 @@ impl<T: Real> ColumnTransform<T> {
         self.inverse.process_outofplace_with_scratch(column, to, scratch);
     }
 
-    /// Transforms the columns that stand one after the other in `columns`, in place.
+    /// Transforms consecutive columns in place.
     pub fn forward(&self, columns: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
         self.forward.process_with_scratch(columns, scratch);
     }

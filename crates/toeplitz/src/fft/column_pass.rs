@@ -1,7 +1,7 @@
 //! The pass of [`LaneColumns`](crate::fft::lane_columns::LaneColumns) over a block of columns.
 //!
 //! The first stage of F reads the rows of the grid, the last stage of its inverse writes them; the last stage of F, the product by S and
-//! the first stage of the inverse are one pass. A vector of columns is prefetched while the one before is worked on.
+//! the first stage of the inverse are one pass. A vector of columns is prefetched during the work on the one before.
 
 use std::array::from_fn;
 use std::ops::Range;
@@ -17,15 +17,15 @@ use crate::real::{Complex, Scalar};
 /// The same block of columns of K components.
 pub struct Blocks<'a, T, const K: usize> {
     pub blocks: [&'a mut [Complex<T>]; K],
-    /// Columns that mean something.
+    /// Number of defined columns.
     pub columns: usize,
-    /// Where the next blocks stand, of as many rows.
+    /// The places of the next blocks, of as many rows.
     pub next: [*const Complex<T>; K],
     /// Rows that hold values.
     pub loaded: [Range<usize>; K],
 }
 
-/// Where values of a block of columns are: value q of a block of the last stage, whose first row is `row`, in a vector of columns.
+/// The place of values in a block of columns: value q of a block of the last stage, whose first row is `row`, in a vector of columns.
 #[derive(Clone, Copy)]
 pub struct At<'a> {
     pub kept: &'a Kept,
@@ -36,7 +36,7 @@ pub struct At<'a> {
 
 /// The symbol of a block of columns of K components.
 pub trait Factor<T: Scalar, const K: usize> {
-    /// The product of some values by it.
+    /// The product of values by the symbol.
     fn times<S: Simd>(&self, a: Arithmetic<T, S>, at: At<'_>, x: [C<T, S>; K]) -> [C<T, S>; K];
 }
 
@@ -67,7 +67,7 @@ pub struct Multiply<'a, T: Scalar, F, const K: usize> {
 impl<T: Scalar, F: Factor<T, K>, const K: usize> WithSimd for Multiply<'_, T, F, K> {
     type Output = ();
 
-    /// One vector of columns after the other: what is worked on stays in the nearest cache.
+    /// One vector of columns after the other, each within the nearest cache.
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) {
         let vectors = self.blocks.columns.min(BLOCK).div_ceil(lane_count::<T, S>());
@@ -80,7 +80,7 @@ impl<T: Scalar, F: Factor<T, K>, const K: usize> WithSimd for Multiply<'_, T, F,
 }
 
 impl<T: Scalar, F: Factor<T, K>, const K: usize> Multiply<'_, T, F, K> {
-    /// The columns of one vector of the blocks; then comes vector `next` of `next_blocks`.
+    /// Multiplies the columns of one vector of the blocks, and prefetches vector `next` of `next_blocks`.
     #[inline(always)]
     fn one_vector<S: Simd>(&mut self, simd: S, vector: usize, (next_blocks, next): ([*const Complex<T>; K], usize)) {
         let Multiply { plan, blocks: Blocks { blocks, loaded, .. }, factor, memory } = self;
@@ -137,8 +137,8 @@ impl<T: Scalar, F: Factor<T, K>, const K: usize> Multiply<'_, T, F, K> {
     }
 }
 
-/// The stages between the first and the last, and the product: what `product(kept rows of a block, its first row, value of the block, values)`
-/// makes of the values. `prefetch_part(part, count)` is called for each part of what is needed next.
+/// The stages between the first and the last, with the product `product(kept rows of a block, its first row, value of the block, values)`.
+/// `prefetch_part(part, count)` is called for each part of the next values.
 #[inline(always)]
 fn between<T: Scalar, S: Simd, const K: usize>(
     a: Arithmetic<T, S>,

@@ -1,7 +1,7 @@
-//! Where the symbol of even columns is kept.
+//! Storage of the symbol of even columns.
 //!
-//! Bins stay in the order in which the stages leave them ([`stages`](crate::fft::stages)): of each block of bins that comes out of the
-//! last stage the mirror image, the bins py - k, is a block too, from behind. So one of the two is kept of S.
+//! Bins stay in the order of the stages' output ([`stages`](crate::fft::stages)). The mirror image py - k of a block of bins of the last
+//! stage is a block in reverse order, with the same values of S. One of the two is stored.
 
 use std::sync::Arc;
 
@@ -15,11 +15,11 @@ use crate::real::Scalar;
 /// The stages of one length, and the order of S.
 pub struct EvenPlan<T: Scalar> {
     pub(crate) stages: Stages<T>,
-    /// Where S is kept, for each block of the last stage.
+    /// The rows of S for each block of the last stage.
     pub(crate) kept: Vec<Kept>,
     /// The bin of each kept row, at most py/2.
     pub(crate) bins: Vec<usize>,
-    /// Whether it is kept of the bin py less that.
+    /// Whether the row comes from the mirror image, the bin py - k.
     pub(crate) mirrored: Vec<bool>,
 }
 
@@ -31,7 +31,7 @@ pub struct Kept {
 }
 
 impl<T: Scalar> EvenPlan<T> {
-    /// That of a length. None where it has no stages.
+    /// The shared plan of a length; None if the length has no stages.
     pub fn shared(length: usize) -> Result<Option<Arc<EvenPlan<T>>>> {
         // A known plan is found without an allocation.
         match find(length) {
@@ -57,7 +57,7 @@ impl<T: Scalar> Plan for EvenPlan<T> {
     }
 }
 
-/// Where S is kept of each block of the last stage, of which the lowest bin is given, and the bin of each kept row, of all.
+/// The kept rows of each block of the last stage, from the lowest bin of each block, and the bins of all kept rows.
 fn kept_rows(lowest: &[usize], last: usize) -> Result<(Vec<Kept>, Vec<usize>)> {
     let blocks = lowest.len();
     let (mut block_of, mut bins) = (zeros(blocks, PLAN)?, Vec::new());

@@ -17,7 +17,7 @@ impl<T: Scalar> Factor<T, 2> for RealMatrix<'_, T> {
         let (xx, yy, xy) = (even_value::<T, S>(xx, at), even_value::<T, S>(yy, at), even_value::<T, S>(xy, at));
         let (by_x, by_y) = (a.scale(x, xy), a.scale(y, xy));
         let (x, y) = (a.scale(x, xx), a.scale(y, yy));
-        // A block that is kept as its mirror image has -xy.
+        // Mirror images of kept blocks have -xy.
         if at.kept.step > 0 {
             [a.add(x, by_y), a.add(y, by_x)]
         } else {
@@ -26,7 +26,7 @@ impl<T: Scalar> Factor<T, 2> for RealMatrix<'_, T> {
     }
 }
 
-/// A symbol, and what its columns are multiplied by, `[part][column]`.
+/// A symbol, and the factors of its columns, `[part][column]`.
 pub struct Displaced<'a, T, F> {
     pub of: F,
     pub factors: &'a [T],
@@ -54,7 +54,7 @@ impl<T: Scalar> Factor<T, 1> for ComplexSymbol<'_, T> {
     }
 }
 
-/// The same of xx, yy and xy.
+/// Complex values of xx, yy and xy of a block of columns.
 pub struct ComplexMatrix<'a, T>(pub [&'a [T]; 3]);
 
 impl<T: Scalar> Factor<T, 2> for ComplexMatrix<'_, T> {

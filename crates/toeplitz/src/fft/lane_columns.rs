@@ -1,13 +1,13 @@
-//! The y direction of products, a vector of columns at a time, one column in each place.
+//! The y direction of products, a vector of columns at a time, one column in each lane.
 //!
 //! ```text
-//! columns <- F^-1 (S . F columns)          of one component: S real, S_k = S_(py-k) to within rounding, one for each column
+//! columns <- F^-1 (S . F columns)          one component: S real, S_k = S_(py-k) to round-off, one S for each column
 //! ```
 //!
 //! Blocks of columns are as [`LaneRows`](crate::fft::lane_rows::LaneRows) write them,
-//! `[row][part][column]`. S is kept as `[block of columns][kept row][column]` ([`even_plan`](crate::fft::even_plan)).
+//! `[row][part][column]`. S is stored as `[block of columns][kept row][column]` ([`even_plan`](crate::fft::even_plan)).
 //!
-//! Of several components S is a matrix, and all are worked on together ([`Factor`](crate::fft::column_pass::Factor)).
+//! With several components S is a matrix, and all components are done together ([`Factor`](crate::fft::column_pass::Factor)).
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -27,12 +27,12 @@ pub(crate) struct LaneColumns<T: Real> {
 }
 
 impl<T: Real> LaneColumns<T> {
-    /// None where the length has no plan.
+    /// The products of a length; None if it has no plan.
     pub fn new(length: usize) -> Result<Option<LaneColumns<T>>> {
         LaneColumns::on(pulp::Arch::new(), length)
     }
 
-    /// With the vectors of these instructions; no bit depends on them.
+    /// [`LaneColumns::new`] with the vectors of these instructions, on which no bit depends.
     fn on(arch: pulp::Arch, length: usize) -> Result<Option<LaneColumns<T>>> {
         Ok(EvenPlan::shared(length)?.map(|plan| LaneColumns { plan, arch }))
     }
@@ -47,7 +47,7 @@ impl<T: Real> LaneColumns<T> {
         self.plan.bins.len()
     }
 
-    /// Writes the symbol of a block, of `value(column, bin)` of the columns that there are; zero for the others.
+    /// Writes the symbol `value(column, bin)` of a block; zero for missing columns.
     pub fn write(&self, block: &mut [T], columns: usize, value: impl Fn(usize, usize) -> T) {
         for (row, &bin) in block.chunks_exact_mut(BLOCK).zip(&self.plan.bins) {
             let (there, beyond) = row.split_at_mut(columns.min(BLOCK));
@@ -56,8 +56,8 @@ impl<T: Real> LaneColumns<T> {
         }
     }
 
-    /// Multiplies the columns of a block, `columns` of which mean something and rows `loaded` of which hold values, by its symbol, in memory
-    /// for them. `next` is where the next block stands, of as many rows.
+    /// Multiplies the first `columns` columns of a block, with values in the rows `loaded`, by its symbol. `next` is the place of the next block, of
+    /// as many rows.
     pub fn multiply(
         &self,
         (block, columns): (&mut [Complex<T>], usize),
@@ -71,7 +71,7 @@ impl<T: Real> LaneColumns<T> {
         self.multiply_all(blocks, &EvenSymbol(symbol), memory, T::by_even);
     }
 
-    /// The same of K components, by the pass that belongs to the factor.
+    /// [`LaneColumns::multiply`] for K components, by the pass of the factor.
     pub fn multiply_all<F, const K: usize>(
         &self,
         blocks: Blocks<'_, T, K>,

@@ -1,6 +1,6 @@
-//! Between rows in memory and rows in lanes: values, four columns at a time, and bins of real rows
-//! ([`lane_rows`](crate::fft::lane_rows) has the formulas). Blocks of bins are far from each other, so each is prefetched while the one before is
-//! worked on.
+//! Passes between rows in memory and rows in lanes: values, four columns at a time, and bins of real rows
+//! ([`lane_rows`](crate::fft::lane_rows) has the formulas). Blocks of bins are far from each other, so each is prefetched during the work
+//! on the one before.
 
 use pulp::Simd;
 
@@ -12,7 +12,7 @@ use crate::real::{Complex, Scalar};
 
 /// Lanes of the longest vector.
 const MOST: usize = BLOCK;
-/// Columns that become vectors together.
+/// Columns that are transposed together.
 const FOUR: usize = 4;
 
 /// Four values of each row, `values(row)`, as four vectors.
@@ -26,7 +26,7 @@ fn from_rows<T: Scalar, S: Simd>(simd: S, values: impl Fn(usize) -> [T; FOUR]) -
     T::from_rows(simd, [v[0], v[1], v[2], v[3]])
 }
 
-/// Back again, to `write(row, values)`.
+/// The reverse of [`from_rows`]: calls `write(row, values)`.
 #[inline(always)]
 fn to_rows<T: Scalar, S: Simd>(simd: S, vectors: [T::Vector<S>; FOUR], mut write: impl FnMut(usize, [T; FOUR])) {
     let (n, mut rows) = (lane_count::<T, S>(), [[T::zero(); FOUR]; MOST]);
@@ -36,7 +36,7 @@ fn to_rows<T: Scalar, S: Simd>(simd: S, vectors: [T::Vector<S>; FOUR], mut write
     }
 }
 
-/// Fours of real parts, and as many of imaginary ones, that a row has in a block.
+/// Groups of four real parts of a row in a block; there are as many of imaginary parts.
 const PER_BLOCK: usize = BLOCK / FOUR;
 
 /// z of rows, zero beyond them.
@@ -75,7 +75,7 @@ pub(crate) fn load<T: Scalar, S: Simd>(a: Arithmetic<T, S>, rows: &[T], width: u
     }
 }
 
-/// X of all bins, of Z in the order of the stages.
+/// X of all bins, from Z in the order of the stages.
 #[inline(always)]
 pub(crate) fn store_bins<T: Scalar, S: Simd>(
     a: Arithmetic<T, S>,
@@ -130,7 +130,7 @@ fn conjugate<T: Scalar>(w: Complex<T>) -> Complex<T> {
     Complex::new(w.re, -w.im)
 }
 
-/// Z of all bins in the order of the stages, their real and imaginary parts swapped. Bins come from the front and from behind, four at a time.
+/// Z of all bins in the order of the stages, real and imaginary parts swapped. Bins are loaded from both ends, four at a time.
 #[inline(always)]
 pub(crate) fn load_bins<T: Scalar, S: Simd>(
     a: Arithmetic<T, S>,
@@ -171,7 +171,7 @@ pub(crate) fn load_bins<T: Scalar, S: Simd>(
         let ([re, im], [mirrored_re, mirrored_im]) = (front[k % FOUR], behind[m % FOUR]);
         let sum = Parts { re: a.add_real(re, mirrored_re), im: a.add_real(im, mirrored_im) };
         let difference = Parts { re: a.sub_real(re, mirrored_re), im: a.sub_real(im, mirrored_im) };
-        // w* (difference.re + i sum.im), of which i times is added to Z_k; for Z_(h-k) w is -w*.
+        // w* (difference.re + i sum.im); i times this is added to Z_k. For Z_(h-k), w is -w*.
         let turned = a.twiddle(Parts { re: difference.re, im: sum.im }, conjugate(twiddles[k]));
         let turned = a.add(turned, turned);
         z[row_of[k]] = [a.add_real(turned.re, difference.im), a.sub_real(sum.re, turned.im)];
@@ -179,7 +179,7 @@ pub(crate) fn load_bins<T: Scalar, S: Simd>(
     }
 }
 
-/// The first values of z as rows; its real and imaginary parts are swapped.
+/// The first values of z as rows; real and imaginary parts of z are swapped.
 #[inline(always)]
 pub(crate) fn store<T: Scalar, S: Simd>(a: Arithmetic<T, S>, z: &[Row<T, S>], rows: &mut [T], width: usize) {
     let (whole, rest) = (width / FOUR, width % FOUR);
@@ -203,7 +203,7 @@ pub(crate) fn store<T: Scalar, S: Simd>(a: Arithmetic<T, S>, z: &[Row<T, S>], ro
             },
         );
     }
-    // Rows that are not there are empty.
+    // Missing rows are empty.
     let mut fours: [&mut [[T; FOUR]]; MOST] = Default::default();
     for (row, fours) in rows.chunks_exact_mut(width).zip(&mut fours) {
         *fours = pulp::as_arrays_mut::<FOUR, _>(row).0;

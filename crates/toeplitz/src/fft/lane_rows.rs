@@ -1,4 +1,4 @@
-//! Transforms of real rows, one row in each place of the machine's vectors: an even length n by a complex transform of h = n/2 values.
+//! Transforms of real rows, one row in each SIMD lane: an even length n by a complex transform of h = n/2 values.
 //!
 //! ```text
 //! z_j = x_2j + i x_(2j+1),   Z = F z,   w_k = exp(-2 pi i k/n)        (Cooley, Lewis and Welch 1970)
@@ -6,9 +6,9 @@
 //! Z_k = X_k + X*_(h-k) + i w*_k (X_k - X*_(h-k))                       backwards, unnormalised: 2 h times z
 //! ```
 //!
-//! Bins stand in blocks of [`BLOCK`], `[block][row][part][bin]`, the real parts of a row before its imaginary ones: so columns, which are loaded
-//! afterwards, find all of a block in one piece, and some rows are columns of the matrix whose rows are blocks. Values of rows become vectors
-//! four columns at a time, and back.
+//! Bins are stored in blocks of [`BLOCK`], `[block][row][part][bin]`, the real parts of a row before its imaginary ones. So the column
+//! transforms, which follow, find a block in one piece, and a group of rows is a group of columns of the matrix whose rows are blocks. Values
+//! are transposed to vectors and back four columns at a time.
 
 use std::sync::Arc;
 
@@ -29,12 +29,12 @@ pub(crate) struct LaneRows<T: Real> {
 }
 
 impl<T: Real> LaneRows<T> {
-    /// None where the length has no plan, or the machine no vectors.
+    /// None if the length has no plan, or the machine no vectors.
     pub fn new(n: usize) -> Result<Option<LaneRows<T>>> {
         LaneRows::on(pulp::Arch::new(), n)
     }
 
-    /// With the vectors of these instructions; no bit depends on them. None without vectors.
+    /// [`LaneRows::new`] with the vectors of these instructions, on which no bit depends.
     pub(crate) fn on(arch: pulp::Arch, n: usize) -> Result<Option<LaneRows<T>>> {
         match arch.dispatch(LaneCount::<f64>(std::marker::PhantomData)) {
             Some(1) => Ok(None),
@@ -42,7 +42,7 @@ impl<T: Real> LaneRows<T> {
         }
     }
 
-    /// The same also on a machine without vectors, one row at a time.
+    /// [`LaneRows::on`] that serves machines without vectors as well, one row at a time.
     pub(crate) fn of_any(arch: pulp::Arch, n: usize) -> Result<Option<LaneRows<T>>> {
         let Some(lanes) = arch.dispatch(LaneCount::<T>(std::marker::PhantomData)) else { return Ok(None) };
         Ok(RowPlan::shared(n)?.map(|plan| LaneRows { plan, arch, lanes }))
@@ -53,7 +53,7 @@ impl<T: Real> LaneRows<T> {
         self.plan.length() + 1
     }
 
-    /// Blocks of bins; those beyond n/2 have no meaning.
+    /// Number of blocks of bins; bins beyond n/2 are undefined.
     pub fn blocks(&self) -> usize {
         self.plan.blocks()
     }
@@ -63,19 +63,19 @@ impl<T: Real> LaneRows<T> {
         self.lanes
     }
 
-    /// Complex numbers that both directions need.
+    /// Length of the scratch of both directions.
     pub fn scratch_length(&self) -> usize {
         self.plan.length() * self.lanes + before_a_line::<T>()
     }
 
-    /// Up to [`at_a_time`](Self::at_a_time) rows of `width` values, to bins `[block][row of these][part][bin]`, which have room for all of
-    /// these even where there are fewer rows. What rows lack of their length is zero.
+    /// Transforms up to [`at_a_time`](Self::at_a_time) rows of `width` values to bins `[block][row of these][part][bin]`, which always have
+    /// room for [`at_a_time`](Self::at_a_time) rows. Shorter rows are padded with zeros.
     pub fn forward(&self, rows: &[T], width: usize, bins: &mut Block<'_, T>, scratch: &mut [Complex<T>]) {
         assert!(self.fits(bins) && width <= 2 * self.plan.length() && rows.len() >= width);
         T::rows_forward(self.arch, Forward { plan: &self.plan, rows, width, bins, scratch });
     }
 
-    /// Bins of [`at_a_time`](Self::at_a_time) rows to the first values of as many rows as there are.
+    /// Transforms bins of [`at_a_time`](Self::at_a_time) rows to the first `width` values of the given rows.
     pub fn inverse(&self, bins: &Block<'_, T>, rows: &mut [T], width: usize, scratch: &mut [Complex<T>]) {
         assert!(self.fits(bins) && width <= 2 * self.plan.length() && width > 0);
         T::rows_inverse(self.arch, Inverse { plan: &self.plan, bins, rows, width, scratch });

@@ -1,6 +1,6 @@
-//! Values of several columns, or rows, side by side in vectors of the machine, and complex numbers of them.
+//! Values of several columns or rows in the lanes of SIMD vectors, and complex numbers of such vectors.
 //!
-//! Nothing is contracted: a vector has the bits that its values have one by one.
+//! Operations are not contracted: a vector has the bits of its values computed one by one.
 
 use std::marker::PhantomData;
 
@@ -8,16 +8,16 @@ use pulp::{bytemuck::Pod, Simd};
 
 use rustfft::num_complex::Complex;
 
-/// Values that vectors are made of.
+/// Values in the lanes of vectors.
 pub trait Lanes: Copy {
     /// A vector of the instructions `S`.
     type Vector<S: Simd>: Pod;
 
     /// A slice as vectors; its length is a multiple of theirs.
     fn vectors<S: Simd>(values: &[Self]) -> &[Self::Vector<S>];
-    /// The same, to be written.
+    /// A mutable slice as vectors.
     fn vectors_mut<S: Simd>(values: &mut [Self]) -> &mut [Self::Vector<S>];
-    /// one value in all lanes.
+    /// One value in all lanes.
     fn splat<S: Simd>(simd: S, value: Self) -> Self::Vector<S>;
     /// a + b.
     fn add<S: Simd>(simd: S, a: Self::Vector<S>, b: Self::Vector<S>) -> Self::Vector<S>;
@@ -25,10 +25,9 @@ pub trait Lanes: Copy {
     fn sub<S: Simd>(simd: S, a: Self::Vector<S>, b: Self::Vector<S>) -> Self::Vector<S>;
     /// a b, lane by lane.
     fn mul<S: Simd>(simd: S, a: Self::Vector<S>, b: Self::Vector<S>) -> Self::Vector<S>;
-    /// Four values of each of some rows, which stand one after the other, to four vectors of one value of each row, in an order of lanes that
-    /// suits the machine.
+    /// Transposes four consecutive values of each row to four vectors with one value of each row, in an order of lanes chosen for the machine.
     fn from_rows<S: Simd>(simd: S, rows: [Self::Vector<S>; 4]) -> [Self::Vector<S>; 4];
-    /// Back again.
+    /// The reverse of [`Lanes::from_rows`].
     fn to_rows<S: Simd>(simd: S, vectors: [Self::Vector<S>; 4]) -> [Self::Vector<S>; 4];
 }
 
@@ -97,13 +96,13 @@ lanes!(
     interleave_shfl_f64s
 );
 
-/// Values in a vector.
+/// Number of lanes of a vector.
 #[inline(always)]
 pub fn lane_count<T: Lanes, S: Simd>() -> usize {
     size_of::<T::Vector<S>>() / size_of::<T>()
 }
 
-/// A vector of complex numbers, by parts.
+/// A vector of complex numbers: real and imaginary parts.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub struct Parts<V> {

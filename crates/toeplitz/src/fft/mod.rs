@@ -1,4 +1,4 @@
-//! Transforms of rows and columns: any length by rustfft, others by stages of our own, one row or column in each lane of a vector.
+//! Transforms of rows and columns: any length by rustfft, fast lengths by stages of this crate, one row or column in each SIMD lane.
 
 pub(crate) mod any_length;
 pub(crate) mod butterflies;

@@ -10,7 +10,7 @@ use crate::fft::stage_plan::Stages;
 use crate::fft::stages::{backwards, end, forward, of_radix, rows_of};
 use crate::real::{Complex, Scalar};
 
-/// Lanes of this machine's vectors; none where they are longer than a block.
+/// Lanes of this machine's vectors; none if vectors are longer than a block.
 pub struct LaneCount<T>(pub std::marker::PhantomData<T>);
 
 impl<T: Scalar> WithSimd for LaneCount<T> {

@@ -1,4 +1,4 @@
-//! Where the stages leave the bins of real rows.
+//! The order of the bins of real rows after the stages.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::fft::stage_plan::Stages;
 use crate::plan::{find, shared, Plan, PLAN};
 use crate::real::{twiddle, Complex, Scalar};
 
-/// The stages of one length, and where they leave bins.
+/// The stages of one length, and the rows of the bins after them.
 pub struct RowPlan<T: Scalar> {
     pub(crate) stages: Stages<T>,
     /// The row in which the stages leave each bin 0 .. h (Z_h = Z_0).
@@ -26,7 +26,7 @@ impl<T: Scalar> Plan for RowPlan<T> {
 }
 
 impl<T: Scalar> RowPlan<T> {
-    /// That of a length. None where n is odd, or h has no stages.
+    /// The shared plan of a length; None if n is odd, or h has no stages.
     pub fn shared(n: usize) -> Result<Option<Arc<RowPlan<T>>>> {
         // A known plan is found without an allocation.
         match find(n) {
@@ -47,12 +47,12 @@ impl<T: Scalar> RowPlan<T> {
         Ok(RowPlan { stages, row_of, twiddles })
     }
 
-    /// h.
+    /// h = n/2.
     pub(crate) fn length(&self) -> usize {
         self.row_of.len() - 1
     }
 
-    /// Blocks of bins; those beyond h have no meaning.
+    /// Number of blocks of bins; bins beyond h are undefined.
     pub(crate) fn blocks(&self) -> usize {
         (self.length() + 1).div_ceil(BLOCK)
     }

@@ -6,8 +6,8 @@
 //! X_(n/2-k)*  = (Z_k + Z*_(n/2-k))/2 + i w_k (Z_k - Z*_(n/2-k))/2
 //! ```
 //!
-//! and backwards. What follows (or goes before) the complex transform takes as long as half of that, so it is compiled for the vectors of
-//! this machine; no bit depends on them. The operations and their order are those of the crate realfft, with which the test compares.
+//! and backwards. The pass after (or before) the complex transform takes half as long as that, so it is compiled for the vectors of this
+//! machine; no bit depends on them. The operations and their order are those of the crate realfft, which the test compares.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ use crate::real::Complex;
 use par::memory::collected;
 use par::Result;
 
-/// Lengths of short rows, and how many are transformed together.
+/// The longest short row, and the number of short rows transformed together.
 const SHORT: usize = 256;
 const MOST_ROWS: usize = 8;
 
@@ -28,7 +28,7 @@ const MOST_ROWS: usize = 8;
 #[derive(Clone)]
 pub struct RowTransform<T: Real> {
     n: usize,
-    /// Of length n/2; of n where that is odd.
+    /// The complex transform, of length n/2, or n if n is odd.
     complex: ColumnTransform<T>,
     /// `w_k/2`, 0 < k < n/4.
     twiddles: Arc<Twiddles<T>>,
@@ -66,8 +66,8 @@ impl<T: Real> RowTransform<T> {
         self.n / 2 + 1
     }
 
-    /// Rows that are transformed together: of short ones, calls of the complex transform take as long as their work. Long ones are
-    /// transformed to another place, one after the other: what they pass through would leave the nearest cache.
+    /// Rows transformed together. For short rows, calling the complex transform takes as long as its work. Long rows are transformed out of
+    /// place, one after the other: together, their intermediate values would leave the nearest cache.
     pub fn at_a_time(&self) -> usize {
         if self.n > SHORT {
             1
@@ -76,7 +76,7 @@ impl<T: Real> RowTransform<T> {
         }
     }
 
-    /// Scratch that both directions need.
+    /// Scratch for both directions.
     pub fn scratch(&self) -> Result<Vec<Complex<T>>> {
         scratch_of(self.scratch_length())
     }
@@ -86,14 +86,14 @@ impl<T: Real> RowTransform<T> {
         fit(scratch, self.scratch_length())
     }
 
-    /// Its length.
+    /// The length of the scratch.
     pub fn scratch_length(&self) -> usize {
         let to_another_place = self.n % 2 == 0 && self.at_a_time() == 1;
         let of_complex = if to_another_place { self.complex.scratch_to() } else { self.complex.scratch_length() };
         self.at_a_time() * self.complex.length() + of_complex
     }
 
-    /// Real row to bins; what the row lacks of its length is zero.
+    /// Real row to bins. A shorter row is padded with zeros.
     pub fn forward(&self, row: &[T], bins: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
         self.forward_together(row, row.len(), bins, scratch);
     }
@@ -104,7 +104,7 @@ impl<T: Real> RowTransform<T> {
         self.inverse_together(bins, row, width, scratch);
     }
 
-    /// The same of up to [`at_a_time`](Self::at_a_time) rows, each of `width` values.
+    /// [`forward`](Self::forward) of up to [`at_a_time`](Self::at_a_time) rows, each of `width` values.
     pub fn forward_together(&self, rows: &[T], width: usize, bins: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
         let (nb, length) = (self.bins(), self.complex.length());
         assert!(width <= self.n && bins.len() % nb == 0, "a row transform of the wrong length");
@@ -143,7 +143,7 @@ impl<T: Real> RowTransform<T> {
         pulp::Arch::new().dispatch(Passes::<T, true> { twiddles, length, bins });
     }
 
-    /// The same of up to [`at_a_time`](Self::at_a_time) rows, each of `width` values.
+    /// [`inverse`](Self::inverse) to up to [`at_a_time`](Self::at_a_time) rows, each of `width` values.
     pub fn inverse_together(&self, bins: &mut [Complex<T>], rows: &mut [T], width: usize, scratch: &mut [Complex<T>]) {
         let (nb, length) = (self.bins(), self.complex.length());
         assert!(width <= self.n && bins.len() % nb == 0, "a row transform of the wrong length");
@@ -180,8 +180,8 @@ impl<T: Real> RowTransform<T> {
     }
 }
 
-/// The pass over the bins of rows: those of the complex transform, `length` of each row, become those of the row, or the other way.
-/// Compiled for the vectors of this machine.
+/// The pass over the bins of rows: turns the `length` bins of each row's complex transform into the bins of the row, or back. Compiled
+/// for the vectors of this machine.
 struct Passes<'a, T: Real, const FORWARD: bool> {
     twiddles: &'a [Complex<T>],
     length: usize,
@@ -191,7 +191,7 @@ struct Passes<'a, T: Real, const FORWARD: bool> {
 impl<T: Real, const FORWARD: bool> pulp::NullaryFnOnce for Passes<'_, T, FORWARD> {
     type Output = ();
 
-    // In place: of more slices the compiler cannot tell that they are apart, and does not vectorise.
+    // In place: the compiler does not vectorise over more slices, as it cannot prove that they do not overlap.
     #[inline(always)]
     fn call(self) {
         let Passes { twiddles, length, bins } = self;

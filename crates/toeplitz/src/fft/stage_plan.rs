@@ -1,4 +1,4 @@
-//! Which stages a transform of one length has, and the order in which they leave bins.
+//! The stages of a transform of one length, and the order of bins after them.
 
 use par::memory::{collected, zeros};
 use par::Result;
@@ -10,30 +10,30 @@ use crate::lengths::radices;
 use crate::plan::PLAN;
 use crate::real::{twiddle, Scalar};
 
-/// Rows of a vector (16 kB with AVX2, 32 kB with AVX-512) that the nearest cache holds beside what else is read.
+/// Rows of a vector (16 kB with AVX2, 32 kB with AVX-512) that fit the nearest cache together with other data.
 const NEAR: usize = 256;
-/// Bytes of rows that it holds if there is nothing else.
+/// Bytes of rows that fit the nearest cache without other data.
 const NEAREST_CACHE: usize = 1 << 15;
 
 /// The stages of one length.
 pub(crate) struct Stages<T: Scalar> {
-    /// The first, and those in the middle.
+    /// The first stage, and the middle ones.
     pub first: Stage<T>,
     pub middle: Vec<Stage<T>>,
-    /// Of those in the middle, how many go over all rows; the others go over parts of so many rows.
+    /// The number of middle stages that process all rows at once. The others process parts of `part` rows.
     pub wide: usize,
     pub part: usize,
-    /// The radix of the last.
+    /// The radix of the last stage.
     pub last: usize,
 }
 
 impl<T: Scalar> Stages<T> {
-    /// Whether a length has stages: none have lengths of other factors than 2, 3 and 5, or of one stage.
+    /// Whether a length has stages: its only prime factors are 2, 3 and 5, and it needs more than one stage.
     pub fn exist(length: usize) -> bool {
         radices(length).is_some()
     }
 
-    /// Those of a length that has some.
+    /// The stages of a length that has some.
     pub fn new(length: usize) -> Result<Stages<T>> {
         let radices = radices(length).unwrap_or_default();
         let [first, middle @ .., last] = &radices[..] else { unreachable!("no stages have a length of {length}") };
@@ -61,14 +61,14 @@ impl<T: Scalar> Stages<T> {
         self.first.radix * self.first.stride()
     }
 
-    /// All stages forward but the first.
+    /// All forward stages except the first.
     #[inline(always)]
     pub fn forward_after_first<S: Simd>(&self, a: Arithmetic<T, S>, rows: &mut [Row<T, S>]) {
         let (wide, near) = self.middle.split_at(self.wide);
         for stage in wide {
             of_radix!(stage.radix, forward, a, stage, rows);
         }
-        // Then part by part, in the nearest cache.
+        // The remaining stages process part by part, in the nearest cache.
         for rows in rows.chunks_exact_mut(self.part) {
             for stage in near {
                 of_radix!(stage.radix, forward, a, stage, rows);
@@ -77,10 +77,10 @@ impl<T: Scalar> Stages<T> {
         }
     }
 
-    /// The lowest bin of each block that the last stage leaves: block b holds bins `lowest(b) + q length/last`.
+    /// The lowest bin of each block of the last stage: block b holds bins `lowest(b) + q length/last`.
     pub fn lowest_bins(&self) -> Result<Vec<usize>> {
         let blocks = self.length() / self.last;
-        // Row b of the stages before the last holds bin lowest(b) of a transform of their length: digits from behind.
+        // Row b of the stages before the last holds bin lowest(b) of a transform of their length: digit reversal.
         let lowest = |b: usize| {
             let (mut rest, mut below, mut bin, mut weight) = (b, blocks, 0, 1);
             for stage in std::iter::once(&self.first).chain(&self.middle) {
@@ -94,7 +94,7 @@ impl<T: Scalar> Stages<T> {
         collected((0..blocks).map(lowest), PLAN)
     }
 
-    /// The bin of each row that the stages leave.
+    /// The bin of each row after the stages.
     pub fn bins(&self) -> Result<Vec<usize>> {
         let step = self.length() / self.last;
         let (lowest, mut bins) = (self.lowest_bins()?, zeros(self.length(), PLAN)?);
@@ -105,8 +105,8 @@ impl<T: Scalar> Stages<T> {
     }
 }
 
-/// The stages in the middle that go over all rows, until what they leave are parts that the nearest cache holds, and the rows of these.
-/// A length that fits by itself is one part.
+/// The number of middle stages over all rows, after which parts fit the nearest cache, and the rows of a part. A length that fits as a whole is one
+/// part.
 fn near_parts<T: Scalar>(middle: &[Stage<T>], length: usize, after_first: usize) -> (usize, usize) {
     if length * bytes_of_a_row::<T>() <= NEAREST_CACHE {
         return (0, length);

@@ -7,8 +7,8 @@
 //! backwards   x_(j + k m) <- sum_q w^(q j) x_(j + q m) exp(-2 pi i q k/R)
 //! ```
 //!
-//! So all is done in place, and bins stay in the order in which the stages leave them. The inverse is the transform of numbers whose real
-//! and imaginary parts are swapped, swapped back.
+//! So transforms are in place, and bins stay in the order of the stages' output. The inverse is the transform of numbers with swapped real and
+//! imaginary parts, swapped back.
 //!
 //! Loops run over indices of slices of one length: with iterators they take 3 to 7 % longer.
 #![allow(clippy::needless_range_loop)]
@@ -26,7 +26,7 @@ use crate::real::{Complex, Scalar};
 /// One row of a vector of columns: the real and the imaginary parts.
 pub(crate) type Row<T, S> = [<T as Lanes>::Vector<S>; 2];
 
-/// Of one radix.
+/// A stage of one radix.
 pub(crate) struct Stage<T: Scalar> {
     pub radix: usize,
     /// `w^(q j)` of q = 1 .. R - 1 for j = 0, the same for j = 1 ..
@@ -43,12 +43,12 @@ impl<T: Scalar> Stage<T> {
 /// Bytes of a line of the cache, as long as the longest vector.
 const LINE: usize = 64;
 
-/// Complex numbers that may stand before the first line.
+/// Most complex numbers before the first line.
 pub(crate) const fn before_a_line<T>() -> usize {
     LINE / size_of::<Complex<T>>() - 1
 }
 
-/// Memory from a line of the cache on: vectors of 64 bytes that lie across two take twice as long.
+/// Memory from a line of the cache on: vectors of 64 bytes across two lines take twice as long.
 #[inline(always)]
 pub(crate) fn from_a_line<T>(memory: &mut [Complex<T>]) -> &mut [Complex<T>] {
     let before = memory.as_ptr().align_offset(LINE).min(before_a_line::<T>());
@@ -63,7 +63,7 @@ pub(crate) fn rows_of<T: Scalar, S: Simd>(memory: &mut [Complex<T>]) -> &mut [Ro
     pulp::as_arrays_mut::<2, _>(T::vectors_mut::<S>(&mut values[..whole])).0
 }
 
-/// A closure with an attribute, which expressions alone may not have.
+/// Returns a closure, so that it may have an attribute, which expressions alone may not.
 #[inline(always)]
 pub(crate) fn inlined<F>(closure: F) -> F {
     closure
@@ -85,7 +85,7 @@ impl<T: Scalar> WithSimd for BytesOfARow<T> {
     }
 }
 
-/// Calls a stage of the radix that there is.
+/// Calls a stage with its radix as a constant.
 macro_rules! of_radix {
     ($radix:expr, $stage:ident of $k:ident, $($argument:expr),*) => {
         match $radix {
@@ -128,7 +128,7 @@ pub(crate) fn cut<A, const R: usize>(rows: &mut [A], m: usize) -> [&mut [A]; LON
     cut
 }
 
-/// The first stage, of rows that `load(row)` gives.
+/// The first stage, of rows `load(row)`.
 #[inline(always)]
 pub(crate) fn first<T: Scalar, S: Simd, const R: usize>(
     a: Arithmetic<T, S>,
@@ -177,7 +177,7 @@ pub(crate) fn forward<T: Scalar, S: Simd, const R: usize>(
     }
 }
 
-/// The last stage forward of K components, what `product(block of R rows, q, values)` makes of their values, and the first stage backwards.
+/// The last stage forward of K components, `product(block of R rows, q, values)` of their values, and the first stage backwards.
 #[inline(always)]
 pub(crate) fn multiply<T: Scalar, S: Simd, const R: usize, const K: usize>(
     a: Arithmetic<T, S>,

@@ -8,27 +8,26 @@
 //! ```
 //!
 //! *Why a step length.* All eigenvalues of M A on a part C of the grid are at least 1, and the largest grows like the
-//! logarithm of the number of elements (about 3 at 64 x 64, 4.6 at 512 x 512): a circulant knows nothing of the
-//! boundary of C. The large ones belong to waves that the coarse grid sees too, so a fixed alpha = 1 amplifies what
-//! the coarse grid has just removed, and a fixed alpha small enough for all of them hardly smooths. The alpha above
-//! minimises the elastic energy along z,
+//! logarithm of the number of elements (about 3 at 64 x 64, 4.6 at 512 x 512), as a circulant ignores the boundary of
+//! C. The large eigenvalues belong to waves that the coarse grid resolves as well. So a fixed alpha = 1 amplifies
+//! errors just removed by the coarse grid, and a fixed alpha small enough for all waves hardly smooths. The alpha
+//! above minimises the elastic energy along z,
 //!
 //! ```text
 //! J(v) = (v, A v)/2 - (d, v) on C,    J(v + omega alpha z) - J(v) = -omega (2 - omega) (r, z)^2 / (2 (z, q)) <= 0
 //! ```
 //!
-//! *Why the coarse-grid correction gets one too.* Coarse coefficients are computed anew, not by the Galerkin product,
-//! and the coarse contact area is another one than the fine: nothing bounds the energy of what comes back. As one more
-//! direction z it cannot raise it. So no part of a cycle raises J, whatever C looks like, and each sweep lowers it at
-//! least as much as one step of preconditioned steepest descent: the cycles converge for every symmetric positive
-//! definite A.
+//! *Why the coarse-grid correction has a step length as well.* Coarse coefficients are computed anew, not by the
+//! Galerkin product, and the coarse contact area differs from the fine one: nothing bounds the energy of the
+//! correction. As one more direction z it cannot raise J. So no part of a cycle raises J for any C, and each sweep
+//! lowers it at least as much as one step of preconditioned steepest descent: the cycles converge for every symmetric
+//! positive definite A.
 //!
-//! *What it costs.* q brings the residual up to date, so the step length costs no product. `A v`, the sum of all
-//! steps, is known at the end of the cycle, and saves the product that follows it. M has the period of the grid: a
-//! quarter of a product.
+//! *Cost.* q updates the residual, so the step length costs no product. `A v`, the sum of all steps, is known at the
+//! end of the cycle and saves the next product. M has the period of the grid and costs a quarter of a product.
 //!
-//! *What it is not.* alpha depends on r, so the cycle is not linear in the defect; but it is homogeneous, `cycle(c d)
-//! = c cycle(d)`.
+//! *Nonlinearity.* alpha depends on r, so the cycle is not linear in the defect, but homogeneous: `cycle(c d) = c
+//! cycle(d)`.
 //!
 //! Where A is not symmetric there is no energy, and alpha = (r, q)/(q, q) minimises the norm of the residual instead
 //! (also where an A that is not positive definite makes (z, q) <= 0). Where the circulant is not positive, M = 1:
@@ -76,7 +75,7 @@ impl Fft {
         })
     }
 
-    /// A new cycle, from v = 0.
+    /// Begins a cycle with v = 0.
     pub fn start(&mut self) {
         self.product.fill(0.0);
     }
@@ -86,7 +85,7 @@ impl Fft {
         &self.product
     }
 
-    /// One sweep; brings the residual up to date.
+    /// One sweep; updates v and the residual.
     pub fn sweep(
         &mut self,
         v: &mut [f64],
@@ -104,7 +103,7 @@ impl Fft {
         self.step(v, residual, contact, relaxation, displace);
     }
 
-    /// A correction from elsewhere, as far as it lowers the energy: `fill` writes it, all over the grid.
+    /// A given correction with the step length that minimises the energy: `fill` writes it on the whole grid.
     pub fn correct(
         &mut self,
         v: &mut [f64],
@@ -140,7 +139,7 @@ impl Fft {
             qq += q[i] * q[i];
         }
         let alpha = relaxation * if self.symmetric && zq > 0.0 { rz / zq } else { rq / qq };
-        // No step when there is no direction (the residual is zero), or none that is a number.
+        // No step along a direction that is 0 (the residual is 0) or not finite.
         if !alpha.is_finite() {
             return;
         }

@@ -1,15 +1,15 @@
 //! Lexicographic Gauss-Seidel with relaxation (x fastest), restricted to a set of elements.
 //!
 //! ```text
-//! for I in the set, in order:  p_I += omega (b_I - sum_J A_IJ p_J) / A_II       with what is already updated
+//! for I in the set, in order:  p_I += omega (b_I - sum_J A_IJ p_J) / A_II       with the values updated so far
 //! ```
 //!
-//! Summed element by element a sweep costs O(n^2). But with `r = b - A p` before the sweep and `d` the changes it makes, the
-//! sum that element I sees is `r_I - sum over J < I of A_IJ d_J`: a triangular block Toeplitz product. So the changes of
-//! each finished row are transformed in x once, and what they do to later rows is gathered in transformed space, by
-//! products within [`STRIP`] rows and by FFT in y between halves of larger blocks (divide and conquer). Only the part
-//! inside the current row is sequential. Same iterates as the dense sweep to round-off, at O(n log^2 n) plus, for rows
-//! that are not [long](super::long_rows), mx^2 my for the rows themselves.
+//! By direct summation a sweep costs O(n^2). Let `r = b - A p` be the residual before the sweep and `d` the changes by the sweep. Then the
+//! sum for element I is `r_I - sum over J < I of A_IJ d_J`, a triangular block Toeplitz product. So the changes of
+//! each finished row are transformed in x once. Their effect on later rows is summed in transformed space: by
+//! products within [`STRIP`] rows, and by FFT in y between halves of larger blocks (divide and conquer). Only the part
+//! within the current row is sequential. The iterates equal those of the dense sweep to round-off. The cost is O(n log^2 n), plus mx^2 my for
+//! the rows themselves if they are not [long](super::long_rows).
 
 use super::long_rows::LongRows;
 use crate::error::Result;
@@ -22,7 +22,7 @@ use crate::operator::zeros;
 /// Rows in a block whose mutual influence is summed directly.
 const STRIP: usize = 16;
 
-/// Bins transformed together: neighbours in memory.
+/// Bins transformed together. They are contiguous in memory.
 const COLUMNS: usize = 8;
 
 /// Gauss-Seidel on one grid.
@@ -35,9 +35,9 @@ pub struct GaussSeidel {
     long_rows: Option<LongRows>,
     /// `[d][bin]`: transformed coefficients between rows that are `d < STRIP` apart, normalised.
     between_rows: Vec<Complex<f64>>,
-    /// For blocks of 2, 4, .. strips: how their first half acts on the second.
+    /// For blocks of 2, 4, .. strips: the action of the first half on the second.
     halves: Vec<Half>,
-    /// `[my][bins]`: the transformed changes of each finished row, and what each row gathered from them.
+    /// `[my][bins]`: the transformed changes of each finished row, and the sums of them for each later row.
     changes: Vec<Complex<f64>>,
     gathered: Vec<Complex<f64>>,
     bins: Vec<Complex<f64>>,
@@ -110,7 +110,7 @@ impl GaussSeidel {
         })
     }
 
-    /// One sweep over the elements for which `in_set` holds. `residual` is `b - A p` on entry and is used up.
+    /// One sweep over the elements for which `in_set` holds. `residual` is `b - A p` on entry and is overwritten.
     pub fn sweep(
         &mut self,
         p: &mut [f64],
@@ -146,7 +146,7 @@ impl GaussSeidel {
         }
     }
 
-    /// Adds to row `iy` what the finished rows `first..iy` of its strip do to it.
+    /// Adds the effect of the finished rows `first..iy` of its strip to row `iy`.
     fn gather_within_strip(&mut self, first: usize, iy: usize) {
         let nb = self.rows.bins();
         let to = &mut self.gathered[iy * nb..(iy + 1) * nb];
@@ -159,7 +159,7 @@ impl GaussSeidel {
         }
     }
 
-    /// Adds to the rows `middle..end` what the finished rows `first..middle` do to them.
+    /// Adds the effect of the finished rows `first..middle` to the rows `middle..end`.
     fn gather_from_first_half(&mut self, first: usize, middle: usize, end: usize, level: usize) {
         let nb = self.rows.bins();
         let half = &self.halves[level - 1];

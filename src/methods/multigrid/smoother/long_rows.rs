@@ -1,7 +1,7 @@
 //! The sequential part of Gauss-Seidel in rows of many elements.
 //!
-//! An element displaces later ones of its row by a triangular Toeplitz product, as it is between rows: within [`STRIP`] elements it is
-//! summed, and between halves of larger blocks it is a product by FFT. So a row of m elements takes O(m log^2 m) in place of m^2.
+//! An element displaces later ones of its row by a triangular Toeplitz product. Within [`STRIP`] elements it is summed directly, between halves of
+//! larger blocks it is a product by FFT. So a row of m elements takes O(m log^2 m) instead of m^2.
 
 use crate::error::Result;
 use crate::operator::fft::Complex;
@@ -10,14 +10,14 @@ use crate::operator::zeros;
 
 /// Elements in a block whose mutual influence is summed directly.
 const STRIP: usize = 512;
-/// Rows of at most so many elements are summed directly.
+/// Most elements of rows that are summed directly.
 pub const SHORT: usize = 4096;
 
 /// The sequential part of rows of one length.
 pub struct LongRows {
     /// Coefficients `c(k, 0)`, `k >= 0`, within a strip.
     within_row: Vec<f64>,
-    /// For blocks of 2, 4, .. strips: how their first half acts on the second.
+    /// For blocks of 2, 4, .. strips: the action of the first half on the second.
     halves: Vec<Half>,
     row: Vec<f64>,
     bins: Vec<Complex<f64>>,
@@ -31,7 +31,7 @@ struct Half {
 }
 
 impl LongRows {
-    /// None where rows are short.
+    /// The sequential part of long rows; None for short ones.
     pub fn new(within_row: &[f64]) -> Result<Option<LongRows>> {
         let mx = within_row.len();
         if mx <= SHORT {
@@ -54,7 +54,7 @@ impl LongRows {
         Ok(Some(LongRows { within_row: within_row[..STRIP].to_vec(), halves, row, bins, scratch }))
     }
 
-    /// Sweeps the elements of a row: `residual` is used up, `changes` are added to p.
+    /// Sweeps the elements of a row: `residual` is overwritten, `changes` are added to p.
     pub fn sweep(
         &mut self,
         residual: &mut [f64],
@@ -66,7 +66,7 @@ impl LongRows {
         self.block(0, level, &mut Sweep { residual, changes, factor, in_set });
     }
 
-    /// Sweeps the block of `STRIP << level` elements from `first` on, or as many as there are.
+    /// Sweeps the block of up to `STRIP << level` elements from `first` on.
     fn block<S: Fn(usize) -> bool + Copy>(&mut self, first: usize, level: usize, sweep: &mut Sweep<'_, S>) {
         let end = sweep.residual.len().min(first + (STRIP << level));
         if level == 0 {

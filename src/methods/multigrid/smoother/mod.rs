@@ -13,17 +13,17 @@ use crate::influence::Coefficients;
 use crate::operator::zeros;
 use crate::threads::Threads;
 
-/// Which smoother.
+/// The kind of a smoother.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SmootherKind {
     /// Lexicographic Gauss-Seidel, x fastest; relaxation < 1: SUR, > 1: SOR. The paper's, with 0.8.
     GaussSeidel,
     /// Gauss-Seidel in red-black order. Worse than lexicographic order here, and a product dearer.
     RedBlack,
-    /// (Damped) Jacobi. Does not converge on fine grids: shown for the comparison.
+    /// (Damped) Jacobi. Does not converge on fine grids: for comparison only.
     Jacobi,
     /// The inverse of a circulant, with the step length of least energy. Needs no more products than Gauss-Seidel, and
-    /// makes cycles that are not linear.
+    /// makes cycles nonlinear.
     Fft,
 }
 
@@ -43,7 +43,7 @@ impl SmootherKind {
 pub enum Smoother {
     /// See [`SmootherKind::GaussSeidel`].
     GaussSeidel(GaussSeidel),
-    /// See [`SmootherKind::RedBlack`]; what the red elements change, and the residual before the sweep.
+    /// See [`SmootherKind::RedBlack`]; the changes of the red elements, and the residual before the sweep.
     RedBlack(GaussSeidel, Vec<f64>, Vec<f64>),
     /// See [`SmootherKind::Jacobi`]; the diagonal coefficient.
     Jacobi(f64),
@@ -65,14 +65,13 @@ impl Smoother {
         })
     }
 
-    /// Whether a sweep leaves the residual up to date.
+    /// Whether a sweep updates the residual.
     pub fn keeps_residual(&self) -> bool {
         matches!(self, Smoother::Fft(_))
     }
 
-    /// One sweep on `A p = b` over the elements in contact. `residual` is `b - A p` on entry; it is used up, or
-    /// brought up to date by a smoother that [keeps it](Self::keeps_residual). `displace(changes, product)` computes
-    /// `A changes`.
+    /// One sweep on `A p = b` over the elements in contact. `residual` is `b - A p` on entry; it is overwritten, or
+    /// updated by a smoother that [keeps it](Self::keeps_residual). `displace(changes, product)` computes `A changes`.
     pub fn sweep(
         &mut self,
         p: &mut [f64],
@@ -83,8 +82,8 @@ impl Smoother {
     ) {
         match self {
             Smoother::GaussSeidel(gauss_seidel) => gauss_seidel.sweep(p, residual, relaxation, |i| contact[i]),
-            // A is dense, so the red elements depend on each other, too: each colour is swept in lexicographic order, and the residual
-            // is brought up to date between.
+            // A is dense, so the red elements depend on each other as well: each colour is swept in lexicographic order, and the
+            // residual is updated between.
             Smoother::RedBlack(gauss_seidel, changes, before) => {
                 let mx = gauss_seidel.mx;
                 let red = |i: usize| (i / mx + i % mx) % 2 == 0;

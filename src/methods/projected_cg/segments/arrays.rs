@@ -18,7 +18,7 @@ pub(super) fn eights<A>(values: &[A]) -> &[Eight<A>] {
     pulp::as_arrays::<EIGHT, A>(values).0
 }
 
-/// The elements behind them, padded to a segment.
+/// The elements behind the whole segments, padded to a segment.
 #[inline(always)]
 pub(super) fn rest<A: Copy + Default>(values: &[A]) -> Eight<A> {
     let (mut padded, rest) = ([A::default(); EIGHT], pulp::as_arrays::<EIGHT, A>(values).1);
@@ -69,7 +69,7 @@ impl<T: Real, const A: usize, const B: usize> Rest<T, A, B> {
     }
 }
 
-/// Those segments of a block that are whole, and whether what is behind them is one of its segments, too.
+/// The whole segments of a block, and whether the rest behind them is one of its segments as well.
 #[inline(always)]
 pub(super) fn whole(block: Block<'_>) -> (&[u32], bool) {
     match block.segments.split_last() {
@@ -95,7 +95,7 @@ impl<'a, const A: usize, const B: usize> Segment<'a, A, B> {
         Segment { a, b: doubles, contact: ones }
     }
 
-    /// Vector number `part` of it: values of a and of b, and which are in contact.
+    /// Vector number `part` of the segment: values of a and of b, and the lanes in contact.
     #[inline(always)]
     pub(super) fn part<S: Simd>(&self, simd: S, part: usize) -> ([Vector<S>; A], [Vector<S>; B], Holds<S>) {
         let of = |values: &Eight<f64>| Vector::new(simd, S::as_simd_f64s(values).0[part]);
@@ -104,7 +104,7 @@ impl<'a, const A: usize, const B: usize> Segment<'a, A, B> {
     }
 }
 
-/// Into memory, one after the other: so the compiler vectorises it.
+/// Converts through memory, which the compiler vectorises.
 #[inline(always)]
 pub(super) fn convert<A: Copy, B>(from: &Eight<A>, to: &mut Eight<B>, how: impl Fn(A) -> B) {
     to.iter_mut().zip(from).for_each(|(to, from)| *to = how(*from));

@@ -1,4 +1,4 @@
-//! A block of the grid, and what a formula is to say of each of its elements.
+//! A block of the grid, and the traits of formulas for its elements.
 
 use std::ops::Range;
 
@@ -19,7 +19,7 @@ pub trait Becomes<const A: usize, const B: usize> {
     fn of<S: Simd>(&self, value: Vector<S>, a: [Vector<S>; A], b: [Vector<S>; B]) -> Vector<S>;
 }
 
-/// Which elements a pass lists, by their values and those of N other arrays.
+/// The elements that a pass lists, by their values and those of N other arrays.
 pub trait Wanted<const N: usize> {
     /// `first`: the element of the first value.
     fn of<S: Simd>(&self, first: usize, value: Vector<S>, others: [Vector<S>; N]) -> Holds<S>;
@@ -34,7 +34,7 @@ pub struct Block<'a> {
 }
 
 impl<'a> Block<'a> {
-    /// Of up to so many elements of the grid, from `start` on.
+    /// A block of up to `length` elements of the grid, from `start` on.
     pub fn new(start: usize, contact: &'a [bool], length: usize, segments: &'a [u32]) -> Block<'a> {
         Block { start, contact: &contact[start..contact.len().min(start + length)], segments }
     }

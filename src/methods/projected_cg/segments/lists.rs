@@ -1,4 +1,4 @@
-//! Passes over a block that list elements, in vectors of this machine.
+//! Passes over a block that list elements, in SIMD vectors.
 
 use pulp::{Simd, WithSimd};
 
@@ -50,7 +50,7 @@ fn list_segment<S: Simd, const B: usize>(
     }
 }
 
-/// Appends the elements, from `first` on, of which something holds.
+/// Appends the elements, from `first` on, in lanes where `wanted` holds.
 #[inline(always)]
 fn append<S: Simd>(simd: S, first: usize, wanted: Holds<S>, list: &mut Vec<u32>) {
     if wanted.anywhere() {
@@ -87,7 +87,7 @@ impl<T: Real, F: Becomes<A, B>, G: Wanted<A>, const A: usize, const B: usize> Wi
         if !behind.is_empty() {
             let mut last = rest(behind);
             everywhere(simd, (end_of_whole, &mut last), arrays.rest().segment(), (&change, &wanted), list);
-            // Padding is no element.
+            // Removes padding.
             let end = block.elements().end as u32;
             list.truncate(list.partition_point(|i| *i < end));
             behind.copy_from_slice(&last[..behind.len()]);

@@ -1,11 +1,11 @@
 //! The contact area in segments, and passes over it.
 //!
-//! A segment is a vector of eight neighbours with an element in contact. Contact is often a small part of the grid: passes touch the segments and
-//! nothing else. On a rough surface what is in contact side by side would not fill a vector (five elements); what else a segment has is computed
-//! with the rest of it and left out, without a branch.
+//! A segment is a vector of eight neighbours with at least one element in contact. Contact is often a small part of the grid: passes touch the
+//! segments only. On a rough surface runs of contact do not fill a vector (five elements); the other elements of a segment are computed as well and
+//! masked, without a branch.
 //!
-//! Sums are taken per block of the grid and added in the order of the blocks, which do not depend on the number of threads: nor do the
-//! bits of the sums.
+//! Sums are taken per block of the grid and added in the order of the blocks. Neither the blocks nor the bits of the sums depend on the number of
+//! threads.
 
 mod arrays;
 mod block;
@@ -27,20 +27,20 @@ use crate::grid::Grid;
 use crate::memory::{keep, reserve, sparse};
 use crate::threads::Threads;
 
-/// Blocks at most, and elements of a block at least: each costs some additions.
+/// Most blocks, and least elements of a block: each costs some additions.
 const BLOCKS: usize = 64;
 const LEAST: usize = 512;
-/// Sums at most that a pass takes.
+/// Most sums of a pass.
 const MOST_SUMS: usize = 9;
 
 /// The segments of all blocks.
 pub struct Segments {
-    /// Elements of a block, the last of which may have fewer: whole segments.
+    /// Elements of a block, whole segments; the last block may have fewer.
     block: usize,
     found: Vec<Found>,
     /// Elements in contact.
     count: usize,
-    /// How often it was found anew.
+    /// The version of the contact area: the number of times it was found.
     version: u64,
     sums: Vec<[f64; MOST_SUMS]>,
     /// Elements of each block.
@@ -54,21 +54,21 @@ struct Found {
     segments: Vec<u32>,
     /// Elements in contact.
     count: usize,
-    /// Whether the segments are no longer true.
+    /// Whether the segments are out of date.
     changed: bool,
     /// The version in which they were found.
     version: u64,
 }
 
 impl Found {
-    /// The block that these are of.
+    /// The block of these segments.
     fn block<'a>(&'a self, start: usize, length: usize, contact: &'a [bool]) -> Block<'a> {
         Block::new(start, contact, length, &self.segments)
     }
 }
 
 impl Segments {
-    /// No contact. Memory for any contact area is reserved, and touched when it is needed.
+    /// No contact. Memory for any contact area is reserved, and touched when needed.
     pub fn new(grid: &Grid, threads: &Threads) -> Result<Segments> {
         let block = (grid.rows_of_blocks(BLOCKS, LEAST) * grid.mx).next_multiple_of(EIGHT);
         let blocks = grid.len().div_ceil(block);
@@ -99,7 +99,8 @@ impl Segments {
             .any(|block| block.version > version)
     }
 
-    /// Calls `changes(element)` for those that the last pass listed, in the order of the blocks: it enters or leaves if that returns true.
+    /// Calls `changes(element)` for each element listed by the last pass, in the order of the blocks. The element enters or leaves C if this returns
+    /// true.
     pub fn change_listed(&mut self, mut changes: impl FnMut(usize) -> bool) {
         for (block, listed) in self.found.iter_mut().zip(&self.listed) {
             for &i in listed {
@@ -108,12 +109,12 @@ impl Segments {
         }
     }
 
-    /// Says that any element may have changed sides.
+    /// Marks all segments as out of date.
     pub fn change_all(&mut self) {
         self.found.iter_mut().for_each(|block| block.changed = true);
     }
 
-    /// Whether the segments are those of now.
+    /// Whether the segments are up to date.
     fn are_found(&self) -> bool {
         !self.found.iter().any(|block| block.changed)
     }
@@ -141,7 +142,7 @@ impl Segments {
         self.count = self.found.iter().map(|block| block.count).sum();
     }
 
-    /// Sums over C, the elements in `contact`, of which the segments were found: `work(block)` returns those of a block.
+    /// Sums over C, the elements in `contact`, whose segments are up to date: `work(block)` returns the sums of a block.
     pub fn sum<const K: usize>(
         &mut self,
         contact: &[bool],
@@ -180,7 +181,7 @@ impl Segments {
         self.total()
     }
 
-    /// Changes the elements of `data`: `work(block, its part of data, elements)` lists elements, which [`listed`](Self::listed) gives.
+    /// Changes the elements of `data`: `work(block, its part of data, elements)` lists elements for [`listed`](Self::listed).
     pub fn list_changing<A: Send>(
         &mut self,
         contact: &[bool],
@@ -199,7 +200,7 @@ impl Segments {
         );
     }
 
-    /// The elements that the last pass listed, in the order of the blocks.
+    /// The elements listed by the last pass, in the order of the blocks.
     pub fn listed(&self) -> impl Iterator<Item = usize> + '_ {
         self.listed.iter().flatten().map(|&i| i as usize)
     }
@@ -219,7 +220,7 @@ impl Drop for Segments {
     }
 }
 
-/// The segments of a block; returns how many of its elements are in contact.
+/// Finds the segments of a block. Returns the number of its elements in contact.
 #[inline(always)]
 fn find_segments(contact: &[bool], segments: &mut Vec<u32>) -> usize {
     segments.clear();

@@ -32,7 +32,7 @@ impl Block<'_> {
         pulp::Arch::new().dispatch(Changes { block: self, data, arrays, change });
     }
 
-    /// Appends those elements in contact that are wanted, by the block's part of an array and by arrays b on the whole grid.
+    /// Appends the wanted elements in contact, by the block's part of an array and by arrays b on the whole grid.
     #[inline(always)]
     pub fn list<T: Real, const B: usize>(
         self,
@@ -45,8 +45,8 @@ impl Block<'_> {
         pulp::Arch::new().dispatch(List { block: self, list, data, arrays, wanted });
     }
 
-    /// Changes all of the block's part of an array, and then appends those elements outside C that are wanted, by what they have become and by
-    /// arrays a on the whole grid; b are more of those.
+    /// Changes all of the block's part of an array, then appends the wanted elements outside C, by their new values and by arrays a on the whole
+    /// grid. The change also uses arrays b.
     #[inline(always)]
     pub fn change_and_list_outside<T: Real, const A: usize, const B: usize>(
         self,

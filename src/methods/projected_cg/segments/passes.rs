@@ -1,5 +1,5 @@
-//! Passes over the segments of a block: sums, and changes of what an array holds on C. They are computed in vectors of this machine, on which no bit
-//! depends: a sum is taken in lanes, one for each place in a segment.
+//! Passes over the segments of a block: sums, and changes of an array on C, in SIMD vectors. No bit depends on these: a sum is taken in lanes, one
+//! for each place in a segment.
 
 use pulp::{Simd, WithSimd};
 

@@ -1,17 +1,17 @@
-//! Formulas in vectors of the machine: each value has the bits that it would have by itself, for nothing is contracted.
+//! Formulas in SIMD vectors. Each value has the bits of the scalar formula, as no operations are contracted.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
 use pulp::Simd;
 
-/// Some values side by side.
+/// Values in the lanes of one vector.
 #[derive(Clone, Copy)]
 pub struct Vector<S: Simd> {
     simd: S,
     values: S::f64s,
 }
 
-/// A condition on values side by side.
+/// A condition in each lane.
 #[derive(Clone, Copy)]
 pub struct Holds<S: Simd> {
     simd: S,
@@ -29,22 +29,22 @@ impl<S: Simd> Vector<S> {
         Vector { simd, values: simd.splat_f64s(value) }
     }
 
-    /// One value in all places.
+    /// One value in all lanes.
     #[inline(always)]
     pub fn all(self, value: f64) -> Vector<S> {
         Vector::splat(self.simd, value)
     }
 
-    /// `value(place)` in each place.
+    /// `value(lane)` in each lane.
     #[inline(always)]
     pub fn of_each(self, value: impl Fn(usize) -> f64) -> Vector<S> {
         let mut vector = self;
         let values = pulp::bytemuck::cast_slice_mut::<S::f64s, f64>(std::slice::from_mut(&mut vector.values));
-        values.iter_mut().enumerate().for_each(|(place, to)| *to = value(place));
+        values.iter_mut().enumerate().for_each(|(lane, to)| *to = value(lane));
         vector
     }
 
-    /// The vector of the machine.
+    /// The SIMD vector.
     #[inline(always)]
     pub fn values(self) -> S::f64s {
         self.values
@@ -67,25 +67,25 @@ impl<S: Simd> Vector<S> {
 }
 
 impl<S: Simd> Holds<S> {
-    /// In places of a 1, not in those of a 0.
+    /// True in lanes of a 1, false in lanes of a 0.
     #[inline(always)]
     pub fn of_ones(simd: S, ones: S::u64s) -> Holds<S> {
         Holds { simd, mask: simd.greater_than_u64s(ones, simd.splat_u64s(0)) }
     }
 
-    /// In places of a 0, not in those of a 1.
+    /// True in lanes of a 0, false in lanes of a 1.
     #[inline(always)]
     pub fn of_zeros(simd: S, ones: S::u64s) -> Holds<S> {
         Holds { simd, mask: simd.greater_than_u64s(simd.splat_u64s(1), ones) }
     }
 
-    /// One value where it holds, another where not.
+    /// `yes` in lanes where the condition holds, `no` in the others.
     #[inline(always)]
     pub fn choose(self, yes: Vector<S>, no: Vector<S>) -> Vector<S> {
         Vector { values: self.simd.select_f64s(self.mask, yes.values, no.values), ..yes }
     }
 
-    /// Whether it holds anywhere.
+    /// Whether the condition holds in any lane.
     #[inline(always)]
     pub fn anywhere(self) -> bool {
         self.simd.first_true_m64s(self.mask) < size_of::<S::f64s>() / size_of::<f64>()
