@@ -1,16 +1,15 @@
 """Lists of points: on their grid where they are one, refused with advice elsewhere; and tilts that are large beside the roughness."""
 
-import sys
 import tempfile
 import unittest
 import warnings
 from pathlib import Path
 from types import SimpleNamespace
-from unittest import mock
 
 import numpy as np
 
 from contact_normal import surface
+from test_surface_files import instruments
 
 
 class Lists(unittest.TestCase):
@@ -49,24 +48,37 @@ class Lists(unittest.TestCase):
         stage = self.random.normal(0.0, 1e-4, 63)
         self.assertAlmostEqual(self.read(x + stage, y, z).dx, 0.5, delta=1e-4)
 
+    def test_places_that_are_missing_are_holes(self):
+        x, y, z = self.columns
+        hidden = (x > 0.9) & (x < 1.6) & (y > 1.3) | (y == self.y[2])
+        order = self.random.permutation(np.flatnonzero(~hidden))
+        stage = self.random.normal(0.0, 2e-4, 63)
+        for name, columns in (("exact", (x, y, z)), ("of a stage", (x + stage, y, z)), ("z first", (z, x, y))):
+            with self.subTest(name), self.assertWarnsRegex(UserWarning, rf"{hidden.sum()} of 63 places of the grid of 7 x 9 have no point: they are holes"):
+                found = self.read(*(one[order] for one in columns))
+            np.testing.assert_allclose(found.z, np.where(hidden.reshape(7, 9), np.nan, self.z), rtol=1e-15)
+            np.testing.assert_allclose((found.dx, found.dy), (0.5, 0.25), rtol=1e-3)
+        self.assertEqual(np.isinf(surface.gap(found).h).sum(), hidden.sum())
+
     def test_others_are_refused(self):
         x, y, z = self.columns
+        some = self.random.permutation(63)[:25]
         for name, columns in (
-            ("a part", (x[:40], y[:40], z[:40])), ("indices beside them", (np.round(x * 2), np.round(y * 4), x, y, z)),
+            ("a part", (x[some], y[some], z[some])), ("indices beside them", (np.round(x * 2), np.round(y * 4), x, y, z)),
             ("scattered", self.random.random((3, 200))), ("a line", (np.cumsum(self.random.random(200)), self.random.normal(size=200))),
         ):
-            with self.subTest(name), self.assertRaisesRegex(ValueError, "points.*each place of a grid once.*griddata"):
+            with self.subTest(name), self.assertRaisesRegex(ValueError, "points.*places of a grid, at least half of them and none twice.*griddata"):
                 self.read(*columns)
         with self.assertRaisesRegex(ValueError, "and no size is given"):
             self.read(x, y, z, dx=0.5, dy=0.25)
-        with self.assertRaisesRegex(ValueError, "x is not evenly spaced"):
-            self.read(x + 0.004 * (x == self.x[4]), y, z)
+        with self.assertRaisesRegex(ValueError, "has x, y and z of 63 points"):
+            self.read(x + 0.02 * (x == self.x[4]), y, z)
 
     def test_a_list_is_no_map_of_an_instrument(self):
         x, y, z = (one[:40] for one in self.columns)
         points = SimpleNamespace(dim=2, is_uniform=True, is_periodic=False, unit=None, physical_sizes=(1.0, 1.0),
                                  heights=lambda: np.stack([x, y, z]))
-        with mock.patch.dict(sys.modules, {"SurfaceTopography": mock.Mock(read_topography=lambda *_, **__: points)}):
+        with instruments(lambda **_: points):
             with self.assertRaisesRegex(ValueError, "a.asc has x, y and z of 40 points"):
                 surface.read(self.path.with_name("a.asc"), dx=0.5, dy=0.25)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import os
 import warnings
 import zipfile
@@ -15,6 +14,7 @@ from .._decimal_commas import has_decimal_commas
 from .._units import same_length
 from ._heights import Heights, heights
 from ._lattice import Lattice, lattice_of
+from ._instruments import chosen, of_instrument
 from ._not_a_map import doubt, has_cut_decimals
 from ._not_a_map import why as why_no_map
 
@@ -78,8 +78,9 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     Parameters
     ----------
     path : str or path
-        `.npy`; `.npz`; `.txt`, `.dat` and `.csv` as numbers, a row of the grid a line, or x, y and z of each place of a grid, in any order; `.nc` as NetCDF, by the package xarray; all others, as `.x3p`, `.sur`, `.opd` and
-        `.gwy`, by the package SurfaceTopography. Heights and coordinates must be in one unit of length.
+        `.npy`; `.npz`; `.txt`, `.dat` and `.csv` as numbers, a row of the grid a line, or x, y and z of places of a grid, in any order; `.nc` as NetCDF,
+        by the package xarray; all others, as `.x3p`, `.sur`, `.opd`, `.gwy` and `.mat`, by the package SurfaceTopography. The rows of a matrix of `.mat`
+        are those of y. Heights and coordinates must be in one unit of length.
     variable : str, optional
         Which array of a file that has several.
     **given
@@ -109,12 +110,16 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         from .._netcdf import read as netcdf
 
         dataset = netcdf(path)
-        return from_xarray(dataset[_chosen(variable, list(dataset.data_vars), path)], **given)
+        # Others, as that of a map projection, are no heights.
+        maps = [name for name, array in dataset.data_vars.items() if array.ndim == 2]
+        return from_xarray(dataset[chosen(variable, maps or list(dataset.data_vars), path)], **given)
     if end == ".xyz" and not _SIZES & set(given):
         lattice = _of_points(path)
         if lattice is not None:
             return heights(lattice.z, x=lattice.x, y=lattice.y, **given)
-    topography = _of_instrument(path, end, bool(_SIZES & set(given)))
+    topography = of_instrument(path, end, variable, bool(_SIZES & set(given)))
+    if end == ".mat":
+        given = {"axes": "yx", **given}
     if end in _TEXTS and getattr(topography, "dim", 2) == 2:
         # Its arrays have x as the first index.
         values = np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan)
@@ -122,6 +127,9 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
             raise ValueError(f"{path} {reason}")
     return from_topography(topography, **given)
 
+
+# How the size of an element is given.
+_SIZES = {"dx", "dy", "size", "span", "x", "y"}
 
 # Texts that SurfaceTopography reads as maps, whatever they hold.
 _TEXTS = ".asc", ".xyz", ".tsv"
@@ -135,30 +143,6 @@ def _of_points(path: str | os.PathLike[str]) -> Lattice | None:
         return None
 
 
-# How the size of an element is given.
-_SIZES = {"dx", "dy", "size", "span", "x", "y"}
-
-
-def _of_instrument(path: str | os.PathLike[str], end: str, is_sized: bool) -> Any:
-    """The topography of an instrument's file; `is_sized`: the caller says how large it is."""
-    try:
-        read_topography = importlib.import_module("SurfaceTopography").read_topography
-    except ImportError as error:
-        raise ImportError(f"{error}; files {end or 'without an end'} need SurfaceTopography: pip install 'contact-normal[surface]'") from error
-    try:
-        return read_topography(os.fspath(path))
-    except OSError:
-        raise
-    except Exception as error:  # of that package: it has its own for each format
-        if "physical_sizes" not in str(error):
-            first = next(iter(str(error).splitlines()), "")
-            raise ValueError(f"{path} is no file of heights that SurfaceTopography reads: {type(error).__name__}, {first}") from error
-        if not is_sized:
-            raise TypeError(f"{path} does not say the size of an element: give size, the lengths of the field, or dx and dy") from error
-    # What the caller gives takes the place of these sizes.
-    return read_topography(os.fspath(path), physical_sizes=(1.0, 1.0))
-
-
 def _of_numpy(path: str | os.PathLike[str], variable: str | None) -> Any:
     """The array of a file of numpy."""
     try:
@@ -168,7 +152,7 @@ def _of_numpy(path: str | os.PathLike[str], variable: str | None) -> Any:
                 raise ValueError(f"{path} holds one array; give variable for files of several")
             return found
         with found as file:
-            return file[_chosen(variable, list(file), path)]
+            return file[chosen(variable, list(file), path)]
     except (ValueError, EOFError, zipfile.BadZipFile) as error:
         if "give variable" in str(error):
             raise
@@ -197,11 +181,3 @@ def _of_text(path: str | os.PathLike[str], end: str) -> Any:
 
 
 _BETWEEN = {None: "spaces", ",": "commas", ";": "semicolons"}
-
-
-def _chosen(name: str | None, names: list[Any], path: str | os.PathLike[str]) -> Any:
-    if name is None and len(names) == 1:
-        return names[0]
-    if name not in names:
-        raise ValueError(f"{path} has {', '.join(map(str, names))}; give variable, one of them")
-    return name
