@@ -76,6 +76,11 @@ class Scene:
         return bool(effect) and (effect.contents.law != 0 or effect.contents.yield_limit != 0.0)
 
     @property
+    def has_half_space(self) -> bool:
+        """Whether bodies give way as half-spaces of their elastic constants do."""
+        return not any(self._effects.get(name) is not None for name in ("influence", "row_tables"))
+
+    @property
     def shape(self) -> tuple[int, int]:
         """(my, mx)."""
         my, mx = self.h.shape

@@ -122,6 +122,21 @@ class Uncertain(unittest.TestCase):
         with self.assertWarnsRegex(UserWarning, "pressures are uncertain by .* of its points across the contact, .*: give more points"):
             self.assertGreater(abs(pressed(*few).max_pressure / self.largest - 1.0), 0.05)
 
+    def test_contact_points_of_few_points_are_told(self):
+        def place(one, other, y):
+            return profiles.contact_points(profiles.Track(one), profiles.Wheelset(other, 460.0), profiles.Position(y=y))[0].place[1]
+
+        few = self.each(lambda one: profiles.Profile(one.y[::30], one.z[::30], one.kind))
+        for y in (2.0, 4.0):
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                right = place(self.rail, self.wheel, y)
+                self.assertAlmostEqual(place(*self.each(lambda one: profiles.Profile(one.y[::2], one.z[::2], one.kind)), y), right, delta=0.3)
+            with self.assertWarnsRegex(UserWarning, r"the contact point is uncertain by some \d+(\.\d)? mm along the profiles: .* mm apart there") as told:
+                off = abs(place(*few, y) - right)
+            amount = float(re.search(r"some (\S+) mm", str(told.warning))[1])
+            self.assertLess(off, 2.0 * amount)
+
     def test_half_of_many_points_is_enough(self):
         with warnings.catch_warnings():
             warnings.simplefilter("error")

@@ -222,7 +222,7 @@ class Files(unittest.TestCase):
 
 
     def test_matrices_have_y_by_rows_and_one_of_several_is_named(self):
-        z = rough(16)[:5]
+        z = 0.1 * rough(16)[:5]
         made = mock.Mock(dim=2, is_uniform=True, physical_sizes=(1.0, 1.0), is_periodic=False, unit=None)
 
         def topography(channel_index, physical_sizes=(1.0, 1.0)):

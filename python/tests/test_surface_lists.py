@@ -87,7 +87,7 @@ class Lists(unittest.TestCase):
             self.assertEqual(self.read(*self.random.normal(size=(3, 60)), dx=1, dy=1).z.shape, (60, 3))
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            self.read(*self.random.normal(size=(12, 60)), dx=1, dy=1)
+            self.read(*self.random.normal(size=(12, 60)), dx=5, dy=5)
 
 
 class Units(unittest.TestCase):
@@ -95,9 +95,19 @@ class Units(unittest.TestCase):
         nanometres = 5.0 * np.random.default_rng(1).normal(size=(64, 64))
         with self.assertWarnsRegex(UserWarning, "half of the slopes in x are steeper than 6[12]: heights and sizes of elements must be in one unit"):
             surface.heights(nanometres, size=(5.0, 5.0))
+        # A ground face of .02 um in um, beside elements of 20 um in mm.
+        with self.assertWarnsRegex(UserWarning, "half of the slopes in x are steeper than 0.9"):
+            surface.heights(0.004 * nanometres, size=(1.28, 1.28))
+        # An AFM's heights in m beside um.
+        with self.assertWarnsRegex(UserWarning, "nine of ten slopes in x are below 1.5e-07: heights and sizes of elements must be in one unit"):
+            surface.heights(1e-9 * nanometres, size=(5.0, 5.0))
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             surface.heights(nanometres, size=(5e3, 5e3))
+            # A flat of a twentieth of a wave length, with noise of .5 nm, in mm; and an exact plane.
+            x = np.linspace(-1.0, 1.0, 64)
+            surface.heights(25e-6 * x[None, :] ** 2 + 1e-7 * nanometres, size=(100.0, 100.0))
+            surface.heights(np.zeros((64, 64)), size=(100.0, 100.0))
             # A fifth of the elements is a fill value.
             surface.heights(np.where(np.arange(64) % 5 == 0, -9999.0, nanometres), size=(5e3, 5e3))
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._arguments import number
+from . import _sampling
 from ._bodies import Position, Track, Wheelset
 from ._patch import ContactPoint, Pair
 
@@ -120,6 +121,7 @@ def contact_points(
     for k, (clearance, t) in enumerate(minima):
         if clearance - minima[0][0] <= within:
             others = tuple(places[:k] + places[k + 1 :])
+            _sampling.warn_of_place((_sampling.Body("rail", pair.rail, float(on_rail[k])), _sampling.Body("wheel", pair.tread, t)), stacklevel=2)
             points.append(ContactPoint(pair, float(x[k]), float(on_rail[k]), t, others, clearance))
     return points
 

@@ -23,6 +23,13 @@ _TOLD = 0.05
 # Fewer points than this within the contact are few; more are noisy where they leave pressures open.
 _FEW = 8
 
+# A warning tells of a contact point that is uncertain by more than the first, in mm, without a number by more than the second; slopes beside it are looked
+# at so far away.
+_MOVED, _MANY, _BESIDE = 1.0, 10.0, 1.0
+
+# So many points on each side of it.
+_AROUND = 24
+
 
 @dataclass(frozen=True)
 class Body:
@@ -90,6 +97,53 @@ def _open_pressures(body: Body, along: Doubles, e_star: float) -> tuple[float, f
         return by_choice, 0.0, 0.0
     lost, *samples = (_pressure(np.interp(body.t + along, body.curve.t, off), along, e_star) for off in body.curve.open)
     return by_choice, float(np.sqrt(np.mean(np.square(samples)))), lost
+
+
+def warn_of_place(bodies: tuple[Body, Body], stacklevel: int) -> None:
+    """Warns if the place where a rail and a wheel touch depends on which points of their profiles are taken, or on what smoothing has left of noise.
+
+    There both have one slope, so slopes that are open by s move it by s over the difference of the curvatures.
+    """
+    of_rail, of_wheel = ((_slope(body.curve, body.t + _BESIDE) - _slope(body.curve, body.t - _BESIDE)) / (2.0 * _BESIDE) for body in bodies)
+    parts = [_open_slope(body) for body in bodies]
+    moved = float(np.linalg.norm(parts)) / max(of_rail - of_wheel, 1e-9)
+    if moved > _MOVED:
+        body = bodies[int(np.argmax(parts))]
+        k = min(max(int(np.searchsorted(body.curve.t, body.t)), 1), len(body.curve.t) - 1)
+        amount = f"{moved:.2g} mm" if moved < _MANY else f"{_MANY:g} mm or more"
+        warnings.warn(f"the contact point is uncertain by some {amount} along the profiles: so much it depends on which points of the {body.name} are taken, "
+                      f"which are {body.curve.t[k] - body.curve.t[k - 1]:.2g} mm apart there: give more points, or, where they are noisy, "
+                      "smoothed(wave_length)", stacklevel=stacklevel + 1)
+
+
+def _slope(curve: Curve, t: float) -> float:
+    """The angle of a curve, in rad."""
+    _, _, dy, dz = curve.at(np.clip(t, curve.t[0], curve.t[-1]))
+    return float(np.arctan2(dz, dy))
+
+
+def _open_slope(body: Body) -> float:
+    """The angle at the contact point that the choice of points leaves open, or what is left of noise."""
+    curve, at_point = body.curve, int(np.searchsorted(body.curve.t, body.t))
+    # Far points do not bend a spline.
+    first, last = max(0, at_point - _AROUND), min(at_point + _AROUND, len(curve.y) - 1)
+
+    def of_every(every: int) -> float:
+        found = []
+        for start in range(every):
+            chosen = np.unique(np.concatenate([[first], np.arange(first + start, last, every), [last]]))
+            coarse = Curve(curve.y[chosen], curve.z[chosen])
+            at = float(coarse.where(float(curve.at(body.t)[0]), near=float(np.interp(body.t, curve.t[chosen], coarse.t))))
+            found.append(0.0 if np.isnan(at) else _slope(coarse, at) - _slope(curve, body.t))
+        return float(np.sqrt(np.mean(np.square(found))))
+
+    second = of_every(2)
+    by_choice = second * min(1.0, second / of_every(4)) if second > 0.0 else 0.0
+    if curve.open is None:
+        return by_choice
+    ends = np.clip([body.t - _BESIDE, body.t + _BESIDE], curve.t[0], curve.t[-1])
+    slopes = [float(np.diff(np.interp(ends, curve.t, off))[0]) / float(ends[1] - ends[0]) for off in curve.open[1:]]
+    return float(np.hypot(by_choice, np.sqrt(np.mean(np.square(slopes)))))
 
 
 def _difference(body: Body, along: Doubles, start: int, every: int) -> Doubles:
