@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -18,10 +19,12 @@ if TYPE_CHECKING:
 _STEEPEST = 0.5
 
 # Lengths are in mm of one scale, a model's too. A gauge is 6 to 20 times as large as a rail is wide, where it is in the same unit, and so on.
-_GAUGE_OVER_RAIL = 3.5
+_GAUGE_OVER_RAIL = 3.5, 100.0
 _BACKS_OVER_WHEEL = (2.0, 80.0)
 _RADIUS_OVER_WHEEL = 0.8
 _HEIGHT_OVER_GAUGE = 0.002
+# Sides of a head are looked at so far below its top, in mm; a rail that leans to the field side by so much, in rad, is mirrored.
+_SIDES, _LEANS = (16.0, 32.0), 0.012
 # The origin of z is on the tread to this, in mm; and the back so far from the smallest y of a profile with a flange, and without.
 _TREAD = 20.0
 _BACK, _BACK_OF_TREAD = 40.0, 120.0
@@ -96,8 +99,9 @@ class Track:
     def __post_init__(self) -> None:
         _refuse_unless("rail", self.rail)
         width = float(np.ptp(self.rail.y))
-        if not number("gauge", self.gauge) > _GAUGE_OVER_RAIL * width:
-            raise ValueError(f"gauge is {self.gauge}; it must be larger than {_GAUGE_OVER_RAIL} times the width of the rail, {width:.4g}: {_UNITS}")
+        least, most = _GAUGE_OVER_RAIL
+        if not least * width < number("gauge", self.gauge) < most * width:
+            raise ValueError(f"gauge is {self.gauge}; it must be {least} to {most:g} times as large as the rail is wide, {width:.4g}: {_UNITS}")
         if not abs(number("inclination", self.inclination)) <= _STEEPEST:
             raise ValueError(f"inclination is {self.inclination}; it is an angle in rad of at most {_STEEPEST}, as 1/40")
         if not number("gauge_height", self.gauge_height) > 0.0:
@@ -105,6 +109,11 @@ class Track:
         if self.gauge_height < _HEIGHT_OVER_GAUGE * self.gauge:
             raise ValueError(f"gauge_height is {self.gauge_height}; beside a gauge of {self.gauge} it must be at least {_HEIGHT_OVER_GAUGE * self.gauge:.2g}, "
                              f"as 14 mm: {_UNITS}")
+
+        lean = _lean(self.rail) + self.inclination
+        if lean < -_LEANS:
+            warnings.warn(f"the rail leans to the field side by {-lean:.2g} rad: one that is inclined leans to the track. mirror=True turns a profile that is drawn "
+                          "from the other side; inclination is positive", stacklevel=3)
 
     def placed(self) -> Profile:
         """The right rail in its place: its top at z = 0, its gauge point at half of the gauge."""
@@ -118,6 +127,18 @@ class Track:
         k = below[-1]
         part = (rail.z[k] - self.gauge_height) / (rail.z[k] - rail.z[k + 1])
         return rail.moved(y=0.5 * self.gauge - (rail.y[k] + part * (rail.y[k + 1] - rail.y[k])))
+
+
+def _lean(rail: Profile) -> float:
+    """By how much a rail leans to the track, in rad, if both sides of its head are there: how the middle of the head moves out with the depth."""
+    top = int(np.argmin(rail.z))
+    sides = (rail.y[: top + 1][::-1], rail.z[: top + 1][::-1]), (rail.y[top:], rail.z[top:])
+    deepest = min(float(z.max()) for _, z in sides) - float(rail.z[top])
+    depths = np.linspace(_SIDES[0], min(deepest, _SIDES[1]), 20)
+    if deepest < sum(_SIDES) / 2.0 or any((np.diff(z) < 0.0).any() for _, z in sides):
+        return 0.0
+    inner, outer = (np.interp(depths + rail.z[top], z, y) for y, z in sides)
+    return float(np.polyfit(depths, 0.5 * (inner + outer), 1)[0])
 
 
 @dataclass(frozen=True)

@@ -30,8 +30,8 @@ _FAR = 500.0
 # Curvatures of wheels and rails are up to 0.1 per mm. 1 um of noise on points 0.1 mm apart changes them by 0.3 from point to point.
 _ROUGH = 0.1
 
-# A flange is higher than that above the tread, in mm.
-_FLANGE = 12.0
+# A flange is higher than that above the tread, in mm, and lower than the second number.
+_FLANGE, _HIGHEST = 12.0, 45.0
 
 # From a point to the next one no profile goes back by this part of its width.
 _BACKWARDS = 0.3
@@ -102,7 +102,8 @@ class Profile(Short):
             raise ValueError(f"{self._title()} begins at the larger y; its points must be in the order of growing y: y[::-1] and z[::-1]")
         k = int(np.argmin(np.diff(self.y)))
         if self.y[k] - self.y[k + 1] > _BACKWARDS * (self.y[-1] - self.y[0]):
-            raise ValueError(f"{self._title()} goes back from y = {self.y[k]:.6g} to y = {self.y[k + 1]:.6g}: are these two profiles? Give one of them")
+            raise ValueError(f"{self._title()} goes back from y = {self.y[k]:.6g} to y = {self.y[k + 1]:.6g}: are these two profiles? Give one of "
+                             "them; or sort the points")
         above, below = np.median(self.z) - self.z.min(), self.z.max() - np.median(self.z)
         if self.kind == "wheel":
             # A tread alone, without a flange, may have a chamfer as its lowest place or its highest one; its radius grows to the flange.
@@ -114,6 +115,8 @@ class Profile(Short):
                 return
             if above > below:
                 raise ValueError(f"{self._title()} has its flange at the smallest z; z must grow downwards: upside_down=True")
+            if below > _HIGHEST:
+                raise ValueError(f"{self._title()} has a flange that is {below:.3g} mm high: are these diameters? z is a radius, or a height, in mm")
             if self.y[np.argmax(self.z)] > 0.5 * (self.y[0] + self.y[-1]):
                 raise ValueError(f"{self._title()} has its flange at large y; y must grow to the field side: mirror=True")
         elif above > below or np.argmin(self.z) in (0, len(self.z) - 1):

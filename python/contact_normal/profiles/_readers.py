@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import codecs
 import os
+import re
 from pathlib import Path
 from typing import Any
 
@@ -37,7 +38,7 @@ def read(
     ----------
     path : str or path
         `.prr` and `.prw` are read as SIMPACK's rails and wheels; `.ban` and `.whl` as MiniProf's, which are columns of numbers below lines
-        `NAME=value`; all other files as columns of numbers. Lines that do not begin with a number are skipped; others among the points must be points.
+        `NAME=value`, of which `ColumnDef=` names X and Y; all other files as columns of numbers. Lines that do not begin with a number are skipped; others among the points must be points.
     kind : {"wheel", "rail"}, optional
         What it is; by default what the end of the file's name says.
     columns : (int, int)
@@ -70,7 +71,10 @@ def read(
         points, in_mm = points_of(text, kind, path)
         scale = scale * in_mm
     else:
-        points, hint = _table(text, _checked(columns), path)
+        chosen = _checked(columns)
+        if end in _UPSIDE_DOWN and chosen == (0, 1):
+            chosen = _defined(text, chosen)
+        points, hint = _table(text, chosen, path)
     y, z = points.T * scale
     if mirror:
         y = -y
@@ -85,11 +89,15 @@ def read(
 
 
 def _text(path: str | os.PathLike[str]) -> str:
-    """The text of a file, in the encoding that its first bytes name; else any byte is a character."""
+    """The text of a file, in the encoding that its first bytes name, or UTF-8; else any byte is a character. Signs of minus are hyphens."""
     data = Path(path).read_bytes()
-    marks = {codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
+    marks = {codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
     named = [encoding for mark, encoding in marks.items() if data.startswith(mark)]
-    return data.decode(named[0] if named else "latin-1", errors="replace")
+    try:
+        text = data.decode(named[0] if named else "utf-8-sig", errors="replace" if named else "strict")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    return text.replace("\u2212", "-")
 
 
 def _checked(columns: Any) -> tuple[int, int]:
@@ -100,6 +108,13 @@ def _checked(columns: Any) -> tuple[int, int]:
     if first == second or min(first, second) < 0:
         raise ValueError(f"columns is {columns!r}; it must be two different numbers, those of y and z, counted from 0")
     return first, second
+
+
+def _defined(text: str, else_: tuple[int, int]) -> tuple[int, int]:
+    """The columns X and Y that MiniProf's header names: `ColumnDef=X,Y,...`."""
+    said = re.search(r"^\s*ColumnDef\s*=\s*(.*?)\s*$", text, re.MULTILINE | re.IGNORECASE)
+    names = [name.strip(' "*').upper() for name in said[1].split(",")] if said else []
+    return (names.index("X"), names.index("Y")) if {"X", "Y"} <= set(names) else else_
 
 
 def _table(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) -> tuple[np.ndarray, str]:
