@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._bill import omissions
-from ._constants import PRESCRIBED_APPROACH
+from ._constants import PRESCRIBED_APPROACH, WARNING_BORDER
 from ._ledger import Ledger
 from ._outputs import LEDGER_ROOM, Outputs
 from ._solved import Solved
@@ -99,7 +99,15 @@ class Result(Solved):
             told = (f"the largest pressure is {part:.2g} E*, and linear elasticity is for small strains: are moduli, forces and lengths in one system of units? "
                     "Else a hardness limits pressures (pressure_limit)")
             self.message = "\n".join(text for text in (self.message, told) if text)
+        if report.warnings & WARNING_BORDER and (ends := self._ends_in_contact()):
+            self.message = f"{self.message}\ncontact is at the ends of the grid in {ends}"
         self._estimated = "force" if scene.struct.load == PRESCRIBED_APPROACH else "approach"
+
+    def _ends_in_contact(self) -> str:
+        """The directions in which contact is at an end of the grid that is no period."""
+        period = self._scene.period
+        ends = {"x": self._contact[:, [0, -1]], "y": self._contact[[0, -1]]}
+        return " and ".join(name for name, elements in ends.items() if name not in period and elements.any())
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in {**super().__getstate__(), "ledger": self.ledger}.items() if name != "_rows"}

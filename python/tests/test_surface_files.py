@@ -252,6 +252,10 @@ class Files(unittest.TestCase):
         z = xarray.DataArray(rough(16)[:5], dims=("y", "x"), coords={"x": np.arange(16) * 0.5, "y": np.arange(5) * 0.5})
         xarray.Dataset({"z": z, "crs": 0}).to_netcdf(self.folder / "a.nc", engine="netcdf4")
         self.assertEqual(surface.read(self.folder / "a.nc").z.shape, (5, 16))
+        # One map of a series is a map.
+        self.assertEqual(surface.from_xarray(z.expand_dims("t")).z.shape, (5, 16))
+        with self.assertRaisesRegex(ValueError, "heights have two: choose one map by isel"):
+            surface.from_xarray(xarray.concat([z, z], "t"))
 
 
 class Pictures(unittest.TestCase):

@@ -48,6 +48,15 @@ class Lists(unittest.TestCase):
         stage = self.random.normal(0.0, 1e-4, 63)
         self.assertAlmostEqual(self.read(x + stage, y, z).dx, 0.5, delta=1e-4)
 
+    def test_lists_of_numpy_are_lists_too(self):
+        path = self.path.with_suffix(".npy")
+        np.save(path, np.stack(self.columns, axis=1))
+        self.assert_grid(surface.read(path))
+        with self.assertRaisesRegex(ValueError, "has x, y and z of 63 points"):
+            surface.read(path, dx=0.5, dy=0.25)
+        np.savez(self.path.with_suffix(".npz"), points=np.stack(self.columns, axis=1), other=self.x)
+        self.assert_grid(surface.read(self.path.with_suffix(".npz"), "points"))
+
     def test_places_that_are_missing_are_holes(self):
         x, y, z = self.columns
         hidden = (x > 0.9) & (x < 1.6) & (y > 1.3) | (y == self.y[2])

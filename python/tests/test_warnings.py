@@ -29,6 +29,10 @@ class Warnings(unittest.TestCase):
 
     def test_contact_at_the_border(self) -> None:
         self.assertIn("BORDER", cn.solve(BALL, 0.1, 0.1, force=1e6, **STEEL).warnings)
+        for h, given, ends in ((BALL, {}, "x and y"), (BALL[:12], {}, "y"), (BALL[:, 20:], {}, "x"), (BALL, {"period": "x"}, "y")):
+            force = 3e3 if ends != "x and y" and not given else 1e5
+            message = cn.solve(h, 0.1, 0.1, force=force, **given, **STEEL).message
+            self.assertRegex(message, f"contact is at the ends of the grid in {ends}(\n|$)")
 
     def test_strains_that_are_not_small(self) -> None:
         # Hertz: the largest pressure is 2 a/(pi R) E*, with R = 25 and a^3 = 3/4 F R/E*.

@@ -26,7 +26,10 @@ def from_xarray(array: Any, **given: Any) -> Heights:
     the heights have it; units that differ are refused. With dx or size the coordinates are not read.
     """
     if len(array.dims) != 2:
-        raise ValueError(f"the array has the dimensions {tuple(array.dims)}; heights have two")
+        kept = [name for name in array.dims if array.sizes[name] > 1]
+        if len(kept) != 2:
+            raise ValueError(f"the array has the dimensions {tuple(array.dims)}; heights have two: choose one map by isel")
+        array = array.squeeze([name for name in array.dims if name not in kept], drop=True)
     y, x = array.dims
     if str(y).lower().startswith("x") and not str(x).lower().startswith("x"):
         x, y = y, x
@@ -95,17 +98,12 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     if Path(path).is_dir():
         raise IsADirectoryError(f"{path} is a folder; it must be a file")
     if end in (".npy", ".npz"):
-        return heights(_of_numpy(path, variable), **given)
+        values = _of_numpy(path, variable)
+        # Of masked arrays and others heights says what is wrong.
+        is_plain = values.ndim == 2 and values.dtype.kind in "iuf"
+        return _of_numbers(path, values, given) if is_plain else heights(values, **given)
     if end in (".txt", ".dat", ".csv"):
-        values = _of_text(path, end)
-        lattice = None if _SIZES & set(given) else lattice_of(values)
-        if lattice is not None:
-            return heights(lattice.z, x=lattice.x, y=lattice.y, **given)
-        if reason := why_no_map(values):
-            raise ValueError(f"{path} {reason}")
-        if reason := doubt(values):
-            warnings.warn(f"{path} {reason}", stacklevel=2)
-        return heights(values, **given)
+        return _of_numbers(path, _of_text(path, end), given)
     if end == ".nc":
         from .._netcdf import read as netcdf
 
@@ -126,6 +124,18 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         if reason := why_no_map(values.T) or why_no_map(values):
             raise ValueError(f"{path} {reason}")
     return from_topography(topography, **given)
+
+
+def _of_numbers(path: str | os.PathLike[str], values: Any, given: dict[str, Any]) -> Heights:
+    """Heights from numbers that may be a list of points."""
+    lattice = None if _SIZES & set(given) else lattice_of(values)
+    if lattice is not None:
+        return heights(lattice.z, x=lattice.x, y=lattice.y, **given)
+    if reason := why_no_map(values):
+        raise ValueError(f"{path} {reason}")
+    if reason := doubt(values):
+        warnings.warn(f"{path} {reason}", stacklevel=3)
+    return heights(values, **given)
 
 
 # How the size of an element is given.
