@@ -78,7 +78,7 @@ class Lists(unittest.TestCase):
         ):
             with self.subTest(name), self.assertRaisesRegex(ValueError, "points.*places of a grid, at least half of them and none twice.*griddata"):
                 self.read(*columns)
-        with self.assertRaisesRegex(ValueError, "and no size is given"):
+        with self.assertRaisesRegex(ValueError, "of 63 points of a grid, which say the size of an element: leave out dx and dy"):
             self.read(x, y, z, dx=0.5, dy=0.25)
         with self.assertRaisesRegex(ValueError, "has x, y and z of 63 points"):
             self.read(x + 0.02 * (x == self.x[4]), y, z)

@@ -128,10 +128,14 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
 
 def _of_numbers(path: str | os.PathLike[str], values: Any, given: dict[str, Any]) -> Heights:
     """Heights from numbers that may be a list of points."""
-    lattice = None if _SIZES & set(given) else lattice_of(values)
-    if lattice is not None:
+    sizes = sorted(_SIZES & set(given))
+    if not sizes and (lattice := lattice_of(values)) is not None:
         return heights(lattice.z, x=lattice.x, y=lattice.y, **given)
     if reason := why_no_map(values):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            if sizes and lattice_of(values) is not None:
+                raise ValueError(f"{path} has x, y and z of {len(values)} points of a grid, which say the size of an element: leave out {' and '.join(sizes)}")
         raise ValueError(f"{path} {reason}")
     if reason := doubt(values):
         warnings.warn(f"{path} {reason}", stacklevel=3)
