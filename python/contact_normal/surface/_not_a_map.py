@@ -18,7 +18,7 @@ _LONG = 25
 
 _PLACES = "places of a grid, at least half of them and none twice, and no size is given"
 _INSTEAD = ("others must be interpolated on a grid (scipy.interpolate.griddata) and given to surface.heights. If this is a strip of heights, give "
-            "numpy.loadtxt(file) to surface.heights")
+            "its array to surface.heights")
 
 
 def why(values: Any) -> str | None:
