@@ -178,6 +178,32 @@ class Files(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "begin with zeros between its commas"):
             surface.read(self.folder / "d.csv", dx=1, dy=1)
 
+    def test_texts_as_instruments_and_spreadsheets_write_them(self):
+        z = np.round(0.1 * rough(16)[:5], 6)
+        rows = [[f"{value:.6f}" for value in row] for row in z]
+        hole = np.where(np.arange(80).reshape(5, 16) == 37, np.nan, z)
+        parted = ["\t".join(row) for row in rows]
+        empty = [",".join("" if np.isnan(hole[iy, ix]) else cell for ix, cell in enumerate(row)) for iy, row in enumerate(rows)]
+        for name, end, lines, encoding, expected in (
+            ("UTF-16", ".txt", parted, "utf-16", z), ("minus", ".txt", [line.replace("-", "\u2212") for line in parted], "utf-8", z),
+            ("Fortran", ".dat", [" ".join(f"{value:.6E}".replace("E", "D") for value in row) for row in z], "ascii", z),
+            ("Latin", ".dat", ["# H\u00f6he in \u00b5m", *parted], "latin-1", z), ("tabs", ".csv", parted, "ascii", z),
+            ("quoted", ".csv", [",".join(f'"{cell}"' for cell in row) for row in rows], "ascii", z),
+            ("an end", ".csv", [",".join(row) + "," for row in rows], "ascii", z),
+            ("empty", ".csv", empty, "ascii", hole), ("empty, commas", ".txt", [line.replace(",", ";").replace(".", ",") for line in empty], "ascii", hole),
+        ):
+            with self.subTest(name):
+                path = self.folder / f"a{end}"
+                path.write_text("\n".join(lines) + "\n", encoding=encoding)
+                np.testing.assert_array_equal(surface.read(path, dx=1, dy=1).z, expected)
+
+    def test_a_binary_file_is_an_instruments(self):
+        (self.folder / "zygo.dat").write_bytes(bytes([0x88, 0x1B, 0x03, 0x6F]) + bytes(100))
+        z = rough(16)[:5]
+        made = mock.Mock(dim=2, is_uniform=True, physical_sizes=(1.0, 2.0), is_periodic=False, unit="um", heights=lambda: z)
+        with instruments(lambda channel_index: made):
+            np.testing.assert_array_equal(surface.read(self.folder / "zygo.dat").z, z.T)
+
     def test_decimal_commas_are_named(self):
         for name, text in (("a.txt", "0,5 0,7\n1,5 1,7\n"), ("b.csv", "0,5\t0,7\n1,5\t1,7\n")):
             (self.folder / name).write_text(text)

@@ -5,7 +5,6 @@ Each reader was written from the public description of its format, and from the 
 
 from __future__ import annotations
 
-import codecs
 import os
 import re
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from .._arguments import integer, number
+from .._texts import text_of
 from ._columns import columns_of
 from ._profile import Profile
 from ._simpack import points_of
@@ -37,8 +37,9 @@ def read(
     Parameters
     ----------
     path : str or path
-        `.prr` and `.prw` are read as SIMPACK's rails and wheels; `.ban` and `.whl` as MiniProf's, which are columns of numbers below lines
-        `NAME=value`, of which `ColumnDef=` names X and Y; all other files as columns of numbers. Lines that do not begin with a number are skipped; others among the points must be points.
+        `.prr` and `.prw` are read as SIMPACK's rails and wheels; `.ban` and `.whl` as MiniProf's, which are columns of numbers below lines `NAME=value`, of
+        which `ColumnDef=` names X and Y; all other files as columns of numbers. Lines that do not begin with a number are skipped; others among the
+        points must be points.
     kind : {"wheel", "rail"}, optional
         What it is; by default what the end of the file's name says.
     columns : (int, int)
@@ -66,7 +67,7 @@ def read(
         raise ValueError(f'{path}: kind is not known; give kind="wheel" or kind="rail"')
     if not 0.0 < number("scale", scale) < float("inf"):
         raise ValueError(f"scale is {scale}; it must be positive, the millimetres in the unit of the file")
-    text, hint = _text(path), ""
+    text, hint = text_of(path), ""
     if end in (".prr", ".prw"):
         points, in_mm = points_of(text, kind, path)
         scale = scale * in_mm
@@ -86,18 +87,6 @@ def read(
         return Profile(np.ascontiguousarray(y), np.ascontiguousarray(z), kind, Path(path).name)
     except ValueError as error:
         raise ValueError(f"{error}{hint}") from None
-
-
-def _text(path: str | os.PathLike[str]) -> str:
-    """The text of a file, in the encoding that its first bytes name, or UTF-8; else any byte is a character. Signs of minus are hyphens."""
-    data = Path(path).read_bytes()
-    marks = {codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
-    named = [encoding for mark, encoding in marks.items() if data.startswith(mark)]
-    try:
-        text = data.decode(named[0] if named else "utf-8-sig", errors="replace" if named else "strict")
-    except UnicodeDecodeError:
-        text = data.decode("latin-1")
-    return text.replace("\u2212", "-")
 
 
 def _checked(columns: Any) -> tuple[int, int]:

@@ -41,7 +41,8 @@ def _tried(call: Callable[[], Any], path: str | os.PathLike[str]) -> Any:
 
 def _channel(reader: Any, variable: str | None, end: str, path: str | os.PathLike[str]) -> int | None:
     """The index of the array that is meant; None: the reader's own choice. Arrays of MATLAB may be coordinates, so that one of several must be named."""
-    maps = {str(channel.name): k for k, channel in enumerate(reader.channels) if channel.dim == 2 and min(channel.nb_grid_pts or (2,)) > 1}
+    channels = _tried(lambda: reader.channels, path)
+    maps = {str(channel.name): k for k, channel in enumerate(channels) if channel.dim == 2 and min(channel.nb_grid_pts or (2,)) > 1}
     if variable is not None or (end == ".mat" and maps):
         return maps[chosen(variable, list(maps), path)]
     if len(maps) > 1:

@@ -10,13 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from .._decimal_commas import has_decimal_commas
+from .._texts import is_text
 from .._units import same_length
 from ._heights import Heights, heights
 from ._lattice import Lattice, lattice_of
 from ._instruments import chosen, of_instrument
-from ._not_a_map import doubt, has_cut_decimals
+from ._not_a_map import doubt
 from ._not_a_map import why as why_no_map
+from ._texts import of_text
 
 
 def from_xarray(array: Any, **given: Any) -> Heights:
@@ -102,8 +103,9 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         # Of masked arrays and others heights says what is wrong.
         is_plain = values.ndim == 2 and values.dtype.kind in "iuf"
         return _of_numbers(path, values, given) if is_plain else heights(values, **given)
-    if end in (".txt", ".dat", ".csv"):
-        return _of_numbers(path, _of_text(path, end), given)
+    # Some instruments write binary files of these ends.
+    if end in (".txt", ".dat", ".csv") and is_text(path):
+        return _of_numbers(path, of_text(path, end), given)
     if end == ".nc":
         from .._netcdf import read as netcdf
 
@@ -152,7 +154,7 @@ _TEXTS = ".asc", ".xyz", ".tsv"
 def _of_points(path: str | os.PathLike[str]) -> Lattice | None:
     """The grid of a list of points that has no header, if it is one."""
     try:
-        return lattice_of(_of_text(path, ".txt"))
+        return lattice_of(of_text(path, ".txt"))
     except ValueError:
         return None
 
@@ -171,27 +173,3 @@ def _of_numpy(path: str | os.PathLike[str], variable: str | None) -> Any:
         if "give variable" in str(error):
             raise
         raise ValueError(f"{path} is no file of numbers that numpy.save or numpy.savez wrote") from error
-
-
-def _of_text(path: str | os.PathLike[str], end: str) -> Any:
-    """Columns of numbers: those of a line are separated by spaces, in .csv by commas, or by semicolons where there are any: commas are
-    then decimal points."""
-    lines = [line.split("#")[0] for line in Path(path).read_text(encoding="utf-8-sig", errors="replace").splitlines()]
-    lines = [line for line in lines if line.strip()]
-    if not lines:
-        raise ValueError(f"{path} has no numbers")
-    delimiter = ";" if ";" in lines[0] else "," if end == ".csv" else None
-    if delimiter == ";":
-        lines = [line.replace(",", ".") for line in lines]
-    try:
-        values = np.loadtxt(lines, delimiter=delimiter, ndmin=2)
-    except ValueError as error:
-        commas = "decimal commas need semicolons between the numbers; " if has_decimal_commas(lines) else ""
-        raise ValueError(f"{path}: {error}, lines with # and empty ones not counted; it must hold numbers alone, a row of the grid a line, separated by "
-                         f"{_BETWEEN[delimiter]}; {commas}put # before other lines, and nan where nothing was measured") from error
-    if delimiter == "," and has_cut_decimals(lines):
-        raise ValueError(f"{path} has numbers that begin with zeros between its commas: decimal commas need semicolons between the numbers")
-    return values
-
-
-_BETWEEN = {None: "spaces", ",": "commas", ";": "semicolons"}
