@@ -66,8 +66,25 @@ class Sides(unittest.TestCase):
             profiles.Track(upright, inclination=0.05)
         with self.assertWarnsRegex(UserWarning, r"the rail leans to the field side by 0\.025 rad: .* mirror=True"):
             profiles.Track(profiles.Profile(-inclined.y[::-1], inclined.z[::-1], "rail"))
+        with self.assertWarnsRegex(UserWarning, r"leans to the track by 0.025 rad, and inclination=0.05 is added: leave it out"):
+            profiles.Track(inclined, inclination=0.05)
         with self.assertWarnsRegex(UserWarning, "leans to the field side by 0.05 rad"):
             profiles.Track(upright, inclination=-0.05)
+
+
+class Play(unittest.TestCase):
+    def test_a_wheelset_fits_its_track(self):
+        # The flank of 65 degrees is 10 mm below the origin at y = -35 - (10 - 1.75)/tan 65.
+        across = 2.0 * (750.0 - 35.0 - (10.0 - 1.75) / np.tan(np.deg2rad(65.0)))
+        self.assertAlmostEqual(profiles.Wheelset(wheel()).across_flanges(), across, delta=0.6)
+        for gauge, back in ((1435.0, 1360.0), (1520.0, 1440.0), (1000.0, 925.0)):
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                profiles.contact_points(profiles.Track(rail(), gauge), profiles.Wheelset(wheel(), flange_back=back))
+        with self.assertWarnsRegex(UserWarning, r"14\d\d(\.\d)? mm across its flanges, has a play of 9\d(\.\d)? mm in a gauge of 1520: look at gauge, flange_back=1360"):
+            profiles.contact_points(profiles.Track(rail(), 1520.0), profiles.Wheelset(wheel()))
+        with self.assertWarnsRegex(UserWarning, r"has \d\d(\.\d)? mm too little room in a gauge of 1435"):
+            profiles.contact_points(TRACK, profiles.Wheelset(wheel(), flange_back=1390.0))
 
 
 class Moduli(unittest.TestCase):

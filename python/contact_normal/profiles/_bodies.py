@@ -29,6 +29,9 @@ _SIDES, _LEANS = (16.0, 32.0), 0.012
 _TREAD = 20.0
 _BACK, _BACK_OF_TREAD = 40.0, 120.0
 
+# Flanges are measured so far below the tread, as a part of the radius: 10 mm. Wheelsets have a play of some mm in the track, and less than this part of the gauge.
+_FACE, _PLAY = 10.0 / 460.0, 0.05
+
 _UNITS = "lengths are in mm, those of profiles, gauges and radii; profiles.read takes scale=, as 25.4 for a file in inches"
 
 
@@ -110,10 +113,14 @@ class Track:
             raise ValueError(f"gauge_height is {self.gauge_height}; beside a gauge of {self.gauge} it must be at least {_HEIGHT_OVER_GAUGE * self.gauge:.2g}, "
                              f"as 14 mm: {_UNITS}")
 
-        lean = _lean(self.rail) + self.inclination
+        drawn = _lean(self.rail)
+        lean = drawn + self.inclination
         if lean < -_LEANS:
             warnings.warn(f"the rail leans to the field side by {-lean:.2g} rad: one that is inclined leans to the track. mirror=True turns a profile that is drawn "
                           "from the other side; inclination is positive", stacklevel=3)
+        elif min(drawn, self.inclination) > _LEANS:
+            warnings.warn(f"the profile of the rail leans to the track by {drawn:.2g} rad, and inclination={self.inclination:.2g} is added: leave it out if the profile "
+                          "has its inclination", stacklevel=3)
 
     def placed(self) -> Profile:
         """The right rail in its place: its top at z = 0, its gauge point at half of the gauge."""
@@ -187,6 +194,14 @@ class Wheelset:
         if not end - farthest <= at <= end + _BACK:
             raise ValueError(f"flange_back_at is {at:g}; it is the y of the back in the profile, whose smallest y is {end:.4g}: {_UNITS}")
 
+    def across_flanges(self) -> float | None:
+        """Distance of the outer faces of both flanges, a little below the tread, in mm; None without flanges."""
+        tip = int(np.argmax(self.wheel.z))
+        behind = np.flatnonzero(self.wheel.z[tip:] < _FACE * self.radius)
+        if not self.wheel.has_flange() or not len(behind):
+            return None
+        return 2.0 * (self.origin + float(self.wheel.y[tip + behind[0]]))
+
     @property
     def origin(self) -> float:
         """Distance of the profile's origin from the middle of the axle, in mm."""
@@ -196,6 +211,18 @@ class Wheelset:
     def tread(self) -> Curve:
         """The right wheel in its place: y from the middle of the axle, and z is the radius."""
         return self.wheel.moved(y=self.origin, z=self.radius).curve()
+
+
+def warn_of_play(track: Track, wheelset: Wheelset, stacklevel: int) -> None:
+    """Warns of a wheelset that does not fit between the rails, or has room for another one."""
+    across = wheelset.across_flanges()
+    if across is None:
+        return
+    play = track.gauge - across
+    if not 0.0 <= play <= _PLAY * track.gauge:
+        told = f"a play of {play:.3g} mm" if play > 0.0 else f"{-play:.3g} mm too little room"
+        warnings.warn(f"the wheelset, {across:.5g} mm across its flanges, has {told} in a gauge of {track.gauge:g}: look at gauge, flange_back={wheelset.flange_back:g} and "
+                      "flange_back_at", stacklevel=stacklevel + 1)
 
 
 def _refuse_unless(kind: str, profile: Profile) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from .._arguments import number
 from . import _sampling
-from ._bodies import Position, Track, Wheelset
+from ._bodies import Position, Track, Wheelset, warn_of_play
 from ._patch import ContactPoint, Pair
 
 if TYPE_CHECKING:
@@ -107,6 +107,7 @@ def contact_points(
     if not number("within", within) >= 0.0:
         raise ValueError(f"within is {within}; it must not be negative")
     pair = _pair(track, wheelset, position, side)
+    warn_of_play(track, wheelset, stacklevel=2)
     minima = _minima(pair)
     if not minima:
         raise ValueError(f"the {side} wheel is nowhere above its rail: position.y is {position.y}, the gauge {track.gauge}; {_BESIDE}")
