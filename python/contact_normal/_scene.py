@@ -121,7 +121,8 @@ class Scene:
             return
         arrays: Any
         if name == "friction":
-            effect, arrays, self.remark = friction(value, self.shape)
+            half = 0.5 * max(self.struct.mx * self.struct.dx, self.struct.my * self.struct.dy)
+            effect, arrays, self.remark = friction(value, self.shape, half)
         elif name == "adhesion":
             effect, arrays = adhesion(value, self.shape)
         elif name == "visco":
