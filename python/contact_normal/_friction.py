@@ -83,7 +83,8 @@ def _remarks(effect: Any, has_motion: bool, length: float) -> list[str]:
     if effect.motion == MOTION_SHIFT:
         return found + ([_IS_LENGTH] if not has_motion and (any(effect.creepage) or effect.spin != 0.0) else [])
     largest, by_spin = max(map(abs, effect.creepage)), abs(effect.spin) * length
-    if largest > _LARGE:
+    # Laws are for creepages of which friction falls.
+    if largest > _LARGE and not effect.law:
         found.append(f"a creepage of {largest:g} is this part of the rolling speed: 0.1 % is 1e-3")
     if by_spin > _LARGE:
         found.append(f"a spin of {effect.spin:g} makes a creepage of {by_spin:.2g} at the ends of the grid: it is in rad per length, and 0.16 per m is 1.6e-4 per mm")
