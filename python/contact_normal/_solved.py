@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Iterable
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -55,18 +54,6 @@ def reported(report: Any) -> dict[str, Any]:
                 value = getattr(members, name)
                 found[report_key(group, name)] = value if isinstance(value, (int, float)) else tuple(value)
     return found
-
-
-def _warn_of_depths(stress: SubsurfaceStress, deep: float) -> None:
-    """Warns of depths that are all deeper than a contact of this width reaches, and of a largest stress at an end of them, beyond which it may be larger."""
-    depths = stress.depths
-    if depths.size and depths.min() > deep > 0.0:
-        warnings.warn(f"depths are {depths.min():g} and more, and the contact is {0.5 * deep:.2g} wide: are depths in the unit of x and y?", stacklevel=3)
-    elif depths.size > 2 and stress.von_mises is not None:
-        z = stress.largest_von_mises["z"]
-        if z == depths.max() or z == depths.min() > 0.0:
-            warnings.warn(f"the largest von Mises stress is at an end of the depths, {z:g}: {'deeper' if z == depths.max() else 'higher'} it may be larger",
-                          stacklevel=3)
 
 
 class Solved(WithUnits):
@@ -287,11 +274,12 @@ class Solved(WithUnits):
         >>> round(stress.largest_shear["value"] / result.max_pressure, 2)
         0.31
         """
+        from ._stress import warn_of_depths
         from ._subsurface import subsurface
 
         found = subsurface(self._scene, self.pressure, depths, self._tractions_on(body, traction), body, components, principal, threads)
         found._place(self._centre, self.units)
-        _warn_of_depths(found, 2.0 * self.contact_area**0.5)
+        warn_of_depths(found, 2.0 * self.contact_area**0.5)
         return found
 
     def stress_at_points(
