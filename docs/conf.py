@@ -12,6 +12,7 @@ sys.path.insert(0, str(here))
 import dark_pictures  # noqa: E402 - beside this file
 import language_tabs  # noqa: E402
 import mathml  # noqa: E402
+import narrow_tables  # noqa: E402
 import reference_pages  # noqa: E402
 import reference_python  # noqa: E402
 
@@ -49,5 +50,6 @@ def setup(app):
     """What this project adds to Sphinx."""
     app.add_html_math_renderer("mathml", (mathml.visit_math, None), (mathml.visit_displaymath, None))
     app.connect("autodoc-process-signature", reference_python.signature)
+    app.connect("html-page-context", narrow_tables.part_names)
     app.add_transform(dark_pictures.DarkPictures)
     app.add_transform(language_tabs.LanguageTabs)

@@ -26,6 +26,12 @@ class Bodies(NamedTuple):
     poisson_ratio: Any
     poisson_is_known: bool = True
 
+    @property
+    def e_star(self) -> float:
+        """E* of both: 1/E* is the sum of (1 - nu)/(2 G)."""
+        compliance = sum((1.0 - nu) / (2.0 * shear) for shear, nu in zip(self.shear_modulus, self.poisson_ratio) if shear != 0.0)
+        return 1.0 / compliance if compliance > 0.0 else float("inf")
+
     def needs_poisson(self, what: str) -> None:
         """Refuses bodies that are known by E* alone."""
         if not self.poisson_is_known:

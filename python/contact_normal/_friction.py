@@ -24,11 +24,15 @@ _OF_LAW = ("kinetic", "speed", "time_step", "memory_distance", "memory_speed")
 _PAIRS_OF_LAW = ("falling", "half_speed")
 _OF_LAYER = ("yield_limit", "hardening")
 _KNOWN = ("coefficient", "motion", "force", "compliance", *_PAIRS, *_FLAGS, "influence", "influence_cross", "row_tables", *_NUMBERS, *_FIELDS, "law", "layer", "branch", *_PARTICLES)
+# Parts of the rolling speed that are more than wheels slip in most cases.
+_LARGE = 0.05
+# Nor are coefficients so large.
+_STICKY = 5.0
 _IS_LENGTH = "the motion of friction is not given: it is a SHIFT, whose creepage is a length, and whose spin an angle"
 
 
-def friction(value: Any, shape: tuple[int, int]) -> tuple[Any, list[Any], str]:
-    """A `contact_normal_friction`, the arrays that it points to, and what the caller should know of it."""
+def friction(value: Any, shape: tuple[int, int], length: float = 0.0) -> tuple[Any, list[Any], str]:
+    """A `contact_normal_friction`, the arrays that it points to, and what the caller should know of it; `length` is half of the longer side of the grid."""
     if not isinstance(value, Mapping):
         raise TypeError(f"friction is {value!r}; it must be a mapping of {', '.join(_KNOWN)}")
     unknown = [str(name) for name in value if name not in _KNOWN]
@@ -68,8 +72,23 @@ def friction(value: Any, shape: tuple[int, int]) -> tuple[Any, list[Any], str]:
     _layer(effect, given.get("layer"))
     kept += _influence(effect, given)
     kept += _row_tables(effect, given)
-    is_length = "motion" not in given and (any(effect.creepage) or effect.spin != 0.0)
-    return effect, kept, _IS_LENGTH if is_length else ""
+    return effect, kept, "\n".join(_remarks(effect, "motion" in given, length))
+
+
+def _remarks(effect: Any, has_motion: bool, length: float) -> list[str]:
+    """What numbers may be meant otherwise."""
+    found = []
+    if effect.coefficient > _STICKY:
+        found.append(f"a coefficient of {effect.coefficient:g} is a ratio of forces: 30 % is 0.3")
+    if effect.motion == MOTION_SHIFT:
+        return found + ([_IS_LENGTH] if not has_motion and (any(effect.creepage) or effect.spin != 0.0) else [])
+    largest, by_spin = max(map(abs, effect.creepage)), abs(effect.spin) * length
+    # Laws are for creepages of which friction falls.
+    if largest > _LARGE and not effect.law:
+        found.append(f"a creepage of {largest:g} is this part of the rolling speed: 0.1 % is 1e-3")
+    if by_spin > _LARGE:
+        found.append(f"a spin of {effect.spin:g} makes a creepage of {by_spin:.2g} at the ends of the grid: it is in rad per length, and 0.16 per m is 1.6e-4 per mm")
+    return found
 
 
 def _without_unknown(creepage: tuple[Any, Any], forces: tuple[Any, Any]) -> tuple[Any, Any]:

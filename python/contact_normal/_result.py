@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._bill import omissions
-from ._constants import PRESCRIBED_APPROACH
+from ._constants import PRESCRIBED_APPROACH, WARNING_BORDER
 from ._ledger import Ledger
 from ._outputs import LEDGER_ROOM, Outputs
 from ._solved import Solved
@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ._scene import Scene
+
+# Linear elasticity is for small strains. A ball has this part of E* as its largest pressure where the contact is as wide as 0.6 of its radius.
+_STRAINED = 0.2
 
 _ROW = [name for name in names(LedgerRow) if name not in ("struct_size", "reserved")]
 
@@ -73,7 +76,8 @@ class Result(Solved):
     mean_gap : float
         The mean of the deformed distance, over the elements that have a surface.
     warnings : tuple of str
-        What to look at, even where the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN".
+        What to look at, even where the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN", and "STRAIN", where the largest pressure is more
+        than a fifth of E*.
     tangential_force : (float, float)
         With friction: on body 1, in x and y; else zeros.
     units : (str, str) or None
@@ -89,10 +93,29 @@ class Result(Solved):
         super().__init__(status, message, outputs, report, scene, units)
         _, self.deformed_distance, self.displacement = outputs.doubles
         self._rows = outputs.rows
+        part = report.normal.max_pressure / scene.bodies.e_star if scene.has_half_space else 0.0
+        self._is_strained = part > _STRAINED
+        if self._is_strained:
+            told = (f"the largest pressure is {part:.2g} E*, and linear elasticity is for small strains: are moduli, forces and lengths in one system of units? "
+                    "Else a hardness limits pressures (pressure_limit)")
+            self.message = "\n".join(text for text in (self.message, told) if text)
+        if report.warnings & WARNING_BORDER and (ends := self._ends_in_contact()):
+            self.message = f"{self.message}\ncontact is at the ends of the grid in {ends}"
         self._estimated = "force" if scene.struct.load == PRESCRIBED_APPROACH else "approach"
+
+    def _ends_in_contact(self) -> str:
+        """The directions in which contact is at an end of the grid that is no period."""
+        period = self._scene.period
+        ends = {"x": self._contact[:, [0, -1]], "y": self._contact[[0, -1]]}
+        return " and ".join(name for name, elements in ends.items() if name not in period and elements.any())
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in {**super().__getstate__(), "ledger": self.ledger}.items() if name != "_rows"}
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """What to look at, even where the status is OK."""
+        return (*super().warnings, "STRAIN") if self._is_strained else super().warnings
 
     @cached_property
     def at_limit(self) -> npt.NDArray[np.bool_]:

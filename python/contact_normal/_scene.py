@@ -76,6 +76,17 @@ class Scene:
         return bool(effect) and (effect.contents.law != 0 or effect.contents.yield_limit != 0.0)
 
     @property
+    def period(self) -> str:
+        """Directions in which the grid is one period of a scene that repeats itself."""
+        said = self._effects.get("period")
+        return said if isinstance(said, str) else ""
+
+    @property
+    def has_half_space(self) -> bool:
+        """Whether bodies give way as half-spaces of their elastic constants do."""
+        return not any(self._effects.get(name) is not None for name in ("influence", "row_tables"))
+
+    @property
     def shape(self) -> tuple[int, int]:
         """(my, mx)."""
         my, mx = self.h.shape
@@ -110,7 +121,8 @@ class Scene:
             return
         arrays: Any
         if name == "friction":
-            effect, arrays, self.remark = friction(value, self.shape)
+            half = 0.5 * max(self.struct.mx * self.struct.dx, self.struct.my * self.struct.dy)
+            effect, arrays, self.remark = friction(value, self.shape, half)
         elif name == "adhesion":
             effect, arrays = adhesion(value, self.shape)
         elif name == "visco":

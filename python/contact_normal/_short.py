@@ -13,7 +13,7 @@ class Short:
 
     def __repr__(self) -> str:
         members: Any = self
-        return told(self, [field.name for field in dataclasses.fields(members)])
+        return told(self, [field.name for field in dataclasses.fields(members) if not field.name.startswith("_")])
 
 
 def told(holder: Any, names: Any) -> str:

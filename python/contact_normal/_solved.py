@@ -274,10 +274,12 @@ class Solved(WithUnits):
         >>> round(stress.largest_shear["value"] / result.max_pressure, 2)
         0.31
         """
+        from ._stress import warn_of_depths
         from ._subsurface import subsurface
 
         found = subsurface(self._scene, self.pressure, depths, self._tractions_on(body, traction), body, components, principal, threads)
         found._place(self._centre, self.units)
+        warn_of_depths(found, 2.0 * self.contact_area**0.5)
         return found
 
     def stress_at_points(

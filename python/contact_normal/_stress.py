@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
@@ -130,3 +131,15 @@ class SubsurfaceStress(WithUnits):
         from ._plot_stress import plot_depth
 
         return plot_depth(self, x, y, axes)
+
+
+def warn_of_depths(stress: SubsurfaceStress, deep: float) -> None:
+    """Warns of depths that are all deeper than a contact of this width reaches, and of a largest stress at an end of them, beyond which it may be larger."""
+    depths = stress.depths
+    if depths.size and depths.min() > deep > 0.0:
+        warnings.warn(f"depths are {depths.min():g} and more, and the contact is {0.5 * deep:.2g} wide: are depths in the unit of x and y?", stacklevel=3)
+    elif depths.size > 2 and stress.von_mises is not None:
+        z = stress.largest_von_mises["z"]
+        if z == depths.max() or z == depths.min() > 0.0:
+            warnings.warn(f"the largest von Mises stress is at an end of the depths, {z:g}: {'deeper' if z == depths.max() else 'higher'} it may be larger",
+                          stacklevel=3)

@@ -11,6 +11,7 @@ radii of curvature of the flanks at the point of contact::
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
 
     # Drop of the surface of a roller below its cylinder, at places along its axis.
     Drop = Callable[[Doubles], Doubles]
+
+# Drops of logarithmic profiles are of smaller parts of the length.
+_DEEP = 0.02
 
 # Relief of ISO/TS 16281:2008 by the diameter of the roller.
 _ISO = 0.00035
@@ -122,7 +126,11 @@ def logarithmic(length: float, force: float, e_star: float) -> Drop:
         E* of both bodies.
     """
     whole = _positive("length", length)
-    return _logarithm(0.5 * whole, _positive("force", force) / (np.pi * whole * _positive("e_star", e_star)))
+    relief = _positive("force", force) / (np.pi * whole * _positive("e_star", e_star))
+    if relief > _DEEP * whole:
+        warnings.warn(f"the drop is {relief:.2g} ln(1/(1 - (2 y/length)^2)), and the length {whole:g}: force, length and e_star must be in one system of units, as N, mm "
+                      "and N/mm2", stacklevel=2)
+    return _logarithm(0.5 * whole, relief)
 
 
 def iso_16281(length: float, diameter: float) -> Drop:

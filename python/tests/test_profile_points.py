@@ -1,5 +1,6 @@
 """Points of profiles: dense and noisy ones, few of them, and files of few decimals."""
 
+import re
 import unittest
 import warnings
 from pathlib import Path
@@ -88,10 +89,53 @@ class Uncertain(unittest.TestCase):
             smooth = pressed(*(one.smoothed(4.0) for one in coarse)).max_pressure
         self.assertAlmostEqual(smooth / self.largest, 1.0, delta=0.01)
 
+    def test_what_light_smoothing_leaves_of_few_decimals_is_told(self):
+        coarse = self.each(lambda one: profiles.Profile(one.y.round(2), one.z.round(2), one.kind))
+        for length, least in ((2.0, 10), (3.0, 6)):
+            with self.assertWarnsRegex(UserWarning, r"so much is left of noise, or of the few decimals of the points.* a longer wave_length") as told:
+                largest = pressed(*(one.smoothed(length).moved() for one in coarse)).max_pressure
+            amount = int(re.search(r"some (\d+)%", str(told.warning))[1])
+            self.assertGreater(largest / self.largest, 1.0 + least / 100.0)
+            self.assertTrue(least <= amount <= 100.0 * (largest / self.largest - 1.0) * 2.5, amount)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            self.assertAlmostEqual(pressed(*(one.smoothed(8.0) for one in coarse)).max_pressure / self.largest, 1.0, delta=0.02)
+
+    def test_what_light_smoothing_leaves_of_noise_is_told(self):
+        random = np.random.default_rng(4)
+        noisy = self.each(lambda one: profiles.Profile(one.y, one.z + 1e-3 * random.normal(size=len(one.y)), one.kind))
+        with self.assertWarnsRegex(UserWarning, r"uncertain by some [12]\d%: so much is left of noise"):
+            self.assertGreater(pressed(*(one.smoothed(1.0) for one in noisy)).max_pressure / self.largest, 1.1)
+        # Smoothed in two steps it is as noisy as in the longer one.
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            largest = pressed(*(one.smoothed(1.0).smoothed(4.0) for one in noisy)).max_pressure
+        self.assertAlmostEqual(largest / self.largest, 1.0, delta=0.03)
+
+    def test_a_form_that_smoothing_removes_is_told(self):
+        with self.assertWarnsRegex(UserWarning, "so much form smoothing has removed.*use a shorter wave_length"):
+            largest = pressed(self.rail.smoothed(25.0), self.wheel.smoothed(25.0)).max_pressure
+        self.assertLess(largest / self.largest, 0.95)
+
     def test_few_points_are_told(self):
         few = self.each(lambda one: profiles.Profile(one.y[::25], one.z[::25], one.kind))
         with self.assertWarnsRegex(UserWarning, "pressures are uncertain by .* of its points across the contact, .*: give more points"):
             self.assertGreater(abs(pressed(*few).max_pressure / self.largest - 1.0), 0.05)
+
+    def test_contact_points_of_few_points_are_told(self):
+        def place(one, other, y):
+            return profiles.contact_points(profiles.Track(one), profiles.Wheelset(other, 460.0), profiles.Position(y=y))[0].place[1]
+
+        few = self.each(lambda one: profiles.Profile(one.y[::30], one.z[::30], one.kind))
+        for y in (2.0, 4.0):
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                right = place(self.rail, self.wheel, y)
+                self.assertAlmostEqual(place(*self.each(lambda one: profiles.Profile(one.y[::2], one.z[::2], one.kind)), y), right, delta=0.3)
+            with self.assertWarnsRegex(UserWarning, r"the contact point is uncertain by some \d+(\.\d)? mm along the profiles: .* mm apart there") as told:
+                off = abs(place(*few, y) - right)
+            amount = float(re.search(r"some (\S+) mm", str(told.warning))[1])
+            self.assertLess(off, 2.0 * amount)
 
     def test_half_of_many_points_is_enough(self):
         with warnings.catch_warnings():

@@ -2,6 +2,7 @@
 
 import tempfile
 import unittest
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -41,9 +42,49 @@ class Units(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "gauge_height is 0.0; it must be positive"):
             profiles.Track(rail(), gauge_height=0.0)
 
+    def test_rails_in_larger_units_are_told(self):
+        for factor in (10.0, 25.4, 1000.0):
+            self.refused(lambda f=factor: profiles.Track(scaled(rail(), 1.0 / f)), "gauge is 1435.0; it must be 3.5 to 100 times as large as the rail is wide")
+
+    def test_diameters_are_told(self):
+        made = wheel()
+        with self.assertRaisesRegex(ValueError, "a flange that is 50.9 mm high: are these diameters"):
+            profiles.Profile(made.y, 2.0 * made.z, "wheel")
+
     def test_heights_from_the_axle_are_told(self):
         with self.assertRaisesRegex(ValueError, r"the tread of the wheel has z = 457 to 460.2, and radius is that at z = 0"):
             profiles.Wheelset(wheel().moved(z=460.0), 460.0)
+
+
+class Sides(unittest.TestCase):
+    def test_a_rail_that_leans_to_the_field_is_told(self):
+        upright = rail()
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            inclined = profiles.Track(upright.rotated(0.025)).rail
+            profiles.Track(upright)
+            profiles.Track(upright, inclination=0.05)
+        with self.assertWarnsRegex(UserWarning, r"the rail leans to the field side by 0\.025 rad: .* mirror=True"):
+            profiles.Track(profiles.Profile(-inclined.y[::-1], inclined.z[::-1], "rail"))
+        with self.assertWarnsRegex(UserWarning, r"leans to the track by 0.025 rad, and inclination=0.05 is added: leave it out"):
+            profiles.Track(inclined, inclination=0.05)
+        with self.assertWarnsRegex(UserWarning, "leans to the field side by 0.05 rad"):
+            profiles.Track(upright, inclination=-0.05)
+
+
+class Play(unittest.TestCase):
+    def test_a_wheelset_fits_its_track(self):
+        # The flank of 65 degrees is 10 mm below the origin at y = -35 - (10 - 1.75)/tan 65.
+        across = 2.0 * (750.0 - 35.0 - (10.0 - 1.75) / np.tan(np.deg2rad(65.0)))
+        self.assertAlmostEqual(profiles.Wheelset(wheel()).across_flanges(), across, delta=0.6)
+        for gauge, back in ((1435.0, 1360.0), (1520.0, 1440.0), (1000.0, 925.0)):
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                profiles.contact_points(profiles.Track(rail(), gauge), profiles.Wheelset(wheel(), flange_back=back))
+        with self.assertWarnsRegex(UserWarning, r"14\d\d(\.\d)? mm across its flanges, has a play of 9\d(\.\d)? mm in a gauge of 1520: look at gauge, flange_back=1360"):
+            profiles.contact_points(profiles.Track(rail(), 1520.0), profiles.Wheelset(wheel()))
+        with self.assertWarnsRegex(UserWarning, r"has \d\d(\.\d)? mm too little room in a gauge of 1435"):
+            profiles.contact_points(TRACK, profiles.Wheelset(wheel(), flange_back=1390.0))
 
 
 class Moduli(unittest.TestCase):
@@ -86,7 +127,7 @@ class Files(unittest.TestCase):
         self.rows = [f"{y:.4f} {0.002 * y * y:.5f}" for y in np.linspace(-40.0, 40.0, 81)]
 
     def read(self, lines, **given):
-        self.path.write_text("\n".join(lines))
+        self.path.write_text("\n".join(lines), encoding="utf-8")
         return profiles.read(self.path, "rail", **given)
 
     def test_points_that_run_together_are_told_wherever_they_stand(self):
@@ -100,6 +141,21 @@ class Files(unittest.TestCase):
         # Titles, a count and a date are none.
         titles = ["*** a rail ***", "2 cuts, of which the first", "81", "12.05.2023 10:11"]
         self.assertEqual(len(self.read([*titles, *self.rows, "81 points"]).y), 81)
+
+    def test_marks_around_numbers_and_signs_of_minus(self):
+        plain = self.read(self.rows)
+        for change in (lambda y, z: f"({y}, {z})", lambda y, z: f'"{y}";"{z}"', lambda y, z: f"[{y} {z}]", lambda y, z: f"{y} {z}".replace("-", "\u2212")):
+            lines = [change(*row.split()) for row in self.rows]
+            np.testing.assert_array_equal(self.read(["a rail in \u00b5m"] + lines).y, plain.y)
+        self.path.write_bytes("Ma\u00dfe\n".encode("latin-1") + "\n".join(self.rows).encode())
+        np.testing.assert_array_equal(profiles.read(self.path, "rail").y, plain.y)
+
+    def test_a_header_names_columns(self):
+        self.path = self.path.with_suffix(".ban")
+        for names, order in (("X,Y", "{y} {z}"), ("A,X,Y", "9 {y} {z}"), ("Y, X, N", "{z} {y} 5"), ('"*X","*Y"', "{y} {z}"), ("A,C", "{y} {z}")):
+            rows = [order.format(y=y, z=-float(z)) for y, z in map(str.split, self.rows)]
+            with self.subTest(names):
+                self.assertEqual(self.read([f"ColumnDef={names}", *rows]).y[0], -40.0)
 
     def test_columns_and_scale(self):
         for columns, error, text in (((0,), TypeError, "it must be two numbers"), ((0.0, 1.0), TypeError, r"columns\[0\] is 0.0; it must be an integer"),

@@ -91,6 +91,14 @@ class Numbers(unittest.TestCase):
         for clear in ({**friction, "motion": "SHIFT"}, {**friction, "motion": 0}, {"coefficient": 0.3, "force": (1.0, 0.0)}):
             self.assertEqual(solve(friction=clear).message, "")
 
+    def test_numbers_of_friction_that_may_be_meant_otherwise(self):
+        rolling = {"coefficient": 0.3, "motion": "STEADY_ROLLING"}
+        for given, text in (({"creepage": (0.0, -0.1)}, r"^a creepage of 0.1 is this part of the rolling speed: 0.1 % is 1e-3$"),
+                            ({"spin": 0.16}, r"^a spin of 0.16 makes a creepage of \S+ at the ends of the grid: .* 0.16 per m is 1.6e-4 per mm$"),
+                            ({"coefficient": 30.0, "creepage": (1e-3, 0.0)}, "^a coefficient of 30 is a ratio of forces: 30 % is 0.3$"),
+                            ({"creepage": (0.01, 0.0), "spin": 1e-4}, "^$")):
+            self.assertRegex(solve(friction={**rolling, **given}).message, text)
+
 
 class Bodies(unittest.TestCase):
     def test_moduli(self):

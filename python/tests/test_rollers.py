@@ -1,6 +1,7 @@
 """Rollers: their gaps in closed form, and the pressures that their profiles are made for."""
 
 import unittest
+import warnings
 
 import numpy as np
 
@@ -89,6 +90,13 @@ class Pressures(unittest.TestCase):
         np.testing.assert_allclose(p[14:42], self.LINE, rtol=2e-3)
         # Nowhere more than a few per cent, but for the last two rows, where the drop has no bound.
         self.assertLess(p.max() / self.LINE, 1.03)
+
+    def test_moduli_of_another_system_of_units_are_told(self):
+        with self.assertWarnsRegex(UserWarning, r"the drop is \S+ ln\(.*force, length and e_star must be in one system of units"):
+            rollers.logarithmic(LENGTH, 9000.0, 1e-3 * E_STAR)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            rollers.logarithmic(2.0, 3000.0, E_STAR)
 
     def test_sharp_ends_and_crowns_do_not(self):
         sharp = self.along(rollers.no_drop(LENGTH))

@@ -1,6 +1,7 @@
 """Stresses below the surface and coatings, as Python has them."""
 
 import unittest
+import warnings
 
 import numpy as np
 
@@ -28,6 +29,19 @@ class Subsurface(unittest.TestCase):
         np.testing.assert_allclose(stress.principal.sum(axis=0), trace, atol=1e-12 * p0)
         np.testing.assert_allclose((stress.directions**2).sum(axis=-1), 1.0, atol=1e-14)
         self.assertIsNone(result.subsurface([0.0]).principal)
+
+    def test_depths_that_miss_the_largest_stress_are_told(self):
+        result = cn.solve(H, D, D, force=1000.0, **STEEL)
+        for depths, text in ((np.linspace(0.0, 0.2, 5), "at an end of the depths, 0.2: deeper it may be larger"),
+                             (np.linspace(0.6, 1.5, 5), "at an end of the depths, 0.6: higher it may be larger"),
+                             ([100.0, 200.0], r"depths are 100 and more, and the contact is 1.\d wide: are depths in the unit of x and y")):
+            with self.assertWarnsRegex(UserWarning, text):
+                result.subsurface(depths)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            result.subsurface(np.linspace(0.0, 1.5, 5))
+            result.subsurface([0.1])
+            result.subsurface(np.linspace(0.0, 0.2, 5), components=["xx"])
 
     def test_tractions_and_bodies(self):
         result = cn.solve(H, D, D, force=1000.0, shear_modulus=82000.0, poisson_ratio=(0.3, 0.1))

@@ -3,7 +3,10 @@
 import sys
 import tempfile
 import unittest
+import warnings
+from importlib.util import find_spec
 from pathlib import Path
+from types import SimpleNamespace
 from unittest import mock
 
 import matplotlib
@@ -29,6 +32,14 @@ class DataArray:
 
     def transpose(self, *dims):
         return self if dims == self.dims else DataArray(self.values.T, dims, self.attrs.get("units"), None)
+
+
+def instruments(topography, **channels):
+    """In place of SurfaceTopography: a reader whose topography is made by a function, and has channels of these shapes."""
+    named = [SimpleNamespace(name=name, dim=2, nb_grid_pts=shape) for name, shape in (channels or {"height": (5, 16)}).items()]
+    reader = mock.MagicMock(channels=named, default_channel=named[0], topography=topography)
+    reader.__enter__.return_value = reader
+    return mock.patch.dict(sys.modules, {"SurfaceTopography": mock.Mock(open_topography=lambda path: reader)})
 
 
 class Files(unittest.TestCase):
@@ -126,6 +137,9 @@ class Files(unittest.TestCase):
         np.savetxt(self.folder / "points.txt", np.stack([x, y, np.sin(x + y)], axis=1)[kept])
         with self.assertRaisesRegex(ValueError, "has x, y and z of 47 points"):
             surface.read(self.folder / "points.txt", dx=1, dy=1)
+        with self.assertWarnsRegex(UserWarning, "1 of 48 places of the grid of 6 x 8 have no point: they are holes"):
+            made = surface.read(self.folder / "points.txt")
+        np.testing.assert_array_equal(np.argwhere(made.holes), [[2, 1]])
         np.savetxt(self.folder / "narrow.txt", rough(64)[:, :3])
         with self.assertWarnsRegex(UserWarning, "a map of 64 x 3"):
             self.assertEqual(surface.read(self.folder / "narrow.txt", dx=1, dy=1).z.shape, (64, 3))
@@ -164,6 +178,32 @@ class Files(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "begin with zeros between its commas"):
             surface.read(self.folder / "d.csv", dx=1, dy=1)
 
+    def test_texts_as_instruments_and_spreadsheets_write_them(self):
+        z = np.round(0.1 * rough(16)[:5], 6)
+        rows = [[f"{value:.6f}" for value in row] for row in z]
+        hole = np.where(np.arange(80).reshape(5, 16) == 37, np.nan, z)
+        parted = ["\t".join(row) for row in rows]
+        empty = [",".join("" if np.isnan(hole[iy, ix]) else cell for ix, cell in enumerate(row)) for iy, row in enumerate(rows)]
+        for name, end, lines, encoding, expected in (
+            ("UTF-16", ".txt", parted, "utf-16", z), ("minus", ".txt", [line.replace("-", "\u2212") for line in parted], "utf-8", z),
+            ("Fortran", ".dat", [" ".join(f"{value:.6E}".replace("E", "D") for value in row) for row in z], "ascii", z),
+            ("Latin", ".dat", ["# H\u00f6he in \u00b5m", *parted], "latin-1", z), ("tabs", ".csv", parted, "ascii", z),
+            ("quoted", ".csv", [",".join(f'"{cell}"' for cell in row) for row in rows], "ascii", z),
+            ("an end", ".csv", [",".join(row) + "," for row in rows], "ascii", z),
+            ("empty", ".csv", empty, "ascii", hole), ("empty, commas", ".txt", [line.replace(",", ";").replace(".", ",") for line in empty], "ascii", hole),
+        ):
+            with self.subTest(name):
+                path = self.folder / f"a{end}"
+                path.write_text("\n".join(lines) + "\n", encoding=encoding)
+                np.testing.assert_array_equal(surface.read(path, dx=1, dy=1).z, expected)
+
+    def test_a_binary_file_is_an_instruments(self):
+        (self.folder / "zygo.dat").write_bytes(bytes([0x88, 0x1B, 0x03, 0x6F]) + bytes(100))
+        z = rough(16)[:5]
+        made = mock.Mock(dim=2, is_uniform=True, physical_sizes=(1.0, 2.0), is_periodic=False, unit="um", heights=lambda: z)
+        with instruments(lambda channel_index: made):
+            np.testing.assert_array_equal(surface.read(self.folder / "zygo.dat").z, z.T)
+
     def test_decimal_commas_are_named(self):
         for name, text in (("a.txt", "0,5 0,7\n1,5 1,7\n"), ("b.csv", "0,5\t0,7\n1,5\t1,7\n")):
             (self.folder / name).write_text(text)
@@ -175,19 +215,18 @@ class Files(unittest.TestCase):
         self.assertNotIn("decimal commas", str(raised.exception))
 
     def test_an_instruments_file_may_not_say_its_size(self):
-        def topography(path, physical_sizes=None):
+        def topography(physical_sizes=None, channel_index=None):
             if physical_sizes is None:
                 raise KeyError("`physical_sizes` could not be extracted from file")
             return mock.Mock(dim=2, is_uniform=True, physical_sizes=physical_sizes, is_periodic=False, unit=None, heights=lambda: rough(16)[:5])
 
-        with mock.patch.dict(sys.modules, {"SurfaceTopography": mock.Mock(read_topography=topography)}):
+        with instruments(topography):
             for given in ({"size": (10.0, 32.0)}, {"dx": 2.0, "dy": 2.0}, {"span": (8.0, 30.0)}):
                 made = surface.read(self.folder / "a.asc", **given)
                 self.assertEqual((made.dx, made.dy, made.z.shape), (2.0, 2.0, (16, 5)))
             with self.assertRaisesRegex(TypeError, "does not say the size of an element: give size, the lengths of the field, or dx and dy"):
                 surface.read(self.folder / "a.asc")
-        broken = mock.Mock(read_topography=mock.Mock(side_effect=RuntimeError("tried A:\n no\n\ntried B")))
-        with mock.patch.dict(sys.modules, {"SurfaceTopography": broken}), self.assertRaises(ValueError) as raised:
+        with instruments(mock.Mock(side_effect=RuntimeError("tried A:\n no\n\ntried B"))), self.assertRaises(ValueError) as raised:
             surface.read(self.folder / "a.gsf", dx=1, dy=1)
         self.assertIn("a.gsf is no file of heights that SurfaceTopography reads: RuntimeError, tried A:", str(raised.exception))
         self.assertEqual(len(str(raised.exception).splitlines()), 1)
@@ -199,14 +238,50 @@ class Files(unittest.TestCase):
     def test_a_topography_has_x_first(self):
         z = rough(16)[:5]
         topography = mock.Mock(dim=2, is_uniform=True, physical_sizes=(1.0, 2.0), is_periodic=True, unit="um", heights=lambda: z)
-        package = mock.Mock(read_topography=lambda path: topography)
-        with mock.patch.dict(sys.modules, {"SurfaceTopography": package}):
+        with instruments(lambda channel_index: topography):
             made = surface.read(self.folder / "a.x3p")
         np.testing.assert_array_equal(made.z, z.T)
         self.assertEqual((made.dx, made.dy, made.period, made.units), (1.0 / 5, 2.0 / 16, "xy", ("um", "N")))
         self.assertIsNone(surface.from_topography(topography, period=None).period)
         with self.assertRaisesRegex(ValueError, "a line scan or not uniform"):
             surface.from_topography(mock.Mock(dim=1, is_uniform=True))
+
+
+    def test_matrices_have_y_by_rows_and_one_of_several_is_named(self):
+        z = 0.1 * rough(16)[:5]
+        made = mock.Mock(dim=2, is_uniform=True, physical_sizes=(1.0, 1.0), is_periodic=False, unit=None)
+
+        def topography(channel_index, physical_sizes=(1.0, 1.0)):
+            self.assertEqual(channel_index, 2)
+            return made
+
+        made.heights = lambda: z
+        with instruments(topography, x=(1, 16), X=(5, 16), Z=(5, 16)):
+            with self.assertRaisesRegex(ValueError, "a.mat has X, Z; give variable, one of them"):
+                surface.read(self.folder / "a.mat", dx=0.5, dy=0.25)
+            read = surface.read(self.folder / "a.mat", "Z", dx=0.5, dy=0.25)
+            np.testing.assert_array_equal(read.z, z)
+            self.assertEqual(surface.read(self.folder / "a.mat", "Z", dx=0.5, dy=0.25, axes="xy").z.shape, (16, 5))
+            # An instrument's first one is the heights.
+            np.testing.assert_array_equal(surface.read(self.folder / "a.gwy", "Z").z, z.T)
+        with instruments(lambda channel_index: made, forward=(5, 16), backward=(5, 16)):
+            with self.assertWarnsRegex(UserWarning, "a.gwy has forward, backward; forward is read: variable= names another one"):
+                surface.read(self.folder / "a.gwy")
+        with instruments(lambda channel_index, **_: made, x=(1, 16), Z=(5, 16)), warnings.catch_warnings():
+            warnings.simplefilter("error")
+            np.testing.assert_array_equal(surface.read(self.folder / "a.mat", dx=0.5, dy=0.25).z, z)
+
+    @unittest.skipUnless(find_spec("xarray") and find_spec("netCDF4"), "xarray and netCDF4 are missing")
+    def test_what_has_no_two_dimensions_is_no_map(self):
+        import xarray
+
+        z = xarray.DataArray(rough(16)[:5], dims=("y", "x"), coords={"x": np.arange(16) * 0.5, "y": np.arange(5) * 0.5})
+        xarray.Dataset({"z": z, "crs": 0}).to_netcdf(self.folder / "a.nc", engine="netcdf4")
+        self.assertEqual(surface.read(self.folder / "a.nc").z.shape, (5, 16))
+        # One map of a series is a map.
+        self.assertEqual(surface.from_xarray(z.expand_dims("t")).z.shape, (5, 16))
+        with self.assertRaisesRegex(ValueError, "heights have two: choose one map by isel"):
+            surface.from_xarray(xarray.concat([z, z], "t"))
 
 
 class Pictures(unittest.TestCase):

@@ -1,16 +1,15 @@
 """Lists of points: on their grid where they are one, refused with advice elsewhere; and tilts that are large beside the roughness."""
 
-import sys
 import tempfile
 import unittest
 import warnings
 from pathlib import Path
 from types import SimpleNamespace
-from unittest import mock
 
 import numpy as np
 
 from contact_normal import surface
+from test_surface_files import instruments
 
 
 class Lists(unittest.TestCase):
@@ -49,24 +48,46 @@ class Lists(unittest.TestCase):
         stage = self.random.normal(0.0, 1e-4, 63)
         self.assertAlmostEqual(self.read(x + stage, y, z).dx, 0.5, delta=1e-4)
 
+    def test_lists_of_numpy_are_lists_too(self):
+        path = self.path.with_suffix(".npy")
+        np.save(path, np.stack(self.columns, axis=1))
+        self.assert_grid(surface.read(path))
+        with self.assertRaisesRegex(ValueError, "has x, y and z of 63 points"):
+            surface.read(path, dx=0.5, dy=0.25)
+        np.savez(self.path.with_suffix(".npz"), points=np.stack(self.columns, axis=1), other=self.x)
+        self.assert_grid(surface.read(self.path.with_suffix(".npz"), "points"))
+
+    def test_places_that_are_missing_are_holes(self):
+        x, y, z = self.columns
+        hidden = (x > 0.9) & (x < 1.6) & (y > 1.3) | (y == self.y[2])
+        order = self.random.permutation(np.flatnonzero(~hidden))
+        stage = self.random.normal(0.0, 2e-4, 63)
+        for name, columns in (("exact", (x, y, z)), ("of a stage", (x + stage, y, z)), ("z first", (z, x, y))):
+            with self.subTest(name), self.assertWarnsRegex(UserWarning, rf"{hidden.sum()} of 63 places of the grid of 7 x 9 have no point: they are holes"):
+                found = self.read(*(one[order] for one in columns))
+            np.testing.assert_allclose(found.z, np.where(hidden.reshape(7, 9), np.nan, self.z), rtol=1e-15)
+            np.testing.assert_allclose((found.dx, found.dy), (0.5, 0.25), rtol=1e-3)
+        self.assertEqual(np.isinf(surface.gap(found).h).sum(), hidden.sum())
+
     def test_others_are_refused(self):
         x, y, z = self.columns
+        some = self.random.permutation(63)[:25]
         for name, columns in (
-            ("a part", (x[:40], y[:40], z[:40])), ("indices beside them", (np.round(x * 2), np.round(y * 4), x, y, z)),
+            ("a part", (x[some], y[some], z[some])), ("indices beside them", (np.round(x * 2), np.round(y * 4), x, y, z)),
             ("scattered", self.random.random((3, 200))), ("a line", (np.cumsum(self.random.random(200)), self.random.normal(size=200))),
         ):
-            with self.subTest(name), self.assertRaisesRegex(ValueError, "points.*each place of a grid once.*griddata"):
+            with self.subTest(name), self.assertRaisesRegex(ValueError, "points.*places of a grid, at least half of them and none twice.*griddata"):
                 self.read(*columns)
-        with self.assertRaisesRegex(ValueError, "and no size is given"):
+        with self.assertRaisesRegex(ValueError, "of 63 points of a grid, which say the size of an element: leave out dx and dy"):
             self.read(x, y, z, dx=0.5, dy=0.25)
-        with self.assertRaisesRegex(ValueError, "x is not evenly spaced"):
-            self.read(x + 0.004 * (x == self.x[4]), y, z)
+        with self.assertRaisesRegex(ValueError, "has x, y and z of 63 points"):
+            self.read(x + 0.02 * (x == self.x[4]), y, z)
 
     def test_a_list_is_no_map_of_an_instrument(self):
         x, y, z = (one[:40] for one in self.columns)
         points = SimpleNamespace(dim=2, is_uniform=True, is_periodic=False, unit=None, physical_sizes=(1.0, 1.0),
                                  heights=lambda: np.stack([x, y, z]))
-        with mock.patch.dict(sys.modules, {"SurfaceTopography": mock.Mock(read_topography=lambda *_, **__: points)}):
+        with instruments(lambda **_: points):
             with self.assertRaisesRegex(ValueError, "a.asc has x, y and z of 40 points"):
                 surface.read(self.path.with_name("a.asc"), dx=0.5, dy=0.25)
 
@@ -75,7 +96,7 @@ class Lists(unittest.TestCase):
             self.assertEqual(self.read(*self.random.normal(size=(3, 60)), dx=1, dy=1).z.shape, (60, 3))
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            self.read(*self.random.normal(size=(12, 60)), dx=1, dy=1)
+            self.read(*self.random.normal(size=(12, 60)), dx=5, dy=5)
 
 
 class Units(unittest.TestCase):
@@ -83,9 +104,19 @@ class Units(unittest.TestCase):
         nanometres = 5.0 * np.random.default_rng(1).normal(size=(64, 64))
         with self.assertWarnsRegex(UserWarning, "half of the slopes in x are steeper than 6[12]: heights and sizes of elements must be in one unit"):
             surface.heights(nanometres, size=(5.0, 5.0))
+        # A ground face of .02 um in um, beside elements of 20 um in mm.
+        with self.assertWarnsRegex(UserWarning, "half of the slopes in x are steeper than 0.9"):
+            surface.heights(0.004 * nanometres, size=(1.28, 1.28))
+        # An AFM's heights in m beside um.
+        with self.assertWarnsRegex(UserWarning, "nine of ten slopes in x are below 1.5e-07: heights and sizes of elements must be in one unit"):
+            surface.heights(1e-9 * nanometres, size=(5.0, 5.0))
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             surface.heights(nanometres, size=(5e3, 5e3))
+            # A flat of a twentieth of a wave length, with noise of .5 nm, in mm; and an exact plane.
+            x = np.linspace(-1.0, 1.0, 64)
+            surface.heights(25e-6 * x[None, :] ** 2 + 1e-7 * nanometres, size=(100.0, 100.0))
+            surface.heights(np.zeros((64, 64)), size=(100.0, 100.0))
             # A fifth of the elements is a fill value.
             surface.heights(np.where(np.arange(64) % 5 == 0, -9999.0, nanometres), size=(5e3, 5e3))
 

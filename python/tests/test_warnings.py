@@ -1,5 +1,6 @@
 """What a result warns of, and limits of time."""
 
+import pickle
 import unittest
 
 import numpy as np
@@ -28,6 +29,25 @@ class Warnings(unittest.TestCase):
 
     def test_contact_at_the_border(self) -> None:
         self.assertIn("BORDER", cn.solve(BALL, 0.1, 0.1, force=1e6, **STEEL).warnings)
+        for h, given, ends in ((BALL, {}, "x and y"), (BALL[:12], {}, "y"), (BALL[:, 20:], {}, "x"), (BALL, {"period": "x"}, "y")):
+            force = 3e3 if ends != "x and y" and not given else 1e5
+            message = cn.solve(h, 0.1, 0.1, force=force, **given, **STEEL).message
+            self.assertRegex(message, f"contact is at the ends of the grid in {ends}(\n|$)")
+
+    def test_strains_that_are_not_small(self) -> None:
+        # Hertz: the largest pressure is 2 a/(pi R) E*, with R = 25 and a^3 = 3/4 F R/E*.
+        e_star = 1.0 / (2.0 * (1.0 - 0.28) / (2.0 * 82000.0))
+        for part, is_told in ((0.19, False), (0.21, True)):
+            radius = 25.0 * np.pi * part / 2.0
+            x = (np.arange(64) - 31.5) * (radius / 25.0)
+            ball = (x[None, :] ** 2 + x[:, None] ** 2) / 50.0
+            result = cn.solve(ball, radius / 25.0, radius / 25.0, force=4.0 / 3.0 * e_star * radius**3 / 25.0, **STEEL)
+            self.assertAlmostEqual(result.max_pressure / e_star, part, delta=0.002)
+            self.assertEqual("STRAIN" in result.warnings, is_told)
+        self.assertRegex(result.message, r"the largest pressure is 0\.21 E\*, and linear elasticity is for small strains: .* in one system of units")
+        self.assertEqual(pickle.loads(pickle.dumps(result)).warnings, result.warnings)
+        # Moduli in GPa beside N and mm.
+        self.assertIn("STRAIN", cn.solve(BALL, 0.1, 0.1, force=100.0, shear_modulus=82.0, poisson_ratio=0.28).warnings)
 
     def test_a_limit_of_time(self) -> None:
         result = cn.solve(BALL, 0.1, 0.1, force=100.0, max_seconds=1e-9, tolerance=1e-14, method="NORM", **STEEL)

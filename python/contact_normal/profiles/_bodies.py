@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -18,13 +19,18 @@ if TYPE_CHECKING:
 _STEEPEST = 0.5
 
 # Lengths are in mm of one scale, a model's too. A gauge is 6 to 20 times as large as a rail is wide, where it is in the same unit, and so on.
-_GAUGE_OVER_RAIL = 3.5
+_GAUGE_OVER_RAIL = 3.5, 100.0
 _BACKS_OVER_WHEEL = (2.0, 80.0)
 _RADIUS_OVER_WHEEL = 0.8
 _HEIGHT_OVER_GAUGE = 0.002
+# Sides of a head are looked at so far below its top, in mm; a rail that leans to the field side by so much, in rad, is mirrored.
+_SIDES, _LEANS = (16.0, 32.0), 0.012
 # The origin of z is on the tread to this, in mm; and the back so far from the smallest y of a profile with a flange, and without.
 _TREAD = 20.0
 _BACK, _BACK_OF_TREAD = 40.0, 120.0
+
+# Flanges are measured so far below the tread, as a part of the radius: 10 mm. Wheelsets have a play of some mm in the track, and less than this part of the gauge.
+_FACE, _PLAY = 10.0 / 460.0, 0.05
 
 _UNITS = "lengths are in mm, those of profiles, gauges and radii; profiles.read takes scale=, as 25.4 for a file in inches"
 
@@ -96,8 +102,9 @@ class Track:
     def __post_init__(self) -> None:
         _refuse_unless("rail", self.rail)
         width = float(np.ptp(self.rail.y))
-        if not number("gauge", self.gauge) > _GAUGE_OVER_RAIL * width:
-            raise ValueError(f"gauge is {self.gauge}; it must be larger than {_GAUGE_OVER_RAIL} times the width of the rail, {width:.4g}: {_UNITS}")
+        least, most = _GAUGE_OVER_RAIL
+        if not least * width < number("gauge", self.gauge) < most * width:
+            raise ValueError(f"gauge is {self.gauge}; it must be {least} to {most:g} times as large as the rail is wide, {width:.4g}: {_UNITS}")
         if not abs(number("inclination", self.inclination)) <= _STEEPEST:
             raise ValueError(f"inclination is {self.inclination}; it is an angle in rad of at most {_STEEPEST}, as 1/40")
         if not number("gauge_height", self.gauge_height) > 0.0:
@@ -105,6 +112,15 @@ class Track:
         if self.gauge_height < _HEIGHT_OVER_GAUGE * self.gauge:
             raise ValueError(f"gauge_height is {self.gauge_height}; beside a gauge of {self.gauge} it must be at least {_HEIGHT_OVER_GAUGE * self.gauge:.2g}, "
                              f"as 14 mm: {_UNITS}")
+
+        drawn = _lean(self.rail)
+        lean = drawn + self.inclination
+        if lean < -_LEANS:
+            warnings.warn(f"the rail leans to the field side by {-lean:.2g} rad: one that is inclined leans to the track. mirror=True turns a profile that is drawn "
+                          "from the other side; inclination is positive", stacklevel=3)
+        elif min(drawn, self.inclination) > _LEANS:
+            warnings.warn(f"the profile of the rail leans to the track by {drawn:.2g} rad, and inclination={self.inclination:.2g} is added: leave it out if the profile "
+                          "has its inclination", stacklevel=3)
 
     def placed(self) -> Profile:
         """The right rail in its place: its top at z = 0, its gauge point at half of the gauge."""
@@ -118,6 +134,18 @@ class Track:
         k = below[-1]
         part = (rail.z[k] - self.gauge_height) / (rail.z[k] - rail.z[k + 1])
         return rail.moved(y=0.5 * self.gauge - (rail.y[k] + part * (rail.y[k + 1] - rail.y[k])))
+
+
+def _lean(rail: Profile) -> float:
+    """By how much a rail leans to the track, in rad, if both sides of its head are there: how the middle of the head moves out with the depth."""
+    top = int(np.argmin(rail.z))
+    sides = (rail.y[: top + 1][::-1], rail.z[: top + 1][::-1]), (rail.y[top:], rail.z[top:])
+    deepest = min(float(z.max()) for _, z in sides) - float(rail.z[top])
+    depths = np.linspace(_SIDES[0], min(deepest, _SIDES[1]), 20)
+    if deepest < sum(_SIDES) / 2.0 or any((np.diff(z) < 0.0).any() for _, z in sides):
+        return 0.0
+    inner, outer = (np.interp(depths + rail.z[top], z, y) for y, z in sides)
+    return float(np.polyfit(depths, 0.5 * (inner + outer), 1)[0])
 
 
 @dataclass(frozen=True)
@@ -166,6 +194,14 @@ class Wheelset:
         if not end - farthest <= at <= end + _BACK:
             raise ValueError(f"flange_back_at is {at:g}; it is the y of the back in the profile, whose smallest y is {end:.4g}: {_UNITS}")
 
+    def across_flanges(self) -> float | None:
+        """Distance of the outer faces of both flanges, a little below the tread, in mm; None without flanges."""
+        tip = int(np.argmax(self.wheel.z))
+        behind = np.flatnonzero(self.wheel.z[tip:] < _FACE * self.radius)
+        if not self.wheel.has_flange() or not len(behind):
+            return None
+        return 2.0 * (self.origin + float(self.wheel.y[tip + behind[0]]))
+
     @property
     def origin(self) -> float:
         """Distance of the profile's origin from the middle of the axle, in mm."""
@@ -175,6 +211,18 @@ class Wheelset:
     def tread(self) -> Curve:
         """The right wheel in its place: y from the middle of the axle, and z is the radius."""
         return self.wheel.moved(y=self.origin, z=self.radius).curve()
+
+
+def warn_of_play(track: Track, wheelset: Wheelset, stacklevel: int) -> None:
+    """Warns of a wheelset that does not fit between the rails, or has room for another one."""
+    across = wheelset.across_flanges()
+    if across is None:
+        return
+    play = track.gauge - across
+    if not 0.0 <= play <= _PLAY * track.gauge:
+        told = f"a play of {play:.3g} mm" if play > 0.0 else f"{-play:.3g} mm too little room"
+        warnings.warn(f"the wheelset, {across:.5g} mm across its flanges, has {told} in a gauge of {track.gauge:g}: look at gauge, flange_back={wheelset.flange_back:g} and "
+                      "flange_back_at", stacklevel=stacklevel + 1)
 
 
 def _refuse_unless(kind: str, profile: Profile) -> None:

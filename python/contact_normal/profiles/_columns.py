@@ -16,6 +16,8 @@ _BEGINS = re.compile(r"\s*(?:[-+]?[.,]?\d|\*|[-+]?(?:nan|inf)\b)", re.IGNORECASE
 # These have letters that no number has: titles.
 _LETTERS = re.compile(r"[^\W\d_]")
 _NO_TITLE = re.compile(r"nan|inf|(?<=[\d.])[eEdD](?=[-+\d])", re.IGNORECASE)
+# Marks around numbers.
+_BRACKETS = str.maketrans("\"()[]", "     ")
 # So many lines of numbers, counts and dates, may stand before and behind the points.
 _OTHERS = 2
 
@@ -31,7 +33,7 @@ def columns_of(text: str, columns: tuple[int, int], path: str | os.PathLike[str]
     Titles, counts and dates stand before all points, or behind them. Lines of numbers that lack one of the columns are refused among the points, and,
     where there are several, everywhere: they are points that cannot be read.
     """
-    lines = [line for line in text.splitlines() if _BEGINS.match(line)]
+    lines = [line for line in text.translate(_BRACKETS).splitlines() if _BEGINS.match(line)]
     rows: list[list[float]] = []
     commas, width, others, among = has_decimal_commas(lines), 0, list[str](), ""
     behind = ""

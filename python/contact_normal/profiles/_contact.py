@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._arguments import number
-from ._bodies import Position, Track, Wheelset
+from . import _sampling
+from ._bodies import Position, Track, Wheelset, warn_of_play
 from ._patch import ContactPoint, Pair
 
 if TYPE_CHECKING:
@@ -106,6 +107,7 @@ def contact_points(
     if not number("within", within) >= 0.0:
         raise ValueError(f"within is {within}; it must not be negative")
     pair = _pair(track, wheelset, position, side)
+    warn_of_play(track, wheelset, stacklevel=2)
     minima = _minima(pair)
     if not minima:
         raise ValueError(f"the {side} wheel is nowhere above its rail: position.y is {position.y}, the gauge {track.gauge}; {_BESIDE}")
@@ -120,6 +122,7 @@ def contact_points(
     for k, (clearance, t) in enumerate(minima):
         if clearance - minima[0][0] <= within:
             others = tuple(places[:k] + places[k + 1 :])
+            _sampling.warn_of_place((_sampling.Body("rail", pair.rail, float(on_rail[k])), _sampling.Body("wheel", pair.tread, t)), stacklevel=2)
             points.append(ContactPoint(pair, float(x[k]), float(on_rail[k]), t, others, clearance))
     return points
 

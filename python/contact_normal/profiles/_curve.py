@@ -38,10 +38,12 @@ class Curve:
     ----------
     t, y, z : ndarray, (n,)
         The points.
+    open : ndarray, (m, n), or None
+        How far off the points may lie along the normal, where they were smoothed: what smoothing has removed, and samples of what errors leave.
     """
 
-    def __init__(self, y: Doubles, z: Doubles) -> None:
-        self.y, self.z = y, z
+    def __init__(self, y: Doubles, z: Doubles, is_open: Doubles | None = None) -> None:
+        self.y, self.z, self.open = y, z, is_open
         self.t = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(y), np.diff(z)))])
         self._bends = second_derivatives(self.t, y), second_derivatives(self.t, z)
 

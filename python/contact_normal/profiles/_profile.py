@@ -13,6 +13,7 @@ import numpy as np
 from .._arguments import number, real
 from .._short import Short
 from ._curve import Curve, growing
+from ._digits import SAMPLES, left_open
 from ._smoothing import smoothing_splines
 
 if TYPE_CHECKING:
@@ -29,8 +30,8 @@ _FAR = 500.0
 # Curvatures of wheels and rails are up to 0.1 per mm. 1 um of noise on points 0.1 mm apart changes them by 0.3 from point to point.
 _ROUGH = 0.1
 
-# A flange is higher than that above the tread, in mm.
-_FLANGE = 12.0
+# A flange is higher than that above the tread, in mm, and lower than the second number.
+_FLANGE, _HIGHEST = 12.0, 45.0
 
 # From a point to the next one no profile goes back by this part of its width.
 _BACKWARDS = 0.3
@@ -69,6 +70,8 @@ class Profile(Short):
     z: Doubles
     kind: str
     name: str = ""
+    # How far off it may lie along its normal, if it was smoothed: what `left_open` returns.
+    _open: Doubles | None = dataclasses.field(default=None, init=False)
 
     def __post_init__(self) -> None:
         y, z = real("y", self.y), real("z", self.z)
@@ -96,10 +99,11 @@ class Profile(Short):
     def _check_orientation(self) -> None:
         """Refuses a profile that is upside down, reversed or mirrored: contact would be somewhere, and wrong."""
         if self.y[0] > self.y[-1]:
-            raise ValueError(f"{self._title()} begins at the larger y; its points must be in the order of growing y: reversed()")
+            raise ValueError(f"{self._title()} begins at the larger y; its points must be in the order of growing y: y[::-1] and z[::-1]")
         k = int(np.argmin(np.diff(self.y)))
         if self.y[k] - self.y[k + 1] > _BACKWARDS * (self.y[-1] - self.y[0]):
-            raise ValueError(f"{self._title()} goes back from y = {self.y[k]:.6g} to y = {self.y[k + 1]:.6g}: are these two profiles? Give one of them")
+            raise ValueError(f"{self._title()} goes back from y = {self.y[k]:.6g} to y = {self.y[k + 1]:.6g}: are these two profiles? Give one of "
+                             "them; or sort the points")
         above, below = np.median(self.z) - self.z.min(), self.z.max() - np.median(self.z)
         if self.kind == "wheel":
             # A tread alone, without a flange, may have a chamfer as its lowest place or its highest one; its radius grows to the flange.
@@ -111,6 +115,8 @@ class Profile(Short):
                 return
             if above > below:
                 raise ValueError(f"{self._title()} has its flange at the smallest z; z must grow downwards: upside_down=True")
+            if below > _HIGHEST:
+                raise ValueError(f"{self._title()} has a flange that is {below:.3g} mm high: are these diameters? z is a radius, or a height, in mm")
             if self.y[np.argmax(self.z)] > 0.5 * (self.y[0] + self.y[-1]):
                 raise ValueError(f"{self._title()} has its flange at large y; y must grow to the field side: mirror=True")
         elif above > below or np.argmin(self.z) in (0, len(self.z) - 1):
@@ -118,12 +124,18 @@ class Profile(Short):
 
     def moved(self, y: float = 0.0, z: float = 0.0) -> Profile:
         """Moved by y and z, in mm."""
-        return dataclasses.replace(self, y=self.y + number("y", y), z=self.z + number("z", z))
+        return self._with(self.y + number("y", y), self.z + number("z", z), self._open)
 
     def rotated(self, angle: float) -> Profile:
         """Rotated about the origin by an angle in rad. A rail of an inclination of 1:40 is rotated by 1/40: its top moves to the track."""
         c, s = np.cos(number("angle", angle)), np.sin(angle)
-        return dataclasses.replace(self, y=c * self.y + s * self.z, z=c * self.z - s * self.y)
+        return self._with(c * self.y + s * self.z, c * self.z - s * self.y, self._open)
+
+    def _with(self, y: Doubles, z: Doubles, is_open: Doubles | None) -> Profile:
+        """This profile with other points, whose places along the normal are open by `is_open`."""
+        made = dataclasses.replace(self, y=y, z=z)
+        object.__setattr__(made, "_open", is_open)
+        return made
 
     def smoothed(self, wave_length: float) -> Profile:
         """Without waves shorter than a length in mm, for measured profiles, whose noise would become contact.
@@ -137,9 +149,12 @@ class Profile(Short):
         if not length < 0.5 * float(np.ptp(self.y)):
             raise ValueError(f"wave_length is {length}; it must be less than half of the width of {self._title()}, {np.ptp(self.y):.4g} mm")
         chosen = self._usable()
-        y, z = self.y.copy(), self.z.copy()
-        y[chosen], z[chosen] = smoothing_splines(np.stack([y[chosen], z[chosen]]), length)
-        return dataclasses.replace(self, y=y, z=z)
+        points = np.stack([self.y, self.z])
+        measured = points[:, chosen]
+        points[:, chosen] = smoothing_splines(measured, measured, length)
+        is_open = np.zeros((1 + SAMPLES, len(self.y))) if self._open is None else self._open.copy()
+        is_open[:, chosen] = left_open(is_open[:, chosen], measured, points[:, chosen], length)
+        return self._with(points[0], points[1], is_open)
 
     def thinned(self, step: float) -> Profile:
         """With fewer points: the mean of each `step` in mm along the profile, for scans whose points are closer to each other than their noise.
@@ -160,7 +175,8 @@ class Profile(Short):
         y, z = (np.add.reduceat(values, begins) / counts for values in (self.y, self.z))
         if len(y) < 4:
             raise ValueError(f"step is {length}; it leaves {len(y)} points of {self._title()}, at least 4 are needed: a profile is in mm")
-        return dataclasses.replace(self, y=y, z=z)
+        is_open = None if self._open is None else np.add.reduceat(self._open, begins, axis=1) / counts
+        return self._with(y, z, is_open)
 
     def _usable(self) -> Any:
         """Indices of the points that a curve goes through: from the tread or the top to the first steep face on either side."""
@@ -226,7 +242,7 @@ class Profile(Short):
         if (rough := self._roughness(chosen)) > _ROUGH:
             warnings.warn(f"the curvature of {self._title()} changes by {rough:.2g} per mm from point to point: noise of the points, which becomes contact. "
                           "smoothed(wave_length) removes it", stacklevel=3)
-        return Curve(self.y[chosen], self.z[chosen])
+        return Curve(self.y[chosen], self.z[chosen], None if self._open is None else self._open[:, chosen])
 
     def _roughness(self, chosen: Any) -> float:
         """The median change of the curvature from point to point: that of noise, since a profile's own changes over many points."""

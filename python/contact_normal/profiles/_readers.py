@@ -5,14 +5,15 @@ Each reader was written from the public description of its format, and from the 
 
 from __future__ import annotations
 
-import codecs
 import os
+import re
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from .._arguments import integer, number
+from .._texts import text_of
 from ._columns import columns_of
 from ._profile import Profile
 from ._simpack import points_of
@@ -36,8 +37,9 @@ def read(
     Parameters
     ----------
     path : str or path
-        `.prr` and `.prw` are read as SIMPACK's rails and wheels; `.ban` and `.whl` as MiniProf's, which are columns of numbers below lines
-        `NAME=value`; all other files as columns of numbers. Lines that do not begin with a number are skipped; others among the points must be points.
+        `.prr` and `.prw` are read as SIMPACK's rails and wheels; `.ban` and `.whl` as MiniProf's, which are columns of numbers below lines `NAME=value`, of
+        which `ColumnDef=` names X and Y; all other files as columns of numbers. Lines that do not begin with a number are skipped; others among the
+        points must be points.
     kind : {"wheel", "rail"}, optional
         What it is; by default what the end of the file's name says.
     columns : (int, int)
@@ -65,12 +67,15 @@ def read(
         raise ValueError(f'{path}: kind is not known; give kind="wheel" or kind="rail"')
     if not 0.0 < number("scale", scale) < float("inf"):
         raise ValueError(f"scale is {scale}; it must be positive, the millimetres in the unit of the file")
-    text, hint = _text(path), ""
+    text, hint = text_of(path), ""
     if end in (".prr", ".prw"):
         points, in_mm = points_of(text, kind, path)
         scale = scale * in_mm
     else:
-        points, hint = _table(text, _checked(columns), path)
+        chosen = _checked(columns)
+        if end in _UPSIDE_DOWN and chosen == (0, 1):
+            chosen = _defined(text, chosen)
+        points, hint = _table(text, chosen, path)
     y, z = points.T * scale
     if mirror:
         y = -y
@@ -84,14 +89,6 @@ def read(
         raise ValueError(f"{error}{hint}") from None
 
 
-def _text(path: str | os.PathLike[str]) -> str:
-    """The text of a file, in the encoding that its first bytes name; else any byte is a character."""
-    data = Path(path).read_bytes()
-    marks = {codecs.BOM_UTF8: "utf-8-sig", codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
-    named = [encoding for mark, encoding in marks.items() if data.startswith(mark)]
-    return data.decode(named[0] if named else "latin-1", errors="replace")
-
-
 def _checked(columns: Any) -> tuple[int, int]:
     """Two columns."""
     if isinstance(columns, str) or np.ndim(columns) != 1 or len(columns) != 2:
@@ -100,6 +97,13 @@ def _checked(columns: Any) -> tuple[int, int]:
     if first == second or min(first, second) < 0:
         raise ValueError(f"columns is {columns!r}; it must be two different numbers, those of y and z, counted from 0")
     return first, second
+
+
+def _defined(text: str, else_: tuple[int, int]) -> tuple[int, int]:
+    """The columns X and Y that MiniProf's header names: `ColumnDef=X,Y,...`."""
+    said = re.search(r"^\s*ColumnDef\s*=\s*(.*?)\s*$", text, re.MULTILINE | re.IGNORECASE)
+    names = [name.strip(' "*').upper() for name in said[1].split(",")] if said else []
+    return (names.index("X"), names.index("Y")) if {"X", "Y"} <= set(names) else else_
 
 
 def _table(text: str, columns: tuple[int, int], path: str | os.PathLike[str]) -> tuple[np.ndarray, str]:

@@ -23,6 +23,13 @@ _TOLD = 0.05
 # Fewer points than this within the contact are few; more are noisy where they leave pressures open.
 _FEW = 8
 
+# A warning tells of a contact point that is uncertain by more than the first, in mm, without a number by more than the second; slopes beside it are looked
+# at so far away.
+_MOVED, _MANY, _BESIDE = 1.0, 10.0, 1.0
+
+# So many points on each side of it.
+_AROUND = 24
+
 
 @dataclass(frozen=True)
 class Body:
@@ -34,11 +41,12 @@ class Body:
 
 
 def warn(bodies: tuple[Body, ...], y: Doubles, result: Result, stacklevel: int) -> None:
-    """Warns if pressures depend on which points of the profiles are taken.
+    """Warns if pressures depend on which points of the profiles are taken, or on what smoothing has done.
 
     Without every other point a curve differs by some e2, and with each fourth one by e4. Between points that are dense enough e4 is several times e2, and
     the error of all points is some e2^2/e4; errors that are noise stay as they are. They are looked at as pressures: a wave cos(k y) of the
     undeformed distance needs E* k/2 of its height. E* is that of F = 4/3 E* a d, Hertz's force of an approach d and a contact of the area pi a^2.
+    Points that were smoothed tell no noise: their curve says what is left of it, and what of the form was removed.
 
     Parameters
     ----------
@@ -51,26 +59,91 @@ def warn(bodies: tuple[Body, ...], y: Doubles, result: Result, stacklevel: int) 
     step = y[1] - y[0] if len(y) > 1 else 0.0
     along = np.linspace(rows[0] - step, rows[-1] + step, _PLACES)
     e_star = 0.75 * result.force / (result.approach * np.sqrt(result.contact.sum() * result.dx * result.dy / np.pi))
-    parts = [_open_pressure(body, along, e_star) / result.max_pressure for body in bodies]
-    part = float(np.hypot.reduce(parts))
+    parts = np.array([_open_pressures(body, along, e_star) for body in bodies]) / result.max_pressure
+    part = float(np.linalg.norm(parts))
     if part > _TOLD:
-        body = bodies[int(np.argmax(parts))]
+        which, cause = np.unravel_index(np.argmax(parts), parts.shape)
+        body = bodies[which]
         inside = int(((body.curve.t > body.t + along[0]) & (body.curve.t < body.t + along[-1])).sum())
         width = f"The {body.name} has {inside} of its points across the contact, which is {along[-1] - along[0]:.2g} mm wide"
-        cure = "give more points" if inside < _FEW else "noise, or few decimals, which smoothed(wave_length) removes, with 2 to 5 mm in most cases"
         amount = f"{part:.0%}" if part < 1.0 else "100 % or more"
-        warnings.warn(f"pressures are uncertain by some {amount}: so much they depend on which points of the profiles are taken. {width}: {cure}",
-                      stacklevel=stacklevel + 1)
+        warnings.warn(f"pressures are uncertain by some {amount}: {_CAUSES[cause]}. {width}: {_cure(body, inside, int(cause))}", stacklevel=stacklevel + 1)
 
 
-def _open_pressure(body: Body, along: Doubles, e_star: float) -> float:
-    """The root mean square of the pressures that the choice of points leaves open."""
+_CAUSES = ("so much they depend on which points of the profiles are taken", "so much is left of noise, or of the few decimals of the points",
+           "so much form smoothing has removed")
+
+
+def _cure(body: Body, inside: int, cause: int) -> str:
+    """What to do."""
+    if cause == 2:
+        return "use a shorter wave_length"
+    if inside < _FEW:
+        return "give more points"
+    if cause == 1 or body.curve.open is not None:
+        return "a longer wave_length of smoothed(...) removes more"
+    return "noise, or few decimals, which smoothed(wave_length) removes, with 2 to 5 mm in most cases"
+
+
+def _open_pressures(body: Body, along: Doubles, e_star: float) -> tuple[float, float, float]:
+    """The root mean squares of the pressures that are open by the choice of points, by errors of points that were smoothed, and by lost form."""
 
     def of_every(every: int) -> float:
         return sum(_pressure(_difference(body, along, start, every), along, e_star) for start in range(every)) / every
 
     second = of_every(2)
-    return second * min(1.0, second / of_every(4)) if second > 0.0 else 0.0
+    by_choice = second * min(1.0, second / of_every(4)) if second > 0.0 else 0.0
+    if body.curve.open is None:
+        return by_choice, 0.0, 0.0
+    lost, *samples = (_pressure(np.interp(body.t + along, body.curve.t, off), along, e_star) for off in body.curve.open)
+    return by_choice, float(np.sqrt(np.mean(np.square(samples)))), lost
+
+
+def warn_of_place(bodies: tuple[Body, Body], stacklevel: int) -> None:
+    """Warns if the place where a rail and a wheel touch depends on which points of their profiles are taken, or on what smoothing has left of noise.
+
+    There both have one slope, so slopes that are open by s move it by s over the difference of the curvatures.
+    """
+    of_rail, of_wheel = ((_slope(body.curve, body.t + _BESIDE) - _slope(body.curve, body.t - _BESIDE)) / (2.0 * _BESIDE) for body in bodies)
+    parts = [_open_slope(body) for body in bodies]
+    moved = float(np.linalg.norm(parts)) / max(of_rail - of_wheel, 1e-9)
+    if moved > _MOVED:
+        body = bodies[int(np.argmax(parts))]
+        k = min(max(int(np.searchsorted(body.curve.t, body.t)), 1), len(body.curve.t) - 1)
+        amount = f"{moved:.2g} mm" if moved < _MANY else f"{_MANY:g} mm or more"
+        warnings.warn(f"the contact point is uncertain by some {amount} along the profiles: so much it depends on which points of the {body.name} are taken, "
+                      f"which are {body.curve.t[k] - body.curve.t[k - 1]:.2g} mm apart there: give more points, or, where they are noisy, "
+                      "smoothed(wave_length)", stacklevel=stacklevel + 1)
+
+
+def _slope(curve: Curve, t: float) -> float:
+    """The angle of a curve, in rad."""
+    _, _, dy, dz = curve.at(np.clip(t, curve.t[0], curve.t[-1]))
+    return float(np.arctan2(dz, dy))
+
+
+def _open_slope(body: Body) -> float:
+    """The angle at the contact point that the choice of points leaves open, or what is left of noise."""
+    curve, at_point = body.curve, int(np.searchsorted(body.curve.t, body.t))
+    # Far points do not bend a spline.
+    first, last = max(0, at_point - _AROUND), min(at_point + _AROUND, len(curve.y) - 1)
+
+    def of_every(every: int) -> float:
+        found = []
+        for start in range(every):
+            chosen = np.unique(np.concatenate([[first], np.arange(first + start, last, every), [last]]))
+            coarse = Curve(curve.y[chosen], curve.z[chosen])
+            at = float(coarse.where(float(curve.at(body.t)[0]), near=float(np.interp(body.t, curve.t[chosen], coarse.t))))
+            found.append(0.0 if np.isnan(at) else _slope(coarse, at) - _slope(curve, body.t))
+        return float(np.sqrt(np.mean(np.square(found))))
+
+    second = of_every(2)
+    by_choice = second * min(1.0, second / of_every(4)) if second > 0.0 else 0.0
+    if curve.open is None:
+        return by_choice
+    ends = np.clip([body.t - _BESIDE, body.t + _BESIDE], curve.t[0], curve.t[-1])
+    slopes = [float(np.diff(np.interp(ends, curve.t, off))[0]) / float(ends[1] - ends[0]) for off in curve.open[1:]]
+    return float(np.hypot(by_choice, np.sqrt(np.mean(np.square(slopes)))))
 
 
 def _difference(body: Body, along: Doubles, start: int, every: int) -> Doubles:

@@ -12,15 +12,16 @@ if TYPE_CHECKING:
     from .._arguments import Doubles
 
 
-def smoothing_splines(places: Doubles, wave_length: float) -> Doubles:
-    """The points of a curve without waves that are shorter than a length: each coordinate is smoothed over the length of the polygon.
-
-    Coordinates alone, z over y, would bend a steep face, whose slope changes fast.
+def smoothing_splines(rows: Doubles, places: Doubles, wave_length: float) -> Doubles:
+    """Rows of values at the points of a curve without waves that are shorter than a length. For points themselves each coordinate is a row: coordinates
+    alone, z over y, would bend a steep face, whose slope changes fast.
 
     Parameters
     ----------
+    rows : ndarray, (m, n)
+        Values at the points, in their order.
     places : ndarray, (2, n)
-        The points, in their order; none of them twice.
+        The points; none of them twice.
     """
     d = np.hypot(*np.diff(places))
     # f = z - c W^-1 Q g with (R + c Q' W^-1 Q) g = Q' z, where g = f'' = R^-1 Q' f at the inner points, and W holds the length of each.
@@ -31,7 +32,7 @@ def smoothing_splines(places: Doubles, wave_length: float) -> Doubles:
     diagonal = (d[:-1] + d[1:]) / 3.0 + c * (before**2 * w[:-2] + at**2 * w[1:-1] + after**2 * w[2:])
     first = d[1:-1] / 6.0 + c * (at[:-1] * before[1:] * w[1:-2] + after[:-1] * at[1:] * w[2:-1])
     second = c * after[:-2] * before[2:] * w[2:-2]
-    smooth = places.copy()
+    smooth = rows.copy()
     for values in smooth:
         bend = solve(diagonal, first, second, before * values[:-2] + at * values[1:-1] + after * values[2:])
         spread = np.zeros(len(values))

@@ -1,4 +1,4 @@
-"""Lists of points, x y z a line, that are all places of a grid: the grid."""
+"""Lists of points, x y z a line, that are places of a grid: the grid."""
 
 from __future__ import annotations
 
@@ -8,13 +8,19 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ._not_a_map import levels, rises_evenly
+from ._not_a_map import EVEN, levels, rises_evenly
 
 if TYPE_CHECKING:
     from .._arguments import Doubles
 
-# Lists have so few columns: x y z, colours, intensities.
-_COLUMNS = 8
+# Lists have so few columns: x y z, colours, intensities; and so many lines at least.
+_COLUMNS, _LINES = 8, 6
+
+# At least this part of the places of a grid has a point.
+_LEAST = 0.5
+
+# A grid has at most so many times as many rows as are named.
+_WIDEST = 2.0
 
 
 class Lattice(NamedTuple):
@@ -26,16 +32,17 @@ class Lattice(NamedTuple):
 
 
 def lattice_of(values: Any) -> Lattice | None:
-    """The grid of a list of points in any order, each place of the grid once; None if it is none, or if several columns may be coordinates.
+    """The grid of a list of points in any order, no place of the grid twice; None if it is none, or if several columns may be coordinates.
 
-    Of two columns that name all places the first one is x. Heights are in the column behind them, or in the only other one; columns that count are
-    left out, others with a warning.
+    Of two columns that name places the first one is x. Heights are in the column behind them, or in the only other one; columns that count are
+    left out, others with a warning. Places that are missing, up to half of them, are NaN, with a warning.
     """
     lines, columns = values.shape
-    if not (3 <= columns <= _COLUMNS and lines >= 6):
+    if not (3 <= columns <= _COLUMNS and lines >= _LINES):
         return None
-    places = {k: levels(values[:, k]) for k in range(columns)}
-    pairs = [(a, b) for a, b in combinations(range(columns), 2) if _is_grid(places[a], places[b])]
+    places = {k: rungs(values[:, k]) for k in range(columns)}
+    parts = {(a, b): _part(places[a], places[b]) for a, b in combinations(range(columns), 2)}
+    pairs = [pair for pair, part in parts.items() if part == 1.0] or [pair for pair, part in parts.items() if part >= _LEAST]
     # A tilted plane over x and y is a coordinate, too.
     if columns == 3 and (0, 1) in pairs:
         pairs = [(0, 1)]
@@ -48,15 +55,32 @@ def lattice_of(values: Any) -> Lattice | None:
     if len(others) > 1:
         warnings.warn(f"of {columns} columns, numbers {a + 1} and {b + 1} are read as x and y, and number {others[0] + 1} as the heights", stacklevel=4)
     (x, ix), (y, iy) = places[a], places[b]
-    z = np.empty((len(y), len(x)))
+    z = np.full((len(y), len(x)), np.nan)
     z[iy, ix] = values[:, others[0]]
+    if parts[a, b] < 1.0:
+        warnings.warn(f"{z.size - lines} of {z.size} places of the grid of {len(y)} x {len(x)} have no point: they are holes, where no surface is",
+                      stacklevel=4)
     return Lattice(z, x, y)
 
 
-def _is_grid(one: tuple[Doubles, Any], other: tuple[Doubles, Any]) -> bool:
-    """Whether two columns, as levels and the level of each line, name each place of a grid once."""
+def rungs(values: Any) -> tuple[Doubles, Any]:
+    """The evenly spaced places that a column names, with those between that no line names, and the place of each line; none if they are not even."""
+    found, which = levels(values)
+    if len(found) < 2:
+        return np.zeros(0), which
+    steps = np.diff(found)
+    count = np.concatenate([[0], np.cumsum(np.round(steps / steps.min()))]).astype(int)
+    if count[-1] > _WIDEST * len(found):
+        return np.zeros(0), which
+    places = np.linspace(found[0], found[-1], count[-1] + 1)
+    if np.abs(places[count] - found).max() > EVEN * (places[1] - places[0]):
+        return np.zeros(0), which
+    return places, count[which]
+
+
+def _part(one: tuple[Doubles, Any], other: tuple[Doubles, Any]) -> float:
+    """The part of the places of a grid that two columns name; 0 where they name one twice, or no grid."""
     (x, ix), (y, iy) = one, other
-    if min(len(x), len(y)) < 2 or len(x) * len(y) != len(ix):
-        return False
-    is_even = all(len(places) < 4 or rises_evenly(places) for places in (x, y))
-    return bool(is_even and len(np.unique(iy * len(x) + ix)) == len(ix))
+    if min(len(x), len(y)) < 2 or len(np.unique(iy * len(x) + ix)) < len(ix):
+        return 0.0
+    return float(len(ix) / (len(x) * len(y)))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 # Steps are even if they differ by this part. Coordinates of a stage have noise.
-_EVEN = 0.01
+EVEN = 0.01
 
 # Lists have few columns and many lines.
 _COLUMNS, _MANY, _LINES = 4, 8, 8
@@ -16,24 +16,25 @@ _COLUMNS, _MANY, _LINES = 4, 8, 8
 # Maps of few columns are strips; of so many times as many lines there are hardly any.
 _LONG = 25
 
+_PLACES = "places of a grid, at least half of them and none twice, and no size is given"
 _INSTEAD = ("others must be interpolated on a grid (scipy.interpolate.griddata) and given to surface.heights. If this is a strip of heights, give "
-            "numpy.loadtxt(file) to surface.heights")
+            "its array to surface.heights")
 
 
 def why(values: Any) -> str | None:
     """Why these numbers are no map, if they are none."""
     lines, columns = values.shape
     if _are_points(values):
-        return (f"has x, y and z of {lines} points, which are read where they are each place of a grid once, and no size is given; {_INSTEAD}")
+        return (f"has x, y and z of {lines} points, which are read where they are {_PLACES}; {_INSTEAD}")
     if 1 < columns <= _MANY and lines >= max(_LINES, 2 * columns + 1):
         found = [k for k in range(columns) if rises_evenly(values[:, k]) or _has_even_levels(values[:, k])]
         # Strips of heights of few digits have even levels, too: of many columns two must be coordinates.
         if len(found) > (columns > _COLUMNS):
             return (f"has {lines} lines of {columns} numbers, of which number {found[0] + 1} is a coordinate or a count: a list of points. Lists are read where "
-                    f"their points are each place of a grid once, and no size is given; {_INSTEAD}")
+                    f"their points are {_PLACES}; {_INSTEAD}")
     if 1 < columns <= _COLUMNS and lines >= _LONG * columns:
-        return (f"has {lines} lines of {columns} numbers: a list of points, it seems. Lists are read where their points are each place of a grid once, and no "
-                f"size is given; {_INSTEAD}")
+        return (f"has {lines} lines of {columns} numbers: a list of points, it seems. Lists are read where their points are {_PLACES}; "
+                f" {_INSTEAD}")
     if min(lines, columns) > _COLUMNS:
         for name, rows in (("line", values), ("column", values.T)):
             if rises_evenly(rows[0, 1:]) and not any(map(rises_evenly, rows[1:, 1:])):
@@ -58,7 +59,7 @@ def rises_evenly(values: Any) -> bool:
     """Whether steps are all the same, and not 0."""
     steps = np.diff(values)
     mean = steps.mean() if len(steps) > 2 else 0.0
-    return bool(mean != 0.0 and (np.abs(steps - mean) <= _EVEN * abs(mean)).all())
+    return bool(mean != 0.0 and (np.abs(steps - mean) <= EVEN * abs(mean)).all())
 
 
 def levels(values: Any) -> tuple[Any, Any]:
@@ -79,7 +80,7 @@ def _has_even_levels(values: Any) -> bool:
     places, which = levels(values)
     if not (len(places) > 2 and len(values) >= 2 * len(places) and rises_evenly(places)):
         return False
-    return bool(np.abs(values - places[which]).max() <= _EVEN * np.diff(places).mean())
+    return bool(np.abs(values - places[which]).max() <= EVEN * np.diff(places).mean())
 
 
 def _are_points(values: Any) -> bool:

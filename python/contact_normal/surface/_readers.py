@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import os
 import warnings
 import zipfile
@@ -11,12 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from .._decimal_commas import has_decimal_commas
+from .._texts import is_text
 from .._units import same_length
 from ._heights import Heights, heights
 from ._lattice import Lattice, lattice_of
-from ._not_a_map import doubt, has_cut_decimals
+from ._instruments import chosen, of_instrument
+from ._not_a_map import doubt
 from ._not_a_map import why as why_no_map
+from ._texts import of_text
 
 
 def from_xarray(array: Any, **given: Any) -> Heights:
@@ -26,7 +27,10 @@ def from_xarray(array: Any, **given: Any) -> Heights:
     the heights have it; units that differ are refused. With dx or size the coordinates are not read.
     """
     if len(array.dims) != 2:
-        raise ValueError(f"the array has the dimensions {tuple(array.dims)}; heights have two")
+        kept = [name for name in array.dims if array.sizes[name] > 1]
+        if len(kept) != 2:
+            raise ValueError(f"the array has the dimensions {tuple(array.dims)}; heights have two: choose one map by isel")
+        array = array.squeeze([name for name in array.dims if name not in kept], drop=True)
     y, x = array.dims
     if str(y).lower().startswith("x") and not str(x).lower().startswith("x"):
         x, y = y, x
@@ -78,8 +82,9 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     Parameters
     ----------
     path : str or path
-        `.npy`; `.npz`; `.txt`, `.dat` and `.csv` as numbers, a row of the grid a line, or x, y and z of each place of a grid, in any order; `.nc` as NetCDF, by the package xarray; all others, as `.x3p`, `.sur`, `.opd` and
-        `.gwy`, by the package SurfaceTopography. Heights and coordinates must be in one unit of length.
+        `.npy`; `.npz`; `.txt`, `.dat` and `.csv` as numbers, a row of the grid a line, or x, y and z of places of a grid, in any order; `.nc` as NetCDF,
+        by the package xarray; all others, as `.x3p`, `.sur`, `.opd`, `.gwy` and `.mat`, by the package SurfaceTopography. The rows of a matrix of `.mat`
+        are those of y. Heights and coordinates must be in one unit of length.
     variable : str, optional
         Which array of a file that has several.
     **given
@@ -94,27 +99,27 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     if Path(path).is_dir():
         raise IsADirectoryError(f"{path} is a folder; it must be a file")
     if end in (".npy", ".npz"):
-        return heights(_of_numpy(path, variable), **given)
-    if end in (".txt", ".dat", ".csv"):
-        values = _of_text(path, end)
-        lattice = None if _SIZES & set(given) else lattice_of(values)
-        if lattice is not None:
-            return heights(lattice.z, x=lattice.x, y=lattice.y, **given)
-        if reason := why_no_map(values):
-            raise ValueError(f"{path} {reason}")
-        if reason := doubt(values):
-            warnings.warn(f"{path} {reason}", stacklevel=2)
-        return heights(values, **given)
+        values = _of_numpy(path, variable)
+        # Of masked arrays and others heights says what is wrong.
+        is_plain = values.ndim == 2 and values.dtype.kind in "iuf"
+        return _of_numbers(path, values, given) if is_plain else heights(values, **given)
+    # Some instruments write binary files of these ends.
+    if end in (".txt", ".dat", ".csv") and is_text(path):
+        return _of_numbers(path, of_text(path, end), given)
     if end == ".nc":
         from .._netcdf import read as netcdf
 
         dataset = netcdf(path)
-        return from_xarray(dataset[_chosen(variable, list(dataset.data_vars), path)], **given)
+        # Others, as that of a map projection, are no heights.
+        maps = [name for name, array in dataset.data_vars.items() if array.ndim == 2]
+        return from_xarray(dataset[chosen(variable, maps or list(dataset.data_vars), path)], **given)
     if end == ".xyz" and not _SIZES & set(given):
         lattice = _of_points(path)
         if lattice is not None:
             return heights(lattice.z, x=lattice.x, y=lattice.y, **given)
-    topography = _of_instrument(path, end, bool(_SIZES & set(given)))
+    topography = of_instrument(path, end, variable, bool(_SIZES & set(given)))
+    if end == ".mat":
+        given = {"axes": "yx", **given}
     if end in _TEXTS and getattr(topography, "dim", 2) == 2:
         # Its arrays have x as the first index.
         values = np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan)
@@ -123,6 +128,25 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     return from_topography(topography, **given)
 
 
+def _of_numbers(path: str | os.PathLike[str], values: Any, given: dict[str, Any]) -> Heights:
+    """Heights from numbers that may be a list of points."""
+    sizes = sorted(_SIZES & set(given))
+    if not sizes and (lattice := lattice_of(values)) is not None:
+        return heights(lattice.z, x=lattice.x, y=lattice.y, **given)
+    if reason := why_no_map(values):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            if sizes and lattice_of(values) is not None:
+                raise ValueError(f"{path} has x, y and z of {len(values)} points of a grid, which say the size of an element: leave out {' and '.join(sizes)}")
+        raise ValueError(f"{path} {reason}")
+    if reason := doubt(values):
+        warnings.warn(f"{path} {reason}", stacklevel=3)
+    return heights(values, **given)
+
+
+# How the size of an element is given.
+_SIZES = {"dx", "dy", "size", "span", "x", "y"}
+
 # Texts that SurfaceTopography reads as maps, whatever they hold.
 _TEXTS = ".asc", ".xyz", ".tsv"
 
@@ -130,33 +154,9 @@ _TEXTS = ".asc", ".xyz", ".tsv"
 def _of_points(path: str | os.PathLike[str]) -> Lattice | None:
     """The grid of a list of points that has no header, if it is one."""
     try:
-        return lattice_of(_of_text(path, ".txt"))
+        return lattice_of(of_text(path, ".txt"))
     except ValueError:
         return None
-
-
-# How the size of an element is given.
-_SIZES = {"dx", "dy", "size", "span", "x", "y"}
-
-
-def _of_instrument(path: str | os.PathLike[str], end: str, is_sized: bool) -> Any:
-    """The topography of an instrument's file; `is_sized`: the caller says how large it is."""
-    try:
-        read_topography = importlib.import_module("SurfaceTopography").read_topography
-    except ImportError as error:
-        raise ImportError(f"{error}; files {end or 'without an end'} need SurfaceTopography: pip install 'contact-normal[surface]'") from error
-    try:
-        return read_topography(os.fspath(path))
-    except OSError:
-        raise
-    except Exception as error:  # of that package: it has its own for each format
-        if "physical_sizes" not in str(error):
-            first = next(iter(str(error).splitlines()), "")
-            raise ValueError(f"{path} is no file of heights that SurfaceTopography reads: {type(error).__name__}, {first}") from error
-        if not is_sized:
-            raise TypeError(f"{path} does not say the size of an element: give size, the lengths of the field, or dx and dy") from error
-    # What the caller gives takes the place of these sizes.
-    return read_topography(os.fspath(path), physical_sizes=(1.0, 1.0))
 
 
 def _of_numpy(path: str | os.PathLike[str], variable: str | None) -> Any:
@@ -168,40 +168,8 @@ def _of_numpy(path: str | os.PathLike[str], variable: str | None) -> Any:
                 raise ValueError(f"{path} holds one array; give variable for files of several")
             return found
         with found as file:
-            return file[_chosen(variable, list(file), path)]
+            return file[chosen(variable, list(file), path)]
     except (ValueError, EOFError, zipfile.BadZipFile) as error:
         if "give variable" in str(error):
             raise
         raise ValueError(f"{path} is no file of numbers that numpy.save or numpy.savez wrote") from error
-
-
-def _of_text(path: str | os.PathLike[str], end: str) -> Any:
-    """Columns of numbers: those of a line are separated by spaces, in .csv by commas, or by semicolons where there are any: commas are
-    then decimal points."""
-    lines = [line.split("#")[0] for line in Path(path).read_text(encoding="utf-8-sig", errors="replace").splitlines()]
-    lines = [line for line in lines if line.strip()]
-    if not lines:
-        raise ValueError(f"{path} has no numbers")
-    delimiter = ";" if ";" in lines[0] else "," if end == ".csv" else None
-    if delimiter == ";":
-        lines = [line.replace(",", ".") for line in lines]
-    try:
-        values = np.loadtxt(lines, delimiter=delimiter, ndmin=2)
-    except ValueError as error:
-        commas = "decimal commas need semicolons between the numbers; " if has_decimal_commas(lines) else ""
-        raise ValueError(f"{path}: {error}, lines with # and empty ones not counted; it must hold numbers alone, a row of the grid a line, separated by "
-                         f"{_BETWEEN[delimiter]}; {commas}put # before other lines, and nan where nothing was measured") from error
-    if delimiter == "," and has_cut_decimals(lines):
-        raise ValueError(f"{path} has numbers that begin with zeros between its commas: decimal commas need semicolons between the numbers")
-    return values
-
-
-_BETWEEN = {None: "spaces", ",": "commas", ";": "semicolons"}
-
-
-def _chosen(name: str | None, names: list[Any], path: str | os.PathLike[str]) -> Any:
-    if name is None and len(names) == 1:
-        return names[0]
-    if name not in names:
-        raise ValueError(f"{path} has {', '.join(map(str, names))}; give variable, one of them")
-    return name

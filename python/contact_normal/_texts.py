@@ -1,0 +1,30 @@
+"""The text of files that instruments and spreadsheets write."""
+
+from __future__ import annotations
+
+import codecs
+import os
+from pathlib import Path
+
+# What the first bytes of a file name.
+_MARKS = {codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
+# Texts have no byte 0 among so many.
+_LOOKED_AT = 4096
+
+
+def text_of(path: str | os.PathLike[str]) -> str:
+    """The text of a file, in the encoding that its first bytes name, or UTF-8; else any byte is a character. Signs of minus are hyphens."""
+    data = Path(path).read_bytes()
+    named = [encoding for mark, encoding in _MARKS.items() if data.startswith(mark)]
+    try:
+        text = data.decode(named[0] if named else "utf-8-sig", errors="replace" if named else "strict")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    return text.replace("\u2212", "-")
+
+
+def is_text(path: str | os.PathLike[str]) -> bool:
+    """Whether a file is text, and not binary."""
+    with open(path, "rb") as file:
+        data = file.read(_LOOKED_AT)
+    return b"\0" not in data or data.startswith(tuple(_MARKS))
