@@ -22,7 +22,7 @@ pub enum Error {
     /// The influence coefficients differ from the solver's.
     #[error("{0}")]
     InfluenceChanged(String),
-    /// Memory for the operators or the workspace could not be had.
+    /// Memory for the operators or the workspace could not be allocated.
     #[error("{0}")]
     OutOfMemory(String),
 }

@@ -38,7 +38,7 @@ pub type MakeFrozen<'a> = &'a dyn Fn(&contact::Problem) -> Result<Box<dyn Frozen
 /// Part of the range of pressures below which elements leave the contact at an opening.
 const OPENED: f64 = 0.01;
 
-/// M, the inverse of a circulant near A, in single precision. Residuals are not extended beside C, where equations of their own determine
+/// M, the inverse of a circulant near A, in single precision. Residuals are not extended beyond C, where separate equations determine
 /// them: a sphere of Tabor's parameter 3 on 256 x 256 elements takes 18 to 21 products, and 30 to 47 with the normal problem's extension.
 struct Inverse {
     /// M of the coefficients over a power of two near a0, so that they are near 1.

@@ -7,7 +7,7 @@
 //! with total pressures p, contact pressures q, and the attraction sigma. Negative p pull. Stable states are local minima of
 //! `1/2 (p, A p) - sum W(e)`, minus the work of a prescribed force. There may be several, and a load step may snap from one to another.
 //!
-//! | module | what it holds |
+//! | module | contents |
 //! |---|---|
 //! | `law` | the laws of attraction |
 //! | `unknowns`, `level`, `levels` | the unknowns of one grid and their residuals; operator and preconditioner; all grids |

@@ -41,7 +41,7 @@ impl Unknowns {
         Ok(unknowns)
     }
 
-    /// Makes memory for n elements with undefined values.
+    /// Allocates memory for n elements with undefined values.
     fn reserve(&mut self, n: usize, threads: &Threads) -> Result<()> {
         unwritten(&mut self.p.field, n, [f64::NAN], MEMORY, threads)?;
         unwritten(&mut self.u, n, [f64::NAN], MEMORY, threads)?;

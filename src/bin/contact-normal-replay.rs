@@ -1,4 +1,4 @@
-//! Makes the call of a dump again: `contact-normal-replay FILE`. See docs/dump.md.
+//! Repeats the call of a dump: `contact-normal-replay FILE`. See docs/dump.md.
 
 use std::ffi::CStr;
 use std::process::ExitCode;
@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use contact_normal::ffi::dump::{Dump, Replayed};
 use contact_normal::ffi::{contact_normal_last_error, contact_normal_report, contact_normal_status_text};
 
-/// The exit status where the file is no dump, or does not hold the whole call.
+/// The exit status if the file is not a dump, or does not contain the whole call.
 const NOT_MADE: u8 = 2;
 
 fn main() -> ExitCode {
@@ -26,7 +26,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Makes the call again, and says what came of it. Returns whether the status is that of the file.
+/// Repeats the call and prints its result. Returns whether the status is that of the file.
 fn replay(dump: Dump) -> Result<bool, String> {
     let (status, message) = (dump.status(), dump.message().to_owned());
     println!("{} of version {}: {}", dump.call(), dump.library(), told(status, &message));

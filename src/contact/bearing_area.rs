@@ -1,6 +1,6 @@
 //! A start for surfaces with a limit of pressure: the bearing area.
 //!
-//! If displacements are small beside the differences in distance of elements, the contact area of such a surface follows from its heights
+//! If displacements are small compared with the differences in distance of elements, the contact area of such a surface follows from its heights
 //! (Abbott & Firestone 1933): the lowest elements are at their limit, as many as the force needs, or all below the approach.
 
 use super::{AdmissibleSet, Freshness, State};

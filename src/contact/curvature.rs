@@ -1,4 +1,4 @@
-//! The bend of the undeformed distance and of the pressures within an element, which elements do not resolve.
+//! The curvature of the undeformed distance and of the pressures within an element, which elements do not resolve.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use super::direction::{shortest_run, Direction};
 use super::{each_jump, Jump, Outline, Problem, State};
 use crate::rectangle::Rectangle;
 
-/// Least rows of the contact area that are sampled: means over more rows do not differ.
+/// Least rows of the contact area that are sampled. Means over more rows hardly differ.
 const ROWS: usize = 32;
 /// Largest run that is counted: its error, `(2.5/run)^2`, is 2 %.
 const LONG: usize = 16;
@@ -17,7 +17,7 @@ pub struct Curvature {
     /// `(dx^2 h_xx + dy^2 h_yy)/24`, its mean over the contact area with the weights of a flat punch's pressures. With a layer c,
     /// of h + c p.
     pub bend: f64,
-    /// The approach above the lowest h.
+    /// The approach minus the lowest h.
     pub depth: f64,
     /// u = approach - h, its mean with the weights of a flat punch's pressures: the force over dF/d(approach) (Betti).
     pub displaced: f64,
@@ -25,7 +25,7 @@ pub struct Curvature {
     pub short: f64,
     /// rms of the second differences of p, over that of p.
     pub pressure: f64,
-    /// Jumps of h beside contact: the sum of `|J|` times the uncertain part of an element.
+    /// Jumps of h next to contact: the sum of `|J|` times the uncertain part of an element.
     pub jumps: f64,
 }
 
@@ -141,14 +141,14 @@ impl Sums {
         self.lowest = self.lowest.min(state.h[at]);
     }
 
-    /// Subtracts the contribution of jumps to the bends of the elements beside them.
+    /// Subtracts the contribution of jumps to the bends of adjacent elements.
     fn without_jumps(&mut self, [bend, short]: [f64; 2]) {
         self.bend -= bend;
         self.rim_bend -= bend;
         self.rim_short = (self.rim_short - short).max(0.0);
     }
 
-    /// Means over the area, with this weight, and over the rim.
+    /// Means over the area and over the rim, with `of_area` as the weight of the area.
     fn curvature(&self, approach: f64, of_area: f64) -> Curvature {
         let weighted = |sum: f64, rim: f64| {
             let mean = sum / self.count.max(1.0);
@@ -171,10 +171,10 @@ impl Sums {
 ///
 /// A flat punch presses most at its rim. For `h = r^n` its weights give n k, the mean over the area gives 2 n and that over the rim n^2, with
 /// `k = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2)`: weights of two thirds and one third are right to a tenth up to n = 10. Many places of contact
-/// hardly interact. The force of a flat punch on each is in proportion to its width, not its area. The mean over the rims has these weights; that
-/// over the area is divided by the root of the number of places.
+/// hardly interact. The force of a flat punch on each is proportional to its width, not its area. The mean over the rims has these weights. The mean
+/// over the area is divided by the square root of the number of places.
 ///
-/// With two periods the punch presses the more uniformly, the more of the period is in contact. Strips that fill a part c of the period have the
+/// With two periods the punch's pressure is the more uniform, the more of the period is in contact. Strips that fill a part c of the period have the
 /// pressures `cos(pi x)/sqrt(k^2 - sin^2(pi x))`, k = sin(pi c/2) (Westergaard 1939). For a wave `2 sin^2(pi x)` their mean is k^2, that over the
 /// area `m = 1 - sin(pi c)/(pi c)`, and that over the rim 2 k^2: the weight `k^2/(2 k^2 - m)` grows from three quarters to 1.
 fn area_weight(problem: &Problem, state: &State, outline: &Outline) -> f64 {
@@ -187,19 +187,19 @@ fn area_weight(problem: &Problem, state: &State, outline: &Outline) -> f64 {
     let filled = PI * count as f64 / grid.len() as f64;
     let (k_squared, m) = ((0.5 * filled).sin().powi(2), 1.0 - filled.sin() / filled);
     let of_strips = if count > 0 { k_squared / (2.0 * k_squared - m) } else { 0.75 };
-    // The weight of strips grows from three quarters to 1: other places go the same part of their way to 1.
+    // The weight of strips grows from three quarters to 1. Other weights approach 1 by the same fraction of their distance.
     let of_places = (2.0 / 3.0 + outline.straight_part() / 12.0) / scatter;
     of_places + (1.0 - of_places) * (4.0 * of_strips - 3.0)
 }
 
-/// The jumps of h beside contact (see [`Curvature::jumps`]), and their contributions at the rim to second differences of h, and to these over the
+/// The jumps of h next to contact (see [`Curvature::jumps`]), and their contributions at the rim to second differences of h, and to these over the
 /// squared elements of their run.
 fn jumps(problem: &Problem, state: &State, repeats: (bool, bool)) -> (f64, [f64; 2]) {
     let (grid, contact, directions) = (&state.grid, &state.contact, Direction::both(&state.grid, repeats));
     let (mut sum, mut bend, mut short) = (0.0, 0.0, 0.0);
     let visit = |Jump { between: (i, j), height, uncertain, lines }: Jump| {
         sum += lines * height.abs() * uncertain;
-        // Beside a jump within contact the second differences have opposite signs.
+        // Next to a jump within contact the second differences have opposite signs.
         if contact[i] != contact[j] {
             let (inside, up) = if contact[i] { (i, height) } else { (j, -height) };
             let run = shortest_run(&directions, contact, inside, LONG);

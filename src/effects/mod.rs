@@ -13,7 +13,7 @@
 //! | adhesion | row_tables, patches, pressure_limit, friction | no | another one for each solve |
 //! | visco | layer, friction, adhesion; influence, row_tables, coating of bodies that do not relax alike | yes | its moduli and times are those of the set-up |
 //!
-//! | effect | on a given contact area | to an accuracy | stresses below the surface | beside the normal problem |
+//! | effect | on a given contact area | to an accuracy | stresses below the surface | in addition to the normal problem |
 //! |---|---|---|---|---|
 //! | influence, row_tables | yes | no | no | |
 //! | coating | yes | yes | of the other body | |

@@ -81,7 +81,7 @@ pub struct Properties<'a> {
     pub repeats: (bool, bool),
     /// The largest admissible pressures; none: there are no limits.
     pub limits: Option<PressureLimit<'a>>,
-    /// Whether another problem is solved beside the normal one. After the normal solve it may be refused or change the undeformed distance.
+    /// Whether a further problem is solved after the normal one. After the normal solve it may be refused or change the undeformed distance.
     pub is_beside: bool,
     /// How this step begins where the last one ended; none: it does not.
     pub continues: Option<Continues>,

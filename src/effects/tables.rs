@@ -1,4 +1,4 @@
-//! Effects: own coefficients, one table for all elements (`influence`) or one per loaded row (`row_tables`).
+//! Effects: the caller's coefficients, one table for all elements (`influence`) or one per loaded row (`row_tables`).
 //!
 //! Later scenes of a handle need not name them again: the handle keeps them.
 

@@ -28,7 +28,7 @@ pub struct Visco<'a> {
     pub time_step: f64,
     /// The quantity that is linear in the step. The default is the displacement for a prescribed approach, the pressures for a prescribed force.
     pub form: Option<Form>,
-    /// Whether the step begins at the end of the last one; if not, at rest.
+    /// Whether the step begins at the end of the last one. Otherwise it begins at rest.
     pub continues: bool,
 }
 

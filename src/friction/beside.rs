@@ -1,4 +1,4 @@
-//! The extension of residuals beside C on grids where it saves time.
+//! The extension of residuals beyond C on grids where it saves time.
 
 use crate::error::Result;
 use crate::grid::Grid;
@@ -6,7 +6,7 @@ use crate::methods::extension::Extension;
 use crate::operator::fft::Real;
 use crate::threads::Threads;
 
-/// The extension of residuals beside C, if it saves time on the grid.
+/// The extension of residuals beyond C, if it saves time on the grid.
 pub(super) fn extension_on<T: Real>(grid: &Grid, threads: &Threads) -> Result<Option<Extension<T, 2>>> {
     let mut extension = Extension::if_worthwhile(grid, threads)?;
     extension.iter_mut().for_each(Extension::wake);

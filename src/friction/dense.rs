@@ -1,4 +1,4 @@
-//! `u = A q` by direct summation: the naive twin of [`Toeplitz`](super::Toeplitz), the oracle of its tests.
+//! `u = A q` by direct summation, as the reference in tests of [`Toeplitz`](super::Toeplitz).
 
 use super::coefficients::Tangential;
 use super::plane::Vector;

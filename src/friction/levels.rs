@@ -1,4 +1,4 @@
-//! Nested iteration: the problem on coarser grids, coarsest first, each the start of the next.
+//! Nested iteration: the problem is solved on coarser grids, coarsest first. Each solution is the start on the next grid.
 //!
 //! ```text
 //! g of a coarse element: the mean of its children's, 0 without children in C; w: the mean of those in C,
@@ -38,8 +38,8 @@ pub struct Level {
 }
 
 impl Level {
-    /// A level on a grid, with coefficients that reach far enough. `single`: whether directions may be multiplied in single precision; `only_single`:
-    /// whether all products are.
+    /// A level on a grid, with coefficients that reach far enough. `single` tells whether directions may be multiplied in single precision,
+    /// `only_single` whether all products are.
     fn new(
         quadrant: &Quadrant,
         grid: Grid,
@@ -86,8 +86,8 @@ fn coarser(grid: &Grid) -> Option<Grid> {
     Some(Grid { mx, my, dx, dy })
 }
 
-/// The grids of a box, the finest first. `single`: whether directions may be multiplied in single precision; on coarser grids all products
-/// are then.
+/// The grids of a box, the finest first. `single` tells whether directions may be multiplied in single precision. Then all products on coarser
+/// grids are in single precision.
 pub fn levels(
     tangential: &Tangential,
     grid: Grid,

@@ -9,7 +9,7 @@
 //! | `tables`, `row_tables`, `row_product` | the caller's coefficients, also per loaded row, and products with these |
 //! | `rolling_tables` | tables of bodies that relax and roll steadily |
 //! | `excess` | a layer between the bodies that differs between elements |
-//! | `lanes`, `beside` | SIMD passes over fields by component, extension of residuals beside C; fields of pairs: `methods::fields` |
+//! | `lanes`, `beside` | SIMD passes over fields by component, extension of residuals beyond C; fields of pairs: `methods::fields` |
 //! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for given motions; their fields, on C alone |
 //! | `newton`, `step`, `system`, `sweep`, `forces`, `best` | semismooth Newton, for steady rolling, for given forces and if the gradients stall |
 //! | `balance`, `corral`, `bracket` | creepages of given forces if Newton's method stalls |

@@ -1,7 +1,7 @@
-//! Nested iteration: the coarsest grid first, each from the solution of the one before.
+//! Nested iteration: the coarsest grid first. Each grid starts from the solution on the previous one.
 //!
-//! A grid is solved by several methods, each from the state at which the one before stalled: by gradients, and by Newton's method if these stall, in
-//! steady rolling, or with given forces.
+//! Several methods solve a grid. Each starts from the state at which the one before stalled. Gradients come first. Newton's method follows if they
+//! stall, in steady rolling, and with given forces.
 
 use super::balance::balanced;
 use super::best::Best;
@@ -69,7 +69,7 @@ impl Way {
     }
 }
 
-/// Solves the finest of `levels`; `nested`: from the coarsest on. `mostly_slips`: whether most of C slipped in the step before.
+/// Solves the finest of `levels`; `nested` tells whether to start on the coarsest, `mostly_slips` whether most of C slipped in the step before.
 pub fn solve(
     levels: &mut [Level],
     forces: Forces,
@@ -121,7 +121,7 @@ fn ways(forces: Forces, newton_first: bool, (is_rolling, certified): (bool, bool
     }
 }
 
-/// Whether given forces let nearly all of C slip, predicted by the present displacements with balanced creepages.
+/// Whether given forces let nearly all of C slip. This is predicted from the current displacements with balanced creepages.
 fn mostly_slips(level: &mut Level, forces: Forces) -> Result<bool> {
     let Level { problem, state, memory, .. } = level;
     let (offset, rho) = (problem.offset, 1.0 / compliance(problem));
@@ -141,7 +141,7 @@ fn products_of(limit: u64, certified: bool) -> f64 {
     }
 }
 
-/// Solves one grid from its state; `part`: the work of one of its products, relative to the finest.
+/// Solves one grid from its state; `part` is the work of one of its products, relative to the finest grid.
 fn one(
     level: &mut Level,
     (forces, newton_first): (Forces, bool),

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! The move is curved, so its chord at the forecast length f, that of the step before, is the direction that is multiplied. The difference of a step
-//! of another length is a deferred correction: the next product includes it, or a product of its own if it is large.
+//! of another length is a deferred correction: the next product includes it, or an extra product if it is large.
 //!
 //! Fields are on C only ([`Discs`]).
 

@@ -24,7 +24,7 @@ pub(super) const MIXED: f64 = 0.5;
 
 /// Distance from the circle, relative to its radius, within which tractions count as near.
 pub(super) const NEAR_THE_CIRCLE: f64 = 0.2;
-/// Least cosine of the angle by which the natural map turns near tractions: tractions along their slip have to turn round.
+/// Least cosine of the angle by which the natural map turns near tractions. Tractions along their slip must reverse.
 pub(super) const ALIGNED: f64 = 0.9;
 
 /// Whether an element sticks or slips.
@@ -100,7 +100,7 @@ pub(super) fn mixing(curvature: f64, a0: f64) -> f64 {
     1.0 / (1.0 + MIXED * curvature / a0)
 }
 
-/// P v, with the normal n; n = 0: v.
+/// P v, with the normal n. It is v if n = 0.
 #[inline]
 pub(super) fn project(n: Vector, v: Vector) -> Vector {
     plus(v, -dot(v, n), n)
@@ -118,7 +118,7 @@ fn normal_and_curvature((q, s): (Vector, Vector), g: f64, tau: Vector, inverse_r
 }
 
 impl Tangent {
-    /// Makes memory for n elements, unless it is there.
+    /// Allocates memory for n elements, unless it is allocated already.
     pub fn fit(&mut self, n: usize) -> Result<()> {
         let what = "the stick and slip areas";
         if self.projected.len() != n {
@@ -192,7 +192,7 @@ impl Tangent {
     }
 
     /// `z = P(E X' M X E r) + (1 - E) r/(D + a0)`, `E = 1/(1 + D/(2 a0))`, for r = P r, 0 outside C: the circulant inverse M of A, with residuals
-    /// extended beside C by X (see [`Extension`](crate::methods::extension::Extension)), and a diagonal inverse where the curvature D dominates.
+    /// extended beyond C by X (see [`Extension`](crate::methods::extension::Extension)), and a diagonal inverse where the curvature D dominates.
     /// The compliance of a layer beyond its least adds to D. In steady rolling, with `B = A d`, the first term has x from `d x = E M E r`
     /// (see [`Sweep`](super::sweep::Sweep)).
     pub fn precondition(&self, problem: &mut Problem, r: &[Vector], unit: f64, mixed: &mut [Vector], z: &mut [Vector]) {
@@ -216,7 +216,7 @@ impl Tangent {
             sweep.solve(&problem.grid, |i| self.mixing[i], project, &threads, z);
             return fields::map(&threads, z, |i, z| plus(z, own(i), r[i]));
         }
-        // A step of rolling differences the layer's displacement as well: the sweep carries (a + r) x, as r differs by element.
+        // A rolling step also takes differences of the layer's displacement. The sweep carries (a + r) x, because r differs by element.
         let a = problem.operators.greatest();
         let soft = |i: usize| (a + beyond(i)) / a;
         let of_layer = |i: usize| match self.side[i] {
@@ -234,7 +234,7 @@ impl Tangent {
         let (threads, n) = (problem.threads().clone(), r.len());
         let compliance = problem.operators.relative_compliance();
         let Problem { operators, extension, .. } = problem;
-        // Without extension: in rolling the sweep starts from 0 at each leading edge, and values beside C do not help.
+        // Without extension: in rolling the sweep starts from 0 at each leading edge, and values outside C do not help.
         let Some(extension) = extension else {
             fields::fill(&threads, mixed, |i| r[i].map(|r| self.mixing[i] * r));
             return operators.precondition(mixed, unit, z);

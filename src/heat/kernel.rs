@@ -13,13 +13,13 @@
 //! lambda T = integral of g(x) dx,    g(x) = 1/(2 pi) integral of exp(-P (|x| cosh t - x)) dt
 //! ```
 //!
-//! g has a logarithm at x = 0, and behind a fast source the root of 1/x: `x = L s^4` makes both smooth. g changes on the scales of half the width of
-//! the element and of 1/P: up to the smaller one this rule is used, beyond it panels, each [`WIDER`] than the one before. Without motion the integral
-//! is Love's.
+//! g has a logarithmic singularity at x = 0, and behind a fast source one of `x^(-1/2)`. The substitution `x = L s^4` makes both smooth. g changes on
+//! the scales of half the width of the element and of 1/P. Up to the smaller scale this rule is used. Beyond it panels follow, each longer by the
+//! factor [`WIDER`]. Without motion the integral is Love's.
 
 use std::f64::consts::PI;
 
-/// Exponents beyond are dropped: e^-40 is round-off.
+/// Exponents beyond this are dropped, because e^-40 = 4e-18 is round-off.
 const FADED: f64 = 40.0;
 /// Longest panel in t, on which the rule integrates exp(-a cosh t) to 1e-10.
 const PANEL: f64 = 2.0;
@@ -62,7 +62,7 @@ fn love((x, y): (f64, f64), (dx, dy): (f64, f64)) -> f64 {
     corner(right, high) - corner(left, high) - corner(right, low) + corner(left, low)
 }
 
-/// The integral of a function of the distance with a logarithm or the root of 1/x at 0, which changes on the scale `near`.
+/// The integral of a function of the distance with a singularity `log x` or `x^(-1/2)` at 0, which changes on the scale `near`.
 fn along((from, to): (f64, f64), near: f64, rule: &Rule, f: impl Fn(f64) -> f64) -> f64 {
     let (mut start, mut sum) = (from, 0.0);
     if !(from > 0.0) {

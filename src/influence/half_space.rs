@@ -8,8 +8,8 @@
 //! F(a, b) = a asinh(b/|a|) + b asinh(a/|b|)
 //! ```
 //!
-//! (Love 1929; Johnson, Contact Mechanics, eq. 3.25). The closed form cancels: at offset `k` it loses a factor `k^2`.
-//! So it is used for the four coefficients next to the element only:
+//! (Love 1929; Johnson, Contact Mechanics, eq. 3.25). The closed form suffers from cancellation: at offset `k` it loses a factor `k^2`.
+//! So it is used only for the four coefficients next to the element:
 //!
 //! * beyond six half-diagonals `d`, a multipole series, with `r^2 = X^2 + Y^2`, `z = (d/r)^2`, `t = (X/r)^2`:
 //!   `A = c dx dy / r * sum_k z^k q_k(t)`; `z^k q_k` is the mean over the element of the Legendre term of degree `2k`;
@@ -158,7 +158,7 @@ impl Shape {
     }
 }
 
-/// A part of a row by the series with terms `k <= K`. Compiled for the vectors of this machine; no bit depends on them.
+/// A part of a row by the series with terms `k <= K`. Compiled for the vector instructions of this machine, on which no bit depends.
 struct Far<'a, const K: usize> {
     shape: &'a Shape,
     kx: f64,
@@ -237,7 +237,7 @@ impl Kernel for HalfSpace {
     }
 }
 
-/// The integral of 1/rho over an element at `(kx, ky) >= 0` elements, which need not be whole.
+/// The integral of 1/rho over an element at offset `(kx, ky) >= 0` in elements, which need not be integers.
 pub(crate) fn integral_at((kx, ky): (f64, f64), (dx, dy): (f64, f64)) -> f64 {
     near_integral(kx, ky, dx, dy)
 }

@@ -34,7 +34,7 @@ pub struct Direction<const K: usize = 2, T = f64> {
 /// A direction, and `H` of it.
 pub type Turned<const K: usize, T> = (Direction<K, T>, Bordered<K, T>);
 
-/// The fields kept for each direction, beside the basis.
+/// The fields kept for each direction, in addition to the basis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kept {
     /// Preconditioned vectors and their products.

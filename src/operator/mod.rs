@@ -24,6 +24,6 @@ pub enum Precision {
     Auto,
     /// Double precision throughout.
     Double,
-    /// Single precision for inner work, if that is faster.
+    /// Single precision for inner work, in the methods that support it.
     Mixed,
 }

@@ -101,7 +101,7 @@ impl<'a> Monitor<'a> {
         self.began.elapsed().as_secs_f64()
     }
 
-    /// Begins a grid with counts of its own.
+    /// Begins a grid with separate counts.
     pub fn enter_grid(&mut self) {
         self.count = Counters { work_units: self.count.work_units, ..Counters::default() };
     }

@@ -150,7 +150,7 @@ impl Solver {
                 Box::new(adhesion::Solver::new(*grid, coefficients, operator, threads)?)
             }
         };
-        // Products of adhesion have memory of their own.
+        // Products of adhesion have separate memory.
         self.problem.rest();
         let lent = Lent::new(&mut solver, &mut self.state);
         let (contact, approach) = (&lent.state.contact[..], lent.state.approach);

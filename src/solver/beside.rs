@@ -1,10 +1,10 @@
-//! The state of the problems beside the normal one, but for friction.
+//! The state of the further problems of a scene, except friction.
 
 use crate::effects::{History, COUNT};
 use crate::error::Result;
 use crate::memory::zeros;
 
-/// The state of the problems beside the normal one.
+/// The state of the further problems.
 #[derive(Default)]
 pub struct Beside {
     /// The histories of the effects.

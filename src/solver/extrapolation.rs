@@ -33,7 +33,7 @@ struct Pair {
     y: Vec<f64>,
 }
 
-/// The turns so far: none before one was slow.
+/// The turns so far. Turns before the first slow one are not kept.
 #[derive(Debug)]
 pub struct Extrapolation {
     last: Pair,
@@ -89,7 +89,7 @@ impl Extrapolation {
     }
 }
 
-/// Values less the earlier ones, if there are any.
+/// The differences of values from the earlier ones, if there are any.
 fn difference(to: &mut Vec<f64>, values: impl ExactSizeIterator<Item = f64>, before: &[f64]) -> Result<()> {
     to.clear();
     reserve(to, values.len(), "the turns before")?;
@@ -98,7 +98,7 @@ fn difference(to: &mut Vec<f64>, values: impl ExactSizeIterator<Item = f64>, bef
     Ok(())
 }
 
-/// g of the normal equations; dependent changes have parts near 0. Empty if there is no g.
+/// g of the normal equations. Its components for dependent changes are near 0. Empty if the equations have no solution.
 fn least_squares(mut gram: Vec<f64>, mut right: Vec<f64>) -> Vec<f64> {
     let n = right.len();
     let trace: f64 = gram.iter().step_by(n + 1).sum();

@@ -1,4 +1,4 @@
-//! A copy of the last complete result, to restore it: a problem beside the normal one may be refused
+//! A copy of the last complete result, to restore it: a further problem may be refused
 //! after the normal problem is solved.
 
 use super::Solver;
@@ -18,7 +18,7 @@ pub struct Kept {
 }
 
 impl Solver {
-    /// A copy of the last result, for scenes with a problem beside the normal one.
+    /// A copy of the last result, for scenes with a further problem.
     pub(super) fn kept(&self, scene: &Scene<'_>) -> Result<Option<Kept>> {
         if effects::beside(scene).next().is_none() || !self.has_result {
             return Ok(None);

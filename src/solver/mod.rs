@@ -79,8 +79,8 @@ use tangential::Tangent;
 
 /// Operators and grids for many solves on one grid and one pair of bodies. Only one thread at a time may use a solver.
 ///
-/// A solver holds the last complete result, or none. After a solve that was refused before it began, or for its friction, it holds the
-/// result of the solve before; after any other failed solve it holds none.
+/// A solver holds the last complete result, or none. After a solve that was rejected before it began, or for its friction, it holds the
+/// previous result. After any other failed solve it holds none.
 ///
 /// The bits of a solve that starts from nothing or from a given guess do not depend on earlier solves. With one thread, repeated solves by the same
 /// method and from the same kind of start allocate no memory, with three exceptions. PROJECTED_CG (and AUTO) work on a window around the
@@ -133,7 +133,7 @@ struct SetUp {
     largest_influence: f64,
     /// The constant of the coefficients, if they have one.
     compressible: Option<Compressible>,
-    /// Smoother, sweeps, precision, and the threads asked for.
+    /// Smoother, sweeps, precision, and the requested threads.
     options: Options,
 }
 

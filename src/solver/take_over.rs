@@ -45,21 +45,21 @@ pub fn take_over<S: AdmissibleSet>(
     }
     if from == Start::Nothing {
         state.forget();
-        // The last result is no start.
+        // The solve does not start from the last result.
         if let Load::Force(_) = scene.load {
             state.approach = 0.0;
         }
         return Ok(nothing);
     }
     clean(state, set);
-    // p = 0 is no guess.
+    // A guess of p = 0 is discarded.
     if !S::FIXED && state.p.iter().all(|p| *p == 0.0) {
         state.forget();
         return Ok(nothing);
     }
     let is_scaled = balance(problem, state, set)?;
     monitor.count_products(problem.take_products(), 1.0);
-    // A guess far worse than p = 0 costs time, or overflows.
+    // A guess far worse than p = 0 would cost time or overflow.
     let mut survey = Survey::by(state, &problem.threads);
     if is_scaled && options.goal().holds(&survey, 0.0, set) {
         // This may be the solution, which only a fresh product certifies, not one scaled with the load.
@@ -220,7 +220,7 @@ fn put_at_limits<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, set
     Ok(())
 }
 
-/// Whether nothing touches: no force, or no element penetrated by the approach, not even one of the `lowest` distance. Then p = 0 solves the problem.
+/// Whether there is no contact: the force is 0, or the approach is less than the `lowest` distance. Then p = 0 solves the problem.
 pub fn is_without_contact(state: &mut State, lowest: f64, fixed: bool) -> bool {
     let nothing = match state.load {
         Load::Approach(approach) => !fixed && lowest > approach,

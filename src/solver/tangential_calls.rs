@@ -15,7 +15,7 @@ use crate::sums::in_blocks;
 use crate::threads::Threads;
 
 impl Solver {
-    /// Takes the solver of friction, to be put back; made if there is none.
+    /// Takes the solver of friction, or sets one up. The caller puts it back.
     pub(super) fn take_tangent(&mut self, scene: &Scene<'_>, options: &Options) -> Result<Box<Tangent>> {
         match self.friction.take() {
             Some(tangent) => Ok(tangent),

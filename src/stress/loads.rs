@@ -44,7 +44,7 @@ impl<'a> Loads<'a> {
         self.list().map(|load| load.is_some())
     }
 
-    /// The parts of the grid with loads of their own.
+    /// The parts of the grid with separate loads.
     pub(super) fn parts(&self) -> Vec<Part> {
         let Some(patches) = self.coupled() else { return vec![Part::All] };
         let has = |patch: &usize| (0..patches.patch.len()).any(|i| patches.of(i) == *patch);

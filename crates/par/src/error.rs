@@ -1,6 +1,6 @@
-//! The one thing that can go wrong.
+//! The error of this crate.
 
-/// There is no memory for some values, or the system starts no more threads. The message says for what.
+/// An allocation failed, or the system starts no more threads. The message names the purpose.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct OutOfMemory(pub String);

@@ -1,11 +1,11 @@
 //! Sums over elements in lanes, for passes over slices of one length, and the least of values.
 //!
 //! Each sum is taken in lanes. Neither the lanes nor the bits of the sums depend on the threads or on the vectors of the machine. The functions are
-//! inlined, so that they are compiled for these vectors in a pass that is (`pulp`).
+//! inlined. So a pass that is compiled for these vectors (`pulp`) includes them.
 
 use std::array::from_fn;
 
-/// Lanes of each sum: an addition does not wait for the one before.
+/// Lanes of each sum, so that an addition does not wait for the previous one.
 const LANES: usize = 4;
 /// Lanes of single sums and of comparisons.
 const WIDE: usize = 8;
@@ -82,7 +82,7 @@ impl<const K: usize> Sums<K> {
     }
 }
 
-/// The sum of `a - from + b` over places that count, and their number, in lanes that the compiler vectorises.
+/// The sum of `a - from + b` over places with `counts`, and their number, in lanes that the compiler vectorises.
 #[inline(always)]
 pub fn sum_where((a, from): (&[f64], f64), b: &[f64], counts: &[bool]) -> (f64, u64) {
     let term = |a: f64, b: f64, counts: bool| if counts { a - from + b } else { 0.0 };

@@ -41,7 +41,7 @@ pub(crate) struct Piece {
 }
 
 impl Piece {
-    /// Makes memory for values of rows, for a column or the bins of rows, and for scratch of rows.
+    /// Allocates memory for values of rows, for a column or the bins of rows, and for scratch of rows.
     pub(crate) fn fit(&mut self, (row, column, rows): (usize, usize, usize)) -> Result<()> {
         unwritten(&mut self.row, row, f64::NAN, COEFFICIENTS, &Threads::One)?;
         unwritten(&mut self.column, column, Complex::default(), COEFFICIENTS, &Threads::One)?;

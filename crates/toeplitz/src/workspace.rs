@@ -26,7 +26,7 @@ pub struct Room {
 }
 
 impl Room {
-    /// The sizes for either product.
+    /// The larger of both sizes.
     #[must_use]
     pub fn max(self, other: Room) -> Room {
         Room {
@@ -73,13 +73,13 @@ impl<T: Real> Memory<T> {
         Ok(Memory { bins, pieces: (0..room.pieces).map(piece).collect::<Result<_>>()?, most: room.bins })
     }
 
-    /// Makes at least this number of bins.
+    /// Wakes at least this number of bins.
     pub(crate) fn wake(&mut self, least: usize, threads: &Threads) {
         let n = self.bins.len().max(least);
         wake(&mut self.bins, n, nan(), threads);
     }
 
-    /// Gives the memory of bins back until the next product.
+    /// Releases the memory of bins until the next product.
     pub fn rest(&mut self) {
         rest(&mut self.bins);
     }
@@ -120,7 +120,7 @@ impl<T: Real> Piece<T> {
     }
 }
 
-/// Neither part is a number.
+/// A value with NaN in both parts.
 fn nan<T: Real>() -> Complex<T> {
     Complex::new(T::nan(), T::nan())
 }

@@ -17,7 +17,7 @@ use crate::operator::fft::Real;
 const MEMORY: &str = "the iteration on discs";
 
 impl<T: Real> Discs<T> {
-    /// Makes memory and copies a state.
+    /// Allocates memory and copies a state.
     pub fn load(&mut self, problem: &Problem, state: &State) -> Result<()> {
         let (places, all, threads) = (&problem.places, problem.grid.len(), problem.threads());
         unwritten(&mut self.fields, FIELDS * places.length(), f64::NAN, MEMORY, threads)?;

@@ -11,7 +11,7 @@
 //! If bounds fall with the slip, there may be several solutions. This module finds one. A single element has one solution if the largest slope of g
 //! times its coefficient on itself (`law_slope` of a report) is below 1. From 0.5 on the iteration may end without its certificate.
 //!
-//! | module | what it holds |
+//! | module | contents |
 //! |---|---|
 //! | `element` | bounds, particles, and the slip for a traction |
 //! | `bounds` | bounds from slips, and their residuals |

@@ -7,7 +7,7 @@
 //!
 //! with b = 1, the layer's own half-space, or b = B0 = B(0), the substrate's. F_1 is smooth at 0; F_B0 decays as `1/rho^3`. All
 //! singularities of both lie at `w = 4 + rho^2 <= 0`. So on a quarter of an octave of w, as `[2^k, 1.25 2^k]`, polynomials of degree 13 have
-//! the error `(9 + sqrt 80)^-14 = 3e-18` for a function like `w^-5/2` near 0. The bits of w tell the quarter, and M is an integral of the
+//! the error `(9 + sqrt 80)^-14 = 3e-18` for a function like `w^-5/2` near 0. The bits of w give the quarter, and M is an integral of the
 //! polynomial, `rho drho = dw/2`. Below rho = 2 the polynomials are those of F_1, beyond those of F_B0.
 //!
 //! The values come from quadrature ([`Hankel`]). At `rho > 100 L`, with 1/L the distance of the nearest pole of B, the Taylor coefficients of
@@ -63,7 +63,7 @@ pub struct Radial<R = Transfer> {
 #[derive(Clone, Debug, PartialEq)]
 struct Panel {
     f: [f64; P],
-    /// Coefficients of f above [`LEFT_OUT`]: fewer far away, where F is small beside the half-space.
+    /// Coefficients of f above [`LEFT_OUT`]: fewer far away, where F is small compared with the half-space.
     terms: usize,
     m: [f64; OF_INTEGRAL],
 }
@@ -79,7 +79,7 @@ const FIRST: f64 = 1.0 / (1u64 << 32) as f64;
 const OCTAVES: usize = 38;
 
 impl<R: Response> Radial<R> {
-    /// Makes the table of a layer, which takes milliseconds.
+    /// Computes the table of a layer, which takes milliseconds.
     pub fn new(transfer: R) -> Radial<R> {
         let taylor = transfer.taylor();
         let scale = transfer.substrate().max(1.0);

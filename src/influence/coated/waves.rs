@@ -76,7 +76,7 @@ fn nearest(grid: &Grid) -> (i64, i64) {
     (last(grid.dx / grid.dy).max(0), last(grid.dy / grid.dx).max(0))
 }
 
-/// Adds the nearest aliases; the constant wave is left out.
+/// Adds the nearest aliases of all waves except the constant one.
 fn add_nearest(body: &CoatedBody, grid: &Grid, waves: &mut [f64]) -> Result<()> {
     let Some((t, radial)) = &body.layer else { return Ok(()) };
     let ((row, rows), (last_x, last_y)) = (bins(grid), nearest(grid));
@@ -110,7 +110,7 @@ fn is_left((first, _): (f64, f64), (last, _): (f64, f64)) -> bool {
     first.abs().min(last.abs()) <= FADED
 }
 
-/// The sum over all aliases but the nearest at a place.
+/// The sum over all aliases at a place except the nearest.
 fn others(body: &CoatedBody, (last_x, last_y): (i64, i64), in_x: &Place, in_y: &Place) -> f64 {
     let Some((t, radial)) = &body.layer else { return 0.0 };
     let mut sum = 0.0;

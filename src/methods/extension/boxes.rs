@@ -96,7 +96,7 @@ impl<T: Real> pulp::NullaryFnOnce for Extend<'_, T> {
 
 /// The shares that elements outside C in a row give to nearby elements of C.
 pub(super) struct Share<'a, T> {
-    /// Of this row.
+    /// The values of this row.
     pub(super) values: &'a [T],
     pub(super) near: &'a [u16],
     pub(super) rim: &'a [bool],
@@ -170,8 +170,8 @@ fn share<T: Real>(near: u16, absent: T) -> T {
 }
 
 /// Sums over the boxes around the elements of some rows of a grid, up to [`ROWS`], `mx` elements in each, for those chunks that are
-/// `wanted(row, chunk)`; `value` makes the summands of what the grid holds. Calls `take(row, chunk, its elements among those of the rows, sums)`,
-/// rows counted from the first; sums beyond the elements have no meaning.
+/// `wanted(row, chunk)`; `value` maps a value of the grid to its summand. Calls `take(row, chunk, its elements among those of the rows, sums)`,
+/// rows counted from the first. Sums beyond the elements are not valid.
 #[inline(always)]
 fn box_sums<A: Copy, B: Summand>(
     (from, mx): (&[A], usize),

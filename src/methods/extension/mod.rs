@@ -6,8 +6,9 @@
 //! (E r, M E r) >= (r, (A on C)^-1 r)
 //! ```
 //!
-//! equality holds for the displacement by the pressures that solve for r on C. Zero outside is the worst: the energy of a step at the rim
-//! grows with the number of elements across a piece of C, and a rough surface has much rim. So E r is a mean of the values near,
+//! equality holds for the displacement by the pressures that solve for r on C. Zero outside C is the worst extension. The energy of a step at the
+//! boundary grows with the number of elements across a component of C, and C of a rough surface has a long boundary. So E r is a mean of nearby
+//! values,
 //!
 //! ```text
 //! E r = r on C,   (sum over B of r)/(n + c) outside,    B: the box of 9 x 9 elements around, n of them in C, c: an eighth of B
@@ -35,12 +36,12 @@ use boxes::{Collect, Count, Extend, Share, BOX, CHUNK, REACH, ROWS};
 
 /// c, as a part of a box.
 const ABSENT: f64 = 0.125;
-/// Elements of a grid from which on the extension saves more than it takes. Processor times of cold calls with it on all grids, by those
-/// without (table "cold" of `make bench`, programs in turns): 1.2 where the box around C has some 100 or 400 elements (ellipse 16, 32), 1.0 to 1.15
-/// at 2000 to 4000 (ellipse 64, wheel-rail y4_82kN), 0.87 at 15000 (wheel-rail y4_82kN x2), 0.92 and 0.83 at 65000 and 260000 (rough).
+/// Least elements of a grid for which the extension saves more time than it takes. Processor times of cold calls with it on all grids, relative to
+/// those without it (table "cold" of `make bench`, programs in turns): 1.2 where the box around C has some 100 or 400 elements (ellipse 16, 32), 1.0
+/// to 1.15 at 2000 to 4000 (ellipse 64, wheel-rail y4_82kN), 0.87 at 15000 (wheel-rail y4_82kN x2), 0.92 and 0.83 at 65000 and 260000 (rough).
 const LEAST: usize = 8192;
-/// Elements of a grid in its shorter direction from which on it is used. Strips of 9 to 36 rows with two periods end in cycles
-/// with it; of 64 rows and more they take half of the iterations.
+/// Least elements in the shorter direction of a grid with the extension. With it, strips of 9 to 36 rows with two periods end in
+/// cycles. Strips of 64 rows and more take half of the iterations.
 const NARROW: usize = 64;
 const WHAT: &str = "the extended residual";
 
@@ -58,7 +59,7 @@ pub struct Extension<T: Real, const K: usize> {
 }
 
 impl<T: Real, const K: usize> Extension<T, K> {
-    /// The extension on `grid`; none if the grid is too small to gain.
+    /// The extension on `grid`. None if it would not save time.
     pub fn if_worthwhile(grid: &Grid, threads: &Threads) -> Result<Option<Extension<T, K>>> {
         (grid.len() >= LEAST && grid.mx.min(grid.my) >= NARROW).then(|| Extension::new(grid, threads)).transpose()
     }
@@ -150,7 +151,7 @@ impl<T: Real, const K: usize> Extension<T, K> {
         rest(&mut self.values);
     }
 
-    /// Makes memory before the first use or the next.
+    /// Allocates memory before the next use.
     pub fn wake(&mut self) {
         wake(&mut self.values, K * self.mx * self.my, T::nan(), &self.threads);
     }

@@ -9,7 +9,7 @@ use crate::threads::Threads;
 /// Coarse elements of a row interpolated together.
 const BLOCK: usize = 32;
 
-/// Restriction by the mean over all children. Defects in the exterior area are zero, and count.
+/// Restriction by the mean over all children. Defects in the exterior area are zero and are included in the mean.
 pub fn restrict_mean(fine: &Grid, coarse: &Grid, from: impl Fn(usize) -> f64 + Sync + Send, to: &mut [f64]) {
     let add = |(sum, count): (f64, f64), child| (sum + from(child), count + 1.0);
     collect(fine, coarse, to, add, |(sum, count)| sum / count);
@@ -53,7 +53,7 @@ pub fn restrict_contact(fine: &Grid, coarse: &Grid, contact: &[bool], to: &mut [
     collect(fine, coarse, to, add, |(inside, count)| 2 * inside >= count);
 }
 
-/// Every coarse element gets `result` of the values that `add` collects from its children.
+/// Sets every coarse element to `result` of the values that `add` collects from its children.
 fn collect<A: Default, B>(
     fine: &Grid,
     coarse: &Grid,
@@ -105,8 +105,8 @@ pub fn interpolate_row(
     }
 }
 
-/// Linear interpolation between the centres of the coarse elements, constant beyond the outermost and beside unknown values (`+infinity`, outside a
-/// window).
+/// Linear interpolation between the centres of the coarse elements, constant beyond the outermost centres and next to unknown values (`+infinity`,
+/// outside a window).
 pub fn interpolate_linearly(fine: &Grid, coarse: &Grid, from: &[f64], to: &mut [f64], threads: &Threads) {
     let mix = |near: f64, far: f64| if far == f64::INFINITY { near } else { 0.75 * near + 0.25 * far };
     threads.for_a_pass(fine.len()).for_each_plain_row(

@@ -28,7 +28,7 @@ pub(super) struct Krylov {
 }
 
 impl Krylov {
-    /// Makes memory for the directions of a state's contact area.
+    /// Allocates memory for the directions of a state's contact area.
     fn begin(&mut self, state: &State) -> Result<()> {
         reserve(&mut self.elements, state.p.len(), "GMRES")?;
         self.elements.clear();

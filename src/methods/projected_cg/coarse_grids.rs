@@ -2,8 +2,9 @@
 //! coarser one, piecewise constant, and its displacements, linearly interpolated.
 //!
 //! With two periods u has mean zero, so the mean of e is that of `h - approach` on every grid: an approach beyond the mean of a grid's h has no
-//! solution there, and one close to it a huge pressure. A grid of an odd count covers more than a period; its h is shifted to the mean of the finest
-//! grid, and is feasible if that is. If the residual of a coarser grid exceeds that of p = 0, which is 1, the next grid starts from p = 0.
+//! solution there, and one close to it a huge pressure. A grid of an odd count covers more than a period. Its h is shifted to the mean of the finest
+//! grid, so that it is feasible if the finest grid is. If the residual of a coarser grid exceeds that of p = 0, which is 1, the next grid starts from
+//! p = 0.
 
 use std::f64::consts::PI;
 use std::iter::successors;
@@ -32,13 +33,15 @@ use crate::threads::Threads;
 const COARSEST: usize = 8;
 /// Tolerance on the coarsest grid: its discretisation error is larger.
 const COARSEST_TOLERANCE: f64 = 1e-3;
-/// Most iterations on the coarsest grid, and on those between. With 3 to 5 of the latter all products together are 1.0 to 1.1 times as many.
+/// Most iterations on the coarsest grid, and on the grids between it and the finest. With 3 to 5 on the grids between, the number of all products is
+/// 1.0 to 1.1 times as large.
 const COARSEST_ITERATIONS: u64 = 50;
 const COARSE_ITERATIONS: u64 = 2;
 /// Iterations with elements at their limit: on 48 scenes (`examples/pressure_limits`) 4, 5, 6, 8 take at most 6.0, 3.2, 3.3, 3.6 times the work of
 /// the plain scene.
 const LIMITED_ITERATIONS: u64 = 5;
-/// Iterations with a search for the force, of three forces: 60 lines then take at most 85 products on the finest grid, 130 and 110 with two and four.
+/// Iterations with a search for the force, which tries three forces. Measured on 60 lines: at most 85 products on the finest grid; with two and four
+/// forces 130 and 110.
 const FORCE_ITERATIONS: u64 = 6;
 
 /// One coarser grid.
@@ -64,7 +67,7 @@ pub struct CoarseGrids {
 }
 
 impl CoarseGrids {
-    /// The grids below `grid`; their operators are made when needed.
+    /// The grids below `grid`. Their operators are set up when needed.
     pub fn new(grid: &Grid, influence: &Coefficients, precision: Precision, threads: &Threads) -> Result<CoarseGrids> {
         let below = || successors(coarsen(grid, COARSEST), |grid| coarsen(grid, COARSEST));
         let mut grids = sparse(below().count(), "coarser grids")?;
@@ -83,7 +86,7 @@ impl CoarseGrids {
         Ok(CoarseGrids { finest, grids, threads, are_current: true, found, find_force })
     }
 
-    /// Notes other coefficients on the finest grid.
+    /// Marks the coefficients as outdated, after a change on the finest grid.
     pub fn forget_coefficients(&mut self) {
         self.are_current = false;
     }
@@ -228,7 +231,7 @@ impl CoarseGrids {
         Ok(end)
     }
 
-    /// Restricts limits to the coarser grids: means over the elements joined, infinite if one is. No element is at its limit.
+    /// Restricts limits to the coarser grids: means over the joined elements, infinite if one limit is. No element is at its limit.
     fn restrict_limits<S: AdmissibleSet>(&mut self, fine: &State, set: S) -> Result<()> {
         for l in 0..self.grids.len() {
             let (finer, coarser) = self.grids.split_at_mut(l);
@@ -247,7 +250,7 @@ impl CoarseGrids {
         Ok(())
     }
 
-    /// The state finer than grid `l`, and grid `l`.
+    /// The state of the grid next finer than `l`, and grid `l`.
     fn pair<'a>(&'a mut self, l: usize, finest: &'a mut State) -> (&'a mut State, &'a mut Coarse) {
         let (finer, coarser) = self.grids.split_at_mut(l);
         (finer.last_mut().map_or(finest, |grid| &mut grid.state), &mut coarser[0])

@@ -1,7 +1,7 @@
 //! The deflation direction: a direction d whose displacement w = A d is known, so that a step along it costs no product.
 //!
 //! Under a prescribed approach the residual has a part that is uniform over C. The pressure of a flat punch on C removes it, but a few
-//! products with M do not approximate this pressure, because M ignores the rim. A small change of the load changes p by nearly this
+//! products with M do not approximate this pressure, because M ignores the boundary of C. A small change of the load changes p by nearly this
 //! pressure, so the change of p since the last solution in time serves for d. Module `uniform` has another direction.
 //!
 //! An element that leaves C later is removed from d but not from w = A d and from (d, w); the missing part is added to the deferred corrections.
@@ -17,7 +17,7 @@ use crate::sums::Sums;
 pub struct Last<'a> {
     /// p.
     pub p: &'a [f64],
-    /// u = A p; none: w takes a product.
+    /// u = A p. Without it w takes a product.
     pub u: Option<&'a [f64]>,
 }
 
@@ -76,7 +76,7 @@ impl<T: Real> Deflation<T> {
         self.length.sqrt()
     }
 
-    /// Makes memory for d and w, and forgets the elements that left.
+    /// Allocates memory for d and w, and removes the elements that left.
     pub(super) fn reserve(&mut self, n: usize) -> Result<()> {
         for values in [&mut self.d, &mut self.w] {
             reserve(values, n, "the change of the last step")?;

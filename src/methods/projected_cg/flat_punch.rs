@@ -12,7 +12,7 @@ use crate::scene::Load;
 use crate::sums::Sums;
 
 /// Penetration at which an element enters, in standard deviations of the residual. Three lines of 9600 elements with two periods take 43, 66 and 48
-/// products with 3, and 58, 80 and 62 with 10 (by force, from a uniform pressure). With 1 they do not end.
+/// products with 3, and 58, 80 and 62 with 10 (by force, from a uniform pressure). With 1 they do not converge.
 const ALLOWED: f64 = 3.0;
 
 impl<T: Real> Iteration<T> {
@@ -21,7 +21,7 @@ impl<T: Real> Iteration<T> {
         self.preconditioner.as_ref().is_some_and(Preconditioner::has_punches)
     }
 
-    /// Before the first iteration: chooses whether pieces of C move as flat punches, and the allowed penetration.
+    /// Before the first iteration: chooses whether components of C are treated as flat punches, and the allowed penetration.
     pub(super) fn choose_punches(&mut self, state: &State) {
         self.allowance = 0.0;
         let Some(m) = &mut self.preconditioner else { return };
@@ -34,8 +34,8 @@ impl<T: Real> Iteration<T> {
     }
 
     /// Sets the penetration from which exterior elements enter: the mean of the residual, in z, plus [`ALLOWED`] standard deviations. Smaller
-    /// penetrations are as uncertain as the residual; most such elements would leave at once. By approach the mean may be negative: as by force,
-    /// distances count from their mean over C.
+    /// penetrations are as uncertain as the residual; most such elements would leave at once. With a prescribed approach the mean may be negative. As
+    /// with a prescribed force, distances are relative to their mean over C.
     pub(super) fn find_allowance(&mut self) {
         let mut sums = Sums::new();
         sums.add([], [&self.z], |[], [r]| [r, r * r]);
@@ -44,7 +44,7 @@ impl<T: Real> Iteration<T> {
         self.allowance = mean + ALLOWED * (squares / count - mean * mean).max(0.0).sqrt();
     }
 
-    /// Makes the deflation direction the pressure of a flat punch on C, of mean 1 there.
+    /// Sets the deflation direction to the pressure of a flat punch on C, with mean 1 there.
     pub(super) fn press_flat(&mut self, state: &State) {
         self.count_near(state);
         self.preconditioner.iter_mut().for_each(|m| m.press_flat(&mut self.deflation.d));

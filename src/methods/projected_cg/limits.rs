@@ -7,9 +7,9 @@
 //! m = force/(dx dy) - sum of p,
 //! ```
 //!
-//! is restored by the next direction, evenly over C: sum of t = m/alpha'. The approach moves as if in proportion to the force, by m/(sum of p) of
-//! (p, approach - h)/(sum of p). Otherwise a thin C between elements at their limit and the exterior area would stay in place while it carries all of
-//! m. If the force is exceeded by far, all of p is scaled down, which no limit forbids, and elements at their limit enter C.
+//! is restored by the next direction, evenly over C: sum of t = m/alpha'. The approach moves by (p, approach - h)/(sum of p) times m/(sum of p), as
+//! if it were proportional to the force. Otherwise a thin C between elements at their limit and the exterior area would stay in place while it
+//! carries all of m. If the force is exceeded by far, all of p is scaled down, which no limit forbids, and elements at their limit enter C.
 //!
 //! Clipped elements go to their limit and enter C again if that was wrong. While the residual on C is far above their e, they wait: directions stay
 //! conjugate, and C converges first ("proportioning", Dostal, *Optimal Quadratic Programming Algorithms* (2009), section 5.8).
@@ -34,7 +34,7 @@ use crate::scene::Load;
 const WAITS: f64 = 0.4;
 
 /// Relative excess of force above which p is scaled down. Measured on 36 scenes (ellipse and rough surface of 64 to 256, limits of 0.3 to 0.9 of
-/// the greatest pressure): without, the work is 1.16 times as much in the mean and 2.2 times in the worst.
+/// the greatest pressure): without scaling, the work is 1.16 times as much in the mean and 2.2 times in the worst case.
 const TOO_MUCH: f64 = 0.05;
 
 impl Beyond {
@@ -52,7 +52,7 @@ impl Beyond {
 }
 
 impl<T: Real> Iteration<T> {
-    /// Makes the additional memory of a scene with limits.
+    /// Allocates the additional memory of a scene with limits.
     pub fn reserve_for_limits(&mut self) -> Result<()> {
         Ok(reserve(&mut self.limits.known, self.t.len(), "pressures with a limit")?)
     }
@@ -87,7 +87,7 @@ impl<T: Real> Iteration<T> {
     }
 
     /// Scales p and the deferred corrections to carry the prescribed force. Returns the factor, with which u is to be scaled. On a given area a
-    /// negligible force is no measure of p: directions keep it up to round-off, which the next certificate finds.
+    /// negligible force does not determine the scale of p. Directions keep it up to round-off, which the next certificate detects.
     pub(super) fn carry_force<S: AdmissibleSet>(&mut self, state: &mut State) -> f64 {
         let Load::Force(force) = state.load else { return 1.0 };
         if S::FIXED && state.is_cancelled(&self.threads) {
@@ -160,8 +160,8 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// With a limit, after a product that corrected all of u: goes back along the change d of the pressures to the least energy, the part
-    /// `s = -(d, e)/(d, A d)` of d. Elements that left for a bound return to C.
+    /// With a limit, after a product that corrected all of u: goes back along the change d of the pressures to the least energy, by
+    /// `s d` with `s = -(d, e)/(d, A d)`. Elements that left for a bound return to C.
     pub(super) fn step_back<S: AdmissibleSet>(&mut self, state: &mut State, set: S, update: &mut Update) {
         debug_assert!(update.gamma == 0.0, "with limits nothing is predicted");
         let (mut work, mut energy) = (0.0, 0.0);

@@ -2,7 +2,7 @@
 //!
 //! With p_1 the last solution and p_0 the one before it, the start is `p_1 + s_1 p_1 + s_2 d`. The first correction follows a change of
 //! load, the second the motion: d = p_1 - p_0 is the change of the last step. s_1 and s_2 minimise the energy
-//! `(p, A p)/2 + (p, h - approach)` (a projection on earlier solutions, Fischer 1998); as all u are known, they cost no product.
+//! `(p, A p)/2 + (p, h - approach)` (a projection on earlier solutions, Fischer 1998). They take no product, because all u are known.
 //! With a prescribed force s_1 follows from the force, and d has the sum 0.
 
 use std::mem::{swap, take};
@@ -18,10 +18,10 @@ use crate::scene::Load;
 use crate::sums::Sums;
 use crate::threads::Threads;
 
-/// If d less its part along p has at most this part of the energy of d, it is round-off.
+/// If d minus its component along p has at most this fraction of the energy of d, it is round-off.
 const NOISE: f64 = 1e-9;
 
-/// The solution before the last; empty before there is one.
+/// The solution before the last. Empty if there is none.
 #[derive(Default)]
 pub struct Predictor {
     p: Vec<f64>,
@@ -46,7 +46,7 @@ impl Predictor {
         Ok(Predictor { p: copy(&self.p)?, u: copy(&self.u)?, is_of_others: self.is_of_others })
     }
 
-    /// Notes a change of coefficients: u is only near A p.
+    /// Marks u as approximate, after a change of coefficients.
     pub fn forget_coefficients(&mut self) {
         self.is_of_others = true;
     }

@@ -26,8 +26,8 @@ use crate::threads::Threads;
 /// full contact of flat bodies, where A is worst conditioned, p must be within ten tolerances (tests/random_problems.rs). Work over 40 cases at 0.5,
 /// 0.75, 0.9: 1, 0.98, 0.96.
 const AIM: f64 = 0.75;
-/// The ratio for tolerances below the round-off of single precision, which then adds noise to p beside the residual. In eight seeds of that test,
-/// 3200 solves, 2 exceed ten tolerances (largest 10.5), with 0.75 about 18 (largest 20).
+/// The ratio for tolerances below the round-off of single precision, which then adds noise to p in addition to the residual. In eight seeds of that
+/// test, 3200 solves, 2 exceed ten tolerances (largest 10.5), with 0.75 about 18 (largest 20).
 const FINE_AIM: f64 = 0.5;
 /// Bound on the noise in p, in tolerances, with which the first u on the finest grid is in single precision. Errors of transforms are about a tenth
 /// of `EPSILON u`: the error of the largest pressure is then below ten tolerances.

@@ -14,8 +14,8 @@
 //!
 //! On a line in plane strain d is the pressure of a flat punch instead (module `flat_punch`), for any surface.
 //!
-//! d is made anew when a quarter of C has left it: elements that left need corrections in each step, so this saves time. If C is found late, as
-//! around a spike that hides all else on coarse grids, d is first made then.
+//! d is set up again when a quarter of C has left it. This saves time, because elements that left need corrections in each step. C may be found late,
+//! as around a spike that dominates coarse grids. Then d is set up when C is found.
 //!
 //! Measured: 180 planes of 80 x 80 with one spike, many, or plateaus take 5 to 31 iterations by approach (median 15), 5 to 29 by force (median
 //! 14). Without d most of those with spikes take more than 60.
@@ -31,11 +31,11 @@ use crate::sums::{in_blocks, Sums};
 const FEW: f64 = 8.0;
 /// Part of the force beyond this ratio from which few elements carry much.
 const MUCH: f64 = 0.01;
-/// d is made anew when one part in this many of C has changed.
+/// d is set up again when C has changed by its number of elements over this.
 const ANOTHER: u64 = 4;
 
 impl<T: Real> Iteration<T> {
-    /// Makes the deflation direction, if the load needs one, no change is known and there is memory. Returns the products that this takes.
+    /// Sets up the deflation direction, if the load needs one, no change is known and there is memory. Returns the products that this takes.
     pub(super) fn deflate<S: AdmissibleSet>(&mut self, state: &State, is_mean_free: bool) -> u64 {
         let by_approach = matches!(state.load, Load::Approach(_));
         let is_known = self.deflation.is_there() && !self.deflation.is_uniform;
@@ -63,7 +63,7 @@ impl<T: Real> Iteration<T> {
         1
     }
 
-    /// Whether C has changed so much that its direction is to be made anew, or first.
+    /// Whether C has changed so much that d must be set up, again or for the first time.
     pub(super) fn is_another_area(&self, cycle: &Cycle, iterations: u64) -> bool {
         let count = self.segments.count() as u64;
         if self.deflation.is_there() {

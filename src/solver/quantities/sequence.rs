@@ -1,8 +1,8 @@
 //! The error of a quantity from its values on finer and finer grids.
 //!
 //! With elements of size h a value has the error `c h^q`, q = 1 or 2 (Richardson). With the change d between two grids, k doublings apart, the
-//! remaining error is `d/(2^k - 1)` for q = 1, and `d/(4^k - 1)` for q = 2. Areas jump from grid to grid: so no error is less than that of first
-//! order predicted on the grid before, unless both grids indicate second order.
+//! remaining error is `d/(2^k - 1)` for q = 1, and `d/(4^k - 1)` for q = 2. Areas change irregularly from grid to grid. So no error is less than the
+//! prediction at first order on the grid before, unless both grids indicate second order.
 
 use crate::solver::falling::Falling;
 
@@ -135,7 +135,7 @@ impl Change {
     }
 }
 
-/// Whether the last three changes, or two if there are no more, have one sign and do not fall. Changes below `hidden` do not count.
+/// Whether the last three changes, or two if there are no more, have one sign and do not fall. Changes below `hidden` are ignored.
 fn is_singular(changes: &[Change], hidden: f64) -> bool {
     let last = &changes[changes.len().saturating_sub(3)..];
     last.windows(2).all(|pair| {

@@ -47,15 +47,15 @@ pub(super) enum Next {
 const SMALL_GRID: usize = 32;
 /// The search ends after this many larger grids without an estimate, or this many grids without contact.
 const MOST_WITHOUT: usize = 3;
-/// Most doublings of a prediction: beyond, errors are uncertain, and a grid in between costs only 1/64 of the last.
+/// Most doublings of a prediction. Over more, errors are uncertain, and a grid in between costs only 1/64 of the last.
 const MOST_DOUBLINGS: u32 = 3;
 /// Least and largest power of the number of elements with which seconds grow.
 const EXPONENTS: (f64, f64) = (0.9, 1.25);
-/// A grid predicted to take up to this times the time left is tried: its result when time is over may be the better one.
+/// A grid is tried if its predicted time is at most this many times the time left. Its unfinished result may be better than the last one.
 const WORTH_A_TRY: f64 = 1.2;
 
 impl Past {
-    /// `seconds`: of this grid, and since the begin of the first.
+    /// `seconds` are those of this grid, and those since the first grid was begun.
     pub fn of(
         (solved, is_believed): (&Solved, bool),
         accuracy: &Accuracy,

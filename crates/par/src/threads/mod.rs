@@ -56,7 +56,7 @@ impl Threads {
         }
     }
 
-    /// Number of threads. Each may need scratch of its own.
+    /// Number of threads. Each may need separate scratch.
     pub fn count(&self) -> usize {
         match self {
             Threads::One => 1,

@@ -1,6 +1,6 @@
 //! The pool of a process: workers start at the first request, as many as the largest request, and serve all solves.
 //!
-//! The pool carries the process id. After a fork the child has no workers, so it makes a pool of its own instead of waiting for absent
+//! The pool carries the process id. After a fork the child has no workers, so it makes its own pool instead of waiting for absent
 //! threads, also for operators set up before the fork. It touches no lock of its parent, which another thread may have held.
 
 use std::sync::atomic::{AtomicPtr, Ordering};

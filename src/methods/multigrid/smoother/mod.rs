@@ -29,7 +29,7 @@ pub enum SmootherKind {
 
 impl SmootherKind {
     /// The relaxation that suits this smoother: 0.8 is the paper's best (table 1); a damped Jacobi needs 1/2; the FFT
-    /// smoother has a step length of its own.
+    /// smoother has its own step length.
     pub fn default_relaxation(self) -> f64 {
         match self {
             SmootherKind::GaussSeidel | SmootherKind::RedBlack => 0.8,
