@@ -17,9 +17,11 @@ const PRESSED: f64 = 0.01;
 /// Bodies are pressed by this factor times the least force that is known, or times the last pressing force. There are this many ways at most.
 const MORE: f64 = 10.0;
 const WAYS: u32 = 4;
+/// Less than this part of all attraction is no pull.
+const HELD: f64 = 1e-6;
 /// A way has found less force if that is below the least, a pull, times this factor.
 const LESS: f64 = 1.0 + 1e-6;
-/// The first way of a pull-off may take this factor times the cycles of a solve. Each of its states may take one part in this many of a solve's.
+/// The first way of a search for a pull may take this factor times the cycles of a solve. Each state of a pull-off may take one part in this many of a solve's.
 const PULL_OFF: u64 = 3;
 const STATES: u64 = 4;
 /// Where the way of a pull-off is lost, further ways begin below, so many at most. Each begin is looked for in so many steps. A step is this part of the length
@@ -54,7 +56,7 @@ impl Solver {
                 Err(Error::Infeasible(format!(
                     "force is {force:e}; the strongest state that was found, on the ways down from no load and from bodies pressed together, holds \
                      a pull of {:e} (the pull-off force), at an approach of {approach:e}",
-                    sum * area
+                    sum.min(0.0) * area
                 )))
             }
             Walk::Lost | Walk::Met => {
@@ -107,7 +109,8 @@ impl Solver {
         Walker::new(&mut self.levels[0], goal, make, monitor)
     }
 
-    /// Of the first way of a pull-off, which has many states: each may take a part of the cycles, and all together some times as many.
+    /// Of the first way of a search for a pull, which has many states, and a snap behind the strongest: all together may take some times the cycles of a solve,
+    /// and each state of a pull-off a part of them.
     fn first_walker<'a, 'm, 'c>(
         &'a mut self,
         goal: Goal,
@@ -115,12 +118,12 @@ impl Solver {
         make: MakeFrozen<'a>,
         monitor: &'m mut Monitor<'c>,
     ) -> Walker<'a, 'm, 'c> {
-        if goal.wanted.is_some() {
+        if goal.wanted.is_some() && !pulls(goal) {
             return self.walker(goal, make, monitor);
         }
         let left = goal.most.saturating_mul(PULL_OFF).saturating_sub(spent);
         let most = monitor.count.cycles.saturating_add(left);
-        let each = goal.most / STATES + 1;
+        let each = if goal.wanted.is_some() { u64::MAX } else { goal.most / STATES + 1 };
         Walker { each, ..self.walker(Goal { most, ..goal }, make, monitor) }
     }
 
@@ -213,8 +216,7 @@ impl Solver {
                 ended => return Ok(ended),
             }
             // Each further way takes at most some times as long.
-            let times = TIMES * spent + AT_LEAST;
-            most = if goal.wanted.is_none() { times } else { most.min(times) };
+            most = TIMES * spent + AT_LEAST;
         }
         let mut pressing = self.first_pressing(least.as_ref(), goal);
         for _ in 0..WAYS {
@@ -233,7 +235,7 @@ impl Solver {
                 Walk::Found => return Ok(Walk::Found),
                 Walk::Least { sum, .. } if least.as_ref().is_none_or(|least| sum < LESS * least.sum) => {
                     met = Some(Met::of(&self.levels[0]));
-                    pressing = MORE * sum.abs();
+                    pressing = if self.is_pull(sum) { MORE * sum.abs() } else { pressing };
                     least = Some(Place::of(&self.levels[0], sum)?);
                 }
                 Walk::Lost if least.is_none() => {}
@@ -255,12 +257,17 @@ impl Solver {
 
     /// The force by which bodies are pressed first, where a state of the least force is known or none.
     fn first_pressing(&self, least: Option<&Place>, goal: Goal) -> f64 {
-        match (least, goal.wanted.unwrap_or(0.0)) {
+        match (least.filter(|least| self.is_pull(least.sum)), goal.wanted.unwrap_or(0.0)) {
             (Some(least), _) => MORE * least.sum.abs(),
             (None, wanted) if wanted > 0.0 => MORE * wanted,
             (None, wanted) if wanted < 0.0 => wanted.abs().min(self.most_attraction()),
             _ => PRESSED * self.most_attraction(),
         }
+    }
+
+    /// Whether a sum of p is a pull, and not what the last attraction of bodies leaves of one that nothing holds.
+    fn is_pull(&self, sum: f64) -> bool {
+        sum < -HELD * self.most_attraction()
     }
 
     /// The sum of all attraction, at a distance of 0 everywhere.

@@ -15,6 +15,8 @@ use crate::methods::fields;
 /// A step: this part of the length that the energy and the stiffness of the contact have together; a larger part down to the state of an earlier way.
 const STEP: f64 = 0.1;
 const LONG: f64 = 0.3;
+/// The least length: of the range. What is in contact and attracts nothing has a length that falls with its force, and a way in parts of that has no end.
+const SHORTEST: f64 = 1e-3;
 /// A step of surfaces that are locked in contact: of the range.
 const OF_RANGE: f64 = 0.1;
 /// Steps at most.
@@ -28,7 +30,7 @@ const NEARLY: f64 = 0.1;
 const NEARLY_WITHIN: (f64, f64) = (0.005, 0.02);
 /// The least force is looked for once more so many small steps above.
 const UP: [f64; 4] = [0.0, 0.25, 0.5, 1.0];
-/// Steps from the minimum, which are halved where they find no less: the last elements of a contact part at a cusp.
+/// Steps from the minimum to both sides, which are halved: elements of a contact part at a cusp.
 const LAST: u32 = 5;
 /// Two ways have met where their sums of p differ by less than this part of all attraction or repulsion.
 const SAME: f64 = 1e-3;
@@ -177,7 +179,8 @@ impl Walker<'_, '_, '_> {
             if approach <= to {
                 break;
             }
-            way.longest = if is_nearly(sum, best.sum, nearly) { small } else { step };
+            // Steps are long up to where the force is nearly the least.
+            way.longest = small.max(step.min(way.distance_to(best.sum + nearly * best.sum.abs(), (sum, approach))));
             way.step = way.step.min(way.longest);
             way.take(self.level, sum)?;
         }
@@ -206,19 +209,24 @@ impl Walker<'_, '_, '_> {
         };
         for _ in 0..LAST {
             step *= 0.5;
-            self.level.now.copy_from(&best.at)?;
-            let approach = best.approach() - step;
-            let found = self.solve_at(approach)?;
-            if self.goal.is_interrupted(self.monitor) {
-                break;
-            }
-            let found = found.filter(|_| self.level.now.contact.contains(&true));
-            match found {
-                Some(sum) if self.goal.wanted.is_some_and(|wanted| sum <= wanted) => {
-                    return self.between(&mut best, (sum, approach));
+            for by in [-step, step] {
+                self.level.now.copy_from(&best.at)?;
+                let approach = best.approach() + by;
+                let found = self.solve_at(approach)?;
+                if self.goal.is_interrupted(self.monitor) {
+                    break;
                 }
-                Some(sum) if sum < best.sum => best.take(self.level, sum)?,
-                _ => {}
+                let found = found.filter(|_| self.level.now.contact.contains(&true));
+                match found {
+                    Some(sum) if self.goal.wanted.is_some_and(|wanted| sum <= wanted) => {
+                        return self.between(&mut best, (sum, approach));
+                    }
+                    Some(sum) if sum < best.sum => {
+                        best.take(self.level, sum)?;
+                        break;
+                    }
+                    _ => {}
+                }
             }
         }
         self.level.now.copy_from(&best.at)?;
@@ -241,7 +249,7 @@ impl Walker<'_, '_, '_> {
         let [elastic, _] = energies(surface, now, &problem.threads);
         let of_element = |i: usize| [if now.contact[i] { surface.work_at(i) } else { 0.0 }];
         let [parting] = fields::sum(&problem.threads, now.u.len(), of_element);
-        ((elastic + parting) / stiffness.abs()).sqrt()
+        ((elastic + parting) / stiffness.abs()).sqrt().max(SHORTEST * surface.attraction.range)
     }
 
     /// From surfaces that are locked in contact, where pressures fall by the same everywhere: to the force that is wanted, or to that at which the first

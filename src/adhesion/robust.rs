@@ -1,5 +1,5 @@
 //! One grid: Newton's method; where it fails in cautious steps; and where that fails, or ends uphill or on a saddle, some steps of descent from the last
-//! good state, and Newton's method again, in bold and cautious steps by turns.
+//! good state, and Newton's method again, in bold steps, and then in firm and cautious ones by turns.
 
 use super::level::{Level, MakeFrozen};
 use super::majorise::{descend, Descent, Steps};
@@ -50,6 +50,17 @@ fn is_saddle(level: &mut Level, goal: Goal, is_long: bool, monitor: &mut Monitor
     Ok(goal.wanted.is_none() && is_asked && !is_stable(level, false, monitor)?)
 }
 
+/// How Newton's method steps at each of its trials. Where bold steps go round in circles cautious ones may not, and the other way round. Firm ones cost more, and
+/// come to the end of most avalanches, in which the edge of the contact moves from element to element.
+fn pace_of(round: u32, first: Pace) -> Pace {
+    match round {
+        0 | 2 => first,
+        1 => Pace::Cautious,
+        _ if first == Pace::Bold && round % 2 == 1 => Pace::Firm,
+        _ => Pace::Cautious,
+    }
+}
+
 /// Solves a grid from what it holds. `keeps`: the first step of Newton's method keeps the contact area.
 pub fn solve(
     level: &mut Level,
@@ -63,8 +74,7 @@ pub fn solve(
     let (mut least, mut is_lost, mut has_descended) = (f64::INFINITY, false, false);
     for round in 0..ROUNDS {
         let before = monitor.count.cycles;
-        // Where bold steps go round in circles cautious ones may not, and the other way round.
-        let pace = if round % 2 == 0 { goal.pace } else { Pace::Cautious };
+        let pace = pace_of(round, goal.pace);
         let keeps = keeps && !has_descended;
         let (end, measured) = newton(level, Goal { pace, ..goal }, keeps, monitor)?;
         let is_long = monitor.count.cycles - before > SHORT;

@@ -61,6 +61,16 @@ impl Way {
         Ok(Way { here, before, has_before: false, count: count_contact(level), is_close, step: longest, longest })
     }
 
+    /// How far a way that comes to an approach with this sum is from another sum, on the line from where it is: 0 if it is there, and infinite if it leads away.
+    pub fn distance_to(&self, wanted: f64, (sum, approach): (f64, f64)) -> f64 {
+        let slope = (self.here.sum - sum) / (self.here.approach() - approach);
+        match sum - wanted {
+            left if left <= 0.0 => 0.0,
+            left if slope > 0.0 => left / slope,
+            _ => f64::INFINITY,
+        }
+    }
+
     /// Goes on to what the level holds.
     pub fn take(&mut self, level: &Level, sum: f64) -> Result<()> {
         let count = count_contact(level);
