@@ -82,6 +82,14 @@ class Adhesion(unittest.TestCase):
         alone = solve(force=-0.5, adhesion=sticky, friction={**SHIFT, "creepage": (-0.05, 0.02)}, e_star=None, **steel)
         np.testing.assert_allclose(found.force[1], alone.report["tangential_force"][:2], rtol=1e-4, atol=1e-6 * bound)
 
+    def test_stresses_below_are_those_of_pressures_less_those_of_the_attraction(self) -> None:
+        found = solve(force=-0.5)
+        self.assertLess(found.pressure.min(), 0)
+        points = [(0.0, 0.0, 0.4), (1.1, 0.3, 0.2), (0.2, -1.4, 0.1)]
+        parts = [contact_normal.stress_at_points(p, D, D, points, poisson_ratio=0.3) for p in (found.pressure, found.pressure + found.attraction, found.attraction)]
+        total, contact, attraction = (np.asarray(part) for part in parts)
+        np.testing.assert_allclose(total, contact - attraction, rtol=0, atol=1e-12 * abs(contact).max())
+        self.assertGreater(abs(total - contact).max(), 0.1 * abs(contact).max())
 
     def test_accuracies_and_quantities_take_it(self) -> None:
         scene = {"approach": 0.2, "e_star": 0.75, "adhesion": STICKY}

@@ -17,9 +17,11 @@ const PRESSED: f64 = 0.01;
 /// Pressing force over the least known force, or over the last pressing force, and most ways down from pressed bodies.
 const MORE: f64 = 10.0;
 const WAYS: u32 = 4;
+/// Pulls below this part of the whole attraction count as none.
+const HELD: f64 = 1e-6;
 /// A way has found a stronger pull if it exceeds the strongest known by this factor.
 const LESS: f64 = 1.0 + 1e-6;
-/// The first way of a pull-off may take PULL_OFF times the cycles of a solve, each of its states 1/STATES of them.
+/// The first way of a search for a pull may take PULL_OFF times the cycles of a solve, each state of a pull-off 1/STATES of them.
 const PULL_OFF: u64 = 3;
 const STATES: u64 = 4;
 /// If the way of a pull-off is lost, at most ANEW further ways begin below it. Each begin is sought in STEPS_BELOW steps of BELOW times
@@ -54,7 +56,7 @@ impl Solver {
                 Err(Error::Infeasible(format!(
                     "force is {force:e}; the strongest state that was found, on the ways down from no load and from bodies pressed together, holds \
                      a pull of {:e} (the pull-off force), at an approach of {approach:e}",
-                    sum * area
+                    sum.min(0.0) * area
                 )))
             }
             Walk::Lost | Walk::Met => {
@@ -107,7 +109,8 @@ impl Solver {
         Walker::new(&mut self.levels[0], goal, make, monitor)
     }
 
-    /// The walker of the first way of a pull-off, which has many states: see [`PULL_OFF`] and [`STATES`] for the cycles.
+    /// The walker of the first way of a search for a pull, which has many states and a snap behind the strongest: see [`PULL_OFF`] and [`STATES`]
+    /// for the cycles.
     fn first_walker<'a, 'm, 'c>(
         &'a mut self,
         goal: Goal,
@@ -115,12 +118,12 @@ impl Solver {
         make: MakeFrozen<'a>,
         monitor: &'m mut Monitor<'c>,
     ) -> Walker<'a, 'm, 'c> {
-        if goal.wanted.is_some() {
+        if goal.wanted.is_some() && !pulls(goal) {
             return self.walker(goal, make, monitor);
         }
         let left = goal.most.saturating_mul(PULL_OFF).saturating_sub(spent);
         let most = monitor.count.cycles.saturating_add(left);
-        let each = goal.most / STATES + 1;
+        let each = if goal.wanted.is_some() { u64::MAX } else { goal.most / STATES + 1 };
         Walker { each, ..self.walker(Goal { most, ..goal }, make, monitor) }
     }
 
@@ -213,8 +216,7 @@ impl Solver {
                 ended => return Ok(ended),
             }
             // Each further way has a multiple of these cycles.
-            let times = TIMES * spent + AT_LEAST;
-            most = if goal.wanted.is_none() { times } else { most.min(times) };
+            most = TIMES * spent + AT_LEAST;
         }
         let mut pressing = self.first_pressing(least.as_ref(), goal);
         for _ in 0..WAYS {
@@ -233,7 +235,7 @@ impl Solver {
                 Walk::Found => return Ok(Walk::Found),
                 Walk::Least { sum, .. } if least.as_ref().is_none_or(|least| sum < LESS * least.sum) => {
                     met = Some(Met::of(&self.levels[0]));
-                    pressing = MORE * sum.abs();
+                    pressing = if self.is_pull(sum) { MORE * sum.abs() } else { pressing };
                     least = Some(Place::of(&self.levels[0], sum)?);
                 }
                 Walk::Lost if least.is_none() => {}
@@ -255,12 +257,17 @@ impl Solver {
 
     /// The first pressing force, by the state of the least force if one is known.
     fn first_pressing(&self, least: Option<&Place>, goal: Goal) -> f64 {
-        match (least, goal.wanted.unwrap_or(0.0)) {
+        match (least.filter(|least| self.is_pull(least.sum)), goal.wanted.unwrap_or(0.0)) {
             (Some(least), _) => MORE * least.sum.abs(),
             (None, wanted) if wanted > 0.0 => MORE * wanted,
             (None, wanted) if wanted < 0.0 => wanted.abs().min(self.most_attraction()),
             _ => PRESSED * self.most_attraction(),
         }
+    }
+
+    /// Whether a sum of p is a pull, and not what the last attraction of bodies leaves of one that nothing holds.
+    fn is_pull(&self, sum: f64) -> bool {
+        sum < -HELD * self.most_attraction()
     }
 
     /// The sum of all attraction, at a distance of 0 everywhere.

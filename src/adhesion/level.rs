@@ -109,6 +109,13 @@ impl Level {
         measure(&self.surface, &mut self.now, of_element, (is_kept, wanted, is_mean_free), &self.problem.threads)
     }
 
+    /// Whether bodies are apart, and so far that undeformed surfaces do not attract each other.
+    pub fn leaves_nothing(&self) -> bool {
+        let (surface, now) = (&self.surface, &self.now);
+        let attracts = |i: usize| surface.traction(i, surface.h[i] - now.approach()) > 0.0;
+        !now.contact.contains(&true) && !(0..now.contact.len()).any(attracts)
+    }
+
     /// Whether a uniform pressure displaces nothing.
     pub fn is_mean_free(&self) -> bool {
         self.problem.coefficients.is_mean_free()

@@ -50,6 +50,9 @@ const RISEN: f64 = 2.0;
 const AGAIN: f64 = 0.1;
 /// Most cautious steps below [`CLOSE`]: next to a fold of the branch they converge slowly.
 const MOST_CAUTIOUS: u64 = 30;
+/// Most firm steps, and the relative tolerances of their linear systems far from the solution and near it.
+const MOST_FIRM: u64 = 60;
+const FIRM: [f64; 2] = [0.1, 0.03];
 /// Largest s a0, which is stored in single precision.
 const STIFFEST: f64 = 1e30;
 /// Residual of a failure.
@@ -73,6 +76,8 @@ pub enum Pace {
     Bold,
     /// With a part of it, until the contact area is constant.
     Cautious,
+    /// As bold ones, but their linear systems are solved firmly, and there are more of them.
+    Firm,
 }
 
 /// The goal of a loop on one grid.
@@ -106,7 +111,7 @@ pub fn newton(level: &mut Level, goal: Goal, keeps: bool, monitor: &mut Monitor<
         n if n <= LARGE => (IN_MEMORY, IN_MEMORY),
         _ => (AT_FIRST, IN_MEMORY),
     };
-    for step in 0..=MOST_CAUTIOUS {
+    for step in 0..=MOST_FIRM {
         measured = level.measure(keeps && step == 0, goal.wanted);
         if measured.opening > 0.0 {
             level.open();
@@ -128,8 +133,12 @@ pub fn newton(level: &mut Level, goal: Goal, keeps: bool, monitor: &mut Monitor<
             return Ok((End::Interrupted, measured));
         }
         let residual = measured.residual();
-        let is_slow = goal.pace == Pace::Cautious && residual < CLOSE;
-        if !(worst < LOST) || step >= if is_slow { MOST_CAUTIOUS } else { MOST_STEPS } {
+        let most_steps = match goal.pace {
+            Pace::Firm => MOST_FIRM,
+            Pace::Cautious if residual < CLOSE => MOST_CAUTIOUS,
+            _ => MOST_STEPS,
+        };
+        if !(worst < LOST) || step >= most_steps {
             break;
         }
         if residual > RISEN * last {
@@ -159,7 +168,8 @@ fn take_step(level: &mut Level, Goal { wanted, pace, .. }: Goal, is_far: bool, m
     let weight = if wanted.is_some() { 1.0 / f64::max(count, 1.0) } else { 0.0 };
     let r = Bordered { field: right, border };
     let norm = (fields::dot(&threads, &r.field, &r.field) + weight * border[0] * border[0]).sqrt();
-    let until = Until { target: norm * if is_far { FAR } else { NEAR }, most };
+    let [far, near] = if pace == Pace::Firm { FIRM } else { [FAR, NEAR] };
+    let until = Until { target: norm * if is_far { far } else { near }, most };
     let mut system = Linearised::new(level, &stiffness, wanted.is_some(), &mut fields)?;
     let found = system.solve(r, (until, weight), &threads, &mut fields)?;
     let is_enough = found.count < most;
@@ -186,7 +196,7 @@ pub fn stiffnesses<T: Real>(level: &Level, place: impl Fn(usize, f64) -> f64 + S
 fn linearise(level: &Level, pace: Pace, is_far: bool, stiffness: &mut [Short], right: &mut [[f64; 1]]) {
     let (surface, now, a0, threads) = (&level.surface, &level.now, level.self_influence(), &level.problem.threads);
     let range = surface.attraction.range;
-    let at_mean = is_far && pace == Pace::Bold && surface.attraction.law == Law::Exponential;
+    let at_mean = is_far && pace != Pace::Cautious && surface.attraction.law == Law::Exponential;
     // The distance at which element i is linearised.
     let place = |i: usize, e: f64| {
         let e = e.max(0.0);

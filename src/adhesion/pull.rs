@@ -16,6 +16,9 @@ use crate::methods::fields;
 /// A step, relative to the length from the energy and the stiffness of the contact; a longer one down to the state of an earlier way.
 const STEP: f64 = 0.1;
 const LONG: f64 = 0.3;
+/// The least length, relative to the range. Bodies in contact without attraction have a length that falls with their force, and a way in parts of
+/// that length has no end.
+const SHORTEST: f64 = 1e-3;
 /// A step of surfaces locked in contact, relative to the range.
 const OF_RANGE: f64 = 0.1;
 /// Most steps.
@@ -29,7 +32,7 @@ const NEARLY: f64 = 0.1;
 const NEARLY_WITHIN: (f64, f64) = (0.005, 0.02);
 /// Small steps above the minimum from which the least force is sought again.
 const UP: [f64; 4] = [0.0, 0.25, 0.5, 1.0];
-/// Steps from the minimum, halved if they find no smaller force: the last elements of a contact part at a cusp.
+/// Steps from the minimum to both sides, which are halved: the last elements of a contact part at a cusp.
 const LAST: u32 = 5;
 /// Difference of the sums of p, relative to the whole attraction or repulsion, at which two ways meet.
 const SAME: f64 = 1e-3;
@@ -178,7 +181,8 @@ impl Walker<'_, '_, '_> {
             if approach <= to {
                 break;
             }
-            way.longest = if is_nearly(sum, best.sum, nearly) { small } else { step };
+            // Steps are long up to where the force is nearly the least.
+            way.longest = small.max(step.min(way.distance_to(best.sum + nearly * best.sum.abs(), (sum, approach))));
             way.step = way.step.min(way.longest);
             way.take(self.level, sum)?;
         }
@@ -207,19 +211,24 @@ impl Walker<'_, '_, '_> {
         };
         for _ in 0..LAST {
             step *= 0.5;
-            self.level.now.copy_from(&best.at)?;
-            let approach = best.approach() - step;
-            let found = self.solve_at(approach)?;
-            if self.goal.is_interrupted(self.monitor) {
-                break;
-            }
-            let found = found.filter(|_| self.level.now.contact.contains(&true));
-            match found {
-                Some(sum) if self.goal.wanted.is_some_and(|wanted| sum <= wanted) => {
-                    return self.between(&mut best, (sum, approach));
+            for by in [-step, step] {
+                self.level.now.copy_from(&best.at)?;
+                let approach = best.approach() + by;
+                let found = self.solve_at(approach)?;
+                if self.goal.is_interrupted(self.monitor) {
+                    break;
                 }
-                Some(sum) if sum < best.sum => best.take(self.level, sum)?,
-                _ => {}
+                let found = found.filter(|_| self.level.now.contact.contains(&true));
+                match found {
+                    Some(sum) if self.goal.wanted.is_some_and(|wanted| sum <= wanted) => {
+                        return self.between(&mut best, (sum, approach));
+                    }
+                    Some(sum) if sum < best.sum => {
+                        best.take(self.level, sum)?;
+                        break;
+                    }
+                    _ => {}
+                }
             }
         }
         self.level.now.copy_from(&best.at)?;
@@ -242,7 +251,7 @@ impl Walker<'_, '_, '_> {
         let [elastic, _] = energies(surface, now, &problem.threads);
         let of_element = |i: usize| [if now.contact[i] { surface.work_at(i) } else { 0.0 }];
         let [parting] = fields::sum(&problem.threads, now.u.len(), of_element);
-        ((elastic + parting) / stiffness.abs()).sqrt()
+        ((elastic + parting) / stiffness.abs()).sqrt().max(SHORTEST * surface.attraction.range)
     }
 
     /// Lowers the pressures of surfaces locked in contact, which fall uniformly, to the wanted force or until the first element parts. Returns the

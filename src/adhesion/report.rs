@@ -32,6 +32,8 @@ pub struct Report {
     pub stability: Option<f64>,
     /// Whether the bodies have snapped: the state before could not be followed, and more than a quarter of the contact differs.
     pub jumped: bool,
+    /// Whether cycles ended on the ways down to a pull, which have not come to it: the state is that of the strongest pull on them.
+    pub is_short: bool,
 }
 
 /// kappa up to which elements resolve the attraction.
@@ -70,6 +72,7 @@ impl Report {
             stiffness: None,
             stability: None,
             jumped: false,
+            is_short: false,
         }
     }
 
@@ -121,7 +124,7 @@ pub fn measures(level: &Level, measured: &Measured) -> Measures {
     let area = grid.element_area();
     Measures {
         certificate: Certificate {
-            residual: measured.distance,
+            residual: measured.distance.max(measured.force),
             violation: measured.penetration,
             complementarity: if work == 0.0 { 0.0 } else { work / elastic.max(own) },
             min_pressure: least,

@@ -1,5 +1,5 @@
 //! One grid: Newton's method, then in cautious steps if it fails. If these fail, or end uphill or on a saddle, some steps of descent from the last
-//! good state follow, then Newton's method again, with bold and cautious steps in turns.
+//! good state follow, then Newton's method again, in bold steps, and then in firm and cautious ones in turns.
 
 use super::level::{Level, MakeFrozen};
 use super::majorise::{descend, Descent, Steps};
@@ -51,6 +51,17 @@ fn is_saddle(level: &mut Level, goal: Goal, is_long: bool, monitor: &mut Monitor
     Ok(goal.wanted.is_none() && is_asked && !is_stable(level, false, monitor)?)
 }
 
+/// The steps of Newton's method in each round. If bold steps cycle, cautious ones may not, and conversely. Firm steps cost more. They finish most
+/// avalanches, in which the edge of the contact moves from element to element.
+fn pace_of(round: u32, first: Pace) -> Pace {
+    match round {
+        0 | 2 => first,
+        1 => Pace::Cautious,
+        _ if first == Pace::Bold && round % 2 == 1 => Pace::Firm,
+        _ => Pace::Cautious,
+    }
+}
+
 /// Solves a grid from its state. `keeps`: the first Newton step keeps the contact area.
 pub fn solve(
     level: &mut Level,
@@ -64,8 +75,7 @@ pub fn solve(
     let (mut least, mut is_lost, mut has_descended) = (f64::INFINITY, false, false);
     for round in 0..ROUNDS {
         let before = monitor.count.cycles;
-        // If bold steps cycle, cautious ones may not, and conversely.
-        let pace = if round % 2 == 0 { goal.pace } else { Pace::Cautious };
+        let pace = pace_of(round, goal.pace);
         let keeps = keeps && !has_descended;
         let (end, measured) = newton(level, Goal { pace, ..goal }, keeps, monitor)?;
         let is_long = monitor.count.cycles - before > SHORT;

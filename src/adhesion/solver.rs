@@ -180,13 +180,23 @@ impl Solver {
             level.now.unload(&level.problem.threads);
             end = Descent::By(End::Solved);
         }
+        if end == Descent::By(End::Solved) && level.leaves_nothing() {
+            // Whatever is left of pressures is that of states before.
+            level.now.unload(&level.problem.threads);
+        }
         if end != Descent::By(End::Solved) {
             level.refresh()?;
             level.count_products(monitor);
         }
-        let measured = level.measure(false, wanted);
+        let mut measured = level.measure(false, wanted);
+        if request.pull_off {
+            // The load is where the search began.
+            measured.force = 0.0;
+        }
         let mut report = Report::of(level, &measured);
         report.jumped = self.jumped;
+        let is_state = measured.distance.max(measured.law) <= request.tolerance;
+        report.is_short = end == Descent::By(End::Interrupted) && pulls(goal) && is_state && measured.pressures < 0.0;
         let is_solved = end == Descent::By(End::Solved);
         if request.stiffness && is_solved {
             let area = level.problem.grid.element_area();

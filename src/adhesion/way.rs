@@ -62,6 +62,17 @@ impl Way {
         Ok(Way { here, before, has_before: false, count: count_contact(level), is_close, step: longest, longest })
     }
 
+    /// Distance in approach from a state with this sum and approach to the wanted sum, on the line from here: 0 if it is reached, and infinite
+    /// if the line leads away.
+    pub fn distance_to(&self, wanted: f64, (sum, approach): (f64, f64)) -> f64 {
+        let slope = (self.here.sum - sum) / (self.here.approach() - approach);
+        match sum - wanted {
+            left if left <= 0.0 => 0.0,
+            left if slope > 0.0 => left / slope,
+            _ => f64::INFINITY,
+        }
+    }
+
     /// Moves on to the state of the level.
     pub fn take(&mut self, level: &Level, sum: f64) -> Result<()> {
         let count = count_contact(level);

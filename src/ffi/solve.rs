@@ -191,12 +191,20 @@ pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Opt
 
 /// By how much the force of a result is not the one that is given, where that is more than the tolerance: bodies that pull too little.
 fn lack_of_force(load: Load, report: &Report) -> String {
-    let Load::Force(force) = load else { return String::new() };
-    let lack = (report.measures.force / force - 1.0).abs();
-    match lack > report.tolerance && lack.is_finite() {
-        true => format!("; the force is off by {lack:e} of the one that is given"),
-        false => String::new(),
+    let Load::Force(given) = load else { return String::new() };
+    let (force, approach) = (report.measures.force, report.measures.approach);
+    let lack = (force / given - 1.0).abs();
+    if !(lack > report.tolerance && lack.is_finite()) {
+        return String::new();
     }
+    let found = match report.adhesion.is_some_and(|found| found.is_short) {
+        true => format!(
+            "; no way down has led to the force that is given until then, and the strongest state on them holds a pull of {force:e}, at an \
+             approach of {approach:e}"
+        ),
+        false => String::new(),
+    };
+    format!("{found}; the force is off by {lack:e} of the one that is given")
 }
 
 /// The point that a solve without further progress has reached, as far as its result proves it.

@@ -108,18 +108,26 @@ fn values_that_are_none_are_refused_by_name() {
 #[test]
 fn it_can_be_cancelled_at_every_callback() {
     let sphere = Sphere::by_tabor(1.0, 40, 3.0);
-    for (start, load) in
-        [(Start::Auto, Load::Approach(0.3)), (Start::Apart, Load::Approach(-0.2)), (Start::Auto, Load::Force(-1.2))]
-    {
+    for (start, load, pull_off) in [
+        (Start::Auto, Load::Approach(0.3), false),
+        (Start::Apart, Load::Approach(-0.2), false),
+        (Start::Auto, Load::Force(-1.2), false),
+        (Start::Auto, Load::Force(0.0), true),
+    ] {
         let scene = Scene { adhesion: Some(Adhesion { start, ..sphere.adhesion }), ..sphere.scene(load) };
         let mut solver = Solver::new(&scene, &Options::default()).expect("a solver");
-        for at in 1..200 {
+        // A pull-off asks some hundred times: it is cancelled at the first ones, and at every 16th.
+        for at in (1..2000).filter(|at| !pull_off || *at < 8 || at % 16 == 0) {
             let mut calls = 0;
             let mut cancel = |_: &Progress| {
                 calls += 1;
                 calls >= at
             };
-            let ended = solver.solve(&scene, &Options::default(), None, Some(&mut cancel));
+            let options = Options::default();
+            let ended = match pull_off {
+                true => solver.pull_off(&scene, &options, Some(&mut cancel)),
+                false => solver.solve(&scene, &options, None, Some(&mut cancel)),
+            };
             let (outcome, report) = ended.expect("a solve");
             assert!(calls <= at, "asked again after having cancelled");
             if calls < at {

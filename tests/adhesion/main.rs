@@ -3,6 +3,7 @@
 mod certificate;
 mod dense;
 mod dense_path;
+mod ends;
 mod friction;
 mod hard_cases;
 mod loop_of_loading;

@@ -1,7 +1,8 @@
 //! The sphere of Maugis and Dugdale (Maugis 1992), in the units of `support`.
 
-use contact_normal::adhesion::Law;
-use contact_normal::scene::Load;
+use contact_normal::adhesion::{Law, Start};
+use contact_normal::scene::{Adhesion, Load, Scene};
+use contact_normal::solver::{InitialGuess, Options, Outcome, Solver};
 
 use super::support::Sphere;
 
@@ -28,10 +29,19 @@ fn bisect(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     0.5 * (low + high)
 }
 
+/// Force and approach of a contact radius.
+fn at_radius(a: f64, lambda: f64) -> (f64, f64) {
+    force_and_approach(a, bisect(1.0, 1e6, |m| condition(a, m, lambda)), lambda)
+}
+
 fn force_at(approach: f64, lambda: f64) -> f64 {
-    let m = |a: f64| bisect(1.0, 1e6, |m| condition(a, m, lambda));
-    let a = bisect(0.7, 4.0, |a| force_and_approach(a, m(a), lambda).1 - approach);
-    force_and_approach(a, m(a), lambda).0
+    let a = bisect(0.7, 4.0, |a| at_radius(a, lambda).1 - approach);
+    at_radius(a, lambda).0
+}
+
+/// The least approach of the branch in contact: there the bodies snap out.
+fn least_approach(lambda: f64) -> f64 {
+    (1..2000).map(|k| at_radius(1e-3 * f64::from(k), lambda).1).fold(f64::INFINITY, f64::min)
 }
 
 #[test]
@@ -63,4 +73,41 @@ fn a_smeared_edge_has_the_forces_of_the_sharp_one() {
             assert!((found.force - force).abs() < off, "{lambda} {approach}: {} {force}", found.force);
         }
     }
+}
+
+// A loop in steps of 0.05: the branch in contact ends at the least approach of Maugis' curve, and the bodies snap in at a larger one.
+#[test]
+fn a_loop_snaps_out_where_maugis_branch_ends() {
+    const STEP: f64 = 0.05;
+    let lambda = 2.5;
+    let range = 2.0 / (std::f64::consts::PI * lambda);
+    let sphere = Sphere::new(192, 2.2, Law::Dugdale(0.3), range);
+    let scene = |approach: f64| {
+        let own = Some(Adhesion { start: Start::Apart, ..sphere.adhesion });
+        Scene { adhesion: own, ..sphere.scene(Load::Approach(approach)) }
+    };
+    let end = least_approach(lambda);
+    let mut solver = Solver::new(&scene(0.0), &Options::default()).expect("a solver");
+    let way: Vec<i32> = (-28..=4).chain((-28..4).rev()).collect();
+    let (mut snaps, mut last) = (Vec::new(), 0);
+    for (k, &place) in way.iter().enumerate() {
+        let approach = STEP * f64::from(place);
+        let initial_guess = if k == 0 { InitialGuess::None } else { InitialGuess::Previous };
+        let options = Options { initial_guess, ..Options::default() };
+        let (outcome, report) = solver.solve(&scene(approach), &options, None, None).expect("a step");
+        assert_eq!(outcome, Outcome::Converged, "{lambda} {approach}");
+        let (force, count) = (report.measures.force, report.measures.contact_count);
+        if (count == 0) != (last == 0) {
+            snaps.push(approach);
+        }
+        last = count;
+        // Near the end of the branch its force changes as a root. The edge of the contact rests at rings of elements, which leaves some 4e-3.
+        if count > 0 && approach > end + 0.2 {
+            let closed = force_at(approach, lambda);
+            assert!((force - closed).abs() < 6e-3, "{lambda} {approach}: {force} {closed}");
+        }
+    }
+    println!("lambda {lambda}: snaps at {snaps:?}, the branch ends at {end}");
+    assert_eq!(snaps.len(), 2, "{snaps:?}");
+    assert!(snaps[0] > end + STEP && (snaps[1] - end).abs() < 1.5 * STEP, "{snaps:?} {end}");
 }

@@ -113,6 +113,64 @@ fn rough_surfaces_are_solved_and_certified() {
     println!("rough: median work {}, most {}", products[products.len() / 2], products[products.len() - 1]);
 }
 
+/// W(e) by the formulas of src/adhesion/law.rs.
+fn work_left(law: Law, work: f64, range: f64, e: f64) -> f64 {
+    let t = e.max(0.0) / range;
+    work * match law {
+        Law::Exponential => (-t).exp(),
+        Law::Dugdale(smear) if t <= 1.0 - smear => 1.0 - t,
+        Law::Dugdale(smear) => (1.0 + smear - t).max(0.0).powi(2) / (4.0 * smear),
+        Law::Cubic => (1.0 - t / 3.0).max(0.0).powi(3),
+        Law::VanDerWaals => (1.0 + 0.5 * t).powi(-2),
+    }
+}
+
+#[test]
+fn areas_and_energies_of_rough_surfaces_are_those_of_a_firm_solve() {
+    let n = 48;
+    let grid = Grid::new(n, n, 1.0 / n as f64, 1.0 / n as f64).expect("a grid");
+    for (seed, law, part) in [
+        (21, Law::Exponential, 0.003),
+        (22, Law::Exponential, 0.3),
+        (23, Law::Cubic, 0.1),
+        (24, Law::VanDerWaals, 0.03),
+        (25, Law::Dugdale(0.3), 0.1),
+    ] {
+        let (h, full) = rough(n, &mut Draw(seed), 0.8);
+        let work = part * full;
+        let range = range_of_kappa(law, work, grid.dx, 1.0, 0.2);
+        let own = adhesion(law, work, range);
+        let scene = Scene { adhesion: Some(own), ..Scene::new(grid, &h, bodies(1.0), Load::Force(3e-3)) };
+        let solved = |tolerance: f64| {
+            let (solver, outcome, report) =
+                solver::solve(&scene, &Options { tolerance, ..Options::default() }).expect("a solve");
+            assert_eq!(outcome, Outcome::Converged, "{law:?} {tolerance}");
+            let state = solver.state();
+            let u = displacements(&grid, 1.0, &state.p);
+            let [mut elastic, mut adhesive] = [0.0; 2];
+            for i in 0..h.len() {
+                elastic += 0.5 * state.p[i] * u[i] * grid.element_area();
+                adhesive -= work_left(law, work, range, h[i] - state.approach + u[i]) * grid.element_area();
+            }
+            let found = report.adhesion.expect("adhesion");
+            let size = elastic - adhesive;
+            assert!((found.elastic_energy - elastic).abs() < 1e-9 * size, "{law:?}: {found:?} {elastic}");
+            assert!((found.adhesive_energy - adhesive).abs() < 1e-9 * size, "{law:?}: {found:?} {adhesive}");
+            // A force that is off changes the energy by its part of the approach.
+            let total = elastic + adhesive - report.measures.force * state.approach;
+            (report.measures.contact_count, total, size)
+        };
+        let (firm_count, firm, _) = solved(1e-10);
+        // Distances that are not 0 in contact change the energy by their part of it.
+        for (tolerance, most) in [(1e-6, 1e-6), (1e-7, 3e-7)] {
+            let (count, energy, size) = solved(tolerance);
+            println!("{law:?} {part}: {count} elements, energies differ by {:e}", (energy - firm) / size);
+            assert_eq!(count, firm_count, "{law:?} {part}");
+            assert!((energy - firm).abs() < most * size, "{law:?} {part}: {energy} {firm}");
+        }
+    }
+}
+
 // Directions of a linear solve take 8 bytes an element up to eleven, and 4 bytes where there are more.
 #[test]
 fn rough_surfaces_take_200_bytes_an_element() {
