@@ -49,18 +49,24 @@ impl Solver {
         let walk = self.down_from_no_load(goal, (start, make), monitor)?;
         match self.hold_pull_off(walk, goal, (start, make), monitor)? {
             Walk::Found => Ok(Descent::By(End::Solved)),
-            Walk::Interrupted => Ok(Descent::By(End::Interrupted)),
             Walk::Least { sum, approach } => {
                 let area = self.levels[0].problem.grid.element_area();
                 let force = goal.wanted.unwrap_or(0.0) * area;
+                let found = match sum < 0.0 {
+                    true => {
+                        format!("holds a pull of {:e} (the pull-off force), at an approach of {approach:e}", sum * area)
+                    }
+                    false => "does not pull: nothing holds the bodies without a pressing force".into(),
+                };
                 Err(Error::Infeasible(format!(
-                    "force is {force:e}; the strongest state that was found, on the ways down from no load and from bodies pressed together, holds \
-                     a pull of {:e} (the pull-off force), at an approach of {approach:e}",
-                    sum.min(0.0) * area
+                    "force is {force:e}; the strongest state that was found, on the ways down from no load and from bodies pressed together, \
+                     {found}"
                 )))
             }
-            Walk::Lost | Walk::Met => {
-                let end = if goal.is_interrupted(monitor) { End::Interrupted } else { End::Failed };
+            Walk::Interrupted if monitor.is_cancelled() => Ok(Descent::By(End::Interrupted)),
+            walk => {
+                let is_cut = walk == Walk::Interrupted || goal.is_interrupted(monitor);
+                let end = if is_cut { End::Interrupted } else { End::Failed };
                 self.beyond_all_attraction(goal).map_or(Ok(Descent::By(end)), Err)
             }
         }

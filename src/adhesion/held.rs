@@ -62,6 +62,7 @@ impl Walker<'_, '_, '_> {
         let Some(wanted) = self.goal.wanted else { return Ok(Walk::Lost) };
         for secant in 0..SECANTS {
             if self.goal.is_interrupted(self.monitor) {
+                self.level.now.copy_from(&best.at)?;
                 return Ok(Walk::Interrupted);
             }
             let part = ((best.sum - wanted) / (best.sum - sum_low)).clamp(END, 1.0 - END);
@@ -140,7 +141,10 @@ impl Solver {
         };
         let walk = self.down_from_no_load(Goal { wanted: None, ..goal }, (start, make), monitor)?;
         match (walk, known) {
-            (Walk::Least { sum, .. }, _) if sum <= wanted => self.walker(goal, make, monitor).climb(sum),
+            (Walk::Least { sum, .. }, _) if sum <= wanted => {
+                let most = monitor.count.cycles + goal.most;
+                self.walker(Goal { most, ..goal }, make, monitor).climb(sum)
+            }
             (Walk::Least { sum, .. }, Walk::Least { sum: least, .. }) if sum < least => Ok(walk),
             (Walk::Interrupted, _) => Ok(walk),
             _ => Ok(known),

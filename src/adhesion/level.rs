@@ -44,7 +44,7 @@ struct Inverse {
     /// M of the coefficients over a power of two near a0, so that they are near 1.
     m: Preconditioner<f32>,
     workspace: Workspace<f32>,
-    /// The power of two.
+    /// The power of two. `m` is M times it, so that `a0 M` is `m` times `a0/unit`.
     unit: f64,
 }
 
@@ -109,10 +109,11 @@ impl Level {
         measure(&self.surface, &mut self.now, of_element, (is_kept, wanted, is_mean_free), &self.problem.threads)
     }
 
-    /// Whether bodies are apart, and so far that undeformed surfaces do not attract each other.
+    /// Whether bodies are apart beyond the reach of the attraction, undeformed and deformed: those drawn together hold each other from farther away.
     pub fn leaves_nothing(&self) -> bool {
         let (surface, now) = (&self.surface, &self.now);
-        let attracts = |i: usize| surface.traction(i, surface.h[i] - now.approach()) > 0.0;
+        let distances = |i: usize| [surface.h[i] - now.approach(), surface.distance(i, now)];
+        let attracts = |i: usize| distances(i).into_iter().any(|distance| surface.traction(i, distance) > 0.0);
         !now.contact.contains(&true) && !(0..now.contact.len()).any(attracts)
     }
 

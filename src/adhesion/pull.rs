@@ -209,19 +209,20 @@ impl Walker<'_, '_, '_> {
             self.level.now.copy_from(&found.at)?;
             return Ok(self.lost());
         };
-        for _ in 0..LAST {
+        'steps: for _ in 0..LAST {
             step *= 0.5;
             for by in [-step, step] {
                 self.level.now.copy_from(&best.at)?;
                 let approach = best.approach() + by;
                 let found = self.solve_at(approach)?;
                 if self.goal.is_interrupted(self.monitor) {
-                    break;
+                    break 'steps;
                 }
                 let found = found.filter(|_| self.level.now.contact.contains(&true));
                 match found {
                     Some(sum) if self.goal.wanted.is_some_and(|wanted| sum <= wanted) => {
-                        return self.between(&mut best, (sum, approach));
+                        // The stable state lies above both.
+                        return if by > 0.0 { self.climb(sum) } else { self.between(&mut best, (sum, approach)) };
                     }
                     Some(sum) if sum < best.sum => {
                         best.take(self.level, sum)?;

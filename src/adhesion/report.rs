@@ -1,7 +1,7 @@
 //! The results of adhesion and their measures.
 
 use super::level::Level;
-use super::unknowns::{energies, Measured, Unknowns};
+use super::unknowns::{energies, largest, Measured, Unknowns};
 use crate::contact::Certificate;
 use crate::grid::Grid;
 use crate::methods::fields;
@@ -119,19 +119,19 @@ pub fn measures(level: &Level, measured: &Measured) -> Measures {
         let q = contact_pressure(level, i).abs();
         [if q > 0.0 { q * e } else { 0.0 }, (now.p.field[i][0] * now.u[i][0]).abs(), a0 * q * q]
     });
-    let widen = |(least, largest): (f64, f64), [p]: &[f64; 1]| (least.min(*p), largest.max(*p));
-    let (least, largest) = now.p.field.iter().fold((f64::INFINITY, f64::NEG_INFINITY), widen);
+    let widen = |(least, most): (f64, f64), [p]: &[f64; 1]| (least.min(*p), most.max(*p));
+    let (least, most) = now.p.field.iter().fold((f64::INFINITY, f64::NEG_INFINITY), widen);
     let area = grid.element_area();
     Measures {
         certificate: Certificate {
-            residual: measured.distance.max(measured.force),
+            residual: largest([measured.distance, measured.force]),
             violation: measured.penetration,
             complementarity: if work == 0.0 { 0.0 } else { work / elastic.max(own) },
             min_pressure: least,
         },
         approach: now.approach(),
         force: measured.pressures * area,
-        max_pressure: largest,
+        max_pressure: most,
         contact_count: measured.count,
         edge_count: edge_count(&grid, now),
         contact_area: measured.count as f64 * area,

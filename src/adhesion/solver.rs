@@ -12,6 +12,7 @@ use super::request::{Request, Start, State};
 use super::robust;
 use super::stability::stability;
 use super::tangent::stiffness_of_contact;
+use super::unknowns::largest;
 use crate::contact;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -99,7 +100,7 @@ impl Solver {
             None => self.begin_anew(goal, (request.start, make), monitor)?,
         };
         let end = match (end, request.pull_off) {
-            // If no state is found at the load, continuation starts from bodies that are pressed together without attraction.
+            // If no state is found at the load, continuation starts only from bodies that are pressed together.
             (Descent::By(end), true) if end != End::Interrupted => {
                 self.pull_off(goal, (end == End::Solved, make), monitor)?
             }
@@ -195,7 +196,7 @@ impl Solver {
         }
         let mut report = Report::of(level, &measured);
         report.jumped = self.jumped;
-        let is_state = measured.distance.max(measured.law) <= request.tolerance;
+        let is_state = largest([measured.distance, measured.law]) <= request.tolerance;
         report.is_short = end == Descent::By(End::Interrupted) && pulls(goal) && is_state && measured.pressures < 0.0;
         let is_solved = end == Descent::By(End::Solved);
         if request.stiffness && is_solved {

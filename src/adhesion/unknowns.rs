@@ -212,7 +212,7 @@ impl Measured {
 }
 
 /// The largest of some values, infinite if one is NaN.
-fn largest<const K: usize>(values: [f64; K]) -> f64 {
+pub fn largest<const K: usize>(values: [f64; K]) -> f64 {
     values.into_iter().fold(0.0, |worst: f64, value| match value {
         value if value <= worst => worst,
         value if value.is_nan() => f64::INFINITY,

@@ -73,7 +73,7 @@ impl Operators {
         (n <= SUMMED).then(|| &*self.matrix.get_or_insert_with(fill))
     }
 
-    /// Sets up what products with any p need.
+    /// Sets up the operator for any p and its workspace, if all products use it.
     pub fn prepare(&mut self, of: MadeOf<'_>) -> Result<()> {
         if of.is_for_parts() || self.matrix(of).is_some() {
             return Ok(());

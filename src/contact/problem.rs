@@ -86,7 +86,7 @@ impl Problem {
         operators.renew(MadeOf { coefficients, grid, threads })
     }
 
-    /// A for any p, if p exceeds the reach of the others.
+    /// A for any p, if the product with `p` needs it.
     pub fn operator_if_needed(&mut self, p: &[f64]) -> Result<Option<Arc<Operator<f64>>>> {
         let Problem { coefficients, grid, threads, operators, .. } = self;
         operators.whole_if_needed(MadeOf { coefficients, grid, threads }, p)

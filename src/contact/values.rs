@@ -9,7 +9,7 @@ pub enum Freshness {
     Exact,
     /// u is near A p.
     Near,
-    /// u is unrelated to p.
+    /// u may be anything.
     Stale,
 }
 

@@ -24,7 +24,7 @@ impl Best {
         Best { q: Vec::new(), offset: [0.0; 2], worst: f64::INFINITY }
     }
 
-    /// Keeps the state's tractions if they are better by more than [`HIDDEN`].
+    /// Keeps the state's tractions if they are better. Their measure counts as [`HIDDEN`] or more if the displacements are not fresh.
     pub fn see(&mut self, problem: &Problem, state: &State, worst: f64, fields: &mut Fields) -> Result<()> {
         let worst = if state.is_exact { worst } else { worst.max(HIDDEN) };
         if !(worst < self.worst) {

@@ -66,7 +66,7 @@ const RUNAWAY: f64 = 1e4;
 pub enum Manner {
     /// By the natural map whose rho makes the rms slip move tractions by the rms bound.
     Plain,
-    /// By the natural map whose rho is the inverse compliance: a large slip is predicted whatever the bound.
+    /// By the natural map whose rho is the inverse compliance: elements of large slip are predicted to slip, whatever their bounds.
     Bold,
     /// `Bold`, with the creepages at which the natural map carries the forces.
     Balanced,

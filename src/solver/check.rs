@@ -120,7 +120,7 @@ pub fn guess(scene: &Scene<'_>, options: &Options, guess: Option<Guess<'_>>) -> 
     }
 }
 
-/// Rejects units in which pressures, displacements or their squares exceed the range of double precision. `lowest` is the least distance, `fixed` a
+/// Rejects units in which pressures, displacements or their squares leave the range of double precision. `lowest` is the least distance, `fixed` a
 /// given contact area.
 pub fn range(
     (scene, lowest): (&Scene<'_>, f64),

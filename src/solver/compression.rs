@@ -35,7 +35,7 @@ impl Solver {
     }
 
     /// For a given force: whether the tolerance is met with the compression added to the approach. If not, solves once more to a smaller
-    /// residual. A negative compression makes the distances `h - approach` smaller, a positive one may dominate them.
+    /// residual. A negative compression lessens the norm of the distances `h - approach`, a positive one may dominate it.
     pub(super) fn meet_compressed(
         &mut self,
         (scene, lowest): (&Scene<'_>, f64),

@@ -8,8 +8,8 @@ const SECTION: f64 = 0.381_966_011_250_105_2;
 const UNLIKE: f64 = 3.0;
 /// Least distance of a parabola's vertex from the largest force, as a part of its interval.
 const CLOSE: f64 = 0.02;
-/// Bound on the rise of the largest force above the known ones, over the parabola's prediction, for intervals up to a factor of [`NARROW`]: forces
-/// may rise steeply up to the largest, and fall slowly from there.
+/// Bound on the rise of the largest force above the known ones, over the parabola's prediction, for intervals narrower than [`NARROW`] in the
+/// logarithm of the creepage: forces may rise steeply up to the largest, and fall slowly from there.
 const RISE: f64 = 10.0;
 const NARROW: f64 = 0.3;
 /// Ratio of a creepage below all others to the least.

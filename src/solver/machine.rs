@@ -59,8 +59,8 @@ pub fn growth(from: f64, to: f64) -> f64 {
 }
 
 /// Seconds of one thread on a grid of `elements`; 0 without samples. The sample with the least prediction counts, as others were disturbed or are
-/// mostly overhead. Samples with at most half the products of the last hardly resolve the contact and do not count. The number of products grows as
-/// from sample to sample, the set-up as from the last but one to the last (with a period it hardly grows). No grid takes longer than a finer one.
+/// mostly overhead. Samples with less than half the products of the last hardly resolve the contact and do not count. The number of products grows
+/// as from sample to sample, the set-up as from the last but one to the last (with a period it hardly grows). No grid takes longer than a finer one.
 pub fn seconds_on(samples: &[Cost], elements: f64) -> f64 {
     let seen = match samples {
         [.., before, last] => (last.setup / before.setup).ln() / (last.elements / before.elements).ln(),
@@ -89,7 +89,7 @@ pub fn seconds_on(samples: &[Cost], elements: f64) -> f64 {
     }
 }
 
-/// The growth of the number of products beyond the last sample, extrapolated: with friction a fifth with a doubling.
+/// The number of products on so many elements, extrapolated beyond the last sample: with friction it may grow by a fifth with a doubling.
 fn more_products(samples: &[Cost], elements: f64) -> f64 {
     match samples {
         [.., before, last] => {

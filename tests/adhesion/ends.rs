@@ -121,6 +121,11 @@ fn a_pull_off_on_a_way_to_another_is_as_strong_as_small_steps_find() {
     assert!(least < -5.26e-3 * (1.0 - 2e-3), "{least}");
     let refused = solver::solve(&bowl.scene(own, Load::Force(1.003 * least)), &Options::default());
     assert!(matches!(refused, Err(Error::Infeasible(_))));
+    for factor in [0.98, 0.99, 0.995, 0.999] {
+        let held = solver::solve(&bowl.scene(own, Load::Force(factor * least)), &Options::default());
+        let held = held.map(|(_, outcome, report)| (outcome, report.measures.approach > found.measures.approach));
+        assert!(matches!(held, Ok((Outcome::Converged, true))), "{factor}: {held:?}");
+    }
 }
 
 /// Elements of kappa 0.71 and 0.82 part one after the other, and the ways down from a force that is wanted passed by the last part of the pull-off.

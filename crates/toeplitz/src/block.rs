@@ -80,7 +80,7 @@ pub fn blocks_of<'a, T: Scalar>(
     columns.step_by(count).map(move |first| matrix.part(first, count.min(end - first)))
 }
 
-/// Calls `work` on each block of columns of the matrix `data`, `width` columns wide, with the scratch of the calling thread.
+/// Calls `work` on each block of columns of the matrix `data`, `width` columns wide, with the scratch of the thread that works on it.
 pub fn for_each_block<T: Scalar, S: Send>(
     data: &mut [Complex<T>],
     width: usize,

@@ -4,7 +4,7 @@
 pub(crate) const LONGEST: usize = 5;
 
 /// Work of a transform of length `2^a 3^b 5^c` by rustfft relative to one of `2^a 3^b` with many twos: measured in single precision, where it
-/// differs more. Lengths with few twos are vectorised badly, and so are fives, except a single five beside many twos.
+/// differs more. Lengths with few twos are vectorised badly, and so are fives, except a single five beside many twos and no threes.
 fn relative_work(twos: u32, threes: u32, fives: u32) -> f64 {
     let of_twos = [3.0, 1.5, 1.25, 1.1].get(twos as usize).copied().unwrap_or(1.0);
     let of_fives = match (threes > 0, fives) {

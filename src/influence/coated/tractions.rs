@@ -1,6 +1,7 @@
 //! Displacements by tractions on coated surfaces, less those on half-spaces.
 //!
-//! With the responses L along and T across the wave vector ([`Along`], [`Across`]) a traction wave displaces by `(1/(G1 k))` times
+//! With the responses L along and T across the wave vector ([`Along`](super::shear::Along), [`Across`](super::shear::Across)) a traction wave
+//! displaces by `(1/(G1 k))` times
 //!
 //! ```text
 //! ((1 - nu1) L k k^T/k^2 + T (1 - k k^T/k^2)) q

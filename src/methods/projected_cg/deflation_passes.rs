@@ -3,7 +3,7 @@
 use crate::operator::fft::Real;
 use crate::sums::Sums;
 
-/// A row of d and w: the present values less the earlier ones, times the factor of their units.
+/// A row of d and w: the present values less a factor times the earlier ones, which converts their units.
 pub(super) struct Change<'a, T> {
     pub(super) p: (&'a [f64], &'a [f64], f64),
     pub(super) u: (&'a [f64], &'a [f64], f64),

@@ -1,7 +1,7 @@
 //! The state between two iterations: the forecast of the step length, and the slope of the last direction.
 
-/// The forecast of the first alpha, whose step removes smooth errors, with eigenvalues near 1; and the range of later forecasts, each of which
-/// is the last alpha.
+/// The forecast of the first alpha: the first step of fixed length leaves smooth errors, with eigenvalues near 1. And the range of later forecasts,
+/// each of which is the last alpha.
 pub(super) const FIRST_FORECAST: f64 = 0.9;
 const FORECASTS: (f64, f64) = (0.3, 1.0);
 /// Factor between forecast and alpha beyond which the forecast failed.

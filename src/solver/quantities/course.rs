@@ -156,7 +156,7 @@ impl Course {
     }
 
     /// The predicted excess of a stress close to the surface over the largest one, error included. If it is negative, all stay below. Falling
-    /// stresses belong to the flank of the largest one, and so do stresses at its depth.
+    /// stresses belong to the flank of the largest one, and so do stresses that were deeper than it on the grid before.
     fn overtakes(&self, peak: Peak, error: f64) -> f64 {
         let predicted = |(depth, stress): (&f64, &Sequence)| {
             let (change, doublings) = stress.last_change()?;

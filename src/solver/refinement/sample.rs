@@ -35,7 +35,7 @@ type Told = (f64, f64, f64);
 /// The results of a small grid.
 pub(super) struct Sample {
     pub(super) doublings: i32,
-    /// The cost of a solve to its tolerance.
+    /// The cost of a solve to its tolerance, by one thread or by all.
     pub(super) cost: Cost,
     /// Seconds without those of stresses and of the stiffness.
     pub(super) solve: f64,
@@ -208,7 +208,7 @@ impl Sample {
         self.outlook.falling(self.quantity)
     }
 
-    /// Seconds and products to a residual; `begins`: the tolerance on finer grids.
+    /// Seconds and products to a residual; `begins`: the looser residual here that takes as long as that one on finer grids.
     pub(super) fn to(&self, tolerance: f64, begins: f64) -> (f64, f64) {
         let beyond = self.beyond(begins);
         // Tangential products are reported at the end only: iterations have equal shares.
@@ -217,7 +217,7 @@ impl Sample {
         (self.cost.seconds - beyond.0, self.normal(tolerance, begins) + tangential)
     }
 
-    /// Products of the normal problem to a residual; `begins`: the tolerance on finer grids.
+    /// Products of the normal problem to a residual; `begins`: the looser residual here that takes as long as that one on finer grids.
     pub(super) fn normal(&self, tolerance: f64, begins: f64) -> f64 {
         let more = self.on_the_way(tolerance).map_or(1.0, |(at, loose)| 1.0 + at * (loose.normal - 1.0));
         more * self.told(begins)
