@@ -26,7 +26,7 @@ def add_scene(command: argparse.ArgumentParser) -> None:
                          help="the file holds the undeformed distance h; without this: heights z of body 1 towards a plane, h = max z - z")
     surface.add_argument("--level", choices=("mean", "plane", "quadric"), help="removes a tilt or a form, fitted by least squares")
     surface.add_argument("--faults", action="store_true", help="finds fill values and spikes, prints them, and makes them holes")
-    surface.add_argument("--variable", metavar="NAME", help="which array of an .npz or .nc file")
+    surface.add_argument("--variable", metavar="NAME", help="which array of an .npz, .nc, .mat or instrument's file")
     surface.add_argument("--dx", type=float, help="element size along a row; by default what the file says")
     surface.add_argument("--dy", type=float, help="element size across rows; by default what the file says, else dx")
     surface.add_argument("--axes", choices=("yx", "xy"), help="what the indices of the array are: yx (default): [iy, ix]; xy: [ix, iy]")

@@ -138,7 +138,7 @@ def warn_of_depths(stress: SubsurfaceStress, deep: float) -> None:
     depths = stress.depths
     if depths.size and depths.min() > deep > 0.0:
         warnings.warn(f"depths are {depths.min():g} and more, and the contact is {0.5 * deep:.2g} wide: are depths in the unit of x and y?", stacklevel=3)
-    elif depths.size > 2 and stress.von_mises is not None:
+    elif depths.size > 2 and stress.von_mises is not None and np.max(stress.von_mises) > 0.0:
         z = stress.largest_von_mises["z"]
         if z == depths.max() or z == depths.min() > 0.0:
             warnings.warn(f"the largest von Mises stress is at an end of the depths, {z:g}: {'deeper' if z == depths.max() else 'higher'} it may be larger",

@@ -19,7 +19,7 @@ def text_of(path: str | os.PathLike[str]) -> str:
     try:
         text = data.decode(named[0] if named else "utf-8-sig", errors="replace" if named else "strict")
     except UnicodeDecodeError:
-        text = data.decode("latin-1")
+        text = data.decode("latin-1").removeprefix("\xef\xbb\xbf")
     return text.replace("\u2212", "-")
 
 

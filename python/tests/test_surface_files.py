@@ -205,7 +205,7 @@ class Files(unittest.TestCase):
             np.testing.assert_array_equal(surface.read(self.folder / "zygo.dat").z, z.T)
 
     def test_decimal_commas_are_named(self):
-        for name, text in (("a.txt", "0,5 0,7\n1,5 1,7\n"), ("b.csv", "0,5\t0,7\n1,5\t1,7\n")):
+        for name, text in (("a.txt", "0,5 0,7\n1,5 1,7\n"), ("b.csv", "0,5\t0,7\n1,5\t1,7\n"), ("q.csv", '"1,05","0,03"\n"2,1","0,4"\n')):
             (self.folder / name).write_text(text)
             with self.assertRaisesRegex(ValueError, "decimal commas need semicolons between the numbers"):
                 surface.read(self.folder / name, dx=1, dy=1)

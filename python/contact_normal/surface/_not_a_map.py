@@ -34,7 +34,7 @@ def why(values: Any) -> str | None:
                     f"their points are {_PLACES}; {_INSTEAD}")
     if 1 < columns <= _COLUMNS and lines >= _LONG * columns:
         return (f"has {lines} lines of {columns} numbers: a list of points, it seems. Lists are read where their points are {_PLACES}; "
-                f" {_INSTEAD}")
+                f"{_INSTEAD}")
     if min(lines, columns) > _COLUMNS:
         for name, rows in (("line", values), ("column", values.T)):
             if rises_evenly(rows[0, 1:]) and not any(map(rises_evenly, rows[1:, 1:])):

@@ -111,8 +111,9 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
 
         dataset = netcdf(path)
         # Others, as that of a map projection, are no heights.
-        maps = [name for name, array in dataset.data_vars.items() if array.ndim == 2]
-        return from_xarray(dataset[chosen(variable, maps or list(dataset.data_vars), path)], **given)
+        maps = [name for name, array in dataset.data_vars.items() if array.ndim == 2 or sum(size > 1 for size in array.shape) == 2]
+        names = maps if maps and variable is None else list(dataset.data_vars)
+        return from_xarray(dataset[chosen(variable, names, path)], **given)
     if end == ".xyz" and not _SIZES & set(given):
         lattice = _of_points(path)
         if lattice is not None:

@@ -27,6 +27,8 @@ def of_text(path: str | os.PathLike[str], end: str) -> Any:
     cells = lines
     if delimiter == ";":
         cells = [line.replace(",", ".") for line in cells]
+    if delimiter and any(delimiter in quoted for line in cells for quoted in _QUOTED.findall(line)):
+        raise ValueError(f"{path} has {_BETWEEN[delimiter]} within quoted cells: decimal commas need semicolons between the numbers")
     if delimiter:
         cells = _filled([line.replace('"', "") for line in cells], delimiter)
     try:
@@ -35,10 +37,13 @@ def of_text(path: str | os.PathLike[str], end: str) -> Any:
         commas = "decimal commas need semicolons between the numbers; " if has_decimal_commas(lines) else ""
         raise ValueError(f"{path}: {error}, lines with # and empty ones not counted; it must hold numbers alone, a row of the grid a line, separated by "
                          f"{_BETWEEN[delimiter]}; {commas}put # before other lines, and nan where nothing was measured") from error
-    if delimiter == "," and has_cut_decimals(lines):
+    if delimiter == "," and has_cut_decimals(cells):
         raise ValueError(f"{path} has numbers that begin with zeros between its commas: decimal commas need semicolons between the numbers")
     return values
 
+
+# Cells between quotes.
+_QUOTED = re.compile(r'"[^"]*"')
 
 # Exponents of Fortran.
 _FORTRAN = re.compile(r"(?<=[\d.])[dD](?=[-+\d])")
