@@ -42,11 +42,11 @@ pub fn solve(
     }
     levels[last].fields = std::mem::take(&mut levels[0].fields);
     for l in (1..=last).rev() {
-        monitor.enter_grid();
-        let coarse = coarse_goal(levels, l, goal);
-        let ended = one(levels, l, coarse, (start, make), monitor)?;
-        if ended.end == Descent::By(End::Interrupted) && monitor.is_cancelled() {
-            break;
+        // After a cancellation the state of this grid only goes to the finest one.
+        if !monitor.is_cancelled() {
+            monitor.enter_grid();
+            let coarse = coarse_goal(levels, l, goal);
+            one(levels, l, coarse, (start, make), monitor)?;
         }
         let (fine, coarse) = levels.split_at_mut(l);
         prolong(&mut coarse[0], &mut fine[l - 1])?;

@@ -124,7 +124,8 @@ pub fn measures(level: &Level, measured: &Measured) -> Measures {
     let area = grid.element_area();
     Measures {
         certificate: Certificate {
-            residual: largest([measured.distance, measured.force]),
+            // A force that is missed whole counts as 1, also of pressures of 0.
+            residual: largest([measured.distance, measured.force.min(1.0)]),
             violation: measured.penetration,
             complementarity: if work == 0.0 { 0.0 } else { work / elastic.max(own) },
             min_pressure: least,

@@ -136,7 +136,9 @@ fn it_can_be_cancelled_at_every_callback() {
                 break;
             }
             assert_eq!(outcome, Outcome::Cancelled, "{load:?} {at}");
-            assert!(report.measures.certificate.residual.is_finite());
+            let residual = report.measures.certificate.residual;
+            assert!(residual.is_finite() && residual > 0.0, "{load:?} {at}: {residual}");
+            assert!(solver.state().p.iter().all(|p| p.is_finite()), "{load:?} {at}");
         }
     }
 }
