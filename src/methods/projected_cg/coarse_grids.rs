@@ -3,8 +3,7 @@
 //!
 //! With two periods u has mean zero, so the mean of e is that of `h - approach` on every grid: an approach beyond the mean of a grid's h has no
 //! solution there, and one close to it a huge pressure. A grid of an odd count covers more than a period. Its h is shifted to the mean of the finest
-//! grid, so that it is feasible if the finest grid is. If the residual of a coarser grid exceeds that of p = 0, which is 1, the next grid starts from
-//! p = 0.
+//! grid, so that it is feasible if the finest grid is. If the residual of a coarser grid exceeds 1, that of p = 0, the next grid starts from p = 0.
 
 use std::f64::consts::PI;
 use std::iter::successors;
@@ -33,8 +32,7 @@ use crate::threads::Threads;
 const COARSEST: usize = 8;
 /// Tolerance on the coarsest grid: its discretisation error is larger.
 const COARSEST_TOLERANCE: f64 = 1e-3;
-/// Most iterations on the coarsest grid, and on the grids between it and the finest. With 3 to 5 on the grids between, the number of all products is
-/// 1.0 to 1.1 times as large.
+/// Most iterations on the coarsest grid, and on the grids between it and the finest: with 3 to 5 there all products are 1.0 to 1.1 times as many.
 const COARSEST_ITERATIONS: u64 = 50;
 const COARSE_ITERATIONS: u64 = 2;
 /// Iterations with elements at their limit: on 48 scenes (`examples/pressure_limits`) 4, 5, 6, 8 take at most 6.0, 3.2, 3.3, 3.6 times the work of
