@@ -4,7 +4,6 @@ import sys
 import tempfile
 import unittest
 import warnings
-from importlib.util import find_spec
 from pathlib import Path
 from types import SimpleNamespace
 from unittest import mock
@@ -271,17 +270,26 @@ class Files(unittest.TestCase):
             warnings.simplefilter("error")
             np.testing.assert_array_equal(surface.read(self.folder / "a.mat", dx=0.5, dy=0.25).z, z)
 
-    @unittest.skipUnless(find_spec("xarray") and find_spec("netCDF4"), "xarray and netCDF4 are missing")
     def test_what_has_no_two_dimensions_is_no_map(self):
-        import xarray
+        z = DataArray(np.eye(4), ("y", "x"), "mm", "mm")
 
-        z = xarray.DataArray(rough(16)[:5], dims=("y", "x"), coords={"x": np.arange(16) * 0.5, "y": np.arange(5) * 0.5})
-        xarray.Dataset({"z": z, "crs": 0}).to_netcdf(self.folder / "a.nc", engine="netcdf4")
-        self.assertEqual(surface.read(self.folder / "a.nc").z.shape, (5, 16))
+        def series(count):
+            """Maps at so many times."""
+            sizes = {"t": count, "y": 4, "x": 4}
+            return SimpleNamespace(dims=tuple(sizes), sizes=sizes, shape=(count, 4, 4), ndim=3, squeeze=lambda *_, **__: z)
+
         # One map of a series is a map.
-        self.assertEqual(surface.from_xarray(z.expand_dims("t")).z.shape, (5, 16))
+        self.assertEqual(surface.from_xarray(series(1)).z.shape, (4, 4))
         with self.assertRaisesRegex(ValueError, "heights have two: choose one map by isel"):
-            surface.from_xarray(xarray.concat([z, z], "t"))
+            surface.from_xarray(series(2))
+        z.ndim, z.shape = 2, (4, 4)
+        projection = SimpleNamespace(ndim=0, shape=())
+        for arrays, variable in (({"z": z, "crs": projection}, None), ({"z": series(1), "crs": projection}, None), ({"z": series(1), "mask": z}, "z")):
+            dataset = mock.MagicMock(data_vars=arrays, __getitem__=lambda _, name, arrays=arrays: arrays[name])
+            with mock.patch("contact_normal._netcdf.read", return_value=dataset):
+                self.assertEqual(surface.read(self.folder / "a.nc", variable=variable).z.shape, (4, 4))
+        with mock.patch("contact_normal._netcdf.read", return_value=dataset), self.assertRaisesRegex(ValueError, "has z, mask; give variable"):
+            surface.read(self.folder / "a.nc")
 
 
 class Pictures(unittest.TestCase):
