@@ -29,7 +29,7 @@ use crate::progress::Outcome;
 /// Relative tolerance of the linear solve of a step, and in rolling.
 const INNER: f64 = 0.15;
 const INNER_ROLLING: f64 = 0.35;
-/// The last linear solve stops at ENOUGH times the tolerance. Below NEAR times the tolerance only `polish` is tried.
+/// The last linear solve stops at ENOUGH times the tolerance. Below NEAR times the tolerance only `polish` is certificates.
 const ENOUGH: f64 = 0.9;
 const NEAR: f64 = 1.5;
 /// Largest relative tolerance of a linear solve.
@@ -75,7 +75,7 @@ pub enum Manner {
 }
 
 /// The progress of the steps, and the kind of the next one.
-struct Progress {
+struct StepControl {
     /// The factor on rho.
     factor: f64,
     /// The relative tolerance of linear solves.
@@ -89,9 +89,9 @@ struct Progress {
     still: u32,
 }
 
-impl Progress {
-    fn new(inner: f64) -> Progress {
-        Progress { factor: 1.0, inner, least: f64::INFINITY, since: 0, cuts: 0, last: f64::INFINITY, still: 0 }
+impl StepControl {
+    fn new(inner: f64) -> StepControl {
+        StepControl { factor: 1.0, inner, least: f64::INFINITY, since: 0, cuts: 0, last: f64::INFINITY, still: 0 }
     }
 
     /// Records the worst measure of an iterate. Returns whether to go on.
@@ -168,10 +168,10 @@ pub fn solve(
     let spinning = problem.rms(|i| problem.rigid[i]).max(problem.rms(|i| problem.slip[i]));
     let made = problem.operators.products;
     let of_step = if manner == Manner::InTurns { Forces::NONE } else { forces };
-    let mut course = Progress::new(if problem.operators.rolling.is_some() { INNER_ROLLING } else { INNER });
-    let (mut iterations, mut tried) = (0, Certificates::default());
+    let mut control = StepControl::new(if problem.operators.rolling.is_some() { INNER_ROLLING } else { INNER });
+    let (mut iterations, mut certificates) = (0, Certificates::default());
     loop {
-        let rho = course.factor
+        let rho = control.factor
             * if manner == Manner::Plain { rho_of((problem.rms_bound(), problem.rms_slip()), cap) } else { cap };
         if matches!(manner, Manner::Balanced | Manner::InTurns) {
             problem.offset = balanced(problem, state, rho, forces);
@@ -187,14 +187,14 @@ pub fn solve(
             return Ok(Outcome::Converged);
         }
         best.see(problem, state, worst, fields)?;
-        tried.compare(measures.residual);
-        if certified && !state.is_exact && tried.is_near(measures, missing, tolerance.max(ROUND_OFF)) {
-            tried.before = Some(measures.residual);
-            polish(problem, state, (tangent, tried.is_by_step()), of_step, fields)?;
+        certificates.compare(measures.residual);
+        if certified && !state.is_exact && certificates.is_near(measures, missing, tolerance.max(ROUND_OFF)) {
+            certificates.before = Some(measures.residual);
+            polish(problem, state, (tangent, certificates.is_by_step()), of_step, fields)?;
             continue;
         }
         let runs_away = manner == Manner::Plain && square(problem.offset).sqrt() > RUNAWAY * (saturating + spinning);
-        if runs_away || !course.goes_on(worst, forces.any()) {
+        if runs_away || !control.goes_on(worst, forces.any()) {
             return Ok(Outcome::Stagnated);
         }
         let left = limit.saturating_sub(problem.operators.products - made);
@@ -202,9 +202,9 @@ pub fn solve(
             return Ok(Outcome::IterationLimit);
         }
         iterations += 1;
-        let enough = course.inner.max((ENOUGH * tolerance / worst).min(LEAST_GAIN));
-        let most = if course.factor < 1.0 { all_directions(problem) } else { DIRECTIONS }.min(left as usize);
-        let effort = Effort { inner: enough, most, left: measures.residual, length: course.length() };
+        let enough = control.inner.max((ENOUGH * tolerance / worst).min(LEAST_GAIN));
+        let most = if control.factor < 1.0 { all_directions(problem) } else { DIRECTIONS }.min(left as usize);
+        let effort = Effort { inner: enough, most, left: measures.residual, length: control.length() };
         step(problem, state, tangent, (of_step, effort), fields)?;
         if !watch(worst) {
             return Ok(Outcome::Cancelled);

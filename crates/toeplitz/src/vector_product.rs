@@ -70,7 +70,7 @@ impl<T: Real> VectorProduct<T> {
         VectorProduct::of(grid, period, transforms(period, threads)?.of_waves(is_coupled, of)?, threads)
     }
 
-    /// The displacements `n` elements further on in x. The period must be long enough for so many more offsets.
+    /// Gives the displacements `n` elements further on in x. The period must keep `n` more offsets apart.
     pub fn further_on(self, n: i64) -> Result<VectorProduct<T>> {
         self.at(Place::FurtherOn(n))
     }
@@ -132,7 +132,7 @@ impl<T: Real> VectorProduct<T> {
         self.symbol.is_uncoupled()
     }
 
-    /// Rows of the grid that are transformed together. [`apply`](Self::apply) writes so many rows at a time.
+    /// The number of rows that are transformed together. [`apply`](Self::apply) writes this many rows at a time.
     pub fn rows_at_a_time(&self) -> usize {
         self.rows.at_a_time()
     }

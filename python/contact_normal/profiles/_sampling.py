@@ -11,6 +11,8 @@ import numpy as np
 from ._curve import Curve
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from .._arguments import Doubles
     from .._result import Result
 
@@ -91,12 +93,21 @@ def _open_pressures(body: Body, along: Doubles, e_star: float) -> tuple[float, f
     def of_every(every: int) -> float:
         return sum(_pressure(_difference(body, along, start, every), along, e_star) for start in range(every)) / every
 
-    second = of_every(2)
-    by_choice = second * min(1.0, second / of_every(4)) if second > 0.0 else 0.0
+    by_choice = _by_choice(of_every)
     if body.curve.open is None:
         return by_choice, 0.0, 0.0
     lost, *samples = (_pressure(np.interp(body.t + along, body.curve.t, off), along, e_star) for off in body.curve.open)
-    return by_choice, float(np.sqrt(np.mean(np.square(samples)))), lost
+    return by_choice, _rms(samples), lost
+
+
+def _by_choice(of_every: Callable[[int], float]) -> float:
+    """The part that the choice of points leaves open, from the change if every second and every fourth point is taken."""
+    second = of_every(2)
+    return second * min(1.0, second / of_every(4)) if second > 0.0 else 0.0
+
+
+def _rms(values: list[float]) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))
 
 
 def warn_of_place(bodies: tuple[Body, Body], stacklevel: int) -> None:
@@ -135,15 +146,14 @@ def _open_slope(body: Body) -> float:
             coarse = Curve(curve.y[chosen], curve.z[chosen])
             at = float(coarse.where(float(curve.at(body.t)[0]), near=float(np.interp(body.t, curve.t[chosen], coarse.t))))
             found.append(0.0 if np.isnan(at) else _slope(coarse, at) - _slope(curve, body.t))
-        return float(np.sqrt(np.mean(np.square(found))))
+        return _rms(found)
 
-    second = of_every(2)
-    by_choice = second * min(1.0, second / of_every(4)) if second > 0.0 else 0.0
+    by_choice = _by_choice(of_every)
     if curve.open is None:
         return by_choice
     ends = np.clip([body.t - _BESIDE, body.t + _BESIDE], curve.t[0], curve.t[-1])
     slopes = [float(np.diff(np.interp(ends, curve.t, off))[0]) / float(ends[1] - ends[0]) for off in curve.open[1:]]
-    return float(np.hypot(by_choice, np.sqrt(np.mean(np.square(slopes)))))
+    return float(np.hypot(by_choice, _rms(slopes)))
 
 
 def _difference(body: Body, along: Doubles, start: int, every: int) -> Doubles:

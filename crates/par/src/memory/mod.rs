@@ -198,7 +198,7 @@ fn keep_one<A: Copy + Send + 'static>(values: Vec<A>) {
 }
 
 impl Shelf {
-    /// Drops the oldest arrays down to so many bytes.
+    /// Drops the oldest arrays until the rest has at most `most` bytes.
     fn shrink_to(&mut self, most: usize) {
         while self.bytes > most {
             let Some(oldest) = self.blocks.pop_front() else { return };

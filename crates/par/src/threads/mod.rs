@@ -223,12 +223,12 @@ impl Threads {
         );
     }
 
-    /// These threads for a pass over arrays of so many elements. A pass gains by them from twice as many elements on as a solve.
+    /// The threads for one pass over arrays. A pass needs twice as many elements as a solve to gain by several threads.
     pub fn for_a_pass(&self, elements: usize) -> Threads {
         self.suited_to(elements / 2)
     }
 
-    /// These threads for work on so many elements: the caller's thread alone if waking the others takes longer than the work.
+    /// The threads for work on this many elements. The caller's thread works alone if waking the others takes longer than the work.
     pub fn suited_to(&self, elements: usize) -> Threads {
         if elements < WORTH_WAKING {
             Threads::One
