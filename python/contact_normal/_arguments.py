@@ -71,7 +71,7 @@ class SolveOptions(AccuracyOptions, total=False):
     error_ratio : float
         If > 0, the solve may stop once the residual is below this part of the estimated discretisation error; default 0.
     max_cycles : int
-        Cycles, or iterations, on the finest grid at most; default 1000.
+        Cycles, or iterations, on the finest grid at most; default 1000. A search for a pull (adhesion, force < 0) may take more.
     max_seconds : float
         If > 0, the call ends after so many seconds, with the best so far; default 0: no limit.
     neglect_below : float

@@ -29,7 +29,7 @@ const STATES: u64 = 4;
 const ANEW: u32 = 4;
 const STEPS_BELOW: u32 = 6;
 const BELOW: f64 = 0.1;
-/// Each further way may take TIMES times the cycles of the first way, plus AT_LEAST.
+/// Each further way may take TIMES times the cycles of the first way, plus AT_LEAST, or all cycles of the goal if these are more.
 const TIMES: u64 = 4;
 const AT_LEAST: u64 = 500;
 
@@ -221,18 +221,19 @@ impl Solver {
                 }
                 ended => return Ok(ended),
             }
-            // Each further way has a multiple of these cycles.
-            most = TIMES * spent + AT_LEAST;
+            most = goal.most.max(TIMES * spent + AT_LEAST);
         }
         let mut pressing = self.first_pressing(least.as_ref(), goal);
         for _ in 0..WAYS {
             let pressed = Goal { wanted: Some(pressing), most, ..goal };
             let ended = nested::solve(&mut self.levels, pressed, (Start::Auto, make), monitor)?;
-            let walk = match ended.end == Descent::By(End::Solved) {
-                true => self.walker(Goal { most, ..goal }, make, monitor).walk(met)?,
-                false => Walk::Lost,
+            let walk = match ended.end {
+                Descent::By(End::Solved) => self.walker(Goal { most, ..goal }, make, monitor).walk(met)?,
+                Descent::By(End::Interrupted) if least.is_some() => Walk::Interrupted,
+                _ => Walk::Lost,
             };
-            if monitor.is_cancelled() || walk == Walk::Interrupted && least.is_none() {
+            // A way that is cut short may have led to the wanted force.
+            if monitor.is_cancelled() || walk == Walk::Interrupted && (least.is_none() || pulls(goal)) {
                 without = Walk::Interrupted;
                 break;
             }

@@ -5,7 +5,7 @@ use super::levels::prolong;
 use super::majorise::Descent;
 use super::nested::{self, coarse_goal};
 use super::newton::{newton, End, Goal};
-use super::place::{Place, Walk};
+use super::place::{Met, Place, Walk};
 use super::request::Start;
 use super::solver::Solver;
 use super::tangent::is_stable;
@@ -139,6 +139,7 @@ impl Solver {
         else {
             return Ok(known);
         };
+        let strongest = Place::of(&self.levels[0], Met::of(&self.levels[0]).sum)?;
         let walk = self.down_from_no_load(Goal { wanted: None, ..goal }, (start, make), monitor)?;
         match (walk, known) {
             (Walk::Least { sum, .. }, _) if sum <= wanted => {
@@ -146,7 +147,12 @@ impl Solver {
                 self.walker(Goal { most, ..goal }, make, monitor).climb(sum)
             }
             (Walk::Least { sum, .. }, Walk::Least { sum: least, .. }) if sum < least => Ok(walk),
-            (Walk::Interrupted, _) => Ok(walk),
+            (Walk::Interrupted, _) => {
+                if strongest.sum < Met::of(&self.levels[0]).sum {
+                    self.levels[0].now.copy_from(&strongest.at)?;
+                }
+                Ok(walk)
+            }
             _ => Ok(known),
         }
     }

@@ -83,17 +83,21 @@ pub struct contact_normal_accuracy {
 versioned! { contact_normal_accuracy, contact_normal_accuracy_init, 112, target: 1e-3, reached: -1.0 }
 
 /// Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->accuracy.error_force` is at most
-/// `accuracy->target` times the force (or the approach, when the force is prescribed), and those of the other quantities
-/// at most their targets, with enough elements across the contact in both directions: 6 for forces, 12 for the largest pressure, 32 for areas, 16 for the others. With `accuracy->surface` the
-/// scene's undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, a tenth of the
-/// targets, and a hundredth of those of single pressures and stresses. With a target of another quantity than force, largest pressure and area up to two grids with fewer elements
-/// are solved first. Arrays of one value per element (compliances, limits, coefficients of friction, weights, tractions before) have their
-/// means on other grids. UNSUPPORTED: own coefficients, FIXED contact, and stresses of coated bodies. OK: the targets are met. ITERATION_LIMIT: a limit of time, memory or elements is in the way of the next
-/// grid. CANCELLED: by the surface or the progress callback. STAGNATED: a target is below round-off, or no estimate can be trusted (a
-/// largest pressure that is singular has none). In these cases `contact_normal_last_error` says the best reached, and report and handle
-/// hold it. `*solver` (`solver` NULL: not wanted) is a handle with the result for `contact_normal_solver_fields`, to be freed by
-/// `contact_normal_solver_free`; NULL if cancelled before a grid was solved. What it costs beforehand:
-/// `contact_normal_cost_of_accuracy`. Since 0.1.
+/// `accuracy->target` times the force (or the approach, when the force is prescribed), and the errors of the other quantities are at most
+/// their targets. Both directions must have enough elements across the contact: 6 for forces, 12 for the largest pressure, 32 for areas, and
+/// 10 for the others. With `accuracy->surface` the scene's undeformed distance is not read and may be NULL. The tolerance is that of
+/// `options` or, where that is less, a tenth of the targets, and a hundredth of those of single pressures and stresses. For a quantity
+/// other than force, largest pressure and area up to two grids with fewer elements are solved first. Arrays of one value per element
+/// (compliances, limits, coefficients of friction, weights, tractions before) have their means on other grids.
+///
+/// OK: the targets are met. ITERATION_LIMIT: a limit of time, memory or elements forbids the next grid. CANCELLED: by the surface or the
+/// progress callback. STAGNATED: a target is below round-off, or no estimate can be trusted (a largest pressure that is singular has
+/// none). In these three cases `contact_normal_last_error` has the best error reached, and report and handle have its result. UNSUPPORTED:
+/// own coefficients, FIXED contact, and stresses of coated bodies.
+///
+/// `*solver` (`solver` NULL: not wanted) is a handle with the result for `contact_normal_solver_fields`, to be freed by
+/// `contact_normal_solver_free`; NULL if cancelled before a grid was solved. `contact_normal_cost_of_accuracy` predicts the cost.
+/// Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
     scene: *const contact_normal_scene,

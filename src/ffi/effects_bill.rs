@@ -32,7 +32,7 @@ pub const CONTACT_NORMAL_OMIT_COUPLING: i32 = 7;
 pub const CONTACT_NORMAL_OMIT_SPIN: i32 = 8;
 /// `omitted`: the tangential compliance of a third body.
 pub const CONTACT_NORMAL_OMIT_FRICTION_COMPLIANCE: i32 = 9;
-/// `omitted`: the coatings, in whose place there is a thin layer: their limit for waves that are long beside their thickness. Of coatings
+/// `omitted`: the coatings; a thin layer stands for them, which is their limit for waves much longer than their thickness. Only of coatings
 /// that are softer than the body below.
 pub const CONTACT_NORMAL_OMIT_COATING_AS_LAYER: i32 = 10;
 /// `omitted`: adhesion; nothing attracts.

@@ -93,8 +93,11 @@ pub struct contact_normal_friction {
     pub rigid_slip: [*const f64; 2],
     /// Own tangential influence coefficients xx, yy and xy instead of the half-space's: the displacement in x by a unit traction in x, in
     /// y by one in y, and in either by one in the other. All or none, default NULL; all with the same cx, cy and scale. xx and yy must be
-    /// even in x and in y, xy odd in both, in steady rolling of like bodies in y alone (UNSUPPORTED otherwise); uneven ones are those of bodies that roll in one direction. Steps must go in that direction, and so must they beside an uneven `scene->influence` (INVALID_ARGUMENT otherwise). Rolling needs steps of whole elements; with the step the tables must reach
-    /// across what is in contact. They belong to the set-up of a solver: later scenes may leave them out; others are refused (INFLUENCE_CHANGED). With `scene->influence` or `scene->row_tables` the bodies are not read; otherwise they must be alike, or `influence_cross` given.
+    /// even in x and in y, and xy odd in both (UNSUPPORTED otherwise). In steady rolling of like bodies y alone counts: coefficients that
+    /// are uneven in x are those of bodies that roll in one direction. Steps must then go in that direction, also where `scene->influence` is
+    /// uneven in x (INVALID_ARGUMENT otherwise). Rolling needs steps of whole elements, and tables that reach across the contact area and a
+    /// step. The tables belong to the set-up of a solver: later scenes may leave them out, and others are refused (INFLUENCE_CHANGED). With
+    /// `scene->influence` or `scene->row_tables` the bodies are not read; otherwise they must be alike, or `influence_cross` must be given.
     pub influence: [*const contact_normal_influence; 3],
     /// With `influence`, of unlike bodies: xz and yz, the displacement difference in x and in y by a unit pressure; with the same cx, cy and
     /// scale, both or none, default NULL. xz must be odd in x and even in y, yz even in x and odd in y (UNSUPPORTED otherwise). Tractions

@@ -44,8 +44,8 @@ pub unsafe extern "C" fn contact_normal_solver_product(
 /// the contact area, pressures at their limit and tractions stay as they are. `A s = 1` is solved on the contact area, and the stiffness is the sum of
 /// `s dx dy`; 0 without contact. `residual` (NULL: not wanted) is that of these equations, relative, in the 2-norm over the contact area: the
 /// relative error of the stiffness is about that. OK: it is at most 1e-6, mostly 1e-10; ITERATION_LIMIT, STAGNATED: both are written, and it is
-/// larger. INFEASIBLE: full contact with two periods. INVALID_ARGUMENT: the handle has no result. Of a force that follows from the approach by a
-/// contact area that changes, this is the derivative but for single elements that come and go. The first call sets up what it needs, of about the size
+/// larger. INFEASIBLE: full contact with two periods. INVALID_ARGUMENT: the handle has no result. As a function of the approach the
+/// force has this derivative also where the contact area changes, but for jumps by single elements that enter or leave. The first call sets up what it needs, of about the size
 /// of the handle. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_stiffness(

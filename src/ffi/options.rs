@@ -83,7 +83,8 @@ pub struct contact_normal_options {
     /// > 0: may stop once the residual is below this part of the estimated discretisation error; OK then means the larger tolerance
     /// that `report->normal.tolerance` says. Default 0: the tolerance above.
     pub error_ratio: f64,
-    /// Cycles, or iterations of conjugate gradients or steps of GMRES, on the finest grid at most; default 1000.
+    /// Cycles, or iterations of conjugate gradients or steps of GMRES, on the finest grid at most; default 1000. The first way to a pull (adhesion,
+    /// force < 0) may take three times as many, and each further way as many, or four times those of the first and 500 if that is more.
     pub max_cycles: i32,
     /// Threads; default 1: safe beside OpenMP and MPI; 0: all cores.
     pub threads: i32,

@@ -41,9 +41,9 @@ pub const CONTACT_NORMAL_QUANTITY_VON_MISES_DEPTH: i32 = 10;
 /// `quantity`: the largest shear stress in both bodies, over all depths.
 pub const CONTACT_NORMAL_QUANTITY_MAX_SHEAR: i32 = 11;
 
-/// `obstacle`: none; the accuracy is to be had.
+/// `obstacle`: none; the accuracy can be reached.
 pub const CONTACT_NORMAL_OBSTACLE_NONE: i32 = 0;
-/// `obstacle`: no grid is known to do: the largest pressure is singular or not resolved, or contact is on single elements.
+/// `obstacle`: no grid is known to suffice: the largest pressure is singular or not resolved, or contact is on single elements.
 pub const CONTACT_NORMAL_OBSTACLE_SINGULAR: i32 = 1;
 /// `obstacle`: the target is below round-off.
 pub const CONTACT_NORMAL_OBSTACLE_ROUND_OFF: i32 = 2;
@@ -129,7 +129,7 @@ impl From<&Price> for contact_normal_price {
 
 /// Predicts what each of `n` relative errors of a `quantity` costs: `rows[i]` is that of `targets[i]`, and
 /// `contact_normal_price_init(rows)` has told how large a row is. The scene is solved on small
-/// grids over its rectangle only, for at most 2 % of the seconds of the dearest row that is to be had, or 50 ms. Of `accuracy` (NULL:
+/// grids over its rectangle only, for at most 2 % of the seconds of the most expensive row that can be reached, or 50 ms. Of `accuracy` (NULL:
 /// the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit says which, and what it
 /// would take. With a surface the scene's undeformed distance is not read and may be NULL; without one small grids sample it,
 /// and finer ones than the scene's are refined from it, as `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface or

@@ -15,8 +15,8 @@ use crate::solver::{ProgressCallback, Solver};
 
 /// Finds the pull-off: from the load of the scene, which has adhesion, the approach goes down until nothing is in contact, and so it does from
 /// bodies that are pressed together. The result is the state of the least force on these ways (`report->normal.force`). A load to begin with that
-/// is safe is a force of 0. The way from the load may take three times
-/// `max_cycles`. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.2.
+/// is safe is a force of 0. The first way may take three times `max_cycles`, and each further way `max_cycles`, or four times the
+/// cycles of the first and 500 if that is more. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_pull_off(
     scene: *const contact_normal_scene,

@@ -37,7 +37,8 @@ pub struct contact_normal_report_normal {
     /// The tolerance that the status speaks of: that of the options, or a larger one where `error_ratio` allows it, or the one that
     /// an accuracy asks for.
     pub tolerance: f64,
-    /// `||h - approach + A p|| / ||h - approach||`, 2-norms over C, with a fresh product in double precision.
+    /// `||h - approach + A p|| / ||h - approach||`, 2-norms over C, with a fresh product in double precision. With adhesion relative to what
+    /// the pressures of C displace their own elements by, where that is more, and at least what a force that is given lacks, relative to the sum of |p|.
     pub residual: f64,
     /// Largest -e outside C, or e of an element at its pressure limit; 0 if there is none: a length.
     pub violation: f64,
@@ -59,9 +60,9 @@ pub struct contact_normal_report_tangential {
     pub moment: f64,
     /// Creepages in x and y, given or found.
     pub creepage: [f64; 2],
-    /// rms over C of what is left of the slip where it should be 0 or opposite to q, relative to the rigid slip (of a shift, and of
-    /// steady rolling by a force: to that or the displacements, whichever is larger; else to 1.5e-8 of the displacements at least, which
-    /// round-off leaves); with a fresh product in double precision.
+    /// rms over C of the wrong part of the slip, relative to the rigid slip, with a fresh product in double precision. Wrong is all slip of an
+    /// element that sticks, and the part that is not opposite to q where one slips. In a shift, and in steady rolling by a force, it is relative
+    /// to the displacements where these are larger; otherwise to 1.5e-8 of the displacements at least, their round-off.
     pub residual: f64,
     /// `sum of (s.q + mu p |s|) / sum of mu p |rigid slip|`: 0 for the solution only.
     pub gap: f64,
@@ -82,8 +83,8 @@ pub struct contact_normal_report_tangential {
     pub reserved: [f64; 6],
 }
 
-/// How wrong it is: a group of `contact_normal_report`. Errors are estimated after a start from nothing, and after any start if there is a
-/// ledger; they are absolute, and < 0 where they are not known.
+/// The estimated errors: a group of `contact_normal_report`. They are estimated after a start from nothing, and after any start if there is a
+/// ledger. They are absolute, and < 0 where they are not known.
 #[repr(C)]
 #[derive(Clone, Copy, Default)]
 pub struct contact_normal_report_accuracy {
@@ -144,8 +145,8 @@ pub struct contact_normal_report_statistics {
     pub reserved: [f64; 8],
 }
 
-/// The results of a solve and its cost, in groups. Written only when the status is >= 0. A group grows into the room at its end, which is 0
-/// where the library does not know what a newer header has there; later groups come at the end of the report.
+/// The results of a solve and its cost, in groups. Written only when the status is >= 0. Later versions put new members into the room at the end
+/// of a group, and new groups at the end of the report. Members that the library does not know are 0.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_report {
@@ -157,7 +158,7 @@ pub struct contact_normal_report {
     pub ledger_capacity: i64,
     /// In: the caller's array, or NULL (default). Its first row is filled by `contact_normal_ledger_row_init`.
     pub ledger: *mut contact_normal_ledger_row,
-    /// Warnings, even where the status is OK: CONTACT_NORMAL_WARNING_... bits. `contact_normal_last_error` says it in words.
+    /// Warnings, even where the status is OK: CONTACT_NORMAL_WARNING_... bits. `contact_normal_last_error` has them in words.
     pub warnings: i32,
     /// Always 0.
     pub reserved: i32,
@@ -165,7 +166,7 @@ pub struct contact_normal_report {
     pub normal: contact_normal_report_normal,
     /// The results of the tangential problem.
     pub tangential: contact_normal_report_tangential,
-    /// How wrong it is.
+    /// The estimated errors.
     pub accuracy: contact_normal_report_accuracy,
     /// Its cost.
     pub statistics: contact_normal_report_statistics,

@@ -15,7 +15,7 @@ use crate::grid::Grid;
 use crate::memory::collected;
 use crate::scene::{Bodies, Coating, Load, Scene};
 
-/// `load`: that one of `approach` and `force` is given which is set; both or none is refused.
+/// `load`: the one of `approach` and `force` that is set. Both or neither are refused.
 pub const CONTACT_NORMAL_PRESCRIBED_UNSET: i32 = 0;
 /// `load`: the approach of the bodies is given.
 pub const CONTACT_NORMAL_PRESCRIBED_APPROACH: i32 = 1;

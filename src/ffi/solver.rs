@@ -224,7 +224,7 @@ pub struct contact_normal_solver_info {
 
 versioned! { contact_normal_solver_info, contact_normal_solver_info_init, 48 }
 
-/// Says what a solver is: its grid, its threads, its bytes, and whether it has a result. Since 0.2.
+/// Writes the settings of a solver: its grid, its threads, its bytes, and whether it has a result. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_query(
     solver: *const contact_normal_solver,

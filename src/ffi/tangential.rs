@@ -39,7 +39,7 @@ use crate::solver::{solve_friction_batch, solve_tangential, Ended, Entry, Outcom
 /// `report` (NULL: not wanted) has the measures of the pressures and, of one problem, those of friction. Its `warnings` has LAW where that holds of
 /// the problem, or of an entry.
 ///
-/// Of entries as many are solved at a time as `options->threads` says. Neighbours in the table should be neighbours in the motion: 16 in
+/// `options->threads` entries are solved at a time. Neighbours in the table should be neighbours in the motion: 16 in
 /// a row are solved one after the other, each from the tractions of the one before if it differs little, and all meet the tolerance. Results
 /// have the same bits for any number of threads, and `continues` is refused. What the solver found last stays as it is.
 ///

@@ -104,11 +104,11 @@ impl GivenEffect for contact_normal_visco {
 pub struct contact_normal_report_visco {
     /// Since the bodies were at rest: the sum of the steps.
     pub time: f64,
-    /// How far this step may be off: what its form and another one differ by, rms of the displacements in contact over that of h - approach.
+    /// How far this step may be off: the difference between its form and another one, rms of the displacements in contact relative to that of h - approach.
     pub step_error: f64,
     /// The same of all steps since the bodies were at rest, added up: how far the result may be off. 0 without contact.
     pub time_error: f64,
-    /// The compliance of the bodies in the step, in that at once.
+    /// The compliance of the bodies in the step, relative to that at once.
     pub compliance: f64,
     /// Room for later versions: 0.
     pub reserved: [f64; 4],

@@ -20,8 +20,6 @@ use crate::error::Result;
 use crate::methods::fields;
 use crate::progress::Outcome;
 
-/// If more than this part of C slips, the natural map is tried first.
-const MOSTLY_SLIP: f64 = 0.8;
 /// A trial is good if its missing force is at most this part of the least so far.
 const PROGRESS: f64 = 0.5;
 /// Each time the missing force falls to CLOSE times the last value, Newton's method with balanced creepages gets FINISH products.
@@ -193,7 +191,8 @@ impl Trials {
         match self.least {
             Some(least) if missing > PROGRESS * least => (self.by_map, self.bad) = (!self.by_map, self.bad + 1),
             Some(_) => self.bad = 0,
-            None => self.by_map = memory.tangent.slip_count as f64 > MOSTLY_SLIP * problem.count() as f64,
+            // The natural map is tried first if nearly all of C slips.
+            None => self.by_map = problem.places.is_mostly_slip(memory.tangent.slip_count),
         }
         self.least = Some(self.least.map_or(missing, |least| least.min(missing)));
         if self.bad % 3 == 2 {

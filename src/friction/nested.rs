@@ -28,8 +28,6 @@ const COARSE_SHARE: f64 = 0.5;
 /// Largest part of the remaining products for a method that is not the last.
 const SHARE: f64 = 0.4;
 
-/// The part of C in slip from which creepages and tractions are found in turns.
-const MOSTLY_SLIP: f64 = 0.8;
 /// Products of Newton's method with balanced creepages, which comes first near full slip: half of 3800 random scenes then take less than half of the
 /// products. If a single element sticks, the method cycles.
 const TRIED: u64 = 8;
@@ -129,7 +127,7 @@ fn mostly_slips(level: &mut Level, forces: Forces) -> Result<bool> {
     problem.offset = balanced(problem, state, rho, forces);
     memory.tangent.predict(problem, state, rho);
     problem.offset = offset;
-    Ok(memory.tangent.slip_count as f64 > MOSTLY_SLIP * problem.count() as f64)
+    Ok(problem.places.is_mostly_slip(memory.tangent.slip_count))
 }
 
 /// The products allowed for the finest grid, or for all coarser ones together.
@@ -168,8 +166,7 @@ fn one(
         let Level { problem, state, memory, .. } = &mut *level;
         let left = ((all - work.products) / part).max(0.0);
         // In turns only near full slip.
-        let slipping = memory.tangent.slip_count as f64;
-        if way == Way::Newton(Manner::InTurns) && slipping < MOSTLY_SLIP * problem.count() as f64 {
+        if way == Way::Newton(Manner::InTurns) && !problem.places.is_mostly_slip(memory.tangent.slip_count) {
             continue;
         }
         let another = k + 1 < ways.len();

@@ -23,6 +23,8 @@ pub struct Places {
 
 /// Blocks of a full grid, as long as each has [`BLOCK`]`/4` to [`BLOCK`] elements.
 const BLOCKS: usize = 64;
+/// The part of C in slip from which nearly all of it slips.
+const MOSTLY_SLIP: f64 = 0.8;
 
 /// Neighbours in a row: the place of the first on the grid, and their number. 32 bits suffice: 2^32 elements would take 300 GB.
 #[derive(Clone, Copy)]
@@ -140,6 +142,12 @@ impl Places {
     /// The number of elements of C.
     pub fn count(&self) -> usize {
         self.count
+    }
+
+    /// Whether nearly all of C slips if so many elements do. Newton's method is faster then, and methods that find creepages and tractions in turns
+    /// succeed.
+    pub fn is_mostly_slip(&self, slipping: usize) -> bool {
+        slipping as f64 > MOSTLY_SLIP * self.count as f64
     }
 
     /// The number of values of a field, with the padding.

@@ -18,9 +18,6 @@ use crate::memory::{blank, collected, unwritten, zeros};
 use crate::methods::fields;
 use crate::rectangle::Rectangle;
 
-/// The part of C in slip after a step from which Newton's method is faster for the next step.
-const MOSTLY_SLIP: f64 = 0.8;
-
 /// Largest ratio of rigid slips to displacements by tractions: single precision ends at 1e38.
 pub(super) const LARGEST_RATIO: f64 = 1e30;
 /// Least ratio: the round-off of sideways displacements by pressures is a slip as well.
@@ -122,7 +119,7 @@ impl Solver {
         self.start_from(request, window);
         let Level { problem, state, .. } = &mut self.levels[0];
         let slipped = problem.contact().filter(|&i| square(state.q[i]).sqrt() >= 0.999 * problem.bound[i]).count();
-        let mostly = slipped as f64 > MOSTLY_SLIP * problem.count() as f64;
+        let mostly = problem.places.is_mostly_slip(slipped);
         problem.refresh(state);
         if let Start::Given(_) = request.start {
             problem.offset = [0, 1].map(|k| if found(k) { creepage_of(problem, state, k) } else { 0.0 });

@@ -46,8 +46,8 @@ const JUMPS: f64 = 0.6;
 /// Pressure at ends of the surface over the peak above which the peak has no estimate: pressures at ends are singular and grow as the square root of
 /// the number of elements. With a quarter, the peak remains the largest pressure for the three doublings that a search predicts.
 const PEAK_OVER_ENDS: f64 = 0.25;
-/// Shortest chord with an estimate. Below it, contact is on single elements.
-const LEAST_CHORD: f64 = 1.5;
+/// Shortest chord with an estimate, in elements. Below it, contact is on single elements.
+pub(super) const LEAST_CHORD: f64 = 1.5;
 /// Relative error of a direction of one element without a period.
 const ONE_ELEMENT: f64 = 0.26;
 /// Error over second differences of the pressures, of the largest and in the rms; and the relative differences of a singular and a sharp peak.

@@ -26,7 +26,7 @@
 //!
 //! [`estimates`]: super::estimates
 
-use super::estimates::Parts;
+use super::estimates::{Parts, LEAST_CHORD};
 use crate::contact::{at_ends, at_jumps, Curvature, Outline, Problem, State};
 use crate::effects::Coefficient;
 use crate::friction::{Report, Solution, Vector, SLIP};
@@ -37,8 +37,6 @@ use crate::scene::{Friction, Load, Motion, Prescribed};
 const PART: f64 = 0.3;
 /// Elements across at which the outline's error equals the rest.
 const CHORD: f64 = 13.0;
-/// Shortest chord with an estimate, in elements.
-const LEAST_CHORD: f64 = 1.5;
 /// Factors in steady rolling: on the difference to the coarser grid, on the error of a shift, on the difference in the other direction.
 const ROLLING: f64 = 3.0;
 const ROLLING_SHIFT: f64 = 3.0;

@@ -108,6 +108,25 @@ fn a_pull_beyond_a_snap_of_all_is_refused_and_one_that_is_cut_short_says_so() {
     assert!(residual > 0.02, "{residual:e} hides that the force is missed");
 }
 
+/// A ball with waves of few elements, which snap alone. The way down from no load is short, and that from pressed bodies, which hold more, takes
+/// hundreds of cycles.
+#[test]
+fn a_pull_is_refused_only_if_each_way_was_gone_to_its_end() {
+    let mut bowl = Bowl::new(15, [1.0, 1.0], [7.0, 7.0], 1.0 / 30.0);
+    for (i, h) in bowl.h.iter_mut().enumerate() {
+        *h += 0.1 * (2.1 * ((i % 15) as f64 - 7.0)).cos() * (2.3 * ((i / 15) as f64 - 7.0)).cos();
+    }
+    let law = Law::Dugdale(0.3);
+    let own = adhesion(law, 1e-3, range_of_kappa(law, 1e-3, 1.0, 1.0, 1.6 * law.steepness()));
+    let pull = Load::Force(-3.0 * std::f64::consts::PI * 1e-3 * 30.0);
+    let by_cycles =
+        |max_cycles: usize| solver::solve(&bowl.scene(own, pull), &Options { max_cycles, ..Options::default() });
+    let (_, outcome, report) = by_cycles(50).expect("a result");
+    assert_eq!(outcome, Outcome::IterationLimit);
+    assert!(report.adhesion.is_some_and(|found| found.is_short));
+    assert!(matches!(by_cycles(20_000), Err(Error::Infeasible(_))));
+}
+
 // A spike stands out of a ball. Without a load it alone is in contact, and the way from pressed bodies to that state took steps of 0.3 of the
 // contact's length: its pull-off was 1.2 % too weak. A dense path from pressed bodies, in steps of 0.005 of the range, has -5.2603e-3.
 #[test]

@@ -51,7 +51,7 @@ fn there_are_enough_elements_across_the_contact() {
 }
 
 #[test]
-fn largest_stresses_take_one_doubling_after_the_other() {
+fn quantities_of_several_grids_take_one_doubling_after_the_other() {
     let accuracy = Accuracy::new(1e-4);
     assert_eq!(accuracy.next(&past(by_four(100.0))), Next::Refine(3));
     assert_eq!(accuracy.next(&Past { leaps: false, ..past(by_four(100.0)) }), Next::Refine(1));

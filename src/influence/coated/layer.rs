@@ -21,8 +21,8 @@ use crate::memory::zeros;
 
 /// Distance beyond which the stencil of neighbours is used.
 const FAR: f64 = 32.0;
-/// Diagonals of an element up to which corner differences are used.
-const CORNERS: f64 = 2.5;
+/// Diagonals of an element up to which differences over its corners serve.
+pub(super) const CORNERS: f64 = 2.5;
 /// Points a side of tensor Gauss below these distances.
 const POINTS: [(f64, usize); 2] = [(12.0, 7), (FAR, 4)];
 

@@ -27,7 +27,7 @@ use super::response::{Response, TERMS};
 use super::transfer::Transfer;
 
 /// Most coefficients of a polynomial in w, of degree 13, and of its integral.
-const P: usize = 14;
+pub const P: usize = 14;
 const OF_INTEGRAL: usize = P + 1;
 /// Bound on the omitted terms of a polynomial, relative to the half-space's `b/rho`.
 const LEFT_OUT: f64 = 1e-15;

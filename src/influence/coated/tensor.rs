@@ -11,12 +11,9 @@
 //! multiple of `1/rho` to I and of `1/rho^3` to Q.
 
 use super::polynomial::{chebyshev, evaluate, node, powers};
-use super::radial::{ends_of, panel_of, Base, Radial};
+use super::radial::{ends_of, panel_of, Base, Radial, P};
 use super::response::Response;
 use super::shear::{Across, Along};
-
-/// Coefficients of a polynomial.
-const P: usize = 14;
 
 /// The functions of one layer of unit thickness.
 #[derive(Debug)]

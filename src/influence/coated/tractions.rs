@@ -26,6 +26,7 @@
 use std::sync::{Arc, OnceLock};
 
 use super::known::Known;
+use super::layer::CORNERS;
 use super::quadrature::gauss_legendre;
 use super::radial::{Base, Radial};
 use super::response::Response;
@@ -33,8 +34,6 @@ use super::tensor::Tensor;
 
 /// Shear modulus of the layer over that of the substrate from which the layer spreads loads as a membrane.
 const MEMBRANE: f64 = 30.0;
-/// Diagonals of an element up to which differences over its corners serve.
-const CORNERS: f64 = 2.5;
 /// Points a side of tensor Gauss up to these distances, in longer sides of an element. The relative error on a function like 1/r,
 /// `(n!)^4/((2n + 1)((2n)!)^2) r^-2n`, is at most 3e-13 where a rule begins; the last rule begins at 400.
 const POINTS: [(f64, usize); 4] = [(12.0, 7), (40.0, 4), (400.0, 3), (f64::INFINITY, 2)];

@@ -103,8 +103,7 @@ impl Quantity {
             Quantity::Force => 6,
             Quantity::MaxPressure => 12,
             area if area.is_area() => 32,
-            stress if stress.is_stress() => 10,
-            _ => 16,
+            _ => 10,
         }
     }
 

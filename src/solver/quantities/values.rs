@@ -112,6 +112,7 @@ pub fn values(
         };
         let counted = |value: f64| match quantity {
             Quantity::StickArea => value / scene.grid.element_area(),
+            Quantity::Stiffness => report.measures.contact_count as f64,
             _ => 0.0,
         };
         values.push(number.map(|value| Value { counted: counted(value), ..Value::from(value) }));

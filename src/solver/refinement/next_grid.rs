@@ -22,7 +22,7 @@ pub(super) struct Past {
     pub excesses: Vec<Option<Falling>>,
     /// Whether there are enough grids for these errors to be valid.
     pub is_believed: bool,
-    /// Whether errors are predicted over several doublings: not for largest stresses, whose order three grids hardly determine.
+    /// Whether errors are predicted over several doublings: not if one follows from several grids, which hardly determine its order.
     pub leaps: bool,
     /// Bytes held by the grid's solver.
     pub bytes: u64,
@@ -74,7 +74,7 @@ impl Past {
             enough: accuracy.wanted().map(|(quantity, _)| quantity.enough_across()).max().unwrap_or(1),
             excesses: accuracy.excesses(&solved.outlook),
             is_believed,
-            leaps: !accuracy.wanted().any(|(quantity, _)| quantity.is_stress()),
+            leaps: accuracy.wanted().all(|(quantity, _)| quantity.has_estimate()),
             bytes: solved.report.bytes,
             seconds: seconds.0,
             exponent: exponent.clamp(EXPONENTS.0, EXPONENTS.1),

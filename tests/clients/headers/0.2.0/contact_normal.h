@@ -247,7 +247,7 @@
 #define CONTACT_NORMAL_KIND_WORN 29
 
 /*
- `load`: that one of `approach` and `force` is given which is set; both or none is refused.
+ `load`: the one of `approach` and `force` that is set. Both or neither are refused.
  */
 #define CONTACT_NORMAL_PRESCRIBED_UNSET 0
 
@@ -623,12 +623,12 @@
 #define CONTACT_NORMAL_QUANTITY_MAX_SHEAR 11
 
 /*
- `obstacle`: none; the accuracy is to be had.
+ `obstacle`: none; the accuracy can be reached.
  */
 #define CONTACT_NORMAL_OBSTACLE_NONE 0
 
 /*
- `obstacle`: no grid is known to do: the largest pressure is singular or not resolved, or contact is on single elements.
+ `obstacle`: no grid is known to suffice: the largest pressure is singular or not resolved, or contact is on single elements.
  */
 #define CONTACT_NORMAL_OBSTACLE_SINGULAR 1
 
@@ -754,7 +754,7 @@
 #define CONTACT_NORMAL_OMIT_FRICTION_COMPLIANCE 9
 
 /*
- `omitted`: the coatings, in whose place there is a thin layer: their limit for waves that are long beside their thickness. Of coatings
+ `omitted`: the coatings; a thin layer stands for them, which is their limit for waves much longer than their thickness. Only of coatings
  that are softer than the body below.
  */
 #define CONTACT_NORMAL_OMIT_COATING_AS_LAYER 10
@@ -1057,8 +1057,11 @@ typedef struct contact_normal_friction {
   /*
    Own tangential influence coefficients xx, yy and xy instead of the half-space's: the displacement in x by a unit traction in x, in
    y by one in y, and in either by one in the other. All or none, default NULL; all with the same cx, cy and scale. xx and yy must be
-   even in x and in y, xy odd in both, in steady rolling of like bodies in y alone (UNSUPPORTED otherwise); uneven ones are those of bodies that roll in one direction. Steps must go in that direction, and so must they beside an uneven `scene->influence` (INVALID_ARGUMENT otherwise). Rolling needs steps of whole elements; with the step the tables must reach
-   across what is in contact. They belong to the set-up of a solver: later scenes may leave them out; others are refused (INFLUENCE_CHANGED). With `scene->influence` or `scene->row_tables` the bodies are not read; otherwise they must be alike, or `influence_cross` given.
+   even in x and in y, and xy odd in both (UNSUPPORTED otherwise). In steady rolling of like bodies y alone counts: coefficients that
+   are uneven in x are those of bodies that roll in one direction. Steps must then go in that direction, also where `scene->influence` is
+   uneven in x (INVALID_ARGUMENT otherwise). Rolling needs steps of whole elements, and tables that reach across the contact area and a
+   step. The tables belong to the set-up of a solver: later scenes may leave them out, and others are refused (INFLUENCE_CHANGED). With
+   `scene->influence` or `scene->row_tables` the bodies are not read; otherwise they must be alike, or `influence_cross` must be given.
    */
   const struct contact_normal_influence *influence[3];
   /*
@@ -1466,7 +1469,8 @@ typedef struct contact_normal_options {
    */
   double error_ratio;
   /*
-   Cycles, or iterations of conjugate gradients or steps of GMRES, on the finest grid at most; default 1000.
+   Cycles, or iterations of conjugate gradients or steps of GMRES, on the finest grid at most; default 1000. The first way to a pull (adhesion,
+   force < 0) may take three times as many, and each further way as many, or four times those of the first and 500 if that is more.
    */
   int32_t max_cycles;
   /*
@@ -1700,7 +1704,8 @@ typedef struct contact_normal_report_normal {
    */
   double tolerance;
   /*
-   `||h - approach + A p|| / ||h - approach||`, 2-norms over C, with a fresh product in double precision.
+   `||h - approach + A p|| / ||h - approach||`, 2-norms over C, with a fresh product in double precision. With adhesion relative to what
+   the pressures of C displace their own elements by, where that is more, and at least what a force that is given lacks, relative to the sum of |p|.
    */
   double residual;
   /*
@@ -1738,9 +1743,9 @@ typedef struct contact_normal_report_tangential {
    */
   double creepage[2];
   /*
-   rms over C of what is left of the slip where it should be 0 or opposite to q, relative to the rigid slip (of a shift, and of
-   steady rolling by a force: to that or the displacements, whichever is larger; else to 1.5e-8 of the displacements at least, which
-   round-off leaves); with a fresh product in double precision.
+   rms over C of the wrong part of the slip, relative to the rigid slip, with a fresh product in double precision. Wrong is all slip of an
+   element that sticks, and the part that is not opposite to q where one slips. In a shift, and in steady rolling by a force, it is relative
+   to the displacements where these are larger; otherwise to 1.5e-8 of the displacements at least, their round-off.
    */
   double residual;
   /*
@@ -1777,8 +1782,8 @@ typedef struct contact_normal_report_tangential {
 } contact_normal_report_tangential;
 
 /*
- How wrong it is: a group of `contact_normal_report`. Errors are estimated after a start from nothing, and after any start if there is a
- ledger; they are absolute, and < 0 where they are not known.
+ The estimated errors: a group of `contact_normal_report`. They are estimated after a start from nothing, and after any start if there is a
+ ledger. They are absolute, and < 0 where they are not known.
  */
 typedef struct contact_normal_report_accuracy {
   /*
@@ -1957,7 +1962,7 @@ typedef struct contact_normal_report_visco {
    */
   double time;
   /*
-   How far this step may be off: what its form and another one differ by, rms of the displacements in contact over that of h - approach.
+   How far this step may be off: the difference between its form and another one, rms of the displacements in contact relative to that of h - approach.
    */
   double step_error;
   /*
@@ -1965,7 +1970,7 @@ typedef struct contact_normal_report_visco {
    */
   double time_error;
   /*
-   The compliance of the bodies in the step, in that at once.
+   The compliance of the bodies in the step, relative to that at once.
    */
   double compliance;
   /*
@@ -1975,8 +1980,8 @@ typedef struct contact_normal_report_visco {
 } contact_normal_report_visco;
 
 /*
- The results of a solve and its cost, in groups. Written only when the status is >= 0. A group grows into the room at its end, which is 0
- where the library does not know what a newer header has there; later groups come at the end of the report.
+ The results of a solve and its cost, in groups. Written only when the status is >= 0. Later versions put new members into the room at the end
+ of a group, and new groups at the end of the report. Members that the library does not know are 0.
  */
 typedef struct contact_normal_report {
   /*
@@ -1996,7 +2001,7 @@ typedef struct contact_normal_report {
    */
   struct contact_normal_ledger_row *ledger;
   /*
-   Warnings, even where the status is OK: CONTACT_NORMAL_WARNING_... bits. `contact_normal_last_error` says it in words.
+   Warnings, even where the status is OK: CONTACT_NORMAL_WARNING_... bits. `contact_normal_last_error` has them in words.
    */
   int32_t warnings;
   /*
@@ -2012,7 +2017,7 @@ typedef struct contact_normal_report {
    */
   struct contact_normal_report_tangential tangential;
   /*
-   How wrong it is.
+   The estimated errors.
    */
   struct contact_normal_report_accuracy accuracy;
   /*
@@ -2768,8 +2773,8 @@ contact_normal_status contact_normal_solve(const struct contact_normal_scene *sc
 /*
  Finds the pull-off: from the load of the scene, which has adhesion, the approach goes down until nothing is in contact, and so it does from
  bodies that are pressed together. The result is the state of the least force on these ways (`report->normal.force`). A load to begin with that
- is safe is a force of 0. The way from the load may take three times
- `max_cycles`. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.2.
+ is safe is a force of 0. The first way may take three times `max_cycles`, and each further way `max_cycles`, or four times the
+ cycles of the first and 500 if that is more. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.2.
  */
 contact_normal_status contact_normal_pull_off(const struct contact_normal_scene *scene,
                                               const struct contact_normal_options *options,
@@ -2820,7 +2825,7 @@ contact_normal_status contact_normal_solver_fields(const struct contact_normal_s
                                                    struct contact_normal_fields *fields);
 
 /*
- Says what a solver is: its grid, its threads, its bytes, and whether it has a result. Since 0.2.
+ Writes the settings of a solver: its grid, its threads, its bytes, and whether it has a result. Since 0.2.
  */
 contact_normal_status contact_normal_solver_query(const struct contact_normal_solver *solver,
                                                   struct contact_normal_solver_info *info);
@@ -2845,8 +2850,8 @@ contact_normal_status contact_normal_solver_product(struct contact_normal_solver
  the contact area, pressures at their limit and tractions stay as they are. `A s = 1` is solved on the contact area, and the stiffness is the sum of
  `s dx dy`; 0 without contact. `residual` (NULL: not wanted) is that of these equations, relative, in the 2-norm over the contact area: the
  relative error of the stiffness is about that. OK: it is at most 1e-6, mostly 1e-10; ITERATION_LIMIT, STAGNATED: both are written, and it is
- larger. INFEASIBLE: full contact with two periods. INVALID_ARGUMENT: the handle has no result. Of a force that follows from the approach by a
- contact area that changes, this is the derivative but for single elements that come and go. The first call sets up what it needs, of about the size
+ larger. INFEASIBLE: full contact with two periods. INVALID_ARGUMENT: the handle has no result. As a function of the approach the
+ force has this derivative also where the contact area changes, but for jumps by single elements that enter or leave. The first call sets up what it needs, of about the size
  of the handle. Since 0.2.
  */
 contact_normal_status contact_normal_solver_stiffness(struct contact_normal_solver *solver,
@@ -2870,7 +2875,7 @@ contact_normal_status contact_normal_solver_stiffness(struct contact_normal_solv
  `report` (NULL: not wanted) has the measures of the pressures and, of one problem, those of friction. Its `warnings` has LAW where that holds of
  the problem, or of an entry.
 
- Of entries as many are solved at a time as `options->threads` says. Neighbours in the table should be neighbours in the motion: 16 in
+ `options->threads` entries are solved at a time. Neighbours in the table should be neighbours in the motion: 16 in
  a row are solved one after the other, each from the tractions of the one before if it differs little, and all meet the tolerance. Results
  have the same bits for any number of threads, and `continues` is refused. What the solver found last stays as it is.
 
@@ -2918,17 +2923,21 @@ contact_normal_status contact_normal_solver_solve_batch(struct contact_normal_so
 
 /*
  Solves on the grid of `scene`, then on finer ones over the same rectangle, until `report->accuracy.error_force` is at most
- `accuracy->target` times the force (or the approach, when the force is prescribed), and those of the other quantities
- at most their targets, with enough elements across the contact in both directions: 6 for forces, 12 for the largest pressure, 32 for areas, 16 for the others. With `accuracy->surface` the
- scene's undeformed distance is not read and may be NULL. The tolerance is that of `options` or, where that is less, a tenth of the
- targets, and a hundredth of those of single pressures and stresses. With a target of another quantity than force, largest pressure and area up to two grids with fewer elements
- are solved first. Arrays of one value per element (compliances, limits, coefficients of friction, weights, tractions before) have their
- means on other grids. UNSUPPORTED: own coefficients, FIXED contact, and stresses of coated bodies. OK: the targets are met. ITERATION_LIMIT: a limit of time, memory or elements is in the way of the next
- grid. CANCELLED: by the surface or the progress callback. STAGNATED: a target is below round-off, or no estimate can be trusted (a
- largest pressure that is singular has none). In these cases `contact_normal_last_error` says the best reached, and report and handle
- hold it. `*solver` (`solver` NULL: not wanted) is a handle with the result for `contact_normal_solver_fields`, to be freed by
- `contact_normal_solver_free`; NULL if cancelled before a grid was solved. What it costs beforehand:
- `contact_normal_cost_of_accuracy`. Since 0.1.
+ `accuracy->target` times the force (or the approach, when the force is prescribed), and the errors of the other quantities are at most
+ their targets. Both directions must have enough elements across the contact: 6 for forces, 12 for the largest pressure, 32 for areas, and
+ 10 for the others. With `accuracy->surface` the scene's undeformed distance is not read and may be NULL. The tolerance is that of
+ `options` or, where that is less, a tenth of the targets, and a hundredth of those of single pressures and stresses. For a quantity
+ other than force, largest pressure and area up to two grids with fewer elements are solved first. Arrays of one value per element
+ (compliances, limits, coefficients of friction, weights, tractions before) have their means on other grids.
+
+ OK: the targets are met. ITERATION_LIMIT: a limit of time, memory or elements forbids the next grid. CANCELLED: by the surface or the
+ progress callback. STAGNATED: a target is below round-off, or no estimate can be trusted (a largest pressure that is singular has
+ none). In these three cases `contact_normal_last_error` has the best error reached, and report and handle have its result. UNSUPPORTED:
+ own coefficients, FIXED contact, and stresses of coated bodies.
+
+ `*solver` (`solver` NULL: not wanted) is a handle with the result for `contact_normal_solver_fields`, to be freed by
+ `contact_normal_solver_free`; NULL if cancelled before a grid was solved. `contact_normal_cost_of_accuracy` predicts the cost.
+ Since 0.1.
  */
 contact_normal_status contact_normal_solve_to_accuracy(const struct contact_normal_scene *scene,
                                                        const struct contact_normal_options *options,
@@ -2939,7 +2948,7 @@ contact_normal_status contact_normal_solve_to_accuracy(const struct contact_norm
 /*
  Predicts what each of `n` relative errors of a `quantity` costs: `rows[i]` is that of `targets[i]`, and
  `contact_normal_price_init(rows)` has told how large a row is. The scene is solved on small
- grids over its rectangle only, for at most 2 % of the seconds of the dearest row that is to be had, or 50 ms. Of `accuracy` (NULL:
+ grids over its rectangle only, for at most 2 % of the seconds of the most expensive row that can be reached, or 50 ms. Of `accuracy` (NULL:
  the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit says which, and what it
  would take. With a surface the scene's undeformed distance is not read and may be NULL; without one small grids sample it,
  and finer ones than the scene's are refined from it, as `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface or
