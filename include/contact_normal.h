@@ -367,7 +367,7 @@
 #define CONTACT_NORMAL_START_AUTO 0
 
 /*
- `start`: from a larger approach: what is in contact stays so.
+ `start`: from a larger approach: elements in contact stay in contact.
  */
 #define CONTACT_NORMAL_START_FROM_CONTACT 1
 
@@ -800,12 +800,12 @@
 #define CONTACT_NORMAL_LOG_OFF 0
 
 /*
- Log level: what the caller should look at.
+ Log level: results that the caller should look at.
  */
 #define CONTACT_NORMAL_LOG_WARNING 1
 
 /*
- Log level: what the library decided.
+ Log level: decisions of the library.
  */
 #define CONTACT_NORMAL_LOG_INFO 2
 
@@ -1102,7 +1102,7 @@ typedef struct contact_normal_friction {
    unit traction in x, in y by one in y, and in x by one in y. All or none, default NULL; all with the same cx, rows and scale. The
    operator must be symmetric (UNSUPPORTED otherwise): xx of the loaded row jy and the row iy at offset k is xx of jy and iy exchanged at
    -k, and so is yy. The displacement in y by a unit traction in x is xy of the rows exchanged at -k. Rolling needs steps of whole
-   elements along x; cx must reach across what is in contact and a step. Otherwise as `influence`; unlike bodies are refused.
+   elements along x; cx must reach across the contact area and a step. Otherwise as `influence`; unlike bodies are refused.
    */
   const struct contact_normal_row_tables *row_tables[3];
   /*
@@ -1176,7 +1176,7 @@ typedef struct contact_normal_friction {
 /*
  Effect: attraction across the gap, `p = q - sigma(e)` with contact pressures q >= 0. The scene's force may then be negative. Pressures
  are total ones, negative where the bodies pull at each other; `contact` is 1 where e = 0. A work of 0 is no adhesion. Several states may
- belong to one approach: `start` says which one is looked for, and initial_guess PREVIOUS follows the one before. To a force belong unstable
+ belong to one approach: `start` chooses one, and initial_guess PREVIOUS follows the one before. To a force belong unstable
  states as well, which are refused, and maybe several stable ones, with dF/dapproach > 0; below the pull-off force none is found
  (INFEASIBLE). See docs/adhesion.md.
  */
@@ -1507,7 +1507,7 @@ typedef struct contact_normal_options {
    */
   const int32_t *stop;
   /*
-   The path of a file, or NULL (default): where a call that ends neither as OK nor as CANCELLED writes what it was given, for
+   The path of a file, or NULL (default): where a call that ends neither as OK nor as CANCELLED writes its arguments, for
    `contact-normal-replay` (docs/dump.md). %p in it is the number of the process, %n that of the dump in the process, %% a %.
    */
   const char *dump;
@@ -1576,7 +1576,7 @@ typedef struct contact_normal_fields {
 } contact_normal_fields;
 
 /*
- One row of the ledger: what was known on one grid, and what it had cost by then. Estimated errors are absolute; negative: not
+ One row of the ledger: the results on one grid, and their cost so far. Estimated errors are absolute; negative: not
  known, and if the bit is set in `untrusted`, not to be known from these grids.
  */
 typedef struct contact_normal_ledger_row {
@@ -2151,7 +2151,7 @@ typedef int32_t (*contact_normal_surface_callback)(int32_t mx,
                                                    void *user);
 
 /*
- The accuracy that is asked for, what it may cost, and the grid that it took.
+ The accuracy that is asked for, its allowed cost, and the grid that it took.
  */
 typedef struct contact_normal_accuracy {
   /*
@@ -2254,7 +2254,7 @@ typedef struct contact_normal_accuracy {
 } contact_normal_accuracy;
 
 /*
- One row of the price list: what one accuracy costs. All of it is predicted.
+ One row of the price list: the predicted cost of one accuracy.
  */
 typedef struct contact_normal_price {
   /*
@@ -2371,7 +2371,7 @@ typedef struct contact_normal_effects_row {
    */
   int64_t struct_size;
   /*
-   CONTACT_NORMAL_OMIT_...: what is left out.
+   CONTACT_NORMAL_OMIT_...: the effect that is left out.
    */
   int32_t omitted;
   /*
@@ -2411,7 +2411,7 @@ typedef struct contact_normal_effects_row {
    */
   double seconds;
   /*
-   The same without what is left out.
+   The same without the effects that are left out.
    */
   double seconds_without;
   /*
@@ -2419,7 +2419,7 @@ typedef struct contact_normal_effects_row {
    */
   double bytes;
   /*
-   The same without what is left out.
+   The same without the effects that are left out.
    */
   double bytes_without;
 } contact_normal_effects_row;
@@ -2517,7 +2517,7 @@ typedef struct contact_normal_stress_outputs {
    */
   double *von_mises;
   /*
-   The largest shear stress, half of what the first and the third principal stress differ by, `[n][my][mx]`, or NULL (default).
+   The largest shear stress, half of the difference between the first and the third principal stress, `[n][my][mx]`, or NULL (default).
    */
   double *maximum_shear;
   /*
@@ -2805,10 +2805,11 @@ contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *
                                                   struct contact_normal_report *report);
 
 /*
- From here on the solver uses these coefficients: all later solves, and the scale. `influence`: those of the normal problem; `friction`:
- its `influence` and `influence_cross`, or its `row_tables`; nothing else of it is used. NULL: those stay; one of the two must be given. Only for
- a solver that was set up with `scene->influence`, with `friction->influence` or `row_tables`, and with `influence_cross` or without. Its plans and its memory are kept, and so is its last result, which PREVIOUS and
- `continues` may start from. What is refused changes nothing; after OUT_OF_MEMORY set both again. Since 0.1.
+ Gives a solver other coefficients, and their scale, for all later solves. `influence`: those of the normal problem; `friction`: its
+ `influence` and `influence_cross`, or its `row_tables`; nothing else of it is used. NULL: the old ones stay; one of the two must be given.
+ The solver must have been set up with coefficients of the same kinds: `scene->influence`; `friction->influence` or `row_tables`, and
+ `influence_cross` or none. Its plans and its memory are kept, and so is its last result, from which PREVIOUS and `continues` may start.
+ A call that is refused changes nothing; after OUT_OF_MEMORY set both again. Since 0.1.
  */
 contact_normal_status contact_normal_solver_set_influence(struct contact_normal_solver *solver,
                                                           const struct contact_normal_influence *influence,
@@ -2851,7 +2852,7 @@ contact_normal_status contact_normal_solver_product(struct contact_normal_solver
  `s dx dy`; 0 without contact. `residual` (NULL: not wanted) is that of these equations, relative, in the 2-norm over the contact area: the
  relative error of the stiffness is about that. OK: it is at most 1e-6, mostly 1e-10; ITERATION_LIMIT, STAGNATED: both are written, and it is
  larger. INFEASIBLE: full contact with two periods. INVALID_ARGUMENT: the handle has no result. As a function of the approach the
- force has this derivative also where the contact area changes, but for jumps by single elements that enter or leave. The first call sets up what it needs, of about the size
+ force has this derivative also where the contact area changes, but for jumps by single elements that enter or leave. The first call sets up memory of about the size
  of the handle. Since 0.2.
  */
 contact_normal_status contact_normal_solver_stiffness(struct contact_normal_solver *solver,
@@ -2877,7 +2878,7 @@ contact_normal_status contact_normal_solver_stiffness(struct contact_normal_solv
 
  `options->threads` entries are solved at a time. Neighbours in the table should be neighbours in the motion: 16 in
  a row are solved one after the other, each from the tractions of the one before if it differs little, and all meet the tolerance. Results
- have the same bits for any number of threads, and `continues` is refused. What the solver found last stays as it is.
+ have the same bits for any number of threads, and `continues` is refused. The last result of the solver stays as it is.
 
  An entry that is refused does not keep the others from being solved: its results stay as they are, and `results->status` holds its
  status. The call returns OK if the normal problem and all entries have that status, or else that of the first entry that was refused
@@ -2901,7 +2902,7 @@ contact_normal_status contact_normal_solve_tangential(struct contact_normal_solv
  Solves `count` problems for the grid and the bodies of the solver, with the same options. As many are solved at a time as the
  solver was set up with threads (0: all cores), each on one thread. `scenes`, `fields` and `reports` are arrays of `count`
  structs, each filled by its `_init`; `statuses` is an array of `count` values. `fields`, `reports` and `statuses` may be NULL:
- not wanted. What one problem writes no other may read or write, and it is refused.
+ not wanted. A problem is refused if it reads or writes memory that another one writes.
 
  A problem that is refused does not keep the others from being solved: its outputs stay as they are and `statuses` holds its
  status. The call returns OK if all problems have that status, or else the status of the first one that was refused (< 0), or
@@ -2909,7 +2910,7 @@ contact_normal_status contact_normal_solve_tangential(struct contact_normal_solv
  counted from 0 and in this order: 1000 lines at most. Where the arguments of the call itself are refused, `statuses` stays as it is too.
 
  Results have the same bits as those of `contact_normal_solver_solve` for one problem after the other with one thread.
- `initial_guess` may be NONE or GIVEN, not PREVIOUS, and a problem whose friction `continues` is refused; what the solver itself solved last stays as it is, for later ones.
+ `initial_guess` may be NONE or GIVEN, not PREVIOUS, and a problem whose friction `continues` is refused. The last result of the solver itself stays, for later solves.
  `progress` must be NULL (UNSUPPORTED): no callback is called from another thread; for the same reason there are no log
  messages. The first batch sets up one solver per thread, which are kept. Since 0.1.
  */
@@ -2946,14 +2947,13 @@ contact_normal_status contact_normal_solve_to_accuracy(const struct contact_norm
                                                        struct contact_normal_report *report);
 
 /*
- Predicts what each of `n` relative errors of a `quantity` costs: `rows[i]` is that of `targets[i]`, and
- `contact_normal_price_init(rows)` has told how large a row is. The scene is solved on small
- grids over its rectangle only, for at most 2 % of the seconds of the most expensive row that can be reached, or 50 ms. Of `accuracy` (NULL:
- the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit says which, and what it
- would take. With a surface the scene's undeformed distance is not read and may be NULL; without one small grids sample it,
- and finer ones than the scene's are refined from it, as `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface or
- `options->stop`; ITERATION_LIMIT: `options->max_seconds` was reached; rows hold what was known by then. UNSUPPORTED: own coefficients, FIXED contact,
- or a step of bodies that relax which continues. Since 0.2.
+ Predicts the cost of each of `n` relative errors of a `quantity`: `rows[i]` is that of `targets[i]`, and `contact_normal_price_init(rows)`
+ has set the size of a row. The scene is solved on small grids over its rectangle only, for at most 2 % of the seconds of the most
+ expensive row that can be reached, or 50 ms. Of `accuracy` (NULL: the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and
+ `user` are read: a row beyond a limit names it as its obstacle, and has the cost without the limit. With a surface the scene's undeformed
+ distance is not read and may be NULL. Without one small grids sample it, and grids finer than the scene's are refined from it, as
+ `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface or `options->stop`; ITERATION_LIMIT: `options->max_seconds` was reached;
+ rows have the results so far. UNSUPPORTED: own coefficients, FIXED contact, or a step of bodies that relax which continues. Since 0.2.
  */
 contact_normal_status contact_normal_cost_of_accuracy(const struct contact_normal_scene *scene,
                                                       const struct contact_normal_options *options,
@@ -2980,14 +2980,15 @@ contact_normal_status contact_normal_quantities(const struct contact_normal_scen
                                                 int32_t *written);
 
 /*
- Says for each effect that the scene names, and for each refinement that it has without naming it (the coupling of unlike bodies, the
- spin, a coating instead of a thin layer), how much each of the `n` `quantities` (CONTACT_NORMAL_QUANTITY_...) changes without it, how far
- that may be off, and what it costs on the scene's own grid; the verdict is by the relative accuracy `target`, between 0 and 1. `pairs` 1:
- pairs are left out, too; 0: they are not. The scene is solved on small grids, for at most 5 % of its own predicted seconds or 100 ms, or
- `options->max_seconds` where that is given. `*count` is the number of rows: n for each effect, in the order of the constants, then n for
- each pair; `rows` has room for `capacity` of them, the first ones, and rows NULL asks for the count alone, which takes no time.
- ITERATION_LIMIT, CANCELLED: by `options`; rows hold what was known by then. UNSUPPORTED: own coefficients, tractions kept by a handle,
- FIXED contact. Since 0.2.
+ Computes the bill of the effects that the scene names, and of the refinements that it has without naming them (the coupling of unlike
+ bodies, the spin, a coating instead of a thin layer). For each of them, and each of the `n` `quantities` (CONTACT_NORMAL_QUANTITY_...),
+ a row has the change of the quantity without the effect, the error of this change, and the cost on the scene's own grid. The verdict is by
+ the relative accuracy `target`, between 0 and 1. `pairs` 1: pairs are left out, too; 0: they are not. The scene is solved on small grids,
+ for at most 5 % of its own predicted seconds or 100 ms, or `options->max_seconds` where that is given.
+
+ `*count` is the number of rows: n for each effect, in the order of the constants, then n for each pair. `rows` has room for the first
+ `capacity` of them; rows NULL asks for the count alone, which takes no time. ITERATION_LIMIT, CANCELLED: by `options`; rows have the results
+ so far. UNSUPPORTED: own coefficients, tractions kept by a handle, FIXED contact. Since 0.2.
  */
 contact_normal_status contact_normal_effects_bill(const struct contact_normal_scene *scene,
                                                   const struct contact_normal_options *options,
@@ -3124,7 +3125,7 @@ contact_normal_status contact_normal_set_log(contact_normal_log_callback callbac
                                              void *user);
 
 /*
- Gives back to the system what the library keeps for later calls: the memory of solves that are over, and the threads that no solver holds.
+ Returns to the system all that the library keeps for later calls: the memory of solves that are over, and the threads that no solver holds.
  Later calls make them anew. Since 0.2.
  */
 contact_normal_status contact_normal_release(void);
@@ -3132,7 +3133,7 @@ contact_normal_status contact_normal_release(void);
 /*
  How many bytes of solves that are over are kept at most, in the process; 0: none. At the start 128 MiB, which is
  enough for solves on 1024 x 1024 elements: larger ones that each set up anew are 20 to 30 % faster with more, up to 512 MiB for 2048 x 2048.
- Solver handles hold their own. What is more is given back at once. Since 0.2.
+ Solver handles hold their own. More is given back at once. Since 0.2.
  */
 contact_normal_status contact_normal_keep(int64_t bytes);
 
@@ -3142,17 +3143,19 @@ contact_normal_status contact_normal_keep(int64_t bytes);
 contact_normal_status contact_normal_kept(int64_t *bytes, int32_t *threads);
 
 /*
- 1 if this library has what is called so, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop"), a member of
- the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "yield_limit"), or what calls do ("batch", "accuracy", "price_list", "stress", "flash_temperature", "frictional_wear", "influence_rolling", "influence_rolling_tangential", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump",
- "set_option", "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
+ 1 if this library has the feature of this name, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop"), a
+ member of the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "yield_limit"), or a task of
+ calls ("batch", "accuracy", "price_list", "stress", "flash_temperature", "frictional_wear", "influence_rolling",
+ "influence_rolling_tangential", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump", "set_option",
+ "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
  */
 int32_t contact_normal_has(const char *name);
 
 /*
- Sets the option that is called `name` to what the text `value` says: "tolerance" to "1e-8", "method" to "PROJECTED_CG" (or
- "METHOD_PROJECTED_CG", or "4"). Upper and lower case are the same, blanks around do not matter, and numbers may be written as in Fortran, "1d-8".
- For hosts that read options from a file. INVALID_ARGUMENT: there is no such option, or the value is none; the message says which there
- are. Whether a number is allowed the call says that uses it. Callbacks, `cycle`, `stop` and `dump` are set by the program. Since 0.2.
+ Sets the option of this `name` to the `value` of a text: "tolerance" to "1e-8", "method" to "PROJECTED_CG" (or "METHOD_PROJECTED_CG", or
+ "4"). Upper and lower case are the same, blanks around do not matter, and numbers may be written as in Fortran, "1d-8". For hosts that
+ read options from a file. INVALID_ARGUMENT: there is no such option, or the text is no value of it; the message lists those that exist.
+ The call that uses a number checks its range. Callbacks, `cycle`, `stop` and `dump` are set by the program. Since 0.2.
  */
 contact_normal_status contact_normal_set_option(struct contact_normal_options *options,
                                                 const char *name,

@@ -25,7 +25,7 @@ pub type contact_normal_surface_callback = Option<
     unsafe extern "C" fn(mx: i32, my: i32, dx: f64, dy: f64, undeformed_distance: *mut f64, user: *mut c_void) -> i32,
 >;
 
-/// The accuracy that is asked for, what it may cost, and the grid that it took.
+/// The accuracy that is asked for, its allowed cost, and the grid that it took.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_accuracy {

@@ -19,14 +19,14 @@ pub const CONTACT_NORMAL_LAW_VAN_DER_WAALS: i32 = 3;
 
 /// `start`: on coarser grids with longer ranges, from the contact without attraction.
 pub const CONTACT_NORMAL_START_AUTO: i32 = 0;
-/// `start`: from a larger approach: what is in contact stays so.
+/// `start`: from a larger approach: elements in contact stay in contact.
 pub const CONTACT_NORMAL_START_FROM_CONTACT: i32 = 1;
 /// `start`: from bodies apart: nothing snaps in before it must.
 pub const CONTACT_NORMAL_START_FROM_APART: i32 = 2;
 
 /// Effect: attraction across the gap, `p = q - sigma(e)` with contact pressures q >= 0. The scene's force may then be negative. Pressures
 /// are total ones, negative where the bodies pull at each other; `contact` is 1 where e = 0. A work of 0 is no adhesion. Several states may
-/// belong to one approach: `start` says which one is looked for, and initial_guess PREVIOUS follows the one before. To a force belong unstable
+/// belong to one approach: `start` chooses one, and initial_guess PREVIOUS follows the one before. To a force belong unstable
 /// states as well, which are refused, and maybe several stable ones, with dF/dapproach > 0; below the pull-off force none is found
 /// (INFEASIBLE). See docs/adhesion.md.
 #[repr(C)]

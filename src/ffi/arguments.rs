@@ -90,7 +90,7 @@ thread_local! {
     static ALLOWED: RefCell<Option<Vec<Range<usize>>>> = const { RefCell::new(None) };
 }
 
-/// Makes calls which are refused before they read or write beyond these ranges: for what is replayed from a file.
+/// Makes calls that are refused before they read or write beyond these ranges: for calls replayed from a file.
 pub(super) fn within<R>(ranges: Vec<Range<usize>>, call: impl FnOnce() -> R) -> R {
     let outer = ALLOWED.replace(Some(ranges));
     let result = call();
@@ -98,7 +98,7 @@ pub(super) fn within<R>(ranges: Vec<Range<usize>>, call: impl FnOnce() -> R) -> 
     result
 }
 
-/// All that one call reads and writes. What it writes may overlap with nothing else.
+/// All memory that one call reads and writes. An output may overlap with nothing else.
 #[derive(Default)]
 pub(super) struct Regions {
     list: Vec<Region>,
@@ -117,7 +117,7 @@ impl Regions {
         self.problem = Some(problem);
     }
 
-    /// Drops what was added of the last problem: it is refused, so nothing of it is read or written.
+    /// Drops the regions of the last problem. It is refused, so nothing of it is read or written.
     pub fn leave_out_problem(&mut self) {
         while self.list.last().is_some_and(|region| region.problem.is_some() && region.problem == self.problem) {
             self.list.pop();
@@ -184,7 +184,7 @@ impl Regions {
         Ok(())
     }
 
-    /// Refuses what is beyond the memory that calls may use.
+    /// Refuses regions beyond the memory that calls may use.
     fn check_ranges(&self) -> Result<(), Refusal> {
         ALLOWED.with_borrow(|ranges| {
             let Some(ranges) = ranges else { return Ok(()) };
@@ -203,7 +203,7 @@ impl Regions {
     pub fn check(&mut self) -> Result<(), Refusal> {
         self.check_ranges()?;
         self.list.sort_unstable_by_key(|region| (region.start, region.end));
-        // Of what begins before, what ends last.
+        // The input and the output that end last among the regions so far.
         let (mut input, mut output): (Option<&Region>, Option<&Region>) = (None, None);
         for region in &self.list {
             let before = if region.is_output { [output, input] } else { [output, None] };

@@ -25,7 +25,7 @@ use crate::solver::Solver;
 /// Solves `count` problems for the grid and the bodies of the solver, with the same options. As many are solved at a time as the
 /// solver was set up with threads (0: all cores), each on one thread. `scenes`, `fields` and `reports` are arrays of `count`
 /// structs, each filled by its `_init`; `statuses` is an array of `count` values. `fields`, `reports` and `statuses` may be NULL:
-/// not wanted. What one problem writes no other may read or write, and it is refused.
+/// not wanted. A problem is refused if it reads or writes memory that another one writes.
 ///
 /// A problem that is refused does not keep the others from being solved: its outputs stay as they are and `statuses` holds its
 /// status. The call returns OK if all problems have that status, or else the status of the first one that was refused (< 0), or
@@ -33,7 +33,7 @@ use crate::solver::Solver;
 /// counted from 0 and in this order: 1000 lines at most. Where the arguments of the call itself are refused, `statuses` stays as it is too.
 ///
 /// Results have the same bits as those of `contact_normal_solver_solve` for one problem after the other with one thread.
-/// `initial_guess` may be NONE or GIVEN, not PREVIOUS, and a problem whose friction `continues` is refused; what the solver itself solved last stays as it is, for later ones.
+/// `initial_guess` may be NONE or GIVEN, not PREVIOUS, and a problem whose friction `continues` is refused. The last result of the solver itself stays, for later solves.
 /// `progress` must be NULL (UNSUPPORTED): no callback is called from another thread; for the same reason there are no log
 /// messages. The first batch sets up one solver per thread, which are kept. Since 0.1.
 #[no_mangle]
@@ -82,8 +82,7 @@ pub unsafe extern "C" fn contact_normal_solver_solve_batch(
     })
 }
 
-/// An array of structs of the caller's, who may have a smaller or larger version of them: it is as far from one to the next as the
-/// first says.
+/// An array of the caller's structs, of an older or newer version maybe. The size of the first one is the distance from each to the next.
 struct Array<T> {
     first: *mut T,
     stride: usize,
@@ -185,7 +184,7 @@ impl Batch {
         let mut recording = unsafe { Recording::new("contact_normal_solver_solve", given_options, arguments) };
         if recording.is_wanted() {
             let mut regions = Regions::default();
-            // The solve says why it is wrong.
+            // The solve itself reports errors of the arguments.
             let _ = options.add_to(&mut regions, given_options).and_then(|()| self.add_problem(i, &mut regions, n));
             if let Ok(outputs) = &self.outputs[i] {
                 outputs.add_read(&mut regions, &options.options);

@@ -1,4 +1,4 @@
-//! How a call ended, and what it says.
+//! The end of a call: its status, its message and its warnings.
 
 use super::status::{contact_normal_status, set_last_error, set_last_text, Refusal, CONTACT_NORMAL_OK};
 use super::warnings;

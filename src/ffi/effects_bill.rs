@@ -57,7 +57,7 @@ pub const CONTACT_NORMAL_VERDICT_NEEDED: i32 = 2;
 pub struct contact_normal_effects_row {
     /// Set by `contact_normal_effects_row_init`, which the first row of an array needs, and by the call.
     pub struct_size: i64,
-    /// CONTACT_NORMAL_OMIT_...: what is left out.
+    /// CONTACT_NORMAL_OMIT_...: the effect that is left out.
     pub omitted: i32,
     /// The second effect that is left out; NONE: only one is.
     pub also_omitted: i32,
@@ -77,11 +77,11 @@ pub struct contact_normal_effects_row {
     pub change_error: f64,
     /// Predicted seconds of a whole call for the scene on its own grid, with one thread.
     pub seconds: f64,
-    /// The same without what is left out.
+    /// The same without the effects that are left out.
     pub seconds_without: f64,
     /// Predicted bytes of its solver.
     pub bytes: f64,
-    /// The same without what is left out.
+    /// The same without the effects that are left out.
     pub bytes_without: f64,
 }
 
@@ -112,14 +112,15 @@ impl From<&BillRow> for contact_normal_effects_row {
     }
 }
 
-/// Says for each effect that the scene names, and for each refinement that it has without naming it (the coupling of unlike bodies, the
-/// spin, a coating instead of a thin layer), how much each of the `n` `quantities` (CONTACT_NORMAL_QUANTITY_...) changes without it, how far
-/// that may be off, and what it costs on the scene's own grid; the verdict is by the relative accuracy `target`, between 0 and 1. `pairs` 1:
-/// pairs are left out, too; 0: they are not. The scene is solved on small grids, for at most 5 % of its own predicted seconds or 100 ms, or
-/// `options->max_seconds` where that is given. `*count` is the number of rows: n for each effect, in the order of the constants, then n for
-/// each pair; `rows` has room for `capacity` of them, the first ones, and rows NULL asks for the count alone, which takes no time.
-/// ITERATION_LIMIT, CANCELLED: by `options`; rows hold what was known by then. UNSUPPORTED: own coefficients, tractions kept by a handle,
-/// FIXED contact. Since 0.2.
+/// Computes the bill of the effects that the scene names, and of the refinements that it has without naming them (the coupling of unlike
+/// bodies, the spin, a coating instead of a thin layer). For each of them, and each of the `n` `quantities` (CONTACT_NORMAL_QUANTITY_...),
+/// a row has the change of the quantity without the effect, the error of this change, and the cost on the scene's own grid. The verdict is by
+/// the relative accuracy `target`, between 0 and 1. `pairs` 1: pairs are left out, too; 0: they are not. The scene is solved on small grids,
+/// for at most 5 % of its own predicted seconds or 100 ms, or `options->max_seconds` where that is given.
+///
+/// `*count` is the number of rows: n for each effect, in the order of the constants, then n for each pair. `rows` has room for the first
+/// `capacity` of them; rows NULL asks for the count alone, which takes no time. ITERATION_LIMIT, CANCELLED: by `options`; rows have the results
+/// so far. UNSUPPORTED: own coefficients, tractions kept by a handle, FIXED contact. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_effects_bill(
     scene: *const contact_normal_scene,

@@ -1,5 +1,5 @@
-//! The floating-point environment of the host: Fortran hosts flush denormals to zero, or trap; we compute in the default
-//! environment and give theirs back. Their callbacks run in theirs, and what those change in it the host finds afterwards.
+//! The floating-point environment of the host. Fortran hosts flush denormals to zero, or trap. The library computes in the default environment and
+//! restores the host's. Callbacks run in the host's environment, and changes that they make to it remain.
 
 use std::cell::Cell;
 

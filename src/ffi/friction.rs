@@ -45,7 +45,7 @@ pub const CONTACT_NORMAL_STICK_SLIP_SLIP: i32 = 2;
 /// `fields->stick_slip`: it slips within a layer that yields, below mu p.
 pub const CONTACT_NORMAL_STICK_SLIP_PLASTIC: i32 = 3;
 
-// The core writes its own.
+// The core has constants of its own, which it writes to `stick_slip`.
 const _: () = assert!(
     CONTACT_NORMAL_STICK_SLIP_EXTERIOR == EXTERIOR
         && CONTACT_NORMAL_STICK_SLIP_STICK == STICK
@@ -122,7 +122,7 @@ pub struct contact_normal_friction {
     /// unit traction in x, in y by one in y, and in x by one in y. All or none, default NULL; all with the same cx, rows and scale. The
     /// operator must be symmetric (UNSUPPORTED otherwise): xx of the loaded row jy and the row iy at offset k is xx of jy and iy exchanged at
     /// -k, and so is yy. The displacement in y by a unit traction in x is xy of the rows exchanged at -k. Rolling needs steps of whole
-    /// elements along x; cx must reach across what is in contact and a step. Otherwise as `influence`; unlike bodies are refused.
+    /// elements along x; cx must reach across the contact area and a step. Otherwise as `influence`; unlike bodies are refused.
     pub row_tables: [*const contact_normal_row_tables; 3],
     /// How mu falls with the slip velocity v: CONTACT_NORMAL_FRICTION_LAW_...; default COULOMB: not at all, and what goes with it is not
     /// read. mu(v) is the coefficient times `(kinetic + falling[0] f(v) + falling[1] f(v))/(kinetic + falling[0] + falling[1])`, so that

@@ -52,7 +52,7 @@ versioned! { contact_normal_friction_results, contact_normal_friction_results_in
 unsafe impl Sync for contact_normal_friction_results {}
 
 impl contact_normal_friction_results {
-    /// Adds what is written of n entries on so many elements, and the struct that says where.
+    /// Adds the outputs of n entries on so many elements, and the struct that points to them.
     pub(super) fn add_to(
         &self,
         regions: &mut Regions,
@@ -77,7 +77,7 @@ impl contact_normal_friction_results {
         regions.output("yield_limit", self.yield_limit, fields)
     }
 
-    /// Writes how entry i ended, and what was found of it.
+    /// Writes the status and the results of entry i.
     pub(super) unsafe fn write(&self, i: usize, ended: Ended, solution: Option<&Solution>) -> Conclusion {
         let outcome = match &ended {
             Ok((stop, report)) => Conclusion::of(*stop, || said(*stop, report)),

@@ -88,7 +88,7 @@ impl contact_normal_friction {
         for ((at, table), name) in at.zip(tables.iter().flatten()).zip(TABLES) {
             let Some(table) = table else { continue };
             regions.input_struct(at, table)?;
-            // One of another size than the first is refused, and not read.
+            // A table of another size than the first is refused later, so it is not read.
             if first.is_some_and(|first| (first.cx, first.cy) == (table.cx, table.cy)) {
                 regions.input(name, table.coefficients, table.size(name)?.2)?;
             }

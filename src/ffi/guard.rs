@@ -18,7 +18,7 @@ pub fn guard(body: impl FnOnce() -> Result<contact_normal_status, Refusal>) -> c
     let nested = INSIDE.replace(true);
     let outcome = catch_unwind(AssertUnwindSafe(|| {
         silence_our_panics();
-        // A status > 0 has its message from the body.
+        // For a status > 0 the body has set the message.
         body().unwrap_or_else(|refusal| {
             set_last_error(&refusal.message);
             refusal.status
@@ -49,7 +49,7 @@ fn text_of(panic: &(dyn Any + Send)) -> String {
 /// A panic that was caught before the guard.
 pub(super) fn refusal_of_panic(panic: Box<dyn Any + Send>) -> Refusal {
     let refusal = Refusal::new(CONTACT_NORMAL_INTERNAL, text_of(&*panic));
-    // As in the guard.
+    // Dropping the payload might panic again.
     std::mem::forget(panic);
     refusal
 }
@@ -58,7 +58,7 @@ pub(super) fn refusal_of_panic(panic: Box<dyn Any + Send>) -> Refusal {
 /// process go to whatever hook was there.
 fn silence_our_panics() {
     static ONCE: Once = Once::new();
-    // A host that calls while it unwinds may not change the hook; its next call does.
+    // The hook cannot be changed while this thread unwinds; the next call changes it.
     if std::thread::panicking() {
         return;
     }

@@ -1,4 +1,4 @@
-//! `contact_normal_has`: what this library can, by name.
+//! `contact_normal_has`: the features of this library, by name.
 
 use std::ffi::CStr;
 
@@ -47,9 +47,11 @@ const NAMES: [&str; 39] = [
     "yield_limit",
 ];
 
-/// 1 if this library has what is called so, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop"), a member of
-/// the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "yield_limit"), or what calls do ("batch", "accuracy", "price_list", "stress", "flash_temperature", "frictional_wear", "influence_rolling", "influence_rolling_tangential", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump",
-/// "set_option", "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
+/// 1 if this library has the feature of this name, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop"), a
+/// member of the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "yield_limit"), or a task of
+/// calls ("batch", "accuracy", "price_list", "stress", "flash_temperature", "frictional_wear", "influence_rolling",
+/// "influence_rolling_tangential", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump", "set_option",
+/// "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_has(name: *const c_char) -> i32 {
     if name.is_null() {

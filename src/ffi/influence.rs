@@ -94,7 +94,7 @@ impl contact_normal_row_tables {
     /// The same; `name` is what messages call the tables. Without a grid all of them.
     pub(super) fn size_on(&self, grid: Option<&Grid>, name: &str) -> Result<(usize, usize, usize), Refusal> {
         let (cx, rows) = (count(&format!("{name}->cx"), self.cx)?, count(&format!("{name}->rows"), self.rows)?);
-        // A table of another grid is refused before it is looked at.
+        // A table for another grid is refused, so that its coefficients are not read.
         let rows_read = if grid.is_none_or(|grid| rows == grid.my && cx >= grid.mx) { rows } else { 0 };
         let size = rows_read.checked_mul(rows_read).and_then(|n| n.checked_mul(2)).and_then(|n| n.checked_mul(cx));
         let size = size.filter(|n| *n <= isize::MAX as usize / 8).ok_or_else(|| {

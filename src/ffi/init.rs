@@ -109,7 +109,7 @@ macro_rules! kinds {
             unsafe {
                 match kind {
                     $($kind => structs::init::<$name>(to.cast(), size),)+
-                    // Of a newer header: its struct asks for nothing until a member is set, and then the scene refuses it.
+                    // A kind of a newer header. Its struct of zeros asks for nothing; once a member is set, the scene refuses it.
                     _ => structs::init_unknown(to.cast(), size),
                 }
             }

@@ -5,10 +5,10 @@ use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use crate::{memory, threads};
 use toeplitz::plan;
 
-/// The plans of transforms have this part of what is kept.
+/// The plans of transforms have this part of the kept memory.
 const OF_PLANS: usize = 8;
 
-/// Gives back to the system what the library keeps for later calls: the memory of solves that are over, and the threads that no solver holds.
+/// Returns to the system all that the library keeps for later calls: the memory of solves that are over, and the threads that no solver holds.
 /// Later calls make them anew. Since 0.2.
 #[no_mangle]
 pub extern "C" fn contact_normal_release() -> contact_normal_status {
@@ -22,7 +22,7 @@ pub extern "C" fn contact_normal_release() -> contact_normal_status {
 
 /// How many bytes of solves that are over are kept at most, in the process; 0: none. At the start 128 MiB, which is
 /// enough for solves on 1024 x 1024 elements: larger ones that each set up anew are 20 to 30 % faster with more, up to 512 MiB for 2048 x 2048.
-/// Solver handles hold their own. What is more is given back at once. Since 0.2.
+/// Solver handles hold their own. More is given back at once. Since 0.2.
 #[no_mangle]
 pub extern "C" fn contact_normal_keep(bytes: i64) -> contact_normal_status {
     guard(|| {

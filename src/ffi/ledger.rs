@@ -1,4 +1,4 @@
-//! `contact_normal_ledger_row`: what was known on each grid.
+//! `contact_normal_ledger_row`: the results on each grid.
 
 use super::structs::{versioned, Versioned};
 use crate::solver::LedgerRow;
@@ -10,7 +10,7 @@ pub const CONTACT_NORMAL_UNTRUSTED_MAX_PRESSURE: i32 = 2;
 /// `untrusted`: that of the pressures.
 pub const CONTACT_NORMAL_UNTRUSTED_PRESSURE: i32 = 4;
 
-/// One row of the ledger: what was known on one grid, and what it had cost by then. Estimated errors are absolute; negative: not
+/// One row of the ledger: the results on one grid, and their cost so far. Estimated errors are absolute; negative: not
 /// known, and if the bit is set in `untrusted`, not to be known from these grids.
 #[repr(C)]
 #[derive(Clone, Copy)]

@@ -1,4 +1,4 @@
-//! Products and the stiffness of a result: from a solver handle, beside solutions.
+//! Products by a solver handle, and the stiffness of its last result.
 
 use super::arguments::{required, Regions};
 use super::conclusion::Conclusion;
@@ -45,7 +45,7 @@ pub unsafe extern "C" fn contact_normal_solver_product(
 /// `s dx dy`; 0 without contact. `residual` (NULL: not wanted) is that of these equations, relative, in the 2-norm over the contact area: the
 /// relative error of the stiffness is about that. OK: it is at most 1e-6, mostly 1e-10; ITERATION_LIMIT, STAGNATED: both are written, and it is
 /// larger. INFEASIBLE: full contact with two periods. INVALID_ARGUMENT: the handle has no result. As a function of the approach the
-/// force has this derivative also where the contact area changes, but for jumps by single elements that enter or leave. The first call sets up what it needs, of about the size
+/// force has this derivative also where the contact area changes, but for jumps by single elements that enter or leave. The first call sets up memory of about the size
 /// of the handle. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_stiffness(

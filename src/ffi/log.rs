@@ -12,9 +12,9 @@ use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_N
 
 /// Log level: nothing.
 pub const CONTACT_NORMAL_LOG_OFF: i32 = 0;
-/// Log level: what the caller should look at.
+/// Log level: results that the caller should look at.
 pub const CONTACT_NORMAL_LOG_WARNING: i32 = 1;
-/// Log level: what the library decided.
+/// Log level: decisions of the library.
 pub const CONTACT_NORMAL_LOG_INFO: i32 = 2;
 
 /// Called with a level, a message (valid during the call) and the user pointer; on the thread that called the library, in its

@@ -1,7 +1,7 @@
-//! Marks of the Fortran module. Its procedures that attach arrays and structures return no status: what is wrong in a call of them stands
-//! in the `struct_size` of the structure that they fill, as a negative number, and the next call that is given that structure says it.
+//! Marks of the Fortran module. Its procedures that attach arrays and structures return no status. They write a mistake in their arguments as a
+//! negative number into the `struct_size` of the structure that they fill, and the next call that reads the structure reports it.
 
-/// The upper 16 bits of a mark, with its sign turned; then 8 bits each of the procedure and the kind, and 32 bits of what it is about.
+/// The upper 16 bits of a mark, with its sign turned; then 8 bits each of the procedure and the kind, and 32 bits of an argument or a value.
 const MARK: i64 = 0x2C4D;
 
 const WRONG_BODY: i64 = 1;

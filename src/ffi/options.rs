@@ -103,7 +103,7 @@ pub struct contact_normal_options {
     pub max_seconds: f64,
     /// An integer that any thread may set, or NULL (default): once it is not 0, the call ends as CANCELLED after the cycle that it is in.
     pub stop: *const i32,
-    /// The path of a file, or NULL (default): where a call that ends neither as OK nor as CANCELLED writes what it was given, for
+    /// The path of a file, or NULL (default): where a call that ends neither as OK nor as CANCELLED writes its arguments, for
     /// `contact-normal-replay` (docs/dump.md). %p in it is the number of the process, %n that of the dump in the process, %% a %.
     pub dump: *const c_char,
     /// > 0, of `contact_normal_solve` alone: effects whose omission changes force or approach, largest pressure, area and tangential forces
@@ -145,7 +145,7 @@ versioned! {
 }
 
 impl contact_normal_options {
-    /// Of options that a handle was set up with, what it goes on using; the cycle is not there.
+    /// The part of the options of a set-up that the handle goes on using; the cycle is not there.
     pub(super) fn of_set_up(options: &Options) -> contact_normal_options {
         let precision = match options.precision {
             Precision::Auto => CONTACT_NORMAL_PRECISION_AUTO,
@@ -207,7 +207,7 @@ pub(super) unsafe fn translate(options: *const contact_normal_options) -> Result
     }
 }
 
-/// Translates options of a call that leaves out what is negligible.
+/// Translates options of a call that leaves out negligible effects.
 pub(super) unsafe fn translate_neglecting(options: *const contact_normal_options) -> Result<Translated, Refusal> {
     let began = Instant::now();
     // SAFETY: NULL or a struct that declares its size.
@@ -248,7 +248,7 @@ pub(super) unsafe fn translate_neglecting(options: *const contact_normal_options
             CONTACT_NORMAL_PRECISION_MIXED => Precision::Mixed,
             other => return unknown("precision", other, "AUTO 0, DOUBLE 1 or MIXED 2"),
         },
-        // As the report asks for: see `Outputs::options`.
+        // The outputs decide about estimates: see `Outputs::options`.
         estimates: false,
     };
     options.check()?;

@@ -66,7 +66,7 @@ impl Outputs {
         (self.fields_at.cast_mut(), self.report)
     }
 
-    /// Says which of the outputs are read, too.
+    /// Adds the outputs that are read, too.
     pub fn add_read(&self, regions: &mut Regions, options: &Options) {
         let given = options.initial_guess == InitialGuess::Given;
         if given {
@@ -77,7 +77,7 @@ impl Outputs {
         }
     }
 
-    /// Whether the arrays that are read are there and hold what they must.
+    /// Whether the arrays that are read are there and hold valid values.
     pub fn check_inputs(&self, options: &Options, n: usize) -> Result<(), Refusal> {
         let fixed = options.active_set == ActiveSet::Fixed;
         let given = options.initial_guess == InitialGuess::Given;
@@ -96,7 +96,7 @@ impl Outputs {
         Ok(())
     }
 
-    /// The options with what the report asks for: errors are estimated after a start from nothing, or when there is room for a ledger.
+    /// The options, with estimates if the report needs them: after a start from nothing, or when there is room for a ledger.
     pub fn options(&self, options: &Options) -> Options {
         let from_nothing = options.initial_guess == InitialGuess::None;
         Options { estimates: self.given_report.is_some() && (from_nothing || self.ledger_capacity() > 0), ..*options }
@@ -134,7 +134,7 @@ impl Outputs {
         Ok(Some(Guess { pressure, contact }))
     }
 
-    /// Adds what a solve on `n` elements writes, and the struct that says where.
+    /// Adds the outputs of a solve on `n` elements, and the struct that points to them.
     pub fn add_to(&self, regions: &mut Regions, n: usize) -> Result<(), Refusal> {
         let fields = &self.fields;
         regions.input_struct(self.fields_at, fields)?;
@@ -251,7 +251,7 @@ impl Outputs {
     /// Writes the caller's report and ledger.
     pub fn write_report(&self, report: &Report, rows: &[LedgerRow], warnings: i32) -> Result<(), Refusal> {
         let Some(given) = &self.given_report else { return Ok(()) };
-        // Where there is not room for all, those of the finest grids.
+        // If there is no room for all rows, those of the finest grids are written.
         let skipped = rows.len().saturating_sub(self.ledger_capacity());
         if let Some(ledger) = &self.ledger {
             // SAFETY: i < ledger_capacity, the room in the caller's ledger.

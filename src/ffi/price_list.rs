@@ -56,7 +56,7 @@ pub const CONTACT_NORMAL_OBSTACLE_TIME: i32 = 5;
 /// `obstacle`: bodies relax, and the length of the step alone leaves more than `target`: `time_error` says how much.
 pub const CONTACT_NORMAL_OBSTACLE_STEP: i32 = 6;
 
-/// One row of the price list: what one accuracy costs. All of it is predicted.
+/// One row of the price list: the predicted cost of one accuracy.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_price {
@@ -97,7 +97,7 @@ versioned! { contact_normal_price, contact_normal_price_init, 88, error: -1.0, s
 
 impl From<&Price> for contact_normal_price {
     fn from(price: &Price) -> Self {
-        // Grids beyond what an int holds are none.
+        // A grid whose elements an int cannot count is written as none.
         let count = |n: usize| i32::try_from(n).unwrap_or(0);
         contact_normal_price {
             struct_size: size_of::<contact_normal_price>() as i64,
@@ -127,14 +127,13 @@ impl From<&Price> for contact_normal_price {
     }
 }
 
-/// Predicts what each of `n` relative errors of a `quantity` costs: `rows[i]` is that of `targets[i]`, and
-/// `contact_normal_price_init(rows)` has told how large a row is. The scene is solved on small
-/// grids over its rectangle only, for at most 2 % of the seconds of the most expensive row that can be reached, or 50 ms. Of `accuracy` (NULL:
-/// the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit says which, and what it
-/// would take. With a surface the scene's undeformed distance is not read and may be NULL; without one small grids sample it,
-/// and finer ones than the scene's are refined from it, as `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface or
-/// `options->stop`; ITERATION_LIMIT: `options->max_seconds` was reached; rows hold what was known by then. UNSUPPORTED: own coefficients, FIXED contact,
-/// or a step of bodies that relax which continues. Since 0.2.
+/// Predicts the cost of each of `n` relative errors of a `quantity`: `rows[i]` is that of `targets[i]`, and `contact_normal_price_init(rows)`
+/// has set the size of a row. The scene is solved on small grids over its rectangle only, for at most 2 % of the seconds of the most
+/// expensive row that can be reached, or 50 ms. Of `accuracy` (NULL: the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and
+/// `user` are read: a row beyond a limit names it as its obstacle, and has the cost without the limit. With a surface the scene's undeformed
+/// distance is not read and may be NULL. Without one small grids sample it, and grids finer than the scene's are refined from it, as
+/// `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface or `options->stop`; ITERATION_LIMIT: `options->max_seconds` was reached;
+/// rows have the results so far. UNSUPPORTED: own coefficients, FIXED contact, or a step of bodies that relax which continues. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_cost_of_accuracy(
     scene: *const contact_normal_scene,
@@ -193,7 +192,7 @@ pub unsafe extern "C" fn contact_normal_cost_of_accuracy(
     guard(|| unsafe { recorded("contact_normal_cost_of_accuracy", options, arguments, predict) })
 }
 
-/// Predicts, and hands over each row; the message of a list that is cancelled says whether the surface callback did.
+/// Predicts, and hands over each row. The message of a cancelled list tells whether the surface callback cancelled.
 fn predict_watched(
     scene: &Scene<'_>,
     translated: &Translated,

@@ -1,4 +1,4 @@
-//! `contact_normal_progress`: what the progress callback is told.
+//! `contact_normal_progress`: the state that the progress callback gets.
 
 use super::ledger::copy;
 use crate::solver::Progress;

@@ -1,4 +1,4 @@
-//! `contact_normal_quantities`: what can be asked of a scene, grid by grid, with errors.
+//! `contact_normal_quantities`: quantities of a scene, grid by grid, with errors.
 
 use super::arguments::{count, required, Regions};
 use super::conclusion::Conclusion;

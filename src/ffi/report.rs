@@ -1,4 +1,4 @@
-//! `contact_normal_report`: what a solve found, how wrong it is, and what it cost.
+//! `contact_normal_report`: the results of a solve, their estimated errors, and their cost.
 
 use super::adhesion::contact_normal_report_adhesion;
 use super::ledger::{contact_normal_ledger_row, copy, set_errors, set_measures};

@@ -210,7 +210,7 @@ impl Named {
         unsafe { self.with_load(undeformed_distance, load) }
     }
 
-    /// The scene of pressures that are given: it has no undeformed distance, and its load says nothing.
+    /// The scene of given pressures. It has no undeformed distance, and its load is not read.
     pub unsafe fn without_load<'a>(&self) -> Result<Scene<'a>, Refusal> {
         // SAFETY: by the caller.
         unsafe { self.with_load(&[], Load::Approach(0.0)) }

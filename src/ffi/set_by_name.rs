@@ -11,10 +11,10 @@ use super::options::{contact_normal_cycle, contact_normal_options};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{self, Versioned};
 
-/// Sets the option that is called `name` to what the text `value` says: "tolerance" to "1e-8", "method" to "PROJECTED_CG" (or
-/// "METHOD_PROJECTED_CG", or "4"). Upper and lower case are the same, blanks around do not matter, and numbers may be written as in Fortran, "1d-8".
-/// For hosts that read options from a file. INVALID_ARGUMENT: there is no such option, or the value is none; the message says which there
-/// are. Whether a number is allowed the call says that uses it. Callbacks, `cycle`, `stop` and `dump` are set by the program. Since 0.2.
+/// Sets the option of this `name` to the `value` of a text: "tolerance" to "1e-8", "method" to "PROJECTED_CG" (or "METHOD_PROJECTED_CG", or
+/// "4"). Upper and lower case are the same, blanks around do not matter, and numbers may be written as in Fortran, "1d-8". For hosts that
+/// read options from a file. INVALID_ARGUMENT: there is no such option, or the text is no value of it; the message lists those that exist.
+/// The call that uses a number checks its range. Callbacks, `cycle`, `stop` and `dump` are set by the program. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_set_option(
     options: *mut contact_normal_options,
@@ -114,7 +114,7 @@ unsafe fn set<T: Versioned>(
 
 fn double(name: &str, value: &str) -> Result<f64, Refusal> {
     let refuse = |_| Refusal::invalid(format!("{name} is \"{value}\"; it must be a number"));
-    // Of "inf" and "nan" no letter is an exponent.
+    // "inf" and "nan" contain no d.
     value.replace(['d', 'D'], "e").parse().map_err(refuse)
 }
 

@@ -210,9 +210,9 @@ fn lack_of_force(load: Load, report: &Report) -> String {
 /// The point that a solve without further progress has reached, as far as its result proves it.
 fn stagnation(report: &Report, method: Method, state: &State) -> String {
     let (residual, distances) = (report.measures.certificate.residual, Distances::of(state));
-    // Where the normal problem is solved it is that of friction which is not.
+    // If the normal problem is solved, the tangential one has stagnated.
     let is_normal = report.friction.is_none() || residual > report.tolerance;
-    // Products and distances together lose some multiples of it.
+    // Products and distances together lose some multiples of the round-off.
     if residual > report.tolerance && residual <= 100.0 * distances.round_off {
         return match distances.largest > FAR * distances.rms {
             true => format!(

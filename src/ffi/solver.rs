@@ -133,10 +133,11 @@ pub unsafe extern "C" fn contact_normal_solver_solve(
     guard(|| unsafe { recorded("contact_normal_solver_solve", options, arguments, solve) })
 }
 
-/// From here on the solver uses these coefficients: all later solves, and the scale. `influence`: those of the normal problem; `friction`:
-/// its `influence` and `influence_cross`, or its `row_tables`; nothing else of it is used. NULL: those stay; one of the two must be given. Only for
-/// a solver that was set up with `scene->influence`, with `friction->influence` or `row_tables`, and with `influence_cross` or without. Its plans and its memory are kept, and so is its last result, which PREVIOUS and
-/// `continues` may start from. What is refused changes nothing; after OUT_OF_MEMORY set both again. Since 0.1.
+/// Gives a solver other coefficients, and their scale, for all later solves. `influence`: those of the normal problem; `friction`: its
+/// `influence` and `influence_cross`, or its `row_tables`; nothing else of it is used. NULL: the old ones stay; one of the two must be given.
+/// The solver must have been set up with coefficients of the same kinds: `scene->influence`; `friction->influence` or `row_tables`, and
+/// `influence_cross` or none. Its plans and its memory are kept, and so is its last result, from which PREVIOUS and `continues` may start.
+/// A call that is refused changes nothing; after OUT_OF_MEMORY set both again. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_set_influence(
     solver: *mut contact_normal_solver,

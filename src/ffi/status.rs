@@ -124,7 +124,7 @@ pub(super) fn set_last_text(message: &'static CStr) {
 }
 
 fn keep_message(message: Cow<'static, CStr>) {
-    // A thread that is ending may have no such memory any more: then there is no message.
+    // A thread that ends may have lost its thread-local memory: then there is no message.
     let _ = LAST_ERROR.try_with(|last| last.replace(message));
 }
 

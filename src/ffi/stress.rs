@@ -130,7 +130,7 @@ impl Load {
         Ok(stress::of_scene(scene, self.body, arrays)?)
     }
 
-    /// Adds what is read. Returns the number of elements.
+    /// Adds the regions that the call reads. Returns the number of elements.
     unsafe fn add_to(&self, regions: &mut Regions) -> Result<usize, Refusal> {
         // SAFETY (all): by the caller.
         let (named, options) = unsafe { (Named::read(self.scene)?, options::translate(self.options)?) };

@@ -42,7 +42,7 @@ pub struct contact_normal_stress_outputs {
     pub stress: [*mut f64; 6],
     /// The von Mises stress, `[n][my][mx]`, or NULL (default).
     pub von_mises: *mut f64,
-    /// The largest shear stress, half of what the first and the third principal stress differ by, `[n][my][mx]`, or NULL (default).
+    /// The largest shear stress, half of the difference between the first and the third principal stress, `[n][my][mx]`, or NULL (default).
     pub maximum_shear: *mut f64,
     /// The principal stresses, the largest first, `[n][my][mx]` each; default NULL.
     pub principal: [*mut f64; 3],
@@ -85,7 +85,7 @@ impl contact_normal_stress_outputs {
         }
     }
 
-    /// Adds what is written at n depths of so many elements, and the struct that says where.
+    /// Adds the outputs at n depths of so many elements, and the struct that points to them.
     pub(super) fn add_to(
         &self,
         regions: &mut Regions,
@@ -113,7 +113,7 @@ impl contact_normal_stress_outputs {
         Ok(())
     }
 
-    /// Writes what is wanted of depth k.
+    /// Writes the wanted stresses of depth k.
     pub(super) unsafe fn write(&self, k: usize, depth: &Depth) {
         unsafe fn copy<A>(values: &[A], to: *mut f64, k: usize) {
             if !to.is_null() {

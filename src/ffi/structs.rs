@@ -1,5 +1,5 @@
-//! Structs that grow: each begins with the size that it has in the caller's header, which its `_init` sets. Shorter ones (of an older
-//! header, from 0.2 on) and longer ones (of a newer header, if what we do not know is zero) are accepted.
+//! Structs that grow. Each begins with its size in the caller's header, which its `_init` sets. Shorter structs, of an older header from 0.2 on, are
+//! accepted, and so are longer ones of a newer header if the members unknown here are 0.
 
 use std::mem::size_of;
 
@@ -26,8 +26,8 @@ pub unsafe trait Versioned: Copy {
     }
 }
 
-/// Makes a struct [`Versioned`] that is what that asks for: `struct_size` first, integers, floats, raw pointers and optional function
-/// pointers only. Gives its size in the first version that had it, its `_init` for Rust, and the defaults that are not 0 or NULL.
+/// Makes a struct [`Versioned`]. It must have `struct_size` first, and otherwise integers, floats, raw pointers and optional function pointers
+/// only. The arguments are its size in the first version that had it, its `_init` for Rust, and the defaults that are not 0 or NULL.
 macro_rules! versioned {
     ($name:ident, $init:ident, $first_size:literal $(, $member:ident: $value:expr)* $(,)?) => {
         // SAFETY: by the struct, see above.
@@ -58,7 +58,7 @@ macro_rules! versioned {
 }
 pub(super) use versioned;
 
-/// No struct of ours will ever be larger: a bound for what is read of longer ones.
+/// No struct of this library will be larger. Of longer ones no more is read.
 pub(super) const LARGEST: usize = 4096;
 
 /// The declared size of a struct, after a check.
@@ -134,7 +134,7 @@ pub unsafe fn write<T: Versioned>(to: *mut T, value: &T) -> Result<(), Refusal> 
     Ok(())
 }
 
-/// An array of structs of the caller's, which are written: it is as far from one to the next as the first one says. The others need no
+/// An array of the caller's structs, which are written. The size of the first one is the distance from each to the next. The others need no
 /// `_init`.
 pub struct Rows<T> {
     first: *mut T,
@@ -153,7 +153,7 @@ impl<T: Versioned> Rows<T> {
         self.stride.saturating_mul(count)
     }
 
-    /// Writes all of row `i`, with 0 into what we do not know of it.
+    /// Writes all of row `i`, with 0 into members that are unknown here.
     pub unsafe fn write(&self, i: usize, value: &T) {
         let (stride, known) = (self.stride, self.stride.min(size_of::<T>()));
         // SAFETY (all): the caller's array has more than `i` rows of `stride` bytes, and a Versioned is bytes.
@@ -166,7 +166,7 @@ impl<T: Versioned> Rows<T> {
     }
 }
 
-/// Writes the defaults into a struct that has `size` bytes in the caller's header: no more than these, and 0 into what we do not know.
+/// Writes the defaults into a struct that has `size` bytes in the caller's header: no more than these, and 0 into members that are unknown here.
 /// NULL is ignored.
 pub unsafe fn init<T: Versioned>(to: *mut T, size: i64) {
     // Every struct has an `_init`, so every struct is checked here: it may grow, never shrink below its first size.
@@ -187,7 +187,7 @@ pub unsafe fn init_unknown(to: *mut u8, size: i64) {
 
 unsafe fn init_bytes(to: *mut u8, defaults: &[u8], size: i64) {
     const SIZE: usize = size_of::<i64>();
-    // A size beyond that of any struct is refused by the calls that read it.
+    // A size larger than that of all structs is cut here; the calls that read the struct refuse it.
     let room = usize::try_from(size).unwrap_or(0).min(LARGEST);
     if to.is_null() || room < SIZE {
         return;

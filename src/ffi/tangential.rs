@@ -41,7 +41,7 @@ use crate::solver::{solve_friction_batch, solve_tangential, Ended, Entry, Outcom
 ///
 /// `options->threads` entries are solved at a time. Neighbours in the table should be neighbours in the motion: 16 in
 /// a row are solved one after the other, each from the tractions of the one before if it differs little, and all meet the tolerance. Results
-/// have the same bits for any number of threads, and `continues` is refused. What the solver found last stays as it is.
+/// have the same bits for any number of threads, and `continues` is refused. The last result of the solver stays as it is.
 ///
 /// An entry that is refused does not keep the others from being solved: its results stay as they are, and `results->status` holds its
 /// status. The call returns OK if the normal problem and all entries have that status, or else that of the first entry that was refused

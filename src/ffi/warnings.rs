@@ -25,7 +25,7 @@ pub const CONTACT_NORMAL_WARNING_ATTRACTION: i32 = 32;
 /// `warnings`: bounds of friction fall so steeply with the slip (`tangential.law_slope` of .5 or more) that there may be several solutions.
 pub const CONTACT_NORMAL_WARNING_LAW: i32 = 64;
 
-/// Each with what a message says of it.
+/// Each with its text in messages.
 const TEXTS: [(i32, &str); 7] = [
     (CONTACT_NORMAL_WARNING_BORDER, "contact reaches the border of the grid: a larger grid may carry more"),
     (
@@ -63,9 +63,9 @@ pub(super) fn of(scene: &Scene<'_>, options: &Options, report: &Report, state: &
     if measures.contact_count == 0 || grid.len() == 1 {
         return effects;
     }
-    // A contact area that is given has neither a border that it may grow beyond nor an estimate.
+    // A FIXED contact area cannot grow beyond the border, and has no estimate.
     let is_free = options.active_set == ActiveSet::Free;
-    // Of an area that is given some elements may pull.
+    // On a FIXED contact area some elements may pull.
     let of_given = || state.p.iter().filter(|p| **p > 0.0).sum::<f64>() * grid.element_area();
     let of_bodies = || if is_free { measures.force } else { of_given() };
     let pressing = report.adhesion.map_or_else(of_bodies, |found| found.repulsive_force);

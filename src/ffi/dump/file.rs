@@ -1,4 +1,4 @@
-//! The file of a dump: its name, and how it comes to be.
+//! The file of a dump: its name, and how it is written.
 
 use std::fs::{remove_file, rename, File};
 use std::io::Write;
@@ -22,7 +22,7 @@ pub(super) fn write(path: &[u8], head: &str, image: &Image) -> Result<String, St
     let part = path.with_file_name(name);
     let written = write_to(&part, head, image).and_then(|()| rename(&part, &path));
     written.map(|()| path.display().to_string()).map_err(|why| {
-        // There may be none.
+        // The unfinished file may not exist.
         let _ = remove_file(&part);
         format!("{} cannot be written: {why}", path.display())
     })

@@ -10,7 +10,7 @@ use crate::ffi::structs::LARGEST;
 /// The text for a pointer to something that is not in the file.
 pub(super) const UNREAD: &str = "unread";
 
-/// Text that says what there is, and the bytes of the arrays, in order.
+/// The text that lists structs and arrays, and the bytes of the arrays, in order.
 #[derive(Default)]
 pub(super) struct Image {
     pub text: String,
@@ -24,7 +24,7 @@ pub(super) struct Image {
 }
 
 impl Image {
-    /// Of the arguments of a call. What they point to is the caller's.
+    /// The image of the arguments of a call. They point to the caller's memory.
     pub unsafe fn of(arguments: &[(&'static str, Argument)], regions: &Regions) -> Image {
         let mut image = Image::default();
         // SAFETY: by the caller.
@@ -131,7 +131,7 @@ impl Image {
         let Some(known) = structure(kind) else { return };
         // SAFETY: by the caller: the size, and as many bytes as it says.
         let declared = unsafe { (at as *const i64).read_unaligned() } as usize;
-        // Of many structs in a row all are written by the call.
+        // The call writes all structs of an array, not only the first.
         let room = regions.at(at).map_or(0, Region::bytes).max(declared);
         self.line(&format!("struct {number} {kind} {room}"));
         for member in known.members.iter().filter(|member| member.at + member.bytes() <= declared) {

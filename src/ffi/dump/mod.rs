@@ -1,8 +1,7 @@
-//! `options->dump`: what a call was given, written where it fails, and read again by `contact-normal-replay`.
+//! `options->dump`: the arguments of a call that fails, written to a file, and read again by `contact-normal-replay`.
 //!
-//! Nothing here knows an effect. The structs are written by the list of their members, which is made from the header, and an array is as
-//! long as the call has told `Regions`, which knows all that is read. So a new effect, or a new member, is in the file without a line
-//! here. docs/dump.md has the format.
+//! No line here belongs to one effect. Structs are written by the list of their members, which is made from the header. Arrays have the lengths that
+//! the call has registered in `Regions`. So a new effect or member is in the file without a change here. docs/dump.md has the format.
 
 mod argument;
 mod file;
@@ -71,7 +70,7 @@ pub(super) struct Recording<'a> {
 }
 
 impl<'a> Recording<'a> {
-    /// `options`: NULL or a struct that declares its size; what is wrong with it the call says.
+    /// `options`: NULL or a struct that declares its size. The call itself reports its errors.
     pub unsafe fn new(
         call: &'static str,
         options: *const contact_normal_options,
@@ -90,7 +89,7 @@ impl<'a> Recording<'a> {
         self.path.is_some()
     }
 
-    /// Keeps what the call was given; `regions` know how long its arrays are. The first time counts.
+    /// Keeps the arguments of the call; `regions` has the lengths of its arrays. Later calls of this function change nothing.
     pub fn keep(&mut self, regions: &Regions) {
         if self.is_wanted() && self.image.is_none() {
             // SAFETY: the caller's structs and arrays, by the conventions of the ABI.
@@ -121,21 +120,21 @@ impl<'a> Recording<'a> {
         }
     }
 
-    /// Keeps what the caller's surface has written for a grid.
+    /// Keeps the undeformed distance that the caller's surface has written for a grid.
     pub fn keep_surface(&mut self, mx: usize, my: usize, h: &[f64]) {
         if let Some(image) = &mut self.image {
             image.add_doubles(&format!("surface.{mx}x{my}"), h);
         }
     }
 
-    /// Writes the file of a call that failed. Returns what its message says of that; nothing where none is wanted.
+    /// Writes the file of a call that failed. Returns a sentence for its message; none if no file is wanted.
     pub fn finish(&mut self, status: contact_normal_status, message: &str) -> String {
         let Some(path) = self.path.take() else { return String::new() };
         if status == CONTACT_NORMAL_OK || status == CONTACT_NORMAL_CANCELLED {
             return String::new();
         }
         self.path = Some(path.clone());
-        // Of what was refused before it was known what there is.
+        // The call may have been refused before its arrays were known.
         self.keep(&Regions::default());
         let head = format!(
             "{FIRST_LINE}\nlibrary {}\ncall {}\nstatus {status}\nmessage {}\n",

@@ -1,4 +1,4 @@
-//! The text of a dump. Nothing in it is trusted: what is odd is an error that says in which line.
+//! The text of a dump. Nothing in it is trusted: any mistake is an error that names its line.
 
 use super::image::UNREAD;
 use super::FIRST_LINE;
@@ -45,7 +45,7 @@ pub(super) enum Item {
     },
 }
 
-/// A dump as its text says it.
+/// The contents of a dump by its text.
 #[derive(Debug, Default)]
 pub(super) struct Parsed {
     pub library: String,
@@ -87,7 +87,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<(Parsed, &[u8]), String> {
     }
 }
 
-/// `number`-th word of a line, as what is asked for.
+/// The `number`-th word of a line, as the type that is asked for.
 fn word<T: std::str::FromStr>(said: &str, number: usize) -> Result<T, String> {
     let word = said.split(' ').nth(number).ok_or("a word is missing")?;
     word.parse().map_err(|_| format!("what is \"{word}\"?"))
@@ -115,7 +115,7 @@ impl Parsed {
             "integer" => self.integers.push((word(said, 0)?, word(said, 1)?)),
             "struct" | "array" | "output" => {
                 let item = self.item(first, said)?;
-                // In order: so each has one.
+                // Items are numbered in their order, so that no number is missing or used twice.
                 if word::<usize>(said, 0)? != self.items.len() + 1 {
                     return Err(format!("it must be number {}", self.items.len() + 1));
                 }

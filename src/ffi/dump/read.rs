@@ -12,10 +12,9 @@ use crate::ffi::structs::{Versioned, LARGEST};
 /// Bytes that the calls of a file may write at most.
 const MOST_BYTES: usize = 1 << 32;
 
-/// The arguments of a call, and how it ended: the file of `options->dump`.
+/// The arguments of a call and its end: the file of `options->dump`.
 ///
-/// A file is not trusted: a call is made with memory that is as long as the file says, and it is refused before it reads or
-/// writes beyond.
+/// A file is not trusted. The memory of the call has the lengths of the file, and the call is refused before it reads or writes beyond it.
 pub struct Dump {
     parsed: Parsed,
     /// The memory of each item, in words: every value is aligned. Calls write into it, so it is used by the pointers below.
@@ -24,7 +23,7 @@ pub struct Dump {
 }
 
 impl Dump {
-    /// Reads a file's bytes. An error says why it is no dump that this version can read.
+    /// Reads the bytes of a file. An error tells why this version cannot read them.
     pub fn read(bytes: &[u8]) -> Result<Dump, String> {
         let (parsed, data) = parse(bytes)?;
         let sizes: Vec<usize> = parsed.items.iter().map(room).collect();
@@ -33,7 +32,7 @@ impl Dump {
         if total.is_none_or(|total| total > data_room) {
             return Err(format!("it asks for more than {MOST_BYTES} bytes of results"));
         }
-        // Of the system, which gives pages when they are used.
+        // Zeros come from the system, which gives pages only when they are used.
         let mut memory: Vec<Vec<u64>> = sizes.iter().map(|size| vec![0; size.div_ceil(8)]).collect();
         for (item, to) in parsed.items.iter().zip(&mut memory) {
             if let Item::Array { size, count, at } = item {
@@ -150,7 +149,7 @@ impl Dump {
         found.map_or(Target::Null, |(_, target)| *target)
     }
 
-    /// Members that point to what is not in the file.
+    /// Members that point to memory that is not in the file.
     pub fn missing(&self) -> Vec<String> {
         let structs = self.parsed.items.iter().filter_map(|item| match item {
             Item::Struct { kind, members, .. } => Some((kind, members)),

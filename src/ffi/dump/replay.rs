@@ -20,9 +20,9 @@ pub struct Replayed {
 }
 
 impl Dump {
-    /// Makes the call again, on this thread. Callbacks are not called; a surface that was a callback's is what it wrote. A solve that began
-    /// from the result of a handle begins from its pressures. An error says what of the call is not in the file; after a status that is not
-    /// OK, `contact_normal_last_error` has the message.
+    /// Makes the call again, on this thread. Callbacks are not called: the file has the distances that a surface callback wrote. A solve that began
+    /// from the result of a handle begins from its pressures. An error names the part of the call that is not in the file. After a status other
+    /// than OK `contact_normal_last_error` has the message.
     pub fn replay(self) -> Result<Replayed, String> {
         let options = self.pointer::<contact_normal_options>("options")?;
         // SAFETY: NULL or a struct of ours, which no one else uses.
