@@ -1,10 +1,98 @@
-/* Effect `adhesion`: a sphere that sticks to a plane, its force at some approaches, and the pull-off. Units: R = 1, w = 1/pi, E* = 3/4, in
-   which forces are in pi w R, and JKR pulls off at -1.5. */
+/* Effect `adhesion`: a sphere that sticks to a plane, its force on the way closer and back beside that of Johnson, Kendall and Roberts, and the
+   pull-off; then a rough surface that repeats itself, from weak to sticky. Units of the sphere: R = 1, w = 1/pi, E* = 3/4, in which forces
+   are in pi w R, and JKR pulls off at -1.5. */
 #include <math.h>
 
 #include "example.h"
 
-enum { M = 64 };
+enum { M = 96, N = 64, STEPS = 12, WAVES = 6 };
+
+/* The force of JKR at an approach a^2 - 2/3 sqrt(6 a): a^3 - sqrt(6 a^3), by halving the radius of contact a from its least on. */
+static double jkr(double approach)
+{
+    double low = pow(6.0, -1.0 / 3.0), high = 3.0;
+    while (high - low > 1e-12) {
+        const double a = 0.5 * (low + high);
+        if (a * a - 2.0 / 3.0 * sqrt(6.0 * a) < approach) low = a;
+        else high = a;
+    }
+    return low * low * low - sqrt(6.0 * low * low * low);
+}
+
+/* Closer in steps of 0.2 and back again: a handle follows the state before. */
+static int loop(contact_normal_scene *scene)
+{
+    contact_normal_solver *solver = NULL;
+    contact_normal_options options;
+    contact_normal_report report;
+    double closer[STEPS];
+    int k;
+
+    contact_normal_options_init(&options);
+    contact_normal_report_init(&report);
+    if (!solved(contact_normal_solver_new(scene, &options, &solver), "contact_normal_solver_new")) return 0;
+    scene->load = CONTACT_NORMAL_PRESCRIBED_APPROACH;
+    printf("approach   closer     back      JKR\n");
+    for (k = 0; k < 2 * STEPS - 1; k++) {
+        const int at = k < STEPS ? k : 2 * STEPS - 2 - k;
+        scene->approach = 0.2 * (at - 6);
+        options.initial_guess = k ? CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS : CONTACT_NORMAL_INITIAL_GUESS_NONE;
+        if (!solved(contact_normal_solver_solve(solver, scene, &options, NULL, &report), "contact_normal_solver_solve")) break;
+        if (k < STEPS) closer[k] = report.normal.force;
+        if (k < STEPS - 1) continue;
+        printf("%8.2f %8.3f %8.3f", scene->approach, closer[at], report.normal.force);
+        if (at > 1) printf(" %8.3f", jkr(scene->approach));
+        printf("\n");
+    }
+    contact_normal_solver_free(solver);
+    return k == 2 * STEPS - 1;
+}
+
+/* The contact area, a part of the whole, by the mean pressure, for works of adhesion from none to sticky. E* = 1, the grid is one period. */
+static int weak_to_sticky(void)
+{
+    static const int waves[WAVES][2] = {{2, 1}, {1, -2}, {3, 2}, {-2, 4}, {5, 1}, {4, -5}};
+    static const double works[3] = {0.0, 1e-5, 1e-4};
+    const double pi = acos(-1.0);
+    static double h[N * N];
+    contact_normal_scene scene;
+    contact_normal_period period;
+    contact_normal_adhesion adhesion;
+    contact_normal_report report;
+    int i, k;
+
+    for (i = 0; i < N * N; i++) {
+        const double x = (i % N + 0.5) / N, y = (i / N + 0.5) / N;
+        h[i] = 0.1;
+        for (k = 0; k < WAVES; k++)
+            h[i] += 0.01 / (k + 1) * cos(2.0 * pi * (waves[k][0] * x + waves[k][1] * y) + k * k);
+    }
+    contact_normal_scene_init(&scene);
+    scene.mx = scene.my = N;
+    scene.dx = scene.dy = 1.0 / N;
+    scene.undeformed_distance = h;
+    scene.shear_modulus[0] = 0.5;
+    scene.shear_modulus[1] = (double)INFINITY;
+    contact_normal_period_init(&period);
+    period.x = period.y = 1;
+    scene.period = &period;
+    contact_normal_adhesion_init(&adhesion);
+    scene.adhesion = &adhesion;
+    scene.load = CONTACT_NORMAL_PRESCRIBED_FORCE;
+    contact_normal_report_init(&report);
+    printf("mean pressure   area without, weak and sticky\n");
+    for (i = 0; i < 3; i++) {
+        scene.force = 0.005 * (1 << i);
+        printf("%13.3f ", scene.force);
+        for (k = 0; k < 3; k++) {
+            adhesion.work_of_adhesion = works[k];
+            if (!solved(contact_normal_solve(&scene, NULL, NULL, &report), "contact_normal_solve")) return 0;
+            printf(" %8.3f", report.normal.contact_area);
+        }
+        printf("\n");
+    }
+    return 1;
+}
 
 int main(void)
 {
@@ -13,7 +101,7 @@ int main(void)
     contact_normal_adhesion adhesion;
     contact_normal_scene scene;
     contact_normal_report report;
-    int i, k;
+    int i;
 
     for (i = 0; i < M * M; i++) {
         const double x = (i % M + 0.5) * d - half_width, y = (i / M + 0.5) * d - half_width;
@@ -21,7 +109,8 @@ int main(void)
     }
     contact_normal_adhesion_init(&adhesion);
     adhesion.work_of_adhesion = 0.3183098861837907;
-    adhesion.range = 0.5647539;
+    adhesion.range = 0.28; /* Tabor's parameter is 2 */
+    adhesion.start = CONTACT_NORMAL_START_FROM_APART;
     contact_normal_scene_init(&scene);
     scene.mx = scene.my = M;
     scene.dx = scene.dy = d;
@@ -30,17 +119,11 @@ int main(void)
     scene.shear_modulus[1] = (double)INFINITY;
     scene.adhesion = &adhesion;
     contact_normal_report_init(&report);
-    printf("approach    force  contact attraction\n");
-    scene.load = CONTACT_NORMAL_PRESCRIBED_APPROACH;
-    for (k = 2; k >= -1; k--) {
-        scene.approach = 0.5 * k;
-        if (!solved(contact_normal_solve(&scene, NULL, NULL, &report), "contact_normal_solve")) return EXIT_FAILURE;
-        printf("%8.2f %8.3f %8.3f %10.3f\n", report.normal.approach, report.normal.force, report.adhesion.repulsive_force,
-               report.adhesion.adhesive_force);
-    }
+    if (!loop(&scene)) return EXIT_FAILURE;
     scene.load = CONTACT_NORMAL_PRESCRIBED_FORCE;
     scene.force = 0.0;
     if (!solved(contact_normal_pull_off(&scene, NULL, NULL, &report), "contact_normal_pull_off")) return EXIT_FAILURE;
-    printf("pull-off: force %.2f\n", report.normal.force);
-    return EXIT_SUCCESS;
+    printf("pull-off: force %.2f, contact %.2f, attraction %.2f\n", report.normal.force, report.adhesion.repulsive_force,
+           report.adhesion.adhesive_force);
+    return weak_to_sticky() ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -1,17 +1,18 @@
-! A sphere that sticks to a plane: the force at some approaches, and the pull-off. Units: R = 1, w = 1/pi, E* = 3/4, in which forces are in
-! pi w R and JKR pulls off at -1.5.
+! A sphere that sticks to a plane: its force on the way closer and back beside that of Johnson, Kendall and Roberts, and the pull-off; then a
+! rough surface that repeats itself, from weak to sticky. Units of the sphere: R = 1, w = 1/pi, E* = 3/4, in which forces are in pi w R, and
+! JKR pulls off at -1.5.
 program adhesion_of_a_sphere
   use, intrinsic :: iso_c_binding
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
   use contact_normal
   implicit none
-  integer, parameter :: m = 64
+  integer, parameter :: m = 96, n = 64, steps = 12
   real(c_double), parameter :: half_width = 3.0_c_double, d = 2*half_width/m
   real(c_double), pointer, contiguous :: h(:, :)
   type(contact_normal_scene) :: scene
   type(contact_normal_adhesion), pointer :: adhesion
   type(contact_normal_report) :: report
-  integer :: ix, iy, k
+  integer :: ix, iy
 
   allocate (h(m, m), adhesion)
   do iy = 1, m
@@ -27,22 +28,107 @@ program adhesion_of_a_sphere
   ! 1/E* = (1 - nu)/(2 G) of body 1, body 2 is rigid.
   scene%shear_modulus = [0.375_c_double, ieee_value(0.0_c_double, ieee_positive_inf)]
   call contact_normal_set_undeformed_distance(scene, h)
-  call contact_normal_set_adhesion(scene, adhesion, work=0.3183098861837907_c_double, range=0.5647539_c_double)
+  ! Tabor's parameter is 2.
+  call contact_normal_set_adhesion(scene, adhesion, work=0.3183098861837907_c_double, range=0.28_c_double)
+  adhesion%start = CONTACT_NORMAL_START_FROM_APART
   call contact_normal_report_init(report)
-  print '(a)', 'approach    force  contact attraction'
-  do k = 2, -1, -1
-    scene%load = CONTACT_NORMAL_PRESCRIBED_APPROACH
-    scene%approach = 0.5_c_double*k
-    call check(contact_normal_solve(scene, report=report))
-    print '(f8.2, 2f9.3, f11.3)', report%normal%approach, report%normal%force, report%adhesion%repulsive_force, &
-      report%adhesion%adhesive_force
-  end do
+  call loop()
   scene%load = CONTACT_NORMAL_PRESCRIBED_FORCE
   scene%force = 0
   call check(contact_normal_pull_off(scene, report=report))
-  print '(a, f5.2)', 'pull-off: force ', report%normal%force
+  print '(3(a, f0.2))', 'pull-off: force ', report%normal%force, ', contact ', report%adhesion%repulsive_force, &
+    ', attraction ', report%adhesion%adhesive_force
+  call weak_to_sticky()
 
 contains
+
+  ! Closer in steps of 0.2 and back again: a handle follows the state before.
+  subroutine loop()
+    type(contact_normal_solver) :: solver
+    type(contact_normal_options) :: options
+    real(c_double) :: closer(0:steps - 1), back(0:steps - 1)
+    integer :: k, at
+
+    call contact_normal_options_init(options)
+    call check(contact_normal_solver_new(scene, solver=solver))
+    scene%load = CONTACT_NORMAL_PRESCRIBED_APPROACH
+    do k = 0, 2*steps - 2
+      at = min(k, 2*steps - 2 - k)
+      scene%approach = 0.2_c_double*(at - 6)
+      call check(contact_normal_solver_solve(solver, scene, options, report=report))
+      if (k < steps) closer(at) = report%normal%force
+      back(at) = report%normal%force
+      options%initial_guess = CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS
+    end do
+    call contact_normal_solver_free(solver)
+    print '(a)', 'approach   closer     back      JKR'
+    do at = steps - 1, 0, -1
+      scene%approach = 0.2_c_double*(at - 6)
+      if (at > 1) then
+        print '(f8.2, 3f9.3)', scene%approach, closer(at), back(at), jkr(scene%approach)
+      else
+        print '(f8.2, 2f9.3)', scene%approach, closer(at), back(at)
+      end if
+    end do
+  end subroutine
+
+  ! The force of JKR at an approach a^2 - 2/3 sqrt(6 a): a^3 - sqrt(6 a^3), by halving the radius of contact a from its least on.
+  real(c_double) function jkr(approach)
+    real(c_double), intent(in) :: approach
+    real(c_double) :: low, high, a
+
+    low = 6.0_c_double**(-1.0_c_double/3)
+    high = 3
+    do while (high - low > 1e-12_c_double)
+      a = 0.5_c_double*(low + high)
+      if (a**2 - 2*sqrt(6*a)/3 < approach) then
+        low = a
+      else
+        high = a
+      end if
+    end do
+    jkr = low**3 - sqrt(6*low**3)
+  end function
+
+  ! The contact area, a part of the whole, by the mean pressure, for works of adhesion from none to sticky. E* = 1, the grid is one period.
+  subroutine weak_to_sticky()
+    integer, parameter :: waves(2, 0:5) = reshape([2, 1, 1, -2, 3, 2, -2, 4, 5, 1, 4, -5], [2, 6])
+    real(c_double), parameter :: works(3) = [0.0_c_double, 1e-5_c_double, 1e-4_c_double], pi = acos(-1.0_c_double)
+    real(c_double), pointer, contiguous :: distance(:, :)
+    type(contact_normal_scene) :: rough
+    type(contact_normal_period), pointer :: period
+    type(contact_normal_adhesion), pointer :: attraction
+    real(c_double) :: areas(3), x, y
+    integer :: i, k
+
+    allocate (distance(n, n), period, attraction)
+    do iy = 1, n
+      do ix = 1, n
+        x = (ix - 0.5_c_double)/n
+        y = (iy - 0.5_c_double)/n
+        distance(ix, iy) = 0.1_c_double + sum([(0.01_c_double/(k + 1)*cos(2*pi*(waves(1, k)*x + waves(2, k)*y) + k*k), k=0, 5)])
+      end do
+    end do
+    call contact_normal_scene_init(rough)
+    rough%mx = n
+    rough%my = n
+    rough%dx = 1.0_c_double/n
+    rough%dy = rough%dx
+    rough%shear_modulus = [0.5_c_double, ieee_value(0.0_c_double, ieee_positive_inf)]
+    call contact_normal_set_undeformed_distance(rough, distance)
+    call contact_normal_set_period(rough, period, x=.true., y=.true.)
+    rough%load = CONTACT_NORMAL_PRESCRIBED_FORCE
+    print '(a)', 'mean pressure   area without, weak and sticky'
+    do i = 0, 2
+      rough%force = 0.005_c_double*2**i
+      do k = 1, 3
+        call contact_normal_set_adhesion(rough, attraction, work=works(k))
+        call check(contact_normal_solve(rough, report=report))
+        areas(k) = report%normal%contact_area
+      end do
+      print '(f13.3, 1x, 3f9.3)', rough%force, areas
+    end do
+  end subroutine
 
   subroutine check(status)
     integer(c_int32_t), intent(in) :: status

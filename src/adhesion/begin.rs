@@ -208,8 +208,8 @@ impl Solver {
         monitor: &mut Monitor<'_>,
     ) -> Result<Walk> {
         let (mut least, mut met, mut most) = (None::<Place>, None, goal.most);
-        // The last state of a lost way; the end without a least force.
-        let (mut before_lost, mut without) = (None, Walk::Lost);
+        // The last state of a lost way, or that of no load; the end without a least force.
+        let (mut before, mut without) = (None, Walk::Lost);
         if is_state {
             met = Some(Met::of(&self.levels[0]));
             let (walk, spent) = self.walk_first(goal, make, monitor)?;
@@ -217,11 +217,13 @@ impl Solver {
                 Walk::Least { sum, .. } => least = Some(Place::of(&self.levels[0], sum)?),
                 Walk::Lost | Walk::Met => {
                     met = None;
-                    before_lost = Some(Place::of(&self.levels[0], 0.0)?);
+                    before = Some(Place::of(&self.levels[0], Met::of(&self.levels[0]).sum)?);
                 }
                 ended => return Ok(ended),
             }
             most = goal.most.max(TIMES * spent + AT_LEAST);
+        } else {
+            before = Some(Place::of(&self.levels[0], Met::of(&self.levels[0]).sum)?);
         }
         let mut pressing = self.first_pressing(least.as_ref(), goal);
         for _ in 0..WAYS {
@@ -250,7 +252,7 @@ impl Solver {
             }
         }
         let Some(least) = least else {
-            if let Some(place) = before_lost {
+            if let Some(place) = before.filter(|place| !(Met::of(&self.levels[0]).sum < place.sum)) {
                 self.levels[0].now.copy_from(&place.at)?;
             }
             return Ok(without);

@@ -124,7 +124,7 @@ pub struct contact_normal_report_adhesion {
     /// contact comes back to itself. Positive in a stable state (of a given approach), near 0 where a small step may snap.
     pub stability: f64,
     /// 1: the bodies have snapped: the state before (initial_guess PREVIOUS or GIVEN) could not be followed, and the elements in contact
-    /// are more, or fewer, by a quarter at least; else 0.
+    /// are more, or fewer, by more than a quarter; else 0.
     pub jumped: i32,
     /// Always 0.
     pub reserved_integer: i32,

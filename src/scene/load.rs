@@ -28,7 +28,7 @@ impl Load {
     pub fn check_sign(&self, is_fixed: bool) -> Result<()> {
         match *self {
             Load::Force(force) if force < 0.0 && !is_fixed => invalid(format!(
-                "force is {force}; it must not be negative: an elastic contact does not pull, only a given contact area (active_set FIXED) does"
+                "force is {force}; it must not be negative: an elastic contact does not pull, only a given contact area (active_set FIXED) or adhesion with a work above 0 does"
             )),
             _ => Ok(()),
         }

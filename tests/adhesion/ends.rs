@@ -127,6 +127,22 @@ fn a_pull_is_refused_only_if_each_way_was_gone_to_its_end() {
     assert!(matches!(by_cycles(20_000), Err(Error::Infeasible(_))));
 }
 
+/// Where cycles end before a state without a load is found, the bodies are not those that were pressed together to begin a way.
+#[test]
+fn a_pull_that_is_cut_short_does_not_come_back_as_pressed_bodies() {
+    let bowl = Bowl::new(24, [0.2, 0.2], [2.3, 2.3], 1.0);
+    let own = adhesion(Law::Exponential, 0.3, 0.6);
+    for max_cycles in 1..=30 {
+        let options = Options { max_cycles, ..Options::default() };
+        let (_, outcome, report) = solver::solve(&bowl.scene(own, Load::Force(-0.8)), &options).expect("a result");
+        let force = report.measures.force;
+        assert!(
+            outcome == Outcome::Converged || outcome == Outcome::IterationLimit && force <= 0.8,
+            "{max_cycles}: {force}"
+        );
+    }
+}
+
 // A spike stands out of a ball. Without a load it alone is in contact, and the way from pressed bodies to that state took steps of 0.3 of the
 // contact's length: its pull-off was 1.2 % too weak. A dense path from pressed bodies, in steps of 0.005 of the range, has -5.2603e-3.
 #[test]

@@ -394,7 +394,7 @@ True
 True True
 True
 raised
-[0, 0, -2, 0] force is -300; it must not be negative: an elastic contact does not pull, only a given contact area (active_set FIXED) does
+[0, 0, -2, 0] force is -300; it must not be negative: an elastic contact does not pull, only a given contact area (active_set FIXED) or adhesion with a work above 0 does
 True True
 0
 True
