@@ -13,7 +13,7 @@ from ._ledger import Ledger
 from ._outputs import LEDGER_ROOM, Outputs
 from ._solved import Solved
 from ._structs import LedgerRow, names
-from ._units import with_unit
+from ._units import in_pascal, with_unit
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 # Linear elasticity is for small strains. A ball has this part of E* as its largest pressure where the contact is as wide as 0.6 of its radius.
 _STRAINED = 0.2
+
+# E* of solids in pascal, from gels to diamond on a rigid body.
+_SOLIDS = 1e3, 2e12
 
 _ROW = [name for name in names(LedgerRow) if name not in ("struct_size", "reserved")]
 
@@ -76,8 +79,8 @@ class Result(Solved):
     mean_gap : float
         The mean of the deformed distance, over the elements that have a surface.
     warnings : tuple of str
-        What to look at, even where the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN", and "STRAIN", where the largest pressure is more
-        than a fifth of E*.
+        What to look at, even where the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN", "STRAIN", where the largest pressure is more
+        than a fifth of E*, and "MODULUS", where units are named in which E* is that of no solid.
     tangential_force : (float, float)
         With friction: on body 1, in x and y; else zeros.
     units : (str, str) or None
@@ -98,10 +101,18 @@ class Result(Solved):
         if self._is_strained:
             told = (f"the largest pressure is {part:.2g} E*, and linear elasticity is for small strains: are moduli, forces and lengths in one system of units? "
                     "Else a hardness limits pressures (pressure_limit)")
-            self.message = "\n".join(text for text in (self.message, told) if text)
+            self._add(told)
+        pascal = scene.bodies.e_star * (in_pascal(units) or np.nan) if scene.has_half_space else np.nan
+        self._is_no_solid = bool(pascal < _SOLIDS[0] or pascal > _SOLIDS[1])
+        if self._is_no_solid:
+            self._add(f"E* is {pascal:.3g} Pa in the units {units!r}, and solids have {_SOLIDS[0]:g} to {_SOLIDS[1]:g} Pa")
         if report.warnings & WARNING_BORDER and (ends := self._ends_in_contact()):
-            self.message = f"{self.message}\ncontact is at the ends of the grid in {ends}"
+            self._add(f"contact is at the ends of the grid in {ends}")
         self._estimated = "force" if scene.struct.load == PRESCRIBED_APPROACH else "approach"
+
+    def _add(self, told: str) -> None:
+        """Adds a line to the message."""
+        self.message = "\n".join(text for text in (self.message, told) if text)
 
     def _ends_in_contact(self) -> str:
         """The directions in which contact is at an end of the grid that is no period."""
@@ -115,7 +126,7 @@ class Result(Solved):
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """What to look at, even where the status is OK."""
-        return (*super().warnings, "STRAIN") if self._is_strained else super().warnings
+        return (*super().warnings, *("STRAIN",) * self._is_strained, *("MODULUS",) * self._is_no_solid)
 
     @cached_property
     def at_limit(self) -> npt.NDArray[np.bool_]:

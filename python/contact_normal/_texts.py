@@ -14,11 +14,17 @@ _LOOKED_AT = 4096
 
 def text_of(path: str | os.PathLike[str]) -> str:
     """The text of a file, in the encoding that its first bytes name, or UTF-8; else any byte is a character. Signs of minus are hyphens."""
-    data = Path(path).read_bytes()
+    return decoded(Path(path).read_bytes())
+
+
+def decoded(data: bytes, cut: bool = False) -> str:
+    """The same of bytes; `cut`: they end anywhere, maybe within a character."""
     named = [encoding for mark, encoding in _MARKS.items() if data.startswith(mark)]
     try:
         text = data.decode(named[0] if named else "utf-8-sig", errors="replace" if named else "strict")
-    except UnicodeDecodeError:
+    except UnicodeDecodeError as error:
+        if cut and error.start > len(data) - 4:
+            return decoded(data[: error.start])
         text = data.decode("latin-1").removeprefix("\xef\xbb\xbf")
     return text.replace("\u2212", "-")
 

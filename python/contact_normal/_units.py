@@ -16,8 +16,10 @@ _POWERS = {"length": (1, 0), "force": (0, 1), "pressure": (-2, 1), "area": (2, 0
 _PRESSURES = {("m", "N"): "Pa", ("mm", "N"): "MPa", ("um", "N"): "TPa", ("m", "kN"): "kPa", ("mm", "kN"): "GPa",
               ("um", "mN"): "GPa", ("um", "uN"): "MPa", ("nm", "nN"): "GPa"}
 # Names that are never of the other kind.
+_METRES = {"pm": 1e-12, "Å": 1e-10, "nm": 1e-9, "um": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0}
 _LENGTHS = {"nm", "um", "mm", "cm", "m"}
-_FORCES = {"nN", "uN", "mN", "N", "kN", "MN"}
+_NEWTONS = {"nN": 1e-9, "uN": 1e-6, "mN": 1e-3, "N": 1.0, "kN": 1e3, "MN": 1e6}
+_FORCES = set(_NEWTONS)
 
 
 def checked(units: Any) -> Units:
@@ -36,6 +38,19 @@ def checked(units: Any) -> Units:
 def same_length(one: str, other: str) -> bool:
     """Whether two names are of one unit of length: symbols, or words as NetCDF's conventions have them."""
     return _symbol(one) == _symbol(other)
+
+
+def in_metres(name: str) -> float | None:
+    """A unit of length in metres; None: no such unit is known."""
+    return _METRES.get(_symbol(name))
+
+
+def in_pascal(units: Units) -> float | None:
+    """The unit of pressures in pascal; None: the units are not named, or not known."""
+    if units is None:
+        return None
+    length, force = in_metres(units[0]), _NEWTONS.get(_latin(units[1]))
+    return force / length**2 if length and force else None
 
 
 class WithUnits:

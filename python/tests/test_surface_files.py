@@ -47,6 +47,32 @@ class Files(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
 
+    def test_a_header_of_gwyddion_says_size_and_unit(self):
+        z = 1e-8 * np.cumsum(rough(64)[:32], axis=1)
+        rows = "".join("\t".join(f"{value:.17g}" for value in row) + "\n" for row in z)
+        head = "# Channel: Topography\n# Width: 10{point}50 {unit}\n# Height: 5.00 {unit}\n# Value units: {value}\n"
+        for encoding, point, unit in (("utf-8", ".", "\u00b5m"), ("latin-1", ",", "\u00b5m"), ("utf-8", ".", "\u03bcm"), ("utf-8", ".", "um")):
+            for end in ("\n", "\r\n"):
+                text = (head.format(point=point, unit=unit, value="m") + rows).replace("\n", end)
+                (self.folder / "a.txt").write_bytes(text.encode(encoding))
+                made = surface.read(self.folder / "a.txt")
+                np.testing.assert_array_equal(made.z, z)
+                np.testing.assert_allclose((made.dx, made.dy), (10.5e-6 / 64, 5e-6 / 32), rtol=1e-14)
+                self.assertEqual(made.units, ("m", "N"))
+        self.assertEqual(surface.read(self.folder / "a.txt", dx=2e-7, dy=3e-7).dy, 3e-7)
+        with self.assertRaisesRegex(ValueError, "lengths are in m in the file"):
+            surface.read(self.folder / "a.txt", units=("um", "N"))
+        for text, told in ((head.format(point=".", unit="um", value="V"), "values are in V: they are no heights"),
+                           (head.format(point=".", unit="um", value=""), "values are in no unit"),
+                           (head.format(point=".", unit="deg", value="m"), "Width: 10.50 deg, which is no unit of length")):
+            (self.folder / "a.txt").write_text(text + rows)
+            with self.assertRaisesRegex(ValueError, told):
+                surface.read(self.folder / "a.txt")
+        # A character that is cut where the reader stops is no reason for another encoding.
+        for more in range(4):
+            (self.folder / "a.txt").write_bytes((head.format(point=".", unit="\u00b5m", value="m") + "# " + "x" * more + "\u20ac" * 2000 + "\n" + rows).encode())
+            self.assertAlmostEqual(surface.read(self.folder / "a.txt").dy, 5e-6 / 32, delta=1e-18)
+
     def test_arrays_of_numpy_and_text(self):
         z = rough(16)[:5]
         np.save(self.folder / "a.npy", z)

@@ -49,6 +49,15 @@ class Warnings(unittest.TestCase):
         # Moduli in GPa beside N and mm.
         self.assertIn("STRAIN", cn.solve(BALL, 0.1, 0.1, force=100.0, shear_modulus=82.0, poisson_ratio=0.28).warnings)
 
+    def test_moduli_of_no_solid_in_the_units_that_are_named(self) -> None:
+        # E* of steel on steel is 115 GPa.
+        for modulus, units, told in ((82e9, ("m", "N"), None), (82e3, ("m", "N"), None), (82.0, ("m", "N"), "114 Pa in the units"), (82e3, ("mm", "N"), None),
+                                     (82e9, ("mm", "N"), r"1\.14e\+17 Pa"), (82.0, ("um", "mN"), None), (82e9, ("furlong", "N"), None), (82e9, None, None)):
+            result = cn.solve(BALL, 0.1, 0.1, approach=1e-3, shear_modulus=modulus, poisson_ratio=0.28, units=units)
+            self.assertEqual("MODULUS" in result.warnings, told is not None)
+            self.assertRegex(result.message, rf"E\* is {told}" if told else "^((?!E\\* is).)*$")
+            self.assertEqual(pickle.loads(pickle.dumps(result)).warnings, result.warnings)
+
     def test_a_limit_of_time(self) -> None:
         result = cn.solve(BALL, 0.1, 0.1, force=100.0, max_seconds=1e-9, tolerance=1e-14, method="NORM", **STEEL)
         self.assertEqual(result.status, cn.ITERATION_LIMIT)

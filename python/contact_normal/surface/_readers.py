@@ -12,6 +12,7 @@ import numpy as np
 
 from .._texts import is_text
 from .._units import same_length
+from ._headers import header_of
 from ._heights import Heights, heights
 from ._lattice import Lattice, lattice_of
 from ._instruments import chosen, of_instrument
@@ -82,9 +83,9 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     Parameters
     ----------
     path : str or path
-        `.npy`; `.npz`; `.txt`, `.dat` and `.csv` as numbers, a row of the grid a line, or x, y and z of places of a grid, in any order; `.nc` as NetCDF,
-        by the package xarray; all others, as `.x3p`, `.sur`, `.opd`, `.gwy` and `.mat`, by the package SurfaceTopography. The rows of a matrix of `.mat`
-        are those of y. Heights and coordinates must be in one unit of length.
+        `.npy`; `.npz`; `.txt`, `.dat` and `.csv` as numbers, a row of the grid a line, or x, y and z of places of a grid, in any order; a header as
+        Gwyddion writes it says the size of the field and the unit. `.nc` as NetCDF, by the package xarray; all others, as `.x3p`, `.sur`, `.opd`, `.gwy`
+        and `.mat`, by the package SurfaceTopography. The rows of a matrix of `.mat` are those of y. Heights and coordinates must be in one unit of length.
     variable : str, optional
         Which array of a file that has several.
     **given
@@ -105,7 +106,7 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         return _of_numbers(path, values, given) if is_plain else heights(values, **given)
     # Some instruments write binary files of these ends.
     if end in (".txt", ".dat", ".csv") and is_text(path):
-        return _of_numbers(path, of_text(path, end), given)
+        return _of_numbers(path, of_text(path, end), _with_header(path, given))
     if end == ".nc":
         from .._netcdf import read as netcdf
 
@@ -127,6 +128,15 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         if reason := why_no_map(values.T) or why_no_map(values):
             raise ValueError(f"{path} {reason}")
     return from_topography(topography, **given)
+
+
+def _with_header(path: str | os.PathLike[str], given: dict[str, Any]) -> dict[str, Any]:
+    """What is given, with the size and the unit that the header of a text says."""
+    told = header_of(path)
+    if not told:
+        return given
+    sizes = {} if _SIZES & set(given) else {"size": told["size"]}
+    return {**sizes, **_with_unit(told["unit"], given)}
 
 
 def _of_numbers(path: str | os.PathLike[str], values: Any, given: dict[str, Any]) -> Heights:

@@ -1,0 +1,38 @@
+"""Lines above the numbers of a text that say the size of the field and the unit of the heights, as Gwyddion writes them."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from typing import Any
+
+from .._texts import decoded
+from .._units import in_metres
+
+# A header is within so many bytes.
+_WITHIN = 4096
+
+_LENGTH = re.compile(r"^#\s*(Width|Height)\s*:\s*([-+.,\deE]+)\s*(\S+)\s*$", re.MULTILINE)
+_UNIT = re.compile(r"^#\s*Value units?\s*:[ \t]*(\S*)[ \t]*$", re.MULTILINE)
+
+
+def header_of(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """`size` and `unit` of a text whose header says `# Width: 10.00 um`, `# Height: 5.00 um` and `# Value units: m`: the size is in the unit of the
+    heights. Empty without such a header."""
+    with Path(path).open("rb") as file:
+        text = decoded(file.read(_WITHIN), cut=True).replace("\r", "")
+    lengths, value = {name: (number, unit) for name, number, unit in _LENGTH.findall(text)}, _UNIT.search(text)
+    if len(lengths) < 2 or value is None:
+        return {}
+    unit = in_metres(value[1])
+    if unit is None:
+        raise ValueError(f"{path} says that its values are in {value[1] or 'no unit'}: they are no heights")
+    sizes = []
+    for name in ("Width", "Height"):
+        number, of_length = lengths[name]
+        length = in_metres(of_length)
+        if length is None:
+            raise ValueError(f"{path} says {name}: {number} {of_length}, which is no unit of length")
+        sizes.append(float(number.replace(",", ".")) * length / unit)
+    return {"size": tuple(sizes), "unit": value[1]}
