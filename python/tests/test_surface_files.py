@@ -73,6 +73,16 @@ class Files(unittest.TestCase):
             (self.folder / "a.txt").write_bytes((head.format(point=".", unit="\u00b5m", value="m") + "# " + "x" * more + "\u20ac" * 2000 + "\n" + rows).encode())
             self.assertAlmostEqual(surface.read(self.folder / "a.txt").dy, 5e-6 / 32, delta=1e-18)
 
+    def test_attributes_of_surface_topographys_files(self):
+        z = rough(4)
+        for periodic, given, period in (((1, 1), {}, "xy"), ((0, 1), {}, "y"), ((0, 0), {}, None), ((1, 1), {"period": None}, None), ((1, 1), {"dx": 1.0, "dy": 1.0}, "xy")):
+            array = DataArray(z.T, ("x", "y"), None, None)
+            for name, one in zip(array.dims, periodic):
+                array.coords[name].attrs = {"length": 4e-3, "periodic": one, "length_unit": "mm"}
+            made = surface.from_xarray(array, **given)
+            np.testing.assert_array_equal(made.z, z)
+            self.assertEqual((made.period, made.units), (period, None if "dx" in given else ("mm", "N")))
+
     def test_arrays_of_numpy_and_text(self):
         z = rough(16)[:5]
         np.save(self.folder / "a.npy", z)

@@ -25,7 +25,8 @@ def from_xarray(array: Any, **given: Any) -> Heights:
     """Heights of an `xarray.DataArray` with two dimensions that have coordinates, in any order.
 
     The dimension of x is the one whose name begins with "x", or else the second one. Units of lengths are those of the attribute "units", if x, y and
-    the heights have it; units that differ are refused. With dx or size the coordinates are not read.
+    the heights have it; units that differ are refused. With dx or size the coordinates are not read. The attributes "length_unit" and "periodic" of
+    coordinates are those of SurfaceTopography's files: the unit of all lengths, and a direction in which the surface repeats itself.
     """
     if len(array.dims) != 2:
         kept = [name for name in array.dims if array.sizes[name] > 1]
@@ -36,12 +37,17 @@ def from_xarray(array: Any, **given: Any) -> Heights:
     if str(y).lower().startswith("x") and not str(x).lower().startswith("x"):
         x, y = y, x
     ordered = array.transpose(y, x)
+    of_axes = [array[name].attrs if name in array.coords else {} for name in (x, y)]
+    if period := "".join(axis for axis, one in zip("xy", of_axes) if one.get("periodic")):
+        given = {"period": period, **given}
     if "dx" in given or "size" in given:
         return heights(ordered.values, **_with_unit(array.attrs.get("units"), given))
     for name in (x, y):
         if name not in array.coords:
             raise ValueError(f"the dimension {name} has no coordinates: give dx and dy")
-    said = [one.attrs.get("units") for one in (array, array[x], array[y])]
+    said = [one.get("units") or one.get("length_unit") for one in (array.attrs, *of_axes)]
+    if not said[0] and all("length_unit" in one for one in of_axes):
+        said[0] = said[1]
     for name, unit in ((x, said[1]), (y, said[2])):
         if said[0] and unit and not same_length(str(said[0]), str(unit)):
             raise ValueError(f"the heights are in {said[0]}, and {name} in {unit}: convert one of them")
