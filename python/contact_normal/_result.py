@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._bill import omissions
-from ._constants import PRESCRIBED_APPROACH, WARNING_BORDER
+from ._constants import PRESCRIBED_APPROACH, WARNING_BORDER, WARNING_ONE_ELEMENT
 from ._ledger import Ledger
 from ._outputs import LEDGER_ROOM, Outputs
 from ._solved import Solved
@@ -26,6 +26,9 @@ _STRAINED = 0.2
 
 # E* of solids in pascal, from gels to diamond on a rigid body.
 _SOLIDS = 1e3, 2e12
+
+# A line contact of so few elements across has a largest pressure that is wrong by up to 3/4; that of three, by up to 1/5.
+_FEW = 2
 
 _ROW = [name for name in names(LedgerRow) if name not in ("struct_size", "reserved")]
 
@@ -80,7 +83,8 @@ class Result(Solved):
         The mean of the deformed distance, over the elements that have a surface.
     warnings : tuple of str
         What to look at, even where the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN", "STRAIN", where the largest pressure is more
-        than a fifth of E*, and "MODULUS", where units are named in which E* is that of no solid.
+        than a fifth of E*, "MODULUS", where units are named in which E* is that of no solid, and "NARROW", where all of the contact is within two
+        columns or rows of more.
     tangential_force : (float, float)
         With friction: on body 1, in x and y; else zeros.
     units : (str, str) or None
@@ -108,11 +112,21 @@ class Result(Solved):
             self._add(f"E* is {pascal:.3g} Pa in the units {units!r}, and solids have {_SOLIDS[0]:g} to {_SOLIDS[1]:g} Pa")
         if report.warnings & WARNING_BORDER and (ends := self._ends_in_contact()):
             self._add(f"contact is at the ends of the grid in {ends}")
+        narrow = "" if report.warnings & WARNING_ONE_ELEMENT else self._narrow()
+        self._is_narrow = bool(narrow)
+        if narrow:
+            self._add(f"contact is at most {_FEW} elements wide in {narrow}: take smaller elements there. Are moduli, forces and lengths in one system of units?")
         self._estimated = "force" if scene.struct.load == PRESCRIBED_APPROACH else "approach"
 
     def _add(self, told: str) -> None:
         """Adds a line to the message."""
         self.message = "\n".join(text for text in (self.message, told) if text)
+
+    def _narrow(self) -> str:
+        """The directions in which all of the contact is within a few elements, although there are surfaces beside it."""
+        touches = self._contact != 0
+        found = [(name, axis) for name, axis in (("x", 0), ("y", 1)) if 0 < np.count_nonzero(touches.any(axis)) <= _FEW < touches.shape[1 - axis]]
+        return " and ".join(name for name, axis in found if np.count_nonzero(np.isfinite(self.deformed_distance).any(axis)) > _FEW)
 
     def _ends_in_contact(self) -> str:
         """The directions in which contact is at an end of the grid that is no period."""
@@ -126,7 +140,7 @@ class Result(Solved):
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """What to look at, even where the status is OK."""
-        return (*super().warnings, *("STRAIN",) * self._is_strained, *("MODULUS",) * self._is_no_solid)
+        return (*super().warnings, *("STRAIN",) * self._is_strained, *("MODULUS",) * self._is_no_solid, *("NARROW",) * self._is_narrow)
 
     @cached_property
     def at_limit(self) -> npt.NDArray[np.bool_]:

@@ -31,6 +31,12 @@ if TYPE_CHECKING:
 # Drops of logarithmic profiles are of smaller parts of the length.
 _DEEP = 0.02
 
+# Those of steel have some ten thousandths of the length, and those of smaller parts are flat.
+_FLAT = 1e-6
+
+# Contact is at places where the drop is less than this part of the undeformed distance at the sides of a grid that holds the contact.
+_TOUCHED = 0.25
+
 # Relief of ISO/TS 16281:2008 by the diameter of the roller.
 _ISO = 0.00035
 
@@ -82,7 +88,7 @@ def circle(x: Any, radius: float) -> Doubles:
 def no_drop(length: float) -> Drop:
     """A cylinder with sharp ends. Pressures at its ends have no bound: finer grids find larger ones."""
     half = 0.5 * _positive("length", length)
-    return lambda y: np.where(np.abs(y) <= half, 0.0, np.inf)
+    return _of_length(half, lambda y: np.where(np.abs(y) <= half, 0.0, np.inf))
 
 
 def crown(length: float, radius: float, straight: float = 0.0) -> Drop:
@@ -100,7 +106,16 @@ def crown(length: float, radius: float, straight: float = 0.0) -> Drop:
     half, r, flat = 0.5 * _positive("length", length), _positive("radius", radius), number("straight", straight)
     if not 0.0 <= flat < 2.0 * half:
         raise ValueError(f"straight is {flat}; it must lie between 0 and the length {2.0 * half}")
-    return lambda y: np.where(np.abs(y) <= half, circle(np.maximum(np.abs(y) - 0.5 * flat, 0.0), r), np.inf)
+    if r < (half - 0.5 * flat) * (1.0 - 1e-9):
+        warnings.warn(f"radius is {r:g}, and the crowned part is {half - 0.5 * flat:g} long on each side: its surface ends before the roller does. Radius and length must be "
+                      "in one unit", stacklevel=2)
+    return _of_length(half, lambda y: np.where(np.abs(y) <= half, circle(np.maximum(np.abs(y) - 0.5 * flat, 0.0), r), np.inf))
+
+
+def _of_length(half: float, drop: Drop) -> Drop:
+    """The same drop, which knows half of the length of its roller."""
+    drop.half = half  # type: ignore[attr-defined]
+    return drop
 
 
 def _logarithm(half: float, relief: float) -> Drop:
@@ -108,7 +123,7 @@ def _logarithm(half: float, relief: float) -> Drop:
         inside = np.abs(y) < half
         return np.where(inside, -relief * np.log1p(-((np.where(inside, y, 0.0) / half) ** 2)), np.inf)
 
-    return drop
+    return _of_length(half, drop)
 
 
 def logarithmic(length: float, force: float, e_star: float) -> Drop:
@@ -127,7 +142,7 @@ def logarithmic(length: float, force: float, e_star: float) -> Drop:
     """
     whole = _positive("length", length)
     relief = _positive("force", force) / (np.pi * whole * _positive("e_star", e_star))
-    if relief > _DEEP * whole:
+    if not _FLAT * whole <= relief <= _DEEP * whole:
         warnings.warn(f"the drop is {relief:.2g} ln(1/(1 - (2 y/length)^2)), and the length {whole:g}: force, length and e_star must be in one system of units, as N, mm "
                       "and N/mm2", stacklevel=2)
     return _logarithm(0.5 * whole, relief)
@@ -142,6 +157,16 @@ def iso_16281(length: float, diameter: float) -> Drop:
     if whole > 2.5 * thick:
         raise ValueError(f"length is {whole}; this profile is for lengths of up to 2.5 times the diameter, {2.5 * thick}")
     return _logarithm(0.5 * whole, _ISO * thick)
+
+
+def _warn_of_ends(along: Doubles, cut: float | None, half: float, across: Doubles) -> None:
+    """Warns of a grid that ends, at `cut`, within a roller where it may touch, and of one whose both ends stand up."""
+    middle = along[(len(along) - 1) // 2 : len(along) // 2 + 1].min()
+    if cut is not None and min(along[0], along[-1]) - middle < _TOUCHED * across.max():
+        warnings.warn(f"the grid is {2.0 * cut:g} long in y, and the roller {2.0 * half:g}: nothing touches beyond the grid, whose ends are those of a shorter roller with sharp ends. "
+                      "size, length and radii must be in one unit", stacklevel=3)
+    if max(along[0], along[-1]) < middle:
+        warnings.warn(f"the drop at the ends is {max(along[0], along[-1]) - middle:.3g} beside the middle: it is positive where the roller is thinner", stacklevel=3)
 
 
 def gap(
@@ -199,5 +224,7 @@ def gap(
     along = sum([*(_dropped(one, y) for one in drops), *(circle(y, radius) for radius in crown_radii)], np.zeros(my))
     if not abs(number("tilt", tilt)) < _STEEPEST:
         raise ValueError(f"tilt is {tilt}; it is an angle in rad, and must be below {_STEEPEST:g}")
+    half = min((getattr(one, "half", np.inf) for one in drops), default=np.inf)
+    _warn_of_ends(along, 0.5 * ly if half > 0.501 * ly and np.isfinite(half) else None, half, across)
     h = across[None, :] + (along + tilt * y)[:, None]
     return Gap(np.ascontiguousarray(h), dx, dy, units=units)

@@ -51,6 +51,31 @@ class Units(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "a flange that is 50.9 mm high: are these diameters"):
             profiles.Profile(made.y, 2.0 * made.z, "wheel")
 
+    def test_a_profile_that_ends_before_the_back_is_told(self):
+        made = wheel()
+        for first, told in ((-60.0, "ends on the tip of its flange, at z = "), (-30.0, "has no flange")):
+            part = profiles.Profile(made.y[made.y > first], made.z[made.y > first], "wheel")
+            with self.assertWarnsRegex(UserWarning, f"{told}.* is taken for the flange back: give flange_back_at") as found:
+                profiles.Wheelset(part)
+            self.assertEqual(found.filename, __file__)
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                profiles.Wheelset(part, flange_back_at=-70.0)
+        with self.assertWarnsRegex(UserWarning, "has no flange, .*Profiles are in mm"):
+            profiles.Wheelset(profiles.Profile(made.y, 1e-3 * made.z, "wheel"))
+
+    def test_a_rail_of_two_units_is_told(self):
+        with self.assertWarnsRegex(UserWarning, "the rail is 400 high and .* wide: are y and z in one unit"):
+            profiles.Track(profiles.Profile(rail().y, 10.0 * rail().z, "rail"))
+
+    def test_an_origin_that_is_not_on_the_tread_is_told(self):
+        for z in (-15.0, 8.0):
+            with self.assertWarnsRegex(UserWarning, rf"the tread of the wheel, 70 mm from the back, has z = {z:g}, .*: the wheel has {460 + z:g} mm there"):
+                profiles.Wheelset(wheel().moved(z=z), 460.0)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            profiles.Wheelset(wheel().moved(z=4.0), 460.0)
+
     def test_heights_from_the_axle_are_told(self):
         with self.assertRaisesRegex(ValueError, r"the tread of the wheel has z = 457 to 460.2, and radius is that at z = 0"):
             profiles.Wheelset(wheel().moved(z=460.0), 460.0)

@@ -98,6 +98,28 @@ class Pressures(unittest.TestCase):
             warnings.simplefilter("error")
             rollers.logarithmic(2.0, 3000.0, E_STAR)
 
+    def test_a_grid_that_ends_within_the_roller_is_told(self):
+        log = rollers.logarithmic(LENGTH, 9000.0, E_STAR)
+        for size, drop in (((1.2, 10.0), log), ((1.2e-3, 14e-3), log), ((1.2, 12.0), [rollers.no_drop(LENGTH), rollers.no_drop(20.0)]),
+                           ((1.2, 10.0), rollers.crown(LENGTH, 1000.0, 8.0)), ((1.2, LENGTH), rollers.iso_16281(24.0, 12.0))):
+            with self.subTest(size), self.assertWarnsRegex(UserWarning, "the grid is .* long in y, and the roller .*: nothing touches beyond the grid"):
+                rollers.gap(size, (48, 56), tuple(1e-3 * r if size[0] < 1.0 else r for r in RADII), drop=drop)
+        with self.assertWarnsRegex(UserWarning, "radius is 1, and the crowned part is 3 long .* in one unit"):
+            rollers.crown(LENGTH, 1.0, 8.0)
+        with self.assertWarnsRegex(UserWarning, r"the drop at the ends is -0\.00\S+ beside the middle: it is positive where the roller is thinner"):
+            rollers.gap((1.2, LENGTH), (48, 56), RADII, drop=lambda y: -0.005 * (y / 7.0) ** 2)
+        # A force in kN, and E* in Pa, beside mm.
+        for force, e_star in ((9.0, E_STAR), (9000.0, 1e6 * E_STAR)):
+            with self.assertWarnsRegex(UserWarning, "must be in one system of units"):
+                rollers.logarithmic(LENGTH, force, e_star)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            rollers.gap((1.2, LENGTH), (48, 56), RADII, drop=log)
+            rollers.gap((1.2, 20.0), (48, 80), RADII, drop=log, tilt=1e-3)
+            rollers.gap((1.2, LENGTH), (48, 56), RADII, drop=[log, rollers.no_drop(40.0)])
+            # The contact of a ball is far from the ends of its crown.
+            rollers.gap((0.6, 0.6), (60, 60), (8.0,), drop=rollers.crown(16.0, 8.0))
+
     def test_sharp_ends_and_crowns_do_not(self):
         sharp = self.along(rollers.no_drop(LENGTH))
         self.assertGreater(sharp[0] / self.LINE, 1.4)

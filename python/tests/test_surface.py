@@ -106,6 +106,19 @@ class Faults(unittest.TestCase):
         both[40:42, 3] = 9999.0
         self.assertEqual(set(surface.faults(surface.heights(both, 1, 1)).fill_values), {-9999.0, 9999.0})
 
+    def test_fill_values_that_are_left_are_told(self):
+        z = 1e-3 * rough() + 0.01
+        made = surface.heights(np.where(np.arange(64) == 7, 0.0, z), 0.1, 0.1)
+        plain = surface.heights(z, 0.1, 0.1)
+        for use in (surface.level, surface.gap, lambda one: surface.gap(plain, one)):
+            with self.assertWarnsRegex(UserWarning, "64 elements have the value 0, which seems to stand for 'not measured': .*fill=.*faults") as told:
+                use(made)
+            self.assertEqual(told.filename, __file__)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            surface.gap(surface.level(surface.faults(made).removed))
+            surface.gap(plain)
+
     def test_what_is_measured_is_no_fault(self):
         # A flat plateau at the top, a bump, heights of an 8-bit instrument.
         for z in (np.minimum(rough(), 1.0), rough() + np.where(np.hypot(*np.mgrid[-32:32, -32:32]) < 9, 3.0, 0.0), np.round(8 * rough())):

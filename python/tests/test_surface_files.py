@@ -60,6 +60,11 @@ class Files(unittest.TestCase):
                 np.testing.assert_allclose((made.dx, made.dy), (10.5e-6 / 64, 5e-6 / 32), rtol=1e-14)
                 self.assertEqual(made.units, ("m", "N"))
         self.assertEqual(surface.read(self.folder / "a.txt", dx=2e-7, dy=3e-7).dy, 3e-7)
+        with self.assertWarnsRegex(UserWarning, "says that the field is 1.05e-05 m long in x, and 10.5 is given: lengths are in m, as the heights"):
+            surface.read(self.folder / "a.txt", size=(10.5, 5.0))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            surface.read(self.folder / "a.txt", span=(10.5e-6, 5e-6))
         with self.assertRaisesRegex(ValueError, "lengths are in m in the file"):
             surface.read(self.folder / "a.txt", units=("um", "N"))
         for text, told in ((head.format(point=".", unit="um", value="V"), "values are in V: they are no heights"),

@@ -48,6 +48,22 @@ class Lists(unittest.TestCase):
         stage = self.random.normal(0.0, 1e-4, 63)
         self.assertAlmostEqual(self.read(x + stage, y, z).dx, 0.5, delta=1e-4)
 
+    def test_units_above_the_columns_are_obeyed(self):
+        rows = "".join(f"{x} {y} {z:.17g}\n" for x, y, z in zip(*self.columns))
+        for end in (".txt", ".xyz"):
+            path = self.path.with_suffix(end)
+            for head in ("# x [{0}] y [{0}] z [{1}]\n", "# File of 2020\n# X({0}), Y({0}), Z({1})\n", "# x/{0} y/{0} z/{1}\r\n"):
+                path.write_text(head.format("mm", "mm") + rows, encoding="utf-8")
+                self.assert_grid(found := surface.read(path))
+                self.assertEqual(found.units, ("mm", "N"))
+                with self.assertRaisesRegex(ValueError, "lengths are in mm in the file"):
+                    surface.read(path, units=("m", "N"))
+                path.write_text(head.format("mm", "\u00b5m") + rows, encoding="utf-8")
+                with self.assertRaisesRegex(ValueError, "has x in mm, y in mm, z in \u00b5m: convert them to one unit"):
+                    surface.read(path)
+            path.write_text("# x y z of 2020\n" + rows)
+            self.assertIsNone(surface.read(path).units)
+
     def test_lists_of_numpy_are_lists_too(self):
         path = self.path.with_suffix(".npy")
         np.save(path, np.stack(self.columns, axis=1))
@@ -94,6 +110,12 @@ class Lists(unittest.TestCase):
     def test_a_narrow_map_is_told(self):
         with self.assertWarnsRegex(UserWarning, "is read as a map of 60 x 3 heights"):
             self.assertEqual(self.read(*self.random.normal(size=(3, 60)), dx=1, dy=1).z.shape, (60, 3))
+        for strip in (self.random.normal(size=(4, 1000)), np.cumsum(self.random.normal(size=1000)) + self.random.normal(size=(4, 1000))):
+            with self.assertWarnsRegex(UserWarning, "is read as a map of 1000 x 4 heights"):
+                np.testing.assert_array_equal(self.read(*strip, dx=5, dy=5).z, strip.T)
+        x, y = self.random.random((2, 1000))
+        with self.assertRaisesRegex(ValueError, "has 1000 lines of 4 numbers: a list of points"):
+            self.read(x, y, 0.1 * self.random.normal(size=1000), np.ones(1000), dx=5, dy=5)
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             self.read(*self.random.normal(size=(12, 60)), dx=5, dy=5)

@@ -27,6 +27,23 @@ class Warnings(unittest.TestCase):
         self.assertIn("ONE_ELEMENT", repr(result))
         self.assertEqual(result.report["warnings"], cn.WARNING_ONE_ELEMENT | cn.WARNING_ERROR_UNKNOWN)
 
+    def test_a_contact_of_few_elements(self) -> None:
+        # Half the width of the line is 0.25 elements of 0.1, or one of 0.025.
+        for d, ends in ((0.1, "x"), (0.006, None)):
+            x = (np.arange(31) - 15.0) * d
+            line = np.tile(0.5 * x**2 / 25.0, (8, 1))
+            found = cn.solve(line, d, 1.0, force=8.0 * np.pi * 115385.0 * 0.025**2 / 100.0, e_star=115385.0, period="y")
+            self.assertEqual("NARROW" in found.warnings, ends is not None)
+            self.assertRegex(found.message, "contact is at most 2 elements wide in x: take smaller" if ends else "^((?!wide in).)*$")
+            self.assertEqual(pickle.loads(pickle.dumps(found)).warnings, found.warnings)
+        # Moduli in Pa beside mm: four elements of the ball touch.
+        found = cn.solve(BALL, 0.1, 0.1, force=100.0, shear_modulus=82e9, poisson_ratio=0.28)
+        self.assertIn("wide in x and y", found.message)
+        # A punch of two columns is as wide as it is, and a grid of two columns has no others.
+        punch = np.where(np.abs(X[None, :]) < 0.1, 0.0, np.inf) + 0.0 * X[:, None]
+        for h in (punch, np.zeros((32, 2))):
+            self.assertNotIn("NARROW", cn.solve(h, 0.1, 0.1, force=100.0, **STEEL).warnings)
+
     def test_contact_at_the_border(self) -> None:
         self.assertIn("BORDER", cn.solve(BALL, 0.1, 0.1, force=1e6, **STEEL).warnings)
         for h, given, ends in ((BALL, {}, "x and y"), (BALL[:12], {}, "y"), (BALL[:, 20:], {}, "x"), (BALL, {"period": "x"}, "y")):

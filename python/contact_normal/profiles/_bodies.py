@@ -29,6 +29,14 @@ _SIDES, _LEANS = (16.0, 32.0), 0.012
 _TREAD = 20.0
 _BACK, _BACK_OF_TREAD = 40.0, 120.0
 
+# Behind its tip a flange falls by more than this part of its height, down to the back. Radii are those at so many mm from the back, to so many mm in z: what
+# wears off is less; both for flanges of full size.
+_FALLS, _TAPE, _OFF_TAPE, _FULL = 0.2, 70.0, 6.0, (20.0, 45.0)
+# Profiles that are less wide, in mm, are those of models.
+_WHOLE = 40.0
+# Heads of rails and whole rails are less high than so many widths.
+_SLENDER = 1.8
+
 # Flanges are measured so far below the tread, as a part of the radius: 10 mm. Wheelsets have a play of some mm in the track, and less than this part of the gauge.
 _FACE, _PLAY = 10.0 / 460.0, 0.05
 
@@ -113,6 +121,8 @@ class Track:
             raise ValueError(f"gauge_height is {self.gauge_height}; beside a gauge of {self.gauge} it must be at least {_HEIGHT_OVER_GAUGE * self.gauge:.2g}, "
                              f"as 14 mm: {_UNITS}")
 
+        if (height := float(np.ptp(self.rail.z))) > _SLENDER * width:
+            warnings.warn(f"the rail is {height:.4g} high and {width:.4g} wide: are y and z in one unit? {_UNITS}", stacklevel=3)
         drawn = _lean(self.rail)
         lean = drawn + self.inclination
         if lean < -_LEANS:
@@ -184,6 +194,34 @@ class Wheelset:
             raise ValueError(f"the tread of the wheel has z = {tread.min():.4g} to {tread.max():.4g}, and radius is that at z = 0: wheel.moved(z=...) puts the "
                              "origin on the tread")
         self._check_back()
+        self._warn_of_back()
+        self._warn_of_origin()
+
+    def _warn_of_back(self) -> None:
+        """Warns of a profile whose smallest y is taken for the back, but is not."""
+        if self.flange_back_at is not None:
+            return
+        tip, end = float(self.wheel.z.max()), float(self.wheel.z[0])
+        if np.ptp(self.wheel.y) < _WHOLE:
+            return
+        if not self.wheel.has_flange():
+            told = "has no flange"
+        elif tip - end < _FALLS * (tip - float(np.median(self.wheel.z))):
+            told = f"ends on the tip of its flange, at z = {end:.4g} of {tip:.4g}"
+        else:
+            return
+        warnings.warn(f"the profile of the wheel {told}, and its smallest y, {self.wheel.y[0]:.4g}, is taken for the flange back: give flange_back_at, the y of the "
+                      "back. Profiles are in mm", stacklevel=4)
+
+    def _warn_of_origin(self) -> None:
+        """Warns of a radius that is not that of the tread."""
+        at = (float(self.wheel.y[0]) if self.flange_back_at is None else self.flange_back_at) + _TAPE
+        if not (self.wheel.y[0] < at < self.wheel.y[-1] and self.wheel.has_flange()):
+            return
+        tread = float(np.interp(at, self.wheel.y, self.wheel.z))
+        if _FULL[0] <= float(self.wheel.z.max()) - tread <= _FULL[1] and abs(tread) > _OFF_TAPE:
+            warnings.warn(f"the tread of the wheel, {_TAPE:g} mm from the back, has z = {tread:.4g}, and radius is that at z = 0: the wheel has {self.radius + tread:.4g} mm there. "
+                          "wheel.moved(z=...) puts the origin on the tread", stacklevel=4)
 
     def _check_back(self) -> None:
         """Refuses a back that is not where the profile ends, at the flange."""

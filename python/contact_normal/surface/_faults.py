@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -88,6 +89,14 @@ def _fill_values(z: Doubles) -> list[float]:
                 break
         else:
             return found
+
+
+def warn_of_fill_values(heights: Heights, stacklevel: int) -> None:
+    """Warns of values that seem to stand for "not measured": they move a plane of least squares, or carry the load."""
+    told = [f"{np.count_nonzero(heights.z == value)} elements have the value {value:g}" for value in _fill_values(heights.z)]
+    if told:
+        warnings.warn(f"{' and '.join(told)}, which seems to stand for 'not measured': heights(..., fill=) or faults(...).removed makes them holes",
+                      stacklevel=stacklevel + 1)
 
 
 def _padded(z: Doubles, period: str | None) -> Doubles:

@@ -1,4 +1,4 @@
-"""Lines above the numbers of a text that say the size of the field and the unit of the heights, as Gwyddion writes them."""
+"""Lines above the numbers of a text: the size of the field and the unit of the heights, as Gwyddion writes them, and units of columns x y z."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from .._texts import decoded
-from .._units import in_metres
+from .._units import in_metres, same_length
 
 # A header is within so many bytes.
 _WITHIN = 4096
@@ -17,11 +17,32 @@ _LENGTH = re.compile(r"^#\s*(Width|Height)\s*:\s*([-+.,\deE]+)\s*(\S+)\s*$", re.
 _UNIT = re.compile(r"^#\s*Value units?\s*:[ \t]*(\S*)[ \t]*$", re.MULTILINE)
 
 
+# x [mm], x (mm) or x/mm.
+_COLUMN = re.compile(r"(?<![^\W_])([xyz])\s*(?:\[\s*([^\]\s]+)\s*\]|\(\s*([^)\s]+)\s*\)|/\s*([^\W\d_]+))", re.IGNORECASE)
+
+
+def _head(path: str | os.PathLike[str]) -> str:
+    """The first lines of a text."""
+    with Path(path).open("rb") as file:
+        return decoded(file.read(_WITHIN), cut=True).replace("\r", "")
+
+
+def unit_of_columns(path: str | os.PathLike[str]) -> str | None:
+    """The unit that a line as `# x [mm] y [mm] z [mm]` names for a list of points; None without one. Units that differ are refused."""
+    for line in _head(path).split("\n"):
+        found = {name.lower(): "".join(units) for name, *units in _COLUMN.findall(line)} if line.startswith("#") else {}
+        if len(found) < 3:
+            continue
+        if not all(same_length(found["x"], other) for other in found.values()):
+            raise ValueError(f"{path} has {', '.join(f'{name} in {unit}' for name, unit in found.items())}: convert them to one unit")
+        return found["x"] if in_metres(found["x"]) else None
+    return None
+
+
 def header_of(path: str | os.PathLike[str]) -> dict[str, Any]:
     """`size` and `unit` of a text whose header says `# Width: 10.00 um`, `# Height: 5.00 um` and `# Value units: m`: the size is in the unit of the
     heights. Empty without such a header."""
-    with Path(path).open("rb") as file:
-        text = decoded(file.read(_WITHIN), cut=True).replace("\r", "")
+    text = _head(path)
     lengths, value = {name: (number, unit) for name, number, unit in _LENGTH.findall(text)}, _UNIT.search(text)
     if len(lengths) < 2 or value is None:
         return {}

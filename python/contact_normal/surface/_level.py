@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ._faults import warn_of_fill_values
 from ._heights import Heights, blocks, refuse_others
 
 if TYPE_CHECKING:
@@ -109,6 +110,7 @@ def level(heights: Heights, kind: str = "plane") -> Heights:
     refuse_others(heights=heights)
     if heights.period and kind != "mean":
         raise ValueError(f"the surface repeats itself in {heights.period}: a {kind} would break the period; level it with period None, or by its mean")
+    warn_of_fill_values(heights, stacklevel=2)
     return dataclasses.replace(heights, z=heights.z - form(heights, kind).values(heights))
 
 

@@ -13,6 +13,9 @@ EVEN = 0.01
 # Lists have few columns and many lines.
 _COLUMNS, _MANY, _LINES = 4, 8, 8
 
+# Ranges of columns of heights differ by less than this factor.
+_ALIKE = 3.0
+
 # Maps of few columns are strips; of so many times as many lines there are hardly any.
 _LONG = 25
 
@@ -32,7 +35,7 @@ def why(values: Any) -> str | None:
         if len(found) > (columns > _COLUMNS):
             return (f"has {lines} lines of {columns} numbers, of which number {found[0] + 1} is a coordinate or a count: a list of points. Lists are read where "
                     f"their points are {_PLACES}; {_INSTEAD}")
-    if 1 < columns <= _COLUMNS and lines >= _LONG * columns:
+    if 1 < columns <= _COLUMNS and lines >= _LONG * columns and not _is_strip(values):
         return (f"has {lines} lines of {columns} numbers: a list of points, it seems. Lists are read where their points are {_PLACES}; "
                 f"{_INSTEAD}")
     if min(lines, columns) > _COLUMNS:
@@ -48,6 +51,14 @@ def doubt(values: Any) -> str | None:
     if lines >= _LINES and (columns <= _COLUMNS or (columns <= _MANY and lines >= 8 * columns)):
         return f"is read as a map of {lines} x {columns} heights, a row of the grid a line, and not as a list of points"
     return None
+
+
+def _is_strip(values: Any) -> bool:
+    """Whether four columns are all of one kind: heights. Coordinates have larger ranges than heights, or others."""
+    if values.shape[1] != _COLUMNS or not (np.isfinite(values).sum(0) > 1).all():
+        return False
+    low, middle, high = np.nanquantile(np.where(np.isfinite(values), values, np.nan), [0.05, 0.5, 0.95], axis=0)
+    return bool((high - low).max() <= _ALIKE * (high - low).min() and middle.max() <= high.min() and middle.min() >= low.max())
 
 
 def has_cut_decimals(lines: list[str]) -> bool:

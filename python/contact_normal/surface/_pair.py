@@ -11,6 +11,7 @@ import numpy as np
 from .._arguments import number, two
 from .._gap import Gap
 from .._units import same_length
+from ._faults import warn_of_fill_values
 from ._heights import Heights, refuse_others
 
 if TYPE_CHECKING:
@@ -40,6 +41,9 @@ def gap(lower: Heights, upper: Heights | None = None, *, turned: str = "y") -> G
         About which axis the upper body is turned over to lie on the lower one. "": its array is already laid out as it will lie.
     """
     refuse_others(lower=lower, **({} if upper is None else {"upper": upper}))
+    for one in (lower, upper):
+        if one is not None:
+            warn_of_fill_values(one, stacklevel=2)
     z, period, units = lower.z, lower.period, lower.units
     if upper is not None:
         if upper.z.shape != z.shape or not np.allclose((upper.dx, upper.dy), (lower.dx, lower.dy), rtol=1e-9, atol=0.0):

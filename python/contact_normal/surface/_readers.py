@@ -12,7 +12,7 @@ import numpy as np
 
 from .._texts import is_text
 from .._units import same_length
-from ._headers import header_of
+from ._headers import header_of, unit_of_columns
 from ._heights import Heights, heights
 from ._lattice import Lattice, lattice_of
 from ._instruments import chosen, of_instrument
@@ -112,7 +112,10 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         return _of_numbers(path, values, given) if is_plain else heights(values, **given)
     # Some instruments write binary files of these ends.
     if end in (".txt", ".dat", ".csv") and is_text(path):
-        return _of_numbers(path, of_text(path, end), _with_header(path, given))
+        told = header_of(path)
+        made = _of_numbers(path, of_text(path, end), _with_header(told, given))
+        _warn_of_size(path, told, made)
+        return made
     if end == ".nc":
         from .._netcdf import read as netcdf
 
@@ -124,7 +127,7 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     if end == ".xyz" and not _SIZES & set(given):
         lattice = _of_points(path)
         if lattice is not None:
-            return heights(lattice.z, x=lattice.x, y=lattice.y, **given)
+            return heights(lattice.z, x=lattice.x, y=lattice.y, **_with_unit(unit_of_columns(path), given))
     topography = of_instrument(path, end, variable, bool(_SIZES & set(given)))
     if end == ".mat":
         given = {"axes": "yx", **given}
@@ -136,20 +139,31 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     return from_topography(topography, **given)
 
 
-def _with_header(path: str | os.PathLike[str], given: dict[str, Any]) -> dict[str, Any]:
+def _with_header(told: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
     """What is given, with the size and the unit that the header of a text says."""
-    told = header_of(path)
     if not told:
         return given
     sizes = {} if _SIZES & set(given) else {"size": told["size"]}
     return {**sizes, **_with_unit(told["unit"], given)}
 
 
+def _warn_of_size(path: str | os.PathLike[str], told: dict[str, Any], made: Heights) -> None:
+    """Warns of a size that is not that of the header, by more than a caller's n - 1 for n."""
+    if not told:
+        return
+    for name, n, d, length in zip("xy", made.z.shape[::-1], (made.dx, made.dy), told["size"]):
+        if abs(n * d - length) > (0.01 + 1.0 / n) * length:
+            warnings.warn(f"{path} says that the field is {length:.6g} {told['unit']} long in {name}, and {n * d:.6g} is given: lengths are in {told['unit']}, as the heights",
+                          stacklevel=3)
+            return
+
+
 def _of_numbers(path: str | os.PathLike[str], values: Any, given: dict[str, Any]) -> Heights:
     """Heights from numbers that may be a list of points."""
     sizes = sorted(_SIZES & set(given))
     if not sizes and (lattice := lattice_of(values)) is not None:
-        return heights(lattice.z, x=lattice.x, y=lattice.y, **given)
+        unit = None if Path(path).suffix.lower() in (".npy", ".npz") else unit_of_columns(path)
+        return heights(lattice.z, x=lattice.x, y=lattice.y, **_with_unit(unit, given))
     if reason := why_no_map(values):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
