@@ -26,6 +26,7 @@ def pull_off(
     adhesion: Mapping[str, Any],
     approach: float | None = None,
     force: float | None = None,
+    mean_pressure: float | None = None,
     shear_modulus: Both | None = None,
     poisson_ratio: Both | None = None,
     young_modulus: Both | None = None,
@@ -33,6 +34,7 @@ def pull_off(
     influence: Any = None,
     layer: npt.ArrayLike | None = None,
     period: str | None = None,
+    patches: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     coating: Any = None,
     units: tuple[str, str] | None = None,
     progress: Callable[[Progress], Any] | bool | None = None,
@@ -42,9 +44,9 @@ def pull_off(
 
     Parameters
     ----------
-    h, dx, dy, adhesion, shear_modulus, poisson_ratio, young_modulus, e_star, influence, layer, period, coating, units, progress, **given
+    h, dx, dy, adhesion, shear_modulus, poisson_ratio, young_modulus, e_star, influence, layer, period, patches, coating, units, progress, **given
         As for `solve`.
-    approach, force : float, optional
+    approach, force, mean_pressure : float, optional
         Where to begin; by default at a force of 0.
 
     Returns
@@ -61,10 +63,11 @@ def pull_off(
     >>> round(found.force, 2)
     -1.66
     """
-    effects = {"influence": influence, "layer": layer, "period": period, "coating": coating, "adhesion": adhesion}
-    force = 0.0 if force is None and approach is None else force
+    effects = {"influence": influence, "layer": layer, "period": period, "patches": patches, "coating": coating, "adhesion": adhesion}
+    force = 0.0 if force is None and approach is None and mean_pressure is None else force
     struct = options(given)
-    scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects, young_modulus=young_modulus, e_star=e_star)
+    scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects, mean_pressure=mean_pressure,
+                  young_modulus=young_modulus, e_star=e_star)
     outputs = Outputs(scene.shape, has_adhesion=True)
     watched = Watched(progress, struct, scene)
     status, message = watched.call(

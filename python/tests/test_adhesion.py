@@ -54,6 +54,14 @@ class Adhesion(unittest.TestCase):
                 told += 1
         self.assertGreater(told, 0)
 
+    def test_the_pull_off_of_two_patches_is_the_sum_of_both(self) -> None:
+        both = np.concatenate([H[::2, ::2], H[::2, ::2]], axis=1)
+        patch = np.repeat([[0, 1]], 32, axis=0).repeat(32, axis=1)
+        given: Any = {"e_star": 0.75, "adhesion": {**STICKY, "range": 1.0}}
+        one = contact_normal.pull_off(H[::2, ::2], 2 * D, 2 * D, **given).force
+        two = contact_normal.pull_off(both, 2 * D, 2 * D, patches=(patch, np.eye(2)), mean_pressure=0.0, **given).force
+        self.assertAlmostEqual(two / one, 2.0, delta=0.01)
+
     def test_the_pull_off_is_between_jkr_and_dmt(self) -> None:
         found = contact_normal.pull_off(H, D, D, e_star=0.75, adhesion=STICKY)
         self.assertTrue(-1.67 < found.force < -1.66, found.force)
