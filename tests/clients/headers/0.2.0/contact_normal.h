@@ -1940,7 +1940,7 @@ typedef struct contact_normal_report_adhesion {
   double stability;
   /*
    1: the bodies have snapped: the state before (initial_guess PREVIOUS or GIVEN) could not be followed, and the elements in contact
-   are more, or fewer, by a quarter at least; else 0.
+   are more, or fewer, by more than a quarter; else 0.
    */
   int32_t jumped;
   /*
