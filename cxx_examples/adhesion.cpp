@@ -48,7 +48,7 @@ static void loop(cn::scene &scene)
 // The contact area, a part of the whole, by the mean pressure, for works of adhesion from none to sticky. E* = 1, the grid is one period.
 static void weak_to_sticky()
 {
-    const int n = 64, waves[6][2] = {{2, 1}, {1, -2}, {3, 2}, {-2, 4}, {5, 1}, {4, -5}};
+    const int n = 32, waves[6][2] = {{2, 1}, {1, -2}, {3, 2}, {-2, 4}, {5, 1}, {4, -5}};
     const double pi = std::acos(-1.0);
     std::vector<double> h;
     for (int i = 0; i < n * n; i++) {
@@ -71,8 +71,8 @@ static void weak_to_sticky()
 
 int main()
 {
-    const int m = 96;
-    const double half_width = 3.0, d = 2.0 * half_width / m;
+    const int m = 64;
+    const double half_width = 2.5, d = 2.0 * half_width / m;
     std::vector<double> h;
     for (int i = 0; i < m * m; i++) {
         const double x = (i % m + 0.5) * d - half_width, y = (i / m + 0.5) * d - half_width;

@@ -6,8 +6,8 @@ program adhesion_of_a_sphere
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
   use contact_normal
   implicit none
-  integer, parameter :: m = 96, n = 64, steps = 12
-  real(c_double), parameter :: half_width = 3.0_c_double, d = 2*half_width/m
+  integer, parameter :: m = 64, n = 32, steps = 12
+  real(c_double), parameter :: half_width = 2.5_c_double, d = 2*half_width/m
   real(c_double), pointer, contiguous :: h(:, :)
   type(contact_normal_scene) :: scene
   type(contact_normal_adhesion), pointer :: adhesion
@@ -128,6 +128,7 @@ contains
       end do
       print '(f13.3, 1x, 3f9.3)', rough%force, areas
     end do
+    deallocate (distance, period, attraction)
   end subroutine
 
   subroutine check(status)
