@@ -5,7 +5,7 @@
 
 #include "example.h"
 
-enum { M = 64, N = 32, STEPS = 12, WAVES = 6 };
+enum { M = 48, N = 32, STEPS = 12, WAVES = 6 };
 
 /* The force of JKR at an approach a^2 - 2/3 sqrt(6 a): a^3 - sqrt(6 a^3), by halving the radius of contact a from its least on. */
 static double jkr(double approach)
@@ -96,7 +96,7 @@ static int weak_to_sticky(void)
 
 int main(void)
 {
-    const double half_width = 2.5, d = 2.0 * half_width / M, modulus = 0.75;
+    const double half_width = 2.2, d = 2.0 * half_width / M, modulus = 0.75;
     static double h[M * M];
     contact_normal_adhesion adhesion;
     contact_normal_scene scene;
@@ -109,7 +109,7 @@ int main(void)
     }
     contact_normal_adhesion_init(&adhesion);
     adhesion.work_of_adhesion = 0.3183098861837907;
-    adhesion.range = 0.28; /* Tabor's parameter is 2 */
+    adhesion.range = 0.3; /* Tabor's parameter is 1.9 */
     adhesion.start = CONTACT_NORMAL_START_FROM_APART;
     contact_normal_scene_init(&scene);
     scene.mx = scene.my = M;

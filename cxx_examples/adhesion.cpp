@@ -71,17 +71,17 @@ static void weak_to_sticky()
 
 int main()
 {
-    const int m = 64;
-    const double half_width = 2.5, d = 2.0 * half_width / m;
+    const int m = 48;
+    const double half_width = 2.2, d = 2.0 * half_width / m;
     std::vector<double> h;
     for (int i = 0; i < m * m; i++) {
         const double x = (i % m + 0.5) * d - half_width, y = (i / m + 0.5) * d - half_width;
         h.push_back(0.5 * (x * x + y * y));
     }
     try {
-        // 1/E* = (1 - nu)/(2 G) of the first body; the other one is rigid. Tabor's parameter is 2.
+        // 1/E* = (1 - nu)/(2 G) of the first body; the other one is rigid. Tabor's parameter is 1.9.
         cn::scene scene({m, m, d, d}, {0.375, 0.0}, {infinite, 0.0});
-        scene.undeformed_distance(h).adhesion(cn::adhesion(0.3183098861837907).range(0.28).start(CONTACT_NORMAL_START_FROM_APART));
+        scene.undeformed_distance(h).adhesion(cn::adhesion(0.3183098861837907).range(0.3).start(CONTACT_NORMAL_START_FROM_APART));
         loop(scene);
         const contact_normal_report report = cn::pull_off(scene.force(0.0)).report;
         std::printf("pull-off: force %.2f, contact %.2f, attraction %.2f\n", report.normal.force, report.adhesion.repulsive_force,

@@ -6,8 +6,8 @@ program adhesion_of_a_sphere
   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_positive_inf
   use contact_normal
   implicit none
-  integer, parameter :: m = 64, n = 32, steps = 12
-  real(c_double), parameter :: half_width = 2.5_c_double, d = 2*half_width/m
+  integer, parameter :: m = 48, n = 32, steps = 12
+  real(c_double), parameter :: half_width = 2.2_c_double, d = 2*half_width/m
   real(c_double), pointer, contiguous :: h(:, :)
   type(contact_normal_scene) :: scene
   type(contact_normal_adhesion), pointer :: adhesion
@@ -28,8 +28,8 @@ program adhesion_of_a_sphere
   ! 1/E* = (1 - nu)/(2 G) of body 1, body 2 is rigid.
   scene%shear_modulus = [0.375_c_double, ieee_value(0.0_c_double, ieee_positive_inf)]
   call contact_normal_set_undeformed_distance(scene, h)
-  ! Tabor's parameter is 2.
-  call contact_normal_set_adhesion(scene, adhesion, work=0.3183098861837907_c_double, range=0.28_c_double)
+  ! Tabor's parameter is 1.9.
+  call contact_normal_set_adhesion(scene, adhesion, work=0.3183098861837907_c_double, range=0.3_c_double)
   adhesion%start = CONTACT_NORMAL_START_FROM_APART
   call contact_normal_report_init(report)
   call loop()
