@@ -30,8 +30,8 @@ pub enum Law {
     VanDerWaals,
 }
 
-/// Ranges beyond which the exponential law counts as 0: it is less than half a rounding error of sigma(0) there.
-const EXPONENTIAL_REACH: f64 = 40.0;
+/// Ranges beyond which the exponential law counts as 0: it is at most a rounding error of sigma(0) there, 2.3e-16.
+const EXPONENTIAL_REACH: f64 = 36.0;
 
 impl Law {
     /// The largest s(e) rho^2/w, which determines the shortest range that an element carries.

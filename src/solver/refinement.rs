@@ -170,13 +170,32 @@ fn check(scene: &Scene<'_>, options: &Options, has_surface: bool) -> Result<()> 
 /// Solves on the [scaled] grid, and takes the values of `wanted`. `late` is called after each cycle. It returns true to end the solve.
 fn on_grid(
     scene: &Scene<'_>,
-    (options, wanted): (&Options, &[Quantity]),
+    options_and_wanted: (&Options, &[Quantity]),
     doublings: i32,
     surface: &mut Option<SurfaceCallback<'_>>,
     progress: &mut Option<ProgressCallback<'_>>,
     late: &dyn Fn(&Progress) -> bool,
 ) -> Result<OnGrid> {
     let grid = scaled(&scene.grid, doublings)?;
+    match solve_on(scene, options_and_wanted, (grid, doublings), surface, progress, late) {
+        // A coarser grid may be refused where the scene's is not.
+        Err(error) if doublings < 0 => Ok(Err((Outcome::Stagnated, error.to_string(), None))),
+        Err(Error::Infeasible(message)) => {
+            Err(Error::Infeasible(format!("on {} x {} elements: {message}", grid.mx, grid.my)))
+        }
+        found => found,
+    }
+}
+
+/// As [`on_grid`], with the errors of any grid.
+fn solve_on(
+    scene: &Scene<'_>,
+    (options, wanted): (&Options, &[Quantity]),
+    (grid, doublings): (Grid, i32),
+    surface: &mut Option<SurfaceCallback<'_>>,
+    progress: &mut Option<ProgressCallback<'_>>,
+    late: &dyn Fn(&Progress) -> bool,
+) -> Result<OnGrid> {
     let on = |what: &str| format!("{what} on {} x {} elements", grid.mx, grid.my);
     let mut written = None;
     if let Some(surface) = surface {

@@ -3,8 +3,11 @@
 use std::thread::sleep;
 use std::time::Duration;
 
+use contact_normal::error::Error;
 use contact_normal::scene::Load;
-use contact_normal::solver::{cost_of_accuracy, Accuracy, Obstacle, Options, Outcome, Progress, Quantity};
+use contact_normal::solver::{
+    cost_of_accuracy, solve_to_accuracy, Accuracy, Obstacle, Options, Outcome, Progress, Quantity,
+};
 
 use super::support::Sphere;
 
@@ -33,4 +36,14 @@ fn prices_come_from_several_grids_on_a_slow_machine() {
             assert!(price.seconds > 0.0, "{load:?}");
         }
     }
+}
+
+/// Coarser grids that hold nothing are passed over, so that the grid named is the first that counts.
+#[test]
+fn a_pull_that_is_refused_names_its_grid() {
+    let sphere = Sphere::by_tabor(1.0, 32, 3.0);
+    let accuracy = Accuracy::new(1e-2).with(Quantity::MeanGap, 1e-2);
+    let found = solve_to_accuracy(&sphere.scene(Load::Force(-3.0)), &Options::default(), &accuracy, None, None);
+    let Err(Error::Infeasible(message)) = found.map(|_| ()) else { panic!("solved, or refused otherwise") };
+    assert!(message.starts_with("on 32 x 32 elements: "), "{message}");
 }

@@ -63,6 +63,7 @@ mod pulled_contact;
 mod quantities;
 mod random_problems;
 mod refine;
+mod refused_coarse_grids;
 mod rough_surface;
 mod row_tables;
 mod slow_quantities;

@@ -154,8 +154,9 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
                 Ok(found) => found,
                 // The variant cannot be solved, and has no values.
                 Err(Error::Infeasible(_) | Error::Unsupported(_)) if k > 0 => continue,
-                // A coarse grid alone may carry less.
-                Err(Error::Infeasible(_)) if doublings < 0 => return Ok(true),
+                Err(_) if k > 0 && doublings < 0 => continue,
+                // A coarser grid may be refused where the scene's is not.
+                Err(_) if doublings < 0 => return Ok(true),
                 Err(error) => return Err(error),
             };
             if found.outcome == Outcome::Cancelled {

@@ -82,6 +82,23 @@ impl OnGrid {
         })
     }
 
+    /// A grid on which the scene is refused, without values.
+    fn refused(grid: Grid, wanted: usize) -> OnGrid {
+        OnGrid {
+            grid,
+            outcome: Outcome::Stagnated,
+            values: vec![Err(Lack::Unsolved); wanted],
+            estimates: vec![None; wanted],
+            lacks_estimates: true,
+            residual: 0.0,
+            seconds: 0.0,
+            setup_seconds: 0.0,
+            work_units: 0.0,
+            tangential: 0.0,
+            bytes: 0,
+        }
+    }
+
     /// Whether the elements resolve the peak of the pressure, if there are estimates.
     pub fn has_peak(&self, wanted: &[Quantity]) -> bool {
         let at = wanted.iter().position(|quantity| *quantity == Quantity::MaxPressure);
@@ -118,7 +135,7 @@ fn of_tangential_force(scene: &Scene<'_>, report: &Report) -> f64 {
 /// follow from the grids before (module `sequence`); the coarsest grid has none.
 ///
 /// # Errors
-/// Those of a solve on any of the grids; `Unsupported`: own coefficients, kept tractions, and a fixed contact area.
+/// Those of a solve on the grid of the scene (rows of a coarser grid that is refused have no values); `Unsupported`: own coefficients, kept tractions, and a fixed contact area.
 pub fn quantities(
     scene: &Scene<'_>,
     options: &Options,
@@ -141,7 +158,11 @@ pub fn quantities(
         let regridded = (doublings < 0).then(|| Regridded::new(scene, grid, None)).transpose()?;
         let on_this = regridded.as_ref().map_or_else(|| scene.clone(), |regridded| regridded.scene(scene));
         let watch = progress.as_mut().map(|progress| &mut **progress as ProgressCallback<'_>);
-        let found = OnGrid::solve(&on_this, &options, wanted, watch)?;
+        let found = match OnGrid::solve(&on_this, &options, wanted, watch) {
+            // A coarser grid may be refused where the scene's is not.
+            Err(_) if doublings < 0 => OnGrid::refused(grid, wanted.len()),
+            found => found?,
+        };
         if found.outcome == Outcome::Cancelled {
             return Ok((Outcome::Cancelled, rows));
         }

@@ -72,6 +72,11 @@ pub fn cost_of_accuracy(
         let sample = match Sample::take(scene, &one, (doublings, spare), quantity, (&mut surface, &mut progress))? {
             Taken::Sample(sample) => sample.carried_on(&mut history),
             Taken::Cancelled => return Ok((Outcome::Cancelled, list(&samples))),
+            // A coarser grid may be refused where the scene's is not.
+            Taken::Unsolved if samples.is_empty() && doublings < 0 && began.elapsed().as_secs_f64() < SECONDS => {
+                doublings += 1;
+                continue;
+            }
             Taken::Unsolved => break,
         };
         let next = sample.cost.seconds * NEXT;

@@ -1,0 +1,77 @@
+//! A coarser grid may be refused where the scene's is not: quantities, searches, price lists and bills start without it.
+//!
+//! Columns of one element each stand four elements apart. An element of the grid with half the elements meets one of them at most, which is too few for
+//! a surface, so that nothing carries the force there.
+
+use contact_normal::grid::Grid;
+use contact_normal::operator::dense;
+use contact_normal::scene::{Bodies, Layer, Load, Scene};
+use contact_normal::solver::{
+    cost_of_accuracy, effects_bill, quantities, solve, solve_to_accuracy, Accuracy, BillOptions, Lack, Options,
+    Outcome, Quantity,
+};
+
+const M: usize = 64;
+const FORCE: f64 = 1.0;
+const BODIES: Bodies = Bodies { shear_modulus: [0.5, 0.5], poisson_ratio: [0.3, 0.3] };
+
+fn columns() -> (Grid, Vec<f64>) {
+    let grid = Grid::new(M, M, 0.1, 0.1).expect("a grid");
+    let is_column = |i: usize| i % M % 4 == 1 && i / M % 4 == 1;
+    (grid, (0..M * M).map(|i| if is_column(i) { 0.0 } else { f64::INFINITY }).collect())
+}
+
+#[test]
+fn the_grid_of_half_the_elements_is_refused() {
+    let (grid, _) = columns();
+    let half = Grid::new(M / 2, M / 2, 2.0 * grid.dx, 2.0 * grid.dy).expect("a grid");
+    let h = vec![f64::INFINITY; half.len()];
+    let refused = solve(&Scene::new(half, &h, BODIES, Load::Force(FORCE)), &Options::default()).map(|_| ());
+    assert!(refused.is_err(), "{refused:?}");
+}
+
+#[test]
+fn quantities_have_the_rows_of_the_scene() {
+    let (grid, h) = columns();
+    let scene = Scene::new(grid, &h, BODIES, Load::Force(FORCE));
+    let wanted = [Quantity::Force, Quantity::MaxPressure];
+    let (stop, rows) = quantities(&scene, &Options::default(), &wanted, 1, None).expect("rows");
+    assert_eq!((stop, rows.len()), (Outcome::Converged, 4));
+    assert!(rows[..2].iter().all(|row| row.value.is_none() && row.lack == Some(Lack::Unsolved)), "{rows:?}");
+
+    let (solver, _, report) = solve(&scene, &Options::default()).expect("a solvable scene");
+    assert_eq!(rows[2].value, Some(report.measures.approach));
+    // All columns touch, and displace themselves by the approach: by the direct sum, to the tolerance of 1e-6.
+    let mut u = vec![0.0; grid.len()];
+    dense::apply(solver.influence(), &grid, &solver.state().p, &mut u);
+    for i in (0..grid.len()).filter(|i| h[*i] == 0.0) {
+        assert!((u[i] / report.measures.approach - 1.0).abs() < 1e-5, "{i}");
+    }
+}
+
+#[test]
+fn searches_and_price_lists_begin_with_the_grid_of_the_scene() {
+    let (grid, h) = columns();
+    let scene = Scene::new(grid, &h, BODIES, Load::Force(FORCE));
+    // Needs coarser grids for its errors.
+    let quantity = Quantity::Stiffness;
+    let accuracy = Accuracy { max_elements: 4 * grid.len() as u64, ..Accuracy::new(0.5).with(quantity, 0.5) };
+    let found = solve_to_accuracy(&scene, &Options::default(), &accuracy, None, None).expect("a solvable scene");
+    let solver = found.solver.expect("a result");
+    assert!(solver.grid().mx >= M && found.report.measures.contact_count > 0, "{}", found.reason);
+
+    let (stop, list) =
+        cost_of_accuracy(&scene, &Options::default(), &accuracy, (quantity, &[0.5]), None, None).expect("a list");
+    assert_eq!((stop, list.len()), (Outcome::Converged, 1));
+}
+
+#[test]
+fn a_bill_is_that_of_the_grid_of_the_scene() {
+    let (grid, h) = columns();
+    let plain = Scene::new(grid, &h, BODIES, Load::Force(FORCE));
+    let scene = Scene { layer: Some(Layer::Uniform(0.01)), ..plain };
+    let (stop, rows) =
+        effects_bill(&scene, &Options::default(), &BillOptions::new(1e-2), &[Quantity::Force], None).expect("a bill");
+    assert_eq!(stop, Outcome::Converged);
+    assert!(rows[0].value.is_some_and(|value| value > 0.0), "{rows:?}");
+}
