@@ -77,7 +77,7 @@ impl Threads {
     /// Calls `work(piece, scratch)` on each of some pieces, with the scratch of its thread.
     ///
     /// The threads take pieces until none is left. The caller begins at once, at the front, and does not wait for the
-    /// others to wake. They begin at the back. So much of a thread's data is still in its cache from the previous pass.
+    /// others to wake. They begin at the back. Thus a thread finds much of its data in its cache, from the previous pass.
     pub fn share<P: Send, S: Send>(
         &self,
         pieces: impl DoubleEndedIterator<Item = P> + ExactSizeIterator + Send,
