@@ -1,4 +1,4 @@
-//! The stable state of a force. If an equilibrium of a force is unstable, the stable one lies at a larger approach.
+//! The stable state under a prescribed force. If an equilibrium under this force is unstable, the stable one lies at a larger approach.
 
 use super::level::MakeFrozen;
 use super::levels::prolong;
@@ -17,12 +17,12 @@ use crate::progress::Monitor;
 const SECANTS: u32 = 40;
 /// Least distance of a secant step from both states, as a part of their distance.
 const END: f64 = 0.02;
-/// Most steps of growing approach, and their growth.
+/// Most steps of growing approach, and the ratio of successive steps.
 const MOST_STEPS: u32 = 80;
 const GROWTH: f64 = 1.5;
 /// The first of these steps, as a part of the length of the contact.
 const STEP: f64 = 0.02;
-/// A prescribed pull is searched on the branches of a pull-off if it is below this many times the strongest pull found.
+/// A prescribed pull is sought on the branches of a pull-off, too, if it is weaker than this many times the strongest pull found.
 const HARDLY: f64 = 1.02;
 
 impl Walker<'_, '_, '_> {
@@ -89,8 +89,8 @@ impl Walker<'_, '_, '_> {
 }
 
 impl Solver {
-    /// Follows the stable branch down on the coarsest grid, which is cheap, then solves for the force from grid to grid. Returns false if the result
-    /// is not on the stable branch.
+    /// Follows the stable branch down on the coarsest grid, which is cheap, then solves for the force from grid to grid. Returns false if there is
+    /// one grid only, if a solve fails, or if the result is not stable.
     pub(super) fn is_found_from_coarse(
         &mut self,
         goal: Goal,
@@ -124,9 +124,9 @@ impl Solver {
         is_stable(&mut self.levels[0], true, monitor)
     }
 
-    /// A pull slightly stronger than the strongest found on the way, `known`. If elements are coarse for the range, they separate one by one. A
-    /// pull-off takes different steps, because it does not stop at a force. If it finds a stronger pull, the prescribed pull has a state before its
-    /// end.
+    /// Seeks a state for a pull slightly stronger than the strongest one of the walk `known`. Elements that are coarse for the range separate
+    /// one by one, so the strongest pull depends on the steps of the walk. A pull-off takes other steps, because it does not stop at a force. If
+    /// it holds the prescribed pull, `climb` finds the state of that pull. If it only holds more than `known`, its end replaces `known`.
     pub(super) fn hold_pull_off(
         &mut self,
         known: Walk,

@@ -26,7 +26,7 @@ pub enum Law {
     Dugdale(f64),
     /// As a parabola that ends at three ranges.
     Cubic,
-    /// As the third power of the distance from twice the range before the surface.
+    /// As the inverse third power of `e + 2 rho`.
     VanDerWaals,
 }
 
@@ -34,7 +34,7 @@ pub enum Law {
 const EXPONENTIAL_REACH: f64 = 36.0;
 
 impl Law {
-    /// The largest s(e) rho^2/w, which determines the shortest range that an element carries.
+    /// The largest s(e) rho^2/w, which determines the shortest range that an element resolves.
     pub fn steepness(self) -> f64 {
         match self {
             Law::Exponential => 1.0,
@@ -44,7 +44,7 @@ impl Law {
         }
     }
 
-    /// The shortest range that elements of self-influence a0 carry: the one with this `kappa = s a0`.
+    /// The shortest range that elements of self-influence a0 resolve. At this range `kappa = s a0`, with the largest s, has the given value.
     pub fn shortest_range(self, work: f64, self_influence: f64, kappa: f64) -> f64 {
         (self.steepness() * work * self_influence / kappa).sqrt()
     }

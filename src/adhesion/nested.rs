@@ -1,5 +1,5 @@
-//! Nested iteration: the coarsest grid first, each from the solution of the one before. The longer ranges of coarse grids have little
-//! hysteresis.
+//! Nested iteration: the coarsest grid is solved first, then each finer grid from the solution of the coarser one. Coarse grids have longer ranges
+//! of attraction, and so little hysteresis.
 
 use super::level::{Level, MakeFrozen};
 use super::levels::prolong;
@@ -42,7 +42,7 @@ pub fn solve(
     }
     levels[last].fields = std::mem::take(&mut levels[0].fields);
     for l in (1..=last).rev() {
-        // After a cancellation the state of this grid only goes to the finest one.
+        // After a cancellation this grid is not solved; its state is only interpolated to the finest one.
         if !monitor.is_cancelled() {
             monitor.enter_grid();
             let coarse = coarse_goal(levels, l, goal);
@@ -106,7 +106,7 @@ fn begin(level: &mut Level, goal: Goal) -> f64 {
     level.now.approach()
 }
 
-/// Solves from a larger approach down to the given one, so that elements in contact stay so.
+/// Solves from a larger approach down to the given one, so that elements in contact stay in contact.
 fn from_contact(
     level: &mut Level,
     goal: Goal,

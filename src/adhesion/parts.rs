@@ -1,5 +1,5 @@
-//! Linear systems without a border, solved to small residuals. On large grids they are solved in parts, repeatedly for the residual, so that few
-//! vectors are kept at a time.
+//! Linear systems without a border, solved to small residuals. On large grids GMRES restarts: each part solves for the residual that the parts
+//! before it left, so that memory holds few vectors at a time.
 
 use super::system::{Linearised, Short};
 use super::unknowns::is_small;
@@ -29,7 +29,7 @@ pub struct Solution {
     pub is_solved: bool,
 }
 
-/// Solves for the right-hand side that has these elements.
+/// Solves for a right-hand side; `right(system, i)` is its element i.
 pub fn solve_in_parts(
     system: &mut Linearised<'_>,
     right: impl Fn(&Linearised<'_>, usize) -> f64 + Sync + Send,

@@ -9,7 +9,8 @@
 //! preconditioned by `M (a0 y)` on C and `y/(1 - min(s a0, 1/2))` outside, bordered if the force is given:
 //! `da = (sum z - y_F)/sum Y`, `z -= Y da`, with Y the preconditioned column of da.
 //!
-//! On large grids preconditioned vectors are not kept, and products only if they are few, as the preconditioner is the same for all directions.
+//! On large grids preconditioned vectors are not kept. The preconditioner is the same linear map for all directions, so it is applied once to the
+//! sum of basis vectors that makes the solution. Products are kept while they are few.
 //!
 //! Vectors are stored in single precision, [`Short`], as a linear solve ends at a tenth of its right-hand side. So are the s a0, which are of
 //! order 1.
@@ -21,10 +22,11 @@ use crate::methods::fgmres::{self, Bordered, Combination, Direction, Kept, Syste
 use crate::methods::fields::{self, Fields};
 use crate::threads::Threads;
 
-/// Least diagonal of a row outside C in the preconditioner: rows of elements that snap alone are useless.
+/// Least diagonal of a row outside C in the preconditioner. The diagonal `1 - s a0` is 0 or less for elements that snap alone.
 const LEAST_DIAGONAL: f64 = 0.5;
 
-/// Products kept on large grids. Twice as many vectors of the basis take the same memory.
+/// Directions up to which products are kept on large grids; with more, one more product of their sum replaces them. 22 vectors of the basis without
+/// products take the memory of 11 with them.
 pub const PRODUCTS: usize = 11;
 
 /// A number per element in single precision.

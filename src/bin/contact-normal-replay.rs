@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use contact_normal::ffi::dump::{Dump, Replayed};
 use contact_normal::ffi::{contact_normal_last_error, contact_normal_report, contact_normal_status_text};
 
-/// The exit status if the file is not a dump, or does not contain the whole call.
+/// The exit status if the call is not made: no file was named, it is not a dump, or it does not contain the whole call.
 const NOT_MADE: u8 = 2;
 
 fn main() -> ExitCode {

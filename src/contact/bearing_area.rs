@@ -40,7 +40,7 @@ impl State {
         let held = self.below(set, low);
         let reach = self.deepest(&held, self_influence);
         let undecided = self.h.iter().filter(|&h| low - reach <= *h && *h <= high + reach).count();
-        // With one element alone, none is at its limit.
+        // The count is 0 if the approach is less than all distances.
         if held.count == 0 || !(undecided as f64 <= UNDECIDED * held.count as f64) {
             return None;
         }

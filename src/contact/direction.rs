@@ -22,7 +22,7 @@ impl Direction {
         ]
     }
 
-    /// The number in its line of the element at `place`; none beyond the ends.
+    /// The number, within its line, of the element at `place`. Periodic lines go on beyond their ends; other lines have none there.
     pub fn place(&self, place: isize) -> Option<usize> {
         let m = self.m as isize;
         let place = if self.repeats { place.rem_euclid(m) } else { place };
@@ -34,7 +34,7 @@ impl Direction {
         self.place(place).map(|place| place * self.step)
     }
 
-    /// The length of the run of marked elements through the marked element `at`, at `place` of its line; at most `most`.
+    /// The length of the run of marked elements through the marked element `at`, which is number `place` of its line; at most `most`.
     pub fn run(&self, marked: &[bool], (at, place): (usize, usize), most: usize) -> usize {
         let first = at - place * self.step;
         let is_marked = |place: isize| self.at(place).is_some_and(|next| marked[first + next]);
@@ -44,7 +44,7 @@ impl Direction {
     }
 }
 
-/// The shorter one of the runs along x and along y; a line of one element has none.
+/// The shorter one of the runs along x and along y, or `most` if both are longer. A line of one element has no run.
 pub(super) fn shortest_run(directions: &[Direction; 2], marked: &[bool], at: usize, most: usize) -> usize {
     let mx = directions[0].m;
     let lines = directions.iter().zip([at % mx, at / mx]).filter(|(direction, _)| direction.m > 1);

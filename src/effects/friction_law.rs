@@ -14,7 +14,7 @@ pub enum Fall {
     Exponential,
 }
 
-/// The wanted solution if bounds that fall with the slip have several.
+/// The wanted solution. Bounds that fall with the slip may have several.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Branch {
     /// The solution near the start, the fastest to find; if none is found, that of `Low`.
@@ -30,7 +30,7 @@ pub enum Branch {
 ///
 /// ```text
 /// mu_s(v) = mu (kinetic + falling_1 f_1(v) + falling_2 f_2(v))/(kinetic + falling_1 + falling_2)       mu: the coefficient at rest
-/// mu      = t mu_v + (1 - t) mu_s(v),    t = c/(c + dt max(v, v0))        c: memory_distance, v0: memory_speed, mu_v: the particle's before
+/// mu      = t mu_v + (1 - t) mu_s(v),    t = c/(c + dt max(v, v0))        c: memory_distance, v0: memory_speed, mu_v: mu before the step
 /// ```
 ///
 /// The kinds are those of CONTACT (L = 2, 3, 4); Polach's law is `Exponential` with kinetic A, falling 1 - A and half speed ln 2/B.

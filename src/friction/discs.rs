@@ -1,7 +1,7 @@
 //! The fields of projected gradients on discs, on C alone, and the passes over them.
 //!
-//! Tractions are in units of the smaller of the bounds and the tractions of the rigid slip, displacements in this unit times that of the
-//! coefficients. So fields to be multiplied stay within the range of single precision.
+//! Tractions are divided by a power of two near min(rms g, rms w/a0), displacements by this number times a power of two near a0. So both are near 1,
+//! within the range of single precision.
 
 mod fields;
 mod passes;
@@ -95,8 +95,8 @@ impl<T: Real> Discs<T> {
         Sums { rest, displaced, deferred: 0.0, moved: 0.0 }
     }
 
-    /// z, the preconditioned residual: see [`Tangent::precondition`](super::tangent::Tangent::precondition). Returns `z.(A + D) t` of the last
-    /// direction.
+    /// z, the preconditioned residual: see [`Tangent::precondition`](super::tangent::Tangent::precondition). Returns `z.(A + D) t`, with the last
+    /// direction as t.
     pub fn precondition(&mut self, problem: &mut Problem) -> f64 {
         let operators = &mut problem.operators;
         let compliance = operators.relative_compliance();
@@ -120,7 +120,7 @@ impl<T: Real> Discs<T> {
         let [] = self.give_z(&problem.places, problem.threads(), direct);
     }
 
-    /// Multiplies. Returns `t.(A + D) t` and `t` times the projected residual; on stick t is the chord.
+    /// Multiplies. Returns `t.(A + D) t` and `t` times the projected residual. On stick the chord takes the place of t.
     pub fn multiply(&mut self, problem: &mut Problem) -> [f64; 2] {
         self.multiply_given(problem);
         let units = self.units;

@@ -1,5 +1,5 @@
-//! A layer between the bodies whose compliance differs between elements: its displacements beyond its least compliance, which the coefficients
-//! contain.
+//! A layer between the bodies whose compliance differs between elements. The coefficients contain its least compliance; the displacements by the
+//! rest, r, are added here.
 //!
 //! ```text
 //! u_I += r_I q_I                             r: the compliance less the least
@@ -41,7 +41,7 @@ impl Excess {
         }
     }
 
-    /// Subtracts the displacements by the tractions before at the places of a step of transient rolling.
+    /// For a step of transient rolling: subtracts from w the displacements by the previous tractions q, at the old place of each particle.
     pub fn subtract_ahead(&self, q: &[Vector], sweep: &Sweep, w: &mut [Vector]) {
         for (i, w) in w.iter_mut().enumerate() {
             let there = self.ahead(&|i| q[i], sweep, i);

@@ -46,7 +46,7 @@ pub trait Step<S: AdmissibleSet> {
 /// The measures of one step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Change {
-    /// rms over C of the change of p; infinite if it proves nothing.
+    /// rms over C of the change of p; infinite if the step has no such measure of convergence.
     pub update: f64,
     /// Elements that the step itself moved into or out of C.
     pub changes: u64,

@@ -2,7 +2,7 @@
 //!
 //! A is block Toeplitz, so it is a part of a block circulant, of the period that [`periods`](super::periods) chooses.
 //!
-//! The products are those of the crate toeplitz; the diagonal is added as they are transformed back.
+//! The products are those of the crate toeplitz. The diagonal is added while they are transformed back.
 
 use std::iter::once;
 

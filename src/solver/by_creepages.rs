@@ -4,9 +4,9 @@
 //! given ones. The next creepage is that of a secant (Broyden 1965); with one force it lies between two creepages known to carry too much and too
 //! little.
 //!
-//! *Forces beyond full slip.* Near full slip forces need not fall as creepages grow, as the force that the pressures carry changes more. So
-//! creepages about those of turns by force are searched for one that reaches the force, and the largest force among them is approached (module
-//! [`creepage_peak`](super::creepage_peak)). A force that none reaches is refused.
+//! *Forces beyond full slip.* Near full slip the largest force may lie at a finite creepage, as pressures change with the creepage, and with them
+//! the force that they carry. So creepages about those of turns by force are tried until one reaches the force, and then creepages near the largest
+//! force found (module [`creepage_peak`](super::creepage_peak)). A force that none reaches is refused.
 
 use super::creepage_peak::Peak;
 use super::creepage_trials::{Place, Trials};
@@ -24,7 +24,7 @@ const CLOSE: f64 = 1e-4;
 const FINISH: usize = 30;
 /// Most creepages.
 const MOST_TRIALS: u32 = 30;
-/// Creepages that are searched, relative to those of turns by force. With two forces, those from BEHIND on are opposite to the force.
+/// Creepages that are tried, relative to those of turns by force. With two forces, those from BEHIND on are opposite to the force.
 const ABOUT: [f64; 14] = [1.0, 1.3, 2.0, 4.0, 16.0, 64.0, 256.0, 1e3, 1e4, FAR, 0.75, 0.5, 0.25, 0.1];
 const BEHIND: f64 = 64.0;
 /// If turns by force miss more than this part of mu N, only the creepage FAR is tried: before full slip pressures carry at most some hundredths more
@@ -114,7 +114,7 @@ impl InTurns<'_, '_, '_> {
         Ok((None, Outcome::Converged))
     }
 
-    /// The creepages of the force, from a place on.
+    /// Finds the creepages that carry the force, from a place that reaches it.
     fn bracket(&mut self, from: Place) -> Result<Outcome> {
         let scale = self.turns.friction.as_ref().map_or(0.0, TangentialTurn::largest_slip);
         let (mut found, mut trials) = (from, Trials::new(from, given(self.scene), scale));

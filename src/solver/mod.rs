@@ -131,7 +131,7 @@ struct SetUp {
     without_multigrid: Option<&'static str>,
     /// The largest absolute coefficient.
     largest_influence: f64,
-    /// The constant of the coefficients, if they have one.
+    /// The coefficients with a constant, if they have one: see [`Compressible`].
     compressible: Option<Compressible>,
     /// Smoother, sweeps, precision, and the requested threads.
     options: Options,
@@ -150,7 +150,7 @@ impl Solver {
         Ok(Solver::set_up(scene, options, !scene.undeformed_distance.is_empty())?.0)
     }
 
-    /// [`Solver::new`] with the least distance of the scene, which is checked.
+    /// [`Solver::new`] after a check of the whole scene. Returns the least undeformed distance as well.
     pub(crate) fn for_scene(scene: &Scene<'_>, options: &Options) -> Result<(Solver, f64)> {
         Solver::set_up(scene, options, true)
     }

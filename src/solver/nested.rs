@@ -119,7 +119,8 @@ impl FullMultigrid {
     }
 }
 
-/// Interpolates p from the coarser grid, piecewise constant; contact where p > 0 or e < 0. Elements above `highest` are out of reach.
+/// Interpolates p and u from the coarser grid, piecewise constant; contact where p > 0 or e < 0. Elements with h above `highest` are out of reach:
+/// there p = 0.
 fn interpolate(coarse: &State, fine: &mut State, highest: f64) {
     let (coarse_grid, fine_grid) = (coarse.grid, fine.grid);
     transfer::interpolate(&fine_grid, &coarse_grid, &coarse.p, &mut fine.p, |to, value| *to = value);

@@ -68,12 +68,13 @@ impl UnlikeBodies {
         self.source.bytes() + self.here.bytes() + there + self.along_normal.len() * fields
     }
 
-    /// The sideways displacements by the last pressures.
+    /// The result of the last [`displace_sideways`](UnlikeBodies::displace_sideways).
     pub fn sideways(&self) -> &[Vector] {
         &self.sideways
     }
 
-    /// The sideways displacements by pressures p, less those before the step: none from rest; with given tractions those of the same pressures.
+    /// Computes the sideways displacements by pressures p, less those before the step. The latter are 0 from rest. In steady rolling and with given
+    /// previous tractions they are those by p as well.
     pub fn displace_sideways(
         &mut self,
         grid: &Grid,

@@ -48,7 +48,7 @@ struct Linear<'a> {
     products: f64,
 }
 
-/// A direction of the pressures, and its residual, which has norm 1.
+/// A direction dp of the pressures, and `left = dp - M dp`, which has norm 1: a step of s along dp reduces the residual by s times `left`.
 struct Direction {
     dp: Vec<f64>,
     left: Vec<f64>,
@@ -74,7 +74,7 @@ impl Solver {
         let mut state = State::new(grid, (load, 0.0), &self.problem.threads)?;
         state.contact.copy_from_slice(&self.state.contact);
         state.round_off = self.state.round_off;
-        // dw is of the order of the displacement by mu p, so that dp is of the order of p.
+        // dw is of the order of an element's displacement by the largest p, so that dp is of the order of p.
         let largest = self.state.p.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
         let unit = largest * self.problem.self_influence();
         let tractions = zeros(n, FIELDS)?;
@@ -141,7 +141,7 @@ impl Linear<'_> {
         Ok(Some(new))
     }
 
-    /// Both problems in turn: the change of the pressures by that of the tractions, from a change `rigid` of the slip and from dp.
+    /// Solves both problems in turn: dq from a change `rigid` of the slip and from dp, then the change of the pressures from dq, written to `to`.
     fn turn(&mut self, rigid: Option<(usize, f64)>, dp: &[f64], to: &mut [f64]) -> Result<()> {
         self.tractions(rigid, dp)?;
         self.unlike.along_normal(&self.tractions, &mut self.state.h);

@@ -18,7 +18,7 @@ pub trait Coefficients: Sync {
 
 /// Coefficients that are even in both directions.
 pub struct Even<F, G> {
-    /// Coefficients that are not zero: offsets less than that.
+    /// The offsets in x and in y from which on all coefficients are 0.
     pub given: (usize, usize),
     /// `fill(ky, row)` gives the coefficients at offsets `(0.., ky)`.
     pub fill: F,
@@ -31,14 +31,14 @@ pub struct Even<F, G> {
 pub enum Parity {
     /// `c(kx, ky) = c(-kx, ky) = c(kx, -ky)`.
     Even,
-    /// `c(kx, ky) = -c(-kx, ky) = -c(kx, -ky)`; 0 half a period away.
+    /// `c(kx, ky) = -c(-kx, ky) = -c(kx, -ky)`; 0 at offsets of half a period.
     Odd,
 }
 
 /// Coefficients of products of two components: the matrix `[xx, xy; xy, yy]` of each offset, of which xx and yy are even in both directions and xy
 /// is odd in both.
 pub struct EvenMatrix<F, G> {
-    /// Coefficients that are not zero: offsets less than that.
+    /// The offsets in x and in y from which on all coefficients are 0.
     pub given: (usize, usize),
     /// Whether there is xy.
     pub is_coupled: bool,

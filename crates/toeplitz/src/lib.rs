@@ -31,7 +31,7 @@
 //! | module | contents |
 //! |---|---|
 //! | [`Product`] | the product of one matrix |
-//! | [`VectorProduct`] | the product of two components, by a symmetric matrix of each offset |
+//! | [`VectorProduct`] | the product of two components, by a symmetric 2 x 2 matrix for each offset |
 //! | [`ParityProduct`] | sums of products by kernels that are even or odd in either direction |
 //! | [`coefficients`] | the coefficients of a matrix |
 //! | [`fft`] | transforms of rows and columns: stages in lanes, and any length |
@@ -77,7 +77,7 @@ pub use set_up::SetUp;
 pub use vector_product::{vector_period, VectorProduct};
 pub use workspace::{Memory, Room};
 
-/// The examples of what crates.io shows.
+/// The examples of README.md, the page of this crate on crates.io.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! Each of the `px/2 + 1` bins kx has a matrix of my by my: real if the coefficients are even in x, else a real and an imaginary one. These are
-//! `my^2 (mx + 1)` numbers, twice as many if not even, and as many multiplications of a complex number. A product reads all numbers of the loaded
-//! rows, which takes longer than the transforms.
+//! some `my^2 mx` numbers, twice as many if not even. A product multiplies each of those of the loaded rows by a complex number. To read them takes
+//! longer than the transforms.
 
 use std::ops::Range;
 
@@ -24,14 +24,14 @@ use par::{OutOfMemory, Result};
 /// The name of this memory in messages.
 const MATRICES: &str = "the row tables' transforms";
 
-/// Coefficients of the elements of a loaded row jy on those of a row iy.
+/// Coefficients: the displacements of the elements of a row iy by the elements of a loaded row jy.
 pub struct OfRows<F> {
     /// Whether the coefficients are even in x.
     pub are_even: bool,
     /// `fill(jy, iy, values)` gives even coefficients at offsets `(0..)`, others over a period: offsets >= 0 first, negative ones at its end, 0
     /// between.
     pub fill: F,
-    /// The vectors that they multiply.
+    /// A factor on all coefficients.
     pub factor: f64,
 }
 
@@ -39,7 +39,7 @@ pub struct OfRows<F> {
 pub(crate) struct RowMatrices<T: Real> {
     /// Rows of the grid.
     my: usize,
-    /// 1: real, 2: and imaginary.
+    /// Matrices of a bin: 1, real, or 2, real and imaginary.
     planes: usize,
     /// `[bin][plane][jy][iy]`.
     values: Vec<T>,

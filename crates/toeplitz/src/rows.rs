@@ -57,7 +57,7 @@ impl<T: Real> Rows<T> {
         self.my + lanes.at_a_time() - 1
     }
 
-    /// The blocks of bins in lanes, from a line of the cache on, and the pieces.
+    /// The blocks of bins in lanes, which begin at a line of the cache, and the buffers of the threads.
     pub(crate) fn blocks_of_bins<'a>(
         &self,
         lanes: &LaneRows<T>,
@@ -159,7 +159,7 @@ impl<T: Real> Rows<T> {
 
 /// The range of rows outside of which `p` is zero.
 fn rows_with_pressure<T: Real>(p: &[T], mx: usize) -> Range<usize> {
-    // All of a row: the compiler vectorises this.
+    // The whole row is read, without an early end: the compiler vectorises this loop.
     let loaded = |row: &[T]| row.iter().fold(false, |any, &value| any | (value != T::zero()));
     let Some(first) = p.chunks_exact(mx).position(loaded) else { return 0..0 };
     let last = p.chunks_exact(mx).rposition(loaded).unwrap_or(first);

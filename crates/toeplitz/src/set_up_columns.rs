@@ -29,7 +29,7 @@ impl<T: Real> pulp::NullaryFnOnce for Scaled<'_, T> {
     }
 }
 
-/// The real and imaginary parts of a column. Compiled for the vectors of this machine.
+/// The real and imaginary parts of a column, times a factor, in another precision. Compiled for the vectors of this machine.
 pub(crate) struct Parts<'a, T> {
     pub(crate) column: &'a [Complex<f64>],
     pub(crate) scale: f64,
@@ -49,7 +49,8 @@ impl<T: Real> pulp::NullaryFnOnce for Parts<'_, T> {
     }
 }
 
-/// Copies the columns from `first` on of rows `rows` of a matrix, `nb` columns wide, to those of a block, each `py` long, from row `to` on.
+/// Copies a part of a matrix, which is `nb` columns wide, to a block of columns, each `py` long. The part has the rows `rows` and as many columns as
+/// the block, from `first` on. Its first row becomes row `to` of the block.
 pub(crate) fn gather<V: Copy>(
     matrix: (&[V], usize),
     rows: Range<usize>,
@@ -93,8 +94,9 @@ pub(crate) fn fill_period(ky: i64, given: usize, row: &mut [f64], parity: Parity
     }
 }
 
-/// Fills columns of a block, each `py` long, with pairs of columns from `first` on of a matrix of rows ky >= 0, `nb` columns wide:
-/// `values(a, b)` of the pair's values in row ky are those at ky and -ky, zero beyond. The last column of an odd number is its own pair.
+/// Fills each column of a block, `py` long, with a pair of columns of a matrix, from column `first` on. The matrix has `rows` rows ky >= 0 and is
+/// `nb` columns wide. If a pair has the values a and b in row ky, `values(a, b)` are those of the block in the rows ky and -ky. Other rows are 0.
+/// If the number of columns is odd, the last one is paired with itself.
 pub(crate) fn fill_pairs<V: Copy>(
     matrix: (&[V], usize),
     rows: usize,

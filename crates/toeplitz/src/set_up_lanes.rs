@@ -44,7 +44,7 @@ impl<'a> LaneTransforms<'a> {
         LaneTransforms::on(pulp::Arch::new(), period, threads)
     }
 
-    /// [`LaneTransforms::new`] with the vectors of these instructions, on which no bit depends.
+    /// [`LaneTransforms::new`] with the vectors of these instructions. No bit depends on them.
     pub(crate) fn on(
         arch: pulp::Arch,
         (px, py): (usize, usize),
@@ -53,7 +53,7 @@ impl<'a> LaneTransforms<'a> {
         LaneTransforms::with(arch, LaneRows::on(arch, px)?, (px, py), threads)
     }
 
-    /// [`LaneTransforms::new`] that serves machines without vectors as well.
+    /// [`LaneTransforms::new`] also for machines without vectors.
     pub fn of_any(
         arch: pulp::Arch,
         (px, py): (usize, usize),
@@ -92,7 +92,7 @@ impl<'a> LaneTransforms<'a> {
         self.of_plane((even, Parity::Even), set_up, (order.block(), 0), symbol)
     }
 
-    /// The symbol of even or odd coefficients, at a place in each block of so many values.
+    /// Computes the symbol of even or odd coefficients. In each block of `of_block` values it is stored from value `place` on.
     pub fn of_plane<T: Real, F, G>(
         &self,
         (even, parity): (&Even<F, G>, Parity),
@@ -150,7 +150,7 @@ impl Parity {
     }
 }
 
-/// The symbol of one block of columns, in double precision, kept in another.
+/// The symbol of one block of columns, computed in double precision and stored as `T`.
 struct SymbolOfBlock<'a, T, G> {
     plan: &'a EvenPlan<f64>,
     parity: Parity,

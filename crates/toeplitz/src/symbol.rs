@@ -8,8 +8,8 @@
 //! any other c                            S complex
 //! ```
 //!
-//! A table may be symmetric to within round-off only ([`Coefficients`](crate::coefficients::Coefficients)). Single
-//! precision has a rounding error as large as that. There the symmetric part `(c(k) + c(-k))/2` replaces the table. Its symbol is the real part of S.
+//! A table counts as symmetric if `c(k)` and `c(-k)` differ by at most [`SYMMETRY`] of the largest coefficient. The rounding error of single
+//! precision is as large as that. There the symmetric part `(c(k) + c(-k))/2` replaces the table. Its symbol is the real part of S.
 
 use std::mem::take;
 
@@ -146,8 +146,8 @@ impl<T: Real> Symbol<T> {
     }
 }
 
-/// A column times its symbol: the bins with a stored value, and the mirrored bins. Compiled for the vector instructions of this machine,
-/// on which no bit depends.
+/// A column times its symbol: the bins with a stored value, and the mirrored bins. Compiled for the vector instructions of this machine. No bit of
+/// the result depends on them.
 struct Multiply<'a, T: Real> {
     lower: &'a mut [Complex<T>],
     upper: &'a mut [Complex<T>],

@@ -1,4 +1,4 @@
-//! Products of two components, `u = A q`, by a symmetric matrix of coefficients of each offset.
+//! Products of two components, `u = A q`, by a symmetric 2 x 2 matrix of coefficients for each offset.
 //!
 //! ```text
 //! (ux, uy)_I = sum_J [xx xy; xy yy](I - J) (qx, qy)_J
@@ -25,7 +25,7 @@ use crate::workspace::{Memory, Piece, Room};
 use par::threads::Threads;
 use par::Result;
 
-/// The shortest periods that have stages.
+/// The shortest periods that have stages: px/2 and py are longer than the longest radix, 5.
 const SHORTEST: (usize, usize) = (12, 6);
 
 /// Products of two components on a grid of `mx * my` elements.
@@ -39,7 +39,7 @@ pub struct VectorProduct<T: Real> {
     threads: Threads,
 }
 
-/// The shortest fast period of at least these lengths.
+/// The period with the fastest products, of at least these lengths.
 pub fn vector_period((least_x, least_y): (usize, usize)) -> (usize, usize) {
     (length_for_stages(least_x.max(SHORTEST.0)), length_for_stages(least_y.max(SHORTEST.1)))
 }
@@ -70,7 +70,7 @@ impl<T: Real> VectorProduct<T> {
         VectorProduct::of(grid, period, transforms(period, threads)?.of_waves(is_coupled, of)?, threads)
     }
 
-    /// Gives the displacements `n` elements further on in x. The period must keep `n` more offsets apart.
+    /// Gives the displacements `n` elements further on in x. The period must have room for `|n|` more offsets in x than those of the plain product.
     pub fn further_on(self, n: i64) -> Result<VectorProduct<T>> {
         self.at(Place::FurtherOn(n))
     }
@@ -158,7 +158,7 @@ impl<T: Real> VectorProduct<T> {
         self.rows.blocks() * self.height() * BLOCK
     }
 
-    /// `u = A q`. q is zero outside the rows `loaded` of each component. `load(component, first row, rows)` returns some of these rows.
+    /// `u = A q`. q is zero outside the rows `loaded` of each component. `load(component, first row, rows)` writes some of these rows to `rows`.
     /// `write(piece, first row, [ux, uy])` stores some rows of u in one of the `pieces`. There is one piece for each
     /// [`rows_at_a_time`](Self::rows_at_a_time) rows.
     pub fn apply<P: Send>(
@@ -235,7 +235,7 @@ impl<T: Real> VectorProduct<T> {
         });
     }
 
-    /// The same for one component alone.
+    /// Transforms one component in y, multiplies it by its symbol and transforms it back.
     fn multiply_one(&self, component: usize, bins: &mut [Complex<T>], loaded: &Range<usize>, scratch: &mut [Piece<T>]) {
         let length = self.height() * BLOCK;
         self.threads.share(bins.chunks_exact_mut(length).enumerate(), scratch, |(b, block), piece| {

@@ -10,18 +10,18 @@ use crate::real::Complex;
 /// The name of this memory in messages.
 const WORKSPACE: &str = "the product's workspace";
 
-/// The sizes of a product's memory. Memory for one product serves all with sizes up to these.
+/// The sizes of a product's memory. The memory also serves products with smaller sizes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Room {
     /// Bins of all rows.
     pub bins: usize,
-    /// Values of rows, of each piece of the work.
+    /// Real values of rows, for each thread.
     pub row: usize,
-    /// Values of a block of columns, of each piece.
+    /// Complex values of a block of columns, for each thread.
     pub columns: usize,
-    /// Values of scratch, of each piece.
+    /// Complex values of scratch, for each thread.
     pub scratch: usize,
-    /// Pieces: one for each thread.
+    /// The number of threads; each has a [`Piece`].
     pub pieces: usize,
 }
 
@@ -39,19 +39,19 @@ impl Room {
     }
 }
 
-/// The memory of a product, which allocates nothing itself.
+/// The memory of a product. The product itself allocates nothing.
 pub struct Memory<T: Real> {
-    /// `[my][px/2 + 1]`: the rows, transformed in x. In lanes, blocks of columns `[block][row][part][column]`.
+    /// `[my][px/2 + 1]`: the rows, transformed in x. In lanes: blocks of columns, `[block][row][real or imaginary part][column]`.
     pub bins: Vec<Complex<T>>,
     /// One for each thread.
     pub pieces: Vec<Piece<T>>,
-    /// Most bins of a product, at rest or not.
+    /// The bins of the largest product. `bins` is empty while it rests.
     most: usize,
 }
 
 /// The buffers of one thread.
 pub struct Piece<T: Real> {
-    /// The last block of columns.
+    /// The number of the last block of columns that this thread multiplied.
     pub(crate) block: usize,
     /// Values of rows.
     pub row: Vec<T>,
@@ -99,8 +99,9 @@ impl<T: Real> Memory<T> {
 }
 
 impl<T: Real> Piece<T> {
-    /// The place of the probable next block after block b, each of `length` values: in the direction from the last block to b, at first away from the
-    /// end. Used to prefetch only.
+    /// Guesses the address of the next block after block b, whose address is `b_at`. Blocks have `length` values. A thread goes on by as many blocks
+    /// as it came by. If it did not move, or if that is beyond the ends, the guess is the neighbour of b away from the nearer end. Used to prefetch
+    /// only.
     pub(crate) fn next_block(
         &self,
         b_at: *const Complex<T>,

@@ -31,8 +31,8 @@ const SWITCH: f64 = 1e-2;
 /// A Newton step must reduce the residual to this part of the least so far; if not, HELD lagged steps follow.
 const PROGRESS: f64 = 0.7;
 const HELD: u32 = 5;
-/// Relative residual of linear solves, Newton and lagged. The last one ends at ENOUGH times the tolerance, at most at the relative residual
-/// LEAST_GAIN.
+/// Relative residual of linear solves, of Newton steps and of lagged ones. The last one ends at ENOUGH times the tolerance, at most at the relative
+/// residual LEAST_GAIN. A linear solve has at most DIRECTIONS directions.
 const INNER: f64 = 0.2;
 const INNER_LAGGED: f64 = 0.35;
 const ENOUGH: f64 = 0.5;
@@ -41,7 +41,7 @@ const DIRECTIONS: usize = 40;
 /// rho of the natural map in Newton steps, over the inverse of an element's influence on itself: more than the largest slope of a bound, so
 /// that each element has one state. 4 takes 15 to 24 products, 2 takes 15 to 36 (192 x 176 elements to 1e-6).
 const RHO: f64 = 4.0;
-/// Above [`SWITCH`], rho is at least this times the largest downward slope, and at most as below it.
+/// At residuals above [`SWITCH`], rho a0 is at least ABOVE times the largest downward slope of a bound, and at most RHO.
 const ABOVE: f64 = 2.0;
 /// Steps without a residual below GAIN times the least, after which the iteration ends.
 const PATIENCE: u32 = 15;
@@ -184,7 +184,7 @@ fn rho_of_newton(problem: &Problem, march: &March, worst: f64, rho: f64) -> f64 
     match march.law.fall {
         None => rho,
         Some(_) if worst < SWITCH => near,
-        // Far from a solution slips would reverse tractions with this rho.
+        // Far from a solution, slips times the rho of `near` would reverse tractions.
         Some(_) => rho.max(ABOVE * march.falls / problem.operators.self_influence).min(near),
     }
 }
@@ -204,7 +204,7 @@ impl Course {
     }
 }
 
-/// The state by the resolvent, and its tangents.
+/// Predicts sides, normals, curvatures and bounds of all elements by the resolvent of the march.
 fn resolve(problem: &mut Problem, state: &State, tangent: &mut Tangent, march: &mut March, rho: f64) {
     let a0 = problem.operators.self_influence;
     let share = a0 / problem.operators.greatest();

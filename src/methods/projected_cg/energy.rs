@@ -4,7 +4,7 @@
 //! p = c p, u = c u,  c = (p, approach - h)/(p, u)
 //! ```
 //!
-//! The sums after a step follow from sums over C for the step length, except those of the few truncated elements:
+//! The step length needs sums over C. From them follow the sums after the step, except for the few truncated elements, which are added one by one:
 //!
 //! ```text
 //! (p + alpha t, approach - h) = (p, approach - h) + alpha (t, approach - h)
@@ -39,8 +39,8 @@ impl<T: Real> Iteration<T> {
     }
 
     /// By approach: scales p and the deferred corrections to the least energy `(p, u)/2 + (p, h - approach)`, u being that after `update`, which gets
-    /// the factor. Costs no product. If p moves along the deflation direction, or pressures reached a limit, only after a product that corrected a
-    /// truncation. `sums`: `(p, approach - h)` and `(p, u)`, if known.
+    /// the factor. Costs no product. If p moves along the deflation direction, or pressures reached a limit, p is scaled only after a product that
+    /// corrected a truncation. `sums`: `(p, approach - h)` and `(p, u)`, if known.
     pub(super) fn least_energy<S: AdmissibleSet>(
         &mut self,
         state: &mut State,
@@ -77,7 +77,8 @@ impl<T: Real> Iteration<T> {
         (work, energy)
     }
 
-    /// `(p, approach - h)` and `(p, u)` after a step that truncated elements, those after the first `included`.
+    /// `(p, approach - h)` and `(p, u)` after a step that truncated elements. The given `(work, energy)` contain the first `included` of these; the
+    /// others are added here.
     pub(super) fn after_truncation(
         &self,
         state: &State,
@@ -92,7 +93,7 @@ impl<T: Real> Iteration<T> {
     }
 }
 
-/// Whether predicted sums equal those of a pass, to round-off of the larger: the first may nearly cancel.
+/// Whether predicted sums equal those of a pass to 1e-6 of the larger sum: some round-off of single precision. The first sum may nearly cancel.
 fn near((a, b): (f64, f64), (c, d): (f64, f64)) -> bool {
     let size = c.abs().max(d.abs());
     !((a - c).abs() > 1e-6 * size || (b - d).abs() > 1e-6 * size)

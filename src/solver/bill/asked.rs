@@ -5,9 +5,10 @@
 pub struct BillOptions {
     /// The wanted accuracy: smaller changes, relative to the quantity, are negligible.
     pub target: f64,
-    /// Most seconds; 0: about 5 % of the scene's time, or a tenth of a second, estimated by counts: no clock chooses the grids.
+    /// Most seconds. 0: about 5 % of the scene's time, and at least 0.07 s; both are estimated by counts of products, so that no clock chooses the
+    /// grids.
     pub max_seconds: f64,
-    /// Whether pairs are left out as well.
+    /// Whether the bill also has the changes without each two effects.
     pub pairs: bool,
 }
 

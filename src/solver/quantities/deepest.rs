@@ -1,8 +1,7 @@
 //! The largest stresses below the surface, over all depths.
 //!
-//! The largest value of each depth is first taken at depths that grow by a ratio, from a quarter of an element to the length of the loaded
-//! part.
-//! Then parabolas through the three best depths find the largest one (successive parabolic interpolation; Brent 1973, chapter 5).
+//! The first values are those at the surface and at depths that grow by a ratio, from a quarter of an element to the length of the loaded part.
+//! Then a parabola through the best depth and its two neighbours gives the next depth (successive parabolic interpolation; Brent 1973, chapter 5).
 
 use crate::contact::presses;
 use crate::error::Result;
@@ -39,7 +38,7 @@ pub struct Peak {
     pub depth: f64,
     /// The depth in longer sides of an element.
     pub elements: f64,
-    /// The largest values at the depths [`CLOSE`] to the surface; 0: not known.
+    /// The largest value at each depth of [`CLOSE`]; 0: not known.
     pub close: [f64; CLOSE.len()],
 }
 
@@ -168,8 +167,8 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// The depth of the vertex of the parabola through three points, the middle one being the highest. Stays a margin inside the outer two. If
-/// the vertex is undefined, the middle.
+/// The depth of the vertex of the parabola through three points, of which the middle one is the highest. It keeps a margin of 2 % of an interval
+/// from the outer two. If the vertex is undefined, the result is the depth of the middle.
 fn vertex([a, b, c]: [Peak; 3]) -> f64 {
     let (left, right) = (b.depth - a.depth, c.depth - b.depth);
     let (rise, fall) = ((b.value - a.value) / left, (b.value - c.value) / right);

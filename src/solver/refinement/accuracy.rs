@@ -9,21 +9,21 @@ use crate::solver::quantities::Quantity;
 pub(super) const MOST_ELEMENTS: u64 = 4096 * 4096;
 /// Most elements of any grid.
 pub(super) const ALL_ELEMENTS: u64 = i32::MAX as u64;
-/// Errors below this cannot be estimated: some hundred units of round-off.
+/// Errors below this cannot be estimated: 450 times the machine epsilon.
 pub(super) const ROUND_OFF: f64 = 1e-13;
 /// Least tolerance of a solve.
 const LEAST_TOLERANCE: f64 = 1e-12;
 /// The tolerance relative to the target of the force, and of the largest pressure, so that the residual adds little to the error.
 const TOLERANCE_PER_TARGET: f64 = 0.1;
 const TOLERANCE_PER_PRESSURE: f64 = 0.01;
-/// The accuracy that is asked for, and what it may cost.
+/// The wanted accuracy, and limits of its cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
     /// Relative errors of the quantities, by their [numbers](Quantity::number); 0: not wanted.
     pub targets: [f64; Quantity::ALL.len()],
     /// Seconds for all grids together; 0: no limit. A solve that takes longer than predicted is stopped.
     pub max_seconds: f64,
-    /// Bytes that the solver of a grid may hold, with that of the grid before it; 0: no limit.
+    /// Bytes that the solvers of a grid and of the grid before it may hold together; 0: no limit.
     pub max_bytes: u64,
     /// Elements of a grid; 0: 4096 x 4096.
     pub max_elements: u64,
@@ -42,7 +42,7 @@ impl Accuracy {
         self
     }
 
-    /// The errors of quantities with targets, relative to these.
+    /// The errors of quantities with targets, relative to their targets.
     pub(super) fn excesses(&self, outlook: &Outlook) -> Vec<Option<Falling>> {
         let of =
             |(quantity, target): (Quantity, f64)| outlook.falling(quantity).and_then(|falling| falling.over(target));
@@ -96,7 +96,7 @@ impl Accuracy {
         self.wanted().map(of).fold(at_most, f64::min).max(LEAST_TOLERANCE)
     }
 
-    /// Whether the time is over.
+    /// Whether more time than `max_seconds` has passed.
     pub(super) fn is_late(&self, elapsed: f64) -> bool {
         self.max_seconds > 0.0 && elapsed > self.max_seconds
     }

@@ -8,10 +8,10 @@ use crate::scene::{scaled, Scene};
 use crate::solver::machine::{seconds_on, Cost, MOST_MORE};
 use crate::solver::quantities::Quantity;
 
-/// The ratio of the initial residuals of a grid and of the grid before it. A grid starts from the result of the grid before, whose error at the
-/// boundary of contact is of this order.
+/// The initial residual of a grid over that of the next coarser grid. A grid starts from the result of the coarser grid. The initial residual comes
+/// from the error of this result at the boundary of contact.
 const BEGINS: f64 = 0.35;
-/// The usual growth of tangential products with a doubling.
+/// The usual growth of tangential products with a doubling, measured on six surfaces (docs/notes/2026-11-accuracy.md).
 const MORE: f64 = 1.1;
 /// The fewest elements across the contact of a sample that can be extrapolated.
 pub(super) const ACROSS: usize = 12;
@@ -90,8 +90,8 @@ pub(super) fn predict(
     Some((k, seconds_on(&costs, last.cost.elements * 4f64.powi(k))))
 }
 
-/// The fraction of a solve's seconds that a tolerance takes on a grid after so many doublings, and its products. They are those of the finest sample
-/// that is not finer. On finer grids the iteration starts closer to the solution.
+/// The cost of a tolerance on the grid after `doublings`: its seconds over those of a solve to the samples' tolerance, and its products. Both come
+/// from the finest sample that is not finer than this grid. On a finer grid the iteration starts closer to the solution.
 fn to(samples: &[Sample], doublings: i32, tolerance: f64) -> (f64, f64) {
     let at = samples.iter().rposition(|sample| sample.doublings <= doublings).unwrap_or(0);
     let Some(sample) = samples.get(at) else { return (1.0, 0.0) };
@@ -108,7 +108,7 @@ fn to(samples: &[Sample], doublings: i32, tolerance: f64) -> (f64, f64) {
     (seconds / sample.cost.seconds, products)
 }
 
-/// One row.
+/// One row of the price list.
 pub(super) fn price(
     scene: &Scene<'_>,
     (samples, counted): (&[Sample], &[Counted]),

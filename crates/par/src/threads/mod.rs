@@ -29,13 +29,14 @@ pub enum Threads {
     Pool(Pool),
 }
 
-/// From this number of elements on a solve is faster if several threads share its products. A single product is faster from 64 x 64 on.
+/// From this number of elements on a solve is faster if several threads share its products. A single product is faster from 64 x 64 on, but
+/// with that limit two threads took 1.11 times as long as one for a solve on 64 x 64 (docs/notes/2026-11-performance-targets.md).
 const WORTH_WAKING: usize = 110 * 110;
 
 /// Attempts to take a lock before it counts as held for long.
 const PATIENCE: usize = 1000;
 
-/// Pieces of work per thread. If one thread is delayed, the others take over its pieces.
+/// Pieces of work per thread. If one thread is delayed, the others take over its pieces. With 6 to 16 pieces measured times differ by noise.
 const PIECES: usize = 8;
 
 impl Threads {
@@ -77,7 +78,7 @@ impl Threads {
     /// Calls `work(piece, scratch)` on each of some pieces, with the scratch of its thread.
     ///
     /// The threads take pieces until none is left. The caller begins at once, at the front, and does not wait for the
-    /// others to wake. They begin at the back. So much of a thread's data is still in its cache from the previous pass.
+    /// others to wake. They begin at the back. Thus a thread finds much of its data in its cache, from the previous pass.
     pub fn share<P: Send, S: Send>(
         &self,
         pieces: impl DoubleEndedIterator<Item = P> + ExactSizeIterator + Send,

@@ -49,7 +49,7 @@ fn four<T: Scalar, S: Simd>(a: Arithmetic<T, S>, x: &mut [C<T, S>; LONGEST]) {
 /// ```
 #[inline(always)]
 fn five<T: Scalar, S: Simd>(a: Arithmetic<T, S>, x: &mut [C<T, S>; LONGEST]) {
-    // (sqrt(5) -+ 1)/4 and sqrt((5 +- sqrt(5))/8).
+    // c_1, c_2 = (+-sqrt(5) - 1)/4 and s_1, s_2 = sqrt((5 +- sqrt(5))/8).
     let root = 5f64.sqrt();
     let (c1, c2) = (a.splat(T::of((root - 1.0) / 4.0)), a.splat(T::of(-(root + 1.0) / 4.0)));
     let (s1, s2) = (a.splat(T::of(((5.0 + root) / 8.0).sqrt())), a.splat(T::of(((5.0 - root) / 8.0).sqrt())));

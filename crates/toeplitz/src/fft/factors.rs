@@ -26,7 +26,7 @@ impl<T: Scalar> Factor<T, 2> for RealMatrix<'_, T> {
     }
 }
 
-/// A symbol, and the factors of its columns, `[part][column]`.
+/// A symbol, and a complex factor for each of its columns: `[real or imaginary part][column]`.
 pub struct Displaced<'a, T, F> {
     pub of: F,
     pub factors: &'a [T],
@@ -44,7 +44,7 @@ impl<T: Scalar, F: Factor<T, K>, const K: usize> Factor<T, K> for Displaced<'_, 
     }
 }
 
-/// Complex values of a block of columns, `[row][part][column]`.
+/// Complex values of a block of columns, `[row][real or imaginary part][column]`.
 pub struct ComplexSymbol<'a, T>(pub &'a [T]);
 
 impl<T: Scalar> Factor<T, 1> for ComplexSymbol<'_, T> {
@@ -67,7 +67,7 @@ impl<T: Scalar> Factor<T, 2> for ComplexMatrix<'_, T> {
     }
 }
 
-/// A vector of columns of a row of complex values, `[row][part][column]`.
+/// Vector number `vector` of the columns in a row of complex values, `[row][real or imaginary part][column]`.
 #[inline(always)]
 fn complex_value<T: Scalar, S: Simd>(values: &[T], row: usize, vector: usize) -> C<T, S> {
     let per_part = BLOCK / lane_count::<T, S>();

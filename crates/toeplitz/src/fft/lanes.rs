@@ -1,6 +1,6 @@
 //! Values of several columns or rows in the lanes of SIMD vectors, and complex numbers of such vectors.
 //!
-//! Operations are not contracted: a vector has the bits of its values computed one by one.
+//! Products and sums are not fused. So each lane has the bits that its value would have if it were computed alone.
 
 use std::marker::PhantomData;
 
@@ -25,7 +25,8 @@ pub trait Lanes: Copy {
     fn sub<S: Simd>(simd: S, a: Self::Vector<S>, b: Self::Vector<S>) -> Self::Vector<S>;
     /// a b, lane by lane.
     fn mul<S: Simd>(simd: S, a: Self::Vector<S>, b: Self::Vector<S>) -> Self::Vector<S>;
-    /// Transposes four consecutive values of each row to four vectors with one value of each row, in an order of lanes chosen for the machine.
+    /// Transposes. The input holds four consecutive values of each row. Vector k of the result holds value k of each row, in an order of lanes
+    /// chosen for the machine.
     fn from_rows<S: Simd>(simd: S, rows: [Self::Vector<S>; 4]) -> [Self::Vector<S>; 4];
     /// The reverse of [`Lanes::from_rows`].
     fn to_rows<S: Simd>(simd: S, vectors: [Self::Vector<S>; 4]) -> [Self::Vector<S>; 4];

@@ -1,4 +1,4 @@
-//! The order of the bins of real rows after the stages.
+//! The order of the bins of real rows of length n after the stages, which transform them as h = n/2 complex numbers.
 
 use std::sync::Arc;
 

@@ -6,8 +6,9 @@
 //! X_(n/2-k)*  = (Z_k + Z*_(n/2-k))/2 + i w_k (Z_k - Z*_(n/2-k))/2
 //! ```
 //!
-//! and backwards. The pass after (or before) the complex transform takes half as long as that, so it is compiled for the vectors of this
-//! machine; no bit depends on them. The operations and their order are those of the crate realfft, which the test compares.
+//! The inverse solves these equations for 2 Z. The pass after (or before) the complex transform takes half as long as the transform, so it is
+//! compiled for the vectors of this machine. No bit depends on them. The operations and their order are those of the crate realfft; a test compares
+//! all bits.
 
 use std::f64::consts::PI;
 use std::sync::Arc;

@@ -80,7 +80,7 @@ impl<T: Scalar> Stages<T> {
     /// The lowest bin of each block of the last stage: block b holds bins `lowest(b) + q length/last`.
     pub fn lowest_bins(&self) -> Result<Vec<usize>> {
         let blocks = self.length() / self.last;
-        // Row b of the stages before the last holds bin lowest(b) of a transform of their length: digit reversal.
+        // lowest(b) is b with its digits reversed: the stages before the last alone are a transform of length `blocks`, with this bin in row b.
         let lowest = |b: usize| {
             let (mut rest, mut below, mut bin, mut weight) = (b, blocks, 0, 1);
             for stage in std::iter::once(&self.first).chain(&self.middle) {
@@ -105,8 +105,8 @@ impl<T: Scalar> Stages<T> {
     }
 }
 
-/// The number of middle stages over all rows, after which parts fit the nearest cache, and the rows of a part. A length that fits as a whole is one
-/// part.
+/// The number of middle stages that process all rows, and the rows of a part in the stages after them. Parts fit the nearest cache. A length that
+/// fits as a whole is one part.
 fn near_parts<T: Scalar>(middle: &[Stage<T>], length: usize, after_first: usize) -> (usize, usize) {
     if length * bytes_of_a_row::<T>() <= NEAREST_CACHE {
         return (0, length);
