@@ -143,7 +143,7 @@ impl Solver {
         let walk = self.down_from_no_load(Goal { wanted: None, ..goal }, (start, make), monitor)?;
         match (walk, known) {
             (Walk::Least { sum, .. }, _) if sum <= wanted => {
-                let most = monitor.count.cycles + goal.most;
+                let most = monitor.count.cycles.saturating_add(goal.most);
                 self.walker(Goal { most, ..goal }, make, monitor).climb(sum)
             }
             (Walk::Least { sum, .. }, Walk::Least { sum: least, .. }) if sum < least => Ok(walk),

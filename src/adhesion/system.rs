@@ -119,7 +119,7 @@ impl<'a> Linearised<'a> {
         let contact = &self.level.now.contact;
         fields::map(&self.level.problem.threads, z, |i, z| match contact[i] {
             true => z,
-            false => [(f64::from(y[i][0]) / (1.0 - f64::from(self.stiffness[i][0]).min(LEAST_DIAGONAL))) as f32],
+            false => [(f64::from(y[i][0]) / (1.0 - f64::from(self.stiffness[i][0])).max(LEAST_DIAGONAL)) as f32],
         });
     }
 

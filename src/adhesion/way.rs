@@ -26,9 +26,8 @@ const EASY: u64 = 6;
 const GROWTH: f64 = 1.5;
 /// The first step after a snap is this fraction of the longest step.
 const AFTER_SNAP: f64 = 0.25;
-/// The contact has snapped if more than this fraction of it changes, plus so many elements. The second pair is for small steps.
+/// The contact has snapped if more than this fraction of it changes, plus so many elements.
 const SNAPPED: (f64, f64) = (0.5, 8.0);
-const SNAPPED_CLOSE: (f64, f64) = (0.25, 4.0);
 
 /// Continues from state to state on one grid.
 pub struct Walker<'a, 'm, 'c> {
@@ -88,7 +87,7 @@ impl Way {
 
     /// Whether so many elements in contact indicate another branch.
     fn is_snap(&self, count: usize) -> bool {
-        let (part, few) = if self.is_close { SNAPPED_CLOSE } else { SNAPPED };
+        let (part, few) = SNAPPED;
         self.count.abs_diff(count) as f64 > part * self.count as f64 + few
     }
 }

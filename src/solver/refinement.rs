@@ -11,6 +11,7 @@ mod solved;
 use std::time::Instant;
 
 pub use accuracy::Accuracy;
+pub(super) use accuracy::LEAST_TOLERANCE;
 pub use price_list::{cost_of_accuracy, Obstacle, Price};
 
 use super::quantities::{values, Quantity};

@@ -11,6 +11,7 @@ use crate::error::{require, Error, Result};
 use crate::scene::{scaled, Regridded, Scene};
 use crate::solver::machine::{seconds_on, Cost};
 use crate::solver::quantities::{Lack, OnGrid, Quantity, Sequence};
+use crate::solver::refinement::LEAST_TOLERANCE;
 use crate::solver::{Options, Outcome, ProgressCallback};
 use crate::threads::Threads;
 
@@ -93,7 +94,8 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
         wanted: &[Quantity],
         left_out: Vec<Vec<Omission>>,
     ) -> SmallGrids<'s, 'a> {
-        let tolerance = (TOLERANCE_PER_TARGET * asked.target).clamp(1e-12, options.tolerance.max(1e-12));
+        let least = options.tolerance.max(LEAST_TOLERANCE);
+        let tolerance = (TOLERANCE_PER_TARGET * asked.target).clamp(LEAST_TOLERANCE, least);
         let options = Options { tolerance, threads: 1, estimates: true, ..*options };
         let of = |left_out: Vec<Omission>| Variant {
             left_out,

@@ -39,9 +39,11 @@ impl Quantity {
             None => Ok(()),
             Some(Lack::NoFriction) => invalid(format!("{name} is asked for, but friction is not given")),
             Some(Lack::Prescribed) => invalid(format!("{name} is asked for, but the scene prescribes it")),
+            Some(_) if self == Quantity::Stiffness => {
+                Err(Error::Unsupported(format!("{name} is asked for; it is that of bodies without adhesion")))
+            }
             Some(_) => Err(Error::Unsupported(format!(
-                "{name} is asked for; stresses are those of half-spaces, without coating, own coefficients or a period in one direction, and \
-                 stiffness is that of bodies without adhesion"
+                "{name} is asked for; stresses are those of half-spaces, without coating, own coefficients or a period in one direction"
             ))),
         }
     }

@@ -12,10 +12,11 @@ pub(super) const ALL_ELEMENTS: u64 = i32::MAX as u64;
 /// Errors below this cannot be estimated: 450 times the machine epsilon.
 pub(super) const ROUND_OFF: f64 = 1e-13;
 /// Least tolerance of a solve.
-const LEAST_TOLERANCE: f64 = 1e-12;
+pub const LEAST_TOLERANCE: f64 = 1e-12;
 /// The tolerance relative to the target of the force, and of the largest pressure, so that the residual adds little to the error.
 const TOLERANCE_PER_TARGET: f64 = 0.1;
 const TOLERANCE_PER_PRESSURE: f64 = 0.01;
+
 /// The wanted accuracy, and limits of its cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
@@ -93,7 +94,7 @@ impl Accuracy {
     /// The tolerance that the targets need, at most the caller's.
     pub(super) fn tolerance(&self, at_most: f64) -> f64 {
         let of = |(quantity, target): (Quantity, f64)| tolerance_for(quantity, target);
-        self.wanted().map(of).fold(at_most, f64::min).max(LEAST_TOLERANCE)
+        self.wanted().map(of).fold(at_most.max(LEAST_TOLERANCE), f64::min)
     }
 
     /// Whether more time than `max_seconds` has passed.
@@ -112,8 +113,8 @@ pub(super) fn require_target(target: f64) -> Result<()> {
     )
 }
 
-/// The tolerance at which the residual adds little to an error of this target.
+/// The tolerance at which the residual adds little to an error of this target; at least [`LEAST_TOLERANCE`].
 pub(super) fn tolerance_for(quantity: Quantity, target: f64) -> f64 {
     let part = if quantity.is_local() { TOLERANCE_PER_PRESSURE } else { TOLERANCE_PER_TARGET };
-    part * target
+    (part * target).max(LEAST_TOLERANCE)
 }

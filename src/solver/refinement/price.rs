@@ -116,7 +116,7 @@ pub(super) fn price(
     (quantity, target): (Quantity, f64),
     speed_up: f64,
 ) -> Price {
-    let tolerance = tolerance_for(quantity, target).max(1e-12);
+    let tolerance = tolerance_for(quantity, target);
     let nothing = Price {
         target,
         grid: None,
@@ -142,10 +142,12 @@ pub(super) fn price(
     let work_units = counted.iter().find(|one| one.is_of(&grid, tolerance)).map_or(work_units, |one| one.products);
     let seconds = seconds * part;
     let bytes = last.bytes * 4f64.powi(k);
+    // A search holds the solver of the grid before, of half the elements a side or less, unless it ends on its first grid.
+    let before = if last.doublings + k > 0 { bytes / 4.0 } else { 0.0 };
     let most = if accuracy.max_elements == 0 { MOST_ELEMENTS } else { accuracy.max_elements };
     let obstacles = [
         (grid.len() as u64 > most, Obstacle::Elements),
-        (accuracy.max_bytes > 0 && bytes > accuracy.max_bytes as f64, Obstacle::Memory),
+        (accuracy.max_bytes > 0 && bytes + before > accuracy.max_bytes as f64, Obstacle::Memory),
         (accuracy.is_late(seconds / speed_up), Obstacle::Time),
         (last.time_error > target, Obstacle::Step),
     ];

@@ -5,7 +5,7 @@
 
 use std::time::Instant;
 
-use super::accuracy::{require_target, tolerance_for};
+use super::accuracy::{require_target, tolerance_for, LEAST_TOLERANCE};
 use super::outlook::History;
 use super::price::{price, Counted, ACROSS};
 pub use super::price::{Obstacle, Price};
@@ -108,7 +108,7 @@ pub fn cost_of_accuracy(
 /// Tolerances of solves for the least and the greatest target.
 fn tolerances(quantity: Quantity, targets: &[f64], options: &Options) -> (f64, f64) {
     let least = targets.iter().copied().fold(f64::INFINITY, f64::min);
-    let tolerance = tolerance_for(quantity, least).clamp(1e-12, options.tolerance);
+    let tolerance = tolerance_for(quantity, least).min(options.tolerance.max(LEAST_TOLERANCE));
     let greatest = targets.iter().copied().fold(0.0, f64::max);
     (tolerance, tolerance_for(quantity, greatest).max(tolerance))
 }
