@@ -41,9 +41,23 @@ pub(crate) fn invalid<T>(message: String) -> Result<T> {
     Err(Error::InvalidArgument(message))
 }
 
+/// A number in a message, without rows of zeros: `-0.5`, `3`, `2e-9`.
+pub(crate) struct Number(pub f64);
+
+impl std::fmt::Display for Number {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Number(value) = self;
+        if *value == 0.0 || (1e-4..1e15).contains(&value.abs()) {
+            write!(f, "{value}")
+        } else {
+            write!(f, "{value:e}")
+        }
+    }
+}
+
 /// Refuses a `value` for which `rule` does not hold (`holds` false), NaN and infinities as `NotFinite`.
 pub(crate) fn require(holds: bool, name: &str, value: f64, rule: &str) -> Result<()> {
-    let message = || format!("{name} is {value}; {rule}");
+    let message = || format!("{name} is {}; {rule}", Number(value));
     match (holds, value.is_finite()) {
         (true, _) => Ok(()),
         (false, true) => Err(Error::InvalidArgument(message())),

@@ -9,6 +9,7 @@ use super::place::{Met, Place, Walk};
 use super::request::Start;
 use super::solver::Solver;
 use super::tangent::is_stable;
+use super::unknowns::largest;
 use super::way::Walker;
 use crate::error::Result;
 use crate::progress::Monitor;
@@ -43,17 +44,19 @@ impl Walker<'_, '_, '_> {
         if !(step > 0.0) {
             return Ok(Walk::Lost);
         }
-        let mut low = self.level.now.approach();
+        let mut best = Place::of(self.level, sum_low)?;
+        let mut low = best.approach();
         for _ in 0..MOST_STEPS {
             let approach = low + step;
             let Some(sum) = self.solve_at(approach)? else { break };
             if sum > wanted {
-                let mut best = Place::of(self.level, sum)?;
+                best.take(self.level, sum)?;
                 return self.between(&mut best, (sum_low, low));
             }
             (low, sum_low) = (approach, sum);
             step *= GROWTH;
         }
+        self.level.now.copy_from(&best.at)?;
         Ok(self.lost())
     }
 
@@ -81,7 +84,10 @@ impl Walker<'_, '_, '_> {
             match self.solve_at(approach)? {
                 Some(sum) if sum > wanted => best.take(self.level, sum)?,
                 Some(sum) => (sum_low, low) = (sum, approach),
-                None => return Ok(self.lost()),
+                None => {
+                    self.level.now.copy_from(&best.at)?;
+                    return Ok(self.lost());
+                }
             }
         }
         Ok(Walk::Lost)
@@ -148,8 +154,13 @@ impl Solver {
             }
             (Walk::Least { sum, .. }, Walk::Least { sum: least, .. }) if sum < least => Ok(walk),
             (Walk::Interrupted, _) => {
-                if strongest.sum < Met::of(&self.levels[0]).sum {
-                    self.levels[0].now.copy_from(&strongest.at)?;
+                let level = &mut self.levels[0];
+                level.refresh()?;
+                level.count_products(monitor);
+                let measured = level.measure(false, None);
+                let is_state = largest([measured.distance, measured.law]) <= goal.tolerance;
+                if !(is_state && measured.pressures < strongest.sum) {
+                    level.now.copy_from(&strongest.at)?;
                 }
                 Ok(walk)
             }

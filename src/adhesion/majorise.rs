@@ -69,8 +69,10 @@ fn descend_with(
         }
         let off = if step == 0 { LEAST / PART } else { measured.law };
         let tolerance = (PART * off).min(LEAST).max(ENOUGH * goal.tolerance);
-        if !one(level, still, (goal, tolerance), steps.from_none && step == 0, monitor)? {
-            return Ok((Descent::Parted, measured));
+        match one(level, still, (goal, tolerance), steps.from_none && step == 0, monitor)? {
+            Step::Parted => return Ok((Descent::Parted, measured)),
+            Step::Unsolved => return Ok((Descent::By(End::Failed), measured)),
+            Step::Solved => {}
         }
         measured = level.measure(false, goal.wanted);
         if measured.worst() < goal.tolerance {
@@ -87,14 +89,24 @@ fn descend_with(
     Ok((Descent::By(End::Failed), measured))
 }
 
-/// One step. False if no pressure carries the force.
+/// How a step ended.
+enum Step {
+    /// The next state, to the tolerance or as near as the cycles allow.
+    Solved,
+    /// The contact problem failed without a single cycle, and would fail again.
+    Unsolved,
+    /// No pressure carries the force.
+    Parted,
+}
+
+/// One step.
 fn one(
     level: &mut Level,
     (frozen, state): &mut Still,
     (goal, tolerance): (Goal, f64),
     from_none: bool,
     monitor: &mut Monitor<'_>,
-) -> Result<bool> {
+) -> Result<Step> {
     let (n, threads) = (level.now.u.len(), level.problem.threads.clone());
     let mut fields = std::mem::take(&mut level.fields);
     let (mut attraction, mut product) = (fields.take(n)?, fields.take(n)?);
@@ -124,10 +136,13 @@ fn one(
     };
     state.u_is = Freshness::Stale;
     let carried = !matches!(state.load, Load::Force(force) if !(force > 0.0));
+    let mut step = Step::Parted;
     if carried {
+        let cycles = monitor.count.cycles;
         let outcome = frozen.solve(problem, state, (tolerance, goal.most), monitor)?;
         log::debug!("the contact problem of a still attraction: {outcome:?}");
-        let _: Outcome = outcome;
+        let failed = outcome == Outcome::Stagnated && monitor.count.cycles == cycles;
+        step = if failed { Step::Unsolved } else { Step::Solved };
         fields::fill(&threads, &mut level.now.p.field, |i| [state.p[i] - attraction[i][0]]);
         fields::fill(&threads, &mut level.now.u, |i| [state.u[i] - product[i][0]]);
         level.now.p.border = [state.approach];
@@ -135,5 +150,5 @@ fn one(
     [attraction, product].into_iter().for_each(|field| fields.give(field));
     level.fields = fields;
     level.count_products(monitor);
-    Ok(carried)
+    Ok(step)
 }

@@ -13,10 +13,12 @@ use super::robust;
 use super::stability::stability;
 use super::tangent::stiffness_of_contact;
 use super::unknowns::largest;
+use super::way::count_contact;
 use crate::contact;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
+use crate::methods::fields;
 use crate::operator::Operator;
 use crate::progress::{Monitor, Outcome};
 use crate::scene::Load;
@@ -117,6 +119,7 @@ impl Solver {
         (start, make): (Start, MakeFrozen<'_>),
         monitor: &mut Monitor<'_>,
     ) -> Result<Descent> {
+        let before = state.contact.iter().filter(|&&inside| inside).count();
         let level = &mut self.levels[0];
         if let Some(pressure) = state.pressure {
             level.now.p.field.as_flattened_mut().copy_from_slice(pressure);
@@ -127,27 +130,36 @@ impl Solver {
         }
         level.refresh()?;
         level.count_products(monitor);
+        if state.pressure.is_some() && goal.wanted.is_some() {
+            approach_contact(level);
+        }
         if !pulls(goal) {
-            let before = state.contact.iter().filter(|&&inside| inside).count();
             let ended = robust::solve(level, goal, (true, make), monitor)?;
-            let change = before.abs_diff(ended.measured.count) as f64;
-            self.jumped = ended.is_lost && change > SNAPPED * before.max(ended.measured.count) as f64;
-            let is_settled = goal.wanted.is_none()
-                || !ended.is_in_contact()
-                || self.walker(goal, make, monitor).settle()? == Walk::Found;
-            if is_settled || goal.is_interrupted(monitor) {
-                return Ok(ended.end);
+            self.jumped = ended.is_lost && is_snap(before, ended.measured.count);
+            let settled = match goal.wanted.is_some() && ended.is_in_contact() {
+                true => self.walker(goal, make, monitor).settle()?,
+                false => Walk::Found,
+            };
+            match settled {
+                Walk::Found => return Ok(ended.end),
+                Walk::Interrupted => return Ok(Descent::By(End::Interrupted)),
+                _ => {}
             }
         } else {
             let (end, _) = newton(level, goal, true, monitor)?;
-            if end == End::Interrupted
-                || end == End::Solved && self.walker(goal, make, monitor).settle()? == Walk::Found
-            {
-                return Ok(Descent::By(end));
+            match end {
+                End::Interrupted => return Ok(Descent::By(end)),
+                End::Solved => match self.walker(goal, make, monitor).settle()? {
+                    Walk::Found => return Ok(Descent::By(end)),
+                    Walk::Interrupted => return Ok(Descent::By(End::Interrupted)),
+                    _ => {}
+                },
+                _ => {}
             }
         }
-        self.jumped = true;
-        self.begin_anew(goal, (start, make), monitor)
+        let end = self.begin_anew(goal, (start, make), monitor)?;
+        self.jumped = is_snap(before, count_contact(&self.levels[0]));
+        Ok(end)
     }
 
     /// Finds the state of the least force, from the current state if it is valid.
@@ -217,6 +229,22 @@ impl Solver {
         };
         Ok((if monitor.is_cancelled() { Outcome::Cancelled } else { outcome }, report))
     }
+}
+
+/// Sets the approach at which the mean distance of the elements in contact is 0, if there are any. Given pressures have no approach of their own.
+fn approach_contact(level: &mut Level) {
+    let Level { surface, now, problem, .. } = level;
+    let (n, contact) = (now.contact.len(), &now.contact);
+    let of_element = |i: usize| if contact[i] { [surface.distance(i, now), 1.0] } else { [0.0; 2] };
+    let [distance, count] = fields::sum(&problem.threads, n, of_element);
+    if count > 0.0 && distance.is_finite() {
+        now.p.border = [now.approach() + distance / count];
+    }
+}
+
+/// Whether so many elements in contact are those of another branch.
+fn is_snap(before: usize, now: usize) -> bool {
+    before.abs_diff(now) as f64 > SNAPPED * before.max(now) as f64
 }
 
 /// Whether the prescribed force pulls.

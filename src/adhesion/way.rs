@@ -92,7 +92,8 @@ impl Way {
     }
 }
 
-fn count_contact(level: &Level) -> usize {
+/// The elements in contact.
+pub fn count_contact(level: &Level) -> usize {
     level.now.contact.iter().filter(|&&inside| inside).count()
 }
 

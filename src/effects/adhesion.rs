@@ -6,7 +6,7 @@ use super::effect::{Effect, Value};
 use super::friction::LARGEST;
 use super::properties::{Properties, Stresses};
 use crate::adhesion::{Law, Start};
-use crate::error::{invalid, require, Error, Result};
+use crate::error::{invalid, require, Error, Number, Result};
 use crate::grid::{check_values, Grid};
 use crate::scene::{Load, Plain};
 
@@ -117,7 +117,8 @@ impl Effect for Adhesion<'_> {
         if let (Load::Force(force), true) = (scene.load, scene.undeformed_distance.iter().all(|h| h.is_infinite())) {
             if force < 0.0 {
                 return Err(Error::Infeasible(format!(
-                    "force is {force}, but undeformed_distance is infinite on every element: nothing can carry it"
+                    "force is {}, but undeformed_distance is infinite on every element: nothing can carry it",
+                    Number(force)
                 )));
             }
         }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::effect::{Effect, Value};
 use super::properties::{Properties, Stresses};
-use crate::error::{invalid, Error, Result};
+use crate::error::{invalid, Error, Number, Result};
 use crate::grid::Grid;
 use crate::influence::{HalfSpace, Kernel, Periodic};
 use crate::scene::{Load, Plain};
@@ -66,8 +66,10 @@ impl Effect for Period {
         let mean = mean(h);
         if approach >= mean {
             return Err(Error::Infeasible(format!(
-                "approach is {approach}, the mean of undeformed_distance {mean}; with two periods the approach is relative to the \
-                 mean plane and must be less than that: contact is full there, at any force. Prescribe the force"
+                "approach is {}, the mean of undeformed_distance {}; with two periods the approach is relative to the \
+                 mean plane and must be less than that: contact is full there, at any force. Prescribe the force",
+                Number(approach),
+                Number(mean)
             )));
         }
         Ok(())

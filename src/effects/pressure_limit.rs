@@ -14,7 +14,7 @@ use std::ops::Range;
 use super::effect::{Effect, Value};
 use super::properties::{PressureLimit, Properties, Stresses};
 use crate::blocks;
-use crate::error::{invalid, Error, Result};
+use crate::error::{invalid, Error, Number, Result};
 use crate::grid::{check_values, Grid};
 use crate::scene::{Load, Plain};
 use crate::threads::Threads;
@@ -80,7 +80,9 @@ impl Effect for PressureLimit<'_> {
         // A sum of n terms has an error of some units of round-off.
         if force > greatest * (1.0 + 1e-12) {
             return Err(Error::Infeasible(format!(
-                "force is {force}; with this pressure_limit the greatest force that can be carried is {greatest}"
+                "force is {}; with this pressure_limit the greatest force that can be carried is {}",
+                Number(force),
+                Number(greatest)
             )));
         }
         Ok(())

@@ -81,6 +81,10 @@ pub unsafe extern "C" fn contact_normal_flash_temperature(
             let grid = Grid::new(mx, my, given.dx, given.dy)?;
             let written = if flash.is_null() { None } else { Some(structs::read(flash.cast_const(), "flash")?) };
             let mut regions = Regions::default();
+            regions.input_struct(heat, &given)?;
+            if let Some(written) = &written {
+                regions.output_struct(flash, written)?;
+            }
             regions.input("heat->heat_flux", given.heat_flux, grid.len())?;
             regions.output("temperature", temperature, 2 * grid.len())?;
             regions.check()?;

@@ -129,8 +129,8 @@ impl From<&Price> for contact_normal_price {
 
 /// Predicts the cost of each of `n` relative errors of a `quantity`: `rows[i]` is that of `targets[i]`, and `contact_normal_price_init(rows)`
 /// has set the size of a row. The scene is solved on small grids over its rectangle only, for at most 2 % of the seconds of the most
-/// expensive row that can be reached, or 50 ms. Of `accuracy` (NULL: the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and
-/// `user` are read: a row beyond a limit names it as its obstacle, and has the cost without the limit. With a surface the scene's undeformed
+/// expensive row that can be reached, or 50 ms; for some 2 s where no row is known by then. Of `accuracy` (NULL: the defaults) `max_seconds`,
+/// `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit names it as its obstacle, and has the cost without the limit. With a surface the scene's undeformed
 /// distance is not read and may be NULL. Without one small grids sample it, and grids finer than the scene's are refined from it, as
 /// `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface or `options->stop`; ITERATION_LIMIT: `options->max_seconds` was reached;
 /// rows have the results so far. UNSUPPORTED: own coefficients, FIXED contact, or a step of bodies that relax which continues. Since 0.2.

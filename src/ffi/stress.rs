@@ -62,7 +62,8 @@ pub unsafe extern "C" fn contact_normal_subsurface_stress(
 /// element (ix, iy) has its centre at ((ix + 1/2 - mx/2) dx, (iy + 1/2 - my/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy, zz, xy, xz,
 /// yz of each point. A point at z = 0 on the edge of an element, to within rounding, is refused: stresses jump there or are infinite. With
 /// `patches` a point must lie below the grid; it takes the factors of the patch of the element above, on an edge that of the larger index.
-/// Time grows with n times the number of loaded elements. With `period`: UNSUPPORTED. Since 0.2.
+/// Time grows with n times the number of loaded elements. CANCELLED, or ITERATION_LIMIT by `max_seconds`: stresses of points that were not
+/// reached are 0. With `period`: UNSUPPORTED. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_stress_at_points(
     scene: *const contact_normal_scene,
@@ -97,9 +98,16 @@ pub unsafe extern "C" fn contact_normal_stress_at_points(
                 return Err(Refusal::null("stress"));
             }
             let mut found = zeros(n, "the stresses of points")?;
-            stress::stress_at_points(&body, &loads, points, &Threads::new(options.options.threads)?, &mut found)?;
+            let threads = Threads::new(options.options.threads)?;
+            let concluded = watched(Watcher::of(&options), |progress| {
+                let all = stress::stress_at_points(&body, &loads, points, &threads, progress, &mut found)?;
+                let outcome = if all { Outcome::Converged } else { Outcome::Cancelled };
+                Ok(Conclusion::of(outcome, || {
+                    format!("{}; stresses of points that were not reached are 0", why(outcome))
+                }))
+            })?;
             std::ptr::copy_nonoverlapping(found.as_ptr(), stress.cast::<[f64; 6]>(), n);
-            Ok(CONTACT_NORMAL_OK)
+            concluded.conclude()
         }
     };
     // SAFETY: as above.

@@ -4,7 +4,7 @@ use super::plane::{add, square, Vector};
 use super::problem::Problem;
 use super::scales::Scales;
 use crate::effects::{Friction, Prescribed};
-use crate::error::{Error, Result};
+use crate::error::{Error, Number, Result};
 use crate::grid::Grid;
 use crate::memory::sparse;
 use crate::methods::fields;
@@ -32,8 +32,8 @@ impl Reach {
         let Reach { direction, by, wanted, greatest } = self;
         format!(
             "the tangential force{direction} is {}; with {by} it must be less than {}",
-            wanted * area,
-            greatest * area
+            Number(wanted * area),
+            Number(greatest * area)
         )
     }
 }
@@ -102,7 +102,12 @@ impl Forces {
             }
         }
         let wanted = forces.sum[0].hypot(forces.sum[1]);
-        let along = if wanted > 0.0 { forces.sum.map(|sum| sum / wanted) } else { [1.0, 0.0] };
+        let along = match forces.given {
+            [false, false] => return Ok(Forces::NONE),
+            _ if wanted > 0.0 => forces.sum.map(|sum| sum / wanted),
+            [true, _] => [1.0, 0.0],
+            _ => [0.0, 1.0],
+        };
         let greatest = match friction.weights {
             Some(weights) if forces.given == [true; 2] && wanted > 0.0 => reach(weights, along, grid.len(), &bound)?,
             _ => {

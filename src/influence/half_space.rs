@@ -250,7 +250,8 @@ fn near_integral(kx: f64, ky: f64, dx: f64, dy: f64) -> f64 {
         gauss(kx * dx, dx, |x| line(ky, dy, x))
     } else {
         let (xp, xm, yp, ym) = ((kx + 0.5) * dx, (kx - 0.5) * dx, (ky + 0.5) * dy, (ky - 0.5) * dy);
-        let f = |a: f64, b: f64| a * (b / a.abs()).asinh() + b * (a / b.abs()).asinh();
+        let half = |a: f64, b: f64| if a == 0.0 { 0.0 } else { a * (b / a.abs()).asinh() };
+        let f = |a: f64, b: f64| half(a, b) + half(b, a);
         f(xp, yp) - f(xp, ym) - f(xm, yp) + f(xm, ym)
     }
 }

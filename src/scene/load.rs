@@ -1,6 +1,6 @@
 //! The load that presses the bodies together.
 
-use crate::error::{invalid, Error, Result};
+use crate::error::{invalid, Error, Number, Result};
 
 /// The load: the approach of the bodies or the normal force.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,8 @@ impl Load {
     pub fn check_sign(&self, is_fixed: bool) -> Result<()> {
         match *self {
             Load::Force(force) if force < 0.0 && !is_fixed => invalid(format!(
-                "force is {force}; it must not be negative: an elastic contact does not pull, only a given contact area (active_set FIXED) or adhesion with a work above 0 does"
+                "force is {}; it must not be negative: an elastic contact does not pull, only a given contact area (active_set FIXED) or adhesion with a work above 0 does",
+                Number(force)
             )),
             _ => Ok(()),
         }

@@ -2,7 +2,7 @@
 
 use super::{Bodies, Load};
 use crate::blocks;
-use crate::error::{invalid, Error, Result};
+use crate::error::{invalid, Error, Number, Result};
 use crate::grid::Grid;
 use crate::sums::{least, lesser};
 use crate::threads::Threads;
@@ -57,7 +57,8 @@ impl Plain<'_> {
     pub fn check_surface(&self, lowest: f64) -> Result<()> {
         match self.load {
             Load::Force(force) if force > 0.0 && lowest.is_infinite() => Err(Error::Infeasible(format!(
-                "force is {force}, but undeformed_distance is infinite on every element: nothing can carry it"
+                "force is {}, but undeformed_distance is infinite on every element: nothing can carry it",
+                Number(force)
             ))),
             _ => Ok(()),
         }

@@ -4,7 +4,7 @@ use super::tangential::{Tangent, Turn};
 use super::{Options, Outcome};
 use crate::contact::State;
 use crate::effects::Coupled;
-use crate::error::{Error, Result};
+use crate::error::{Error, Number, Result};
 use crate::friction::{length, Report, Start, Vector};
 use crate::progress::Monitor;
 use crate::scene::{Friction, Prescribed};
@@ -96,8 +96,9 @@ impl<'a> TangentialTurn<'a> {
         let wanted = length(self.wanted());
         match (refusal, excess) {
             (Error::Infeasible(_), Some(excess)) if excess.is_finite() => Error::Infeasible(format!(
-                "the tangential force is {wanted}; of the creepages that were looked through none reaches more than {}",
-                wanted + excess * carried
+                "the tangential force is {}; of the creepages that were looked through none reaches more than {}",
+                Number(wanted),
+                Number(wanted + excess * carried)
             )),
             (refusal, _) => refusal,
         }

@@ -1,12 +1,18 @@
 //! Stresses at given points, by direct summation over the loaded elements: valid at any place, and the oracle of the product.
 
+use std::time::Instant;
+
 use super::body::Body;
 use super::kernels;
 use super::loads::Loads;
 use super::tensor::Tensor;
 use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
+use crate::progress::{Progress, ProgressCallback};
 use crate::threads::Threads;
+
+/// Elements times points between two calls of `progress`: some 10 ms of one thread.
+const AT_ONCE: usize = 1 << 17;
 
 /// The stresses at points `(x, y, z)`: x and y are counted from the middle of the grid, so that element `(ix, iy)` has its centre at
 /// `((ix + 1/2 - mx/2) dx, (iy + 1/2 - my/2) dy)`; z is the depth. `out` has one tensor per point.
@@ -14,15 +20,17 @@ use crate::threads::Threads;
 /// # Errors
 /// `Unsupported`: a period; `InvalidArgument`: a negative depth, a point on the edge of an element at the surface, to within rounding of its
 /// coordinates, where stresses jump or are infinite, or with patches a point that no element is above; otherwise as
-/// [`subsurface_stress`](super::subsurface_stress).
+/// [`subsurface_stress`](super::subsurface_stress). False: `progress`, which is called every few milliseconds with the points done, cancelled.
 pub fn stress_at_points(
     body: &Body,
     loads: &Loads<'_>,
     points: &[[f64; 3]],
     threads: &Threads,
+    mut progress: Option<ProgressCallback<'_>>,
     out: &mut [Tensor],
-) -> Result<()> {
+) -> Result<bool> {
     assert_eq!(points.len(), out.len());
+    let began = Instant::now();
     if body.periodic {
         return Err(Error::Unsupported(
             "period is given; stresses at points are those of a scene that does not repeat itself".into(),
@@ -31,8 +39,17 @@ pub fn stress_at_points(
     body.check()?;
     loads.check(&body.grid)?;
     points.iter().enumerate().try_for_each(|(i, point)| check(body, loads, i, *point))?;
-    threads.for_each_plain_row(out, 1, |i, out| out[0] = at_point(body, loads, points[i]));
-    Ok(())
+    let at_once = threads.count() * (AT_ONCE / body.grid.len()).max(1);
+    let mut done = 0;
+    for (out, points) in out.chunks_mut(at_once).zip(points.chunks(at_once)) {
+        threads.for_each_plain_row(out, 1, |i, out| out[0] = at_point(body, loads, points[i]));
+        done += points.len();
+        let told = Progress::of_part(&body.grid, done as u64, began.elapsed().as_secs_f64());
+        if progress.as_mut().is_some_and(|progress| progress(&told)) {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 fn check(body: &Body, loads: &Loads<'_>, i: usize, [x, y, z]: [f64; 3]) -> Result<()> {

@@ -12,6 +12,7 @@ mod dump_calls;
 mod dump_handles;
 mod dump_scene;
 mod friction_batch;
+mod heat;
 mod laws;
 mod odd_input;
 mod rows;

@@ -364,3 +364,30 @@ fn patches_of_the_scene_scale_the_loads() {
     let (status, message) = with.run();
     assert!(status == CONTACT_NORMAL_INVALID_ARGUMENT && message.contains("patches->count is 65"), "{message}");
 }
+
+/// Time ends the stresses of points as it ends those of depths. 40000 points take more than a block.
+#[test]
+fn points_keep_to_a_limit_of_time() {
+    let mut call = Call::new();
+    let n = 40_000;
+    let points: Vec<[f64; 3]> = (0..n).map(|i| [0.25, 0.25, 1.0 + 1e-4 * f64::from(i)]).collect();
+    for max_seconds in [0.0, 1e-9] {
+        call.options.max_seconds = max_seconds;
+        let mut stress = vec![[SENTINEL; 6]; points.len()];
+        // SAFETY: arrays as long as the call says.
+        let status = unsafe {
+            let (at, options) = (points.as_ptr().cast(), &raw const call.options);
+            let (p, to) = (call.pressure.as_ptr(), stress.as_mut_ptr().cast());
+            contact_normal_stress_at_points(&call.scene, 1, p, null(), null(), at, n, options, to)
+        };
+        let (first, last) = (stress[0][2], stress[points.len() - 1][2]);
+        assert!(first < 0.0, "{first}");
+        if max_seconds > 0.0 {
+            let message = last_error(status);
+            assert!(status == CONTACT_NORMAL_ITERATION_LIMIT && message.contains("max_seconds"), "{status} {message}");
+            assert_eq!(last, 0.0);
+        } else {
+            assert!(status == CONTACT_NORMAL_OK && last < 0.0, "{status} {last}");
+        }
+    }
+}

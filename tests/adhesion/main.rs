@@ -1,6 +1,7 @@
 //! Adhesion: every number is compared with a closed form, a printed result, or a certificate of the test's own product.
 
 mod certificate;
+mod cut_short;
 mod dense;
 mod dense_path;
 mod ends;

@@ -124,3 +124,17 @@ fn one_force_may_be_given_beside_a_creepage() {
     assert!(back.creepage[1].abs() <= allowed, "{:?} {allowed}", back.creepage);
     assert_eq!(mixed.coefficient, Coefficient::Uniform(0.33));
 }
+
+/// A run that is cut short tells how much of the force lacks.
+#[test]
+fn a_force_that_is_not_met_counts_in_the_residual() {
+    let wheel = Wheel::new(1);
+    let friction = by_force(&wheel.friction(0.0, 0.0, Some(RUNNING)), [-0.15 * FORCE, 0.0]);
+    for limit in [1, 3, 6, 10] {
+        let (end, report, solution) = wheel.limited(&friction, TOLERANCE, limit);
+        let lack = report.missing;
+        assert!(end != Outcome::Converged && lack > TOLERANCE, "{limit}: {report:?}");
+        assert!(report.certificate.residual >= 0.999 * lack, "{limit}: {report:?}");
+        drop(solution);
+    }
+}

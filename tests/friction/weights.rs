@@ -165,3 +165,35 @@ fn what_can_be_carried_is_solved_and_what_cannot_be_is_refused() {
         }
     }
 }
+
+/// Where weights leave nothing of one force, the force in the other direction is met, 0 as well as another one.
+#[test]
+fn a_force_of_zero_is_met_beside_one_without_weights() {
+    let case = Ellipse::random(3, 20, false);
+    let (ones, zeros) = (vec![1.0; case.grid.len()], vec![0.0; case.grid.len()]);
+    let area = case.grid.element_area();
+    let carried: f64 = case.bound.iter().sum::<f64>() * area;
+    for motion in [Motion::Shift, Motion::SteadyRolling] {
+        for k in 0..2 {
+            for (other, force) in [(Prescribed::Creepage(0.0), 0.0), (Prescribed::Force(0.0), 0.0)] {
+                let mut prescribed = [other; 2];
+                prescribed[k] = Prescribed::Force(force);
+                let mut weights = [&zeros[..]; 2];
+                weights[k] = &ones;
+                // Spin about a place beside the contact makes a force unless a creepage makes up for it.
+                let friction = Friction {
+                    motion,
+                    prescribed,
+                    weights: Some(weights),
+                    spin: 0.01,
+                    spin_centre: [0.3, 0.1],
+                    ..case.friction
+                };
+                let (report, solution) = run(&mut solver(&case.grid, case.nu), &case.bound, &friction, 1e-6);
+                let sum = solution.traction.iter().map(|q| q[k]).sum::<f64>() * area;
+                assert!((sum - force).abs() <= 1.001e-6 * carried, "{motion:?} {k} {other:?}: {sum:e} {report:?}");
+                assert!(report.creepage[k] != 0.0, "{motion:?} {k} {other:?}");
+            }
+        }
+    }
+}

@@ -27,7 +27,7 @@ fn at(loads: &Loads<'_>, points: &[[f64; 3]]) -> Result<Vec<Tensor>, Error> {
     let half = [0.5 * grid.mx as f64 * grid.dx, 0.5 * grid.my as f64 * grid.dy];
     let points: Vec<[f64; 3]> = points.iter().map(|[x, y, z]| [x - half[0], y - half[1], *z]).collect();
     let mut out = vec![[f64::NAN; 6]; points.len()];
-    stress_at_points(&body(), loads, &points, &Threads::One, &mut out).map(|()| out)
+    stress_at_points(&body(), loads, &points, &Threads::One, None, &mut out).map(|_| out)
 }
 
 fn at_depths(loads: &Loads<'_>, depths: &[f64]) -> Vec<Vec<Tensor>> {

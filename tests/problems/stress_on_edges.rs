@@ -14,7 +14,7 @@ fn stress((dx, dy): (f64, f64), point: [f64; 3]) -> Result<Tensor, Error> {
     let point = [point[0] - 0.5 * M as f64 * dx, point[1] - 0.25 * M as f64 * dy, point[2]];
     let mut out = [[0.0; 6]];
     let loads = Loads { traction_x: Some(&q), ..Loads::pressure(&q) };
-    stress_at_points(&body, &loads, &[point], &Threads::One, &mut out).map(|()| out[0])
+    stress_at_points(&body, &loads, &[point], &Threads::One, None, &mut out).map(|_| out[0])
 }
 
 fn assert_refused(sizes: (f64, f64), point: [f64; 3]) {

@@ -48,7 +48,7 @@ fn at(body: &Body, loads: &Loads<'_>, points: &[[f64; 3]]) -> Vec<Tensor> {
     let half = [0.5 * body.grid.mx as f64 * body.grid.dx, 0.5 * body.grid.my as f64 * body.grid.dy];
     let points: Vec<[f64; 3]> = points.iter().map(|[x, y, z]| [x - half[0], y - half[1], *z]).collect();
     let mut out = vec![[f64::NAN; 6]; points.len()];
-    stress_at_points(body, loads, &points, &Threads::One, &mut out).unwrap();
+    stress_at_points(body, loads, &points, &Threads::One, None, &mut out).unwrap();
     out
 }
 
@@ -362,7 +362,8 @@ fn what_is_no_question_is_refused_by_name() {
     message(ask(&body, &Loads::pressure(&p), -0.5), "depths[1] is -0.5");
     message(ask(&body, &Loads::pressure(&p), f64::NAN), "depths[1] is NaN");
     message(ask(&Body { poisson_ratio: 0.51, ..body }, &Loads::pressure(&p), 1.0), "poisson_ratio is 0.51");
-    let at = |point: [f64; 3]| stress_at_points(&body, &Loads::pressure(&p), &[point], &Threads::One, &mut [[0.0; 6]]);
+    let at =
+        |point: [f64; 3]| stress_at_points(&body, &Loads::pressure(&p), &[point], &Threads::One, None, &mut [[0.0; 6]]);
     message(at([-0.5, -0.5, 0.0]).unwrap_err(), "on the edge of an element");
     message(at([-1.0, 1.0, 0.0]).unwrap_err(), "on the edge of an element");
     message(at([0.5, 0.5, -1.0]).unwrap_err(), "z of point 0 is -1");
@@ -374,6 +375,7 @@ fn what_is_no_question_is_refused_by_name() {
             &Loads { traction_x: Some(&p), ..Loads::pressure(&p) },
             &[point],
             &Threads::One,
+            None,
             &mut out,
         )
         .unwrap();

@@ -55,6 +55,7 @@ fn by(arch: pulp::Arch, n: usize) -> Vec<Vec<u64>> {
         sums::<3, 2, 9>(arch, block, ([h, u, p], [t, q]), terms),
         sums::<3, 3, 7>(arch, block, ([h, u, p], [t, q, z]), terms),
         sums::<2, 0, 2>(arch, block, ([h, u], []), residual),
+        sums::<2, 1, 2>(arch, block, ([h, u], [t]), residual),
         sums::<0, 3, 4>(arch, block, ([], [t, q, z]), Conjugate),
         sums::<1, 0, 1>(arch, block, ([p], []), Carried),
     ];
@@ -245,6 +246,7 @@ fn sums_of_a_step_are_what_they_say() {
     check(block.sum([a, b, c], [of_t, of_q, of_d], terms), plain(contact, beside), "a step beside a change");
     let (residual, none): (_, [&[f32]; 0]) = (Residual { approach: 0.1 }, []);
     check(block.sum([a, b], none, residual), plain(contact, |i| [r(i) * r(i), depth(i) * depth(i)]), "a residual");
+    check(block.sum([a, b], [of_d], residual), plain(contact, |i| [r(i) * d(i), r(i) * r(i)]), "along a change");
     check(block.sum([], [of_t, of_d, of_q], Conjugate), plain(contact, |i| [t(i), d(i), q(i), d(i) * q(i)]), "beta");
     for update in &UPDATES {
         let moved = |i: usize, w: f64, repair: f64| u[i] + update.alpha * q(i) + w + repair;

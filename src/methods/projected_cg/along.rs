@@ -9,7 +9,7 @@
 
 use super::deflation::{Deflation, Last};
 use super::deflation_passes::{Change, Restrict, Subtract};
-use super::formulas::StepSums;
+use super::formulas::{Moved, Residual, StepSums};
 use super::scaling::Scaling;
 use super::step_sums::Step;
 use super::vectors::Iteration;
@@ -21,6 +21,8 @@ use crate::sums::Sums;
 
 /// Ratio of the sum of a change to the sum of its absolute values from which it carries force; rolling moves pressures without force.
 const CARRIES: f64 = 0.5;
+/// Least change of e by a first step along d, relative to the residual.
+const WORTHWHILE: f64 = 0.1;
 /// A change below this part of the pressures is round-off.
 const LEAST: f64 = 1e-6;
 
@@ -127,5 +129,37 @@ impl<T: Real> Iteration<T> {
                 d[i] = T::zero();
             }
         }
+    }
+
+    /// Before the first step: moves p and u along d to the least energy, if that is worth a pass over u.
+    pub(super) fn step_along_deflation(&mut self, state: &mut State) {
+        if !self.deflation.is_there() {
+            return;
+        }
+        let Deflation { d, w, energy, size, .. } = &self.deflation;
+        let (State { h, u, .. }, formula) = (&*state, Residual { approach: state.approach });
+        let [rd, rr] = self.segments.sum(
+            &state.contact,
+            #[inline(always)]
+            |block| block.sum([h, u], [&d[..]], formula),
+        );
+        let gamma = rd / energy;
+        if !(gamma.is_finite() && gamma * gamma * size > WORTHWHILE * WORTHWHILE * rr) {
+            return;
+        }
+        let State { p, contact, .. } = state;
+        let [] = self.segments.sum_changing(
+            contact,
+            p,
+            #[inline(always)]
+            |block, p| {
+                block.change(p, [], [&d[..], d], Moved { alpha: gamma, gamma: 0.0 });
+                []
+            },
+        );
+        let mx = state.grid.mx;
+        self.threads.for_each_plain_row(&mut state.u, mx, |y, u| {
+            u.iter_mut().zip(&w[y * mx..]).for_each(|(u, w)| *u += gamma * w.to_double());
+        });
     }
 }

@@ -28,8 +28,9 @@ pub(super) struct Deflation<T> {
     pub(super) w: Vec<T>,
     /// (d, w); 0 without a direction.
     pub(super) energy: f64,
-    /// The sum of d^2.
+    /// The sums of d^2, and of w^2 over the elements of d.
     length: f64,
+    pub(super) size: f64,
     /// Whether d follows from C, not from the last change (modules `uniform` and `flat_punch`).
     pub(super) is_uniform: bool,
     /// Elements of C when d was made.
@@ -97,9 +98,9 @@ impl<T: Real> Deflation<T> {
         self.take_measures(sums.values());
     }
 
-    /// Takes (d, w) and the sum of d^2 from a pass. Drops the direction if w is out of the range of single precision.
-    pub(super) fn take_measures(&mut self, [energy, length]: [f64; 2]) {
+    /// Takes (d, w), and the sums of d^2 and of w^2, from a pass. Drops the direction if w is out of the range of single precision.
+    pub(super) fn take_measures(&mut self, [energy, length, size]: [f64; 3]) {
         let energy = if energy.is_finite() { energy } else { 0.0 };
-        (self.energy, self.length) = (energy, length);
+        (self.energy, self.length, self.size) = (energy, length, size);
     }
 }

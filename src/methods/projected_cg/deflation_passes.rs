@@ -10,7 +10,7 @@ pub(super) struct Change<'a, T> {
     pub(super) d: &'a mut [T],
     pub(super) w: &'a mut [T],
     /// The sums of d, |d| and |p|, and the measures of d and w.
-    pub(super) sums: &'a mut Sums<5>,
+    pub(super) sums: &'a mut Sums<6>,
 }
 
 impl<T: Real> pulp::NullaryFnOnce for Change<'_, T> {
@@ -23,8 +23,8 @@ impl<T: Real> pulp::NullaryFnOnce for Change<'_, T> {
         w.iter_mut().zip(u).zip(last_u).for_each(|((w, u), last)| *w = T::of(u - length * last));
         sums.add([p, last_p], [&*d, &*w], |[p, last_p], [d, w]| {
             let change = p - pressure * last_p;
-            let [energy, length] = measures(d, w);
-            [change, change.abs(), p.abs(), energy, length]
+            let [energy, length, size] = measures(d, w);
+            [change, change.abs(), p.abs(), energy, length, size]
         });
     }
 }
@@ -59,10 +59,10 @@ pub(super) struct Subtract<'a, T> {
 }
 
 impl<T: Real> pulp::NullaryFnOnce for Subtract<'_, T> {
-    type Output = [f64; 2];
+    type Output = [f64; 3];
 
     #[inline(always)]
-    fn call(self) -> [f64; 2] {
+    fn call(self) -> [f64; 3] {
         let (Subtract { d, w, z }, mut sums) = (self, Sums::new());
         w.iter_mut().zip(z).for_each(|(w, z)| *w = *w - *z);
         sums.add([], [d, w], |[], [d, w]| measures(d, w));
@@ -70,10 +70,11 @@ impl<T: Real> pulp::NullaryFnOnce for Subtract<'_, T> {
     }
 }
 
-/// An element's terms of (d, w) and of the sum of d^2. An infinite w makes (d, w) NaN at d = 0, which rejects the change.
+/// An element's terms of (d, w) and of the sums of d^2 and of w^2 over the elements of d. An infinite w makes (d, w) NaN at d = 0, which rejects the
+/// change.
 #[inline(always)]
-pub(super) fn measures(d: f64, w: f64) -> [f64; 2] {
-    [d * w, d * d]
+pub(super) fn measures(d: f64, w: f64) -> [f64; 3] {
+    [d * w, d * d, if d == 0.0 { 0.0 } else { w * w }]
 }
 
 #[cfg(test)]

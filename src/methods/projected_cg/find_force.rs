@@ -12,7 +12,8 @@
 //! *Approach of a force.* A mean of e over C, with weights of sum 1, is the approach of the solution up to the product of two errors: that of
 //! p, and that of the weights as pressures of a flat punch on C. The change of p with the force is such a pressure.
 //!
-//! *Start of a force.* p is extrapolated along its change with the force.
+//! *Start of a force.* p is extrapolated along its change with the force. For the first larger force a uniform pressure, which displaces
+//! nothing, is added instead. Elements then leave C, which is faster than entering it.
 //!
 //! *Near the force* p moves along its change in each step by approach (module `along`).
 //!
@@ -37,13 +38,18 @@ const PART: f64 = 0.3;
 /// extrapolation of p, in its last change.
 const FURTHEST: f64 = 2.0;
 const FURTHEST_P: f64 = 4.0;
-/// A force is near if m has to change by at most this part of its last change.
-const NEAR: f64 = 0.3;
-/// Most forces; most iterations along the change of p.
+/// A force is near if m has to change by at most this part of its last change, and by less than this.
+const NEAR: (f64, f64) = (0.3, 0.5);
+/// Allowed error of the approach, relative to the tolerance.
+const ENOUGH: f64 = 0.5;
+/// Most forces; most iterations along the change of p, unless these reduced the residual to this part.
 const MOST: usize = 20;
 const ALONG: u64 = 40;
+const BROUGHT: f64 = 0.1;
 /// Round-off of u in single precision, in the residual and in the approach.
 const ROUNDING: f64 = 1e-6;
+/// The part of the elements in C above which a uniform pressure is added.
+const MANY: f64 = 0.25;
 
 /// Pressures of a force, with its approach and residual.
 #[derive(Default)]
@@ -109,7 +115,7 @@ impl FindForce {
             let residual = goal.tolerance.max(self.tolerance.unwrap_or(LOOSE));
             let inner = Goal { tolerance: residual, max_cycles: most.min(at_once), ..*goal };
             let (end, found) = self.run_force(task, &inner, mean)?;
-            let is_enough = found.off() <= f64::max(rounding, goal.tolerance);
+            let is_enough = found.off() <= f64::max(rounding, ENOUGH * goal.tolerance);
             let goes_on = end == End::Met || end == End::Limit && most > at_once;
             if !goes_on || is_enough && residual <= f64::max(rounding, goal.tolerance) {
                 self.tolerance = Some(goal.tolerance);
@@ -119,6 +125,7 @@ impl FindForce {
             if end == End::Met && self.goes_along(&found) {
                 let along = Goal { max_cycles: most.min(ALONG), ..*goal };
                 let end = self.run_along(task, &along)?;
+                self.is_near |= end == End::Limit && task.monitor.count.residual < BROUGHT * residual;
                 self.has_failed = !self.is_near;
                 if !matches!(end, End::Stagnated | End::Breakdown) {
                     return Ok(end);
@@ -129,7 +136,7 @@ impl FindForce {
             } else if end == End::Met && residual > goal.tolerance && found.may_be_loose() {
                 self.tolerance = Some(LOOSE * residual);
             } else {
-                self.tolerance = Some(residual.min(PART * found.off()));
+                self.tolerance = Some(residual.min(PART * found.off()).max(ROUNDING));
                 if !self.change(task.state, &found)? {
                     return Ok(End::Stagnated);
                 }
@@ -165,7 +172,8 @@ impl FindForce {
     fn goes_along(&self, found: &Found) -> bool {
         let Known { p, approach, .. } = &self.before;
         let (m, missing) = (found.m(found.approach), found.m(found.wanted) - found.m(found.approach));
-        let is_near = missing.abs() <= NEAR * (m - found.m(*approach)).abs();
+        let is_near = missing.abs() <= NEAR.0 * (m - found.m(*approach)).abs();
+        let is_near = is_near && (found.mean.is_none() || missing.abs() < NEAR.1);
         !p.is_empty() && !self.has_failed && !found.is_full() && is_near && self.clearness(found) > 1.0
     }
 
@@ -233,6 +241,7 @@ impl FindForce {
         let (n, is_first) = (state.p.len(), self.before.p.is_empty());
         let by = Some((next - force) / (force - self.before.force)).filter(|by| by.abs() <= FURTHEST_P);
         let by = if is_first { 0.0 } else { by.unwrap_or(0.0) };
+        let many = MANY * (n as f64) < state.contact_count() as f64;
         let keeps = is_first || found.off() > found.residual * self.clearness(found).min(1.0);
         reserve(&mut self.before.p, n, "pressures of the force before")?;
         self.before.p.resize(n, 0.0);
@@ -244,6 +253,13 @@ impl FindForce {
         if keeps {
             let Found { approach, residual, .. } = *found;
             (self.before.force, self.before.approach, self.before.residual) = (force, approach, residual);
+        }
+        if is_first && many && next > force {
+            let more = (next - force) / (n as f64 * state.grid.element_area());
+            state.p.iter_mut().for_each(|p| *p += more);
+            state.contact.fill(true);
+            state.u_is = Freshness::Near;
+            return Ok(true);
         }
         let carried = in_blocks(state.p.iter().copied()) * state.grid.element_area();
         if !(carried > 0.0 && carried.is_finite()) {

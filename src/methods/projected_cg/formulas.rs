@@ -47,6 +47,15 @@ impl Terms<2, 0, 2> for Residual {
     }
 }
 
+/// (r, d) of the deflation direction d, and (r, r).
+impl Terms<2, 1, 2> for Residual {
+    #[inline(always)]
+    fn of<S: Simd>(&self, [h, u]: [Vector<S>; 2], [d]: [Vector<S>; 1]) -> [Vector<S>; 2] {
+        let r = self.approach - h - u;
+        [r * d, r * r]
+    }
+}
+
 /// The sums of t, z, q, and (z, q).
 #[derive(Clone, Copy)]
 pub(super) struct Conjugate;

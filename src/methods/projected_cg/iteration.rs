@@ -194,6 +194,7 @@ impl<T: Real> Iteration<T> {
         self.update_displacements::<S>(state, &update);
         self.segments.find(&state.contact);
         let products = products + self.deflate::<S>(state, is_mean_free) + self.restrict_deflation(state);
+        self.step_along_deflation(state);
         let first = if self.truncation.sum() > 0.0 { FIRST_STEP } else { FIRST_FORECAST };
         // Without a preconditioner there is no first forecast.
         Search { products, ..Search::new(self.preconditioner.as_ref().map(|_| first)) }

@@ -46,7 +46,7 @@ pub(super) enum Next {
 /// Elements in the longer direction below which a grid may lack an estimate.
 const SMALL_GRID: usize = 32;
 /// The search ends after this many larger grids without an estimate, or this many grids without contact.
-const MOST_WITHOUT: usize = 3;
+pub const MOST_WITHOUT: usize = 3;
 /// Most doublings of a prediction. Over more, errors are uncertain, and a grid in between costs only 1/64 of the last.
 const MOST_DOUBLINGS: u32 = 3;
 /// Least and largest power of the number of elements with which seconds grow.

@@ -115,10 +115,15 @@ pub struct Values {
     pub lack_estimates: bool,
 }
 
-/// Elements across the contact area, along x and y; unlimited in a direction in which a periodic area has no end.
+/// Elements across the contact area, along x and y; unlimited in a direction in which a periodic area has no end, and for bodies apart that attract.
 pub fn across(state: &State, repeats: (bool, bool)) -> (usize, usize) {
-    let State { grid, contact, .. } = state;
+    let State { grid, contact, p, .. } = state;
     let touching = Rectangle::around_values(contact, grid, &Threads::One, |row| row.contains(&true));
     let span = |count: usize, m: usize, repeats: bool| if count == m && repeats { usize::MAX } else { count };
-    touching.map_or((0, 0), |Rectangle { x, y }| (span(x.len(), grid.mx, repeats.0), span(y.len(), grid.my, repeats.1)))
+    let attract = || p.iter().any(|p| *p != 0.0);
+    match touching {
+        Some(Rectangle { x, y }) => (span(x.len(), grid.mx, repeats.0), span(y.len(), grid.my, repeats.1)),
+        None if attract() => (usize::MAX, usize::MAX),
+        None => (0, 0),
+    }
 }

@@ -6,6 +6,7 @@
 use std::time::Instant;
 
 use super::accuracy::{require_target, tolerance_for, LEAST_TOLERANCE};
+use super::next_grid::MOST_WITHOUT;
 use super::outlook::History;
 use super::price::{price, Counted, ACROSS};
 pub use super::price::{Obstacle, Price};
@@ -30,6 +31,8 @@ const LEAST_NEXT: f64 = 2.0;
 
 /// Elements of a sample beyond which an unresolved contact is accepted.
 const UNRESOLVED: f64 = 2e5;
+/// Most seconds of the samples, about, while no row is known.
+const UNKNOWN: f64 = 2.0;
 /// Most samples.
 const MOST_SAMPLES: usize = 12;
 /// Most seconds for counting the products of small rows.
@@ -92,8 +95,9 @@ pub fn cost_of_accuracy(
         // Without estimates from one grid, errors need three grids, or four if two changes happen to be equal. A search needs as many.
         let has_error = |last: &Sample| last.falling().is_some() && history.is_believed() || samples.len() > 3;
         let is_known = |last: &Sample| last.across >= ACROSS && has_error(last) || last.cost.elements > UNRESOLVED;
-        let over = began.elapsed().as_secs_f64() + next > most;
-        if samples.last().is_some_and(is_known) && over || scaled(&scene.grid, doublings).is_err() {
+        let ends = began.elapsed().as_secs_f64() + next;
+        let is_over = ends > most && (ends > UNKNOWN || samples.last().is_some_and(is_known));
+        if is_over || is_apart(&samples) || scaled(&scene.grid, doublings).is_err() {
             break;
         }
     }
@@ -103,6 +107,11 @@ pub fn cost_of_accuracy(
         Some(speed_up) => (Outcome::Converged, list_with(&samples, &counted, speed_up)),
         None => (Outcome::Cancelled, list(&samples)),
     })
+}
+
+/// Whether nothing touches, on as many grids as end a search.
+fn is_apart(samples: &[Sample]) -> bool {
+    samples.iter().rev().take_while(|sample| sample.across == 0 && sample.doublings >= 0).count() >= MOST_WITHOUT
 }
 
 /// Tolerances of solves for the least and the greatest target.

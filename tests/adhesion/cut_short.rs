@@ -1,0 +1,93 @@
+//! Few cycles: a result is that of the status, and more cycles do not bring a worse state.
+
+use contact_normal::adhesion::Law;
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Load, Period, Scene};
+use contact_normal::solver::{Guess, InitialGuess, Options, Outcome, Solver};
+
+use super::support::{adhesion, bodies, Sphere};
+
+/// Waves pressed together have two states of a force: one on the branch whose force falls as bodies come closer. From that one the other is sought, and cycles
+/// end on the way: the state is then not one of the force.
+#[test]
+fn the_stable_state_of_a_force_is_found_or_cycles_end() {
+    let n = 32;
+    let d = std::f64::consts::TAU / n as f64;
+    let grid = Grid::new(n, n, d, d).expect("a grid");
+    let wave = |k: usize| 1.0 - (k as f64 * d).cos();
+    let h: Vec<f64> = (0..n * n).map(|i| 0.02 * (wave(i % n) + wave(i / n))).collect();
+    let own = adhesion(Law::Exponential, 3e-4, 0.0);
+    let apart = contact_normal::scene::Adhesion { start: contact_normal::adhesion::Start::Apart, ..own };
+    let scene = |adhesion, load| Scene {
+        adhesion: Some(adhesion),
+        period: Some(Period { x: true, y: true }),
+        ..Scene::new(grid, &h, bodies(1.0), load)
+    };
+    let mut ends = [0, 0];
+    for max_cycles in [1, 2, 3, 4, 6, 1000] {
+        let first = scene(apart, Load::Approach(0.039));
+        let mut solver = Solver::new(&first, &Options::default()).expect("a solver");
+        let (outcome, report) = solver.solve(&first, &Options::default(), None, None).expect("a solve");
+        assert_eq!(outcome, Outcome::Converged);
+        let force = report.measures.force;
+        let options = Options { initial_guess: InitialGuess::Previous, max_cycles, ..Options::default() };
+        let next = scene(own, Load::Force(force));
+        let (outcome, report) = solver.solve(&next, &options, None, None).expect("a solve");
+        let (off, residual) = (report.measures.force / force - 1.0, report.measures.certificate.residual);
+        println!("{max_cycles}: {outcome:?} {off:e} {residual:e}");
+        match outcome {
+            Outcome::Converged => {
+                ends[0] += 1;
+                assert!(off.abs() < 1e-5 && residual <= 1e-6, "{max_cycles}: {off:e} {residual:e}");
+            }
+            _ => ends[1] += 1,
+        }
+    }
+    assert!(ends[0] > 0 && ends[1] > 0, "{ends:?}");
+}
+
+/// Cycles end on the way down to a pull: the state is the strongest that was found, not one between two states.
+#[test]
+fn more_cycles_do_not_lose_the_state_of_a_pull() {
+    for roughness in [0.0, 0.05] {
+        let mut sphere = Sphere::new(32, 1.6, Law::Exponential, 0.05);
+        let random = |i: usize| ((i as f64 * 12.9898).sin() * 43758.5453).fract();
+        sphere.h.iter_mut().enumerate().for_each(|(i, h)| *h += roughness * 0.05 * random(i));
+        let options = Options::default();
+        let none = sphere.scene(Load::Approach(0.0));
+        let mut solver = Solver::new(&none, &options).expect("a solver");
+        let strongest = solver.pull_off(&none, &options, None).expect("a pull-off").1.measures.force;
+        let scene = sphere.scene(Load::Force(0.97 * strongest));
+        let mut was_state = false;
+        for max_cycles in 3..40 {
+            let mut solver = Solver::new(&scene, &options).expect("a solver");
+            let (outcome, report) =
+                solver.solve(&scene, &Options { max_cycles, ..options }, None, None).expect("a solve");
+            let found = report.adhesion.expect("adhesion");
+            let is_state = found.law_residual <= 1e-6 && report.measures.force < 0.0;
+            println!("{roughness} {max_cycles}: {outcome:?} {:e} {:e}", found.law_residual, report.measures.force);
+            assert!(is_state || !was_state, "{roughness} {max_cycles}: {:e}", found.law_residual);
+            was_state |= is_state;
+        }
+        assert!(was_state);
+    }
+}
+
+/// Pressures that are given start at the approach of their contact, as those of a handle do: a replay goes the way of the call that was recorded.
+#[test]
+fn given_pressures_go_on_as_previous_ones_do() {
+    let sphere = Sphere::by_tabor(1.0, 48, 3.0);
+    let (first, next) = (sphere.scene(Load::Force(-1.1)), sphere.scene(Load::Force(-1.2)));
+    let mut solver = Solver::new(&first, &Options::default()).expect("a solver");
+    assert_eq!(solver.solve(&first, &Options::default(), None, None).expect("a solve").0, Outcome::Converged);
+    let (pressure, contact) = (solver.state().p.clone(), solver.state().contact.clone());
+    let mut other = Solver::new(&first, &Options::default()).expect("a solver");
+    let of = |initial_guess| Options { initial_guess, ..Options::default() };
+    let guess = Guess { pressure: &pressure, contact: &contact };
+    let given = other.solve(&next, &of(InitialGuess::Given), Some(guess), None).expect("a solve");
+    let previous = solver.solve(&next, &of(InitialGuess::Previous), None, None).expect("a solve");
+    assert_eq!((given.0, previous.0), (Outcome::Converged, Outcome::Converged));
+    let (given, previous) = (given.1.count.cycles, previous.1.count.cycles);
+    assert!(given <= previous + 1, "{given} {previous}");
+    assert!((other.state().approach - solver.state().approach).abs() < 1e-5);
+}
