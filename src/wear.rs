@@ -123,7 +123,7 @@ fn numbers<'a>(name: &str, values: impl IntoIterator<Item = &'a f64>) -> Result<
 /// Frictional work and depth of wear of each element.
 ///
 /// # Errors
-/// `Invalid`, `NotFinite`: numbers out of their range, results that overflow, and arrays without one value per element.
+/// `InvalidArgument`, `NotFinite`: numbers out of their range, results that overflow, and arrays without one value per element.
 /// `OutOfMemory`.
 pub fn frictional_wear(wear: &Wear<'_>) -> Result<Worn> {
     wear.check()?;

@@ -14,7 +14,8 @@ use crate::progress::Monitor;
 
 /// Without a state of less force, bodies are first pressed together by this part of the whole attraction.
 const PRESSED: f64 = 0.01;
-/// Pressing force over the least known force, or over the last pressing force, and most ways down from pressed bodies.
+/// A pressing force is MORE times the size of the least known force, or MORE times the last pressing force. At most WAYS ways lead down from pressed
+/// bodies.
 const MORE: f64 = 10.0;
 const WAYS: u32 = 4;
 /// Pulls below this part of the whole attraction count as none.
@@ -115,8 +116,8 @@ impl Solver {
         Walker::new(&mut self.levels[0], goal, make, monitor)
     }
 
-    /// The walker of the first way of a search for a pull, which has many states and a snap behind the strongest: see [`PULL_OFF`] and [`STATES`]
-    /// for the cycles.
+    /// The walker of the first way of a search for a pull. This way has many states, and a snap behind the strongest. [`PULL_OFF`] and [`STATES`]
+    /// bound its cycles.
     fn first_walker<'a, 'm, 'c>(
         &'a mut self,
         goal: Goal,

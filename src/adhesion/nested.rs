@@ -13,7 +13,7 @@ use crate::sums::mean;
 
 /// Tolerance on coarser grids: larger errors cost more on the finest grid.
 pub const COARSE: f64 = 1e-2;
-/// First steps of descent on the coarsest grid, and on the finest from bodies apart.
+/// Steps of descent before Newton's method: on the coarsest grid, and on the finest from bodies apart.
 const FIRST: u64 = 3;
 const FROM_APART: u64 = 12;
 /// A start from contact: the additional approach in ranges, and its steps.

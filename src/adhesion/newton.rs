@@ -55,7 +55,7 @@ const MOST_FIRM: u64 = 60;
 const FIRM: [f64; 2] = [0.1, 0.03];
 /// Largest s a0, which is stored in single precision.
 const STIFFEST: f64 = 1e30;
-/// Residual of a failure.
+/// Steps have failed if the residual is not below this.
 const LOST: f64 = 1e12;
 
 /// How a loop ended.

@@ -13,7 +13,8 @@ use super::way::{Walker, Way};
 use crate::error::Result;
 use crate::methods::fields;
 
-/// A step, relative to the length from the energy and the stiffness of the contact; a longer one down to the state of an earlier way.
+/// The longest step of a way, as a part of the length that the energy and the stiffness of the contact give. LONG serves a way that may still meet
+/// the state of an earlier way.
 const STEP: f64 = 0.1;
 const LONG: f64 = 0.3;
 /// The least length, relative to the range. Bodies in contact without attraction have a length that falls with their force, and a way in parts of
@@ -30,7 +31,7 @@ const PARTS: u32 = 8;
 /// sphere at neighbouring rings lie 1 % below the forces between them for kappa 0.4, and 0.01 % for kappa 0.14.
 const NEARLY: f64 = 0.1;
 const NEARLY_WITHIN: (f64, f64) = (0.005, 0.02);
-/// Small steps above the minimum from which the least force is sought again.
+/// The search around the minimum begins at one of these numbers of small steps above it, the first at which a state is found.
 const UP: [f64; 4] = [0.0, 0.25, 0.5, 1.0];
 /// Steps from the minimum to both sides, which are halved: the last elements of a contact part at a cusp.
 const LAST: u32 = 5;

@@ -40,7 +40,8 @@ struct Trials {
     by_map: bool,
     /// Trials in a row that were not good.
     bad: u32,
-    /// The least missing force. (Of two trials that lead to each other every other one would improve on the last.)
+    /// The least missing force of all trials. A trial is not compared with the last one: of two trials that lead to each other, every second one
+    /// would count as good for ever.
     least: Option<f64>,
 }
 
@@ -87,7 +88,7 @@ pub fn solve(
                 return Ok(end);
             }
         }
-        // The residual hides the change of the forces.
+        // The forces are those of the trial before: the residual of the solve hides their change.
         if excess == before && inner > LEAST_INNER {
             inner *= TIGHTER;
             continue;

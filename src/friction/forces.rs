@@ -72,7 +72,8 @@ impl Forces {
         Ok(part)
     }
 
-    /// The forces of [`Forces::of`]. Calls `compare` with each force and the greatest one carried: in each direction with weights, then together.
+    /// The forces of [`Forces::of`]. Calls `compare` with each given force and the greatest force that the bounds carry: with weights for each
+    /// direction, then for both directions together.
     fn within(
         friction: &Friction<'_>,
         grid: &Grid,

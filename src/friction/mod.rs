@@ -2,7 +2,7 @@
 //!
 //! | module | contents |
 //! |---|---|
-//! | [`coefficients`], `half_space`, `compliance`, `near_element`, `series`, `quadrant` | influence of tangential tractions, far from an element, and kept for all operators |
+//! | [`coefficients`], `half_space`, `compliance`, `near_element`, `series`, `quadrant` | influence coefficients of tangential tractions: their sources, near and far from an element; those kept for all operators |
 //! | [`Toeplitz`], [`dense`] | products of two components, by FFT and by direct summation |
 //! | `operators`, `window` | the operators of the box around C |
 //! | `problem`, `plane`, `certificate`, `tangent` | the problem on one grid, its certificate, stick and slip |

@@ -165,7 +165,7 @@ fn one(
     for (k, &(way, most)) in ways.iter().enumerate() {
         let Level { problem, state, memory, .. } = &mut *level;
         let left = ((all - work.products) / part).max(0.0);
-        // In turns only near full slip.
+        // Newton's method in turns serves near full slip only.
         if way == Way::Newton(Manner::InTurns) && !problem.places.is_mostly_slip(memory.tangent.slip_count) {
             continue;
         }

@@ -29,7 +29,7 @@ use crate::progress::Outcome;
 /// Relative tolerance of the linear solve of a step, and in rolling.
 const INNER: f64 = 0.15;
 const INNER_ROLLING: f64 = 0.35;
-/// The last linear solve stops at ENOUGH times the tolerance. Below NEAR times the tolerance only `polish` is certificates.
+/// The last linear solve stops at ENOUGH times the tolerance. Below NEAR times the tolerance `polish` takes the certificate.
 const ENOUGH: f64 = 0.9;
 const NEAR: f64 = 1.5;
 /// Largest relative tolerance of a linear solve.
@@ -96,7 +96,7 @@ impl StepControl {
 
     /// Records the worst measure of an iterate. Returns whether to go on.
     fn goes_on(&mut self, worst: f64, by_force: bool) -> bool {
-        // The measure is constant: nothing holds the creepages, whatever rho is.
+        // If the measure stays constant, nothing holds the creepages, whatever rho is.
         self.still = if worst == self.last { self.still + 1 } else { 0 };
         self.last = worst;
         if by_force && self.still > PATIENCE {

@@ -94,7 +94,7 @@ pub fn circulant_period(grid: &Grid) -> ((usize, usize), (usize, usize)) {
     ((px, py), (given(grid.mx, px), given(grid.my, py)))
 }
 
-/// Offsets in each direction. For a step beyond the grid offsets between are not kept, except those of own tables.
+/// The number of kept offsets in each direction. A step adds offsets if it is of whole elements, and within the grid or of own tables.
 fn reach(tangential: &Tangential, grid: &Grid, by: (f64, f64)) -> (usize, usize) {
     let is_whole = by.0.fract() == 0.0 && by.1.fract() == 0.0;
     let is_short = by.0.abs() <= grid.mx as f64 && by.1.abs() <= grid.my as f64;

@@ -147,7 +147,7 @@ impl Solver {
         }
     }
 
-    /// Subtracts the displacements before the step from w, by the tractions of the state.
+    /// Subtracts from w the displacements before the step. The state has the tractions of that time.
     fn leave(&mut self, friction: &Friction<'_>) -> Result<()> {
         let Level { problem, state, .. } = &mut self.levels[0];
         match friction.motion {

@@ -140,7 +140,7 @@ impl Tangent {
     /// Predicts stick and slip from q and its displacements.
     pub fn predict(&mut self, problem: &Problem, state: &State, rho: f64) -> Measures {
         let (u, a0, inverse_rho) = (&state.u, problem.operators.self_influence, 1.0 / rho);
-        // In steady rolling a0 belongs to the step, which a layer does not change.
+        // The excess of a layer counts relative to the coefficient without rolling. In steady rolling a0 is that of a step.
         let share = a0 / problem.operators.greatest();
         let beyond = |i: usize| problem.operators.excess.as_ref().map_or(0.0, |excess| share * excess.at(i));
         let Tangent { side, normal, curvature, mixing: mixings, projected, .. } = self;

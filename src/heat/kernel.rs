@@ -13,9 +13,9 @@
 //! lambda T = integral of g(x) dx,    g(x) = 1/(2 pi) integral of exp(-P (|x| cosh t - x)) dt
 //! ```
 //!
-//! g has a logarithmic singularity at x = 0, and behind a fast source one of `x^(-1/2)`. The substitution `x = L s^4` makes both smooth. g changes on
-//! the scales of half the width of the element and of 1/P. Up to the smaller scale this rule is used. Beyond it panels follow, each longer by the
-//! factor [`WIDER`]. Without motion the integral is Love's.
+//! g has a logarithmic singularity at x = 0, and behind a fast source one of `x^(-1/2)`. The substitution `x = L s^4` makes both smooth. g changes
+//! on the scales of half the width of the element and of 1/P. L is the smaller scale, or the end of the element. Beyond L panels follow, each longer
+//! by the factor [`WIDER`]. Without motion the integral is Love's.
 
 use std::f64::consts::PI;
 

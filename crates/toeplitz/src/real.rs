@@ -10,7 +10,7 @@ pub use rustfft::num_complex::Complex;
 
 use crate::fft::lanes::Lanes;
 
-/// `f32` or `f64`, as arithmetic takes them.
+/// `f32` or `f64`: the values of the arithmetic.
 pub trait Scalar:
     Value + Lanes + FftNum + Float + FromPrimitive + Default + std::iter::Sum + std::ops::AddAssign
 {

@@ -46,7 +46,7 @@ impl Layer<'_> {
             move |ky: usize, first: usize, row: &mut [f64]| {
                 let y = ky as f64 * dy / self.t;
                 let skipped = usize::from(ky == 0 && base == Base::Substrate);
-                // Means near 0 are not used.
+                // F of the substrate is infinite at offset 0. Means near it are not used.
                 row[..skipped].fill(0.0);
                 let x = (first + skipped) as f64 * dx / self.t;
                 self.radial.fill_f((x, dx / self.t, y), base, &mut row[skipped..]);
