@@ -22,7 +22,7 @@ pub struct State {
     pub grid: Grid,
     /// h; `+infinity` where there is no surface.
     pub h: Vec<f64>,
-    /// p: zero outside the contact area.
+    /// p: zero on exterior elements, the limit on elements at their limit.
     pub p: Vec<f64>,
     /// u = A p. `u_is` tells how accurately.
     pub u: Vec<f64>,

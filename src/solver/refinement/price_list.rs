@@ -28,7 +28,7 @@ const NEXT: f64 = 5.0;
 /// Lower bound on that ratio.
 const LEAST_NEXT: f64 = 2.0;
 
-/// Elements of a sample beyond which an unresolved contact is accepted.
+/// Elements of a sample beyond which an unresolved contact is accepted. Up to there samples go on, however long they take.
 const UNRESOLVED: f64 = 2e5;
 /// Most samples.
 const MOST_SAMPLES: usize = 12;
