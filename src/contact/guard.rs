@@ -2,7 +2,8 @@
 //!
 //! Exchanging all violators at once is fast but may cycle. Block principal pivoting (Judice & Pires 1994; Kim & Park 2011)
 //! terminates for P-matrices. All violators are exchanged while their number reaches new minima, with up to three tries in
-//! between. After that only the violator of the highest index is exchanged, until there is a new minimum.
+//! between. After that only the violator of the highest index is exchanged, until there is a new minimum. With limits of pressures and a
+//! prescribed force it may cycle all the same.
 
 /// Full exchanges allowed without a new minimum.
 const TRIES: u32 = 3;

@@ -49,13 +49,14 @@ struct Same {
 }
 
 impl Outline {
-    /// The outline of a contact area. Rows without contact cost almost nothing.
+    /// The outline of the elements that touch. Rows without contact cost almost nothing.
     pub fn of(state: &State) -> Outline {
         let (mx, my) = (state.grid.mx, state.grid.my);
+        let touching = state.touching();
         let mut outline = Outline::default();
         let (mut above, mut same): (&[bool], Same) = (&[], Same::default());
         let (mut above_touches, mut above_holes) = (false, None);
-        for (iy, row) in state.contact.chunks_exact(mx).enumerate() {
+        for (iy, row) in touching.chunks_exact(mx).enumerate() {
             let touches = row.contains(&true);
             let mut row_holes = None;
             if touches || above_touches {
@@ -66,9 +67,8 @@ impl Outline {
                 let above_with_holes = above_holes.unwrap_or_else(|| holes(&state.h[start.saturating_sub(mx)..start]));
                 let (mut ends_along, mut ends_across) = (0, 0);
                 if with_holes || above_with_holes {
-                    let ends = |i: usize, j: usize| {
-                        state.contact[i] != state.contact[j] && state.h[i].max(state.h[j]).is_infinite()
-                    };
+                    let ends =
+                        |i: usize, j: usize| touching[i] != touching[j] && state.h[i].max(state.h[j]).is_infinite();
                     ends_along = (start..start + mx - 1).filter(|&i| ends(i, i + 1)).count();
                     ends_across = if iy > 0 { (start..start + mx).filter(|&i| ends(i - mx, i)).count() } else { 0 };
                 }

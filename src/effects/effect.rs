@@ -38,8 +38,8 @@ pub trait Effect {
     /// Calls `tell` with each value that a set-up depends on, and its name. All other values may differ in each solve.
     fn values(&self, tell: &mut dyn FnMut(&'static str, Value<'_>));
 
-    /// Whether, with two periods, surfaces can approach beyond their mean distance although a uniform pressure does not move the bodies: it
-    /// compresses a layer, or pressures are limited.
+    /// With two periods a uniform pressure does not move the bodies. Whether surfaces can approach beyond their mean distance all the same: the
+    /// pressure compresses a layer, or pressures are limited.
     fn gives_way(&self, scene: &Plain<'_>) -> bool;
 
     /// The stresses below the surface of body 1 (`b` is 0) or 2 with it.

@@ -124,11 +124,12 @@ pub struct Regridded {
 
 impl Regridded {
     /// A scene on the grid `to`. `surface`: the undeformed distance on it; none: that of the scene, [refined](refine) by a whole ratio or
-    /// [sampled](sample). Compliances, limits, coefficients of friction, weights and tractions are means over the elements. A step of
-    /// transient rolling keeps its length; a step of steady rolling of one element stays one element long.
+    /// [sampled](sample). Compliances, limits, works of adhesion, coefficients of friction, weights and tractions are means over the elements.
+    /// A rigid slip scales with the length of the step. A step of rolling keeps its length, except a step of steady rolling without a given
+    /// length: it is one element long on each grid.
     ///
     /// # Errors
-    /// `Unsupported`: own coefficients, which belong to one grid; previous tractions kept by a solver.
+    /// `Unsupported`: effects that stand for one grid only, as own coefficients, or previous tractions kept by a solver.
     pub fn new(scene: &Scene<'_>, to: Grid, surface: Option<Vec<f64>>) -> Result<Regridded> {
         check_other_grids(scene)?;
         let from = scene.grid;
@@ -212,6 +213,9 @@ impl Regridded {
                 previous: pair(&self.previous).map_or(Previous::None, Previous::Given),
                 rolling_distance: self.rolling_distance,
                 initial: None,
+                // They belong to the elements of one grid, and a law that reads them is refused on several.
+                coefficients_before: None,
+                yield_limits: None,
                 ..friction
             }),
             ..scene.clone()

@@ -114,6 +114,7 @@ impl Solver {
         check_alike(scene)?;
         self.check_continues(scene)?;
         let goes_on = options.initial_guess == InitialGuess::Previous && self.has_result;
+        let kept = self.kept(scene)?;
         self.methods.projected_cg.forget_windows();
         self.methods.projected_cg.forget_solutions();
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), false);
@@ -121,8 +122,14 @@ impl Solver {
         take_distance(&mut self.state, scene.undeformed_distance, &self.problem.threads);
         let outcome = self.run_adhesive((scene, lowest), (adhesion, pull_off), (options, guess, goes_on), &mut monitor);
         self.ledger = std::mem::take(&mut monitor.ledger.rows);
-        let (stop, found) = outcome?;
-        let (stop, friction) = self.rub(scene, adhesion, options, stop, &mut monitor)?;
+        let outcome = outcome.and_then(|(stop, found)| {
+            let (stop, friction) = self.rub(scene, adhesion, options, stop, &mut monitor)?;
+            Ok((stop, found, friction))
+        });
+        if outcome.is_err() {
+            self.go_back(kept);
+        }
+        let (stop, found, friction) = outcome?;
         effects::keep(scene, &mut self.beside.histories);
         let mut report = Report { adhesion: Some(found), friction, ..Report::of(&monitor, options.tolerance) };
         report.measures = self.ledger.last().map(|row| row.measures).unwrap_or_default();
@@ -131,7 +138,7 @@ impl Solver {
         report.setup_seconds = std::mem::take(&mut self.setup_seconds);
         report.bytes = self.bytes() as u64;
         report.log(options.method, &self.problem.grid, stop);
-        (self.has_result, self.is_adhesive) = (true, true);
+        (self.has_result, self.is_adhesive, self.compliance) = (true, true, 1.0);
         Ok((stop, report))
     }
 

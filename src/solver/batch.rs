@@ -20,10 +20,10 @@ pub struct Problem<'a> {
 }
 
 impl Solver {
-    /// Solves many problems with the same options, as many at a time as the solver was set up with threads; each solve runs on
-    /// one thread. `found(i, outcome, state)` is called for each problem, on the thread that solved it and in no particular
-    /// order, with what [`solve`](Self::solve) returns for it and, if that is no error, its result; what it returns stands at
-    /// `i` of what the batch returns.
+    /// Solves many problems with the same options, as many at a time as the solver was set up with threads. Each solve runs on
+    /// one thread. `found(i, outcome, state)` is called for each problem i, in any order, on the thread that solved it. `outcome` is
+    /// that of [`solve`](Self::solve). `state` is the result, unless `outcome` is an error. Element i of the returned list is the
+    /// value of this call.
     ///
     /// A refused problem does not affect the others. Results have the same bits as those of one solve
     /// after the other with one thread. PREVIOUS is refused, and so is a problem whose friction [continues](crate::scene::Previous::Kept): the

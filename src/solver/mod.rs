@@ -257,11 +257,9 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
         check::guess(scene, options, guess)?;
-        self.compliance = 1.0;
         if let Some(adhesion) = scene.attraction() {
             return self.solve_adhesive((scene, lowest), (adhesion, false), options, guess, progress);
         }
-        self.is_adhesive = false;
         self.suit(scene.load)?;
         let given_contact = guess.filter(|_| options.is_fixed());
         check::range((scene, lowest), &self.problem, self.set_up.largest_influence, given_contact)?;
@@ -286,6 +284,7 @@ impl Solver {
             self.go_back(kept);
         }
         let (stop, mut report) = outcome?;
+        (self.is_adhesive, self.compliance) = (false, 1.0);
         report.setup_seconds = std::mem::take(&mut self.setup_seconds);
         report.bytes = self.bytes() as u64;
         report.log(options.method, &self.problem.grid, stop);

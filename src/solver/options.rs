@@ -68,7 +68,8 @@ pub struct Options {
     /// The measure of the tolerance.
     pub criterion: Criterion,
     /// If positive: may stop once the residual is below this part of the estimated discretisation error (relative, of the force or the approach,
-    /// whichever is not prescribed). A start without a guess, by full multigrid or projected conjugate gradients, gives the estimate.
+    /// whichever is not prescribed). The estimate is that of a start without a guess. FULL_MULTIGRID and PROJECTED_CG start from the coarser grids.
+    /// NORM and MULTIGRID start from p = 0, which has no estimate of the force.
     pub error_ratio: f64,
     /// Most cycles (of multigrid) or iterations (of conjugate gradients) on the finest grid.
     pub max_cycles: usize,

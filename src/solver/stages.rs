@@ -3,7 +3,8 @@
 use super::options::Method;
 use crate::contact::AdmissibleSet;
 
-/// The fraction of the remaining cycles that a method may use before the next one follows. It is at least LEAST_SHARE cycles, or half of the rest.
+/// The fraction of the remaining cycles that a method may use before the next one follows. It gets at least LEAST_SHARE cycles, or half of those
+/// that remain if that is less.
 /// AUTO of a plain scene has 400, 240, 144, and the rest of 1000 for NORM, which converges on every contact area.
 const SHARE: f64 = 0.4;
 const LEAST_SHARE: u64 = 60;

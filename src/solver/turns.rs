@@ -82,7 +82,7 @@ pub(super) struct InTurns<'s, 't, 'm> {
     pub(super) scene: &'s Scene<'s>,
     pub(super) options: &'s Options,
     pub(super) monitor: &'s mut Monitor<'m>,
-    /// Cycles of the normal problem so far.
+    /// Cycles of the normal problem in all turns, without those of its first solve.
     cycles: usize,
 }
 
@@ -139,7 +139,7 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
             if solved == MOST_TURNS {
                 break;
             }
-            // The caller's limit bounds the work of all turns together.
+            // The caller's limit bounds the cycles of the first solve, and again those of all turns together.
             let left = options.max_cycles.saturating_sub(self.cycles);
             if left == 0 || !turns.that(true).all(|coupled| coupled.has_work_left()) {
                 return Ok(Outcome::IterationLimit);

@@ -23,7 +23,7 @@ impl Solver {
     }
 
     /// Solves a step of a checked scene as a problem of scaled lengths; `k`: the effect. A step that is refused or fails leaves the memory of
-    /// the bodies unchanged.
+    /// the bodies unchanged. A step that stops early, by a limit or a callback, is a step of that memory.
     fn solve_with_memory(
         &mut self,
         (scene, k, memory): (&Scene<'_>, usize, &dyn Memory),

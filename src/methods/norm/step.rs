@@ -187,7 +187,7 @@ impl<S: AdmissibleSet> Step<S> for Norm {
     }
 
     fn policy(&self) -> Policy {
-        // The guard against cycling bounds the number of steps.
+        // The guard against cycling bounds the number of steps. With limits and a prescribed force it may fail. Then max_cycles bounds them.
         Policy { exchanged_by_loop: false, step_is_cycle: false, chatter: 0, patience: u32::MAX, progress: 1.0 }
     }
 

@@ -135,7 +135,8 @@ fn of_tangential_force(scene: &Scene<'_>, report: &Report) -> f64 {
 /// follow from the grids before (module `sequence`); the coarsest grid has none.
 ///
 /// # Errors
-/// Those of a solve on the grid of the scene (rows of a coarser grid that is refused have no values); `Unsupported`: own coefficients, kept tractions, and a fixed contact area.
+/// Those of a solve on the grid of the scene. `Unsupported`: own coefficients, kept tractions, and a fixed contact area. Rows of a coarser grid
+/// that is refused have no values.
 pub fn quantities(
     scene: &Scene<'_>,
     options: &Options,

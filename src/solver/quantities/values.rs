@@ -48,8 +48,9 @@ impl Quantity {
         }
     }
 
-    /// Why the scene has the quantity on no grid. Not inlined, as the functions below: hoisted from the loop over quantities, the tests of
-    /// effects that a scene does not name read unwritten memory, which is harmless but reported by valgrind.
+    /// Why the scene has the quantity on no grid. This function and those below are not inlined. The compiler would move their tests of effects
+    /// out of the loop over quantities. The tests would read unwritten memory for effects that the scene does not name. This is harmless, but
+    /// valgrind reports it.
     #[inline(never)]
     fn lack(self, scene: &Scene<'_>) -> Option<Lack> {
         use Quantity::{Creepage, MaxShear, MaxVonMises, SpinMoment, StickArea, TangentialForce, VonMisesDepth};

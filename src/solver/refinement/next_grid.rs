@@ -45,7 +45,7 @@ pub(super) enum Next {
 
 /// Elements in the longer direction below which a grid may lack an estimate.
 const SMALL_GRID: usize = 32;
-/// The search ends after this many larger grids without an estimate, or this many grids without contact.
+/// The search ends after this many larger grids without an estimate, or this many grids in succession without contact.
 pub const MOST_WITHOUT: usize = 3;
 /// Most doublings of a prediction. Over more, errors are uncertain, and a grid in between costs only 1/64 of the last.
 const MOST_DOUBLINGS: u32 = 3;

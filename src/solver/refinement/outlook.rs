@@ -117,8 +117,8 @@ pub struct Values {
 
 /// Elements across the contact area, along x and y; unlimited in a direction in which a periodic area has no end, and for bodies apart that attract.
 pub fn across(state: &State, repeats: (bool, bool)) -> (usize, usize) {
-    let State { grid, contact, p, .. } = state;
-    let touching = Rectangle::around_values(contact, grid, &Threads::One, |row| row.contains(&true));
+    let State { grid, p, .. } = state;
+    let touching = Rectangle::around_values(&state.touching(), grid, &Threads::One, |row| row.contains(&true));
     let span = |count: usize, m: usize, repeats: bool| if count == m && repeats { usize::MAX } else { count };
     let attract = || p.iter().any(|p| *p != 0.0);
     match touching {

@@ -19,7 +19,7 @@ pub(super) const ACROSS: usize = 12;
 /// The reason why an accuracy cannot be reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Obstacle {
-    /// The largest pressure is singular, or contact is on single elements. No sufficient grid is known.
+    /// No sufficient grid is known: the quantity is singular, contact is on few elements, or there is none.
     Singular,
     /// The target is below round-off.
     RoundOff,

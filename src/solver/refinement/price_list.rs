@@ -29,7 +29,7 @@ const NEXT: f64 = 5.0;
 /// Lower bound on that ratio.
 const LEAST_NEXT: f64 = 2.0;
 
-/// Elements of a sample beyond which an unresolved contact is accepted.
+/// Elements of a sample beyond which an unresolved contact is accepted. Up to there samples go on, however long they take.
 const UNRESOLVED: f64 = 2e5;
 /// Most seconds of the samples, about, while no row is known.
 const UNKNOWN: f64 = 2.0;
