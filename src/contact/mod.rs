@@ -26,7 +26,7 @@ pub use ends::at_ends;
 pub use exchange::{admit, all_stay, enter, leave, truncate};
 pub use guard::ExchangeGuard;
 pub use jumps::{at_jumps, each_jump, Jump};
-pub use outline::Outline;
+pub use outline::{touching, Outline};
 pub use problem::Problem;
 pub use snapshot::Snapshot;
 pub use state::State;

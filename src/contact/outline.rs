@@ -13,10 +13,12 @@
 //! Along a straight outline parallel to the elements there is no mean over directions: all of it has the error of the same part of an
 //! element. Such pieces are counted.
 
+use std::borrow::Cow;
 use std::f64::consts::{LN_2, PI};
 
 use super::State;
 use crate::grid::Grid;
+use crate::memory::collected;
 
 /// Part of an element by which each change overestimates the area.
 const SHARE: f64 = (PI - 1.0 + LN_2) / 24.0;
@@ -52,11 +54,11 @@ impl Outline {
     /// The outline of the elements that touch. Rows without contact cost almost nothing.
     pub fn of(state: &State) -> Outline {
         let (mx, my) = (state.grid.mx, state.grid.my);
-        let touching = state.touching();
+        let area = touching(state);
         let mut outline = Outline::default();
         let (mut above, mut same): (&[bool], Same) = (&[], Same::default());
         let (mut above_touches, mut above_holes) = (false, None);
-        for (iy, row) in touching.chunks_exact(mx).enumerate() {
+        for (iy, row) in area.chunks_exact(mx).enumerate() {
             let touches = row.contains(&true);
             let mut row_holes = None;
             if touches || above_touches {
@@ -67,8 +69,7 @@ impl Outline {
                 let above_with_holes = above_holes.unwrap_or_else(|| holes(&state.h[start.saturating_sub(mx)..start]));
                 let (mut ends_along, mut ends_across) = (0, 0);
                 if with_holes || above_with_holes {
-                    let ends =
-                        |i: usize, j: usize| touching[i] != touching[j] && state.h[i].max(state.h[j]).is_infinite();
+                    let ends = |i: usize, j: usize| area[i] != area[j] && state.h[i].max(state.h[j]).is_infinite();
                     ends_along = (start..start + mx - 1).filter(|&i| ends(i, i + 1)).count();
                     ends_across = if iy > 0 { (start..start + mx).filter(|&i| ends(i - mx, i)).count() } else { 0 };
                 }
@@ -141,6 +142,17 @@ impl Outline {
     pub fn corrected_area(&self, state: &State, count: usize) -> f64 {
         (count as f64 - SHARE * self.changes as f64).max(0.0) * state.grid.element_area()
     }
+}
+
+/// The elements that touch: those in contact, and those at their limit. Where no limit is reached, or without memory for a copy, those in contact.
+pub fn touching(state: &State) -> Cow<'_, [bool]> {
+    if state.has_limited() {
+        let touches = (0..state.contact.len()).map(|i| state.touches(i));
+        if let Ok(touching) = collected(touches, "the elements that touch") {
+            return Cow::Owned(touching);
+        }
+    }
+    Cow::Borrowed(&state.contact)
 }
 
 /// Whether a row has elements without a surface.

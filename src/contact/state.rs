@@ -1,7 +1,6 @@
 //! The unknowns of one grid and their status.
 
 use std::array::from_fn;
-use std::borrow::Cow;
 use std::ops::Range;
 
 use super::values::lowest;
@@ -9,7 +8,7 @@ pub use super::values::Freshness;
 use crate::blocks;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::{asleep, collected, keep, rest, wake, zeros};
+use crate::memory::{asleep, keep, rest, wake, zeros};
 use crate::scene::Load;
 use crate::sums::{sum_where, Sums};
 use crate::threads::Threads;
@@ -133,17 +132,6 @@ impl State {
     #[inline]
     pub fn touches(&self, i: usize) -> bool {
         self.contact[i] || self.at_limit.get(i).is_some_and(|&at_limit| at_limit)
-    }
-
-    /// The elements that touch: those in contact, and those at their limit. Where no limit is reached, or without memory for a copy, those in contact.
-    pub fn touching(&self) -> Cow<'_, [bool]> {
-        if self.has_limited() {
-            let touches = (0..self.contact.len()).map(|i| self.touches(i));
-            if let Ok(touching) = collected(touches, "the elements that touch") {
-                return Cow::Owned(touching);
-            }
-        }
-        Cow::Borrowed(&self.contact)
     }
 
     /// Whether u is finite in the whole contact area. u is infinite outside the window of a coarser grid, and the contact area may have grown beyond

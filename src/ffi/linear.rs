@@ -46,7 +46,8 @@ pub unsafe extern "C" fn contact_normal_solver_product(
 /// relative error of the stiffness is about that. OK: it is at most 1e-6, mostly 1e-10; ITERATION_LIMIT, STAGNATED: both are written, and it is
 /// larger. INFEASIBLE: full contact with two periods. INVALID_ARGUMENT: the handle has no result. As a function of the approach the
 /// force has this derivative also where the contact area changes, but for jumps by single elements that enter or leave. The first call sets up memory of about the size
-/// of the handle. Since 0.2.
+/// of the handle. After `contact_normal_solver_set_influence` it is that of the new coefficients. UNSUPPORTED: the last result is one of adhesion,
+/// whose report has it. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solver_stiffness(
     solver: *mut contact_normal_solver,

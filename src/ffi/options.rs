@@ -81,7 +81,7 @@ pub struct contact_normal_options {
     /// Of the criterion, between 0 and 1 (p = 0 has a residual of 1); default 1e-6.
     pub tolerance: f64,
     /// > 0: may stop once the residual is below this part of the estimated discretisation error; OK then means the larger tolerance
-    /// that `report->normal.tolerance` says. Default 0: the tolerance above.
+    /// that `report->normal.tolerance` says. NORM and MULTIGRID, and scenes without an estimate, keep the tolerance. Default 0: the tolerance above.
     pub error_ratio: f64,
     /// Cycles, or iterations of conjugate gradients or steps of GMRES, on the finest grid at most; default 1000. The first way to a pull (adhesion,
     /// force < 0) may take three times as many, and each further way as many, or four times those of the first and 500 if that is more.

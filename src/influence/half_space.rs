@@ -264,7 +264,8 @@ fn line(k: f64, d: f64, y: f64) -> f64 {
     }
     let (rp, rm) = (plus.hypot(y), minus.hypot(y));
     // (X+ + r+)/(X- + r-) - 1, with r+ - r- = (X+^2 - X-^2)/(r+ + r-)
-    ((d + (plus + minus) * d / (rp + rm)) / (minus + rm)).ln_1p()
+    let near = if minus < 0.0 { y * (y / (rm - minus)) } else { minus + rm };
+    ((d + (plus + minus) * d / (rp + rm)) / near).ln_1p()
 }
 
 /// The polynomials `q_k(t)`: mean over the element of `|s|^n P_n(cos)`, `n = 2k`, in units of the half-diagonal.

@@ -163,8 +163,12 @@ fn stiffness(problem: &Problem, force: f64, displaced: f64, area: f64) -> f64 {
     found.max(1.0 / (1.0 / of_circle + compressed).max(0.0))
 }
 
-/// Relative discretisation error of the force (or the approach), from a state near the solution; 0 if unknown.
+/// Relative discretisation error of the force (or the approach), from a state near the solution; 0 if unknown, as beside limits that are reached and for
+/// row tables.
 pub fn predict(problem: &Problem, state: &State) -> f64 {
+    if !problem.symmetric || state.has_limited() {
+        return 0.0;
+    }
     let outline = Outline::of(state);
     let curvature = Curvature::of(problem, state, &outline);
     let found = match state.load {

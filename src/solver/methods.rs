@@ -183,7 +183,9 @@ impl Methods {
                 task.state.start(self_influence);
             }
         }
-        if error_ratio > 0.0 {
+        // The other methods start from p = 0, which tells nothing of the error.
+        let is_near = matches!(stage, Stage::Direct | Stage::ProjectedCg | Stage::FullMultigrid);
+        if error_ratio > 0.0 && is_near && !S::FIXED {
             let predicted = estimates::predict(task.problem, task.state);
             // A solution with a larger residual is useless, however coarse the grid.
             let enough = (error_ratio * predicted).min(UPDATE_RESIDUAL);

@@ -34,10 +34,12 @@ pub fn share<S: AdmissibleSet>(stage: Stage, done: u64, most: u64) -> u64 {
 pub fn stages<S: AdmissibleSet>(method: Method, symmetric: bool, multigrid: bool) -> &'static [Stage] {
     use Stage::{Direct, FullMultigrid, Norm, ProjectedCg, ProjectedNewton, VCycles};
     match method {
-        Method::Norm => &[Norm],
-        // With limits V-cycles may cycle between contact areas.
+        // With limits any of these may cycle between contact areas.
+        Method::Norm if S::LIMITED && symmetric && !S::FIXED => &[Norm, ProjectedNewton],
+        Method::ProjectedCg if S::LIMITED && symmetric && !S::FIXED => &[Direct, ProjectedCg, ProjectedNewton],
         Method::Multigrid if S::LIMITED && symmetric => &[VCycles, ProjectedNewton],
         Method::FullMultigrid if S::LIMITED && symmetric => &[FullMultigrid, ProjectedNewton],
+        Method::Norm => &[Norm],
         Method::Multigrid => &[VCycles],
         Method::FullMultigrid => &[FullMultigrid],
         Method::ProjectedCg if S::FIXED => &[ProjectedCg],

@@ -2,7 +2,7 @@
 
 use contact_normal::adhesion::Law;
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Load, Period, Scene};
+use contact_normal::scene::{Bodies, Load, Period, Scene};
 use contact_normal::solver::{Guess, InitialGuess, Options, Outcome, Solver};
 
 use super::support::{adhesion, bodies, Sphere};
@@ -49,15 +49,21 @@ fn the_stable_state_of_a_force_is_found_or_cycles_end() {
 /// Cycles end on the way down to a pull: the state is the strongest that was found, not one between two states.
 #[test]
 fn more_cycles_do_not_lose_the_state_of_a_pull() {
+    let n = 32;
+    let grid = Grid::new(n, n, 0.1, 0.1).expect("a grid");
+    let own = adhesion(Law::Exponential, 2e-2, 0.0);
+    let equal = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3; 2] };
     for roughness in [0.0, 0.05] {
-        let mut sphere = Sphere::new(32, 1.6, Law::Exponential, 0.05);
+        let at = |k: usize| (k as f64 - 15.5) * 0.1;
         let random = |i: usize| ((i as f64 * 12.9898).sin() * 43758.5453).fract();
-        sphere.h.iter_mut().enumerate().for_each(|(i, h)| *h += roughness * 0.05 * random(i));
+        let height = |i: usize| 0.5 * (at(i % n).powi(2) + at(i / n).powi(2)) + roughness * random(i);
+        let h: Vec<f64> = (0..n * n).map(height).collect();
+        let scene = |load| Scene { adhesion: Some(own), ..Scene::new(grid, &h, equal, load) };
         let options = Options::default();
-        let none = sphere.scene(Load::Approach(0.0));
+        let none = scene(Load::Approach(0.0));
         let mut solver = Solver::new(&none, &options).expect("a solver");
         let strongest = solver.pull_off(&none, &options, None).expect("a pull-off").1.measures.force;
-        let scene = sphere.scene(Load::Force(0.97 * strongest));
+        let scene = scene(Load::Force(0.97 * strongest));
         let mut was_state = false;
         for max_cycles in 3..40 {
             let mut solver = Solver::new(&scene, &options).expect("a solver");

@@ -14,6 +14,7 @@ mod parting;
 mod prices;
 mod pulls;
 mod random;
+mod refused;
 mod sphere;
 mod stability;
 mod support;

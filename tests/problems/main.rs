@@ -22,6 +22,7 @@ mod accuracy;
 mod accuracy_target;
 mod batch;
 mod bearing_area;
+mod beside_limits;
 mod bill;
 mod bill_of_areas;
 mod coated_period;

@@ -73,8 +73,10 @@ fn tolerances_and_targets_lie_below_1() {
     let mut solver = Solver::new(&scene, &Options::default()).unwrap();
     for tolerance in [1.0, 1.0 + 1e-15, 3.0, 1e300, f64::INFINITY, f64::NAN, 0.0, -1e-3] {
         for criterion in [Criterion::Residual, Criterion::Update] {
-            let (options, words) =
-                (Options { tolerance, criterion, ..Options::default() }, format!("tolerance is {tolerance}"));
+            let (options, words) = (
+                Options { tolerance, criterion, ..Options::default() },
+                format!("tolerance is {}", if tolerance == 1e300 { "1e300".into() } else { tolerance.to_string() }),
+            );
             for method in [Method::Auto, Method::Norm, Method::Multigrid, Method::FullMultigrid, Method::ProjectedCg] {
                 names(solve(&scene, &Options { method, ..options }).map(drop), &words);
             }

@@ -5,7 +5,7 @@
 
 use contact_normal::grid::Grid;
 use contact_normal::operator::dense;
-use contact_normal::scene::{Bodies, Layer, Load, Scene};
+use contact_normal::scene::{Bodies, Friction, Layer, Load, Motion, Prescribed, Scene};
 use contact_normal::solver::{
     cost_of_accuracy, effects_bill, quantities, solve, solve_to_accuracy, Accuracy, BillOptions, Lack, Options,
     Outcome, Quantity,
@@ -74,4 +74,26 @@ fn a_bill_is_that_of_the_grid_of_the_scene() {
         effects_bill(&scene, &Options::default(), &BillOptions::new(1e-2), &[Quantity::Force], None).expect("a bill");
     assert_eq!(stop, Outcome::Converged);
     assert!(rows[0].value.is_some_and(|value| value > 0.0), "{rows:?}");
+}
+
+/// Arrays that only a law of friction reads belong to one grid. Without a law they are not read, and many grids are solved.
+#[test]
+fn what_a_law_would_read_is_not_in_the_way_without_one() {
+    let grid = Grid::new(16, 16, 0.1, 0.1).expect("a grid");
+    let at = |k: usize| (k as f64 - 7.5) * 0.1;
+    let h: Vec<f64> = (0..256).map(|i| at(i % 16).powi(2) + at(i / 16).powi(2)).collect();
+    let before = vec![0.3; grid.len()];
+    let friction = Friction {
+        motion: Motion::TransientRolling,
+        prescribed: [Prescribed::Creepage(-0.01), Prescribed::Creepage(0.0)],
+        coefficients_before: Some(&before),
+        yield_limits: Some(&before),
+        ..Friction::new(0.3)
+    };
+    let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, BODIES, Load::Approach(0.1)) };
+    let (stop, rows) = quantities(&scene, &Options::default(), &[Quantity::TangentialForce], 1, None).expect("rows");
+    assert_eq!(stop, Outcome::Converged);
+    assert!(rows.iter().all(|row| row.value.is_some()), "{rows:?}");
+    let found = solve_to_accuracy(&scene, &Options::default(), &Accuracy::new(1e-3), None, None).expect("a search");
+    assert_eq!(found.stop, Outcome::Converged, "{}", found.reason);
 }

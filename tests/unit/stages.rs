@@ -30,6 +30,10 @@ fn every_method_of_a_list_has_its_turn() {
             }
         }
     }
+    // With limits each method has another one behind it.
+    for method in [Method::Norm, Method::Multigrid, Method::FullMultigrid, Method::ProjectedCg] {
+        assert_eq!(stages::<PressureLimit<'_>>(method, true, true).last(), Some(&Stage::ProjectedNewton));
+    }
     let auto = stages::<NonNegative>(Method::Auto, true, false);
     // 0.4 of what is left, and the last one has the rest.
     assert_eq!(cycles::<NonNegative>(auto, 1000), [400, 240, 144, 216]);

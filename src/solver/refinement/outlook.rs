@@ -1,6 +1,6 @@
 //! Forecasts for finer grids from a solution.
 
-use crate::contact::State;
+use crate::contact::{touching, State};
 use crate::rectangle::Rectangle;
 use crate::scene::{Load, Scene};
 use crate::solver::falling::Falling;
@@ -118,10 +118,10 @@ pub struct Values {
 /// Elements across the contact area, along x and y; unlimited in a direction in which a periodic area has no end, and for bodies apart that attract.
 pub fn across(state: &State, repeats: (bool, bool)) -> (usize, usize) {
     let State { grid, p, .. } = state;
-    let touching = Rectangle::around_values(&state.touching(), grid, &Threads::One, |row| row.contains(&true));
+    let around = Rectangle::around_values(&touching(state), grid, &Threads::One, |row| row.contains(&true));
     let span = |count: usize, m: usize, repeats: bool| if count == m && repeats { usize::MAX } else { count };
     let attract = || p.iter().any(|p| *p != 0.0);
-    match touching {
+    match around {
         Some(Rectangle { x, y }) => (span(x.len(), grid.mx, repeats.0), span(y.len(), grid.my, repeats.1)),
         None if attract() => (usize::MAX, usize::MAX),
         None => (0, 0),

@@ -1465,7 +1465,7 @@ typedef struct contact_normal_options {
   double tolerance;
   /*
    > 0: may stop once the residual is below this part of the estimated discretisation error; OK then means the larger tolerance
-   that `report->normal.tolerance` says. Default 0: the tolerance above.
+   that `report->normal.tolerance` says. NORM and MULTIGRID, and scenes without an estimate, keep the tolerance. Default 0: the tolerance above.
    */
   double error_ratio;
   /*
@@ -2853,7 +2853,8 @@ contact_normal_status contact_normal_solver_product(struct contact_normal_solver
  relative error of the stiffness is about that. OK: it is at most 1e-6, mostly 1e-10; ITERATION_LIMIT, STAGNATED: both are written, and it is
  larger. INFEASIBLE: full contact with two periods. INVALID_ARGUMENT: the handle has no result. As a function of the approach the
  force has this derivative also where the contact area changes, but for jumps by single elements that enter or leave. The first call sets up memory of about the size
- of the handle. Since 0.2.
+ of the handle. After `contact_normal_solver_set_influence` it is that of the new coefficients. UNSUPPORTED: the last result is one of adhesion,
+ whose report has it. Since 0.2.
  */
 contact_normal_status contact_normal_solver_stiffness(struct contact_normal_solver *solver,
                                                       double *stiffness,
@@ -2949,8 +2950,8 @@ contact_normal_status contact_normal_solve_to_accuracy(const struct contact_norm
 /*
  Predicts the cost of each of `n` relative errors of a `quantity`: `rows[i]` is that of `targets[i]`, and `contact_normal_price_init(rows)`
  has set the size of a row. The scene is solved on small grids over its rectangle only, for at most 2 % of the seconds of the most
- expensive row that can be reached, or 50 ms. Of `accuracy` (NULL: the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and
- `user` are read: a row beyond a limit names it as its obstacle, and has the cost without the limit. With a surface the scene's undeformed
+ expensive row that can be reached, or 50 ms; for some 2 s where no row is known by then. Of `accuracy` (NULL: the defaults) `max_seconds`,
+ `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit names it as its obstacle, and has the cost without the limit. With a surface the scene's undeformed
  distance is not read and may be NULL. Without one small grids sample it, and grids finer than the scene's are refined from it, as
  `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface or `options->stop`; ITERATION_LIMIT: `options->max_seconds` was reached;
  rows have the results so far. UNSUPPORTED: own coefficients, FIXED contact, or a step of bodies that relax which continues. Since 0.2.
@@ -3080,7 +3081,8 @@ contact_normal_status contact_normal_subsurface_stress(const struct contact_norm
  element (ix, iy) has its centre at ((ix + 1/2 - mx/2) dx, (iy + 1/2 - my/2) dy), and the depth z >= 0. `stress` is `[n][6]`: xx, yy, zz, xy, xz,
  yz of each point. A point at z = 0 on the edge of an element, to within rounding, is refused: stresses jump there or are infinite. With
  `patches` a point must lie below the grid; it takes the factors of the patch of the element above, on an edge that of the larger index.
- Time grows with n times the number of loaded elements. With `period`: UNSUPPORTED. Since 0.2.
+ Time grows with n times the number of loaded elements. CANCELLED, or ITERATION_LIMIT by `max_seconds`: stresses of points that were not
+ reached are 0. With `period`: UNSUPPORTED. Since 0.2.
  */
 contact_normal_status contact_normal_stress_at_points(const struct contact_normal_scene *scene,
                                                       int32_t body,

@@ -1,0 +1,69 @@
+//! A solve that is refused leaves the last result of a handle: its split into contact pressures and attraction, and its friction.
+
+use contact_normal::error::Error;
+use contact_normal::scene::{Bodies, Friction, Load, Prescribed, Scene};
+use contact_normal::solver::{Options, Outcome, Solver};
+
+use super::support::Sphere;
+
+fn split(solver: &Solver) -> Vec<(f64, f64)> {
+    let split = solver.adhesion().expect("a result of adhesion");
+    (0..solver.grid().len()).map(split).collect()
+}
+
+fn refused(solver: &mut Solver, scene: &Scene<'_>) {
+    let outcome = solver.solve(scene, &Options::default(), None, None).map(|_| ());
+    assert!(
+        matches!(outcome, Err(Error::InvalidArgument(_) | Error::NotFinite(_) | Error::Infeasible(_))),
+        "{outcome:?}"
+    );
+}
+
+#[test]
+fn what_is_refused_leaves_the_split_of_the_pressures() {
+    let sphere = Sphere::by_tabor(1.0, 24, 3.0);
+    let adhesive = sphere.scene(Load::Approach(0.1));
+    let plain = Scene { adhesion: None, ..adhesive.clone() };
+    let friction = Friction { prescribed: [Prescribed::Force(1e3), Prescribed::Creepage(0.0)], ..Friction::new(0.3) };
+    let rubbed = Scene { friction: Some(friction), load: Load::Force(0.5), ..plain.clone() };
+    let far = Scene { load: Load::Approach(1e150), ..plain.clone() };
+    for scene in [far, rubbed] {
+        let mut solver = Solver::new(&adhesive, &Options::default()).expect("a solver");
+        assert_eq!(solver.solve(&adhesive, &Options::default(), None, None).expect("a solve").0, Outcome::Converged);
+        let before = split(&solver);
+        assert!(before.iter().any(|(_, attraction)| *attraction > 0.0));
+        refused(&mut solver, &scene);
+        assert_eq!(before, split(&solver));
+        // The next solve of the same kind works as before.
+        assert_eq!(solver.solve(&plain, &Options::default(), None, None).expect("a solve").0, Outcome::Converged);
+        assert!(solver.adhesion().is_none());
+    }
+}
+
+#[test]
+fn what_is_refused_for_its_friction_leaves_a_result_of_adhesion() {
+    let sphere = Sphere::by_tabor(1.0, 24, 3.0);
+    let of = |force: f64| {
+        let prescribed = [Prescribed::Force(force), Prescribed::Creepage(0.0)];
+        let friction = Some(Friction { prescribed, ..Friction::new(0.3) });
+        // Of equal bodies, whose tractions leave the pressures as they are.
+        let bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3; 2] };
+        Scene { friction, bodies, ..sphere.scene(Load::Approach(0.1)) }
+    };
+    let mut solver = Solver::new(&of(0.1), &Options::default()).expect("a solver");
+    assert_eq!(solver.solve(&of(0.1), &Options::default(), None, None).expect("a solve").0, Outcome::Converged);
+    let (before, p) = (split(&solver), solver.state().p.clone());
+    refused(&mut solver, &of(1e3));
+    assert_eq!((before, p), (split(&solver), solver.state().p.clone()));
+}
+
+/// The stiffness of bodies without adhesion is another one.
+#[test]
+fn the_stiffness_of_a_result_of_adhesion_comes_with_it() {
+    let sphere = Sphere::by_tabor(1.0, 24, 3.0);
+    let scene = sphere.scene(Load::Approach(0.1));
+    let mut solver = Solver::new(&scene, &Options::default()).expect("a solver");
+    solver.solve(&scene, &Options::default(), None, None).expect("a solve");
+    let Err(Error::Unsupported(message)) = solver.stiffness().map(|_| ()) else { panic!("not refused") };
+    assert!(message.contains("adhesion->stiffness"), "{message}");
+}
