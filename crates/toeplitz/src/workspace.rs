@@ -21,7 +21,7 @@ pub struct Room {
     pub columns: usize,
     /// Complex values of scratch, for each thread.
     pub scratch: usize,
-    /// The number of threads; each has a [`Piece`].
+    /// The number of threads; each has a `Piece`.
     pub pieces: usize,
 }
 
