@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::law::Attraction;
 use super::level::{Level, MakeFrozen};
 use super::levels::{levels, take_surfaces};
 use super::majorise::Descent;
@@ -12,12 +13,13 @@ use super::request::{Request, Start, State};
 use super::robust;
 use super::stability::stability;
 use super::tangent::stiffness_of_contact;
-use super::unknowns::largest;
+use super::unknowns::{largest, Surface};
 use super::way::count_contact;
 use crate::contact;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
+use crate::memory::collected;
 use crate::methods::fields;
 use crate::operator::Operator;
 use crate::progress::{Monitor, Outcome};
@@ -70,6 +72,18 @@ impl Solver {
         let sigma = self.finest().surface.traction(i, state.h[i] - state.approach + state.u[i]);
         // Within the residual, q may be slightly negative.
         (if state.contact[i] { (state.p[i] + sigma).max(0.0) } else { 0.0 }, sigma)
+    }
+
+    /// The law, the largest work and the works of the last scene, which [`Solver::split`] reads.
+    pub fn law_and_works(&self) -> Result<(Attraction, f64, Vec<f64>)> {
+        let Surface { attraction, work, works, .. } = &self.finest().surface;
+        Ok((*attraction, *work, collected(works.iter().copied(), "works of adhesion")?))
+    }
+
+    /// Restores what [`Solver::law_and_works`] returned.
+    pub fn restore(&mut self, (attraction, work, works): (Attraction, f64, Vec<f64>)) {
+        let surface = &mut self.levels[0].surface;
+        (surface.attraction, surface.work, surface.works) = (attraction, work, works);
     }
 
     /// Bytes held, without the lent arrays and the operator of the finest grid.

@@ -115,6 +115,8 @@ impl Solver {
         self.check_continues(scene)?;
         let goes_on = options.initial_guess == InitialGuess::Previous && self.has_result;
         let kept = self.kept(scene)?;
+        let before = self.adhesion.as_ref().filter(|_| kept.is_some() && self.is_adhesive);
+        let before = before.map(|before| before.law_and_works()).transpose()?;
         self.methods.projected_cg.forget_windows();
         self.methods.projected_cg.forget_solutions();
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), false);
@@ -128,6 +130,9 @@ impl Solver {
         });
         if outcome.is_err() {
             self.go_back(kept);
+            if let (Some(before), Some(solver)) = (before, &mut self.adhesion) {
+                solver.restore(before);
+            }
         }
         let (stop, found, friction) = outcome?;
         effects::keep(scene, &mut self.beside.histories);

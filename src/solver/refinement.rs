@@ -144,7 +144,7 @@ impl Refinement {
             return Refinement { stop, reason, solver: None, report: Report::default(), reached: None, seconds };
         };
         // Without contact the result is exact.
-        let without = report.measures.contact_count == 0 && report.adhesion.is_none() && stop == Outcome::Converged;
+        let without = report.measures.contact_count == 0 && report.measures.force == 0.0 && stop == Outcome::Converged;
         let reached = outlook.relative(Quantity::Force).or(without.then_some(0.0));
         let number = reached.map_or("not known".into(), |reached| format!("{reached:.2e}"));
         let grid = solver.problem.grid;

@@ -1,7 +1,7 @@
 //! A solve that is refused leaves the last result of a handle: its split into contact pressures and attraction, and its friction.
 
 use contact_normal::error::Error;
-use contact_normal::scene::{Bodies, Friction, Load, Prescribed, Scene};
+use contact_normal::scene::{Adhesion, Bodies, Friction, Load, Prescribed, Scene, Work};
 use contact_normal::solver::{Options, Outcome, Solver};
 
 use super::support::Sphere;
@@ -53,6 +53,9 @@ fn what_is_refused_for_its_friction_leaves_a_result_of_adhesion() {
     let mut solver = Solver::new(&of(0.1), &Options::default()).expect("a solver");
     assert_eq!(solver.solve(&of(0.1), &Options::default(), None, None).expect("a solve").0, Outcome::Converged);
     let (before, p) = (split(&solver), solver.state().p.clone());
+    // Of another work, too.
+    let own = Adhesion { work: Work::Uniform(0.1), ..sphere.adhesion };
+    refused(&mut solver, &Scene { adhesion: Some(own), ..of(1e3) });
     refused(&mut solver, &of(1e3));
     assert_eq!((before, p), (split(&solver), solver.state().p.clone()));
 }

@@ -97,3 +97,23 @@ fn what_a_law_would_read_is_not_in_the_way_without_one() {
     let found = solve_to_accuracy(&scene, &Options::default(), &Accuracy::new(1e-3), None, None).expect("a search");
     assert_eq!(found.stop, Outcome::Converged, "{}", found.reason);
 }
+
+/// The scene's own grid decides, however long coarser ones take that are refused.
+#[test]
+fn a_price_list_comes_to_the_grid_of_the_scene_on_a_slow_machine() {
+    let scene_grid = Grid::new(M, M, 0.05, 0.05).expect("a grid");
+    let scene = Scene::new(scene_grid, &[], BODIES, Load::Force(0.1));
+    let mut surface = |grid: &Grid, h: &mut [f64]| {
+        let at = |k: usize| (k as f64 - 0.5 * (grid.mx as f64 - 1.0)) * grid.dx;
+        std::thread::sleep(std::time::Duration::from_millis(40));
+        h.iter_mut().enumerate().for_each(|(i, h)| {
+            *h = if grid.mx < M { f64::INFINITY } else { 0.5 * (at(i % grid.mx).powi(2) + at(i / grid.mx).powi(2)) };
+        });
+        false
+    };
+    let accuracy = Accuracy::new(1e-2);
+    let wanted = (Quantity::Force, &[1e-2][..]);
+    let (stop, list) =
+        cost_of_accuracy(&scene, &Options::default(), &accuracy, wanted, Some(&mut surface), None).expect("a list");
+    assert!(stop == Outcome::Converged && list[0].grid.is_some(), "{list:?}");
+}

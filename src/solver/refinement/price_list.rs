@@ -76,7 +76,7 @@ pub fn cost_of_accuracy(
             Taken::Sample(sample) => sample.carried_on(&mut history),
             Taken::Cancelled => return Ok((Outcome::Cancelled, list(&samples))),
             // A coarser grid may be refused where the scene's is not.
-            Taken::Unsolved if samples.is_empty() && doublings < 0 && began.elapsed().as_secs_f64() < SECONDS => {
+            Taken::Unsolved if samples.is_empty() && doublings < 0 => {
                 doublings += 1;
                 continue;
             }
