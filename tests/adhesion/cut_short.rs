@@ -97,3 +97,20 @@ fn given_pressures_go_on_as_previous_ones_do() {
     assert!(given <= previous + 1, "{given} {previous}");
     assert!((other.state().approach - solver.state().approach).abs() < 1e-5);
 }
+
+/// Flat bodies with two periods part at once, at all of the attraction. Below it no contact problem with that attraction has a solution.
+#[test]
+fn flat_bodies_with_two_periods_part_at_once() {
+    let grid = Grid::new(4, 4, 1.0, 1.0).expect("a grid");
+    let h = [0.0; 16];
+    let scene = Scene {
+        adhesion: Some(adhesion(Law::Exponential, 1e-3, 1e-3)),
+        period: Some(Period { x: true, y: true }),
+        ..Scene::new(grid, &h, bodies(1.0), Load::Force(0.01))
+    };
+    let mut solver = Solver::new(&scene, &Options::default()).expect("a solver");
+    let (outcome, report) = solver.pull_off(&scene, &Options::default(), None).expect("a pull-off");
+    // w/rho is 1 on 16 elements.
+    assert_eq!(outcome, Outcome::Converged);
+    assert!((report.measures.force + 16.0).abs() < 1e-12, "{:e}", report.measures.force);
+}
