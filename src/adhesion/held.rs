@@ -9,7 +9,6 @@ use super::place::{Met, Place, Walk};
 use super::request::Start;
 use super::solver::Solver;
 use super::tangent::is_stable;
-use super::unknowns::largest;
 use super::way::Walker;
 use crate::error::Result;
 use crate::progress::Monitor;
@@ -158,8 +157,7 @@ impl Solver {
                 level.refresh()?;
                 level.count_products(monitor);
                 let measured = level.measure(false, None);
-                let is_state = largest([measured.distance, measured.law]) <= goal.tolerance;
-                if !(is_state && measured.pressures < strongest.sum) {
+                if !(measured.is_state(goal.tolerance) && measured.pressures < strongest.sum) {
                     level.now.copy_from(&strongest.at)?;
                 }
                 Ok(walk)

@@ -13,7 +13,7 @@ use super::request::{Request, Start, State};
 use super::robust;
 use super::stability::stability;
 use super::tangent::stiffness_of_contact;
-use super::unknowns::{largest, Surface};
+use super::unknowns::Surface;
 use super::way::count_contact;
 use crate::contact;
 use crate::error::Result;
@@ -133,12 +133,12 @@ impl Solver {
         (start, make): (Start, MakeFrozen<'_>),
         monitor: &mut Monitor<'_>,
     ) -> Result<Descent> {
-        let before = state.contact.iter().filter(|&&inside| inside).count();
         let level = &mut self.levels[0];
         if let Some(pressure) = state.pressure {
             level.now.p.field.as_flattened_mut().copy_from_slice(pressure);
         }
         level.now.contact.copy_from_slice(state.contact);
+        let before = count_contact(level);
         if goal.wanted.is_some() {
             level.now.p.border = [state.approach];
         }
@@ -147,29 +147,27 @@ impl Solver {
         if state.pressure.is_some() && goal.wanted.is_some() {
             approach_contact(level);
         }
-        if !pulls(goal) {
+        let (end, settled) = if !pulls(goal) {
             let ended = robust::solve(level, goal, (true, make), monitor)?;
             self.jumped = ended.is_lost && is_snap(before, ended.measured.count);
             let settled = match goal.wanted.is_some() && ended.is_in_contact() {
                 true => self.walker(goal, make, monitor).settle()?,
                 false => Walk::Found,
             };
-            match settled {
-                Walk::Found => return Ok(ended.end),
-                Walk::Interrupted => return Ok(Descent::By(End::Interrupted)),
-                _ => {}
-            }
+            (ended.end, settled)
         } else {
             let (end, _) = newton(level, goal, true, monitor)?;
-            match end {
-                End::Interrupted => return Ok(Descent::By(end)),
-                End::Solved => match self.walker(goal, make, monitor).settle()? {
-                    Walk::Found => return Ok(Descent::By(end)),
-                    Walk::Interrupted => return Ok(Descent::By(End::Interrupted)),
-                    _ => {}
-                },
-                _ => {}
-            }
+            let settled = match end {
+                End::Solved => self.walker(goal, make, monitor).settle()?,
+                End::Interrupted => Walk::Interrupted,
+                _ => Walk::Lost,
+            };
+            (Descent::By(end), settled)
+        };
+        match settled {
+            Walk::Found => return Ok(end),
+            Walk::Interrupted => return Ok(Descent::By(End::Interrupted)),
+            _ => {}
         }
         let end = self.begin_anew(goal, (start, make), monitor)?;
         self.jumped = is_snap(before, count_contact(&self.levels[0]));
@@ -222,7 +220,7 @@ impl Solver {
         }
         let mut report = Report::of(level, &measured);
         report.jumped = self.jumped;
-        let is_state = largest([measured.distance, measured.law]) <= request.tolerance;
+        let is_state = measured.is_state(request.tolerance);
         report.is_short = end == Descent::By(End::Interrupted) && pulls(goal) && is_state && measured.pressures < 0.0;
         let is_solved = end == Descent::By(End::Solved);
         if request.stiffness && is_solved {
@@ -256,7 +254,7 @@ fn approach_contact(level: &mut Level) {
     }
 }
 
-/// Whether so many elements in contact are those of another branch.
+/// Whether the number of elements in contact changes by more than [`SNAPPED`] of it.
 fn is_snap(before: usize, now: usize) -> bool {
     before.abs_diff(now) as f64 > SNAPPED * before.max(now) as f64
 }

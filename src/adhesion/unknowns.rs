@@ -200,6 +200,11 @@ pub struct Measured {
 }
 
 impl Measured {
+    /// Whether distances and law are met to a tolerance, whatever the force.
+    pub fn is_state(&self, tolerance: f64) -> bool {
+        largest([self.distance, self.law]) <= tolerance
+    }
+
     /// The largest measure; infinite if one is NaN.
     pub fn worst(&self) -> f64 {
         largest([self.distance, self.violation, self.law, self.force])

@@ -92,11 +92,8 @@ pub fn cost_of_accuracy(
         if loosen(scene, &loose, (&mut samples, left), (&mut surface, &mut progress))? == Outcome::Cancelled {
             return Ok((Outcome::Cancelled, list(&samples)));
         }
-        // Without estimates from one grid, errors need three grids, or four if two changes happen to be equal. A search needs as many.
-        let has_error = |last: &Sample| last.falling().is_some() && history.is_believed() || samples.len() > 3;
-        let is_known = |last: &Sample| last.across >= ACROSS && has_error(last) || last.cost.elements > UNRESOLVED;
         let ends = began.elapsed().as_secs_f64() + next;
-        let is_over = ends > most && (ends > UNKNOWN || samples.last().is_some_and(is_known));
+        let is_over = ends > most && (ends > UNKNOWN || is_known(&samples, history.is_believed()));
         if is_over || is_apart(&samples) || scaled(&scene.grid, doublings).is_err() {
             break;
         }
@@ -107,6 +104,14 @@ pub fn cost_of_accuracy(
         Some(speed_up) => (Outcome::Converged, list_with(&samples, &counted, speed_up)),
         None => (Outcome::Cancelled, list(&samples)),
     })
+}
+
+/// Whether rows follow from the samples, or more of them would be too large.
+fn is_known(samples: &[Sample], is_believed: bool) -> bool {
+    let Some(last) = samples.last() else { return false };
+    // Without estimates from one grid, errors need three grids, or four if two changes happen to be equal. A search needs as many.
+    let has_error = last.falling().is_some() && is_believed || samples.len() > 3;
+    last.across >= ACROSS && has_error || last.cost.elements > UNRESOLVED
 }
 
 /// Whether nothing touches, on as many grids as end a search.
