@@ -139,7 +139,8 @@ fn one(
     let mut step = Step::Parted;
     if carried {
         let cycles = monitor.count.cycles;
-        let outcome = frozen.solve(problem, state, (tolerance, goal.most), monitor)?;
+        let left = goal.most.saturating_sub(cycles).max(1);
+        let outcome = frozen.solve(problem, state, (tolerance, left), monitor)?;
         log::debug!("the contact problem of a still attraction: {outcome:?}");
         let failed = outcome == Outcome::Stagnated && monitor.count.cycles == cycles;
         step = if failed { Step::Unsolved } else { Step::Solved };

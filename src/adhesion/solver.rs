@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::law::Attraction;
 use super::level::{Level, MakeFrozen};
 use super::levels::{levels, take_surfaces};
 use super::majorise::Descent;
@@ -11,15 +10,13 @@ use super::place::Walk;
 use super::report::{close_grid, Report};
 use super::request::{Request, Start, State};
 use super::robust;
+use super::split::Split;
 use super::stability::stability;
 use super::tangent::stiffness_of_contact;
-use super::unknowns::Surface;
 use super::way::count_contact;
-use crate::contact;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::memory::collected;
 use crate::methods::fields;
 use crate::operator::Operator;
 use crate::progress::{Monitor, Outcome};
@@ -67,23 +64,9 @@ impl Solver {
         [std::mem::take(&mut surface.h), p, u]
     }
 
-    /// The contact pressure q of element i, and its attraction sigma, of a state that this solver found.
-    pub fn split(&self, state: &contact::State, i: usize) -> (f64, f64) {
-        let sigma = self.finest().surface.traction(i, state.h[i] - state.approach + state.u[i]);
-        // Within the residual, q may be slightly negative.
-        (if state.contact[i] { (state.p[i] + sigma).max(0.0) } else { 0.0 }, sigma)
-    }
-
-    /// The law, the largest work and the works of the last scene, which [`Solver::split`] reads.
-    pub fn law_and_works(&self) -> Result<(Attraction, f64, Vec<f64>)> {
-        let Surface { attraction, work, works, .. } = &self.finest().surface;
-        Ok((*attraction, *work, collected(works.iter().copied(), "works of adhesion")?))
-    }
-
-    /// Restores what [`Solver::law_and_works`] returned.
-    pub fn restore(&mut self, (attraction, work, works): (Attraction, f64, Vec<f64>)) {
-        let surface = &mut self.levels[0].surface;
-        (surface.attraction, surface.work, surface.works) = (attraction, work, works);
+    /// The split of the total pressures of the last scene.
+    pub fn split(&self) -> Result<Split> {
+        Split::of(&self.finest().surface)
     }
 
     /// Bytes held, without the lent arrays and the operator of the finest grid.

@@ -53,9 +53,10 @@ impl Friction<'_> {
             positive("friction->yield_limit", layer.yield_limit)?;
             require(layer.hardening.is_finite(), "friction->hardening", layer.hardening, "it must be finite")?;
         }
+        // Without a law or a layer nothing is read of the particles; without a layer no yield limits.
         self.coefficients_before
+            .filter(|_| self.has_law())
             .map_or(Ok(()), |values| check_values("friction->previous_coefficient", values, grid, not_negative))?;
-        // Without a layer yield limits are not read.
         self.yield_limits
             .filter(|_| self.layer.is_some())
             .map_or(Ok(()), |values| check_values("friction->previous_yield_limit", values, grid, positive))?;

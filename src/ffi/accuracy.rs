@@ -151,7 +151,7 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
                     solver.write(outcome.solver.map_or(std::ptr::null_mut(), contact_normal_solver::holding));
                 }
             }
-            Ok(Conclusion { status: outcome.stop.into(), message: outcome.reason, warnings })
+            Ok(Conclusion { status: outcome.stop.into(), message: outcome.reason, warnings, ..Conclusion::default() })
         });
         concluded?.conclude()
     };

@@ -215,22 +215,29 @@ const LINES: usize = 1000;
 
 /// The problems that are not OK: those that were refused before those that stopped early, then by number.
 #[derive(Default)]
-pub(super) struct NotOk(Vec<(usize, Conclusion)>);
+pub(super) struct NotOk {
+    first: Vec<(usize, Conclusion)>,
+    /// The warnings of all problems.
+    warnings: i32,
+}
 
 impl NotOk {
     pub fn note(&mut self, problem: usize, outcome: Conclusion) {
         let rank = |(problem, outcome): &(usize, Conclusion)| (outcome.status > CONTACT_NORMAL_OK, *problem);
+        self.warnings |= outcome.warnings;
         if outcome.status != CONTACT_NORMAL_OK {
             let noted = (problem, outcome);
-            self.0.insert(self.0.partition_point(|other| rank(other) < rank(&noted)), noted);
-            self.0.truncate(LINES);
+            self.first.insert(self.first.partition_point(|other| rank(other) < rank(&noted)), noted);
+            self.first.truncate(LINES);
         }
     }
 
-    /// The return value of the call: the status of the first, and a line for each: "problem 3: ...", where `each` is a problem.
+    /// The return value of the call: the status of the first, and a line for each: "problem 3: ...", where `each` is a problem; the warnings if all are OK.
     pub fn outcome(self, each: &str) -> Conclusion {
-        let status = self.0.first().map_or(CONTACT_NORMAL_OK, |(_, outcome)| outcome.status);
-        let lines: Vec<String> = self.0.iter().map(|(i, outcome)| format!("{each} {i}: {}", outcome.message)).collect();
-        Conclusion { status, message: lines.join("\n"), warnings: 0 }
+        let status = self.first.first().map_or(CONTACT_NORMAL_OK, |(_, outcome)| outcome.status);
+        let line = |(i, outcome): &(usize, Conclusion)| format!("{each} {i}: {}", outcome.message);
+        let lines: Vec<String> = self.first.iter().map(line).collect();
+        let warnings = if status == CONTACT_NORMAL_OK { self.warnings } else { 0 };
+        Conclusion { status, message: lines.join("\n"), warnings, ..Conclusion::default() }
     }
 }

@@ -4,7 +4,7 @@ use super::arguments::GivenEffect;
 use super::guard::guard;
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{self, versioned};
-use crate::error::positive;
+use crate::error::{positive, require};
 use crate::grid::Grid;
 use crate::scene::{Bodies, Coating, CoatingLayer, Load, Plain};
 
@@ -48,6 +48,12 @@ pub unsafe extern "C" fn contact_normal_coating_compliance(
         let grid = Grid { mx: 1, my: 1, dx: 1.0, dy: 1.0 };
         let plain = Plain { grid, undeformed_distance: &[], bodies, load: Load::Approach(0.0) };
         let value = coating.compliance(&plain, wave_number)?;
+        require(
+            value.is_finite(),
+            "the compliance",
+            value,
+            "moduli and wave_number take it out of the range of numbers",
+        )?;
         // SAFETY: not null: room for a value.
         unsafe { compliance.write(value) };
         Ok(CONTACT_NORMAL_OK)

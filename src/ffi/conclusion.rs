@@ -11,11 +11,13 @@ pub(super) struct Conclusion {
     pub message: String,
     /// CONTACT_NORMAL_WARNING_... bits.
     pub warnings: i32,
+    /// Whether `max_seconds` ended it.
+    pub is_late: bool,
 }
 
 impl From<Refusal> for Conclusion {
     fn from(refusal: Refusal) -> Conclusion {
-        Conclusion { status: refusal.status, message: refusal.message, warnings: 0 }
+        Conclusion { status: refusal.status, message: refusal.message, ..Conclusion::default() }
     }
 }
 
@@ -23,7 +25,7 @@ impl Conclusion {
     /// Of an outcome; what is not solved has a message.
     pub fn of(outcome: Outcome, message: impl FnOnce() -> String) -> Conclusion {
         let message = if outcome == Outcome::Converged { String::new() } else { message() };
-        Conclusion { status: outcome.into(), message, warnings: 0 }
+        Conclusion { status: outcome.into(), message, ..Conclusion::default() }
     }
 
     /// The end of an export: the message becomes that of this thread.

@@ -2,7 +2,7 @@
 
 use super::arguments::Regions;
 use super::conclusion::Conclusion;
-use super::status::{contact_normal_status, Refusal};
+use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_CANCELLED, CONTACT_NORMAL_ITERATION_LIMIT};
 use super::structs::versioned;
 use super::warnings::advice_on_law;
 use super::watcher::why;
@@ -111,6 +111,20 @@ impl contact_normal_friction_results {
             }
         }
         outcome
+    }
+}
+
+impl contact_normal_friction_results {
+    /// `max_seconds` ended the call: entries that were cancelled for it reached a limit.
+    pub(super) unsafe fn late(&self, n: usize) {
+        for i in (0..n).filter(|_| !self.status.is_null()) {
+            // SAFETY: not null: room for all entries, each with its status, by the caller.
+            unsafe {
+                if self.status.add(i).read_unaligned() == CONTACT_NORMAL_CANCELLED {
+                    put(self.status, i, CONTACT_NORMAL_ITERATION_LIMIT);
+                }
+            }
+        }
     }
 }
 

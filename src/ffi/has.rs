@@ -5,16 +5,20 @@ use std::ffi::CStr;
 use libc::c_char;
 
 /// Effects of a scene, members of the options and the fields, and what functions do.
-const NAMES: [&str; 39] = [
+const NAMES: [&str; 46] = [
     "accuracy",
     "adhesion",
     "batch",
+    "branch",
     "coating",
+    "coating_compliance",
     "compliance",
     "constant",
     "creepage_weight",
     "cycle",
     "dump",
+    "effects_bill",
+    "error_ratio",
     "flash_temperature",
     "friction",
     "frictional_wear",
@@ -26,12 +30,15 @@ const NAMES: [&str; 39] = [
     "law",
     "layer",
     "max_seconds",
+    "neglect_below",
     "patches",
     "period",
     "pressure_limit",
+    "previous_coefficient",
     "price_list",
     "product",
     "pull_off",
+    "quantities",
     "release",
     "row_tables",
     "sensitivities",
@@ -47,9 +54,10 @@ const NAMES: [&str; 39] = [
     "yield_limit",
 ];
 
-/// 1 if this library has the feature of this name, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop"), a
-/// member of the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "yield_limit"), or a task of
-/// calls ("batch", "accuracy", "price_list", "stress", "flash_temperature", "frictional_wear", "influence_rolling",
+/// 1 if this library has the feature of this name, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop",
+/// "error_ratio", "neglect_below"), a
+/// member of the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "branch", "previous_coefficient",
+/// "yield_limit"), or a task of calls ("batch", "accuracy", "price_list", "quantities", "effects_bill", "stress", "coating_compliance", "flash_temperature", "frictional_wear", "influence_rolling",
 /// "influence_rolling_tangential", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump", "set_option",
 /// "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
 #[no_mangle]

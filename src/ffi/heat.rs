@@ -6,6 +6,7 @@ use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{self, versioned};
 use crate::grid::Grid;
 use crate::heat::{flash_temperature, Heat};
+use crate::solver::check_threads;
 use crate::threads::Threads;
 
 /// A steady flux of heat through the contact of two bodies whose surfaces move in x. Units of power, length, temperature and time are the
@@ -91,7 +92,9 @@ pub unsafe extern "C" fn contact_normal_flash_temperature(
             let flux = super::arguments::required("heat->heat_flux", given.heat_flux, grid.len())?;
             let share = Some(given.share).filter(|share| !(*share < 0.0));
             let contact_normal_heat { conductivity, diffusivity, speed, .. } = given;
-            let threads = Threads::new(not_negative("heat->threads", given.threads)?)?;
+            let threads = not_negative("heat->threads", given.threads)?;
+            check_threads("heat->threads", threads)?;
+            let threads = Threads::new(threads)?;
             let found = flash_temperature(&Heat { grid, flux, conductivity, diffusivity, speed, share }, &threads)?;
             if !temperature.is_null() {
                 for (b, rise) in found.rise.iter().enumerate() {

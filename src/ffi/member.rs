@@ -40,3 +40,11 @@ pub(super) struct Struct {
     pub name: &'static str,
     pub members: &'static [Member],
 }
+
+/// The members of a struct: for each its name, its place, the bytes from there to a value of an array, and its type.
+macro_rules! members {
+    ($struct:ident: $(($name:literal, $($place:ident).+, $more:literal, $kind:expr))*) => {
+        &[$(Member { name: $name, at: std::mem::offset_of!($struct, $($place).+) + $more, kind: $kind }),*]
+    };
+}
+pub(super) use members;

@@ -1,826 +1,372 @@
 //! The constants, the structs and their members by name. Made from include/contact_normal.h; do not edit.
 
-use std::mem::offset_of;
-
-use super::member::{Kind::*, Member, Struct};
+use super::member::{members, Kind::*, Member, Struct};
 use super::*;
 
 /// Without CONTACT_NORMAL_.
 #[rustfmt::skip]
 pub(super) const CONSTANTS: &[(&str, i32)] = &[
-    ("OK", CONTACT_NORMAL_OK),
-    ("ITERATION_LIMIT", CONTACT_NORMAL_ITERATION_LIMIT),
-    ("CANCELLED", CONTACT_NORMAL_CANCELLED),
-    ("STAGNATED", CONTACT_NORMAL_STAGNATED),
-    ("NULL_POINTER", CONTACT_NORMAL_NULL_POINTER),
-    ("INVALID_ARGUMENT", CONTACT_NORMAL_INVALID_ARGUMENT),
-    ("NOT_FINITE", CONTACT_NORMAL_NOT_FINITE),
-    ("STRUCT_SIZE", CONTACT_NORMAL_STRUCT_SIZE),
-    ("UNSUPPORTED", CONTACT_NORMAL_UNSUPPORTED),
-    ("INFEASIBLE", CONTACT_NORMAL_INFEASIBLE),
-    ("NOT_POSITIVE_DEFINITE", CONTACT_NORMAL_NOT_POSITIVE_DEFINITE),
-    ("OUT_OF_MEMORY", CONTACT_NORMAL_OUT_OF_MEMORY),
-    ("INFLUENCE_CHANGED", CONTACT_NORMAL_INFLUENCE_CHANGED),
-    ("INTERNAL", CONTACT_NORMAL_INTERNAL),
-    ("VERSION_MAJOR", CONTACT_NORMAL_VERSION_MAJOR),
-    ("VERSION_MINOR", CONTACT_NORMAL_VERSION_MINOR),
-    ("VERSION_PATCH", CONTACT_NORMAL_VERSION_PATCH),
-    ("ABI_VERSION", CONTACT_NORMAL_ABI_VERSION),
-    ("KIND_SCENE", CONTACT_NORMAL_KIND_SCENE),
-    ("KIND_OPTIONS", CONTACT_NORMAL_KIND_OPTIONS),
-    ("KIND_FIELDS", CONTACT_NORMAL_KIND_FIELDS),
-    ("KIND_REPORT", CONTACT_NORMAL_KIND_REPORT),
-    ("KIND_ACCURACY", CONTACT_NORMAL_KIND_ACCURACY),
-    ("KIND_INFLUENCE", CONTACT_NORMAL_KIND_INFLUENCE),
-    ("KIND_ROW_TABLES", CONTACT_NORMAL_KIND_ROW_TABLES),
-    ("KIND_LAYER", CONTACT_NORMAL_KIND_LAYER),
-    ("KIND_PRESSURE_LIMIT", CONTACT_NORMAL_KIND_PRESSURE_LIMIT),
-    ("KIND_PERIOD", CONTACT_NORMAL_KIND_PERIOD),
-    ("KIND_PATCHES", CONTACT_NORMAL_KIND_PATCHES),
-    ("KIND_COATING", CONTACT_NORMAL_KIND_COATING),
-    ("KIND_FRICTION", CONTACT_NORMAL_KIND_FRICTION),
-    ("KIND_FRICTION_RESULTS", CONTACT_NORMAL_KIND_FRICTION_RESULTS),
-    ("KIND_STRESS_OUTPUTS", CONTACT_NORMAL_KIND_STRESS_OUTPUTS),
-    ("KIND_STRESS_MAXIMUM", CONTACT_NORMAL_KIND_STRESS_MAXIMUM),
-    ("KIND_LEDGER_ROW", CONTACT_NORMAL_KIND_LEDGER_ROW),
-    ("KIND_PRICE", CONTACT_NORMAL_KIND_PRICE),
-    ("KIND_HERTZ_SOLUTION", CONTACT_NORMAL_KIND_HERTZ_SOLUTION),
-    ("KIND_CYCLE", CONTACT_NORMAL_KIND_CYCLE),
-    ("KIND_SOLVER_INFO", CONTACT_NORMAL_KIND_SOLVER_INFO),
-    ("KIND_QUANTITY_ROW", CONTACT_NORMAL_KIND_QUANTITY_ROW),
-    ("KIND_EFFECTS_ROW", CONTACT_NORMAL_KIND_EFFECTS_ROW),
-    ("KIND_ADHESION", CONTACT_NORMAL_KIND_ADHESION),
-    ("KIND_VISCO", CONTACT_NORMAL_KIND_VISCO),
-    ("KIND_HEAT", CONTACT_NORMAL_KIND_HEAT),
-    ("KIND_FLASH", CONTACT_NORMAL_KIND_FLASH),
-    ("KIND_WEAR", CONTACT_NORMAL_KIND_WEAR),
-    ("KIND_WORN", CONTACT_NORMAL_KIND_WORN),
-    ("PRESCRIBED_UNSET", CONTACT_NORMAL_PRESCRIBED_UNSET),
-    ("PRESCRIBED_APPROACH", CONTACT_NORMAL_PRESCRIBED_APPROACH),
-    ("PRESCRIBED_FORCE", CONTACT_NORMAL_PRESCRIBED_FORCE),
-    ("MOTION_SHIFT", CONTACT_NORMAL_MOTION_SHIFT),
-    ("MOTION_TRANSIENT_ROLLING", CONTACT_NORMAL_MOTION_TRANSIENT_ROLLING),
-    ("MOTION_STEADY_ROLLING", CONTACT_NORMAL_MOTION_STEADY_ROLLING),
-    ("PRESCRIBED_CREEPAGE", CONTACT_NORMAL_PRESCRIBED_CREEPAGE),
-    ("PRESCRIBED_TANGENTIAL_FORCE", CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE),
-    ("FRICTION_LAW_COULOMB", CONTACT_NORMAL_FRICTION_LAW_COULOMB),
-    ("FRICTION_LAW_LINEAR", CONTACT_NORMAL_FRICTION_LAW_LINEAR),
-    ("FRICTION_LAW_RATIONAL", CONTACT_NORMAL_FRICTION_LAW_RATIONAL),
-    ("FRICTION_LAW_EXPONENTIAL", CONTACT_NORMAL_FRICTION_LAW_EXPONENTIAL),
-    ("FRICTION_BRANCH_NEAR", CONTACT_NORMAL_FRICTION_BRANCH_NEAR),
-    ("FRICTION_BRANCH_LOW", CONTACT_NORMAL_FRICTION_BRANCH_LOW),
-    ("FRICTION_BRANCH_HIGH", CONTACT_NORMAL_FRICTION_BRANCH_HIGH),
-    ("STICK_SLIP_EXTERIOR", CONTACT_NORMAL_STICK_SLIP_EXTERIOR),
-    ("STICK_SLIP_STICK", CONTACT_NORMAL_STICK_SLIP_STICK),
-    ("STICK_SLIP_SLIP", CONTACT_NORMAL_STICK_SLIP_SLIP),
-    ("STICK_SLIP_PLASTIC", CONTACT_NORMAL_STICK_SLIP_PLASTIC),
-    ("LAW_EXPONENTIAL", CONTACT_NORMAL_LAW_EXPONENTIAL),
-    ("LAW_DUGDALE", CONTACT_NORMAL_LAW_DUGDALE),
-    ("LAW_CUBIC", CONTACT_NORMAL_LAW_CUBIC),
-    ("LAW_VAN_DER_WAALS", CONTACT_NORMAL_LAW_VAN_DER_WAALS),
-    ("START_AUTO", CONTACT_NORMAL_START_AUTO),
-    ("START_FROM_CONTACT", CONTACT_NORMAL_START_FROM_CONTACT),
-    ("START_FROM_APART", CONTACT_NORMAL_START_FROM_APART),
-    ("FORM_AUTO", CONTACT_NORMAL_FORM_AUTO),
-    ("FORM_RELAXATION", CONTACT_NORMAL_FORM_RELAXATION),
-    ("FORM_CREEP", CONTACT_NORMAL_FORM_CREEP),
-    ("FORM_BACKWARD_EULER", CONTACT_NORMAL_FORM_BACKWARD_EULER),
-    ("METHOD_AUTO", CONTACT_NORMAL_METHOD_AUTO),
-    ("METHOD_NORM", CONTACT_NORMAL_METHOD_NORM),
-    ("METHOD_MULTIGRID", CONTACT_NORMAL_METHOD_MULTIGRID),
-    ("METHOD_FULL_MULTIGRID", CONTACT_NORMAL_METHOD_FULL_MULTIGRID),
-    ("METHOD_PROJECTED_CG", CONTACT_NORMAL_METHOD_PROJECTED_CG),
-    ("SMOOTHER_AUTO", CONTACT_NORMAL_SMOOTHER_AUTO),
-    ("SMOOTHER_GAUSS_SEIDEL", CONTACT_NORMAL_SMOOTHER_GAUSS_SEIDEL),
-    ("SMOOTHER_RED_BLACK", CONTACT_NORMAL_SMOOTHER_RED_BLACK),
-    ("SMOOTHER_JACOBI", CONTACT_NORMAL_SMOOTHER_JACOBI),
-    ("SMOOTHER_FFT", CONTACT_NORMAL_SMOOTHER_FFT),
-    ("ACTIVE_SET_FREE", CONTACT_NORMAL_ACTIVE_SET_FREE),
-    ("ACTIVE_SET_FIXED", CONTACT_NORMAL_ACTIVE_SET_FIXED),
-    ("INITIAL_GUESS_NONE", CONTACT_NORMAL_INITIAL_GUESS_NONE),
-    ("INITIAL_GUESS_GIVEN", CONTACT_NORMAL_INITIAL_GUESS_GIVEN),
-    ("INITIAL_GUESS_PREVIOUS", CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS),
-    ("CRITERION_RESIDUAL", CONTACT_NORMAL_CRITERION_RESIDUAL),
-    ("CRITERION_UPDATE", CONTACT_NORMAL_CRITERION_UPDATE),
-    ("PRECISION_AUTO", CONTACT_NORMAL_PRECISION_AUTO),
-    ("PRECISION_DOUBLE", CONTACT_NORMAL_PRECISION_DOUBLE),
-    ("PRECISION_MIXED", CONTACT_NORMAL_PRECISION_MIXED),
-    ("WARNING_BORDER", CONTACT_NORMAL_WARNING_BORDER),
-    ("WARNING_ONE_ELEMENT", CONTACT_NORMAL_WARNING_ONE_ELEMENT),
-    ("WARNING_SPIKE", CONTACT_NORMAL_WARNING_SPIKE),
-    ("WARNING_ERROR_UNKNOWN", CONTACT_NORMAL_WARNING_ERROR_UNKNOWN),
-    ("WARNING_RANGE", CONTACT_NORMAL_WARNING_RANGE),
-    ("WARNING_ATTRACTION", CONTACT_NORMAL_WARNING_ATTRACTION),
-    ("WARNING_LAW", CONTACT_NORMAL_WARNING_LAW),
-    ("UNTRUSTED_FORCE", CONTACT_NORMAL_UNTRUSTED_FORCE),
-    ("UNTRUSTED_MAX_PRESSURE", CONTACT_NORMAL_UNTRUSTED_MAX_PRESSURE),
-    ("UNTRUSTED_PRESSURE", CONTACT_NORMAL_UNTRUSTED_PRESSURE),
-    ("LIMITED_BY_UNKNOWN", CONTACT_NORMAL_LIMITED_BY_UNKNOWN),
-    ("LIMITED_BY_GRID", CONTACT_NORMAL_LIMITED_BY_GRID),
-    ("LIMITED_BY_TOLERANCE", CONTACT_NORMAL_LIMITED_BY_TOLERANCE),
-    ("QUANTITY_FORCE", CONTACT_NORMAL_QUANTITY_FORCE),
-    ("QUANTITY_MAX_PRESSURE", CONTACT_NORMAL_QUANTITY_MAX_PRESSURE),
-    ("QUANTITY_CONTACT_AREA", CONTACT_NORMAL_QUANTITY_CONTACT_AREA),
-    ("QUANTITY_MEAN_GAP", CONTACT_NORMAL_QUANTITY_MEAN_GAP),
-    ("QUANTITY_STIFFNESS", CONTACT_NORMAL_QUANTITY_STIFFNESS),
-    ("QUANTITY_TANGENTIAL_FORCE", CONTACT_NORMAL_QUANTITY_TANGENTIAL_FORCE),
-    ("QUANTITY_CREEPAGE", CONTACT_NORMAL_QUANTITY_CREEPAGE),
-    ("QUANTITY_SPIN_MOMENT", CONTACT_NORMAL_QUANTITY_SPIN_MOMENT),
-    ("QUANTITY_STICK_AREA", CONTACT_NORMAL_QUANTITY_STICK_AREA),
-    ("QUANTITY_MAX_VON_MISES", CONTACT_NORMAL_QUANTITY_MAX_VON_MISES),
-    ("QUANTITY_VON_MISES_DEPTH", CONTACT_NORMAL_QUANTITY_VON_MISES_DEPTH),
-    ("QUANTITY_MAX_SHEAR", CONTACT_NORMAL_QUANTITY_MAX_SHEAR),
-    ("OBSTACLE_NONE", CONTACT_NORMAL_OBSTACLE_NONE),
-    ("OBSTACLE_SINGULAR", CONTACT_NORMAL_OBSTACLE_SINGULAR),
-    ("OBSTACLE_ROUND_OFF", CONTACT_NORMAL_OBSTACLE_ROUND_OFF),
-    ("OBSTACLE_ELEMENTS", CONTACT_NORMAL_OBSTACLE_ELEMENTS),
-    ("OBSTACLE_MEMORY", CONTACT_NORMAL_OBSTACLE_MEMORY),
-    ("OBSTACLE_TIME", CONTACT_NORMAL_OBSTACLE_TIME),
-    ("OBSTACLE_STEP", CONTACT_NORMAL_OBSTACLE_STEP),
-    ("LACK_NONE", CONTACT_NORMAL_LACK_NONE),
-    ("LACK_NO_FRICTION", CONTACT_NORMAL_LACK_NO_FRICTION),
-    ("LACK_PRESCRIBED", CONTACT_NORMAL_LACK_PRESCRIBED),
-    ("LACK_EFFECT", CONTACT_NORMAL_LACK_EFFECT),
-    ("LACK_NO_CONTACT", CONTACT_NORMAL_LACK_NO_CONTACT),
-    ("LACK_SINGULAR", CONTACT_NORMAL_LACK_SINGULAR),
-    ("LACK_ONE_GRID", CONTACT_NORMAL_LACK_ONE_GRID),
-    ("LACK_UNSOLVED", CONTACT_NORMAL_LACK_UNSOLVED),
-    ("LACK_UNSETTLED", CONTACT_NORMAL_LACK_UNSETTLED),
-    ("OMIT_NONE", CONTACT_NORMAL_OMIT_NONE),
-    ("OMIT_COATING", CONTACT_NORMAL_OMIT_COATING),
-    ("OMIT_PERIOD", CONTACT_NORMAL_OMIT_PERIOD),
-    ("OMIT_PATCHES", CONTACT_NORMAL_OMIT_PATCHES),
-    ("OMIT_LAYER", CONTACT_NORMAL_OMIT_LAYER),
-    ("OMIT_PRESSURE_LIMIT", CONTACT_NORMAL_OMIT_PRESSURE_LIMIT),
-    ("OMIT_FRICTION", CONTACT_NORMAL_OMIT_FRICTION),
-    ("OMIT_COUPLING", CONTACT_NORMAL_OMIT_COUPLING),
-    ("OMIT_SPIN", CONTACT_NORMAL_OMIT_SPIN),
-    ("OMIT_FRICTION_COMPLIANCE", CONTACT_NORMAL_OMIT_FRICTION_COMPLIANCE),
-    ("OMIT_COATING_AS_LAYER", CONTACT_NORMAL_OMIT_COATING_AS_LAYER),
-    ("OMIT_ADHESION", CONTACT_NORMAL_OMIT_ADHESION),
-    ("OMIT_FRICTION_LAW", CONTACT_NORMAL_OMIT_FRICTION_LAW),
-    ("OMIT_FRICTION_LAYER", CONTACT_NORMAL_OMIT_FRICTION_LAYER),
-    ("OMIT_VISCO", CONTACT_NORMAL_OMIT_VISCO),
-    ("VERDICT_NOT_DECIDED", CONTACT_NORMAL_VERDICT_NOT_DECIDED),
-    ("VERDICT_NEGLIGIBLE", CONTACT_NORMAL_VERDICT_NEGLIGIBLE),
-    ("VERDICT_NEEDED", CONTACT_NORMAL_VERDICT_NEEDED),
-    ("LOG_OFF", CONTACT_NORMAL_LOG_OFF),
-    ("LOG_WARNING", CONTACT_NORMAL_LOG_WARNING),
+    ("OK", CONTACT_NORMAL_OK), ("ITERATION_LIMIT", CONTACT_NORMAL_ITERATION_LIMIT), ("CANCELLED", CONTACT_NORMAL_CANCELLED),
+    ("STAGNATED", CONTACT_NORMAL_STAGNATED), ("NULL_POINTER", CONTACT_NORMAL_NULL_POINTER), ("INVALID_ARGUMENT", CONTACT_NORMAL_INVALID_ARGUMENT),
+    ("NOT_FINITE", CONTACT_NORMAL_NOT_FINITE), ("STRUCT_SIZE", CONTACT_NORMAL_STRUCT_SIZE), ("UNSUPPORTED", CONTACT_NORMAL_UNSUPPORTED),
+    ("INFEASIBLE", CONTACT_NORMAL_INFEASIBLE), ("NOT_POSITIVE_DEFINITE", CONTACT_NORMAL_NOT_POSITIVE_DEFINITE),
+    ("OUT_OF_MEMORY", CONTACT_NORMAL_OUT_OF_MEMORY), ("INFLUENCE_CHANGED", CONTACT_NORMAL_INFLUENCE_CHANGED), ("INTERNAL", CONTACT_NORMAL_INTERNAL),
+    ("VERSION_MAJOR", CONTACT_NORMAL_VERSION_MAJOR), ("VERSION_MINOR", CONTACT_NORMAL_VERSION_MINOR), ("VERSION_PATCH", CONTACT_NORMAL_VERSION_PATCH),
+    ("ABI_VERSION", CONTACT_NORMAL_ABI_VERSION), ("KIND_SCENE", CONTACT_NORMAL_KIND_SCENE), ("KIND_OPTIONS", CONTACT_NORMAL_KIND_OPTIONS),
+    ("KIND_FIELDS", CONTACT_NORMAL_KIND_FIELDS), ("KIND_REPORT", CONTACT_NORMAL_KIND_REPORT), ("KIND_ACCURACY", CONTACT_NORMAL_KIND_ACCURACY),
+    ("KIND_INFLUENCE", CONTACT_NORMAL_KIND_INFLUENCE), ("KIND_ROW_TABLES", CONTACT_NORMAL_KIND_ROW_TABLES), ("KIND_LAYER", CONTACT_NORMAL_KIND_LAYER),
+    ("KIND_PRESSURE_LIMIT", CONTACT_NORMAL_KIND_PRESSURE_LIMIT), ("KIND_PERIOD", CONTACT_NORMAL_KIND_PERIOD),
+    ("KIND_PATCHES", CONTACT_NORMAL_KIND_PATCHES), ("KIND_COATING", CONTACT_NORMAL_KIND_COATING), ("KIND_FRICTION", CONTACT_NORMAL_KIND_FRICTION),
+    ("KIND_FRICTION_RESULTS", CONTACT_NORMAL_KIND_FRICTION_RESULTS), ("KIND_STRESS_OUTPUTS", CONTACT_NORMAL_KIND_STRESS_OUTPUTS),
+    ("KIND_STRESS_MAXIMUM", CONTACT_NORMAL_KIND_STRESS_MAXIMUM), ("KIND_LEDGER_ROW", CONTACT_NORMAL_KIND_LEDGER_ROW),
+    ("KIND_PRICE", CONTACT_NORMAL_KIND_PRICE), ("KIND_HERTZ_SOLUTION", CONTACT_NORMAL_KIND_HERTZ_SOLUTION), ("KIND_CYCLE", CONTACT_NORMAL_KIND_CYCLE),
+    ("KIND_SOLVER_INFO", CONTACT_NORMAL_KIND_SOLVER_INFO), ("KIND_QUANTITY_ROW", CONTACT_NORMAL_KIND_QUANTITY_ROW),
+    ("KIND_EFFECTS_ROW", CONTACT_NORMAL_KIND_EFFECTS_ROW), ("KIND_ADHESION", CONTACT_NORMAL_KIND_ADHESION), ("KIND_VISCO", CONTACT_NORMAL_KIND_VISCO),
+    ("KIND_HEAT", CONTACT_NORMAL_KIND_HEAT), ("KIND_FLASH", CONTACT_NORMAL_KIND_FLASH), ("KIND_WEAR", CONTACT_NORMAL_KIND_WEAR),
+    ("KIND_WORN", CONTACT_NORMAL_KIND_WORN), ("PRESCRIBED_UNSET", CONTACT_NORMAL_PRESCRIBED_UNSET),
+    ("PRESCRIBED_APPROACH", CONTACT_NORMAL_PRESCRIBED_APPROACH), ("PRESCRIBED_FORCE", CONTACT_NORMAL_PRESCRIBED_FORCE),
+    ("MOTION_SHIFT", CONTACT_NORMAL_MOTION_SHIFT), ("MOTION_TRANSIENT_ROLLING", CONTACT_NORMAL_MOTION_TRANSIENT_ROLLING),
+    ("MOTION_STEADY_ROLLING", CONTACT_NORMAL_MOTION_STEADY_ROLLING), ("PRESCRIBED_CREEPAGE", CONTACT_NORMAL_PRESCRIBED_CREEPAGE),
+    ("PRESCRIBED_TANGENTIAL_FORCE", CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE), ("FRICTION_LAW_COULOMB", CONTACT_NORMAL_FRICTION_LAW_COULOMB),
+    ("FRICTION_LAW_LINEAR", CONTACT_NORMAL_FRICTION_LAW_LINEAR), ("FRICTION_LAW_RATIONAL", CONTACT_NORMAL_FRICTION_LAW_RATIONAL),
+    ("FRICTION_LAW_EXPONENTIAL", CONTACT_NORMAL_FRICTION_LAW_EXPONENTIAL), ("FRICTION_BRANCH_NEAR", CONTACT_NORMAL_FRICTION_BRANCH_NEAR),
+    ("FRICTION_BRANCH_LOW", CONTACT_NORMAL_FRICTION_BRANCH_LOW), ("FRICTION_BRANCH_HIGH", CONTACT_NORMAL_FRICTION_BRANCH_HIGH),
+    ("STICK_SLIP_EXTERIOR", CONTACT_NORMAL_STICK_SLIP_EXTERIOR), ("STICK_SLIP_STICK", CONTACT_NORMAL_STICK_SLIP_STICK),
+    ("STICK_SLIP_SLIP", CONTACT_NORMAL_STICK_SLIP_SLIP), ("STICK_SLIP_PLASTIC", CONTACT_NORMAL_STICK_SLIP_PLASTIC),
+    ("LAW_EXPONENTIAL", CONTACT_NORMAL_LAW_EXPONENTIAL), ("LAW_DUGDALE", CONTACT_NORMAL_LAW_DUGDALE), ("LAW_CUBIC", CONTACT_NORMAL_LAW_CUBIC),
+    ("LAW_VAN_DER_WAALS", CONTACT_NORMAL_LAW_VAN_DER_WAALS), ("START_AUTO", CONTACT_NORMAL_START_AUTO),
+    ("START_FROM_CONTACT", CONTACT_NORMAL_START_FROM_CONTACT), ("START_FROM_APART", CONTACT_NORMAL_START_FROM_APART),
+    ("FORM_AUTO", CONTACT_NORMAL_FORM_AUTO), ("FORM_RELAXATION", CONTACT_NORMAL_FORM_RELAXATION), ("FORM_CREEP", CONTACT_NORMAL_FORM_CREEP),
+    ("FORM_BACKWARD_EULER", CONTACT_NORMAL_FORM_BACKWARD_EULER), ("METHOD_AUTO", CONTACT_NORMAL_METHOD_AUTO),
+    ("METHOD_NORM", CONTACT_NORMAL_METHOD_NORM), ("METHOD_MULTIGRID", CONTACT_NORMAL_METHOD_MULTIGRID),
+    ("METHOD_FULL_MULTIGRID", CONTACT_NORMAL_METHOD_FULL_MULTIGRID), ("METHOD_PROJECTED_CG", CONTACT_NORMAL_METHOD_PROJECTED_CG),
+    ("SMOOTHER_AUTO", CONTACT_NORMAL_SMOOTHER_AUTO), ("SMOOTHER_GAUSS_SEIDEL", CONTACT_NORMAL_SMOOTHER_GAUSS_SEIDEL),
+    ("SMOOTHER_RED_BLACK", CONTACT_NORMAL_SMOOTHER_RED_BLACK), ("SMOOTHER_JACOBI", CONTACT_NORMAL_SMOOTHER_JACOBI),
+    ("SMOOTHER_FFT", CONTACT_NORMAL_SMOOTHER_FFT), ("ACTIVE_SET_FREE", CONTACT_NORMAL_ACTIVE_SET_FREE),
+    ("ACTIVE_SET_FIXED", CONTACT_NORMAL_ACTIVE_SET_FIXED), ("INITIAL_GUESS_NONE", CONTACT_NORMAL_INITIAL_GUESS_NONE),
+    ("INITIAL_GUESS_GIVEN", CONTACT_NORMAL_INITIAL_GUESS_GIVEN), ("INITIAL_GUESS_PREVIOUS", CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS),
+    ("CRITERION_RESIDUAL", CONTACT_NORMAL_CRITERION_RESIDUAL), ("CRITERION_UPDATE", CONTACT_NORMAL_CRITERION_UPDATE),
+    ("PRECISION_AUTO", CONTACT_NORMAL_PRECISION_AUTO), ("PRECISION_DOUBLE", CONTACT_NORMAL_PRECISION_DOUBLE),
+    ("PRECISION_MIXED", CONTACT_NORMAL_PRECISION_MIXED), ("WARNING_BORDER", CONTACT_NORMAL_WARNING_BORDER),
+    ("WARNING_ONE_ELEMENT", CONTACT_NORMAL_WARNING_ONE_ELEMENT), ("WARNING_SPIKE", CONTACT_NORMAL_WARNING_SPIKE),
+    ("WARNING_ERROR_UNKNOWN", CONTACT_NORMAL_WARNING_ERROR_UNKNOWN), ("WARNING_RANGE", CONTACT_NORMAL_WARNING_RANGE),
+    ("WARNING_ATTRACTION", CONTACT_NORMAL_WARNING_ATTRACTION), ("WARNING_LAW", CONTACT_NORMAL_WARNING_LAW),
+    ("UNTRUSTED_FORCE", CONTACT_NORMAL_UNTRUSTED_FORCE), ("UNTRUSTED_MAX_PRESSURE", CONTACT_NORMAL_UNTRUSTED_MAX_PRESSURE),
+    ("UNTRUSTED_PRESSURE", CONTACT_NORMAL_UNTRUSTED_PRESSURE), ("LIMITED_BY_UNKNOWN", CONTACT_NORMAL_LIMITED_BY_UNKNOWN),
+    ("LIMITED_BY_GRID", CONTACT_NORMAL_LIMITED_BY_GRID), ("LIMITED_BY_TOLERANCE", CONTACT_NORMAL_LIMITED_BY_TOLERANCE),
+    ("QUANTITY_FORCE", CONTACT_NORMAL_QUANTITY_FORCE), ("QUANTITY_MAX_PRESSURE", CONTACT_NORMAL_QUANTITY_MAX_PRESSURE),
+    ("QUANTITY_CONTACT_AREA", CONTACT_NORMAL_QUANTITY_CONTACT_AREA), ("QUANTITY_MEAN_GAP", CONTACT_NORMAL_QUANTITY_MEAN_GAP),
+    ("QUANTITY_STIFFNESS", CONTACT_NORMAL_QUANTITY_STIFFNESS), ("QUANTITY_TANGENTIAL_FORCE", CONTACT_NORMAL_QUANTITY_TANGENTIAL_FORCE),
+    ("QUANTITY_CREEPAGE", CONTACT_NORMAL_QUANTITY_CREEPAGE), ("QUANTITY_SPIN_MOMENT", CONTACT_NORMAL_QUANTITY_SPIN_MOMENT),
+    ("QUANTITY_STICK_AREA", CONTACT_NORMAL_QUANTITY_STICK_AREA), ("QUANTITY_MAX_VON_MISES", CONTACT_NORMAL_QUANTITY_MAX_VON_MISES),
+    ("QUANTITY_VON_MISES_DEPTH", CONTACT_NORMAL_QUANTITY_VON_MISES_DEPTH), ("QUANTITY_MAX_SHEAR", CONTACT_NORMAL_QUANTITY_MAX_SHEAR),
+    ("OBSTACLE_NONE", CONTACT_NORMAL_OBSTACLE_NONE), ("OBSTACLE_SINGULAR", CONTACT_NORMAL_OBSTACLE_SINGULAR),
+    ("OBSTACLE_ROUND_OFF", CONTACT_NORMAL_OBSTACLE_ROUND_OFF), ("OBSTACLE_ELEMENTS", CONTACT_NORMAL_OBSTACLE_ELEMENTS),
+    ("OBSTACLE_MEMORY", CONTACT_NORMAL_OBSTACLE_MEMORY), ("OBSTACLE_TIME", CONTACT_NORMAL_OBSTACLE_TIME),
+    ("OBSTACLE_STEP", CONTACT_NORMAL_OBSTACLE_STEP), ("LACK_NONE", CONTACT_NORMAL_LACK_NONE), ("LACK_NO_FRICTION", CONTACT_NORMAL_LACK_NO_FRICTION),
+    ("LACK_PRESCRIBED", CONTACT_NORMAL_LACK_PRESCRIBED), ("LACK_EFFECT", CONTACT_NORMAL_LACK_EFFECT),
+    ("LACK_NO_CONTACT", CONTACT_NORMAL_LACK_NO_CONTACT), ("LACK_SINGULAR", CONTACT_NORMAL_LACK_SINGULAR),
+    ("LACK_ONE_GRID", CONTACT_NORMAL_LACK_ONE_GRID), ("LACK_UNSOLVED", CONTACT_NORMAL_LACK_UNSOLVED),
+    ("LACK_UNSETTLED", CONTACT_NORMAL_LACK_UNSETTLED), ("OMIT_NONE", CONTACT_NORMAL_OMIT_NONE), ("OMIT_COATING", CONTACT_NORMAL_OMIT_COATING),
+    ("OMIT_PERIOD", CONTACT_NORMAL_OMIT_PERIOD), ("OMIT_PATCHES", CONTACT_NORMAL_OMIT_PATCHES), ("OMIT_LAYER", CONTACT_NORMAL_OMIT_LAYER),
+    ("OMIT_PRESSURE_LIMIT", CONTACT_NORMAL_OMIT_PRESSURE_LIMIT), ("OMIT_FRICTION", CONTACT_NORMAL_OMIT_FRICTION),
+    ("OMIT_COUPLING", CONTACT_NORMAL_OMIT_COUPLING), ("OMIT_SPIN", CONTACT_NORMAL_OMIT_SPIN),
+    ("OMIT_FRICTION_COMPLIANCE", CONTACT_NORMAL_OMIT_FRICTION_COMPLIANCE), ("OMIT_COATING_AS_LAYER", CONTACT_NORMAL_OMIT_COATING_AS_LAYER),
+    ("OMIT_ADHESION", CONTACT_NORMAL_OMIT_ADHESION), ("OMIT_FRICTION_LAW", CONTACT_NORMAL_OMIT_FRICTION_LAW),
+    ("OMIT_FRICTION_LAYER", CONTACT_NORMAL_OMIT_FRICTION_LAYER), ("OMIT_VISCO", CONTACT_NORMAL_OMIT_VISCO),
+    ("VERDICT_NOT_DECIDED", CONTACT_NORMAL_VERDICT_NOT_DECIDED), ("VERDICT_NEGLIGIBLE", CONTACT_NORMAL_VERDICT_NEGLIGIBLE),
+    ("VERDICT_NEEDED", CONTACT_NORMAL_VERDICT_NEEDED), ("LOG_OFF", CONTACT_NORMAL_LOG_OFF), ("LOG_WARNING", CONTACT_NORMAL_LOG_WARNING),
     ("LOG_INFO", CONTACT_NORMAL_LOG_INFO),
 ];
 
 #[rustfmt::skip]
 pub(super) const STRUCTS: &[Struct] = &[
-    Struct { name: "contact_normal_coating", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_coating, struct_size), kind: Int64 },
-        Member { name: "thickness", at: offset_of!(contact_normal_coating, thickness), kind: Double },
-        Member { name: "shear_modulus", at: offset_of!(contact_normal_coating, shear_modulus), kind: Double },
-        Member { name: "poisson_ratio", at: offset_of!(contact_normal_coating, poisson_ratio), kind: Double },
-    ] },
-    Struct { name: "contact_normal_influence", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_influence, struct_size), kind: Int64 },
-        Member { name: "cx", at: offset_of!(contact_normal_influence, cx), kind: Int32 },
-        Member { name: "cy", at: offset_of!(contact_normal_influence, cy), kind: Int32 },
-        Member { name: "coefficients", at: offset_of!(contact_normal_influence, coefficients), kind: Array },
-        Member { name: "scale", at: offset_of!(contact_normal_influence, scale), kind: Double },
-    ] },
-    Struct { name: "contact_normal_layer", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_layer, struct_size), kind: Int64 },
-        Member { name: "compliance", at: offset_of!(contact_normal_layer, compliance), kind: Double },
-        Member { name: "compliances", at: offset_of!(contact_normal_layer, compliances), kind: Array },
-    ] },
-    Struct { name: "contact_normal_pressure_limit", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_pressure_limit, struct_size), kind: Int64 },
-        Member { name: "limit", at: offset_of!(contact_normal_pressure_limit, limit), kind: Double },
-        Member { name: "limits", at: offset_of!(contact_normal_pressure_limit, limits), kind: Array },
-    ] },
-    Struct { name: "contact_normal_period", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_period, struct_size), kind: Int64 },
-        Member { name: "x", at: offset_of!(contact_normal_period, x), kind: Int32 },
-        Member { name: "y", at: offset_of!(contact_normal_period, y), kind: Int32 },
-    ] },
-    Struct { name: "contact_normal_patches", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_patches, struct_size), kind: Int64 },
-        Member { name: "count", at: offset_of!(contact_normal_patches, count), kind: Int32 },
-        Member { name: "reserved", at: offset_of!(contact_normal_patches, reserved), kind: Int32 },
-        Member { name: "patch", at: offset_of!(contact_normal_patches, patch), kind: Array },
-        Member { name: "factors", at: offset_of!(contact_normal_patches, factors), kind: Array },
-    ] },
-    Struct { name: "contact_normal_row_tables", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_row_tables, struct_size), kind: Int64 },
-        Member { name: "cx", at: offset_of!(contact_normal_row_tables, cx), kind: Int32 },
-        Member { name: "rows", at: offset_of!(contact_normal_row_tables, rows), kind: Int32 },
-        Member { name: "coefficients", at: offset_of!(contact_normal_row_tables, coefficients), kind: Array },
-        Member { name: "scale", at: offset_of!(contact_normal_row_tables, scale), kind: Double },
-    ] },
-    Struct { name: "contact_normal_friction", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_friction, struct_size), kind: Int64 },
-        Member { name: "coefficient", at: offset_of!(contact_normal_friction, coefficient), kind: Double },
-        Member { name: "coefficients", at: offset_of!(contact_normal_friction, coefficients), kind: Array },
-        Member { name: "motion", at: offset_of!(contact_normal_friction, motion), kind: Int32 },
-        Member { name: "continues", at: offset_of!(contact_normal_friction, continues), kind: Int32 },
-        Member { name: "prescribed[0]", at: offset_of!(contact_normal_friction, prescribed), kind: Int32 },
-        Member { name: "prescribed[1]", at: offset_of!(contact_normal_friction, prescribed) + 4, kind: Int32 },
-        Member { name: "creepage[0]", at: offset_of!(contact_normal_friction, creepage), kind: Double },
-        Member { name: "creepage[1]", at: offset_of!(contact_normal_friction, creepage) + 8, kind: Double },
-        Member { name: "spin", at: offset_of!(contact_normal_friction, spin), kind: Double },
-        Member { name: "spin_centre[0]", at: offset_of!(contact_normal_friction, spin_centre), kind: Double },
-        Member { name: "spin_centre[1]", at: offset_of!(contact_normal_friction, spin_centre) + 8, kind: Double },
-        Member { name: "force[0]", at: offset_of!(contact_normal_friction, force), kind: Double },
-        Member { name: "force[1]", at: offset_of!(contact_normal_friction, force) + 8, kind: Double },
-        Member { name: "rolling_distance", at: offset_of!(contact_normal_friction, rolling_distance), kind: Double },
-        Member { name: "rolling_direction", at: offset_of!(contact_normal_friction, rolling_direction), kind: Double },
-        Member { name: "spin_offset", at: offset_of!(contact_normal_friction, spin_offset), kind: Double },
-        Member { name: "previous_traction[0]", at: offset_of!(contact_normal_friction, previous_traction), kind: Array },
-        Member { name: "previous_traction[1]", at: offset_of!(contact_normal_friction, previous_traction) + 8, kind: Array },
-        Member { name: "rigid_slip[0]", at: offset_of!(contact_normal_friction, rigid_slip), kind: Array },
-        Member { name: "rigid_slip[1]", at: offset_of!(contact_normal_friction, rigid_slip) + 8, kind: Array },
-        Member { name: "influence[0]", at: offset_of!(contact_normal_friction, influence), kind: Structs("contact_normal_influence") },
-        Member { name: "influence[1]", at: offset_of!(contact_normal_friction, influence) + 8, kind: Structs("contact_normal_influence") },
-        Member { name: "influence[2]", at: offset_of!(contact_normal_friction, influence) + 16, kind: Structs("contact_normal_influence") },
-        Member { name: "influence_cross[0]", at: offset_of!(contact_normal_friction, influence_cross), kind: Structs("contact_normal_influence") },
-        Member { name: "influence_cross[1]", at: offset_of!(contact_normal_friction, influence_cross) + 8, kind: Structs("contact_normal_influence") },
-        Member { name: "sensitivities", at: offset_of!(contact_normal_friction, sensitivities), kind: Int32 },
-        Member { name: "reserved", at: offset_of!(contact_normal_friction, reserved), kind: Int32 },
-        Member { name: "initial_traction[0]", at: offset_of!(contact_normal_friction, initial_traction), kind: Array },
-        Member { name: "initial_traction[1]", at: offset_of!(contact_normal_friction, initial_traction) + 8, kind: Array },
-        Member { name: "compliance", at: offset_of!(contact_normal_friction, compliance), kind: Double },
-        Member { name: "compliances", at: offset_of!(contact_normal_friction, compliances), kind: Array },
-        Member { name: "creepage_weight[0]", at: offset_of!(contact_normal_friction, creepage_weight), kind: Array },
-        Member { name: "creepage_weight[1]", at: offset_of!(contact_normal_friction, creepage_weight) + 8, kind: Array },
-        Member { name: "row_tables[0]", at: offset_of!(contact_normal_friction, row_tables), kind: Structs("contact_normal_row_tables") },
-        Member { name: "row_tables[1]", at: offset_of!(contact_normal_friction, row_tables) + 8, kind: Structs("contact_normal_row_tables") },
-        Member { name: "row_tables[2]", at: offset_of!(contact_normal_friction, row_tables) + 16, kind: Structs("contact_normal_row_tables") },
-        Member { name: "law", at: offset_of!(contact_normal_friction, law), kind: Int32 },
-        Member { name: "reserved_for_law", at: offset_of!(contact_normal_friction, reserved_for_law), kind: Int32 },
-        Member { name: "kinetic", at: offset_of!(contact_normal_friction, kinetic), kind: Double },
-        Member { name: "falling[0]", at: offset_of!(contact_normal_friction, falling), kind: Double },
-        Member { name: "falling[1]", at: offset_of!(contact_normal_friction, falling) + 8, kind: Double },
-        Member { name: "half_speed[0]", at: offset_of!(contact_normal_friction, half_speed), kind: Double },
-        Member { name: "half_speed[1]", at: offset_of!(contact_normal_friction, half_speed) + 8, kind: Double },
-        Member { name: "speed", at: offset_of!(contact_normal_friction, speed), kind: Double },
-        Member { name: "time_step", at: offset_of!(contact_normal_friction, time_step), kind: Double },
-        Member { name: "memory_distance", at: offset_of!(contact_normal_friction, memory_distance), kind: Double },
-        Member { name: "memory_speed", at: offset_of!(contact_normal_friction, memory_speed), kind: Double },
-        Member { name: "yield_limit", at: offset_of!(contact_normal_friction, yield_limit), kind: Double },
-        Member { name: "hardening", at: offset_of!(contact_normal_friction, hardening), kind: Double },
-        Member { name: "previous_coefficient", at: offset_of!(contact_normal_friction, previous_coefficient), kind: Array },
-        Member { name: "previous_yield_limit", at: offset_of!(contact_normal_friction, previous_yield_limit), kind: Array },
-        Member { name: "branch", at: offset_of!(contact_normal_friction, branch), kind: Int32 },
-        Member { name: "reserved_for_branch", at: offset_of!(contact_normal_friction, reserved_for_branch), kind: Int32 },
-    ] },
-    Struct { name: "contact_normal_adhesion", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_adhesion, struct_size), kind: Int64 },
-        Member { name: "law", at: offset_of!(contact_normal_adhesion, law), kind: Int32 },
-        Member { name: "start", at: offset_of!(contact_normal_adhesion, start), kind: Int32 },
-        Member { name: "work_of_adhesion", at: offset_of!(contact_normal_adhesion, work_of_adhesion), kind: Double },
-        Member { name: "works_of_adhesion", at: offset_of!(contact_normal_adhesion, works_of_adhesion), kind: Array },
-        Member { name: "range", at: offset_of!(contact_normal_adhesion, range), kind: Double },
-        Member { name: "smear", at: offset_of!(contact_normal_adhesion, smear), kind: Double },
-        Member { name: "stiffness", at: offset_of!(contact_normal_adhesion, stiffness), kind: Int32 },
-        Member { name: "stability", at: offset_of!(contact_normal_adhesion, stability), kind: Int32 },
-        Member { name: "shear_strength", at: offset_of!(contact_normal_adhesion, shear_strength), kind: Double },
-    ] },
-    Struct { name: "contact_normal_visco", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_visco, struct_size), kind: Int64 },
-        Member { name: "branches[0]", at: offset_of!(contact_normal_visco, branches), kind: Int32 },
-        Member { name: "branches[1]", at: offset_of!(contact_normal_visco, branches) + 4, kind: Int32 },
-        Member { name: "modulus[0]", at: offset_of!(contact_normal_visco, modulus), kind: Array },
-        Member { name: "modulus[1]", at: offset_of!(contact_normal_visco, modulus) + 8, kind: Array },
-        Member { name: "time[0]", at: offset_of!(contact_normal_visco, time), kind: Array },
-        Member { name: "time[1]", at: offset_of!(contact_normal_visco, time) + 8, kind: Array },
-        Member { name: "time_step", at: offset_of!(contact_normal_visco, time_step), kind: Double },
-        Member { name: "form", at: offset_of!(contact_normal_visco, form), kind: Int32 },
-        Member { name: "continues", at: offset_of!(contact_normal_visco, continues), kind: Int32 },
-    ] },
-    Struct { name: "contact_normal_scene", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_scene, struct_size), kind: Int64 },
-        Member { name: "mx", at: offset_of!(contact_normal_scene, mx), kind: Int32 },
-        Member { name: "my", at: offset_of!(contact_normal_scene, my), kind: Int32 },
-        Member { name: "dx", at: offset_of!(contact_normal_scene, dx), kind: Double },
-        Member { name: "dy", at: offset_of!(contact_normal_scene, dy), kind: Double },
-        Member { name: "undeformed_distance", at: offset_of!(contact_normal_scene, undeformed_distance), kind: Array },
-        Member { name: "shear_modulus[0]", at: offset_of!(contact_normal_scene, shear_modulus), kind: Double },
-        Member { name: "shear_modulus[1]", at: offset_of!(contact_normal_scene, shear_modulus) + 8, kind: Double },
-        Member { name: "poisson_ratio[0]", at: offset_of!(contact_normal_scene, poisson_ratio), kind: Double },
-        Member { name: "poisson_ratio[1]", at: offset_of!(contact_normal_scene, poisson_ratio) + 8, kind: Double },
-        Member { name: "load", at: offset_of!(contact_normal_scene, load), kind: Int32 },
-        Member { name: "reserved", at: offset_of!(contact_normal_scene, reserved), kind: Int32 },
-        Member { name: "approach", at: offset_of!(contact_normal_scene, approach), kind: Double },
-        Member { name: "force", at: offset_of!(contact_normal_scene, force), kind: Double },
-        Member { name: "influence", at: offset_of!(contact_normal_scene, influence), kind: Structs("contact_normal_influence") },
-        Member { name: "layer", at: offset_of!(contact_normal_scene, layer), kind: Structs("contact_normal_layer") },
-        Member { name: "pressure_limit", at: offset_of!(contact_normal_scene, pressure_limit), kind: Structs("contact_normal_pressure_limit") },
-        Member { name: "period", at: offset_of!(contact_normal_scene, period), kind: Structs("contact_normal_period") },
-        Member { name: "patches", at: offset_of!(contact_normal_scene, patches), kind: Structs("contact_normal_patches") },
-        Member { name: "row_tables", at: offset_of!(contact_normal_scene, row_tables), kind: Structs("contact_normal_row_tables") },
-        Member { name: "coating[0]", at: offset_of!(contact_normal_scene, coating), kind: Structs("contact_normal_coating") },
-        Member { name: "coating[1]", at: offset_of!(contact_normal_scene, coating) + 8, kind: Structs("contact_normal_coating") },
-        Member { name: "friction", at: offset_of!(contact_normal_scene, friction), kind: Structs("contact_normal_friction") },
-        Member { name: "adhesion", at: offset_of!(contact_normal_scene, adhesion), kind: Structs("contact_normal_adhesion") },
-        Member { name: "visco", at: offset_of!(contact_normal_scene, visco), kind: Structs("contact_normal_visco") },
-    ] },
-    Struct { name: "contact_normal_progress", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_progress, struct_size), kind: Int64 },
-        Member { name: "mx", at: offset_of!(contact_normal_progress, mx), kind: Int32 },
-        Member { name: "my", at: offset_of!(contact_normal_progress, my), kind: Int32 },
-        Member { name: "cycles", at: offset_of!(contact_normal_progress, cycles), kind: Int64 },
-        Member { name: "active_set_changes", at: offset_of!(contact_normal_progress, active_set_changes), kind: Int64 },
-        Member { name: "seconds", at: offset_of!(contact_normal_progress, seconds), kind: Double },
-        Member { name: "work_units", at: offset_of!(contact_normal_progress, work_units), kind: Double },
-        Member { name: "update", at: offset_of!(contact_normal_progress, update), kind: Double },
-        Member { name: "residual", at: offset_of!(contact_normal_progress, residual), kind: Double },
-    ] },
-    Struct { name: "contact_normal_cycle", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_cycle, struct_size), kind: Int64 },
-        Member { name: "smoother", at: offset_of!(contact_normal_cycle, smoother), kind: Int32 },
-        Member { name: "pre_sweeps", at: offset_of!(contact_normal_cycle, pre_sweeps), kind: Int32 },
-        Member { name: "post_sweeps", at: offset_of!(contact_normal_cycle, post_sweeps), kind: Int32 },
-        Member { name: "coarsest", at: offset_of!(contact_normal_cycle, coarsest), kind: Int32 },
-        Member { name: "relaxation", at: offset_of!(contact_normal_cycle, relaxation), kind: Double },
-    ] },
-    Struct { name: "contact_normal_options", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_options, struct_size), kind: Int64 },
-        Member { name: "method", at: offset_of!(contact_normal_options, method), kind: Int32 },
-        Member { name: "active_set", at: offset_of!(contact_normal_options, active_set), kind: Int32 },
-        Member { name: "initial_guess", at: offset_of!(contact_normal_options, initial_guess), kind: Int32 },
-        Member { name: "criterion", at: offset_of!(contact_normal_options, criterion), kind: Int32 },
-        Member { name: "tolerance", at: offset_of!(contact_normal_options, tolerance), kind: Double },
-        Member { name: "error_ratio", at: offset_of!(contact_normal_options, error_ratio), kind: Double },
-        Member { name: "max_cycles", at: offset_of!(contact_normal_options, max_cycles), kind: Int32 },
-        Member { name: "threads", at: offset_of!(contact_normal_options, threads), kind: Int32 },
-        Member { name: "precision", at: offset_of!(contact_normal_options, precision), kind: Int32 },
-        Member { name: "reserved", at: offset_of!(contact_normal_options, reserved), kind: Int32 },
-        Member { name: "progress", at: offset_of!(contact_normal_options, progress), kind: OfTheHost },
-        Member { name: "user", at: offset_of!(contact_normal_options, user), kind: OfTheHost },
-        Member { name: "cycle", at: offset_of!(contact_normal_options, cycle), kind: Structs("contact_normal_cycle") },
-        Member { name: "max_seconds", at: offset_of!(contact_normal_options, max_seconds), kind: Double },
-        Member { name: "stop", at: offset_of!(contact_normal_options, stop), kind: Array },
-        Member { name: "dump", at: offset_of!(contact_normal_options, dump), kind: OfTheHost },
-        Member { name: "neglect_below", at: offset_of!(contact_normal_options, neglect_below), kind: Double },
-    ] },
-    Struct { name: "contact_normal_fields", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_fields, struct_size), kind: Int64 },
-        Member { name: "pressure", at: offset_of!(contact_normal_fields, pressure), kind: Array },
-        Member { name: "deformed_distance", at: offset_of!(contact_normal_fields, deformed_distance), kind: Array },
-        Member { name: "displacement", at: offset_of!(contact_normal_fields, displacement), kind: Array },
-        Member { name: "contact", at: offset_of!(contact_normal_fields, contact), kind: Array },
-        Member { name: "traction[0]", at: offset_of!(contact_normal_fields, traction), kind: Array },
-        Member { name: "traction[1]", at: offset_of!(contact_normal_fields, traction) + 8, kind: Array },
-        Member { name: "slip[0]", at: offset_of!(contact_normal_fields, slip), kind: Array },
-        Member { name: "slip[1]", at: offset_of!(contact_normal_fields, slip) + 8, kind: Array },
-        Member { name: "stick_slip", at: offset_of!(contact_normal_fields, stick_slip), kind: Array },
-        Member { name: "contact_pressure", at: offset_of!(contact_normal_fields, contact_pressure), kind: Array },
-        Member { name: "attraction", at: offset_of!(contact_normal_fields, attraction), kind: Array },
-        Member { name: "friction_coefficient", at: offset_of!(contact_normal_fields, friction_coefficient), kind: Array },
-        Member { name: "yield_limit", at: offset_of!(contact_normal_fields, yield_limit), kind: Array },
-    ] },
-    Struct { name: "contact_normal_ledger_row", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_ledger_row, struct_size), kind: Int64 },
-        Member { name: "mx", at: offset_of!(contact_normal_ledger_row, mx), kind: Int32 },
-        Member { name: "my", at: offset_of!(contact_normal_ledger_row, my), kind: Int32 },
-        Member { name: "cycles", at: offset_of!(contact_normal_ledger_row, cycles), kind: Int64 },
-        Member { name: "seconds", at: offset_of!(contact_normal_ledger_row, seconds), kind: Double },
-        Member { name: "work_units", at: offset_of!(contact_normal_ledger_row, work_units), kind: Double },
-        Member { name: "residual", at: offset_of!(contact_normal_ledger_row, residual), kind: Double },
-        Member { name: "approach", at: offset_of!(contact_normal_ledger_row, approach), kind: Double },
-        Member { name: "force", at: offset_of!(contact_normal_ledger_row, force), kind: Double },
-        Member { name: "max_pressure", at: offset_of!(contact_normal_ledger_row, max_pressure), kind: Double },
-        Member { name: "contact_area", at: offset_of!(contact_normal_ledger_row, contact_area), kind: Double },
-        Member { name: "corrected_area", at: offset_of!(contact_normal_ledger_row, corrected_area), kind: Double },
-        Member { name: "error_force", at: offset_of!(contact_normal_ledger_row, error_force), kind: Double },
-        Member { name: "error_max_pressure", at: offset_of!(contact_normal_ledger_row, error_max_pressure), kind: Double },
-        Member { name: "error_contact_area", at: offset_of!(contact_normal_ledger_row, error_contact_area), kind: Double },
-        Member { name: "error_corrected_area", at: offset_of!(contact_normal_ledger_row, error_corrected_area), kind: Double },
-        Member { name: "error_pressure", at: offset_of!(contact_normal_ledger_row, error_pressure), kind: Double },
-        Member { name: "contact_count", at: offset_of!(contact_normal_ledger_row, contact_count), kind: Int64 },
-        Member { name: "untrusted", at: offset_of!(contact_normal_ledger_row, untrusted), kind: Int32 },
-        Member { name: "reserved", at: offset_of!(contact_normal_ledger_row, reserved), kind: Int32 },
-    ] },
-    Struct { name: "contact_normal_report_normal", members: &[
-        Member { name: "approach", at: offset_of!(contact_normal_report_normal, approach), kind: Double },
-        Member { name: "force", at: offset_of!(contact_normal_report_normal, force), kind: Double },
-        Member { name: "max_pressure", at: offset_of!(contact_normal_report_normal, max_pressure), kind: Double },
-        Member { name: "min_pressure", at: offset_of!(contact_normal_report_normal, min_pressure), kind: Double },
-        Member { name: "contact_area", at: offset_of!(contact_normal_report_normal, contact_area), kind: Double },
-        Member { name: "corrected_area", at: offset_of!(contact_normal_report_normal, corrected_area), kind: Double },
-        Member { name: "contact_count", at: offset_of!(contact_normal_report_normal, contact_count), kind: Int64 },
-        Member { name: "edge_count", at: offset_of!(contact_normal_report_normal, edge_count), kind: Int64 },
-        Member { name: "tolerance", at: offset_of!(contact_normal_report_normal, tolerance), kind: Double },
-        Member { name: "residual", at: offset_of!(contact_normal_report_normal, residual), kind: Double },
-        Member { name: "violation", at: offset_of!(contact_normal_report_normal, violation), kind: Double },
-        Member { name: "complementarity", at: offset_of!(contact_normal_report_normal, complementarity), kind: Double },
-        Member { name: "update", at: offset_of!(contact_normal_report_normal, update), kind: Double },
-        Member { name: "reserved[0]", at: offset_of!(contact_normal_report_normal, reserved), kind: Double },
-        Member { name: "reserved[1]", at: offset_of!(contact_normal_report_normal, reserved) + 8, kind: Double },
-        Member { name: "reserved[2]", at: offset_of!(contact_normal_report_normal, reserved) + 16, kind: Double },
-        Member { name: "reserved[3]", at: offset_of!(contact_normal_report_normal, reserved) + 24, kind: Double },
-        Member { name: "reserved[4]", at: offset_of!(contact_normal_report_normal, reserved) + 32, kind: Double },
-        Member { name: "reserved[5]", at: offset_of!(contact_normal_report_normal, reserved) + 40, kind: Double },
-        Member { name: "reserved[6]", at: offset_of!(contact_normal_report_normal, reserved) + 48, kind: Double },
-        Member { name: "reserved[7]", at: offset_of!(contact_normal_report_normal, reserved) + 56, kind: Double },
-    ] },
-    Struct { name: "contact_normal_report_tangential", members: &[
-        Member { name: "force[0]", at: offset_of!(contact_normal_report_tangential, force), kind: Double },
-        Member { name: "force[1]", at: offset_of!(contact_normal_report_tangential, force) + 8, kind: Double },
-        Member { name: "moment", at: offset_of!(contact_normal_report_tangential, moment), kind: Double },
-        Member { name: "creepage[0]", at: offset_of!(contact_normal_report_tangential, creepage), kind: Double },
-        Member { name: "creepage[1]", at: offset_of!(contact_normal_report_tangential, creepage) + 8, kind: Double },
-        Member { name: "residual", at: offset_of!(contact_normal_report_tangential, residual), kind: Double },
-        Member { name: "gap", at: offset_of!(contact_normal_report_tangential, gap), kind: Double },
-        Member { name: "stick_count", at: offset_of!(contact_normal_report_tangential, stick_count), kind: Int64 },
-        Member { name: "slip_count", at: offset_of!(contact_normal_report_tangential, slip_count), kind: Int64 },
-        Member { name: "sensitivities[0]", at: offset_of!(contact_normal_report_tangential, sensitivities), kind: Double },
-        Member { name: "sensitivities[1]", at: offset_of!(contact_normal_report_tangential, sensitivities) + 8, kind: Double },
-        Member { name: "sensitivities[2]", at: offset_of!(contact_normal_report_tangential, sensitivities) + 16, kind: Double },
-        Member { name: "sensitivities[3]", at: offset_of!(contact_normal_report_tangential, sensitivities) + 24, kind: Double },
-        Member { name: "sensitivities[4]", at: offset_of!(contact_normal_report_tangential, sensitivities) + 32, kind: Double },
-        Member { name: "sensitivities[5]", at: offset_of!(contact_normal_report_tangential, sensitivities) + 40, kind: Double },
-        Member { name: "sensitivities[6]", at: offset_of!(contact_normal_report_tangential, sensitivities) + 48, kind: Double },
-        Member { name: "sensitivities[7]", at: offset_of!(contact_normal_report_tangential, sensitivities) + 56, kind: Double },
-        Member { name: "sensitivities[8]", at: offset_of!(contact_normal_report_tangential, sensitivities) + 64, kind: Double },
-        Member { name: "update", at: offset_of!(contact_normal_report_tangential, update), kind: Double },
-        Member { name: "law_slope", at: offset_of!(contact_normal_report_tangential, law_slope), kind: Double },
-        Member { name: "reserved[0]", at: offset_of!(contact_normal_report_tangential, reserved), kind: Double },
-        Member { name: "reserved[1]", at: offset_of!(contact_normal_report_tangential, reserved) + 8, kind: Double },
-        Member { name: "reserved[2]", at: offset_of!(contact_normal_report_tangential, reserved) + 16, kind: Double },
-        Member { name: "reserved[3]", at: offset_of!(contact_normal_report_tangential, reserved) + 24, kind: Double },
-        Member { name: "reserved[4]", at: offset_of!(contact_normal_report_tangential, reserved) + 32, kind: Double },
-        Member { name: "reserved[5]", at: offset_of!(contact_normal_report_tangential, reserved) + 40, kind: Double },
-    ] },
-    Struct { name: "contact_normal_report_accuracy", members: &[
-        Member { name: "error_force", at: offset_of!(contact_normal_report_accuracy, error_force), kind: Double },
-        Member { name: "error_max_pressure", at: offset_of!(contact_normal_report_accuracy, error_max_pressure), kind: Double },
-        Member { name: "error_contact_area", at: offset_of!(contact_normal_report_accuracy, error_contact_area), kind: Double },
-        Member { name: "error_corrected_area", at: offset_of!(contact_normal_report_accuracy, error_corrected_area), kind: Double },
-        Member { name: "error_pressure", at: offset_of!(contact_normal_report_accuracy, error_pressure), kind: Double },
-        Member { name: "error_tangential[0]", at: offset_of!(contact_normal_report_accuracy, error_tangential), kind: Double },
-        Member { name: "error_tangential[1]", at: offset_of!(contact_normal_report_accuracy, error_tangential) + 8, kind: Double },
-        Member { name: "untrusted", at: offset_of!(contact_normal_report_accuracy, untrusted), kind: Int32 },
-        Member { name: "limited_by", at: offset_of!(contact_normal_report_accuracy, limited_by), kind: Int32 },
-        Member { name: "halved_seconds", at: offset_of!(contact_normal_report_accuracy, halved_seconds), kind: Double },
-        Member { name: "halved_error_force", at: offset_of!(contact_normal_report_accuracy, halved_error_force), kind: Double },
-        Member { name: "neglected", at: offset_of!(contact_normal_report_accuracy, neglected), kind: Int64 },
-        Member { name: "neglected_error", at: offset_of!(contact_normal_report_accuracy, neglected_error), kind: Double },
-        Member { name: "reserved[0]", at: offset_of!(contact_normal_report_accuracy, reserved), kind: Double },
-        Member { name: "reserved[1]", at: offset_of!(contact_normal_report_accuracy, reserved) + 8, kind: Double },
-        Member { name: "reserved[2]", at: offset_of!(contact_normal_report_accuracy, reserved) + 16, kind: Double },
-        Member { name: "reserved[3]", at: offset_of!(contact_normal_report_accuracy, reserved) + 24, kind: Double },
-        Member { name: "reserved[4]", at: offset_of!(contact_normal_report_accuracy, reserved) + 32, kind: Double },
-        Member { name: "reserved[5]", at: offset_of!(contact_normal_report_accuracy, reserved) + 40, kind: Double },
-    ] },
-    Struct { name: "contact_normal_report_statistics", members: &[
-        Member { name: "cycles", at: offset_of!(contact_normal_report_statistics, cycles), kind: Int64 },
-        Member { name: "active_set_steps", at: offset_of!(contact_normal_report_statistics, active_set_steps), kind: Int64 },
-        Member { name: "active_set_changes", at: offset_of!(contact_normal_report_statistics, active_set_changes), kind: Int64 },
-        Member { name: "matrix_products", at: offset_of!(contact_normal_report_statistics, matrix_products), kind: Int64 },
-        Member { name: "work_units", at: offset_of!(contact_normal_report_statistics, work_units), kind: Double },
-        Member { name: "tangential_products", at: offset_of!(contact_normal_report_statistics, tangential_products), kind: Double },
-        Member { name: "setup_seconds", at: offset_of!(contact_normal_report_statistics, setup_seconds), kind: Double },
-        Member { name: "solve_seconds", at: offset_of!(contact_normal_report_statistics, solve_seconds), kind: Double },
-        Member { name: "tangential_seconds", at: offset_of!(contact_normal_report_statistics, tangential_seconds), kind: Double },
-        Member { name: "bytes", at: offset_of!(contact_normal_report_statistics, bytes), kind: Int64 },
-        Member { name: "reserved[0]", at: offset_of!(contact_normal_report_statistics, reserved), kind: Double },
-        Member { name: "reserved[1]", at: offset_of!(contact_normal_report_statistics, reserved) + 8, kind: Double },
-        Member { name: "reserved[2]", at: offset_of!(contact_normal_report_statistics, reserved) + 16, kind: Double },
-        Member { name: "reserved[3]", at: offset_of!(contact_normal_report_statistics, reserved) + 24, kind: Double },
-        Member { name: "reserved[4]", at: offset_of!(contact_normal_report_statistics, reserved) + 32, kind: Double },
-        Member { name: "reserved[5]", at: offset_of!(contact_normal_report_statistics, reserved) + 40, kind: Double },
-        Member { name: "reserved[6]", at: offset_of!(contact_normal_report_statistics, reserved) + 48, kind: Double },
-        Member { name: "reserved[7]", at: offset_of!(contact_normal_report_statistics, reserved) + 56, kind: Double },
-    ] },
-    Struct { name: "contact_normal_report_adhesion", members: &[
-        Member { name: "repulsive_force", at: offset_of!(contact_normal_report_adhesion, repulsive_force), kind: Double },
-        Member { name: "adhesive_force", at: offset_of!(contact_normal_report_adhesion, adhesive_force), kind: Double },
-        Member { name: "elastic_energy", at: offset_of!(contact_normal_report_adhesion, elastic_energy), kind: Double },
-        Member { name: "adhesive_energy", at: offset_of!(contact_normal_report_adhesion, adhesive_energy), kind: Double },
-        Member { name: "law_residual", at: offset_of!(contact_normal_report_adhesion, law_residual), kind: Double },
-        Member { name: "range", at: offset_of!(contact_normal_report_adhesion, range), kind: Double },
-        Member { name: "resolution", at: offset_of!(contact_normal_report_adhesion, resolution), kind: Double },
-        Member { name: "border_share", at: offset_of!(contact_normal_report_adhesion, border_share), kind: Double },
-        Member { name: "stiffness", at: offset_of!(contact_normal_report_adhesion, stiffness), kind: Double },
-        Member { name: "stability", at: offset_of!(contact_normal_report_adhesion, stability), kind: Double },
-        Member { name: "jumped", at: offset_of!(contact_normal_report_adhesion, jumped), kind: Int32 },
-        Member { name: "reserved_integer", at: offset_of!(contact_normal_report_adhesion, reserved_integer), kind: Int32 },
-        Member { name: "reserved[0]", at: offset_of!(contact_normal_report_adhesion, reserved), kind: Double },
-        Member { name: "reserved[1]", at: offset_of!(contact_normal_report_adhesion, reserved) + 8, kind: Double },
-        Member { name: "reserved[2]", at: offset_of!(contact_normal_report_adhesion, reserved) + 16, kind: Double },
-        Member { name: "reserved[3]", at: offset_of!(contact_normal_report_adhesion, reserved) + 24, kind: Double },
-        Member { name: "reserved[4]", at: offset_of!(contact_normal_report_adhesion, reserved) + 32, kind: Double },
-    ] },
-    Struct { name: "contact_normal_report_visco", members: &[
-        Member { name: "time", at: offset_of!(contact_normal_report_visco, time), kind: Double },
-        Member { name: "step_error", at: offset_of!(contact_normal_report_visco, step_error), kind: Double },
-        Member { name: "time_error", at: offset_of!(contact_normal_report_visco, time_error), kind: Double },
-        Member { name: "compliance", at: offset_of!(contact_normal_report_visco, compliance), kind: Double },
-        Member { name: "reserved[0]", at: offset_of!(contact_normal_report_visco, reserved), kind: Double },
-        Member { name: "reserved[1]", at: offset_of!(contact_normal_report_visco, reserved) + 8, kind: Double },
-        Member { name: "reserved[2]", at: offset_of!(contact_normal_report_visco, reserved) + 16, kind: Double },
-        Member { name: "reserved[3]", at: offset_of!(contact_normal_report_visco, reserved) + 24, kind: Double },
-    ] },
-    Struct { name: "contact_normal_report", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_report, struct_size), kind: Int64 },
-        Member { name: "ledger_rows", at: offset_of!(contact_normal_report, ledger_rows), kind: Int64 },
-        Member { name: "ledger_capacity", at: offset_of!(contact_normal_report, ledger_capacity), kind: Int64 },
-        Member { name: "ledger", at: offset_of!(contact_normal_report, ledger), kind: Structs("contact_normal_ledger_row") },
-        Member { name: "warnings", at: offset_of!(contact_normal_report, warnings), kind: Int32 },
-        Member { name: "reserved", at: offset_of!(contact_normal_report, reserved), kind: Int32 },
-        Member { name: "normal.approach", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, approach), kind: Double },
-        Member { name: "normal.force", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, force), kind: Double },
-        Member { name: "normal.max_pressure", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, max_pressure), kind: Double },
-        Member { name: "normal.min_pressure", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, min_pressure), kind: Double },
-        Member { name: "normal.contact_area", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, contact_area), kind: Double },
-        Member { name: "normal.corrected_area", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, corrected_area), kind: Double },
-        Member { name: "normal.contact_count", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, contact_count), kind: Int64 },
-        Member { name: "normal.edge_count", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, edge_count), kind: Int64 },
-        Member { name: "normal.tolerance", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, tolerance), kind: Double },
-        Member { name: "normal.residual", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, residual), kind: Double },
-        Member { name: "normal.violation", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, violation), kind: Double },
-        Member { name: "normal.complementarity", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, complementarity), kind: Double },
-        Member { name: "normal.update", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, update), kind: Double },
-        Member { name: "normal.reserved[0]", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, reserved), kind: Double },
-        Member { name: "normal.reserved[1]", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, reserved) + 8, kind: Double },
-        Member { name: "normal.reserved[2]", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, reserved) + 16, kind: Double },
-        Member { name: "normal.reserved[3]", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, reserved) + 24, kind: Double },
-        Member { name: "normal.reserved[4]", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, reserved) + 32, kind: Double },
-        Member { name: "normal.reserved[5]", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, reserved) + 40, kind: Double },
-        Member { name: "normal.reserved[6]", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, reserved) + 48, kind: Double },
-        Member { name: "normal.reserved[7]", at: offset_of!(contact_normal_report, normal) + offset_of!(contact_normal_report_normal, reserved) + 56, kind: Double },
-        Member { name: "tangential.force[0]", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, force), kind: Double },
-        Member { name: "tangential.force[1]", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, force) + 8, kind: Double },
-        Member { name: "tangential.moment", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, moment), kind: Double },
-        Member { name: "tangential.creepage[0]", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, creepage), kind: Double },
-        Member { name: "tangential.creepage[1]", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, creepage) + 8, kind: Double },
-        Member { name: "tangential.residual", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, residual), kind: Double },
-        Member { name: "tangential.gap", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, gap), kind: Double },
-        Member { name: "tangential.stick_count", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, stick_count), kind: Int64 },
-        Member { name: "tangential.slip_count", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, slip_count), kind: Int64 },
-        Member { name: "tangential.sensitivities[0]", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, sensitivities), kind: Double },
-        Member { name: "tangential.sensitivities[1]", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, sensitivities) + 8, kind: Double },
-        Member { name: "tangential.sensitivities[2]", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, sensitivities) + 16, kind: Double },
-        Member { name: "tangential.sensitivities[3]", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, sensitivities) + 24, kind: Double },
-        Member { name: "tangential.sensitivities[4]", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, sensitivities) + 32, kind: Double },
-        Member { name: "tangential.sensitivities[5]", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, sensitivities) + 40, kind: Double },
-        Member { name: "tangential.sensitivities[6]", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, sensitivities) + 48, kind: Double },
-        Member { name: "tangential.sensitivities[7]", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, sensitivities) + 56, kind: Double },
-        Member { name: "tangential.sensitivities[8]", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, sensitivities) + 64, kind: Double },
-        Member { name: "tangential.update", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, update), kind: Double },
-        Member { name: "tangential.law_slope", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, law_slope), kind: Double },
-        Member { name: "tangential.reserved[0]", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, reserved), kind: Double },
-        Member { name: "tangential.reserved[1]", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, reserved) + 8, kind: Double },
-        Member { name: "tangential.reserved[2]", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, reserved) + 16, kind: Double },
-        Member { name: "tangential.reserved[3]", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, reserved) + 24, kind: Double },
-        Member { name: "tangential.reserved[4]", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, reserved) + 32, kind: Double },
-        Member { name: "tangential.reserved[5]", at: offset_of!(contact_normal_report, tangential) + offset_of!(contact_normal_report_tangential, reserved) + 40, kind: Double },
-        Member { name: "accuracy.error_force", at: offset_of!(contact_normal_report, accuracy) + offset_of!(contact_normal_report_accuracy, error_force), kind: Double },
-        Member { name: "accuracy.error_max_pressure", at: offset_of!(contact_normal_report, accuracy) + offset_of!(contact_normal_report_accuracy, error_max_pressure), kind: Double },
-        Member { name: "accuracy.error_contact_area", at: offset_of!(contact_normal_report, accuracy) + offset_of!(contact_normal_report_accuracy, error_contact_area), kind: Double },
-        Member { name: "accuracy.error_corrected_area", at: offset_of!(contact_normal_report, accuracy) + offset_of!(contact_normal_report_accuracy, error_corrected_area), kind: Double },
-        Member { name: "accuracy.error_pressure", at: offset_of!(contact_normal_report, accuracy) + offset_of!(contact_normal_report_accuracy, error_pressure), kind: Double },
-        Member { name: "accuracy.error_tangential[0]", at: offset_of!(contact_normal_report, accuracy) + offset_of!(contact_normal_report_accuracy, error_tangential), kind: Double },
-        Member { name: "accuracy.error_tangential[1]", at: offset_of!(contact_normal_report, accuracy) + offset_of!(contact_normal_report_accuracy, error_tangential) + 8, kind: Double },
-        Member { name: "accuracy.untrusted", at: offset_of!(contact_normal_report, accuracy) + offset_of!(contact_normal_report_accuracy, untrusted), kind: Int32 },
-        Member { name: "accuracy.limited_by", at: offset_of!(contact_normal_report, accuracy) + offset_of!(contact_normal_report_accuracy, limited_by), kind: Int32 },
-        Member { name: "accuracy.halved_seconds", at: offset_of!(contact_normal_report, accuracy) + offset_of!(contact_normal_report_accuracy, halved_seconds), kind: Double },
-        Member { name: "accuracy.halved_error_force", at: offset_of!(contact_normal_report, accuracy) + offset_of!(contact_normal_report_accuracy, halved_error_force), kind: Double },
-        Member { name: "accuracy.neglected", at: offset_of!(contact_normal_report, accuracy) + offset_of!(contact_normal_report_accuracy, neglected), kind: Int64 },
-        Member { name: "accuracy.neglected_error", at: offset_of!(contact_normal_report, accuracy) + offset_of!(contact_normal_report_accuracy, neglected_error), kind: Double },
-        Member { name: "accuracy.reserved[0]", at: offset_of!(contact_normal_report, accuracy) + offset_of!(contact_normal_report_accuracy, reserved), kind: Double },
-        Member { name: "accuracy.reserved[1]", at: offset_of!(contact_normal_report, accuracy) + offset_of!(contact_normal_report_accuracy, reserved) + 8, kind: Double },
-        Member { name: "accuracy.reserved[2]", at: offset_of!(contact_normal_report, accuracy) + offset_of!(contact_normal_report_accuracy, reserved) + 16, kind: Double },
-        Member { name: "accuracy.reserved[3]", at: offset_of!(contact_normal_report, accuracy) + offset_of!(contact_normal_report_accuracy, reserved) + 24, kind: Double },
-        Member { name: "accuracy.reserved[4]", at: offset_of!(contact_normal_report, accuracy) + offset_of!(contact_normal_report_accuracy, reserved) + 32, kind: Double },
-        Member { name: "accuracy.reserved[5]", at: offset_of!(contact_normal_report, accuracy) + offset_of!(contact_normal_report_accuracy, reserved) + 40, kind: Double },
-        Member { name: "statistics.cycles", at: offset_of!(contact_normal_report, statistics) + offset_of!(contact_normal_report_statistics, cycles), kind: Int64 },
-        Member { name: "statistics.active_set_steps", at: offset_of!(contact_normal_report, statistics) + offset_of!(contact_normal_report_statistics, active_set_steps), kind: Int64 },
-        Member { name: "statistics.active_set_changes", at: offset_of!(contact_normal_report, statistics) + offset_of!(contact_normal_report_statistics, active_set_changes), kind: Int64 },
-        Member { name: "statistics.matrix_products", at: offset_of!(contact_normal_report, statistics) + offset_of!(contact_normal_report_statistics, matrix_products), kind: Int64 },
-        Member { name: "statistics.work_units", at: offset_of!(contact_normal_report, statistics) + offset_of!(contact_normal_report_statistics, work_units), kind: Double },
-        Member { name: "statistics.tangential_products", at: offset_of!(contact_normal_report, statistics) + offset_of!(contact_normal_report_statistics, tangential_products), kind: Double },
-        Member { name: "statistics.setup_seconds", at: offset_of!(contact_normal_report, statistics) + offset_of!(contact_normal_report_statistics, setup_seconds), kind: Double },
-        Member { name: "statistics.solve_seconds", at: offset_of!(contact_normal_report, statistics) + offset_of!(contact_normal_report_statistics, solve_seconds), kind: Double },
-        Member { name: "statistics.tangential_seconds", at: offset_of!(contact_normal_report, statistics) + offset_of!(contact_normal_report_statistics, tangential_seconds), kind: Double },
-        Member { name: "statistics.bytes", at: offset_of!(contact_normal_report, statistics) + offset_of!(contact_normal_report_statistics, bytes), kind: Int64 },
-        Member { name: "statistics.reserved[0]", at: offset_of!(contact_normal_report, statistics) + offset_of!(contact_normal_report_statistics, reserved), kind: Double },
-        Member { name: "statistics.reserved[1]", at: offset_of!(contact_normal_report, statistics) + offset_of!(contact_normal_report_statistics, reserved) + 8, kind: Double },
-        Member { name: "statistics.reserved[2]", at: offset_of!(contact_normal_report, statistics) + offset_of!(contact_normal_report_statistics, reserved) + 16, kind: Double },
-        Member { name: "statistics.reserved[3]", at: offset_of!(contact_normal_report, statistics) + offset_of!(contact_normal_report_statistics, reserved) + 24, kind: Double },
-        Member { name: "statistics.reserved[4]", at: offset_of!(contact_normal_report, statistics) + offset_of!(contact_normal_report_statistics, reserved) + 32, kind: Double },
-        Member { name: "statistics.reserved[5]", at: offset_of!(contact_normal_report, statistics) + offset_of!(contact_normal_report_statistics, reserved) + 40, kind: Double },
-        Member { name: "statistics.reserved[6]", at: offset_of!(contact_normal_report, statistics) + offset_of!(contact_normal_report_statistics, reserved) + 48, kind: Double },
-        Member { name: "statistics.reserved[7]", at: offset_of!(contact_normal_report, statistics) + offset_of!(contact_normal_report_statistics, reserved) + 56, kind: Double },
-        Member { name: "adhesion.repulsive_force", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, repulsive_force), kind: Double },
-        Member { name: "adhesion.adhesive_force", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, adhesive_force), kind: Double },
-        Member { name: "adhesion.elastic_energy", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, elastic_energy), kind: Double },
-        Member { name: "adhesion.adhesive_energy", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, adhesive_energy), kind: Double },
-        Member { name: "adhesion.law_residual", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, law_residual), kind: Double },
-        Member { name: "adhesion.range", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, range), kind: Double },
-        Member { name: "adhesion.resolution", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, resolution), kind: Double },
-        Member { name: "adhesion.border_share", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, border_share), kind: Double },
-        Member { name: "adhesion.stiffness", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, stiffness), kind: Double },
-        Member { name: "adhesion.stability", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, stability), kind: Double },
-        Member { name: "adhesion.jumped", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, jumped), kind: Int32 },
-        Member { name: "adhesion.reserved_integer", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, reserved_integer), kind: Int32 },
-        Member { name: "adhesion.reserved[0]", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, reserved), kind: Double },
-        Member { name: "adhesion.reserved[1]", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, reserved) + 8, kind: Double },
-        Member { name: "adhesion.reserved[2]", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, reserved) + 16, kind: Double },
-        Member { name: "adhesion.reserved[3]", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, reserved) + 24, kind: Double },
-        Member { name: "adhesion.reserved[4]", at: offset_of!(contact_normal_report, adhesion) + offset_of!(contact_normal_report_adhesion, reserved) + 32, kind: Double },
-        Member { name: "visco.time", at: offset_of!(contact_normal_report, visco) + offset_of!(contact_normal_report_visco, time), kind: Double },
-        Member { name: "visco.step_error", at: offset_of!(contact_normal_report, visco) + offset_of!(contact_normal_report_visco, step_error), kind: Double },
-        Member { name: "visco.time_error", at: offset_of!(contact_normal_report, visco) + offset_of!(contact_normal_report_visco, time_error), kind: Double },
-        Member { name: "visco.compliance", at: offset_of!(contact_normal_report, visco) + offset_of!(contact_normal_report_visco, compliance), kind: Double },
-        Member { name: "visco.reserved[0]", at: offset_of!(contact_normal_report, visco) + offset_of!(contact_normal_report_visco, reserved), kind: Double },
-        Member { name: "visco.reserved[1]", at: offset_of!(contact_normal_report, visco) + offset_of!(contact_normal_report_visco, reserved) + 8, kind: Double },
-        Member { name: "visco.reserved[2]", at: offset_of!(contact_normal_report, visco) + offset_of!(contact_normal_report_visco, reserved) + 16, kind: Double },
-        Member { name: "visco.reserved[3]", at: offset_of!(contact_normal_report, visco) + offset_of!(contact_normal_report_visco, reserved) + 24, kind: Double },
-    ] },
-    Struct { name: "contact_normal_solver_info", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_solver_info, struct_size), kind: Int64 },
-        Member { name: "mx", at: offset_of!(contact_normal_solver_info, mx), kind: Int32 },
-        Member { name: "my", at: offset_of!(contact_normal_solver_info, my), kind: Int32 },
-        Member { name: "dx", at: offset_of!(contact_normal_solver_info, dx), kind: Double },
-        Member { name: "dy", at: offset_of!(contact_normal_solver_info, dy), kind: Double },
-        Member { name: "threads", at: offset_of!(contact_normal_solver_info, threads), kind: Int32 },
-        Member { name: "has_result", at: offset_of!(contact_normal_solver_info, has_result), kind: Int32 },
-        Member { name: "bytes", at: offset_of!(contact_normal_solver_info, bytes), kind: Int64 },
-    ] },
-    Struct { name: "contact_normal_friction_results", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_friction_results, struct_size), kind: Int64 },
-        Member { name: "force", at: offset_of!(contact_normal_friction_results, force), kind: Array },
-        Member { name: "moment", at: offset_of!(contact_normal_friction_results, moment), kind: Array },
-        Member { name: "creepage", at: offset_of!(contact_normal_friction_results, creepage), kind: Array },
-        Member { name: "residual", at: offset_of!(contact_normal_friction_results, residual), kind: Array },
-        Member { name: "gap", at: offset_of!(contact_normal_friction_results, gap), kind: Array },
-        Member { name: "products", at: offset_of!(contact_normal_friction_results, products), kind: Array },
-        Member { name: "stick_count", at: offset_of!(contact_normal_friction_results, stick_count), kind: Array },
-        Member { name: "slip_count", at: offset_of!(contact_normal_friction_results, slip_count), kind: Array },
-        Member { name: "status", at: offset_of!(contact_normal_friction_results, status), kind: Array },
-        Member { name: "traction", at: offset_of!(contact_normal_friction_results, traction), kind: Array },
-        Member { name: "slip", at: offset_of!(contact_normal_friction_results, slip), kind: Array },
-        Member { name: "stick_slip", at: offset_of!(contact_normal_friction_results, stick_slip), kind: Array },
-        Member { name: "friction_coefficient", at: offset_of!(contact_normal_friction_results, friction_coefficient), kind: Array },
-        Member { name: "yield_limit", at: offset_of!(contact_normal_friction_results, yield_limit), kind: Array },
-    ] },
-    Struct { name: "contact_normal_accuracy", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_accuracy, struct_size), kind: Int64 },
-        Member { name: "target", at: offset_of!(contact_normal_accuracy, target), kind: Double },
-        Member { name: "max_seconds", at: offset_of!(contact_normal_accuracy, max_seconds), kind: Double },
-        Member { name: "max_bytes", at: offset_of!(contact_normal_accuracy, max_bytes), kind: Int64 },
-        Member { name: "max_elements", at: offset_of!(contact_normal_accuracy, max_elements), kind: Int64 },
-        Member { name: "surface", at: offset_of!(contact_normal_accuracy, surface), kind: OfTheHost },
-        Member { name: "user", at: offset_of!(contact_normal_accuracy, user), kind: OfTheHost },
-        Member { name: "mx", at: offset_of!(contact_normal_accuracy, mx), kind: Int32 },
-        Member { name: "my", at: offset_of!(contact_normal_accuracy, my), kind: Int32 },
-        Member { name: "dx", at: offset_of!(contact_normal_accuracy, dx), kind: Double },
-        Member { name: "dy", at: offset_of!(contact_normal_accuracy, dy), kind: Double },
-        Member { name: "reached", at: offset_of!(contact_normal_accuracy, reached), kind: Double },
-        Member { name: "seconds", at: offset_of!(contact_normal_accuracy, seconds), kind: Double },
-        Member { name: "max_pressure_target", at: offset_of!(contact_normal_accuracy, max_pressure_target), kind: Double },
-        Member { name: "contact_area_target", at: offset_of!(contact_normal_accuracy, contact_area_target), kind: Double },
-        Member { name: "mean_gap_target", at: offset_of!(contact_normal_accuracy, mean_gap_target), kind: Double },
-        Member { name: "stiffness_target", at: offset_of!(contact_normal_accuracy, stiffness_target), kind: Double },
-        Member { name: "tangential_force_target", at: offset_of!(contact_normal_accuracy, tangential_force_target), kind: Double },
-        Member { name: "creepage_target", at: offset_of!(contact_normal_accuracy, creepage_target), kind: Double },
-        Member { name: "spin_moment_target", at: offset_of!(contact_normal_accuracy, spin_moment_target), kind: Double },
-        Member { name: "stick_area_target", at: offset_of!(contact_normal_accuracy, stick_area_target), kind: Double },
-        Member { name: "max_von_mises_target", at: offset_of!(contact_normal_accuracy, max_von_mises_target), kind: Double },
-        Member { name: "von_mises_depth_target", at: offset_of!(contact_normal_accuracy, von_mises_depth_target), kind: Double },
-        Member { name: "max_shear_target", at: offset_of!(contact_normal_accuracy, max_shear_target), kind: Double },
-    ] },
-    Struct { name: "contact_normal_price", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_price, struct_size), kind: Int64 },
-        Member { name: "target", at: offset_of!(contact_normal_price, target), kind: Double },
-        Member { name: "error", at: offset_of!(contact_normal_price, error), kind: Double },
-        Member { name: "tolerance", at: offset_of!(contact_normal_price, tolerance), kind: Double },
-        Member { name: "seconds", at: offset_of!(contact_normal_price, seconds), kind: Double },
-        Member { name: "seconds_one_thread", at: offset_of!(contact_normal_price, seconds_one_thread), kind: Double },
-        Member { name: "bytes", at: offset_of!(contact_normal_price, bytes), kind: Int64 },
-        Member { name: "mx", at: offset_of!(contact_normal_price, mx), kind: Int32 },
-        Member { name: "my", at: offset_of!(contact_normal_price, my), kind: Int32 },
-        Member { name: "dx", at: offset_of!(contact_normal_price, dx), kind: Double },
-        Member { name: "dy", at: offset_of!(contact_normal_price, dy), kind: Double },
-        Member { name: "obstacle", at: offset_of!(contact_normal_price, obstacle), kind: Int32 },
-        Member { name: "reserved", at: offset_of!(contact_normal_price, reserved), kind: Int32 },
-        Member { name: "time_error", at: offset_of!(contact_normal_price, time_error), kind: Double },
-        Member { name: "work_units", at: offset_of!(contact_normal_price, work_units), kind: Double },
-    ] },
-    Struct { name: "contact_normal_quantity_row", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_quantity_row, struct_size), kind: Int64 },
-        Member { name: "quantity", at: offset_of!(contact_normal_quantity_row, quantity), kind: Int32 },
-        Member { name: "lack", at: offset_of!(contact_normal_quantity_row, lack), kind: Int32 },
-        Member { name: "mx", at: offset_of!(contact_normal_quantity_row, mx), kind: Int32 },
-        Member { name: "my", at: offset_of!(contact_normal_quantity_row, my), kind: Int32 },
-        Member { name: "value", at: offset_of!(contact_normal_quantity_row, value), kind: Double },
-        Member { name: "error", at: offset_of!(contact_normal_quantity_row, error), kind: Double },
-        Member { name: "seconds", at: offset_of!(contact_normal_quantity_row, seconds), kind: Double },
-        Member { name: "work_units", at: offset_of!(contact_normal_quantity_row, work_units), kind: Double },
-    ] },
-    Struct { name: "contact_normal_effects_row", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_effects_row, struct_size), kind: Int64 },
-        Member { name: "omitted", at: offset_of!(contact_normal_effects_row, omitted), kind: Int32 },
-        Member { name: "also_omitted", at: offset_of!(contact_normal_effects_row, also_omitted), kind: Int32 },
-        Member { name: "quantity", at: offset_of!(contact_normal_effects_row, quantity), kind: Int32 },
-        Member { name: "verdict", at: offset_of!(contact_normal_effects_row, verdict), kind: Int32 },
-        Member { name: "lack", at: offset_of!(contact_normal_effects_row, lack), kind: Int32 },
-        Member { name: "reserved", at: offset_of!(contact_normal_effects_row, reserved), kind: Int32 },
-        Member { name: "value", at: offset_of!(contact_normal_effects_row, value), kind: Double },
-        Member { name: "change", at: offset_of!(contact_normal_effects_row, change), kind: Double },
-        Member { name: "change_error", at: offset_of!(contact_normal_effects_row, change_error), kind: Double },
-        Member { name: "seconds", at: offset_of!(contact_normal_effects_row, seconds), kind: Double },
-        Member { name: "seconds_without", at: offset_of!(contact_normal_effects_row, seconds_without), kind: Double },
-        Member { name: "bytes", at: offset_of!(contact_normal_effects_row, bytes), kind: Double },
-        Member { name: "bytes_without", at: offset_of!(contact_normal_effects_row, bytes_without), kind: Double },
-    ] },
-    Struct { name: "contact_normal_hertz_solution", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_hertz_solution, struct_size), kind: Int64 },
-        Member { name: "semi_axis_x", at: offset_of!(contact_normal_hertz_solution, semi_axis_x), kind: Double },
-        Member { name: "semi_axis_y", at: offset_of!(contact_normal_hertz_solution, semi_axis_y), kind: Double },
-        Member { name: "max_pressure", at: offset_of!(contact_normal_hertz_solution, max_pressure), kind: Double },
-        Member { name: "approach", at: offset_of!(contact_normal_hertz_solution, approach), kind: Double },
-        Member { name: "force", at: offset_of!(contact_normal_hertz_solution, force), kind: Double },
-        Member { name: "area", at: offset_of!(contact_normal_hertz_solution, area), kind: Double },
-    ] },
-    Struct { name: "contact_normal_stress_maximum", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_stress_maximum, struct_size), kind: Int64 },
-        Member { name: "value", at: offset_of!(contact_normal_stress_maximum, value), kind: Double },
-        Member { name: "x", at: offset_of!(contact_normal_stress_maximum, x), kind: Double },
-        Member { name: "y", at: offset_of!(contact_normal_stress_maximum, y), kind: Double },
-        Member { name: "z", at: offset_of!(contact_normal_stress_maximum, z), kind: Double },
-        Member { name: "ix", at: offset_of!(contact_normal_stress_maximum, ix), kind: Int32 },
-        Member { name: "iy", at: offset_of!(contact_normal_stress_maximum, iy), kind: Int32 },
-        Member { name: "depth", at: offset_of!(contact_normal_stress_maximum, depth), kind: Int32 },
-        Member { name: "reserved", at: offset_of!(contact_normal_stress_maximum, reserved), kind: Int32 },
-    ] },
-    Struct { name: "contact_normal_stress_outputs", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_stress_outputs, struct_size), kind: Int64 },
-        Member { name: "stress[0]", at: offset_of!(contact_normal_stress_outputs, stress), kind: Array },
-        Member { name: "stress[1]", at: offset_of!(contact_normal_stress_outputs, stress) + 8, kind: Array },
-        Member { name: "stress[2]", at: offset_of!(contact_normal_stress_outputs, stress) + 16, kind: Array },
-        Member { name: "stress[3]", at: offset_of!(contact_normal_stress_outputs, stress) + 24, kind: Array },
-        Member { name: "stress[4]", at: offset_of!(contact_normal_stress_outputs, stress) + 32, kind: Array },
-        Member { name: "stress[5]", at: offset_of!(contact_normal_stress_outputs, stress) + 40, kind: Array },
-        Member { name: "von_mises", at: offset_of!(contact_normal_stress_outputs, von_mises), kind: Array },
-        Member { name: "maximum_shear", at: offset_of!(contact_normal_stress_outputs, maximum_shear), kind: Array },
-        Member { name: "principal[0]", at: offset_of!(contact_normal_stress_outputs, principal), kind: Array },
-        Member { name: "principal[1]", at: offset_of!(contact_normal_stress_outputs, principal) + 8, kind: Array },
-        Member { name: "principal[2]", at: offset_of!(contact_normal_stress_outputs, principal) + 16, kind: Array },
-        Member { name: "directions[0]", at: offset_of!(contact_normal_stress_outputs, directions), kind: Array },
-        Member { name: "directions[1]", at: offset_of!(contact_normal_stress_outputs, directions) + 8, kind: Array },
-        Member { name: "directions[2]", at: offset_of!(contact_normal_stress_outputs, directions) + 16, kind: Array },
-        Member { name: "largest_von_mises", at: offset_of!(contact_normal_stress_outputs, largest_von_mises), kind: Structs("contact_normal_stress_maximum") },
-        Member { name: "largest_shear", at: offset_of!(contact_normal_stress_outputs, largest_shear), kind: Structs("contact_normal_stress_maximum") },
-    ] },
-    Struct { name: "contact_normal_heat", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_heat, struct_size), kind: Int64 },
-        Member { name: "mx", at: offset_of!(contact_normal_heat, mx), kind: Int32 },
-        Member { name: "my", at: offset_of!(contact_normal_heat, my), kind: Int32 },
-        Member { name: "dx", at: offset_of!(contact_normal_heat, dx), kind: Double },
-        Member { name: "dy", at: offset_of!(contact_normal_heat, dy), kind: Double },
-        Member { name: "heat_flux", at: offset_of!(contact_normal_heat, heat_flux), kind: Array },
-        Member { name: "conductivity[0]", at: offset_of!(contact_normal_heat, conductivity), kind: Double },
-        Member { name: "conductivity[1]", at: offset_of!(contact_normal_heat, conductivity) + 8, kind: Double },
-        Member { name: "diffusivity[0]", at: offset_of!(contact_normal_heat, diffusivity), kind: Double },
-        Member { name: "diffusivity[1]", at: offset_of!(contact_normal_heat, diffusivity) + 8, kind: Double },
-        Member { name: "speed[0]", at: offset_of!(contact_normal_heat, speed), kind: Double },
-        Member { name: "speed[1]", at: offset_of!(contact_normal_heat, speed) + 8, kind: Double },
-        Member { name: "share", at: offset_of!(contact_normal_heat, share), kind: Double },
-        Member { name: "threads", at: offset_of!(contact_normal_heat, threads), kind: Int32 },
-        Member { name: "reserved", at: offset_of!(contact_normal_heat, reserved), kind: Int32 },
-    ] },
-    Struct { name: "contact_normal_flash", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_flash, struct_size), kind: Int64 },
-        Member { name: "share", at: offset_of!(contact_normal_flash, share), kind: Double },
-        Member { name: "largest[0]", at: offset_of!(contact_normal_flash, largest), kind: Double },
-        Member { name: "largest[1]", at: offset_of!(contact_normal_flash, largest) + 8, kind: Double },
-        Member { name: "x[0]", at: offset_of!(contact_normal_flash, x), kind: Double },
-        Member { name: "x[1]", at: offset_of!(contact_normal_flash, x) + 8, kind: Double },
-        Member { name: "y[0]", at: offset_of!(contact_normal_flash, y), kind: Double },
-        Member { name: "y[1]", at: offset_of!(contact_normal_flash, y) + 8, kind: Double },
-    ] },
-    Struct { name: "contact_normal_wear", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_wear, struct_size), kind: Int64 },
-        Member { name: "mx", at: offset_of!(contact_normal_wear, mx), kind: Int32 },
-        Member { name: "my", at: offset_of!(contact_normal_wear, my), kind: Int32 },
-        Member { name: "dx", at: offset_of!(contact_normal_wear, dx), kind: Double },
-        Member { name: "dy", at: offset_of!(contact_normal_wear, dy), kind: Double },
-        Member { name: "traction[0]", at: offset_of!(contact_normal_wear, traction), kind: Array },
-        Member { name: "traction[1]", at: offset_of!(contact_normal_wear, traction) + 8, kind: Array },
-        Member { name: "slip[0]", at: offset_of!(contact_normal_wear, slip), kind: Array },
-        Member { name: "slip[1]", at: offset_of!(contact_normal_wear, slip) + 8, kind: Array },
-        Member { name: "pressure", at: offset_of!(contact_normal_wear, pressure), kind: Array },
-        Member { name: "coefficient", at: offset_of!(contact_normal_wear, coefficient), kind: Double },
-        Member { name: "coefficients", at: offset_of!(contact_normal_wear, coefficients), kind: Array },
-        Member { name: "hardness", at: offset_of!(contact_normal_wear, hardness), kind: Double },
-        Member { name: "steps", at: offset_of!(contact_normal_wear, steps), kind: Double },
-        Member { name: "rolling_distance", at: offset_of!(contact_normal_wear, rolling_distance), kind: Double },
-    ] },
-    Struct { name: "contact_normal_worn", members: &[
-        Member { name: "struct_size", at: offset_of!(contact_normal_worn, struct_size), kind: Int64 },
-        Member { name: "work", at: offset_of!(contact_normal_worn, work), kind: Double },
-        Member { name: "volume", at: offset_of!(contact_normal_worn, volume), kind: Double },
-        Member { name: "largest_depth", at: offset_of!(contact_normal_worn, largest_depth), kind: Double },
-        Member { name: "x", at: offset_of!(contact_normal_worn, x), kind: Double },
-        Member { name: "y", at: offset_of!(contact_normal_worn, y), kind: Double },
-    ] },
+    Struct { name: "contact_normal_coating", members: members!(contact_normal_coating:
+        ("struct_size", struct_size, 0, Int64) ("thickness", thickness, 0, Double) ("shear_modulus", shear_modulus, 0, Double)
+        ("poisson_ratio", poisson_ratio, 0, Double)
+    ) },
+    Struct { name: "contact_normal_influence", members: members!(contact_normal_influence:
+        ("struct_size", struct_size, 0, Int64) ("cx", cx, 0, Int32) ("cy", cy, 0, Int32) ("coefficients", coefficients, 0, Array)
+        ("scale", scale, 0, Double)
+    ) },
+    Struct { name: "contact_normal_layer", members: members!(contact_normal_layer:
+        ("struct_size", struct_size, 0, Int64) ("compliance", compliance, 0, Double) ("compliances", compliances, 0, Array)
+    ) },
+    Struct { name: "contact_normal_pressure_limit", members: members!(contact_normal_pressure_limit:
+        ("struct_size", struct_size, 0, Int64) ("limit", limit, 0, Double) ("limits", limits, 0, Array)
+    ) },
+    Struct { name: "contact_normal_period", members: members!(contact_normal_period:
+        ("struct_size", struct_size, 0, Int64) ("x", x, 0, Int32) ("y", y, 0, Int32)
+    ) },
+    Struct { name: "contact_normal_patches", members: members!(contact_normal_patches:
+        ("struct_size", struct_size, 0, Int64) ("count", count, 0, Int32) ("reserved", reserved, 0, Int32) ("patch", patch, 0, Array)
+        ("factors", factors, 0, Array)
+    ) },
+    Struct { name: "contact_normal_row_tables", members: members!(contact_normal_row_tables:
+        ("struct_size", struct_size, 0, Int64) ("cx", cx, 0, Int32) ("rows", rows, 0, Int32) ("coefficients", coefficients, 0, Array)
+        ("scale", scale, 0, Double)
+    ) },
+    Struct { name: "contact_normal_friction", members: members!(contact_normal_friction:
+        ("struct_size", struct_size, 0, Int64) ("coefficient", coefficient, 0, Double) ("coefficients", coefficients, 0, Array)
+        ("motion", motion, 0, Int32) ("continues", continues, 0, Int32) ("prescribed[0]", prescribed, 0, Int32)
+        ("prescribed[1]", prescribed, 4, Int32) ("creepage[0]", creepage, 0, Double) ("creepage[1]", creepage, 8, Double) ("spin", spin, 0, Double)
+        ("spin_centre[0]", spin_centre, 0, Double) ("spin_centre[1]", spin_centre, 8, Double) ("force[0]", force, 0, Double)
+        ("force[1]", force, 8, Double) ("rolling_distance", rolling_distance, 0, Double) ("rolling_direction", rolling_direction, 0, Double)
+        ("spin_offset", spin_offset, 0, Double) ("previous_traction[0]", previous_traction, 0, Array)
+        ("previous_traction[1]", previous_traction, 8, Array) ("rigid_slip[0]", rigid_slip, 0, Array) ("rigid_slip[1]", rigid_slip, 8, Array)
+        ("influence[0]", influence, 0, Structs("contact_normal_influence")) ("influence[1]", influence, 8, Structs("contact_normal_influence"))
+        ("influence[2]", influence, 16, Structs("contact_normal_influence"))
+        ("influence_cross[0]", influence_cross, 0, Structs("contact_normal_influence"))
+        ("influence_cross[1]", influence_cross, 8, Structs("contact_normal_influence")) ("sensitivities", sensitivities, 0, Int32)
+        ("reserved", reserved, 0, Int32) ("initial_traction[0]", initial_traction, 0, Array) ("initial_traction[1]", initial_traction, 8, Array)
+        ("compliance", compliance, 0, Double) ("compliances", compliances, 0, Array) ("creepage_weight[0]", creepage_weight, 0, Array)
+        ("creepage_weight[1]", creepage_weight, 8, Array) ("row_tables[0]", row_tables, 0, Structs("contact_normal_row_tables"))
+        ("row_tables[1]", row_tables, 8, Structs("contact_normal_row_tables")) ("row_tables[2]", row_tables, 16, Structs("contact_normal_row_tables"))
+        ("law", law, 0, Int32) ("reserved_for_law", reserved_for_law, 0, Int32) ("kinetic", kinetic, 0, Double) ("falling[0]", falling, 0, Double)
+        ("falling[1]", falling, 8, Double) ("half_speed[0]", half_speed, 0, Double) ("half_speed[1]", half_speed, 8, Double)
+        ("speed", speed, 0, Double) ("time_step", time_step, 0, Double) ("memory_distance", memory_distance, 0, Double)
+        ("memory_speed", memory_speed, 0, Double) ("yield_limit", yield_limit, 0, Double) ("hardening", hardening, 0, Double)
+        ("previous_coefficient", previous_coefficient, 0, Array) ("previous_yield_limit", previous_yield_limit, 0, Array) ("branch", branch, 0, Int32)
+        ("reserved_for_branch", reserved_for_branch, 0, Int32)
+    ) },
+    Struct { name: "contact_normal_adhesion", members: members!(contact_normal_adhesion:
+        ("struct_size", struct_size, 0, Int64) ("law", law, 0, Int32) ("start", start, 0, Int32) ("work_of_adhesion", work_of_adhesion, 0, Double)
+        ("works_of_adhesion", works_of_adhesion, 0, Array) ("range", range, 0, Double) ("smear", smear, 0, Double) ("stiffness", stiffness, 0, Int32)
+        ("stability", stability, 0, Int32) ("shear_strength", shear_strength, 0, Double)
+    ) },
+    Struct { name: "contact_normal_visco", members: members!(contact_normal_visco:
+        ("struct_size", struct_size, 0, Int64) ("branches[0]", branches, 0, Int32) ("branches[1]", branches, 4, Int32)
+        ("modulus[0]", modulus, 0, Array) ("modulus[1]", modulus, 8, Array) ("time[0]", time, 0, Array) ("time[1]", time, 8, Array)
+        ("time_step", time_step, 0, Double) ("form", form, 0, Int32) ("continues", continues, 0, Int32)
+    ) },
+    Struct { name: "contact_normal_scene", members: members!(contact_normal_scene:
+        ("struct_size", struct_size, 0, Int64) ("mx", mx, 0, Int32) ("my", my, 0, Int32) ("dx", dx, 0, Double) ("dy", dy, 0, Double)
+        ("undeformed_distance", undeformed_distance, 0, Array) ("shear_modulus[0]", shear_modulus, 0, Double)
+        ("shear_modulus[1]", shear_modulus, 8, Double) ("poisson_ratio[0]", poisson_ratio, 0, Double) ("poisson_ratio[1]", poisson_ratio, 8, Double)
+        ("load", load, 0, Int32) ("reserved", reserved, 0, Int32) ("approach", approach, 0, Double) ("force", force, 0, Double)
+        ("influence", influence, 0, Structs("contact_normal_influence")) ("layer", layer, 0, Structs("contact_normal_layer"))
+        ("pressure_limit", pressure_limit, 0, Structs("contact_normal_pressure_limit")) ("period", period, 0, Structs("contact_normal_period"))
+        ("patches", patches, 0, Structs("contact_normal_patches")) ("row_tables", row_tables, 0, Structs("contact_normal_row_tables"))
+        ("coating[0]", coating, 0, Structs("contact_normal_coating")) ("coating[1]", coating, 8, Structs("contact_normal_coating"))
+        ("friction", friction, 0, Structs("contact_normal_friction")) ("adhesion", adhesion, 0, Structs("contact_normal_adhesion"))
+        ("visco", visco, 0, Structs("contact_normal_visco"))
+    ) },
+    Struct { name: "contact_normal_progress", members: members!(contact_normal_progress:
+        ("struct_size", struct_size, 0, Int64) ("mx", mx, 0, Int32) ("my", my, 0, Int32) ("cycles", cycles, 0, Int64)
+        ("active_set_changes", active_set_changes, 0, Int64) ("seconds", seconds, 0, Double) ("work_units", work_units, 0, Double)
+        ("update", update, 0, Double) ("residual", residual, 0, Double)
+    ) },
+    Struct { name: "contact_normal_cycle", members: members!(contact_normal_cycle:
+        ("struct_size", struct_size, 0, Int64) ("smoother", smoother, 0, Int32) ("pre_sweeps", pre_sweeps, 0, Int32)
+        ("post_sweeps", post_sweeps, 0, Int32) ("coarsest", coarsest, 0, Int32) ("relaxation", relaxation, 0, Double)
+    ) },
+    Struct { name: "contact_normal_options", members: members!(contact_normal_options:
+        ("struct_size", struct_size, 0, Int64) ("method", method, 0, Int32) ("active_set", active_set, 0, Int32)
+        ("initial_guess", initial_guess, 0, Int32) ("criterion", criterion, 0, Int32) ("tolerance", tolerance, 0, Double)
+        ("error_ratio", error_ratio, 0, Double) ("max_cycles", max_cycles, 0, Int32) ("threads", threads, 0, Int32) ("precision", precision, 0, Int32)
+        ("reserved", reserved, 0, Int32) ("progress", progress, 0, OfTheHost) ("user", user, 0, OfTheHost)
+        ("cycle", cycle, 0, Structs("contact_normal_cycle")) ("max_seconds", max_seconds, 0, Double) ("stop", stop, 0, Array)
+        ("dump", dump, 0, OfTheHost) ("neglect_below", neglect_below, 0, Double)
+    ) },
+    Struct { name: "contact_normal_fields", members: members!(contact_normal_fields:
+        ("struct_size", struct_size, 0, Int64) ("pressure", pressure, 0, Array) ("deformed_distance", deformed_distance, 0, Array)
+        ("displacement", displacement, 0, Array) ("contact", contact, 0, Array) ("traction[0]", traction, 0, Array)
+        ("traction[1]", traction, 8, Array) ("slip[0]", slip, 0, Array) ("slip[1]", slip, 8, Array) ("stick_slip", stick_slip, 0, Array)
+        ("contact_pressure", contact_pressure, 0, Array) ("attraction", attraction, 0, Array) ("friction_coefficient", friction_coefficient, 0, Array)
+        ("yield_limit", yield_limit, 0, Array)
+    ) },
+    Struct { name: "contact_normal_ledger_row", members: members!(contact_normal_ledger_row:
+        ("struct_size", struct_size, 0, Int64) ("mx", mx, 0, Int32) ("my", my, 0, Int32) ("cycles", cycles, 0, Int64) ("seconds", seconds, 0, Double)
+        ("work_units", work_units, 0, Double) ("residual", residual, 0, Double) ("approach", approach, 0, Double) ("force", force, 0, Double)
+        ("max_pressure", max_pressure, 0, Double) ("contact_area", contact_area, 0, Double) ("corrected_area", corrected_area, 0, Double)
+        ("error_force", error_force, 0, Double) ("error_max_pressure", error_max_pressure, 0, Double)
+        ("error_contact_area", error_contact_area, 0, Double) ("error_corrected_area", error_corrected_area, 0, Double)
+        ("error_pressure", error_pressure, 0, Double) ("contact_count", contact_count, 0, Int64) ("untrusted", untrusted, 0, Int32)
+        ("reserved", reserved, 0, Int32)
+    ) },
+    Struct { name: "contact_normal_report_normal", members: members!(contact_normal_report_normal:
+        ("approach", approach, 0, Double) ("force", force, 0, Double) ("max_pressure", max_pressure, 0, Double)
+        ("min_pressure", min_pressure, 0, Double) ("contact_area", contact_area, 0, Double) ("corrected_area", corrected_area, 0, Double)
+        ("contact_count", contact_count, 0, Int64) ("edge_count", edge_count, 0, Int64) ("tolerance", tolerance, 0, Double)
+        ("residual", residual, 0, Double) ("violation", violation, 0, Double) ("complementarity", complementarity, 0, Double)
+        ("update", update, 0, Double) ("reserved[0]", reserved, 0, Double) ("reserved[1]", reserved, 8, Double) ("reserved[2]", reserved, 16, Double)
+        ("reserved[3]", reserved, 24, Double) ("reserved[4]", reserved, 32, Double) ("reserved[5]", reserved, 40, Double)
+        ("reserved[6]", reserved, 48, Double) ("reserved[7]", reserved, 56, Double)
+    ) },
+    Struct { name: "contact_normal_report_tangential", members: members!(contact_normal_report_tangential:
+        ("force[0]", force, 0, Double) ("force[1]", force, 8, Double) ("moment", moment, 0, Double) ("creepage[0]", creepage, 0, Double)
+        ("creepage[1]", creepage, 8, Double) ("residual", residual, 0, Double) ("gap", gap, 0, Double) ("stick_count", stick_count, 0, Int64)
+        ("slip_count", slip_count, 0, Int64) ("sensitivities[0]", sensitivities, 0, Double) ("sensitivities[1]", sensitivities, 8, Double)
+        ("sensitivities[2]", sensitivities, 16, Double) ("sensitivities[3]", sensitivities, 24, Double)
+        ("sensitivities[4]", sensitivities, 32, Double) ("sensitivities[5]", sensitivities, 40, Double)
+        ("sensitivities[6]", sensitivities, 48, Double) ("sensitivities[7]", sensitivities, 56, Double)
+        ("sensitivities[8]", sensitivities, 64, Double) ("update", update, 0, Double) ("law_slope", law_slope, 0, Double)
+        ("reserved[0]", reserved, 0, Double) ("reserved[1]", reserved, 8, Double) ("reserved[2]", reserved, 16, Double)
+        ("reserved[3]", reserved, 24, Double) ("reserved[4]", reserved, 32, Double) ("reserved[5]", reserved, 40, Double)
+    ) },
+    Struct { name: "contact_normal_report_accuracy", members: members!(contact_normal_report_accuracy:
+        ("error_force", error_force, 0, Double) ("error_max_pressure", error_max_pressure, 0, Double)
+        ("error_contact_area", error_contact_area, 0, Double) ("error_corrected_area", error_corrected_area, 0, Double)
+        ("error_pressure", error_pressure, 0, Double) ("error_tangential[0]", error_tangential, 0, Double)
+        ("error_tangential[1]", error_tangential, 8, Double) ("untrusted", untrusted, 0, Int32) ("limited_by", limited_by, 0, Int32)
+        ("halved_seconds", halved_seconds, 0, Double) ("halved_error_force", halved_error_force, 0, Double) ("neglected", neglected, 0, Int64)
+        ("neglected_error", neglected_error, 0, Double) ("reserved[0]", reserved, 0, Double) ("reserved[1]", reserved, 8, Double)
+        ("reserved[2]", reserved, 16, Double) ("reserved[3]", reserved, 24, Double) ("reserved[4]", reserved, 32, Double)
+        ("reserved[5]", reserved, 40, Double)
+    ) },
+    Struct { name: "contact_normal_report_statistics", members: members!(contact_normal_report_statistics:
+        ("cycles", cycles, 0, Int64) ("active_set_steps", active_set_steps, 0, Int64) ("active_set_changes", active_set_changes, 0, Int64)
+        ("matrix_products", matrix_products, 0, Int64) ("work_units", work_units, 0, Double) ("tangential_products", tangential_products, 0, Double)
+        ("setup_seconds", setup_seconds, 0, Double) ("solve_seconds", solve_seconds, 0, Double) ("tangential_seconds", tangential_seconds, 0, Double)
+        ("bytes", bytes, 0, Int64) ("reserved[0]", reserved, 0, Double) ("reserved[1]", reserved, 8, Double) ("reserved[2]", reserved, 16, Double)
+        ("reserved[3]", reserved, 24, Double) ("reserved[4]", reserved, 32, Double) ("reserved[5]", reserved, 40, Double)
+        ("reserved[6]", reserved, 48, Double) ("reserved[7]", reserved, 56, Double)
+    ) },
+    Struct { name: "contact_normal_report_adhesion", members: members!(contact_normal_report_adhesion:
+        ("repulsive_force", repulsive_force, 0, Double) ("adhesive_force", adhesive_force, 0, Double) ("elastic_energy", elastic_energy, 0, Double)
+        ("adhesive_energy", adhesive_energy, 0, Double) ("law_residual", law_residual, 0, Double) ("range", range, 0, Double)
+        ("resolution", resolution, 0, Double) ("border_share", border_share, 0, Double) ("stiffness", stiffness, 0, Double)
+        ("stability", stability, 0, Double) ("jumped", jumped, 0, Int32) ("reserved_integer", reserved_integer, 0, Int32)
+        ("reserved[0]", reserved, 0, Double) ("reserved[1]", reserved, 8, Double) ("reserved[2]", reserved, 16, Double)
+        ("reserved[3]", reserved, 24, Double) ("reserved[4]", reserved, 32, Double)
+    ) },
+    Struct { name: "contact_normal_report_visco", members: members!(contact_normal_report_visco:
+        ("time", time, 0, Double) ("step_error", step_error, 0, Double) ("time_error", time_error, 0, Double) ("compliance", compliance, 0, Double)
+        ("reserved[0]", reserved, 0, Double) ("reserved[1]", reserved, 8, Double) ("reserved[2]", reserved, 16, Double)
+        ("reserved[3]", reserved, 24, Double)
+    ) },
+    Struct { name: "contact_normal_report", members: members!(contact_normal_report:
+        ("struct_size", struct_size, 0, Int64) ("ledger_rows", ledger_rows, 0, Int64) ("ledger_capacity", ledger_capacity, 0, Int64)
+        ("ledger", ledger, 0, Structs("contact_normal_ledger_row")) ("warnings", warnings, 0, Int32) ("reserved", reserved, 0, Int32)
+        ("normal.approach", normal.approach, 0, Double) ("normal.force", normal.force, 0, Double)
+        ("normal.max_pressure", normal.max_pressure, 0, Double) ("normal.min_pressure", normal.min_pressure, 0, Double)
+        ("normal.contact_area", normal.contact_area, 0, Double) ("normal.corrected_area", normal.corrected_area, 0, Double)
+        ("normal.contact_count", normal.contact_count, 0, Int64) ("normal.edge_count", normal.edge_count, 0, Int64)
+        ("normal.tolerance", normal.tolerance, 0, Double) ("normal.residual", normal.residual, 0, Double)
+        ("normal.violation", normal.violation, 0, Double) ("normal.complementarity", normal.complementarity, 0, Double)
+        ("normal.update", normal.update, 0, Double) ("normal.reserved[0]", normal.reserved, 0, Double)
+        ("normal.reserved[1]", normal.reserved, 8, Double) ("normal.reserved[2]", normal.reserved, 16, Double)
+        ("normal.reserved[3]", normal.reserved, 24, Double) ("normal.reserved[4]", normal.reserved, 32, Double)
+        ("normal.reserved[5]", normal.reserved, 40, Double) ("normal.reserved[6]", normal.reserved, 48, Double)
+        ("normal.reserved[7]", normal.reserved, 56, Double) ("tangential.force[0]", tangential.force, 0, Double)
+        ("tangential.force[1]", tangential.force, 8, Double) ("tangential.moment", tangential.moment, 0, Double)
+        ("tangential.creepage[0]", tangential.creepage, 0, Double) ("tangential.creepage[1]", tangential.creepage, 8, Double)
+        ("tangential.residual", tangential.residual, 0, Double) ("tangential.gap", tangential.gap, 0, Double)
+        ("tangential.stick_count", tangential.stick_count, 0, Int64) ("tangential.slip_count", tangential.slip_count, 0, Int64)
+        ("tangential.sensitivities[0]", tangential.sensitivities, 0, Double) ("tangential.sensitivities[1]", tangential.sensitivities, 8, Double)
+        ("tangential.sensitivities[2]", tangential.sensitivities, 16, Double) ("tangential.sensitivities[3]", tangential.sensitivities, 24, Double)
+        ("tangential.sensitivities[4]", tangential.sensitivities, 32, Double) ("tangential.sensitivities[5]", tangential.sensitivities, 40, Double)
+        ("tangential.sensitivities[6]", tangential.sensitivities, 48, Double) ("tangential.sensitivities[7]", tangential.sensitivities, 56, Double)
+        ("tangential.sensitivities[8]", tangential.sensitivities, 64, Double) ("tangential.update", tangential.update, 0, Double)
+        ("tangential.law_slope", tangential.law_slope, 0, Double) ("tangential.reserved[0]", tangential.reserved, 0, Double)
+        ("tangential.reserved[1]", tangential.reserved, 8, Double) ("tangential.reserved[2]", tangential.reserved, 16, Double)
+        ("tangential.reserved[3]", tangential.reserved, 24, Double) ("tangential.reserved[4]", tangential.reserved, 32, Double)
+        ("tangential.reserved[5]", tangential.reserved, 40, Double) ("accuracy.error_force", accuracy.error_force, 0, Double)
+        ("accuracy.error_max_pressure", accuracy.error_max_pressure, 0, Double)
+        ("accuracy.error_contact_area", accuracy.error_contact_area, 0, Double)
+        ("accuracy.error_corrected_area", accuracy.error_corrected_area, 0, Double) ("accuracy.error_pressure", accuracy.error_pressure, 0, Double)
+        ("accuracy.error_tangential[0]", accuracy.error_tangential, 0, Double) ("accuracy.error_tangential[1]", accuracy.error_tangential, 8, Double)
+        ("accuracy.untrusted", accuracy.untrusted, 0, Int32) ("accuracy.limited_by", accuracy.limited_by, 0, Int32)
+        ("accuracy.halved_seconds", accuracy.halved_seconds, 0, Double) ("accuracy.halved_error_force", accuracy.halved_error_force, 0, Double)
+        ("accuracy.neglected", accuracy.neglected, 0, Int64) ("accuracy.neglected_error", accuracy.neglected_error, 0, Double)
+        ("accuracy.reserved[0]", accuracy.reserved, 0, Double) ("accuracy.reserved[1]", accuracy.reserved, 8, Double)
+        ("accuracy.reserved[2]", accuracy.reserved, 16, Double) ("accuracy.reserved[3]", accuracy.reserved, 24, Double)
+        ("accuracy.reserved[4]", accuracy.reserved, 32, Double) ("accuracy.reserved[5]", accuracy.reserved, 40, Double)
+        ("statistics.cycles", statistics.cycles, 0, Int64) ("statistics.active_set_steps", statistics.active_set_steps, 0, Int64)
+        ("statistics.active_set_changes", statistics.active_set_changes, 0, Int64)
+        ("statistics.matrix_products", statistics.matrix_products, 0, Int64) ("statistics.work_units", statistics.work_units, 0, Double)
+        ("statistics.tangential_products", statistics.tangential_products, 0, Double)
+        ("statistics.setup_seconds", statistics.setup_seconds, 0, Double) ("statistics.solve_seconds", statistics.solve_seconds, 0, Double)
+        ("statistics.tangential_seconds", statistics.tangential_seconds, 0, Double) ("statistics.bytes", statistics.bytes, 0, Int64)
+        ("statistics.reserved[0]", statistics.reserved, 0, Double) ("statistics.reserved[1]", statistics.reserved, 8, Double)
+        ("statistics.reserved[2]", statistics.reserved, 16, Double) ("statistics.reserved[3]", statistics.reserved, 24, Double)
+        ("statistics.reserved[4]", statistics.reserved, 32, Double) ("statistics.reserved[5]", statistics.reserved, 40, Double)
+        ("statistics.reserved[6]", statistics.reserved, 48, Double) ("statistics.reserved[7]", statistics.reserved, 56, Double)
+        ("adhesion.repulsive_force", adhesion.repulsive_force, 0, Double) ("adhesion.adhesive_force", adhesion.adhesive_force, 0, Double)
+        ("adhesion.elastic_energy", adhesion.elastic_energy, 0, Double) ("adhesion.adhesive_energy", adhesion.adhesive_energy, 0, Double)
+        ("adhesion.law_residual", adhesion.law_residual, 0, Double) ("adhesion.range", adhesion.range, 0, Double)
+        ("adhesion.resolution", adhesion.resolution, 0, Double) ("adhesion.border_share", adhesion.border_share, 0, Double)
+        ("adhesion.stiffness", adhesion.stiffness, 0, Double) ("adhesion.stability", adhesion.stability, 0, Double)
+        ("adhesion.jumped", adhesion.jumped, 0, Int32) ("adhesion.reserved_integer", adhesion.reserved_integer, 0, Int32)
+        ("adhesion.reserved[0]", adhesion.reserved, 0, Double) ("adhesion.reserved[1]", adhesion.reserved, 8, Double)
+        ("adhesion.reserved[2]", adhesion.reserved, 16, Double) ("adhesion.reserved[3]", adhesion.reserved, 24, Double)
+        ("adhesion.reserved[4]", adhesion.reserved, 32, Double) ("visco.time", visco.time, 0, Double)
+        ("visco.step_error", visco.step_error, 0, Double) ("visco.time_error", visco.time_error, 0, Double)
+        ("visco.compliance", visco.compliance, 0, Double) ("visco.reserved[0]", visco.reserved, 0, Double)
+        ("visco.reserved[1]", visco.reserved, 8, Double) ("visco.reserved[2]", visco.reserved, 16, Double)
+        ("visco.reserved[3]", visco.reserved, 24, Double)
+    ) },
+    Struct { name: "contact_normal_solver_info", members: members!(contact_normal_solver_info:
+        ("struct_size", struct_size, 0, Int64) ("mx", mx, 0, Int32) ("my", my, 0, Int32) ("dx", dx, 0, Double) ("dy", dy, 0, Double)
+        ("threads", threads, 0, Int32) ("has_result", has_result, 0, Int32) ("bytes", bytes, 0, Int64)
+    ) },
+    Struct { name: "contact_normal_friction_results", members: members!(contact_normal_friction_results:
+        ("struct_size", struct_size, 0, Int64) ("force", force, 0, Array) ("moment", moment, 0, Array) ("creepage", creepage, 0, Array)
+        ("residual", residual, 0, Array) ("gap", gap, 0, Array) ("products", products, 0, Array) ("stick_count", stick_count, 0, Array)
+        ("slip_count", slip_count, 0, Array) ("status", status, 0, Array) ("traction", traction, 0, Array) ("slip", slip, 0, Array)
+        ("stick_slip", stick_slip, 0, Array) ("friction_coefficient", friction_coefficient, 0, Array) ("yield_limit", yield_limit, 0, Array)
+    ) },
+    Struct { name: "contact_normal_accuracy", members: members!(contact_normal_accuracy:
+        ("struct_size", struct_size, 0, Int64) ("target", target, 0, Double) ("max_seconds", max_seconds, 0, Double)
+        ("max_bytes", max_bytes, 0, Int64) ("max_elements", max_elements, 0, Int64) ("surface", surface, 0, OfTheHost) ("user", user, 0, OfTheHost)
+        ("mx", mx, 0, Int32) ("my", my, 0, Int32) ("dx", dx, 0, Double) ("dy", dy, 0, Double) ("reached", reached, 0, Double)
+        ("seconds", seconds, 0, Double) ("max_pressure_target", max_pressure_target, 0, Double)
+        ("contact_area_target", contact_area_target, 0, Double) ("mean_gap_target", mean_gap_target, 0, Double)
+        ("stiffness_target", stiffness_target, 0, Double) ("tangential_force_target", tangential_force_target, 0, Double)
+        ("creepage_target", creepage_target, 0, Double) ("spin_moment_target", spin_moment_target, 0, Double)
+        ("stick_area_target", stick_area_target, 0, Double) ("max_von_mises_target", max_von_mises_target, 0, Double)
+        ("von_mises_depth_target", von_mises_depth_target, 0, Double) ("max_shear_target", max_shear_target, 0, Double)
+    ) },
+    Struct { name: "contact_normal_price", members: members!(contact_normal_price:
+        ("struct_size", struct_size, 0, Int64) ("target", target, 0, Double) ("error", error, 0, Double) ("tolerance", tolerance, 0, Double)
+        ("seconds", seconds, 0, Double) ("seconds_one_thread", seconds_one_thread, 0, Double) ("bytes", bytes, 0, Int64) ("mx", mx, 0, Int32)
+        ("my", my, 0, Int32) ("dx", dx, 0, Double) ("dy", dy, 0, Double) ("obstacle", obstacle, 0, Int32) ("reserved", reserved, 0, Int32)
+        ("time_error", time_error, 0, Double) ("work_units", work_units, 0, Double)
+    ) },
+    Struct { name: "contact_normal_quantity_row", members: members!(contact_normal_quantity_row:
+        ("struct_size", struct_size, 0, Int64) ("quantity", quantity, 0, Int32) ("lack", lack, 0, Int32) ("mx", mx, 0, Int32) ("my", my, 0, Int32)
+        ("value", value, 0, Double) ("error", error, 0, Double) ("seconds", seconds, 0, Double) ("work_units", work_units, 0, Double)
+    ) },
+    Struct { name: "contact_normal_effects_row", members: members!(contact_normal_effects_row:
+        ("struct_size", struct_size, 0, Int64) ("omitted", omitted, 0, Int32) ("also_omitted", also_omitted, 0, Int32)
+        ("quantity", quantity, 0, Int32) ("verdict", verdict, 0, Int32) ("lack", lack, 0, Int32) ("reserved", reserved, 0, Int32)
+        ("value", value, 0, Double) ("change", change, 0, Double) ("change_error", change_error, 0, Double) ("seconds", seconds, 0, Double)
+        ("seconds_without", seconds_without, 0, Double) ("bytes", bytes, 0, Double) ("bytes_without", bytes_without, 0, Double)
+    ) },
+    Struct { name: "contact_normal_hertz_solution", members: members!(contact_normal_hertz_solution:
+        ("struct_size", struct_size, 0, Int64) ("semi_axis_x", semi_axis_x, 0, Double) ("semi_axis_y", semi_axis_y, 0, Double)
+        ("max_pressure", max_pressure, 0, Double) ("approach", approach, 0, Double) ("force", force, 0, Double) ("area", area, 0, Double)
+    ) },
+    Struct { name: "contact_normal_stress_maximum", members: members!(contact_normal_stress_maximum:
+        ("struct_size", struct_size, 0, Int64) ("value", value, 0, Double) ("x", x, 0, Double) ("y", y, 0, Double) ("z", z, 0, Double)
+        ("ix", ix, 0, Int32) ("iy", iy, 0, Int32) ("depth", depth, 0, Int32) ("reserved", reserved, 0, Int32)
+    ) },
+    Struct { name: "contact_normal_stress_outputs", members: members!(contact_normal_stress_outputs:
+        ("struct_size", struct_size, 0, Int64) ("stress[0]", stress, 0, Array) ("stress[1]", stress, 8, Array) ("stress[2]", stress, 16, Array)
+        ("stress[3]", stress, 24, Array) ("stress[4]", stress, 32, Array) ("stress[5]", stress, 40, Array) ("von_mises", von_mises, 0, Array)
+        ("maximum_shear", maximum_shear, 0, Array) ("principal[0]", principal, 0, Array) ("principal[1]", principal, 8, Array)
+        ("principal[2]", principal, 16, Array) ("directions[0]", directions, 0, Array) ("directions[1]", directions, 8, Array)
+        ("directions[2]", directions, 16, Array) ("largest_von_mises", largest_von_mises, 0, Structs("contact_normal_stress_maximum"))
+        ("largest_shear", largest_shear, 0, Structs("contact_normal_stress_maximum"))
+    ) },
+    Struct { name: "contact_normal_heat", members: members!(contact_normal_heat:
+        ("struct_size", struct_size, 0, Int64) ("mx", mx, 0, Int32) ("my", my, 0, Int32) ("dx", dx, 0, Double) ("dy", dy, 0, Double)
+        ("heat_flux", heat_flux, 0, Array) ("conductivity[0]", conductivity, 0, Double) ("conductivity[1]", conductivity, 8, Double)
+        ("diffusivity[0]", diffusivity, 0, Double) ("diffusivity[1]", diffusivity, 8, Double) ("speed[0]", speed, 0, Double)
+        ("speed[1]", speed, 8, Double) ("share", share, 0, Double) ("threads", threads, 0, Int32) ("reserved", reserved, 0, Int32)
+    ) },
+    Struct { name: "contact_normal_flash", members: members!(contact_normal_flash:
+        ("struct_size", struct_size, 0, Int64) ("share", share, 0, Double) ("largest[0]", largest, 0, Double) ("largest[1]", largest, 8, Double)
+        ("x[0]", x, 0, Double) ("x[1]", x, 8, Double) ("y[0]", y, 0, Double) ("y[1]", y, 8, Double)
+    ) },
+    Struct { name: "contact_normal_wear", members: members!(contact_normal_wear:
+        ("struct_size", struct_size, 0, Int64) ("mx", mx, 0, Int32) ("my", my, 0, Int32) ("dx", dx, 0, Double) ("dy", dy, 0, Double)
+        ("traction[0]", traction, 0, Array) ("traction[1]", traction, 8, Array) ("slip[0]", slip, 0, Array) ("slip[1]", slip, 8, Array)
+        ("pressure", pressure, 0, Array) ("coefficient", coefficient, 0, Double) ("coefficients", coefficients, 0, Array)
+        ("hardness", hardness, 0, Double) ("steps", steps, 0, Double) ("rolling_distance", rolling_distance, 0, Double)
+    ) },
+    Struct { name: "contact_normal_worn", members: members!(contact_normal_worn:
+        ("struct_size", struct_size, 0, Int64) ("work", work, 0, Double) ("volume", volume, 0, Double) ("largest_depth", largest_depth, 0, Double)
+        ("x", x, 0, Double) ("y", y, 0, Double)
+    ) },
 ];

@@ -64,7 +64,7 @@ pub struct contact_normal_price {
     pub struct_size: i64,
     /// The relative error that is wanted, between 0 and 1.
     pub target: f64,
-    /// Relative error that the grid and the tolerance leave; < 0: not known.
+    /// The larger of the relative error of the grid and the tolerance; < 0: not known.
     pub error: f64,
     /// The tolerance to ask for; a smaller one would be wasted.
     pub tolerance: f64,

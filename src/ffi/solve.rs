@@ -15,7 +15,9 @@ use super::watcher::{watched, why, Watcher};
 use crate::contact::State;
 use crate::effects;
 use crate::scene::{Load, Scene};
-use crate::solver::{ActiveSet, InitialGuess, Method, Neglected, Options, Outcome, ProgressCallback, Report, Solver};
+use crate::solver::{
+    ActiveSet, InitialGuess, Method, Neglected, Options, Outcome, Progress, ProgressCallback, Report, Solver,
+};
 
 /// Solves one scene. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.1.
 #[no_mangle]
@@ -35,13 +37,16 @@ pub unsafe extern "C" fn contact_normal_solve(
         let Request { mut scene, options, mut outputs } = request?;
         // Before the set-up: a refusal should not cost one.
         outputs.check_inputs(&options.options, scene.grid.len())?;
+        let mut watcher = Watcher::of(&options);
         if options.given.neglect_below > 0.0 {
-            let neglected = Neglected::of(&scene, &options.options, options.given.neglect_below)?;
+            let mut told = watcher.as_mut().map(|watcher| |progress: &Progress| watcher.told(progress));
+            let progress = told.as_mut().map(|told| told as ProgressCallback<'_>);
+            let neglected = Neglected::of(&scene, &options.options, options.given.neglect_below, progress)?;
             scene = neglected.leave_out(&scene);
             outputs.neglected = Some(neglected);
         }
         let (mut solver, lowest) = Solver::for_scene(&scene, &options.options)?;
-        run_watched(&mut solver, (&scene, Some(lowest)), &options, &outputs, &mut buffers)
+        run_watched(&mut solver, (&scene, Some(lowest)), (&options, watcher), &outputs, &mut buffers)
     };
     // SAFETY: as above.
     guard(|| unsafe { recorded("contact_normal_solve", options, arguments, solve) })
@@ -128,18 +133,17 @@ impl Request<'_> {
     }
 }
 
-/// Solves with a solver that is set up, and writes the outputs; the caller's progress callback watches. A scene that is checked has its
-/// least distance.
+/// Solves with a solver that is set up, and writes the outputs; the watcher is told of it. A scene that is checked has its least distance.
 pub(super) fn run_watched(
     solver: &mut Solver,
     scene: (&Scene<'_>, Option<f64>),
-    options: &Translated,
+    (options, watcher): (&Translated, Option<Watcher>),
     outputs: &Outputs,
     buffers: &mut Buffers,
 ) -> Result<contact_normal_status, Refusal> {
     let solve =
         |progress: Option<ProgressCallback<'_>>| run(solver, scene, &options.options, progress, outputs, buffers);
-    watched(Watcher::of(options), solve)?.conclude()
+    watched(watcher, solve)?.conclude()
 }
 
 /// Solves with a solver that is set up, and writes the outputs.

@@ -9,7 +9,7 @@ use super::structs::{self, versioned};
 use super::visco::contact_normal_visco;
 use crate::analytic::{self, Hertz};
 use crate::effects::Effect;
-use crate::error::{positive, Error};
+use crate::error::{positive, require, Error};
 use crate::friction::rolling_tables;
 use crate::grid::Grid;
 use crate::influence::{HalfSpace, Kernel};
@@ -82,7 +82,8 @@ pub unsafe extern "C" fn contact_normal_hertz(
 }
 
 /// The influence coefficients of the half-space for elements `dx` by `dy`, as a table over offsets -cx..cx-1 by -cy..cy-1:
-/// `coefficients[2 cy][2 cx]`, x fastest, as `contact_normal_influence` takes it. Since 0.1.
+/// `coefficients[2 cy][2 cx]`, x fastest, as `contact_normal_influence` takes it. NOT_FINITE, INVALID_ARGUMENT: coefficients beyond the range of
+/// doubles. Since 0.1.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_influence_half_space(
     cx: i32,
@@ -103,6 +104,14 @@ pub unsafe extern "C" fn contact_normal_influence_half_space(
             return Err(Refusal::null("coefficients"));
         }
         let half_space = HalfSpace::new(dx, dy, compliance);
+        for value in [half_space.at(0, 0), half_space.at(cx as i64, cy as i64)] {
+            require(
+                value > 0.0 && value.is_normal(),
+                "a coefficient",
+                value,
+                "element sizes and moduli take it out of the range of numbers",
+            )?;
+        }
         let mut half_row = zeros(grid.mx + 1, "a row of coefficients")?;
         for row in 0..2 * grid.my {
             half_space.fill_row(0, row as i64 - grid.my as i64, &mut half_row);

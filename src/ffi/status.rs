@@ -14,9 +14,9 @@ pub type contact_normal_status = i32;
 
 /// Solved: the certificate holds to the tolerance.
 pub const CONTACT_NORMAL_OK: i32 = 0;
-/// `max_cycles` or a limit of an accuracy was reached; outputs hold the best iterate.
+/// `max_cycles`, `max_seconds` or a limit of an accuracy was reached; outputs hold the best iterate.
 pub const CONTACT_NORMAL_ITERATION_LIMIT: i32 = 1;
-/// A callback cancelled; outputs hold the best iterate.
+/// A callback or `options->stop` cancelled; outputs hold the best iterate.
 pub const CONTACT_NORMAL_CANCELLED: i32 = 2;
 /// No further progress; outputs hold the best iterate.
 pub const CONTACT_NORMAL_STAGNATED: i32 = 3;
@@ -137,7 +137,7 @@ fn text_of(status: contact_normal_status) -> &'static CStr {
     match status {
         CONTACT_NORMAL_OK => c"solved",
         CONTACT_NORMAL_ITERATION_LIMIT => c"stopped at a limit",
-        CONTACT_NORMAL_CANCELLED => c"cancelled by a callback",
+        CONTACT_NORMAL_CANCELLED => c"cancelled by a callback or by options->stop",
         CONTACT_NORMAL_STAGNATED => c"no further progress",
         CONTACT_NORMAL_NULL_POINTER => c"a null pointer",
         CONTACT_NORMAL_INVALID_ARGUMENT => c"an invalid argument",

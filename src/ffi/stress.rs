@@ -20,8 +20,9 @@ use crate::threads::Threads;
 /// `[my][mx]`, constant on each element. NULL: none; one of them at least must be given. Tractions are those that act on this body, in +x
 /// and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, a `period` in both directions,
 /// and `patches` matter: below an element of a patch the loads on another one count times the factor between both. With a `coating` on this
-/// body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options (NULL: the defaults) `threads` and `progress`
-/// matter; a cycle is a depth. CANCELLED: the depths done so far are written, others are left alone. Since 0.2.
+/// body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options (NULL: the defaults) `threads`, `progress`,
+/// `max_seconds` and `stop` matter; a cycle is a depth. CANCELLED, or ITERATION_LIMIT by `max_seconds`: the depths done so far are written, others
+/// are left alone. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_subsurface_stress(
     scene: *const contact_normal_scene,

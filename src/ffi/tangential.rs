@@ -50,7 +50,7 @@ use crate::solver::{solve_friction_batch, solve_tangential, Ended, Entry, Outcom
 ///
 /// `progress` is called on the calling thread: after the cycles of the normal problem, and then about once for each entry; `cycles` counts
 /// the entries that are done and `residual` is that of the last one. When it cancels, the results of
-/// entries that are not done stay as they are, with the status CANCELLED. Since 0.2.
+/// entries that are not done stay as they are, with the status CANCELLED; by `max_seconds` with ITERATION_LIMIT. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_solve_tangential(
     solver: *mut contact_normal_solver,
@@ -138,7 +138,7 @@ impl Call<'_> {
     /// One problem, on all threads.
     fn one(&self, solver: Option<&mut Solver>, pressure: &[f64]) -> Result<contact_normal_status, Refusal> {
         let (scene, options) = (self.scene, &self.options.options);
-        let found = watched(Watcher::of(self.options), |progress| {
+        let concluded = watched(Watcher::of(self.options), |progress| {
             let one_shot;
             let (stop, solution, report) = match solver {
                 Some(solver) => solver.solve_tangential(scene, pressure, options, progress)?,
@@ -156,7 +156,7 @@ impl Call<'_> {
             self.outputs.write_report(&report, &[], warnings)?;
             Ok(Conclusion { warnings, ..Conclusion::of(stop, || explain(stop, &report, options.method, None)) })
         });
-        found?.conclude()
+        self.concluded(concluded?, 1)
     }
 
     /// A table, each entry on one thread.
@@ -194,6 +194,15 @@ impl Call<'_> {
             let message = || format!("the normal problem: {}", explain(stop, &normal, options.method, None));
             Ok(Conclusion { warnings, ..Conclusion::of(stop, message) })
         });
-        concluded?.conclude()
+        self.concluded(concluded?, table.len())
+    }
+
+    /// The end of a call with so many entries. Those that `max_seconds` ended have the status of the call.
+    fn concluded(&self, of: Conclusion, n: usize) -> Result<contact_normal_status, Refusal> {
+        if of.is_late {
+            // SAFETY: the caller's arrays were checked.
+            unsafe { self.wanted.late(n) };
+        }
+        of.conclude()
     }
 }

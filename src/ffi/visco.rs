@@ -19,7 +19,7 @@ pub const CONTACT_NORMAL_FORM_BACKWARD_EULER: i32 = 3;
 /// Effect: bodies that relax, and a step of `time_step` of them. The `shear_modulus` of the scene is that at once, and falls to
 /// `G(t) = G - sum of modulus (1 - exp(-t/time))` at a constant Poisson ratio; of a coated body it is that of the coating, on a rigid body. A
 /// solver handle remembers the steps before: the first step has `continues` 0, the others 1. `displacement` and `deformed_distance` contain what is
-/// left of the steps before. See docs/visco.md.
+/// left of the steps before. A step that stops early counts as a step. See docs/visco.md.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_visco {

@@ -37,14 +37,19 @@ impl Watcher {
     }
 
     fn asking(options: &Translated, given: contact_normal_options) -> Option<Watcher> {
-        let seconds = Duration::try_from_secs_f64(given.max_seconds).ok().filter(|limit| !limit.is_zero());
-        let end = seconds.and_then(|limit| options.began.checked_add(limit));
+        // A limit below a nanosecond has passed; one beyond the range of clocks is none.
+        let limit = Some(given.max_seconds).filter(|limit| *limit > 0.0);
+        let limit = limit.and_then(|limit| Duration::try_from_secs_f64(limit).ok());
+        let end = limit.and_then(|limit| options.began.checked_add(limit));
         let watches = given.progress.is_some() || !given.stop.is_null() || end.is_some();
         watches.then_some(Watcher { given, end, reason: None })
     }
 
-    /// Whether to cancel.
-    fn told(&mut self, progress: &Progress) -> bool {
+    /// Whether to cancel; once it did, for good.
+    pub fn told(&mut self, progress: &Progress) -> bool {
+        if self.reason.is_some() {
+            return true;
+        }
         let stop = self.given.stop.cast_mut();
         // SAFETY: not NULL: an integer of the caller's that another thread may set; only read here, and as an atomic.
         let is_stopped = !stop.is_null() && unsafe { AtomicI32::from_ptr(stop) }.load(Ordering::Relaxed) != 0;
@@ -77,11 +82,10 @@ impl Watcher {
 
     /// The conclusion of a solve that this watched.
     fn conclusion(&self, mut of: Conclusion) -> Conclusion {
-        if of.status == CONTACT_NORMAL_CANCELLED {
-            of.message = of.message.replace(CANCELLED, self.why());
-            if self.reason == Some(Reason::Late) {
-                of.status = CONTACT_NORMAL_ITERATION_LIMIT;
-            }
+        of.is_late = self.reason == Some(Reason::Late);
+        of.message = of.message.replace(CANCELLED, self.why());
+        if of.is_late && of.status == CONTACT_NORMAL_CANCELLED {
+            of.status = CONTACT_NORMAL_ITERATION_LIMIT;
         }
         of
     }

@@ -222,7 +222,7 @@ fn slope(problem: &mut Problem, memory: &mut Memory, forces: Forces) -> Result<[
         let mut change = fields.take(problem.grid.len())?;
         let unit = [[1.0, 0.0], [0.0, 1.0]][k];
         fields::fill(problem.threads(), &mut change, |i| problem.weighted(i, unit));
-        sensitivity::solve(problem, tangent, (fields, &mut change), SLOPE)?;
+        sensitivity::solve(problem, tangent, (fields, &mut change), SLOPE, &mut |_| true)?;
         let by = forces.only_given(sum_of(problem, &change));
         (falls[0][k], falls[1][k]) = (-by[0], -by[1]);
         fields.give(change);

@@ -15,12 +15,18 @@ use super::solver::Solver;
 use super::tangent::Side;
 use crate::effects::Friction;
 use crate::error::Result;
+use crate::grid::Grid;
 
 impl Solver {
-    /// See [`Report::sensitivities`](super::Report::sensitivities): the pressures are fixed.
-    pub(super) fn sensitivities(&mut self, friction: &Friction<'_>) -> Result<[[f64; 3]; 3]> {
+    /// See [`Report::sensitivities`](super::Report::sensitivities): the pressures are fixed. None if `watch` cancels.
+    pub(super) fn sensitivities(
+        &mut self,
+        friction: &Friction<'_>,
+        watch: &mut dyn FnMut(&Grid, f64) -> bool,
+    ) -> Result<Option<[[f64; 3]; 3]>> {
         let mut derivatives = [[0.0; 3]; 3];
-        let (Some(window), Some(level)) = (&self.window, self.levels.first_mut()) else { return Ok(derivatives) };
+        let (Some(window), Some(level)) = (&self.window, self.levels.first_mut()) else { return Ok(Some(derivatives)) };
+        let mut is_cancelled = false;
         for by in 0..3 {
             let Memory { tangent, fields, .. } = &mut level.memory;
             if by == 0 {
@@ -30,7 +36,17 @@ impl Solver {
             for (k, i) in window.elements(&self.grid) {
                 change[k] = self.scales.change(friction.rigid_slip_by(&self.grid, i, by));
             }
-            sensitivity::solve(&mut level.problem, tangent, (fields, &mut change), sensitivity::TOLERANCE)?;
+            let mut goes_on = |residual: f64| {
+                is_cancelled = is_cancelled || !watch(&self.grid, residual);
+                !is_cancelled
+            };
+            sensitivity::solve(
+                &mut level.problem,
+                tangent,
+                (fields, &mut change),
+                sensitivity::TOLERANCE,
+                &mut goes_on,
+            )?;
             let changes = |iy: usize| window.columns(iy).map(|(k, ix)| (ix, change[k]));
             let (force, moment) = {
                 let threads = level.problem.threads();
@@ -41,7 +57,7 @@ impl Solver {
             }
             fields.give(change);
         }
-        Ok(derivatives)
+        Ok(Some(derivatives).filter(|_| !is_cancelled))
     }
 
     /// The change of the tractions of the last result with its pressures, by `dp`, and with the slip from other causes. `change` holds dw on entry
@@ -72,7 +88,7 @@ impl Solver {
             problem.operators.multiply(&along, largest, &mut displaced);
             slip.iter_mut().zip(&displaced).for_each(|(w, u)| *w = [w[0] + u[0], w[1] + u[1]]);
         }
-        sensitivity::solve(problem, tangent, (fields, &mut slip), sensitivity::TOLERANCE)?;
+        sensitivity::solve(problem, tangent, (fields, &mut slip), sensitivity::TOLERANCE, &mut |_| true)?;
         change.fill([0.0; 2]);
         for (k, i) in window.elements(&self.grid) {
             change[i] = [slip[k][0] + along[k][0], slip[k][1] + along[k][1]];

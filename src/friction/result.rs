@@ -39,10 +39,13 @@ impl Solver {
                     stick_slip[ix] = if is_on_circle(state.q[k], problem.bound[k]) { SLIP } else { STICK };
                 }
             });
-            // Elements without friction slip.
-            let without = |iy: usize| touching(iy).filter(|(k, _)| !(problem.bound[*k] > 0.0)).count();
-            threads.for_each(&mut self.sums, |iy, sum| sum[0] = without(iy) as f64);
-            report.certificate.slip_count += self.sums.iter().map(|sum| sum[0] as usize).sum::<usize>();
+            threads.for_each(&mut self.sums, |iy, sum| {
+                let row = &stick_slip[iy * grid.mx..(iy + 1) * grid.mx];
+                let count = |mark: i32| row.iter().filter(|each| **each == mark).count() as f64;
+                (sum[0], sum[1]) = (count(STICK), count(SLIP));
+            });
+            let count = |k: usize| self.sums.iter().map(|sum| sum[k] as usize).sum();
+            (report.certificate.stick_count, report.certificate.slip_count) = (count(0), count(1));
         } else {
             traction.fill([0.0; 2]);
             slip.fill([0.0; 2]);

@@ -35,12 +35,14 @@ pub fn predict(problem: &mut Problem, state: &State, tangent: &mut Tangent) -> R
 }
 
 /// Computes dq for a change dw of the rigid slip, on the grid of the problem. The array holds dw on entry and dq on return. dq = 0
-/// without motion or tractions. `tolerance` is that of the relative residual.
+/// without motion or tractions. `tolerance` is that of the relative residual. `goes_on(relative residual)` is asked before each restart; without its
+/// leave dq is that so far.
 pub fn solve(
     problem: &mut Problem,
     tangent: &Tangent,
     (fields, dw): (&mut Fields, &mut [Vector]),
     tolerance: f64,
+    goes_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<()> {
     let (n, threads) = (dw.len(), problem.threads().clone());
     // The system is linear. It is scaled to unit tractions, because single precision has a small range.
@@ -60,7 +62,7 @@ pub fn solve(
     let mut product = fields.take(n)?;
     for _ in 0..MOST_CALLS {
         let left = fields::dot(&threads, &r, &r).sqrt();
-        if !(left > tolerance * first) {
+        if !(left > tolerance * first) || !goes_on(left / first) {
             break;
         }
         product.fill([0.0; 2]);

@@ -176,7 +176,8 @@ impl Solver {
         self.window = window;
         // Before the result is written, so that a failure leaves the last result.
         if friction.sensitivities && end != Outcome::Cancelled {
-            report.sensitivities = Some(self.sensitivities(friction)?);
+            report.sensitivities = self.sensitivities(friction, watch)?;
+            end = if report.sensitivities.is_some() { end } else { Outcome::Cancelled };
             report.products += self.take_products();
         }
         let march = self.march(friction, pressure)?;

@@ -181,8 +181,9 @@ impl Solver {
         let problem = &self.levels[0].problem;
         let (slip, displaced) = (problem.rms_rigid(), problem.displaced_by_bounds());
         let is_far = |slip: f64| !(slip / displaced < LARGEST_RATIO);
-        if displaced > 0.0
-            && (is_far(slip) || is_far(problem.rms_slip()) || slip > 0.0 && !(slip / displaced > LEAST_RATIO))
+        // The squares of small slips underflow.
+        let moves = problem.rigid.iter().any(|w| *w != [0.0; 2]);
+        if displaced > 0.0 && (is_far(slip) || is_far(problem.rms_slip()) || moves && !(slip / displaced > LEAST_RATIO))
         {
             // A length that overflows in the scene's units has no number.
             let own = self.scales.own_displacement([slip.max(problem.rms_slip()), displaced]);

@@ -19,6 +19,8 @@ use crate::threads::Threads;
 
 /// Nodes of the rule for the temperature by one element.
 const NODES: usize = 20;
+/// Rounding errors of a product by FFT, relative to its largest value: some 1e-16 times the logarithm of the grid's size.
+const NOISE: f64 = 1e-13;
 /// The name of this memory in messages.
 const FIELDS: &str = "the flash temperature";
 
@@ -74,7 +76,10 @@ impl Heat<'_> {
     /// lambda T at element offsets by a unit flux, for a moving body.
     fn table(&self, b: usize, threads: &Threads) -> Result<Table> {
         let Grid { mx, my, dx, dy } = self.grid;
-        let (wave, rule) = (self.speed[b].abs() / (2.0 * self.diffusivity[b]), gauss_legendre(NODES));
+        let (speed, diffusivity) = (self.speed[b], self.diffusivity[b]);
+        let reason = || format!("speed[{b}] is {speed:e} with diffusivity[{b}] of {diffusivity:e}");
+        let (wave, rule) = (speed.abs() / (2.0 * diffusivity), gauss_legendre(NODES));
+        require_range(wave.is_finite(), reason)?;
         // x downstream.
         let sign = if self.speed[b] < 0.0 { -1.0 } else { 1.0 };
         let mut values: Vec<f64> = zeros(4 * mx * my, FIELDS)?;
@@ -92,8 +97,7 @@ impl Heat<'_> {
         let own = values[2 * mx * my + mx];
         // Values that are not finite are due to the speed.
         let is_within = own > 0.0 && values.iter().all(|value| value.is_finite());
-        let (speed, diffusivity) = (self.speed[b], self.diffusivity[b]);
-        require_range(is_within, || format!("speed[{b}] is {speed:e} with diffusivity[{b}] of {diffusivity:e}"))?;
+        require_range(is_within, reason)?;
         Table::new(mx, my, &values, &self.grid)
     }
 
@@ -145,8 +149,10 @@ pub fn flash_temperature(heat: &Heat<'_>, threads: &Threads) -> Result<Flash> {
     };
     let tops = [top(&rise[0]), top(&rise[1])];
     let [first, second] = tops.map(|(_, top)| top);
+    // The transforms leave rounding errors where it is cold.
+    let noise = [0, 1].map(|b| NOISE * rise[b].iter().fold(0.0f64, |most, t| most.max(t.abs())));
     // Without heat the part is arbitrary.
-    let equal = if first > 0.0 && second > 0.0 { 1.0 / (1.0 + first / second) } else { 0.5 };
+    let equal = if first > noise[0] && second > noise[1] { 1.0 / (1.0 + first / second) } else { 0.5 };
     let share = heat.share.unwrap_or(equal);
     let parts = [share, 1.0 - share];
     for (rise, part) in rise.iter_mut().zip(parts) {

@@ -58,8 +58,8 @@ impl Frozen for Plain {
 impl Solver {
     /// Contact pressure q and attraction sigma of element i of the last result; none if its scene had no adhesion.
     pub fn adhesion(&self) -> Option<impl Fn(usize) -> (f64, f64) + '_> {
-        let solver = self.adhesion.as_deref().filter(|_| self.has_result && self.is_adhesive)?;
-        Some(|i| solver.split(&self.state, i))
+        let split = self.split.as_ref().filter(|_| self.has_result)?;
+        Some(|i| split.at(&self.state, i))
     }
 
     /// Writes `which` of the contact pressure and the attraction of each element of the last result; without adhesion all pressures are contact
@@ -115,8 +115,6 @@ impl Solver {
         self.check_continues(scene)?;
         let goes_on = options.initial_guess == InitialGuess::Previous && self.has_result;
         let kept = self.kept(scene)?;
-        let before = self.adhesion.as_ref().filter(|_| kept.is_some() && self.is_adhesive);
-        let before = before.map(|before| before.law_and_works()).transpose()?;
         self.methods.projected_cg.forget_windows();
         self.methods.projected_cg.forget_solutions();
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), false);
@@ -125,16 +123,15 @@ impl Solver {
         let outcome = self.run_adhesive((scene, lowest), (adhesion, pull_off), (options, guess, goes_on), &mut monitor);
         self.ledger = std::mem::take(&mut monitor.ledger.rows);
         let outcome = outcome.and_then(|(stop, found)| {
-            let (stop, friction) = self.rub(scene, adhesion, options, stop, &mut monitor)?;
-            Ok((stop, found, friction))
+            let split = self.adhesion.as_ref().map(|solver| solver.split()).transpose()?;
+            let (stop, friction) = self.rub(scene, (adhesion, &split), options, stop, &mut monitor)?;
+            Ok((stop, found, friction, split))
         });
         if outcome.is_err() {
             self.go_back(kept);
-            if let (Some(before), Some(solver)) = (before, &mut self.adhesion) {
-                solver.restore(before);
-            }
         }
-        let (stop, found, friction) = outcome?;
+        let (stop, found, friction, split) = outcome?;
+        (self.has_result, self.split, self.compliance) = (true, split, 1.0);
         effects::keep(scene, &mut self.beside.histories);
         let mut report = Report { adhesion: Some(found), friction, ..Report::of(&monitor, options.tolerance) };
         report.measures = self.ledger.last().map(|row| row.measures).unwrap_or_default();
@@ -143,7 +140,6 @@ impl Solver {
         report.setup_seconds = std::mem::take(&mut self.setup_seconds);
         report.bytes = self.bytes() as u64;
         report.log(options.method, &self.problem.grid, stop);
-        (self.has_result, self.is_adhesive, self.compliance) = (true, true, 1.0);
         Ok((stop, report))
     }
 

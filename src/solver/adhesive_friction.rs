@@ -7,6 +7,7 @@
 
 use super::tangential::{is_of_unlike_bodies, Turn};
 use super::{Options, Outcome, Solver};
+use crate::adhesion::Split;
 use crate::effects::{Adhesion, Coefficient};
 use crate::error::{Error, Result};
 use crate::friction::Report;
@@ -69,17 +70,17 @@ impl Solver {
     pub(super) fn rub(
         &mut self,
         scene: &Scene<'_>,
-        adhesion: &Adhesion<'_>,
+        (adhesion, split): (&Adhesion<'_>, &Option<Split>),
         options: &Options,
         stop: Outcome,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, Option<Report>)> {
-        let (Some(friction), Some(found)) = (&scene.friction, &self.adhesion) else {
+        let (Some(friction), Some(split)) = (&scene.friction, split) else {
             // There is no previous step any more.
             self.friction.iter_mut().for_each(|before| before.forget());
             return Ok((stop, None));
         };
-        let of_element = |i: usize| found.split(&self.state, i).0;
+        let of_element = |i: usize| split.at(&self.state, i).0;
         let bound = Bound::new(friction, adhesion.shear_strength, scene.grid.len(), of_element)?;
         let threads = self.problem.threads.clone();
         let mut tangent = self.take_tangent(scene, options)?;

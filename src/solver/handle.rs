@@ -29,7 +29,7 @@ impl Solver {
 
     /// Whether the last result has no estimates: pressures are at their limit, or bodies attract.
     pub(crate) fn lacks_estimates(&self) -> bool {
-        self.state.has_limited() || self.is_adhesive
+        self.state.has_limited() || self.split.is_some()
     }
 
     /// Whether there is a result: that of the last solve, unless it failed.
@@ -116,7 +116,8 @@ impl Solver {
         let limits = (self.limits.len() + self.remembered.len()) * size_of::<f64>();
         let friction = self.friction.as_deref().into_iter().chain(&self.crew).map(Tangent::bytes).sum::<usize>();
         let tables = self.own_tables.as_ref().map_or(0, |tables| tables.bytes());
-        let adhesion = self.adhesion.as_ref().map_or(0, |adhesion| adhesion.bytes());
+        let split = self.split.as_ref().map_or(0, |split| split.bytes());
+        let adhesion = self.adhesion.as_ref().map_or(0, |adhesion| adhesion.bytes()) + split;
         let beside = self.beside.bytes() + friction + adhesion + tables;
         self.problem.bytes() + self.methods.bytes() + self.state.bytes() + limits + workers + beside
     }

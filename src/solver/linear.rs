@@ -52,7 +52,7 @@ impl Solver {
             return invalid("solver has no result: no solve with it had a status >= 0".into());
         }
         self.set_up.check_table()?;
-        if self.is_adhesive {
+        if self.split.is_some() {
             let message =
                 "the last result is one of adhesion; its stiffness comes with it where adhesion->stiffness is 1";
             return Err(Error::Unsupported(message.into()));

@@ -58,6 +58,7 @@ pub use bill::{effects_bill, BillOptions, BillRow, Neglected, Omission, Verdict}
 pub use falling::Falling;
 pub use friction_batch::{solve_friction_batch, Ended, Entry, RUN};
 pub use linear::Stiffness;
+pub(crate) use options::check_threads;
 pub use options::{ActiveSet, Guess, InitialGuess, Method, Options};
 pub use quantities::{quantities, Lack, Quantity, QuantityRow};
 pub use refinement::{cost_of_accuracy, solve_to_accuracy, Accuracy, Obstacle, Price, Refinement, SurfaceCallback};
@@ -103,8 +104,8 @@ pub struct Solver {
     friction: Option<Box<Tangent>>,
     /// The solver of scenes with adhesion.
     adhesion: Option<Box<crate::adhesion::Solver>>,
-    /// Whether the scene of the last result had adhesion.
-    is_adhesive: bool,
+    /// The split of the total pressures of the last result, if its scene had adhesion.
+    split: Option<crate::adhesion::Split>,
     /// The memory of visco-elastic bodies, and the distances of their step; empty without memory.
     remembered: Vec<f64>,
     /// The compliance of the bodies in the last result, relative to that at set-up: 1 without memory.
@@ -200,7 +201,7 @@ impl Solver {
             beside: Beside::default(),
             friction: None,
             adhesion: None,
-            is_adhesive: false,
+            split: None,
             remembered: Vec::new(),
             compliance: 1.0,
             own_tables: None,
@@ -284,7 +285,7 @@ impl Solver {
             self.go_back(kept);
         }
         let (stop, mut report) = outcome?;
-        (self.is_adhesive, self.compliance) = (false, 1.0);
+        (self.split, self.compliance) = (None, 1.0);
         report.setup_seconds = std::mem::take(&mut self.setup_seconds);
         report.bytes = self.bytes() as u64;
         report.log(options.method, &self.problem.grid, stop);

@@ -60,15 +60,18 @@ impl Solver {
         };
         let converged = matches!(outcome, Ok((Outcome::Converged, _)));
         if on_the_way && converged && options.initial_guess != InitialGuess::Previous {
-            // Only iterates reached a limit: the result has the bits of the scene without limits.
-            monitor.ledger.rows.clear();
+            // Only iterates reached a limit: the result has the bits of the scene without limits, if there is still time for it.
+            let found = (self.state.copy(&self.problem.threads)?, std::mem::take(&mut monitor.ledger.rows));
             monitor.enter_grid();
             self.methods.forget_iterates();
-            outcome = self.run((scene, lowest), NonNegative, options, guess, monitor);
-            if self.state.p.iter().enumerate().any(|(i, p)| *p > set.limit(i)) {
-                monitor.ledger.rows.clear();
-                monitor.enter_grid();
-                outcome = self.run((scene, lowest), set, options, guess, monitor);
+            let without = self.run((scene, lowest), NonNegative, options, guess, monitor);
+            let exceeds = self.state.p.iter().enumerate().any(|(i, p)| *p > set.limit(i));
+            if matches!(without, Ok((Outcome::Converged, _))) && !exceeds {
+                outcome = without;
+            } else {
+                (self.state, monitor.ledger.rows) = found;
+                self.methods.forget_iterates();
+                self.methods.projected_cg.forget_solutions();
             }
         }
         self.limits = limits;

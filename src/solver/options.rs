@@ -135,10 +135,7 @@ impl Options {
         }
         let ratio = self.error_ratio;
         require(ratio >= 0.0 && ratio.is_finite(), "error_ratio", ratio, "it must be positive and finite, or 0")?;
-        if self.threads > MOST_THREADS {
-            return invalid(format!("threads is {}; at most {MOST_THREADS} are allowed", self.threads));
-        }
-        Ok(())
+        check_threads("threads", self.threads)
     }
 
     /// Refuses options that are invalid for solves of several grids without a guess.
@@ -161,5 +158,13 @@ impl Options {
     /// The goal of a solve.
     pub fn goal(&self) -> Goal {
         Goal { criterion: self.criterion, tolerance: self.tolerance, max_cycles: self.max_cycles as u64 }
+    }
+}
+
+/// Refuses a number of threads beyond [`MOST_THREADS`].
+pub(crate) fn check_threads(name: &str, threads: usize) -> Result<()> {
+    match threads > MOST_THREADS {
+        true => invalid(format!("{name} is {threads}; at most {MOST_THREADS} are allowed")),
+        false => Ok(()),
     }
 }

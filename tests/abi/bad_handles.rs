@@ -258,6 +258,10 @@ fn closed_forms_refuse_bad_input() {
     table(3, 3, 1.0, 1.0, null(), nu, &["shear_modulus"], NULL);
     table(3, 3, 1.0, 1.0, g, null(), &["poisson_ratio"], NULL);
     table(3, 3, 1.0, 1.0, [0.0, 1.0].as_ptr(), nu, &["shear_modulus[0]", "0"], INVALID);
+    let small = [1e-200; 2];
+    table(3, 3, 1e140, 1e140, small.as_ptr(), nu, &["coefficient", "range"], NOT_FINITE);
+    let large = [1e200; 2];
+    table(3, 3, 1e-140, 1e-140, large.as_ptr(), nu, &["coefficient", "range"], INVALID);
     // SAFETY: a NULL result.
     let status = unsafe { contact_normal_influence_half_space(3, 3, 1.0, 1.0, g, nu, null_mut()) };
     assert_eq!((status, last_error().contains("coefficients")), (NULL, true));

@@ -82,6 +82,8 @@ fn the_compliance_of_a_wave_is_that_of_one_material_where_the_layer_is() {
     close(ask(&coating(1.0, 1e3, 0.3), 1e-15), 0.75 / (500.0 * 1e-15));
     assert_eq!(ask(&coating(1.0, 1e3, 0.3), 0.0).0, CONTACT_NORMAL_INVALID_ARGUMENT);
     assert_eq!(ask(&coating(1.0, 1e3, 0.3), f64::NAN).0, CONTACT_NORMAL_NOT_FINITE);
+    // It overflows.
+    assert_eq!(ask(&coating(1.0, 1e-300, 0.3), 1e-300).0, CONTACT_NORMAL_NOT_FINITE);
     // SAFETY: NULL is allowed, and refused.
     let status = unsafe { contact_normal_coating_compliance(&coating(1.0, 1e3, 0.3), 500.0, 0.25, 1.0, null_mut()) };
     assert_eq!((status, last_error().contains("compliance")), (CONTACT_NORMAL_NULL_POINTER, true));

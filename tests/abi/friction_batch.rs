@@ -104,6 +104,22 @@ impl Call {
     }
 }
 
+/// The status of an entry is that of the call: it was CANCELLED where time ran out.
+#[test]
+fn entries_that_time_ends_have_reached_a_limit() {
+    let mut call = Call::new();
+    call.options.max_seconds = 1e-9;
+    let (status, message) = call.run();
+    assert!(status == CONTACT_NORMAL_ITERATION_LIMIT && message.contains("max_seconds was reached"), "{message}");
+    assert!(call.status.iter().all(|status| [0, CONTACT_NORMAL_ITERATION_LIMIT].contains(status)), "{:?}", call.status);
+    assert!(call.status.contains(&CONTACT_NORMAL_ITERATION_LIMIT));
+    // One problem, on all threads.
+    let mut call = Call::new();
+    (call.options.max_seconds, call.options.tolerance) = (1e-9, 1e-12);
+    let (status, message) = call.run_with(call.pressure.as_ptr(), 1, null());
+    assert_eq!((status, call.status[0]), (CONTACT_NORMAL_ITERATION_LIMIT, CONTACT_NORMAL_ITERATION_LIMIT), "{message}");
+}
+
 #[test]
 fn all_results_are_written_and_agree() {
     let mut call = Call::new();

@@ -178,6 +178,18 @@ fn a_handle_carries_what_the_caller_would_hand_on() {
     assert!(fresh.2 != kept.2, "the second shift does not know of the first");
 }
 
+/// Coulomb's friction reads nothing of the particles.
+#[test]
+fn without_a_law_what_goes_with_it_is_not_read() {
+    let mut call = Call::new();
+    let bad = vec![f64::NAN; MX * MY];
+    let friction = call.use_friction();
+    (friction.previous_coefficient, friction.previous_yield_limit) = (bad.as_ptr(), bad.as_ptr());
+    (friction.half_speed, friction.kinetic) = ([f64::NAN; 2], f64::NAN);
+    let (status, message) = call.run(Through::Solve, null_mut());
+    assert_eq!(status, CONTACT_NORMAL_OK, "{message}");
+}
+
 /// Of pressures that are given LAW is said as of a solve: with a handle and without one, of one problem and of a table.
 #[test]
 fn a_steep_law_warns_of_pressures_that_are_given() {

@@ -47,6 +47,43 @@ fn a_contact_that_is_resolved_has_none() {
     assert_eq!((report.warnings, report.normal.edge_count), (0, 0));
 }
 
+/// A batch whose problems are all OK has the message of their warnings, not that of a call before.
+#[test]
+fn a_batch_says_what_its_problems_warn_of() {
+    let surface = ball(0.0);
+    let mut scene = contact_normal_scene {
+        undeformed_distance: surface.as_ptr(),
+        load: CONTACT_NORMAL_PRESCRIBED_FORCE,
+        force: 2000.0,
+        ..Default::default()
+    };
+    (scene.mx, scene.my, scene.dx, scene.dy) = (M as i32, M as i32, D, D);
+    (scene.shear_modulus, scene.poisson_ratio) = ([82000.0; 2], [0.28; 2]);
+    let scenes = [scene, contact_normal_scene { force: 1e6, ..scene }];
+    let mut reports = [contact_normal_report::default(); 2];
+    let mut solver = std::ptr::null_mut();
+    // SAFETY: structs with their arrays, and a handle of ours.
+    unsafe {
+        assert!(contact_normal_keep(-1) < 0 && !last_error().contains("border"));
+        assert_eq!(contact_normal_solver_new(&scene, null(), &mut solver), CONTACT_NORMAL_OK);
+        let (fields, statuses) = (std::ptr::null_mut(), std::ptr::null_mut());
+        let status = contact_normal_solver_solve_batch(
+            solver,
+            2,
+            scenes.as_ptr(),
+            null(),
+            fields,
+            reports.as_mut_ptr(),
+            statuses,
+        );
+        assert_eq!(status, CONTACT_NORMAL_OK, "{}", last_error());
+        contact_normal_solver_free(solver);
+    }
+    assert_eq!(reports[0].warnings, 0);
+    assert_ne!(reports[1].warnings & CONTACT_NORMAL_WARNING_BORDER, 0);
+    assert!(last_error().contains("reaches the border"), "{}", last_error());
+}
+
 #[test]
 fn one_element_in_contact() {
     let (report, message) = solved(&ball(1e-3), 1e-3, plain);

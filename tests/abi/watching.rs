@@ -21,11 +21,14 @@ fn a_limit_of_time_ends_a_call_with_the_best_iterate() {
     for through in SOLVES {
         let mut call = long();
         let handle = call.new_handle();
-        call.options.known.max_seconds = 1e-9;
-        let (status, message) = call.run(through, handle);
-        assert_eq!(status, CONTACT_NORMAL_ITERATION_LIMIT, "{through:?}: {message}");
-        assert!(message.contains("max_seconds was reached"), "{through:?}: {message}");
-        call.assert_all_written();
+        // 1e-10 is less than clocks resolve.
+        for limit in [1e-9, 1e-10, 1e-300] {
+            call.options.known.max_seconds = limit;
+            let (status, message) = call.run(through, handle);
+            assert_eq!(status, CONTACT_NORMAL_ITERATION_LIMIT, "{through:?} {limit}: {message}");
+            assert!(message.contains("max_seconds was reached"), "{through:?}: {message}");
+            call.assert_all_written();
+        }
         call.options.known.max_seconds = 1e9;
         assert_ne!(call.run(through, handle).0, CONTACT_NORMAL_ITERATION_LIMIT, "{through:?}");
         // SAFETY: made above.
@@ -62,6 +65,41 @@ fn an_integer_that_is_set_ends_a_call() {
 unsafe extern "C" fn set_stop(_: *const contact_normal_progress, user: *mut libc::c_void) -> i32 {
     // SAFETY: the test's own.
     unsafe { user.cast::<i32>().write(1) };
+    0
+}
+
+/// The small grids that show what is negligible ask, too: the third call is made on the first of them.
+#[test]
+fn what_leaves_effects_out_asks_as_well() {
+    let told = |neglect_below: f64| {
+        let mut grids = Vec::new();
+        let mut call = Call::new();
+        call.options.known.neglect_below = neglect_below;
+        call.options.known.progress = Some(note_grid);
+        call.options.known.user = (&raw mut grids).cast();
+        let (status, message) = call.run(Through::Solve, null_mut());
+        assert_eq!(status, CONTACT_NORMAL_OK, "{message}");
+        grids
+    };
+    let (with, without): (Vec<i32>, Vec<i32>) = (told(1e-3), told(0.0));
+    assert!(with.len() > without.len() && with.ends_with(&without), "{with:?} {without:?}");
+
+    let (mut call, stop) = (Call::new(), 1);
+    call.options.known.neglect_below = 1e-3;
+    call.options.known.stop = &raw const stop;
+    let mut grids: Vec<i32> = Vec::new();
+    call.options.known.progress = Some(note_grid);
+    call.options.known.user = (&raw mut grids).cast();
+    let (status, message) = call.run(Through::Solve, null_mut());
+    assert!(status == CONTACT_NORMAL_CANCELLED && message.contains("options->stop"), "{status} {message}");
+    // `stop` is asked before the callback.
+    assert!(grids.is_empty(), "{grids:?}");
+}
+
+/// Notes the columns of the grid of a cycle.
+unsafe extern "C" fn note_grid(told: *const contact_normal_progress, user: *mut libc::c_void) -> i32 {
+    // SAFETY: the library's struct and the test's own list.
+    unsafe { (*user.cast::<Vec<i32>>()).push((*told).mx) };
     0
 }
 
@@ -104,6 +142,9 @@ fn what_is_known_by_name() {
         unsafe { contact_normal_has(name.as_ptr()) }
     };
     assert_eq!(["friction", "adhesion", "max_seconds", "stop", "warnings"].map(has), [1; 5]);
+    // Members and functions that were forgotten.
+    assert_eq!(["neglect_below", "error_ratio", "branch", "previous_coefficient"].map(has), [1; 4]);
+    assert_eq!(["quantities", "effects_bill", "coating_compliance"].map(has), [1; 3]);
     assert_eq!(["", "Friction", "friction ", "wear", "magnetism"].map(has), [0; 5]);
     // SAFETY: NULL is no name.
     assert_eq!(unsafe { contact_normal_has(std::ptr::null()) }, 0);

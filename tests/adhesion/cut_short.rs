@@ -114,3 +114,23 @@ fn flat_bodies_with_two_periods_part_at_once() {
     assert_eq!(outcome, Outcome::Converged);
     assert!((report.measures.force + 16.0).abs() < 1e-12, "{:e}", report.measures.force);
 }
+
+/// The contact problems of a descent have the cycles that are left. Each of them took up to `max_cycles`: 7 for 1, 48 for 40.
+#[test]
+fn a_descent_takes_no_more_cycles_than_it_may() {
+    let n = 64;
+    let grid = Grid::new(n, n, 0.1, 0.1).expect("a grid");
+    let at = |k: usize| (k as f64 - 31.5) * 0.1;
+    let random = |i: usize| ((i as f64 * 12.9898).sin() * 43758.5453).fract();
+    let h: Vec<f64> = (0..n * n).map(|i| 0.05 * (at(i % n).powi(2) + at(i / n).powi(2)) + 0.1 * random(i)).collect();
+    let apart = contact_normal::scene::Adhesion {
+        start: contact_normal::adhesion::Start::Apart,
+        ..adhesion(Law::Exponential, 0.05, 0.1)
+    };
+    let scene = Scene { adhesion: Some(apart), ..Scene::new(grid, &h, bodies(0.375), Load::Approach(0.5)) };
+    for max_cycles in [1, 2, 10, 40] {
+        let options = Options { max_cycles, ..Options::default() };
+        let (_, outcome, report) = contact_normal::solver::solve(&scene, &options).expect("a solve");
+        assert!(report.count.cycles <= max_cycles as u64, "{max_cycles}: {outcome:?} {}", report.count.cycles);
+    }
+}

@@ -1,7 +1,8 @@
 //! A solve that is refused leaves the last result of a handle: its split into contact pressures and attraction, and its friction.
 
 use contact_normal::error::Error;
-use contact_normal::scene::{Adhesion, Bodies, Friction, Load, Prescribed, Scene, Work};
+use contact_normal::influence::Table;
+use contact_normal::scene::{Adhesion, Bodies, Coating, Friction, Load, Period, Prescribed, Scene, Work};
 use contact_normal::solver::{Options, Outcome, Solver};
 
 use super::support::Sphere;
@@ -58,6 +59,38 @@ fn what_is_refused_for_its_friction_leaves_a_result_of_adhesion() {
     refused(&mut solver, &Scene { adhesion: Some(own), ..of(1e3) });
     refused(&mut solver, &of(1e3));
     assert_eq!((before, p), (split(&solver), solver.state().p.clone()));
+}
+
+/// A table that is set anew, and coefficients that a refused force takes, leave the split of the result that is there. It became that of a result without
+/// adhesion.
+#[test]
+fn other_coefficients_leave_the_split_of_the_pressures() {
+    let sphere = Sphere::by_tabor(1.0, 16, 3.0);
+    let adhesive = sphere.scene(Load::Approach(0.1));
+    let plain = Scene { adhesion: None, ..adhesive.clone() };
+    let half_space = Solver::new(&plain, &Options::default()).expect("a solver");
+    let kernel = half_space.influence().kernel();
+    // The first row and column are not read.
+    let of = |k: i64| if k == -16 { 0 } else { k };
+    let offsets = (0..4 * 16 * 16).map(|i| (of(i % 32 - 16), of(i / 32 - 16)));
+    let values: Vec<f64> = offsets.map(|to| kernel.between((0, 0), to)).collect();
+    let table = || Table::new(16, 16, &values, &sphere.grid).expect("a table");
+    let own = Scene { influence: Some(table()), ..adhesive.clone() };
+    let mut solver = Solver::new(&own, &Options::default()).expect("a solver");
+    assert_eq!(solver.solve(&own, &Options::default(), None, None).expect("a solve").0, Outcome::Converged);
+    let before = split(&solver);
+    assert!(before.iter().any(|(_, attraction)| *attraction > 0.0));
+    solver.set_influence(table()).expect("a table");
+    assert_eq!(before, split(&solver));
+
+    let period = Some(Period { x: true, y: true });
+    let coating = Some(Coating::of_body_1(0.5, 1.0, 0.3));
+    let coated = Scene { period, coating, ..adhesive };
+    let mut solver = Solver::new(&coated, &Options::default()).expect("a solver");
+    assert_eq!(solver.solve(&coated, &Options::default(), None, None).expect("a solve").0, Outcome::Converged);
+    let before = split(&solver);
+    refused(&mut solver, &Scene { adhesion: None, load: Load::Force(1e200), ..coated.clone() });
+    assert_eq!(before, split(&solver));
 }
 
 /// The stiffness of bodies without adhesion is another one.

@@ -66,7 +66,7 @@ program fortran_module
 
   print '(a)', contact_normal_version_string()
   call hold(contact_normal_library_abi_version() >= CONTACT_NORMAL_ABI_VERSION, "the ABI's version")
-  call hold(contact_normal_status_text(CONTACT_NORMAL_CANCELLED) == "cancelled by a callback", "text")
+  call hold(contact_normal_status_text(CONTACT_NORMAL_CANCELLED) == "cancelled by a callback or by options->stop", "text")
 
   ! A structure that has seen no _init is refused, not misread.
   call hold(contact_normal_solve(scene, fields=fields) == CONTACT_NORMAL_STRUCT_SIZE, "a scene without _init")

@@ -181,36 +181,50 @@ pub fn layout() -> Vec<(&'static str, usize)> {
     text + "    ]\n}\n"
 }
 
-/// The members of a struct with their numbers and those of structs in them: "normal.force", "coating[0]".
-fn leaves(described: &Description, each: &Struct) -> Vec<(String, String, Kind)> {
+/// A member of a struct, or a value of an array: its name ("normal.force", "coating[0]"), its place, the bytes to add to that place, and its type.
+type Leaf = (String, String, usize, Kind);
+
+/// The members of a struct, those of structs within it, and the values of its arrays.
+fn leaves(described: &Description, each: &Struct) -> Vec<Leaf> {
     let mut found = Vec::new();
     for member in &each.members {
         if let Kind::Struct(name) = &member.kind {
             let inner = described.structs.iter().find(|inner| inner.name == *name).expect("a struct of the header");
-            for (leaf, offset, kind) in leaves(described, inner) {
-                let before = format!("offset_of!({}, {})", each.name, member.name);
-                found.push((format!("{}.{leaf}", member.name), format!("{before} + {offset}"), kind));
+            for (leaf, place, more, kind) in leaves(described, inner) {
+                found.push((format!("{}.{leaf}", member.name), format!("{}.{place}", member.name), more, kind));
             }
             continue;
         }
+        let size = if member.kind == Kind::Int32 { 4 } else { 8 };
         for k in 0..member.count.unwrap_or(1) {
             let number = member.count.map_or_else(String::new, |_| format!("[{k}]"));
-            let size = if member.kind == Kind::Int32 { 4 } else { 8 };
-            let beyond = if k == 0 { String::new() } else { format!(" + {}", k * size) };
-            let offset = format!("offset_of!({}, {}){beyond}", each.name, member.name);
-            found.push((format!("{}{number}", member.name), offset, member.kind.clone()));
+            found.push((format!("{}{number}", member.name), member.name.clone(), k * size, member.kind.clone()));
         }
     }
     found
+}
+
+/// Adds these items to the text, as many a line as it holds.
+fn fill(text: &mut String, indent: &str, items: impl Iterator<Item = String>) {
+    let mut line = indent.to_owned();
+    for item in items {
+        if line.len() > indent.len() && line.len() + item.len() > 150 {
+            *text += line.trim_end();
+            *text += "\n";
+            line.truncate(indent.len());
+        }
+        line += &item;
+        line += " ";
+    }
+    *text += line.trim_end();
+    *text += "\n";
 }
 
 fn rust_members(described: &Description) -> String {
     let mut text = "\
 //! The constants, the structs and their members by name. Made from include/contact_normal.h; do not edit.
 
-use std::mem::offset_of;
-
-use super::member::{Kind::*, Member, Struct};
+use super::member::{members, Kind::*, Member, Struct};
 use super::*;
 
 /// Without CONTACT_NORMAL_.
@@ -218,14 +232,16 @@ use super::*;
 pub(super) const CONSTANTS: &[(&str, i32)] = &[
 "
     .to_owned();
-    for constant in &described.constants {
-        writeln!(text, "    (\"{0}\", CONTACT_NORMAL_{0}),", constant.name).expect("text");
-    }
+    fill(
+        &mut text,
+        "    ",
+        described.constants.iter().map(|each| format!("(\"{0}\", CONTACT_NORMAL_{0}),", each.name)),
+    );
     text += "];\n\n#[rustfmt::skip]\npub(super) const STRUCTS: &[Struct] = &[\n";
     for each in &described.structs {
         let name = &each.name;
-        writeln!(text, "    Struct {{ name: \"{name}\", members: &[").expect("text");
-        for (leaf, at, kind) in leaves(described, each) {
+        writeln!(text, "    Struct {{ name: \"{name}\", members: members!({name}:").expect("text");
+        let item = |(leaf, place, more, kind): Leaf| {
             let kind = match kind {
                 Kind::Int32 => "Int32".into(),
                 Kind::Int64 => "Int64".into(),
@@ -237,9 +253,10 @@ pub(super) const CONSTANTS: &[(&str, i32)] = &[
                 },
                 Kind::Struct(_) => unreachable!("its members are told"),
             };
-            writeln!(text, "        Member {{ name: \"{leaf}\", at: {at}, kind: {kind} }},").expect("text");
-        }
-        text += "    ] },\n";
+            format!("(\"{leaf}\", {place}, {more}, {kind})")
+        };
+        fill(&mut text, "        ", leaves(described, each).into_iter().map(item));
+        text += "    ) },\n";
     }
     text + "];\n"
 }

@@ -1,6 +1,7 @@
 //! The tangential problem: every number is compared with a closed form, a quadrature, a direct sum, or another program's result.
 
 mod batch;
+mod bounds_of_laws;
 mod branches;
 mod cancelling;
 mod cattaneo;

@@ -2,7 +2,8 @@
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Load, PressureLimit, Scene};
-use contact_normal::solver::{solve, solve_to_accuracy, Accuracy, Method, Options, Outcome};
+
+use contact_normal::solver::{quantities, solve, solve_to_accuracy, Accuracy, Method, Options, Outcome, Quantity};
 
 const BODIES: Bodies = Bodies { shear_modulus: [1.0, 1.0], poisson_ratio: [0.3, 0.3] };
 
@@ -55,6 +56,18 @@ fn corrected_areas_count_elements_at_their_limit() {
         let limited = part(48, load, limit);
         assert!((limited / plain - 1.0).abs() < 1e-12, "{load:?} {limit}: {limited} {plain}");
     }
+}
+
+/// All pressures of a punch are at their limit: a little more approach changes none of them, so that the stiffness is 0. It used to lack contact.
+#[test]
+fn the_stiffness_is_zero_where_all_of_the_contact_is_at_its_limit() {
+    let grid = Grid::new(16, 16, 1.0, 1.0).expect("a grid");
+    let h: Vec<f64> = (0..256).map(|i| if (4..12).contains(&(i % 16)) { 0.0 } else { f64::INFINITY }).collect();
+    let punch = (grid, h);
+    let scene = limited(&punch, Load::Approach(1.0), 1e-3);
+    let (_, rows) = quantities(&scene, &Options::default(), &[Quantity::Stiffness], 1, None).expect("rows");
+    assert!(rows.iter().all(|row| row.value == Some(0.0)), "{rows:?}");
+    assert_eq!((rows[1].error, rows[1].lack), (Some(0.0), None));
 }
 
 /// Five elements with most of the force at their limits: exchanges of elements went round in NORM, and PROJECTED_CG stood.

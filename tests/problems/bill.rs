@@ -155,7 +155,7 @@ fn a_thin_coating_is_a_layer() {
 fn a_plain_scene_has_no_bill() {
     let h = ball();
     assert!(bill(&plain(&h), 1e-2, &WANTED).is_empty());
-    let neglected = Neglected::of(&plain(&h), &Options::default(), 1e-2).expect("nothing");
+    let neglected = Neglected::of(&plain(&h), &Options::default(), 1e-2, None).expect("nothing");
     assert_eq!(neglected, Neglected::default());
 }
 
@@ -184,7 +184,7 @@ fn what_is_neglected_changes_less_than_the_target() {
     let mut left_out = 0;
     for seed in 100..124 {
         let scene = with_effects(&h, &patch, &mut Random::new(seed));
-        let neglected = Neglected::of(&scene, &Options::default(), target).expect("a scene");
+        let neglected = Neglected::of(&scene, &Options::default(), target, None).expect("a scene");
         assert!(neglected.error <= target, "{seed} {neglected:?}");
         assert!(!neglected.omissions.contains(&Omission::Friction));
         left_out += usize::from(!neglected.omissions.is_empty());
@@ -207,7 +207,7 @@ fn a_pressure_limit_stays() {
     let peak = report.measures.max_pressure;
     for limit in [0.95 * peak, 2.0 * peak] {
         let scene = Scene { pressure_limit: Some(PressureLimit::Uniform(limit)), ..plain(&h) };
-        let neglected = Neglected::of(&scene, &Options::default(), 0.1).expect("a scene");
+        let neglected = Neglected::of(&scene, &Options::default(), 0.1, None).expect("a scene");
         assert_eq!(neglected, Neglected::default(), "{limit} beside {peak}");
     }
 }
@@ -293,7 +293,7 @@ fn adhesion_is_needed_where_it_is_strong() {
     let weak = bill(&sticky(1e-7, 0.005), 1e-2, &WANTED);
     assert!(weak.iter().all(|row| row.verdict == Verdict::Negligible), "{weak:?}");
     // It makes a result of another kind, which stays.
-    let neglected = Neglected::of(&sticky(1e-7, 0.005), &Options::default(), 1e-2).expect("a scene");
+    let neglected = Neglected::of(&sticky(1e-7, 0.005), &Options::default(), 1e-2, None).expect("a scene");
     assert!(neglected.omissions.is_empty());
     let refused = effects_bill(&sticky(1.0, 0.0), &Options::default(), &BillOptions::new(0.1), &WANTED, None);
     assert!(matches!(refused, Err(Error::Unsupported(message)) if message.contains("range 0")));

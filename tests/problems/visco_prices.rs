@@ -101,7 +101,7 @@ fn relaxation_is_in_the_bill_of_a_step_from_rest() {
         // Both solves to a hundredth of the target.
         assert!((change / value - (s - 1.0)).abs() <= 2e-4 * s, "{dt}: {change} {value} {s}");
         assert_eq!((rows[0].verdict, rows[2].change), (verdict, Some(0.0)), "{rows:?}");
-        let neglected = Neglected::of(&scene, &Options::default(), 1e-2).expect("a scene");
+        let neglected = Neglected::of(&scene, &Options::default(), 1e-2, None).expect("a scene");
         assert_eq!(neglected, Neglected::default());
     }
     // A layer that relaxes is all there is of its body, and stays.

@@ -1,7 +1,7 @@
 //! Bounds from slips, and the residuals of the conditions with them.
 
 use super::super::certificate::{scale, Certificate};
-use super::super::plane::{clip, dot, square};
+use super::super::plane::{clip, dot, square, Vector};
 use super::super::problem::{Problem, State};
 use super::super::tangent::{Side, Tangent};
 use super::march::March;
@@ -80,8 +80,20 @@ pub(super) fn onto_circles(problem: &mut Problem, state: &mut State, tangent: &T
     problem.refresh_unclipped(state);
 }
 
-/// Sets the bounds of slipping elements to their |q|. Returns the larger residual of both certificates.
-pub(super) fn freeze(problem: &mut Problem, state: &State, tangent: &Tangent, march: &mut March) -> f64 {
+/// Clips tractions to mu p with the coefficient at rest, which no bound exceeds, with a fresh product if any was longer.
+fn clip_to_rest(problem: &mut Problem, state: &mut State, march: &March) {
+    let threads = problem.threads().clone();
+    let exceeds = |k: usize, q: Vector| square(q).sqrt() > march.bound_at_rest(k);
+    let [count] = fields::sum(&threads, state.q.len(), |k| [f64::from(u8::from(exceeds(k, state.q[k])))]);
+    if count > 0.0 {
+        fields::map(&threads, &mut state.q, |k, q| if exceeds(k, q) { clip(q, march.bound_at_rest(k)) } else { q });
+        problem.refresh_unclipped(state);
+    }
+}
+
+/// Clips tractions to mu p, and sets the bounds of slipping elements to their |q|. Returns the larger residual of both certificates.
+pub(super) fn freeze(problem: &mut Problem, state: &mut State, tangent: &Tangent, march: &mut March) -> f64 {
+    clip_to_rest(problem, state, march);
     lag(problem, state, tangent, march);
     let of = |k: usize| match tangent.side[k] {
         Side::Slip => [(square(state.q[k]).sqrt() - problem.bound[k]).powi(2)],

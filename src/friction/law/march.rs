@@ -58,6 +58,11 @@ impl March {
         &self.resolved[k]
     }
 
+    /// mu p of an element, with the coefficient at rest.
+    pub fn bound_at_rest(&self, k: usize) -> f64 {
+        self.places[k].pressure * self.places[k].coefficient
+    }
+
     /// Calls `each(k, place, state before)` in the order in which particles pass; it returns the state afterwards. In steady rolling particles are
     /// fresh until they enter the contact, wherever the grid begins.
     pub fn go(&mut self, mut each: impl FnMut(usize, Place, Particle) -> Particle) {

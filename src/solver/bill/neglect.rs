@@ -7,7 +7,7 @@ use super::verdict::{BillRow, Verdict};
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::solver::quantities::Quantity;
-use crate::solver::{InitialGuess, Options};
+use crate::solver::{InitialGuess, Options, Outcome, ProgressCallback};
 
 /// The omissions of a solve.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,7 +26,14 @@ impl Neglected {
     /// this changes too much, the omission with the largest change is withdrawn. Effects that determine the kind of the result are never left out:
     /// friction, adhesion, a step in time, and a layer in place of a coating. Nor is a pressure limit: small grids do not resolve the peaks that
     /// reach it, and a limit that no element reaches changes nothing.
-    pub fn of(scene: &Scene<'_>, options: &Options, target: f64) -> Result<Neglected> {
+    ///
+    /// `progress` is told of the cycles on small grids; if it cancels, nothing is left out.
+    pub fn of(
+        scene: &Scene<'_>,
+        options: &Options,
+        target: f64,
+        mut progress: Option<ProgressCallback<'_>>,
+    ) -> Result<Neglected> {
         let asked = BillOptions { pairs: false, ..BillOptions::new(target) };
         let wanted = kept(scene);
         let options = &Options { initial_guess: InitialGuess::None, ..*options };
@@ -42,7 +49,10 @@ impl Neglected {
         };
         let singles: Vec<Omission> = Omission::of(scene).into_iter().filter(|one| !stays(one)).collect();
         small_grids::check(scene, options, &asked)?;
-        let rows = bill(scene, options, &asked, &wanted, singles.iter().map(|one| vec![*one]).collect())?;
+        let each = singles.iter().map(|one| vec![*one]).collect();
+        let Some(rows) = bill((scene, options), &asked, &wanted, each, &mut progress)? else {
+            return Ok(Neglected::default());
+        };
         let mut left: Vec<(Omission, f64)> = singles
             .into_iter()
             .filter_map(|one| {
@@ -56,7 +66,7 @@ impl Neglected {
             let omissions: Vec<Omission> = left.iter().map(|(one, _)| *one).collect();
             let error = match omissions.len() {
                 1 => Some(alone),
-                _ => together(scene, options, &asked, &wanted, &omissions)?,
+                _ => together((scene, options), &asked, &wanted, &omissions, &mut progress)?,
             };
             if let Some(error) = error {
                 return Ok(Neglected { omissions, error });
@@ -93,27 +103,28 @@ fn largest(rows: &[&BillRow]) -> f64 {
     rows.iter().map(of).fold(0.0, f64::max)
 }
 
+/// The rows of a bill; none: cancelled.
 fn bill(
-    scene: &Scene<'_>,
-    options: &Options,
+    (scene, options): (&Scene<'_>, &Options),
     asked: &BillOptions,
     wanted: &[Quantity],
     left_out: Vec<Vec<Omission>>,
-) -> Result<Vec<BillRow>> {
+    progress: &mut Option<ProgressCallback<'_>>,
+) -> Result<Option<Vec<BillRow>>> {
     let mut grids = SmallGrids::new(scene, options, asked, wanted, left_out);
-    grids.solve(None)?;
-    Ok(grids.rows())
+    let outcome = grids.solve(progress.as_mut().map(|progress| &mut **progress as ProgressCallback<'_>))?;
+    Ok((outcome != Outcome::Cancelled).then(|| grids.rows()))
 }
 
 /// The largest relative change with all omissions together; none if it is not negligible.
 fn together(
-    scene: &Scene<'_>,
-    options: &Options,
+    scene: (&Scene<'_>, &Options),
     asked: &BillOptions,
     wanted: &[Quantity],
     omissions: &[Omission],
+    progress: &mut Option<ProgressCallback<'_>>,
 ) -> Result<Option<f64>> {
-    let rows = bill(scene, options, asked, wanted, vec![omissions.to_vec()])?;
+    let Some(rows) = bill(scene, asked, wanted, vec![omissions.to_vec()], progress)? else { return Ok(None) };
     let holds = rows.iter().all(|row| row.verdict == Verdict::Negligible);
     Ok(holds.then(|| largest(&rows.iter().collect::<Vec<_>>())))
 }

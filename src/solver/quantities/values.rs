@@ -110,7 +110,7 @@ pub fn values(
             Quantity::MaxPressure => Ok(report.measures.max_pressure),
             Quantity::ContactArea => Ok(area(solver, report)),
             Quantity::MeanGap => Ok(mean_gap(solver)),
-            Quantity::Stiffness => stiffness(solver)?,
+            Quantity::Stiffness => stiffness(solver, report.measures.contact_count)?,
             _ => tangential(solver, scene, report, *quantity),
         };
         let counted = |value: f64| match quantity {
@@ -142,10 +142,11 @@ fn mean_gap(solver: &Solver) -> f64 {
 }
 
 #[inline(never)]
-fn stiffness(solver: &mut Solver) -> Result<std::result::Result<f64, Lack>> {
+fn stiffness(solver: &mut Solver, contacts: usize) -> Result<std::result::Result<f64, Lack>> {
     match solver.stiffness() {
-        Ok((Outcome::Converged, stiffness)) if stiffness.value > 0.0 => Ok(Ok(stiffness.value)),
-        Ok((Outcome::Converged, _)) => Ok(Err(Lack::NoContact)),
+        // With all pressures at their limit the stiffness is 0.
+        Ok((Outcome::Converged, _)) if contacts == 0 => Ok(Err(Lack::NoContact)),
+        Ok((Outcome::Converged, stiffness)) => Ok(Ok(stiffness.value)),
         Ok(_) => Ok(Err(Lack::Unsolved)),
         Err(Error::Infeasible(_)) => Ok(Err(Lack::Singular)),
         Err(error) => Err(error),

@@ -56,7 +56,7 @@ pub struct Price {
     pub grid: Option<Grid>,
     /// The largest sufficient tolerance.
     pub tolerance: f64,
-    /// The predicted relative error with this grid and tolerance. Negative if not known.
+    /// The larger of the predicted relative error of the grid and the tolerance. Negative if not known.
     pub error: f64,
     /// Seconds of set-up and solve with the threads of the options; negative: not known.
     pub seconds: f64,
@@ -154,7 +154,7 @@ pub(super) fn price(
     let obstacle = obstacles.into_iter().find(|(is_in_the_way, _)| *is_in_the_way).map(|(_, obstacle)| obstacle);
     Price {
         grid: Some(grid),
-        error: falling.after(k) + tolerance,
+        error: falling.after(k).max(tolerance),
         seconds: seconds / speed_up,
         seconds_one_thread: seconds,
         work_units,

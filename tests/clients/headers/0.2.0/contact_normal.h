@@ -2266,7 +2266,7 @@ typedef struct contact_normal_price {
    */
   double target;
   /*
-   Relative error that the grid and the tolerance leave; < 0: not known.
+   The larger of the relative error of the grid and the tolerance; < 0: not known.
    */
   double error;
   /*

@@ -1,0 +1,29 @@
+//! The total pressures of a result, split into contact pressures and attraction.
+
+use super::unknowns::Surface;
+use crate::contact::State;
+use crate::error::Result;
+use crate::memory::collected;
+
+/// The law and the works of a result. A later scene with others, and other coefficients, leave it.
+pub struct Split(Surface);
+
+impl Split {
+    /// The split of a solution between these surfaces.
+    pub fn of(surface: &Surface) -> Result<Split> {
+        let works = collected(surface.works.iter().copied(), "works of adhesion")?;
+        Ok(Split(Surface { h: Vec::new(), attraction: surface.attraction, works, work: surface.work }))
+    }
+
+    /// The contact pressure q of element i, and its attraction sigma.
+    pub fn at(&self, state: &State, i: usize) -> (f64, f64) {
+        let sigma = self.0.traction(i, state.h[i] - state.approach + state.u[i]);
+        // Within the residual, q may be slightly negative.
+        (if state.contact[i] { (state.p[i] + sigma).max(0.0) } else { 0.0 }, sigma)
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.0.works[..])
+    }
+}
