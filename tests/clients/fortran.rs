@@ -181,6 +181,13 @@ fn tang_solve_without_the_module_is_that_of_the_module() {
 }
 
 #[test]
+fn norm_solve_and_tang_solve_share_a_handle() {
+    let folder = scratch("fortran_tang_solve_handles");
+    let program = compile("tests/clients/tang_solve_handles.f90", &["-g", "-O1", "-fcheck=all"], &folder);
+    assert_eq!(run_linked(&program, &[], &folder), "the same bits\n");
+}
+
+#[test]
 fn the_wrappers_of_the_module_work() {
     let folder = scratch("fortran_module");
     let program = compile("tests/clients/fortran_module.f90", &["-g", "-O1", "-fcheck=all"], &folder);
@@ -208,6 +215,15 @@ fn what_is_attached_wrong_is_said() {
     for (i, flags) in [&["-g", "-O1", "-fcheck=all"][..], &["-O2", "-fdefault-integer-8"]].into_iter().enumerate() {
         let folder = scratch(&format!("fortran_setters_{i}"));
         let program = compile("tests/clients/fortran_setters.f90", flags, &folder);
+        assert_eq!(run_under_valgrind(&program, &[], &folder), "all hold\n", "{flags:?}");
+    }
+}
+
+#[test]
+fn arrays_of_another_shape_are_said() {
+    for (i, flags) in [&["-g", "-O1", "-fcheck=all"][..], &["-O2", "-fdefault-integer-8"]].into_iter().enumerate() {
+        let folder = scratch(&format!("fortran_shapes_{i}"));
+        let program = compile("tests/clients/fortran_shapes.f90", flags, &folder);
         assert_eq!(run_under_valgrind(&program, &[], &folder), "all hold\n", "{flags:?}");
     }
 }
