@@ -242,7 +242,7 @@ inline void share_message(const std::string &message, std::vector<result> &resul
 
 } // namespace detail
 
-/// Solves a batch; throws `error` if the call itself is refused.
+// Solves a batch; throws `error` if the call itself is refused.
 inline void solver::solve_all(const std::vector<scene> &scenes, batch &found, const options &how)
 {
     const std::size_t count = scenes.size();
