@@ -96,10 +96,7 @@ const PROCEDURES: [(&str, &[&str]); 22] = [
     ("set_adhesion", &["scene", "adhesion", "work", "works", "range", "law"]),
     ("set_visco", &["scene", "visco", "modulus_1", "time_1", "modulus_2", "time_2", "time_step", "continues"]),
     ("flash_temperature", &["heat", "heat_flux", "temperature", "flash"]),
-    (
-        "frictional_wear",
-        &["wear", "traction", "slip", "work", "depth", "passage", "worn", "pressure", "coefficients"],
-    ),
+    ("frictional_wear", &["wear", "traction", "slip", "work", "depth", "passage", "worn", "pressure", "coefficients"]),
 ];
 
 /// The text of a mark, if this is one.
