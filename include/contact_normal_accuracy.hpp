@@ -7,6 +7,7 @@
 #include <contact_normal_scene.hpp>
 #include <contact_normal_solver.hpp>
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>
@@ -86,8 +87,8 @@ inline refined solve_to_accuracy(const scene &of, const accuracy &wanted, const 
     if (status < 0) throw error(status, message);
     static_cast<contact_normal_accuracy &>(all.accuracy) = *accuracy.get();
     all.accuracy.surface = wanted.surface, all.accuracy.user = wanted.user;
-    if (handle) all.found = all.solver->last(of.has_friction() ? asked : asked - detail::of_friction);
-    report.ledger = nullptr, report.ledger_capacity = 0;
+    if (handle) all.found = all.solver->last(detail::outputs::had_by(of, asked));
+    detail::outputs::without_ledger(report);
     all.found.status = status, all.found.message = message, all.found.report = report;
     if (handle) detail::outputs::add_ledger(all.found, asked, ledger);
     return all;
@@ -137,7 +138,8 @@ inline quantity_rows quantities(const scene &of, view<std::int32_t> wanted, std:
 {
     const contact_normal_scene scene = of.get();
     quantity_rows all;
-    const std::size_t grids = coarser < 0 ? 1 : static_cast<std::size_t>(coarser) + 1;
+    const std::int32_t most = 12; // of `coarser`: the library refuses more
+    const std::size_t grids = static_cast<std::size_t>(std::clamp(coarser, 0, most)) + 1;
     all.rows.resize(wanted.size() * grids + 1);
     contact_normal_quantity_row_init(all.rows.data());
     std::int32_t written = 0;

@@ -119,6 +119,13 @@ inline std::string wrong_size(const std::string &name, std::size_t size, std::si
     return name + " has " + std::to_string(size) + " values; it must have " + std::to_string(wanted);
 }
 
+/// How many coefficients a table of these offsets has; one if they are too many, for the library refuses such a table.
+inline std::size_t table_size(std::int32_t cx, std::int32_t cy) noexcept
+{
+    const std::size_t most = static_cast<std::size_t>(PTRDIFF_MAX) / sizeof(double) / 4;
+    return count(cx) * count(cy) <= most ? 4 * count(cx) * count(cy) : 1;
+}
+
 /// The values of an array, which must have so many.
 template <class Values> auto sized(const char *name, const Values &values, std::size_t size)
 {

@@ -6,7 +6,6 @@
 #include <contact_normal_visco.hpp>
 
 #include <functional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -110,7 +109,7 @@ inline contact_normal_hertz_solution hertz(double curvature_x, double curvature_
 inline std::vector<double> influence_half_space(std::int32_t cx, std::int32_t cy, double dx, double dy, const body &one, const body &other)
 {
     const detail::pair_of_bodies both(one, other);
-    std::vector<double> coefficients(4 * detail::count(cx) * detail::count(cy));
+    std::vector<double> coefficients(detail::table_size(cx, cy));
     check(contact_normal_influence_half_space(cx, cy, dx, dy, both.shear_modulus, both.poisson_ratio, coefficients.data()));
     return coefficients;
 }
@@ -121,7 +120,7 @@ inline std::vector<double> influence_rolling(std::int32_t cx, std::int32_t cy, d
 {
     const detail::pair_of_bodies both(one, other);
     const contact_normal_visco named = relaxing.named();
-    std::vector<double> coefficients(4 * detail::count(cx) * detail::count(cy));
+    std::vector<double> coefficients(detail::table_size(cx, cy));
     check(contact_normal_influence_rolling(cx, cy, dx, dy, both.shear_modulus, both.poisson_ratio, &named, speed, coefficients.data()));
     return coefficients;
 }
@@ -132,7 +131,7 @@ inline std::vector<double> influence_rolling_tangential(std::int32_t cx, std::in
 {
     const detail::pair_of_bodies both(one, other);
     const contact_normal_visco named = relaxing.named();
-    std::vector<double> coefficients(12 * detail::count(cx) * detail::count(cy));
+    std::vector<double> coefficients(3 * detail::table_size(cx, cy));
     check(contact_normal_influence_rolling_tangential(cx, cy, dx, dy, both.shear_modulus, both.poisson_ratio, &named, speed, coefficients.data()));
     return coefficients;
 }
@@ -162,10 +161,9 @@ inline flash_temperatures flash_temperature(std::int32_t mx, std::int32_t my, do
                                             double share = -1.0, std::int32_t threads = 1)
 {
     const std::size_t size = detail::count(mx) * detail::count(my);
-    if (heat_flux.size() != size) throw std::invalid_argument("heat_flux must have one value per element");
     contact_normal_heat heat;
     contact_normal_heat_init(&heat);
-    heat.mx = mx, heat.my = my, heat.dx = dx, heat.dy = dy, heat.heat_flux = heat_flux.data();
+    heat.mx = mx, heat.my = my, heat.dx = dx, heat.dy = dy, heat.heat_flux = detail::sized("heat_flux", heat_flux, size);
     for (int b = 0; b < 2; b++)
         heat.conductivity[b] = conductivity[b], heat.diffusivity[b] = diffusivity[b], heat.speed[b] = speed[b];
     heat.share = share, heat.threads = threads;
@@ -196,14 +194,10 @@ inline frictional_work frictional_wear(std::int32_t mx, std::int32_t my, double 
     contact_normal_wear wear;
     contact_normal_wear_init(&wear);
     for (int k = 0; k < 2; k++) {
-        if (traction[k].size() != size || slip[k].size() != size)
-            throw std::invalid_argument("traction and slip must have one value per element");
-        wear.traction[k] = traction[k].data(), wear.slip[k] = slip[k].data();
+        wear.traction[k] = detail::sized("traction", traction[k], size), wear.slip[k] = detail::sized("slip", slip[k], size);
     }
-    for (const std::vector<double> *optional : {&pressure, &coefficients})
-        if (!optional->empty() && optional->size() != size) throw std::invalid_argument("pressure and coefficients must have one value per element");
     wear.mx = mx, wear.my = my, wear.dx = dx, wear.dy = dy;
-    wear.pressure = pressure.empty() ? nullptr : pressure.data(), wear.coefficients = coefficients.empty() ? nullptr : coefficients.data();
+    wear.pressure = detail::sized_or_none("pressure", pressure, size), wear.coefficients = detail::sized_or_none("coefficients", coefficients, size);
     wear.coefficient = coefficient, wear.hardness = hardness, wear.steps = steps, wear.rolling_distance = rolling_distance;
     frictional_work found{std::vector<double>(size), std::vector<double>(size), {}, {}};
     if (rolling_distance > 0.0) found.passage.resize(detail::count(my));

@@ -92,7 +92,7 @@ struct outputs {
     /// what is wrong with it.
     std::string begin(const scene &of, result &found, const contact_normal_options &how)
     {
-        const std::size_t size = of.size();
+        const std::size_t size = room_of(of);
         const bool is_given = how.initial_guess == CONTACT_NORMAL_INITIAL_GUESS_GIVEN;
         const bool is_fixed = how.active_set == CONTACT_NORMAL_ACTIVE_SET_FIXED;
         if (is_given && found.pressure.size() != size) return wrong_size("found.pressure, the start,", found.pressure.size(), size);
@@ -100,8 +100,7 @@ struct outputs {
         if (is_fixed && !has_contact) return wrong_size("found.contact, which is fixed,", found.contact.size(), size);
         fields reads = is_given ? fields::pressure : fields::none;
         if (is_fixed || (is_given && has_contact)) reads = reads | fields::contact;
-        writes = of.has_friction() ? found.asked : found.asked - of_friction;
-        writes = of.has_adhesion() ? writes : writes - of_adhesion;
+        writes = had_by(of, found.asked);
         if (is_given && !has_contact && has(writes, fields::contact)) {
             found.contact.clear();
             for (double p : found.pressure) found.contact.push_back(p > 0.0);
@@ -137,17 +136,37 @@ struct outputs {
     /// Notes how it ended. A refused solve has written nothing.
     void end(result &found, contact_normal_status status, const char *message) const
     {
+        without_ledger(found.report);
         found.status = status;
         found.message = message;
         found.held_ = status < 0 ? fields::none : writes;
         found.ledger.assign(rows.data(), rows.data() + (found.holds(fields::ledger) ? found.report.ledger_rows : 0));
-        found.report.ledger = nullptr, found.report.ledger_capacity = 0;
     }
     /// Of the last call on this thread.
     void end(result &found, contact_normal_status status) const
     {
         const bool is_silent = status == CONTACT_NORMAL_OK && found.report.warnings == 0;
         end(found, status, is_silent ? "" : contact_normal_last_error());
+    }
+
+    /// Notes that a call was refused before the library saw it: the report is a new one, and nothing is held. Arrays stay, for they may be a start.
+    static void refuse(result &found, contact_normal_status status, const std::string &why)
+    {
+        contact_normal_report_init(&found.report);
+        found.held_ = fields::none;
+        found.ledger.clear();
+        found.status = status;
+        found.message = why;
+    }
+
+    /// Takes away the place of the ledger, which ends with the call.
+    static void without_ledger(contact_normal_report &report) noexcept { report.ledger = nullptr, report.ledger_capacity = 0; }
+
+    /// Of what is asked for, what the result of a scene has.
+    static fields had_by(const scene &of, fields asked) noexcept
+    {
+        const fields with_friction = of.has_friction() ? asked : asked - of_friction;
+        return of.has_adhesion() ? with_friction : with_friction - of_adhesion;
     }
 
     /// Adds the rows of a ledger to a result that was written otherwise.

@@ -101,6 +101,7 @@ public:
     {
         friction_ = of.named(size());
         tables_ = of.tables_;
+        friction_row_tables_ = of.row_tables_;
         return *this;
     }
     /// Attraction between the bodies.
@@ -200,8 +201,17 @@ private:
     std::optional<contact_normal_friction> friction_;
     std::optional<contact_normal_adhesion> adhesion_;
     std::optional<contact_normal_visco> visco_;
-    std::shared_ptr<const contact_normal::friction::tables> tables_; // what `friction_` points to
+    // What `friction_` points to.
+    std::shared_ptr<const contact_normal::friction::tables> tables_;
+    std::shared_ptr<const std::array<contact_normal_row_tables, 3>> friction_row_tables_;
 };
+
+namespace detail {
+
+/// Elements of a scene for which arrays get room: none if they are too many, for the library refuses such a grid.
+inline std::size_t room_of(const scene &of) noexcept { return of.size() <= 0x7fffffffu ? of.size() : 0; }
+
+} // namespace detail
 
 } // namespace contact_normal
 

@@ -28,8 +28,8 @@ contact_normal_status run(const scene &of, result &found, const contact_normal_o
     outputs to;
     const std::string wrong = to.begin(of, found, how);
     if (!wrong.empty()) {
-        found.message = wrong;
-        return found.status = CONTACT_NORMAL_INVALID_ARGUMENT;
+        outputs::refuse(found, CONTACT_NORMAL_INVALID_ARGUMENT, wrong);
+        return found.status;
     }
     watched_options options(how, told);
     const contact_normal_scene scene = of.get();
@@ -111,7 +111,7 @@ public:
     explicit solver(const scene &of, const options &how = {})
     {
         // The set-up checks the undeformed distance but does not read it otherwise.
-        const std::vector<double> flat(of.size());
+        const std::vector<double> flat(detail::room_of(of));
         contact_normal_scene scene = of.get();
         if (!scene.undeformed_distance) scene.undeformed_distance = flat.data();
         contact_normal_solver *handle = nullptr;
@@ -141,10 +141,11 @@ public:
     {
         batch found;
         found.results.assign(scenes.size(), result(asked));
-        solve_batch_into(scenes, found, how);
+        solve_all(scenes, found, how);
         return found;
     }
-    /// The same into results that are there, one for each scene: what they hold is the start where `how.initial_guess` is GIVEN.
+    /// The same into results that are there, one for each scene: what they hold is the start where `how.initial_guess` is GIVEN. Returns the
+    /// status: negative if the call itself is refused, too, and then no result holds anything.
     contact_normal_status solve_batch_into(const std::vector<scene> &scenes, batch &found, const options &how = {});
 
     /// From here on the solver uses these influence coefficients, 2 cy * 2 cx values, which it copies.
@@ -211,6 +212,8 @@ public:
     contact_normal_solver *get() const && = delete;
 
 private:
+    void solve_all(const std::vector<scene> &scenes, batch &found, const options &how);
+
     struct free {
         void operator()(contact_normal_solver *handle) const noexcept { contact_normal_solver_free(handle); }
     };
@@ -239,7 +242,8 @@ inline void share_message(const std::string &message, std::vector<result> &resul
 
 } // namespace detail
 
-inline contact_normal_status solver::solve_batch_into(const std::vector<scene> &scenes, batch &found, const options &how)
+// Solves a batch; throws `error` if the call itself is refused.
+inline void solver::solve_all(const std::vector<scene> &scenes, batch &found, const options &how)
 {
     const std::size_t count = scenes.size();
     if (found.results.size() != count) detail::refuse(detail::wrong_size("found.results", found.results.size(), count));
@@ -247,10 +251,12 @@ inline contact_normal_status solver::solve_batch_into(const std::vector<scene> &
     std::vector<contact_normal_scene> named;
     std::vector<contact_normal_fields> fields;
     std::vector<contact_normal_report> reports;
+    named.reserve(count), fields.reserve(count), reports.reserve(count);
     for (std::size_t i = 0; i < count; i++) {
         const std::string wrong = to[i].begin(scenes[i], found.results[i], how);
         if (!wrong.empty()) detail::refuse("problem " + std::to_string(i) + ": " + wrong);
         named.push_back(scenes[i].get()), fields.push_back(to[i].written), reports.push_back(found.results[i].report);
+        detail::outputs::without_ledger(found.results[i].report); // its rows end with this call
     }
     std::vector<contact_normal_status> statuses(count, detail::untouched);
     found.status = contact_normal_solver_solve_batch(handle_.get(), detail::narrow("problems", count), named.data(), &how, fields.data(),
@@ -262,6 +268,16 @@ inline contact_normal_status solver::solve_batch_into(const std::vector<scene> &
         to[i].end(found.results[i], statuses[i], "");
     }
     detail::share_message(found.message, found.results);
+}
+
+inline contact_normal_status solver::solve_batch_into(const std::vector<scene> &scenes, batch &found, const options &how)
+{
+    try {
+        solve_all(scenes, found, how);
+    } catch (const error &refused) {
+        found.status = refused.status(), found.message = refused.what();
+        for (result &each : found.results) detail::outputs::refuse(each, refused.status(), refused.what());
+    }
     return found.status;
 }
 

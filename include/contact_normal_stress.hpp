@@ -81,7 +81,7 @@ inline stresses subsurface_stress(const scene &of, std::int32_t body, const load
     stresses found;
     const std::int32_t n = detail::narrow("depths", depths.size());
     const std::array<const double *, 3> on_body = detail::arrays(of, on);
-    contact_normal_stress_outputs outputs = detail::room_of(found, asked, depths.size() * of.size());
+    contact_normal_stress_outputs outputs = detail::room_of(found, asked, depths.size() * detail::room_of(of));
     detail::watched_options options(how, told);
     const contact_normal_scene scene = of.get();
     found.status = contact_normal_subsurface_stress(&scene, body, on_body[0], on_body[1], on_body[2], depths.data(), n, options.get(),

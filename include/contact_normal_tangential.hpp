@@ -29,9 +29,10 @@ struct friction_table {
     std::vector<std::array<double, 2>> force, creepage;
     std::vector<double> moment, residual, gap, products;
     std::vector<std::int64_t> stick_count, slip_count;
-    // If they are asked for: [n][2][my][mx] tractions and slip, [n][my][mx] `stick_slip`.
+    // If they are asked for: [n][2][my][mx] tractions and slip, [n][my][mx] the others.
     std::vector<double> traction, slip;
     std::vector<std::int32_t> stick_slip;
+    std::vector<double> friction_coefficient, yield_limit; // what particles of the interface carry
     contact_normal_report report; // of the normal problem
 
     /// True if all entries are solved to the tolerance.
@@ -50,6 +51,8 @@ inline contact_normal_friction_results room_of(friction_table &found, std::size_
     if (is_asked(fields::traction)) found.traction.resize(2 * n * elements);
     if (is_asked(fields::slip)) found.slip.resize(2 * n * elements);
     if (is_asked(fields::stick_slip)) found.stick_slip.resize(n * elements);
+    if (is_asked(fields::friction_coefficient)) found.friction_coefficient.resize(n * elements);
+    if (is_asked(fields::yield_limit)) found.yield_limit.resize(n * elements);
     contact_normal_friction_results results;
     contact_normal_friction_results_init(&results);
     const auto place = [](auto &values) { return values.empty() ? nullptr : values.data(); };
@@ -59,6 +62,7 @@ inline contact_normal_friction_results room_of(friction_table &found, std::size_
     results.products = place(found.products), results.status = place(found.statuses);
     results.stick_count = place(found.stick_count), results.slip_count = place(found.slip_count);
     results.traction = place(found.traction), results.slip = place(found.slip), results.stick_slip = place(found.stick_slip);
+    results.friction_coefficient = place(found.friction_coefficient), results.yield_limit = place(found.yield_limit);
     return results;
 }
 
@@ -89,8 +93,8 @@ inline friction_table table_of(contact_normal_solver *handle, const scene &of, v
 } // namespace detail
 
 /// Solves the tangential problem of a scene with friction for each of the entries: the creepage (or force) in x and in y, and the spin.
-/// `pressure`: my * mx values, or none: those of the normal problem. `asked`: traction, slip and `stick_slip` of all entries, if
-/// they are wanted. See `contact_normal_solve_tangential`; throws `error` if the call itself is refused, but not for an entry.
+/// `pressure`: my * mx values, or none: those of the normal problem. `asked`: which fields of friction are wanted of all entries; others
+/// are not written. See `contact_normal_solve_tangential`; throws `error` if the call itself is refused, but not for an entry.
 inline friction_table friction_batch(const scene &of, view<std::array<double, 3>> entries, const options &how = {},
                                      const progress &told = {}, std::optional<view<double>> pressure = {}, fields asked = fields::none)
 {

@@ -9,7 +9,7 @@ const NOT_ASSOCIATED: i64 = 2;
 const WRONG_SHAPE: i64 = 3;
 
 /// The procedures and their arguments, in the order of include/contact_normal.f90.
-const PROCEDURES: [(&str, &[&str]); 20] = [
+const PROCEDURES: [(&str, &[&str]); 22] = [
     ("set_undeformed_distance", &["scene", "h"]),
     ("set_influence", &["scene", "influence", "cx", "cy", "coefficients", "scale"]),
     ("set_layer", &["scene", "layer", "compliance", "compliances"]),
@@ -69,6 +69,8 @@ const PROCEDURES: [(&str, &[&str]); 20] = [
             "traction",
             "slip",
             "stick_slip",
+            "friction_coefficient",
+            "yield_limit",
         ],
     ),
     (
@@ -93,6 +95,8 @@ const PROCEDURES: [(&str, &[&str]); 20] = [
     ("set_tangential_row_tables", &["friction", "tables", "cx", "xx", "yy", "xy", "scale"]),
     ("set_adhesion", &["scene", "adhesion", "work", "works", "range", "law"]),
     ("set_visco", &["scene", "visco", "modulus_1", "time_1", "modulus_2", "time_2", "time_step", "continues"]),
+    ("flash_temperature", &["heat", "heat_flux", "temperature", "flash"]),
+    ("frictional_wear", &["wear", "traction", "slip", "work", "depth", "passage", "worn", "pressure", "coefficients"]),
 ];
 
 /// The text of a mark, if this is one.
@@ -135,13 +139,25 @@ mod tests {
             said(17, WRONG_SHAPE, 6),
             "contact_normal_solver_solve_batch: statuses has another shape than it must have"
         );
+        assert_eq!(
+            said(13, NOT_ASSOCIATED, 15),
+            "contact_normal_set_friction_results: yield_limit is not associated (or not allocated)"
+        );
+        assert_eq!(
+            said(21, WRONG_SHAPE, 3),
+            "contact_normal_flash_temperature: temperature has another shape than it must have"
+        );
+        assert_eq!(
+            said(22, WRONG_SHAPE, 9),
+            "contact_normal_frictional_wear: coefficients has another shape than it must have"
+        );
     }
 
     #[test]
     fn other_sizes_are_no_marks() {
         let wrong = [
             mark(0, 1, 1),
-            mark(21, 1, 1),
+            mark(23, 1, 1),
             mark(1, 0, 1),
             mark(1, 4, 1),
             mark(1, NOT_ASSOCIATED, 0),

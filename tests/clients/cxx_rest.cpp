@@ -108,7 +108,6 @@ static void batches()
     expect(second.results[4] && second.results[4].message.empty() && second.results[4].pressure == found.results[4].pressure, "the others are solved");
     how.progress = [](const contact_normal_progress *, void *) -> std::int32_t { return 0; };
     expect(thrown_by([&] { solver.solve_batch(scenes, how); }, "progress") == CONTACT_NORMAL_UNSUPPORTED, "a batch that is refused as a whole");
-    expect(thrown_by([&] { solver.solve_batch_into({}, second); }, "5 values; it must have 0") == CONTACT_NORMAL_INVALID_ARGUMENT, "a result for each");
 }
 
 static void accuracies()
@@ -119,6 +118,9 @@ static void accuracies()
     expect(static_cast<bool>(coarse) && coarse.accuracy.reached <= 0.01 && coarse.accuracy.mx >= 32, "an accuracy is reached");
     expect(coarse.found.pressure.size() == static_cast<std::size_t>(coarse.accuracy.mx * coarse.accuracy.my), "pressures of the grid that it took");
     expect(!coarse.found.ledger.empty() && coarse.found.ledger.back().mx == coarse.accuracy.mx && coarse.found.holds(cn::fields::ledger), "its ledger");
+    expect(coarse.found.holds(cn::fields::all - of_effects) && !coarse.found.holds(cn::fields::contact_pressure) &&
+               coarse.found.contact_pressure.empty() && coarse.found.attraction.empty(),
+           "no attraction without adhesion");
     expect(coarse.solver && coarse.solver->query().mx == coarse.accuracy.mx && coarse.solver->query().has_result == 1, "its handle");
     int grids = 0;
     const cn::surface exact = [&](const cn::grid &of, double *to) {
@@ -235,6 +237,9 @@ static void frictions()
     const cn::friction rows = cn::friction(0.3).creepage(0, -1e-4).row_tables(32, 24, of_rows, of_rows, no_rows);
     const cn::result by_rows = cn::solve(cn::scene(scene).friction(rows));
     expect(std::abs(by_rows.report.tangential.force[0] / by_tables.report.tangential.force[0] - 1.0) < 1e-4, "tangential tables per row");
+    // The friction that a scene was given need not live on; a copy of the scene outlives the scene.
+    const cn::scene outlives = cn::scene(cn::scene(scene).friction(cn::friction(0.3).creepage(0, -1e-4).row_tables(32, 24, of_rows, of_rows, no_rows)));
+    expect(cn::solve(outlives).traction == by_rows.traction, "tables of a temporary friction");
     expect(thrown_by([&] { cn::friction(0.3).row_tables(32, 24, of_rows, h, no_rows); }, "768 values; it must have 36864") == CONTACT_NORMAL_INVALID_ARGUMENT, "tangential row tables of another size");
 
     const std::vector<std::array<double, 3>> entries{{-1e-4, 0.0, 0.0}, {-2e-4, 0.0, 0.0}};
@@ -242,6 +247,21 @@ static void frictions()
         cn::friction_batch(cn::scene(scene).friction(moved), entries, {}, {}, found.pressure, cn::fields::traction | cn::fields::stick_slip);
     expect(static_cast<bool>(many) && many.traction.size() == 4 * h.size() && many.slip.empty() && many.stick_slip.size() == 2 * h.size(), "tractions of a table");
     expect(many.stick_count[0] == found.report.tangential.stick_count && many.slip_count[0] == found.report.tangential.slip_count && many.gap[0] < 1e-5, "its counts");
+    expect(many.friction_coefficient.empty() && many.yield_limit.empty(), "and no more");
+
+    // What particles carry after each entry: those of the entry alone.
+    const cn::friction falling = cn::friction(0.4).creepage(0, -2e-4).law(CONTACT_NORMAL_FRICTION_LAW_EXPONENTIAL, 0.2, 0.2, 1e-4, 1.0).layer(20.0, 1e5);
+    const cn::scene worn = cn::scene(scene).friction(falling);
+    const cn::friction_table carried =
+        cn::friction_batch(worn, entries, {}, {}, found.pressure, cn::fields::friction_coefficient | cn::fields::yield_limit);
+    const cn::result last = cn::solve_tangential(worn, found.pressure);
+    const auto is_last = [&](const std::vector<double> &of_all, const std::vector<double> &of_one) {
+        double off = of_all.size() == 2 * h.size() && of_one.size() == h.size() ? 0.0 : 1.0;
+        for (std::size_t i = 0; i < h.size() && off < 1.0; i++) off = std::max(off, std::abs(of_all[h.size() + i] / of_one[i] - 1.0));
+        return off < 1e-4;
+    };
+    expect(is_last(carried.friction_coefficient, last.friction_coefficient), "coefficients of a table");
+    expect(is_last(carried.yield_limit, last.yield_limit) && carried.traction.empty(), "yield limits of a table");
 }
 
 static void stops()

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::c::gap_file;
+use crate::description::{Description, Kind};
 use crate::generated::header;
 use crate::support::{
     assert_certified, recompute, root, run, run_linked, run_under_valgrind, scratch, EXAMPLES_OF_EFFECTS,
@@ -181,6 +182,13 @@ fn tang_solve_without_the_module_is_that_of_the_module() {
 }
 
 #[test]
+fn norm_solve_and_tang_solve_share_a_handle() {
+    let folder = scratch("fortran_tang_solve_handles");
+    let program = compile("tests/clients/tang_solve_handles.f90", &["-g", "-O1", "-fcheck=all"], &folder);
+    assert_eq!(run_linked(&program, &[], &folder), "the same bits\n");
+}
+
+#[test]
 fn the_wrappers_of_the_module_work() {
     let folder = scratch("fortran_module");
     let program = compile("tests/clients/fortran_module.f90", &["-g", "-O1", "-fcheck=all"], &folder);
@@ -208,6 +216,15 @@ fn what_is_attached_wrong_is_said() {
     for (i, flags) in [&["-g", "-O1", "-fcheck=all"][..], &["-O2", "-fdefault-integer-8"]].into_iter().enumerate() {
         let folder = scratch(&format!("fortran_setters_{i}"));
         let program = compile("tests/clients/fortran_setters.f90", flags, &folder);
+        assert_eq!(run_under_valgrind(&program, &[], &folder), "all hold\n", "{flags:?}");
+    }
+}
+
+#[test]
+fn arrays_of_another_shape_are_said() {
+    for (i, flags) in [&["-g", "-O1", "-fcheck=all"][..], &["-O2", "-fdefault-integer-8"]].into_iter().enumerate() {
+        let folder = scratch(&format!("fortran_shapes_{i}"));
+        let program = compile("tests/clients/fortran_shapes.f90", flags, &folder);
         assert_eq!(run_under_valgrind(&program, &[], &folder), "all hold\n", "{flags:?}");
     }
 }
@@ -263,4 +280,24 @@ fn the_module_has_every_export_of_the_header() {
     for name in exports {
         assert!(module.contains(&format!("name=\"{name}\"")), "{name} has no interface in the module");
     }
+}
+
+/// What a struct points to can be attached: its procedure names the struct by the end of its name, or `given`, a copy.
+#[test]
+fn the_module_attaches_every_array_of_the_header() {
+    let files = std::fs::read_dir(root().join("include")).expect("include/").map(|file| file.expect("a file").path());
+    let parts = files.filter(|path| path.extension().is_some_and(|extension| extension == "inc"));
+    let module: String = parts.map(|path| std::fs::read_to_string(path).expect("a part")).collect();
+    let mut count = 0;
+    for each in Description::of(&header()).structs {
+        let last = each.short_name().rsplit('_').next().expect("a name");
+        for member in each.members.iter().filter(|member| matches!(member.kind, Kind::Pointer(_))) {
+            let is_set = [last, "given"].iter().any(|of| module.contains(&format!("{of}%{}", member.name)));
+            // Hosts set these two by c_loc.
+            let is_plain = member.name == "user" || member.name == "stop";
+            assert!(is_set || is_plain, "{}: {}", each.name, member.name);
+            count += 1;
+        }
+    }
+    assert!(count > 50, "{count} arrays");
 }
