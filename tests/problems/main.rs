@@ -25,6 +25,7 @@ mod bearing_area;
 mod beside_limits;
 mod bill;
 mod bill_of_areas;
+mod bill_of_unsolved;
 mod coated_period;
 mod coating;
 mod coating_on_rigid;
