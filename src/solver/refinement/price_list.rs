@@ -42,8 +42,8 @@ const FOR_TIMES: f64 = 0.5;
 
 /// Predicts the cost of each of the relative errors `targets` of a quantity, from solves on small grids over the rectangle of the scene. Uses
 /// the limits of `accuracy`; a row names the limit that forbids it. `surface` as in [`solve_to_accuracy`](super::solve_to_accuracy). After
-/// a cancel by the surface or by `progress`, which is called after each cycle, the rows hold the results so far. ITERATION_LIMIT, STAGNATED: the first
-/// grid was not solved, and neither were coarser ones. A quantity that is 0 as nothing touches is exact on the grid of the scene.
+/// a cancel by the surface or by `progress`, which is called after each cycle, the rows hold the results so far. ITERATION_LIMIT, STAGNATED: neither
+/// the grid of the scene nor a coarser one was solved. A quantity that is 0 as nothing touches is exact on the grid of the scene.
 pub fn cost_of_accuracy(
     scene: &Scene<'_>,
     options: &Options,
