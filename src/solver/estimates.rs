@@ -93,7 +93,8 @@ impl Parts {
             return None;
         }
         let force = state.force();
-        // In full contact of two periods the mean displacement, and with it dF/d(approach), is round-off. No error of a given force depends on it.
+        // In full contact of two periods the mean displacement is 0, but for round-off and rows that are not sampled, so that dF/d(approach) is arbitrary.
+        // With a given force no error depends on it.
         let is_full = repeats == (true, true) && count == state.grid.len();
         let stiffness = match state.load {
             Load::Force(_) if is_full => 0.0,
