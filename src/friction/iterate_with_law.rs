@@ -56,6 +56,8 @@ impl Solver {
         if forces.any() && !request.is_cancelled {
             let first = Request { tolerance: request.tolerance.max(FIRST), ..*request };
             let end = self.iterate(&first, forces, began, watch, report)?;
+            // That of Coulomb's law.
+            report.coarser = None;
             if end == Outcome::Cancelled {
                 let Level { problem, state, .. } = &self.levels[0];
                 report.certificate = Certificate::of(problem, state);

@@ -39,6 +39,11 @@ impl Measures {
         }
     }
 
+    /// Whether no element touches, and none attracts.
+    pub fn is_apart(&self) -> bool {
+        self.contact_count == 0 && self.force == 0.0
+    }
+
     /// The force if the approach is prescribed, else the approach.
     pub fn found(&self, load: Load) -> f64 {
         match load {

@@ -33,8 +33,11 @@ impl Falling {
         Falling { by_sixteen, by_four, by_two, hidden }
     }
 
-    /// The error relative to a value, if that is finite and not 0.
+    /// The error relative to a value, if that is finite and not 0. An error of exactly 0 is 0 of any value.
     pub fn over(self, whole: f64) -> Option<Falling> {
+        if self.now() == 0.0 && whole == 0.0 {
+            return Some(Falling::default());
+        }
         Some(self.times(1.0 / whole.abs())).filter(|relative| relative.now().is_finite())
     }
 }

@@ -94,14 +94,13 @@ pub fn solve_to_accuracy(
             Err(error) => return Err(error),
         };
         let now = began.elapsed().as_secs_f64();
-        let past = Past::of((&solved, history.is_believed()), accuracy, (now - entered, now), before.as_ref());
-        let no_contact = past.across == (0, 0);
+        let past = Past::of((&solved, history.is_believed()), (accuracy, &scene.grid), (entered, now), before.as_ref());
         if doublings < 0 {
             doublings += 1;
             continue;
         }
         best = Some(solved);
-        without_contact = if no_contact { without_contact + 1 } else { 0 };
+        without_contact = if past.across == (0, 0) { without_contact + 1 } else { 0 };
         without_estimate += usize::from(past.lacks_estimate());
         if let Some(end) = accuracy.end(&past, without_contact, without_estimate) {
             break end;
@@ -144,7 +143,7 @@ impl Refinement {
             return Refinement { stop, reason, solver: None, report: Report::default(), reached: None, seconds };
         };
         // Without contact the result is exact.
-        let without = report.measures.contact_count == 0 && report.measures.force == 0.0 && stop == Outcome::Converged;
+        let without = report.measures.is_apart() && stop == Outcome::Converged;
         let reached = outlook.relative(Quantity::Force).or(without.then_some(0.0));
         let number = reached.map_or("not known".into(), |reached| format!("{reached:.2e}"));
         let grid = solver.problem.grid;

@@ -2,7 +2,7 @@
 
 use contact_normal::friction::Report;
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Coefficient, Friction, Load, Motion, Prescribed, Scene};
+use contact_normal::scene::{Bodies, Coefficient, Fall, Friction, FrictionLaw, Load, Motion, Prescribed, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
 const MU: f64 = 0.3;
@@ -223,6 +223,28 @@ fn the_error_of_a_flat_punchs_force_or_shift_is_covered() {
         }
         assert_covered(by_shift, 10.0, &format!("{name}, shifted"));
         assert_covered(by_force, 10.0, &format!("{name}, pushed"));
+    }
+}
+
+/// With a coefficient that falls the errors of a shift by creepages are known, those by force and those of rolling are not.
+#[test]
+fn with_a_law_only_shifts_by_creepages_have_errors() {
+    let saturating = MU * 2.0 / ((1.0 - 0.28) * RADIUS);
+    let law = FrictionLaw::new(Fall::Rational, (0.5, 0.5), 1.6 * saturating, 1.0);
+    for (motion, law) in [Motion::SteadyRolling, Motion::Shift].into_iter().flat_map(|m| [(m, Some(law)), (m, None)]) {
+        for by_force in [false, true] {
+            let (found, _) = moved(40, 0.28, |carried, _| Friction {
+                motion,
+                prescribed: match by_force {
+                    true => [Prescribed::Force(0.3 * carried), Prescribed::Force(0.0)],
+                    false => [Prescribed::Creepage(-0.1 * saturating), Prescribed::Creepage(0.0)],
+                },
+                law,
+                ..Friction::new(MU)
+            });
+            let is_known = law.is_none() || motion == Motion::Shift && !by_force;
+            assert_eq!(found.error.map(|error| error >= 0.0), [is_known; 2], "{motion:?} {law:?} {by_force}");
+        }
     }
 }
 

@@ -263,3 +263,29 @@ fn reached_limits_have_errors_from_several_grids() {
     let off = (outcome.report.measures.force / fine - 1.0).abs();
     assert!(off <= 1e-2, "{off:e}: {}", outcome.reason);
 }
+
+/// Forces of steady rolling are of first order: the error is half of the change before, although the last change is fifteen times smaller. One grid has none.
+#[test]
+fn errors_of_tangential_forces_follow_from_the_grids() {
+    let grid = Grid::new(48, 48, 0.1, 0.1).expect("a grid");
+    let at = |k: usize| (k as f64 - 23.5) * 0.1;
+    let h: Vec<f64> = (0..grid.len()).map(|i| (at(i % 48).powi(2) + at(i / 48).powi(2)) / 200.0).collect();
+    let prescribed = [Prescribed::Creepage(-1e-3), Prescribed::Creepage(0.0)];
+    let rolling = Friction { prescribed, motion: Motion::SteadyRolling, spin: 1e-4, ..Friction::new(MU) };
+    let shift = Friction { motion: Motion::Shift, spin: 0.0, ..rolling };
+    let of = |friction: Friction<'static>| {
+        let plain = Scene::new(grid, &h, Bodies::same(82000.0, 0.28), Load::Force(3000.0));
+        rows(&Scene { friction: Some(friction), ..plain }, &[Quantity::TangentialForce], 2)
+    };
+    for found in [of(rolling), of(shift)] {
+        assert_eq!((found[0].error, found[0].lack), (None, Some(Lack::OneGrid)), "{found:?}");
+        assert!(found[1..].iter().all(|row| row.error.is_some()), "{found:?}");
+    }
+    let found = of(rolling);
+    let [coarse, middle, last] = [0, 1, 2].map(|k| found[k].value.expect("a force"));
+    let (error, before) = (found[2].error.expect("an error"), (middle - coarse).abs());
+    assert!((last - middle).abs() < 0.1 * before, "{found:?}");
+    // The residual of 1e-6 adds less.
+    assert!((error / (0.5 * before) - 1.0).abs() < 1e-3, "{found:?}");
+    assert!((found[1].error.expect("an error") / before - 1.0).abs() < 1e-3, "{found:?}");
+}

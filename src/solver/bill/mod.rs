@@ -22,7 +22,8 @@ use crate::scene::Scene;
 use small_grids::SmallGrids;
 
 /// The bill of a scene: for each omission, and for each pair, a row for each of the quantities `wanted`. A scene without effects has none.
-/// ITERATION_LIMIT, CANCELLED (by `progress`): rows have the results so far.
+/// ITERATION_LIMIT: a solve of the last grid ended at `max_cycles`, and the rows that need it have no change (`Lack::Unsolved`). CANCELLED (by
+/// `progress`): rows have the results of the last grid that was solved.
 ///
 /// # Errors
 /// Those of the scene; `Unsupported`: own coefficients, tractions kept by a handle, a fixed contact area.

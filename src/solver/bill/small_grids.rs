@@ -8,6 +8,7 @@ use super::omission::Omission;
 use super::verdict::{self, BillRow, Measured, MOVES};
 use crate::effects;
 use crate::error::{require, Error, Result};
+use crate::grid::Grid;
 use crate::scene::{scaled, Regridded, Scene};
 use crate::solver::machine::{seconds_on, Cost};
 use crate::solver::quantities::{Lack, OnGrid, Quantity, Sequence};
@@ -58,10 +59,14 @@ pub struct Variant {
     moved: f64,
     /// The cost on each grid.
     costs: Vec<Cost>,
-    /// The effort on the finest grid so far.
+    /// The effort on the finest grid so far; 0 if that refuses the variant.
     effort: f64,
+    /// Predicted bytes of the scene's grid.
     bytes: f64,
 }
+
+/// A variant solved on a grid, and the effort; none: refused.
+type Solved = Option<(OnGrid, f64)>;
 
 /// The largest relative change of quantities other than pressures and areas; infinite if there are none.
 fn moved(wanted: &[Quantity], now: &[Value], before: &[Value]) -> f64 {
@@ -83,6 +88,8 @@ pub struct SmallGrids<'s, 'a> {
     pub variants: Vec<Variant>,
     /// Elements of the scene's grid over those of the last grid.
     ratio: f64,
+    /// ITERATION_LIMIT if a variant ended so on the last grid.
+    outcome: Outcome,
 }
 
 impl<'s, 'a> SmallGrids<'s, 'a> {
@@ -108,7 +115,15 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
             bytes: 0.0,
         };
         let variants = std::iter::once(vec![]).chain(left_out).map(of).collect();
-        SmallGrids { scene, options, asked: *asked, wanted: wanted.to_vec(), variants, ratio: 1.0 }
+        SmallGrids {
+            scene,
+            options,
+            asked: *asked,
+            wanted: wanted.to_vec(),
+            variants,
+            ratio: 1.0,
+            outcome: Outcome::Converged,
+        }
     }
 
     /// Solves on finer and finer grids within the time, up to the scene's own.
@@ -139,38 +154,57 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
                 break;
             }
         }
-        Ok(Outcome::Converged)
+        Ok(self.outcome)
     }
 
-    /// One grid; false: cancelled.
+    /// One grid; false: cancelled. The results stay those of the grid before if the solve is cancelled, and if a coarser grid refuses the scene.
     fn on(&mut self, doublings: i32, progress: &mut Option<ProgressCallback<'_>>) -> Result<bool> {
         let grid = scaled(&self.scene.grid, doublings)?;
-        self.ratio = self.scene.grid.len() as f64 / grid.len() as f64;
         let regridded = Regridded::new(self.scene, grid, None)?;
         let scene = regridded.scene(self.scene);
-        let mut as_it_is: Vec<Value> = vec![];
-        for (k, variant) in self.variants.iter_mut().enumerate() {
+        let mut solved: Vec<Solved> = vec![];
+        for (k, variant) in self.variants.iter().enumerate() {
             let left = variant.left_out.iter().fold(scene.clone(), |scene, omission| omission.leave_out(&scene));
             let watch = progress.as_mut().map(|progress| &mut **progress as ProgressCallback<'_>);
-            let found = match OnGrid::solve(&left, &self.options, &self.wanted, watch) {
-                Ok(found) => found,
+            match OnGrid::solve(&left, &self.options, &self.wanted, watch) {
+                Ok(found) if found.outcome == Outcome::Cancelled => return Ok(false),
+                Ok(found) => {
+                    let effort = effort(&left, &found, &self.wanted);
+                    solved.push(Some((found, effort)));
+                }
                 // The variant cannot be solved, and has no values.
-                Err(Error::Infeasible(_) | Error::Unsupported(_)) if k > 0 => continue,
-                Err(_) if k > 0 && doublings < 0 => continue,
+                Err(Error::Infeasible(_) | Error::Unsupported(_)) if k > 0 => solved.push(None),
+                Err(_) if k > 0 && doublings < 0 => solved.push(None),
                 // A coarser grid may be refused where the scene's is not.
                 Err(_) if doublings < 0 => return Ok(true),
                 Err(error) => return Err(error),
-            };
-            if found.outcome == Outcome::Cancelled {
-                return Ok(false);
             }
+        }
+        self.add((doublings, grid), solved);
+        Ok(true)
+    }
+
+    /// Adds the results of a grid. No value and no effort of the grid before stays.
+    fn add(&mut self, (doublings, grid): (i32, Grid), solved: Vec<Solved>) {
+        self.ratio = self.scene.grid.len() as f64 / grid.len() as f64;
+        let is_cut_short =
+            |solved: &Solved| solved.as_ref().is_some_and(|(on, _)| on.outcome == Outcome::IterationLimit);
+        self.outcome = if solved.iter().any(is_cut_short) { Outcome::IterationLimit } else { Outcome::Converged };
+        let mut as_it_is: Vec<Value> = vec![];
+        for (k, (variant, solved)) in self.variants.iter_mut().zip(solved).enumerate() {
+            variant.values.fill(Err(Lack::Unsolved));
+            variant.effort = 0.0;
+            let Some((found, effort)) = solved else { continue };
             let (seconds, setup) = (found.seconds, found.setup_seconds);
             variant.costs.push(Cost { elements: grid.len() as f64, seconds, setup, products: found.work_units });
-            (variant.effort, variant.bytes) = (effort(&left, &found, &self.wanted), found.bytes as f64);
+            (variant.effort, variant.bytes) = (effort, found.bytes as f64 * self.ratio);
             variant.has_peak = found.has_peak(&self.wanted);
+            // Where only finer grids touch, the 0 of a coarser one tells nothing.
+            let is_missed = |value: f64| value == 0.0 && found.is_apart && doublings < 0;
             for (q, quantity) in self.wanted.iter().enumerate() {
-                variant.values[q] =
-                    verdict::without(*quantity, &variant.left_out, found.values[q].map(|found| found.value));
+                let value = found.values[q].map(|found| found.value);
+                let value = value.and_then(|value| if is_missed(value) { Err(Lack::NoContact) } else { Ok(value) });
+                variant.values[q] = verdict::without(*quantity, &variant.left_out, value);
             }
             variant.moved = moved(&self.wanted, &variant.values, &as_it_is);
             for (q, quantity) in self.wanted.iter().enumerate() {
@@ -187,7 +221,6 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
                 as_it_is = variant.values.clone();
             }
         }
-        Ok(true)
     }
 
     /// The rows of the bill.
@@ -208,7 +241,7 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
                     moved: variant.moved,
                 };
                 let costs = [as_it_is, without];
-                let bytes = [whole.bytes * self.ratio, variant.bytes * self.ratio];
+                let bytes = [whole.bytes, variant.bytes];
                 measured.row(&variant.left_out, self.asked.target, costs, bytes)
             };
             self.wanted.iter().enumerate().map(row).collect()

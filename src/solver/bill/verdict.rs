@@ -79,8 +79,11 @@ impl Measured<'_> {
 
     /// The row of the bill.
     pub fn row(&self, left_out: &[Omission], target: f64, seconds: [f64; 2], bytes: [f64; 2]) -> BillRow {
-        let change = self.change.value();
-        let error = self.error(left_out);
+        let (change, error) = match (self.value, self.without) {
+            (Ok(_), Ok(_)) => (self.change.value(), self.error(left_out)),
+            // The last change is that of a coarser grid.
+            _ => (None, None),
+        };
         let verdict = match (self.value, change, error) {
             (Ok(value), Some(change), Some(error)) => decide(value, change, error, target),
             _ => Verdict::NotDecided,

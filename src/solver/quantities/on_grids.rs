@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::{values, Course, Lack, Quantity, Value};
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::scene::{scaled, Prescribed, Regridded, Scene};
+use crate::scene::{scaled, Regridded, Scene};
 use crate::solver::{Options, Outcome, ProgressCallback, Report, Solver};
 
 /// One quantity on one grid.
@@ -37,6 +37,8 @@ pub struct OnGrid {
     pub values: Vec<std::result::Result<Value, Lack>>,
     /// Errors from this grid alone.
     pub estimates: Vec<Option<f64>>,
+    /// Whether nothing touches.
+    pub is_apart: bool,
     /// Whether one such grid has no estimates: a limit is reached, or bodies attract.
     pub lacks_estimates: bool,
     /// The relative residual.
@@ -71,7 +73,8 @@ impl OnGrid {
             grid: scene.grid,
             outcome,
             values,
-            estimates: wanted.iter().map(|quantity| estimate(scene, &report, *quantity)).collect(),
+            estimates: wanted.iter().map(|quantity| estimate(&report, *quantity)).collect(),
+            is_apart: outcome == Outcome::Converged && report.measures.is_apart(),
             lacks_estimates: solver.lacks_estimates(),
             residual: report.residual(),
             seconds,
@@ -89,6 +92,7 @@ impl OnGrid {
             outcome: Outcome::Stagnated,
             values: vec![Err(Lack::Unsolved); wanted],
             estimates: vec![None; wanted],
+            is_apart: false,
             lacks_estimates: true,
             residual: 0.0,
             seconds: 0.0,
@@ -107,9 +111,8 @@ impl OnGrid {
 }
 
 /// The error of a quantity in a report.
-fn estimate(scene: &Scene<'_>, report: &Report, quantity: Quantity) -> Option<f64> {
+fn estimate(report: &Report, quantity: Quantity) -> Option<f64> {
     let error = match quantity {
-        Quantity::TangentialForce => of_tangential_force(scene, report),
         Quantity::Force => report.error.force,
         Quantity::MaxPressure => report.error.max_pressure,
         Quantity::ContactArea => report.error.corrected_area,
@@ -118,21 +121,10 @@ fn estimate(scene: &Scene<'_>, report: &Report, quantity: Quantity) -> Option<f6
     Some(error).filter(|error| *error >= 0.0)
 }
 
-/// The error of the length of a tangential force found in both directions; negative: unknown.
-fn of_tangential_force(scene: &Scene<'_>, report: &Report) -> f64 {
-    let (Some(friction), Some(found)) = (&scene.friction, &report.friction) else { return -1.0 };
-    let is_found = friction.prescribed.iter().all(|prescribed| matches!(prescribed, Prescribed::Creepage(_)));
-    let [x, y] = found.error;
-    if is_found && x.min(y) >= 0.0 {
-        x.hypot(y)
-    } else {
-        -1.0
-    }
-}
-
 /// The values of `wanted` on the grid of the scene and on `coarser` grids with half the elements each, coarsest first, one row for each grid
 /// and quantity. Each grid is solved without a guess. Errors of force, largest pressure and area are the estimates of the report, all others
-/// follow from the grids before (module `sequence`); the coarsest grid has none.
+/// follow from the grids before (module `sequence`); the coarsest grid has none. Where nothing touches on the grid of the scene, values of 0 are exact.
+/// If that grid touches, those of coarser grids that do not have no error.
 ///
 /// # Errors
 /// Those of a solve on the grid of the scene. `Unsupported`: own coefficients, kept tractions, and a fixed contact area. Rows of a coarser grid
@@ -148,7 +140,7 @@ pub fn quantities(
     scene.check(&crate::threads::Threads::One)?;
     let options = Options { estimates: true, ..*options };
     let mut courses: Vec<Course> = wanted.iter().map(|quantity| Course::of(*quantity, scene)).collect();
-    let (mut rows, mut worst, mut before) = (Vec::new(), Outcome::Converged, None);
+    let (mut rows, mut worst, mut before, mut is_apart) = (Vec::new(), Outcome::Converged, None, false);
     for doublings in -(coarser as i32)..=0 {
         let grid = scaled(&scene.grid, doublings)?;
         // The grid cannot be coarsened any more.
@@ -168,12 +160,14 @@ pub fn quantities(
             return Ok((Outcome::Cancelled, rows));
         }
         if doublings == 0 {
-            worst = found.outcome;
+            (worst, is_apart) = (found.outcome, found.is_apart);
         }
         for (k, course) in courses.iter_mut().enumerate() {
             rows.push(row(k, &found, doublings, course));
         }
     }
+    let is_exact = |row: &&mut QuantityRow| is_apart && row.value == Some(0.0) && row.lack == Some(Lack::NoContact);
+    rows.iter_mut().filter(is_exact).for_each(|row| (row.error, row.lack) = (Some(0.0), None));
     Ok((worst, rows))
 }
 
@@ -184,9 +178,12 @@ fn row(k: usize, found: &OnGrid, doublings: i32, course: &mut Course) -> Quantit
     }
     let falling = value.and_then(|_| course.falling(found.lacks_estimates));
     let of_sequence = falling.map(|falling| falling.now());
-    let error = value.and(found.estimates[k]).or(of_sequence);
+    // What another grid has that touches is not known here.
+    let is_zero = found.is_apart && value.is_some_and(|value| value.value == 0.0);
+    let error = value.and(found.estimates[k]).or(of_sequence).filter(|_| !is_zero);
     let lack = match (found.values[k], error) {
         (Err(lack), _) => Some(lack),
+        (Ok(_), None) if is_zero => Some(Lack::NoContact),
         (Ok(_), Some(_)) => None,
         (Ok(_), None) if course.len() < 2 + usize::from(found.lacks_estimates) => Some(Lack::OneGrid),
         // The report of one grid has no estimate.

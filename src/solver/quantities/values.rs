@@ -19,7 +19,7 @@ pub enum Lack {
     Prescribed,
     /// An effect of the scene excludes it.
     Effect,
-    /// There is no contact.
+    /// There is no contact: the quantity has no value, or the value 0 on a grid coarser than one that touches.
     NoContact,
     /// The value grows from grid to grid: it is infinite, or no grid resolves it.
     Singular,

@@ -55,30 +55,30 @@ const EXPONENTS: (f64, f64) = (0.9, 1.25);
 const WORTH_A_TRY: f64 = 1.2;
 
 impl Past {
-    /// `seconds` are those of this grid, and those since the first grid was begun.
+    /// `scene`: the grid of the scene. `entered`, `now`: seconds from the begin of the first grid to that of this one, and to its end.
     pub fn of(
         (solved, is_believed): (&Solved, bool),
-        accuracy: &Accuracy,
-        seconds: (f64, f64),
+        (accuracy, scene): (&Accuracy, &Grid),
+        (entered, now): (f64, f64),
         before: Option<&Past>,
     ) -> Past {
-        let problem = &solved.solver.problem;
+        let (problem, seconds) = (&solved.solver.problem, now - entered);
         let seen = before.map(|before| {
             let ratio = problem.grid.len() as f64 / before.grid.len() as f64;
-            (seconds.0 / before.seconds).ln() / ratio.ln()
+            (seconds / before.seconds).ln() / ratio.ln()
         });
         let exponent = seen.filter(|seen| seen.is_finite()).unwrap_or(SECONDS_EXPONENT);
         Past {
             grid: problem.grid,
-            across: across(solved.solver.state(), problem.coefficients.repeats(&problem.grid)),
+            across: across(solved.solver.state(), problem.coefficients.repeats(&problem.grid), scene),
             enough: accuracy.wanted().map(|(quantity, _)| quantity.enough_across()).max().unwrap_or(1),
             excesses: accuracy.excesses(&solved.outlook),
             is_believed,
             leaps: accuracy.wanted().all(|(quantity, _)| quantity.has_estimate()),
             bytes: solved.report.bytes,
-            seconds: seconds.0,
+            seconds,
             exponent: exponent.clamp(EXPONENTS.0, EXPONENTS.1),
-            elapsed: seconds.1,
+            elapsed: now,
         }
     }
 

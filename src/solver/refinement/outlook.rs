@@ -1,6 +1,7 @@
 //! Forecasts for finer grids from a solution.
 
 use crate::contact::{touching, State};
+use crate::grid::Grid;
 use crate::rectangle::Rectangle;
 use crate::scene::{Load, Scene};
 use crate::solver::falling::Falling;
@@ -115,15 +116,21 @@ pub struct Values {
     pub lack_estimates: bool,
 }
 
-/// Elements across the contact area, along x and y; unlimited in a direction in which a periodic area has no end, and for bodies apart that attract.
-pub fn across(state: &State, repeats: (bool, bool)) -> (usize, usize) {
+/// Elements across the contact area, along x and y; unlimited in a direction in which a periodic area has no end. An area without any end, and bodies
+/// apart that attract, have the elements of the grid, which are unlimited along a row or column of elements that is the whole grid of the scene.
+pub fn across(state: &State, repeats: (bool, bool), scene: &Grid) -> (usize, usize) {
     let State { grid, p, .. } = state;
     let around = Rectangle::around_values(&touching(state), grid, &Threads::One, |row| row.contains(&true));
-    let span = |count: usize, m: usize, repeats: bool| if count == m && repeats { usize::MAX } else { count };
     let attract = || p.iter().any(|p| *p != 0.0);
-    match around {
-        Some(Rectangle { x, y }) => (span(x.len(), grid.mx, repeats.0), span(y.len(), grid.my, repeats.1)),
-        None if attract() => (usize::MAX, usize::MAX),
-        None => (0, 0),
+    let ((x, y), ends) = match around.map(|around| (around.x.len(), around.y.len())) {
+        Some((x, y)) => ((x, y), (x < grid.mx || !repeats.0, y < grid.my || !repeats.1)),
+        None if attract() => ((grid.mx, grid.my), (false, false)),
+        None => return (0, 0),
+    };
+    let span = |count: usize, is_limited: bool| if is_limited { count } else { usize::MAX };
+    match ends {
+        // Along its one element a line is uniform.
+        (false, false) => (span(x, scene.mx > 1 || scene.my == 1), span(y, scene.my > 1 || scene.mx == 1)),
+        (ends_in_x, ends_in_y) => (span(x, ends_in_x), span(y, ends_in_y)),
     }
 }

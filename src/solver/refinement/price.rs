@@ -5,6 +5,7 @@ use super::sample::Sample;
 use super::Accuracy;
 use crate::grid::Grid;
 use crate::scene::{scaled, Scene};
+use crate::solver::falling::Falling;
 use crate::solver::machine::{seconds_on, Cost, MOST_MORE};
 use crate::solver::quantities::Quantity;
 
@@ -19,7 +20,8 @@ pub(super) const ACROSS: usize = 12;
 /// The reason why an accuracy cannot be reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Obstacle {
-    /// No sufficient grid is known: the quantity is singular, contact is on few elements, or there is none.
+    /// No sufficient grid is known: the quantity is singular, contact is on few elements, or there is none and the quantity is not 0 then; or no grid was
+    /// solved.
     Singular,
     /// The target is below round-off.
     RoundOff,
@@ -72,13 +74,19 @@ pub struct Price {
     pub time_error: f64,
 }
 
-/// Predicts the doublings from the last sample to the first sufficient grid, and the seconds of one thread to the tolerance of the samples.
+/// Predicts the doublings from the last sample to the first sufficient grid, and the seconds of one thread to the tolerance of the samples. For an exact
+/// value the grid is that of the scene.
 pub(super) fn predict(
     scene: &Scene<'_>,
     samples: &[Sample],
     (quantity, target): (Quantity, f64),
 ) -> Option<(i32, f64)> {
     let last = samples.last()?;
+    let costs: Vec<Cost> = samples.iter().map(|sample| sample.cost).collect();
+    let seconds = |k: i32| seconds_on(&costs, last.cost.elements * 4f64.powi(k));
+    if last.is_exact() {
+        return Some((-last.doublings, seconds(-last.doublings)));
+    }
     let falling = last.falling()?;
     let (least, most) = (-(last.across.ilog2() as i32), (MOST_ELEMENTS as f64).log2() as i32);
     let does = |k: &i32| {
@@ -86,8 +94,7 @@ pub(super) fn predict(
         enough && falling.after(*k) <= target && scaled(&scene.grid, last.doublings + k).is_ok()
     };
     let k = (least..=most).find(does)?;
-    let costs: Vec<Cost> = samples.iter().map(|sample| sample.cost).collect();
-    Some((k, seconds_on(&costs, last.cost.elements * 4f64.powi(k))))
+    Some((k, seconds(k)))
 }
 
 /// The cost of a tolerance on the grid after `doublings`: its seconds over those of a solve to the samples' tolerance, and its products. Both come
@@ -132,8 +139,9 @@ pub(super) fn price(
     if target < ROUND_OFF {
         return Price { obstacle: Some(Obstacle::RoundOff), ..nothing };
     }
-    let last = samples.last().filter(|last| last.across >= ACROSS);
-    let Some((last, falling)) = last.and_then(|last| Some((last, last.falling()?))) else { return nothing };
+    let last = samples.last().filter(|last| last.across >= ACROSS || last.is_exact());
+    let error_of = |last: &Sample| if last.is_exact() { Some(Falling::default()) } else { last.falling() };
+    let Some((last, falling)) = last.and_then(|last| Some((last, error_of(last)?))) else { return nothing };
     let Some((k, seconds)) = predict(scene, samples, (quantity, target)) else {
         return Price { obstacle: Some(Obstacle::Elements), ..nothing };
     };
@@ -154,7 +162,7 @@ pub(super) fn price(
     let obstacle = obstacles.into_iter().find(|(is_in_the_way, _)| *is_in_the_way).map(|(_, obstacle)| obstacle);
     Price {
         grid: Some(grid),
-        error: falling.after(k).max(tolerance),
+        error: if last.is_exact() { 0.0 } else { falling.after(k).max(tolerance) },
         seconds: seconds / speed_up,
         seconds_one_thread: seconds,
         work_units,

@@ -42,7 +42,8 @@ const FOR_TIMES: f64 = 0.5;
 
 /// Predicts the cost of each of the relative errors `targets` of a quantity, from solves on small grids over the rectangle of the scene. Uses
 /// the limits of `accuracy`; a row names the limit that forbids it. `surface` as in [`solve_to_accuracy`](super::solve_to_accuracy). After
-/// a cancel by the surface or by `progress`, which is called after each cycle, the rows hold the results so far.
+/// a cancel by the surface or by `progress`, which is called after each cycle, the rows hold the results so far. ITERATION_LIMIT, STAGNATED: neither
+/// the grid of the scene nor a coarser one was solved. A quantity that is 0 as nothing touches is exact on the grid of the scene.
 pub fn cost_of_accuracy(
     scene: &Scene<'_>,
     options: &Options,
@@ -51,12 +52,7 @@ pub fn cost_of_accuracy(
     mut surface: Option<SurfaceCallback<'_>>,
     mut progress: Option<ProgressCallback<'_>>,
 ) -> Result<(Outcome, Vec<Price>)> {
-    accuracy.check_limits()?;
-    check(scene, options, surface.is_some())?;
-    for &target in targets {
-        require_target(target)?;
-    }
-    quantity.check(scene)?;
+    check_asked((scene, options, surface.is_some()), accuracy, (quantity, targets))?;
     let mut history = History::of(std::iter::once(quantity), scene);
     let (tolerance, loosest) = tolerances(quantity, targets, options);
     let options = Options { tolerance, estimates: true, ..*options };
@@ -70,24 +66,24 @@ pub fn cost_of_accuracy(
         targets.iter().map(one).collect()
     };
     let list = |samples: &[Sample]| list_with(samples, &[], 1.0);
+    let mut budget = Budget::default();
     while samples.len() < MOST_SAMPLES {
         let spare = FOR_TIMES * (SECONDS - began.elapsed().as_secs_f64());
         let sample = match Sample::take(scene, &one, (doublings, spare), quantity, (&mut surface, &mut progress))? {
             Taken::Sample(sample) => sample.carried_on(&mut history),
             Taken::Cancelled => return Ok((Outcome::Cancelled, list(&samples))),
             // A coarser grid may be refused where the scene's is not.
-            Taken::Unsolved if samples.is_empty() && doublings < 0 => {
+            Taken::Unsolved(_) if samples.is_empty() && doublings < 0 => {
                 doublings += 1;
                 continue;
             }
-            Taken::Unsolved => break,
+            Taken::Unsolved(outcome) if samples.is_empty() => return Ok((outcome, list(&samples))),
+            Taken::Unsolved(_) => break,
         };
         let next = sample.cost.seconds * NEXT;
         samples.push(sample);
         doublings += 1;
-        let had = list(&samples).into_iter().filter(|price| price.obstacle.is_none());
-        let dearest = had.map(|price| price.seconds).fold(0.0, f64::max);
-        let most = SECONDS.max(PART * dearest);
+        let most = budget.after(&list(&samples));
         let (loose, left) = (Options { tolerance: loosest, ..one }, most - began.elapsed().as_secs_f64());
         if loosen(scene, &loose, (&mut samples, left), (&mut surface, &mut progress))? == Outcome::Cancelled {
             return Ok((Outcome::Cancelled, list(&samples)));
@@ -104,6 +100,34 @@ pub fn cost_of_accuracy(
         Some(speed_up) => (Outcome::Converged, list_with(&samples, &counted, speed_up)),
         None => (Outcome::Cancelled, list(&samples)),
     })
+}
+
+/// Refuses a price list that is none.
+fn check_asked(
+    (scene, options, has_surface): (&Scene<'_>, &Options, bool),
+    accuracy: &Accuracy,
+    (quantity, targets): (Quantity, &[f64]),
+) -> Result<()> {
+    accuracy.check_limits()?;
+    check(scene, options, has_surface)?;
+    targets.iter().try_for_each(|target| require_target(*target))?;
+    quantity.check(scene)
+}
+
+/// The least of the seconds that samples predicted for the dearest row so far. Samples of few elements may predict too many.
+#[derive(Default)]
+struct Budget {
+    least: Option<f64>,
+}
+
+impl Budget {
+    /// Most seconds of all samples, after a sample with these rows.
+    fn after(&mut self, rows: &[Price]) -> f64 {
+        let had = rows.iter().filter(|price| price.obstacle.is_none()).map(|price| price.seconds);
+        let dearest = had.reduce(f64::max);
+        self.least = self.least.into_iter().chain(dearest).reduce(f64::min);
+        SECONDS.max(PART * self.least.unwrap_or(0.0))
+    }
 }
 
 /// Whether rows follow from the samples, or more of them would be too large.
@@ -151,7 +175,7 @@ fn speed_up(
     Ok(match Sample::take(scene, options, (last.doublings, last.cost.seconds), quantity, callbacks)? {
         Taken::Sample(again) => Some((last.cost.seconds / again.cost.seconds).max(1.0)),
         Taken::Cancelled => None,
-        Taken::Unsolved => Some(1.0),
+        Taken::Unsolved(_) => Some(1.0),
     })
 }
 
@@ -188,3 +212,7 @@ fn first(grid: &Grid) -> i32 {
     let halves = (0..).take_while(|k| grid.mx.max(grid.my) >> k >= 2 * FIRST && scaled(grid, -(k + 1)).is_ok());
     -(halves.count() as i32)
 }
+
+#[cfg(test)]
+#[path = "../../../tests/unit/price_list.rs"]
+mod tests;

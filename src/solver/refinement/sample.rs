@@ -23,7 +23,8 @@ pub(super) enum Taken {
     Sample(Box<Sample>),
     /// Cancelled by a callback.
     Cancelled,
-    Unsolved,
+    /// Not solved, with this outcome.
+    Unsolved(Outcome),
 }
 
 /// Cancelled by a callback.
@@ -110,11 +111,11 @@ impl Sample {
         let solved = match on_grid(scene, (options, wanted), doublings, surface, &mut Some(&mut watch), &|_| false)? {
             Ok(solved) => solved,
             Err((Outcome::Cancelled, ..)) => return Ok(Taken::Cancelled),
-            Err(_) => return Ok(Taken::Unsolved),
+            Err((outcome, ..)) => return Ok(Taken::Unsolved(outcome)),
         };
         let Solved { solver, report, outlook, values } = solved;
         let seconds = began.elapsed().as_secs_f64();
-        let (x, y) = across(solver.state(), solver.influence().repeats(solver.grid()));
+        let (x, y) = across(solver.state(), solver.influence().repeats(solver.grid()), &scene.grid);
         let tangential = report.tangential_products();
         Ok(Taken::Sample(Box::new(Sample {
             doublings,
@@ -165,7 +166,7 @@ impl Sample {
                 });
             }
             Taken::Cancelled => return Ok(Outcome::Cancelled),
-            Taken::Unsolved => {}
+            Taken::Unsolved(_) => {}
         }
         Ok(Outcome::Converged)
     }
@@ -179,7 +180,7 @@ impl Sample {
     ) -> Result<std::result::Result<Option<f64>, Cancelled>> {
         Ok(match Sample::take_once(scene, options, (doublings, &[]), callbacks)? {
             Taken::Sample(sample) => Ok(Some(sample.cost.products)),
-            Taken::Unsolved => Ok(None),
+            Taken::Unsolved(_) => Ok(None),
             Taken::Cancelled => Err(Cancelled),
         })
     }
@@ -201,6 +202,12 @@ impl Sample {
     pub(super) fn carried_on(mut self, history: &mut History) -> Sample {
         history.add(self.doublings, &self.values, &mut self.outlook);
         self
+    }
+
+    /// Whether the quantity is exactly 0, as nothing touches on the grid of the scene or a finer one.
+    pub(super) fn is_exact(&self) -> bool {
+        let is_zero = self.values.of.first().is_some_and(|value| value.is_ok_and(|found| found.value == 0.0));
+        self.across == 0 && self.doublings >= 0 && is_zero
     }
 
     /// The relative error of the quantity, on this and finer grids.

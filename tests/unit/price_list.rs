@@ -1,0 +1,30 @@
+//! Unit tests of `solver/refinement/price_list.rs`.
+
+use super::*;
+
+fn row(seconds: f64, obstacle: Option<Obstacle>) -> Price {
+    Price {
+        target: 1e-3,
+        grid: None,
+        tolerance: 1e-4,
+        error: 1e-3,
+        seconds,
+        seconds_one_thread: seconds,
+        work_units: 0.0,
+        bytes: 0,
+        obstacle,
+        time_error: 0.0,
+    }
+}
+
+/// Of the dearest row that can be reached the least seconds so far count: samples of few elements predicted a thousand seconds of three hundred.
+#[test]
+fn the_dearest_row_pays_for_the_samples_at_its_least() {
+    let mut budget = Budget::default();
+    assert_eq!(budget.after(&[row(1e9, Some(Obstacle::Elements))]), SECONDS);
+    assert_eq!(budget.after(&[row(10.0, None), row(1e3, None), row(1e9, Some(Obstacle::Memory))]), PART * 1e3);
+    assert_eq!(budget.after(&[row(300.0, None)]), PART * 300.0);
+    assert_eq!(budget.after(&[row(2e3, None)]), PART * 300.0);
+    assert_eq!(budget.after(&[row(-1.0, Some(Obstacle::Singular))]), PART * 300.0);
+    assert_eq!(budget.after(&[row(1.0, None)]), SECONDS);
+}
