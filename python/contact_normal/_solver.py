@@ -101,6 +101,7 @@ class Solver:
         # The set-up reads neither the undeformed distance nor the load, but checks them. Counts that are no counts are left to the
         # library, whose message says so.
         scene = Scene(np.zeros([max(m, 0) for m in self._shape]), dx, dy, None, 0.0, **self._bodies,
+        self._own = [name for name, table in (("influence", influence), ("row_tables", row_tables)) if table is not None]
                       effects={"influence": influence, "row_tables": row_tables, "friction": friction, "visco": visco, **self._effects})
         struct, self._handle = options(given), Handle()
         create = partial(library.contact_normal_solver_new, ctypes.byref(scene.struct), ctypes.byref(struct))
@@ -121,7 +122,9 @@ class Solver:
         step = self._visco if visco is None else {**(self._visco or {}), **visco}
         effects = {"pressure_limit": pressure_limit, "friction": friction, "adhesion": adhesion, "visco": step, **self._effects}
         dx, dy = self._size
-        return Scene(shaped("h", distances("h", h), self._shape), dx, dy, **loads, **self._bodies, effects=effects)
+        scene = Scene(shaped("h", distances("h", h), self._shape), dx, dy, **loads, **self._bodies, effects=effects)
+        scene.know_own(self._own)
+        return scene
 
     def solve(
         self,

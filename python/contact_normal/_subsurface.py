@@ -33,6 +33,7 @@ def subsurface(
 ) -> SubsurfaceStress:
     """See `Solved.subsurface`."""
     scene.bodies.needs_poisson("a stress")
+    scene.needs_half_space()
     levels = shaped("depths", np.atleast_1d(real("depths", depths)), dimensions="n")
     wanted = _wanted(components)
     found = SubsurfaceStress(levels, scene, wanted, flag("principal", principal))
@@ -71,6 +72,7 @@ def at_points(
 ) -> Doubles:
     """See `Solved.stress_at_points`."""
     scene.bodies.needs_poisson("a stress")
+    scene.needs_half_space()
     places = doubles("points", points, dimensions="(n, 3)")
     if places.shape[1] != 3:
         raise ValueError(f"points has shape {places.shape}; it must be (n, 3)")
