@@ -197,7 +197,7 @@ def what_matters(
     def ask(room: int, rows: object) -> None:
         status, message = called(
             library.contact_normal_effects_bill, ctypes.byref(scene.struct), ctypes.byref(struct), goal, both, len(wanted), wanted, room,
-            rows, ctypes.byref(found), keep=(scene,),
+            rows, ctypes.byref(found), keep=(scene,), options=struct,
         )
         check(status, message)
 

@@ -205,8 +205,6 @@ class ContactNormalError(Exception):
     """
 
     def __init__(self, status: int, message: str) -> None:
-        # The library counts x first; arrays of Python have x last.
-        message = _ELEMENT.sub(r"element [\2, \1]", message)
         text = library.contact_normal_status_text(status).decode()
         super().__init__(f"{message or text} (status {status}: {text})")
         self.status, self.message = status, message
@@ -218,7 +216,8 @@ class ContactNormalError(Exception):
 
 def last_error() -> str:
     """The message of the last call on this thread that did not return OK, or warned."""
-    return str(library.contact_normal_last_error().decode())
+    # The library counts x first; arrays of Python have x last.
+    return _ELEMENT.sub(r"element [\2, \1]", library.contact_normal_last_error().decode())
 
 
 def check(status: int, message: str | None = None) -> int:

@@ -165,7 +165,7 @@ def quantities(
     rows, written = (QuantityRow * room)(initialised("quantity_row")), ctypes.c_int32(0)
     status, message = called(
         library.contact_normal_quantities, ctypes.byref(scene.struct), ctypes.byref(struct), len(wanted), wanted, grids, rows,
-        ctypes.byref(written), keep=(scene,),
+        ctypes.byref(written), keep=(scene,), options=struct,
     )
     check(status, message)
     found = Quantities(Quantity.of(row) for row in rows[: written.value])
