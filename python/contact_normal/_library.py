@@ -136,7 +136,8 @@ def candidates() -> list[str]:
     here = Path(__file__).resolve().parent
     prefixes = [Path(sys.prefix), *list(here.parents)[2:5]]
     found = [str(path) for path in places(here, prefixes, sys.platform) if path.exists()]
-    return found + [ctypes.util.find_library("contact_normal") or names(sys.platform).installed]
+    # That looks with programs of the system, as gcc.
+    return found or [ctypes.util.find_library("contact_normal") or names(sys.platform).installed]
 
 
 def load() -> ctypes.CDLL:
@@ -152,6 +153,8 @@ def load() -> ctypes.CDLL:
         library = ctypes.CDLL(path)
     except OSError as error:
         raise ImportError(f"{path}: {error}; name the library in CONTACT_NORMAL_LIBRARY") from error
+    if not hasattr(library, "contact_normal_abi_version"):
+        raise ImportError(f"{path} has no contact_normal_abi_version: it is another library; name the right one in CONTACT_NORMAL_LIBRARY")
     library.contact_normal_abi_version.restype = c_int32
     version = library.contact_normal_abi_version()
     if version < ABI_VERSION:
