@@ -289,7 +289,7 @@ def solve_to_accuracy(
         if surface:
             surface.finish()
         check(status, message)
-        outputs = Outputs((accuracy.my, accuracy.mx), has_friction=friction is not None, has_adhesion=adhesion is not None)
+        outputs = Outputs((accuracy.my, accuracy.mx), has_friction=friction is not None, scene=scene, has_adhesion=adhesion is not None)
         outputs.rows = ledger.rows
         if handle:
             check(*called(library.contact_normal_solver_fields, ctypes.byref(outputs.fields), handle=handle))

@@ -123,6 +123,6 @@ def of_pressures(
     no_handle = [] if handle else [None]
     status, message = watched.call(
         library.contact_normal_solve_tangential, *no_handle, ctypes.byref(scene.struct), pointer(pressures), ctypes.byref(struct), 1, None,
-        ctypes.byref(results), ctypes.byref(outputs.report), handle=handle, keep=(scene, pressures, outputs),
+        ctypes.byref(results), ctypes.byref(outputs.report), handle=handle, keep=(scene, pressures, outputs), report=outputs.report,
     )
     return TangentialResult(check(status, message), message, outputs, outputs.report, scene, units)
