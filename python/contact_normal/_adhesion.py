@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ._arguments import doubles, flag, number, pointer
+from ._arguments import doubles, flag, integer, number, pointer
 from ._constants import value_of
 from ._library import initialised
 
@@ -35,7 +35,8 @@ def adhesion(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
             setattr(effect, name, number(f"adhesion['{name}']", given[name]))
     for name in ("law", "start"):
         if name in given:
-            setattr(effect, name, value_of(name, given[name]))
+            one = given[name]
+            setattr(effect, name, value_of(name, one) if isinstance(one, str) else integer(f"adhesion['{name}']", one))
     for name in ("stiffness", "stability"):
         setattr(effect, name, flag(f"adhesion['{name}']", given.get(name, False)))
     return effect, works

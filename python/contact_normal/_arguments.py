@@ -174,7 +174,10 @@ def _has_mask(values: Any) -> bool:
 
 def _plain(name: str, values: Any, kinds: str, rule: str) -> npt.NDArray[Any]:
     """`values` as an array of one of the `kinds` of numpy, without a mask."""
-    array: npt.NDArray[Any] = np.asanyarray(0.0 if (has_mask := _has_mask(values)) else values)
+    try:
+        array: npt.NDArray[Any] = np.asanyarray(0.0 if (has_mask := _has_mask(values)) else values)
+    except ValueError:
+        raise ValueError(f"{name} has parts of different shapes; it must be an array") from None
     if has_mask or isinstance(array, np.ma.MaskedArray):
         raise TypeError(f"{name} is a masked array; fill it: .filled(...)")
     if array.dtype.kind == "O" and not array.ndim:
@@ -235,6 +238,7 @@ def distances(name: str, values: Any) -> Doubles:
 
 def doubles(name: str, values: Any, shape: tuple[int, ...] | None = None, dimensions: str = "(my, mx)") -> Doubles:
     """Contiguous doubles of `shape`, or with as many dimensions as `dimensions` names; copied only where they are not that."""
+    refuse_x_first(name, values)
     return shaped(name, real(name, values), shape, dimensions)
 
 
@@ -244,24 +248,28 @@ def shaped(name: str, array: Doubles, shape: tuple[int, ...] | None = None, dime
         raise ValueError(f"{name} has shape {array.shape}; it must be {dimensions}")
     if shape is not None and array.shape != shape:
         raise ValueError(f"{name} has shape {array.shape}; it must be {shape}")
-    return np.ascontiguousarray(array)
+    return np.require(array, requirements=("C_CONTIGUOUS", "ALIGNED"))
 
 
 def integers(name: str, values: Any, shape: tuple[int, ...]) -> Integers:
     """Contiguous 32-bit integers of `shape`, from booleans or integers that fit."""
+    refuse_x_first(name, values)
     array = _plain(name, values, "iub", "integers or booleans")
     if array.shape != shape:
         raise ValueError(f"{name} has shape {array.shape}; it must be {shape}")
     if array.size:
         for extreme in (array.min(), array.max()):
             integer(f"an element of {name}", int(extreme))
-    return np.ascontiguousarray(array, dtype=np.int32)
+    return np.require(array, np.int32, ("C_CONTIGUOUS", "ALIGNED"))
 
 
 def pair(name: str, value: Any) -> Any:
     """One value for both bodies, or two."""
     if isinstance(value, float):
         return _PAIR(value, value)
+    if type(value) is int:
+        # numpy has none beyond 64 bits.
+        value = number(name, value)
     if isinstance(value, tuple) and len(value) == 2 and all(isinstance(one, float) for one in value):
         return _PAIR(*value)
     values = _plain(name, value, "fiu", "one real number or two").astype(np.float64)

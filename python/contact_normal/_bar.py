@@ -75,7 +75,8 @@ class SolveBar:
 
     def _part_of(self, told: Progress) -> float:
         if self._entries:
-            return min(1.0, told.cycles / self._entries)
+            # Cycles of the normal problem come first, and they change the pressures.
+            return min(1.0, told.cycles / self._entries) if told.update == 0.0 else 0.0
         share = 1.0
         if self._elements is None:
             if told.mx * told.my > self._finest:

@@ -11,7 +11,7 @@ from ._arguments import flag, relative
 from ._calls import called
 from ._given import SceneArguments, scene_and_options
 from ._library import check, initialised, library
-from ._quantities import LACKS, QUANTITIES, numbers
+from ._quantities import LACKS, QUANTITIES, estimated, numbers
 from ._structs import EffectsRow
 
 if TYPE_CHECKING:
@@ -39,7 +39,8 @@ class BillRow(NamedTuple):
     ----------
     omitted : tuple of str
         What is left out: "coating", "period", "patches", "layer", "pressure_limit", "friction", "coupling" (unlike bodies as if they were
-        alike), "spin", "friction_compliance", "coating_as_layer" (a thin layer in the place of the coating). Two names: both.
+        alike), "spin", "friction_compliance", "coating_as_layer" (a thin layer in the place of the coating), "adhesion", "friction_law",
+        "friction_layer", "visco". Two names: both.
     quantity : str
         "force", ...
     verdict : str
@@ -88,9 +89,15 @@ class Bill(list[BillRow]):
     ----------
     target : float
         The relative accuracy that the verdicts are for.
+    estimated : str
+        What the quantity "force" is: "force", or "approach" where the force is prescribed.
+    message : str
+        Why rows are not solved, where `max_seconds` ended the call; else "".
     """
 
     target: float
+    estimated: str = "force"
+    message: str = ""
 
     def _with(self, verdict: str) -> list[str]:
         singles = list(dict.fromkeys(row.omitted[0] for row in self if len(row.omitted) == 1))
@@ -123,6 +130,10 @@ class Bill(list[BillRow]):
             lines.append(
                 f"{name:{width}}{row.quantity:18}{row.relative:10.2g}{error}{row.seconds:11.2g}{saved:11.2g}  {row.verdict}"
             )
+        if self.estimated != "force" and any(row.quantity == "force" for row in self):
+            lines.append(f"force is that of the {self.estimated}: the force is prescribed")
+        if self.message:
+            lines.append(self.message)
         return "\n".join(lines)
 
     def plot(self, axes: Axes | None = None) -> Axes:
@@ -194,17 +205,18 @@ def what_matters(
     scene.bodies.know_all(quantities)
     goal, both = relative("target", target), int(flag("pairs", pairs))
 
-    def ask(room: int, rows: object) -> None:
+    def ask(room: int, rows: object) -> str:
         status, message = called(
             library.contact_normal_effects_bill, ctypes.byref(scene.struct), ctypes.byref(struct), goal, both, len(wanted), wanted, room,
-            rows, ctypes.byref(found), keep=(scene,),
+            rows, ctypes.byref(found), keep=(scene,), options=struct,
         )
         check(status, message)
+        return message
 
     ask(0, None)
     room = found.value
     rows = (EffectsRow * max(1, room))(initialised("effects_row"))
-    ask(room, rows)
+    message = ask(room, rows)
     bill = Bill(BillRow.of(row) for row in rows[: found.value])
-    bill.target = goal
+    bill.target, bill.message, bill.estimated = goal, message, estimated(scene)
     return bill

@@ -79,7 +79,7 @@ def _refuse_unless_positive(name: str, values: Any) -> None:
 def load(approach: Any, force: Any, mean_pressure: Any = None, area: float = 0.0) -> tuple[int, float]:
     """Which load is prescribed, and its amount: a mean pressure is a force over the area of the grid."""
     if (approach is not None) + (force is not None) + (mean_pressure is not None) != 1:
-        raise TypeError("give either approach or force, or mean_pressure, and only one of them")
+        raise TypeError(f"give either approach or force{', or mean_pressure' if area else ''}, and only one of them")
     if approach is not None:
         return PRESCRIBED_APPROACH, number("approach", approach)
     if force is not None:

@@ -72,10 +72,15 @@ class Watched:
         self._error: BaseException | None = None
         self._bar = SolveBar(scene.h.size if scene else None, options.tolerance, entries) if progress is True else None
         self._told: Any = self._bar.tell if self._bar else progress
-        self._is_short = not self._told and not _log and scene is not None and is_short(scene.effort * (entries + 1), options.max_cycles)
+        self._is_short = not self._told and not _log and scene is not None and self._ends_soon(scene, options, entries)
         if self._told or not self._is_short and on_main_thread():
             self._callback = ProgressCallback(self._call)
             options.progress = self._callback
+
+    @staticmethod
+    def _ends_soon(scene: Scene, options: Any, entries: int) -> bool:
+        # Searches of adhesion take more than `max_cycles`.
+        return not scene.struct.adhesion and is_short(scene.effort * (entries + 1), options.max_cycles)
 
     def _call(self, told: Any, _user: Any) -> int:
         try:

@@ -15,6 +15,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import nullcontext
+from ctypes import c_int32, pointer
 from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -42,11 +43,13 @@ class Call(Generic[T]):
     Attributes
     ----------
     given_up : bool
-        Whether nobody waits for its result: its callbacks end it.
+        Whether nobody waits for its result: its callbacks end it, or `stop`.
+    stop : c_int32
+        1 as soon as it is given up, for `options.stop`.
     """
 
     def __init__(self, work: Callable[[], T]) -> None:
-        self.given_up = False
+        self.given_up, self.stop = False, c_int32(0)
         self._work: Callable[[], T] | None = work
         self._found: list[T] = []
         self._error: BaseException | None = None
@@ -57,9 +60,13 @@ class Call(Generic[T]):
         self._news, self._answered, self._ended = (threading.Lock() for _ in range(3))
         for lock in (self._news, self._answered, self._ended):
             lock.acquire()
+        # A worker takes it when it begins. Who gives the call up takes it where no worker has begun: then none will.
+        self._begun = threading.Lock()
 
     def make(self) -> None:
         """On the worker: calls the library."""
+        if not self._begun.acquire(blocking=False):
+            return
         try:
             assert self._work is not None
             self._found.append(self._work())
@@ -117,7 +124,10 @@ class Call(Generic[T]):
         return self._found.pop()
 
     def _give_up(self) -> None:
-        self.given_up = True
+        self.given_up, self.stop.value = True, 1
+        if self._begun.acquire(blocking=False):
+            self._is_over, self._work = True, None
+            return
         _given_up.add(self)
         if self._answered.locked():
             self._answered.release()
@@ -221,30 +231,30 @@ def made(work: Callable[[], T], short: bool = False) -> T:
 
 
 def called(
-    function: Callable[..., int],
-    *arguments: Any,
-    handle: Handle | None = None,
-    keep: Any = None,
-    short: bool = False,
-    report: Any = None,
+    function: Callable[..., int], *arguments: Any, handle: Handle | None = None, keep: Any = None, short: bool = False, report: Any = None,
+    options: Any = None,
 ) -> tuple[int, str]:
     """The status of a function of the library, and its message: "" after OK, unless the call writes a `report` and warns there.
 
-    With a handle, its address is the first argument. `keep` lives at least until the function returns.
+    With a handle, its address is the first argument. `keep` lives at least until the function returns. A call without callbacks names its
+    `options`, whose `stop` ends it when it is given up.
     """
     if handle is not None:
         handle.wait()
-    return made(partial(_told, function, arguments, handle, (keep, report)), short)
+    return made(partial(_told, function, arguments, handle, (keep, report, options)), short)
 
 
 _NO_HANDLE = nullcontext(())
 
 
-def _told(function: Callable[..., int], arguments: tuple[Any, ...], handle: Handle | None, kept: tuple[Any, Any]) -> tuple[int, str]:
+def _told(function: Callable[..., int], arguments: tuple[Any, ...], handle: Handle | None, kept: tuple[Any, Any, Any]) -> tuple[int, str]:
+    _, report, options = kept
+    if options is not None and (call := here()) is not None:
+        options.stop = pointer(call.stop)
     with _NO_HANDLE if handle is None else handle as first:
         status = int(function(*first, *arguments))
         # The message belongs to the thread that calls; after OK it may be one of an earlier call.
-        has_message = status or kept[1] is not None and kept[1].warnings
+        has_message = status or report is not None and report.warnings
         return status, last_error() if has_message else ""
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import io
 import os
 import re
 import sys
@@ -21,6 +22,7 @@ exit codes:
   2    the options are wrong; of replay: the file is no dump
   3    refused: the scene, a value or a file's contents; the message names the rule
   4    a file cannot be read or written, or a package or program that this needs is not installed
+  128+ of replay: the signal of this number more ended the program
   130  interrupted
   141  the program that read the output, as head, ended before
 """
@@ -51,6 +53,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         By default those of the process.
     """
     given = parser().parse_args(arguments)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        # What the terminal cannot show, as a sign of micro, must not end a solve that is done.
+        sys.stdout.reconfigure(errors="replace")
     try:
         with warnings.catch_warnings():
             warnings.showwarning = lambda message, *place, **more: print(f"contact-normal: {message}", file=sys.stderr)

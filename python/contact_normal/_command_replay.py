@@ -11,6 +11,8 @@ from typing import Any
 from ._library import candidates
 
 PROGRAM = "contact-normal-replay"
+# Added to the number of the signal that ended the program, as shells do.
+SIGNAL = 128
 
 
 def add(commands: Any) -> None:
@@ -23,8 +25,10 @@ def add(commands: Any) -> None:
 
 def program() -> str:
     """The program beside the library, or in bin beside its lib, or in PATH."""
-    folder = Path(candidates()[0]).resolve().parent
-    for place in (folder, folder.parent / "bin"):
+    library = Path(candidates()[0])
+    folder = library.resolve().parent
+    # A name without a folder is the loader's to find.
+    for place in (folder, folder.parent / "bin") if library.name != str(library) else ():
         found = shutil.which(PROGRAM, path=str(place))
         if found:
             return found
@@ -36,4 +40,5 @@ def program() -> str:
 
 def run(given: argparse.Namespace) -> int:
     """Runs the program."""
-    return subprocess.run([program(), given.file], check=False).returncode
+    code = subprocess.run([program(), given.file], check=False).returncode
+    return code if code >= 0 else SIGNAL - code

@@ -147,7 +147,9 @@ def plane(plan: Plan, index: int) -> dict[str, Any]:
     fine, coarse = (_solved(grid, entries.reshape(-1, 3), plan.tolerance) for grid in grids)
     force, radius = _scales(grids[0])
     growth = grids[1]["dx"] / grids[0]["dx"] - 1.0
-    changes = np.column_stack([fine.force - coarse.force, (fine.moment - coarse.moment) / radius]) / (force * growth)
+    changes = np.column_stack([fine.force - coarse.force, (fine.moment - coarse.moment) / radius])
+    # Without friction there is no force that could be wrong.
+    changes /= force * growth if force > 0.0 else 1.0
     found = {"force_x": fine.force[:, 0], "force_y": fine.force[:, 1], "moment": fine.moment, "residual": fine.residual,
              "products": fine.products + coarse.products * (grids[1]["pressure"].size / grids[0]["pressure"].size),
              "status": np.where(fine.status != 0, fine.status, coarse.status), "difference": np.sqrt((changes**2).sum(axis=1))}

@@ -191,8 +191,9 @@ def _computed(plan: Plan, missing: list[int], workers: int, client: Any) -> Iter
         # What was given up here need not be computed to its end.
         if stop is not None:
             stop.set()
-        for job in list(jobs):
-            job.cancel()
+        else:
+            for job in list(jobs):
+                job.cancel()
         made(partial(executor.shutdown, wait=client is None))
 
 

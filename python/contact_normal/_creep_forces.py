@@ -118,8 +118,13 @@ class CreepForceTable:
             # All signs first, so that xi >= 0; then those of eta and phi.
             sign = np.where(longitudinal < 0, -1.0, 1.0)
             mirror = np.where(sign * spin < 0, -1.0, 1.0)
+            across = sign * mirror * lateral
+            is_other = self._beyond("eta", -across) < self._beyond("eta", across)
+            mirror = np.where(self._is_straight(spin) & is_other, -mirror, mirror)
         elif self._mirrored:
             sign = np.where(spin < 0, -1.0, 1.0)
+            here, there = (self._beyond("xi", s * longitudinal) + self._beyond("eta", s * lateral) for s in (sign, -sign))
+            sign = np.where(self._is_straight(spin) & (there < here), -sign, sign)
         places = ratio, nu, sign * mirror * spin, sign * mirror * lateral, sign * longitudinal
         corners = [self._between(name, place, hold) for name, place in zip(AXES, places)]
         unknown = np.isnan(places).any(axis=0)
@@ -148,6 +153,15 @@ class CreepForceTable:
         from ._plot_lines import plot_creep_forces
 
         return plot_creep_forces(self, of, eta, axis_ratio, poisson_ratio, axes)
+
+    def _is_straight(self, spin: Doubles) -> npt.NDArray[np.bool_]:
+        """Where the table is read without spin: the signs that spin would choose are then free, and those are taken that the table has."""
+        return np.asarray(np.clip(np.abs(spin), self.phi[0], self.phi[-1]) == 0.0)
+
+    def _beyond(self, name: str, places: Doubles) -> Doubles:
+        """How far places are outside an axis."""
+        axis = getattr(self, name)
+        return np.asarray(np.maximum(np.maximum(axis[0] - places, places - axis[-1]), 0.0))
 
     def _between(self, name: str, values: Doubles, hold: bool) -> tuple[npt.NDArray[np.int64], Doubles]:
         """The entry of an axis before each value, and the part of the way to the next one."""
@@ -186,10 +200,11 @@ class CreepForceTable:
         if self.of_surface:
             raise TypeError("this is the table of a surface: use `forces`")
         a, b = semi_axes
-        for name, value in (("normal_force", normal_force), ("coefficient", coefficient)):
-            if np.any(real(name, value) < 0.0):
+        load, mu = real("normal_force", normal_force), real("coefficient", coefficient)
+        for name, value in (("normal_force", load), ("coefficient", mu)):
+            if np.any(value < 0.0):
                 raise ValueError(f"{name} is {value}; it must not be negative")
-        c, bound = np.sqrt(a * b), np.asarray(coefficient * normal_force, dtype=np.float64)
+        c, bound = np.sqrt(a * b), np.asarray(mu * load)
         if not bound.any():
             shape = np.broadcast_shapes(bound.shape, *(np.shape(one) for one in (*both("creepage", creepage), spin, a, b)))
             return np.zeros(shape), np.zeros(shape), np.zeros(shape)

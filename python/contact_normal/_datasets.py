@@ -28,6 +28,13 @@ _OF_FRICTION = {
     "slip": ("slip of body 1 over body 2 in the step", "length"),
     "stick_slip": ("0 exterior, 1 stick, 2 slip, 3 plastic", ""),
 }
+# Fields that only some scenes have.
+_OF_EFFECTS = {
+    "contact_pressure": ("pressure in contact, beside the attraction", "pressure"),
+    "attraction": ("attraction across the gap", "pressure"),
+    "friction_coefficient": ("coefficient of friction that particles carry after the step", ""),
+    "yield_limit": ("yield limit that particles carry after the step", "pressure"),
+}
 _STRESSES = {
     **{name: f"stress {name}" for name in ("xx", "yy", "zz", "xy", "xz", "yz")},
     "von_mises": "von Mises stress",
@@ -60,6 +67,9 @@ def of_result(result: Solved) -> Any:
             values = values.astype(np.int8)
         dimensions = ("component", "y", "x") if values.ndim == 3 else ("y", "x")
         variables[name] = (dimensions, values, _told(what, kind, units))
+    for name, (what, kind) in _OF_EFFECTS.items():
+        if getattr(result, "_" + name) is not None:
+            variables[name] = (("y", "x"), getattr(result, name), _told(what, kind, units))
     if result.has_friction:
         coordinates["component"] = ("component", ["x", "y"])
     attributes = {"status": result.status, "message": result.message, "dx": result.dx, "dy": result.dy, "made_by": f"contact-normal {VERSION}",

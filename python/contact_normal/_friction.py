@@ -57,6 +57,8 @@ def friction(value: Any, shape: tuple[int, int], length: float = 0.0) -> tuple[A
             setattr(effect, name, number(f"friction['{name}']", given[name]))
     for k, force in enumerate(forces):
         if force is not None:
+            if effect.creepage[k] != 0.0:
+                raise ValueError(f"friction['creepage'][{k}] is {effect.creepage[k]} and friction['force'][{k}] is {force!r}; give one of them, None the other")
             effect.prescribed[k], effect.force[k] = PRESCRIBED_TANGENTIAL_FORCE, number(f"friction['force'][{k}]", force)
     for name in _FIELDS:
         for k, field in enumerate(both(f"friction['{name}']", given[name]) if name in given else ()):
@@ -154,9 +156,7 @@ def _influence(effect: Any, given: Mapping[str, Any]) -> list[Any]:
         if "influence_cross" in given:
             raise ValueError("friction['influence_cross'] is given without friction['influence']")
         return []
-    tables = given["influence"]
-    if len(tables) not in (3, 4):
-        raise ValueError(f"friction['influence'] has {len(tables)} entries; it must be (xx, yy, xy) or (xx, yy, xy, scale)")
+    tables = _three("influence", given["influence"])
     kept = [doubles(f"friction['influence'][{k}]", tables[k], dimensions="(2 cy, 2 cx)") for k in range(3)]
     shape = kept[0].shape
     if any(table.shape != shape for table in kept) or shape[0] % 2 or shape[1] % 2:
@@ -172,13 +172,22 @@ def _influence(effect: Any, given: Mapping[str, Any]) -> list[Any]:
     return [*kept, *structs]
 
 
+def _three(name: str, tables: Any) -> Any:
+    """Three tables, with their scale or without."""
+    count = len(tables) if isinstance(tables, (tuple, list)) or np.ndim(tables) else 0
+    if not count:
+        raise TypeError(f"friction['{name}'] is {tables!r}; it must be (xx, yy, xy) or (xx, yy, xy, scale)")
+    if count not in (3, 4):
+        raise ValueError(f"friction['{name}'] has {count} entries; it must be (xx, yy, xy) or (xx, yy, xy, scale)")
+    return tables
+
+
 def _row_tables(effect: Any, given: Mapping[str, Any]) -> list[Any]:
     """Own coefficients that differ per loaded row."""
     tables = given.get("row_tables")
     if tables is None:
         return []
-    if len(tables) not in (3, 4):
-        raise ValueError(f"friction['row_tables'] has {len(tables)} entries; it must be (xx, yy, xy) or (xx, yy, xy, scale)")
+    _three("row_tables", tables)
     kept = [doubles(f"friction['row_tables'][{k}]", tables[k], dimensions="(my, my, 2 cx)") for k in range(3)]
     shape = kept[0].shape
     if any(table.shape != shape for table in kept) or shape[0] != shape[1] or shape[2] % 2:

@@ -200,11 +200,11 @@ def table_of(
     status, message = watched.call(
         library.contact_normal_solve_tangential, *no_handle, ctypes.byref(scene.struct), None if pressures is None else pointer(pressures),
         ctypes.byref(struct), len(table), pointer(table), ctypes.byref(results), ctypes.byref(report), handle=handle,
-        keep=(scene, pressures, table, found),
+        keep=(scene, pressures, table, found), report=report,
     )
     if not len(table) or untouched in found.status:
         check(status, message)
-    found.message = message if status else ""
+    found.message = message
     found.units = units
     found.report = reported(report)
     return found

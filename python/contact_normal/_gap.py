@@ -81,7 +81,7 @@ class Gap(Short):
         The file has two lines that begin with "#", then `mx my dx dy`, then one undeformed distance a line, x fastest. "inf" stands where there
         is no surface.
         """
-        if "\n" in comment:
+        if "\n" in comment or "\r" in comment:
             raise ValueError("comment has several lines; it must be one")
         my, mx = self.h.shape
         lines = [_HEAD, f"# {comment}", f"{mx} {my} {float(self.dx)!r} {float(self.dy)!r}", *(repr(float(value)) for value in self.h.flat)]
@@ -96,7 +96,7 @@ class Gap(Short):
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Gap:
         """The gap of a file that `write` wrote. Middle, period and units are not in the file."""
-        lines = Path(path).read_text(encoding="utf-8").splitlines()
+        lines = Path(path).read_text(encoding="utf-8").rstrip("\n").split("\n")
         if len(lines) < 3 or lines[0] != _HEAD:
             raise ValueError(f"{path} does not begin with {_HEAD!r}: it is no file of a gap")
         try:

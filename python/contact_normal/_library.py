@@ -136,7 +136,8 @@ def candidates() -> list[str]:
     here = Path(__file__).resolve().parent
     prefixes = [Path(sys.prefix), *list(here.parents)[2:5]]
     found = [str(path) for path in places(here, prefixes, sys.platform) if path.exists()]
-    return found + [ctypes.util.find_library("contact_normal") or names(sys.platform).installed]
+    # That looks with programs of the system, as gcc.
+    return found or [ctypes.util.find_library("contact_normal") or names(sys.platform).installed]
 
 
 def load() -> ctypes.CDLL:
@@ -152,6 +153,8 @@ def load() -> ctypes.CDLL:
         library = ctypes.CDLL(path)
     except OSError as error:
         raise ImportError(f"{path}: {error}; name the library in CONTACT_NORMAL_LIBRARY") from error
+    if not hasattr(library, "contact_normal_abi_version"):
+        raise ImportError(f"{path} has no contact_normal_abi_version: it is another library; name the right one in CONTACT_NORMAL_LIBRARY")
     library.contact_normal_abi_version.restype = c_int32
     version = library.contact_normal_abi_version()
     if version < ABI_VERSION:
@@ -205,8 +208,6 @@ class ContactNormalError(Exception):
     """
 
     def __init__(self, status: int, message: str) -> None:
-        # The library counts x first; arrays of Python have x last.
-        message = _ELEMENT.sub(r"element [\2, \1]", message)
         text = library.contact_normal_status_text(status).decode()
         super().__init__(f"{message or text} (status {status}: {text})")
         self.status, self.message = status, message
@@ -218,7 +219,8 @@ class ContactNormalError(Exception):
 
 def last_error() -> str:
     """The message of the last call on this thread that did not return OK, or warned."""
-    return str(library.contact_normal_last_error().decode())
+    # The library counts x first; arrays of Python have x last.
+    return _ELEMENT.sub(r"element [\2, \1]", library.contact_normal_last_error().decode())
 
 
 def check(status: int, message: str | None = None) -> int:

@@ -44,7 +44,7 @@ def plot_quantities(rows: Quantities, axes: Axes | None) -> Axes:
     axes = axes or new_axes(SIZE)
     for k, name in enumerate(dict.fromkeys(row.name for row in rows)):
         known = [row for row in rows if row.name == name and row.error > 0 and row.value]
-        called = rows.estimated if name == "force" else name.replace("_", " ")
+        called = _called(rows, name)
         if not known:
             axes.plot([], [], " ", label=f"{called}:\n{rows.last(name).lack or 'no error'}")
             continue
@@ -54,6 +54,11 @@ def plot_quantities(rows: Quantities, axes: Axes | None) -> Axes:
     _error_axes(axes)
     _write_legend(axes)
     return axes
+
+
+def _called(rows: Bill | Prices | Quantities, quantity: str) -> str:
+    """What a quantity is called in words."""
+    return rows.estimated if quantity == "force" else quantity.replace("_", " ")
 
 
 def _write_legend(axes: Axes) -> None:
@@ -113,7 +118,7 @@ def plot_prices(prices: Prices, axes: Axes | None, measured: Any) -> Axes:
         axes.plot(seconds, errors, "s", color=_COLOURS[1], label="measured")
     _write_elements(axes, [(price.seconds, price.shape) for price in had])
     _error_axes(axes)
-    axes.set_ylabel(f"relative error of the {prices.quantity.replace('_', ' ')}")
+    axes.set_ylabel(f"relative error of the {_called(prices, prices.quantity)}")
     axes.legend(frameon=False, fontsize=9)
     return axes
 
@@ -131,7 +136,7 @@ def plot_bill(bill: Bill, axes: Axes | None) -> Axes:
                 continue
             place, size = k + (q - 0.5 * (len(quantities) - 1)) * height, max(abs(row.relative), 1e-12)
             error = row.error / abs(row.value) if row.error >= 0 else 0.0
-            axes.barh(place, size, height * 0.9, color=_COLOURS[q % len(_COLOURS)], label=quantity.replace("_", " ") if k == 0 else None,
+            axes.barh(place, size, height * 0.9, color=_COLOURS[q % len(_COLOURS)], label=_called(bill, quantity) if k == 0 else None,
                       xerr=[[min(error, 0.99 * size)], [error]], error_kw={"elinewidth": 1, "ecolor": "0.5"})
     axes.axvline(bill.target, color="0.5", linestyle="--", linewidth=1)
     axes.annotate("target", (bill.target, 0.0), xycoords=("data", "axes fraction"), xytext=(3, 3), textcoords="offset points", fontsize=8)

@@ -55,7 +55,7 @@ def plot_creep_curve(batch: FrictionBatch, over: str | None, axes: Axes | None) 
     """See `FrictionBatch.plot`."""
     if over not in (None, "x", "y"):
         raise ValueError(f'over is {over!r}; it must be "x" or "y"')
-    if not (batch.status >= 0).any():
+    if np.isnan(batch.force).all():
         raise ValueError("no entry is solved: there is nothing to draw")
     ranges = np.nanmax(batch.creepage, axis=0) - np.nanmin(batch.creepage, axis=0)
     k = int(ranges[1] > ranges[0]) if over is None else "xy".index(over)

@@ -35,6 +35,8 @@ def plot_depth(stress: SubsurfaceStress, x: float | None, y: float | None, axes:
 def plot_stress_section(stress: SubsurfaceStress, x: float | None, y: float | None, of: str, axes: Axes | None) -> Axes:
     """See `SubsurfaceStress.plot_section`."""
     along, across, where, line = line_of(x, y, stress)
+    if len(stress.depths) < 2 or len(getattr(stress, along)) < 2:
+        raise ValueError(f"a section along {along} has {len(stress.depths)} depths of {len(getattr(stress, along))} elements; it must have two of each at least")
     field, units, places, d = _field(stress, of)[line], stress.units, getattr(stress, along), getattr(stress, "d" + along)
     # As high as the section is deep, and what title and labels take.
     height = float(np.clip(5.2 * np.ptp(stress.depths) / (len(places) * d) + 1.3, 2.4, 6.0))

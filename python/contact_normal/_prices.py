@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ._arguments import AccuracyOptions, Both, doubles, options, relative
 from ._calls import called
 from ._library import check, initialised, library
-from ._quantities import QUANTITIES
+from ._quantities import QUANTITIES, estimated
 from ._refined import limits, on_any_grid
 from ._structs import Price as PriceStruct
 from ._units import checked
@@ -75,11 +75,13 @@ class Prices(list[Price]):
     ----------
     quantity : str
         Of what the errors are.
+    estimated : str
+        What the quantity "force" is: "force", or "approach" where the force is prescribed.
     """
 
-    def __init__(self, rows: Iterable[Price], quantity: str) -> None:
+    def __init__(self, rows: Iterable[Price], quantity: str, estimated: str = "force") -> None:
         super().__init__(rows)
-        self.quantity = quantity
+        self.quantity, self.estimated = quantity, estimated
 
     def __str__(self) -> str:
         head = f"{'relative error':>14} {'elements':>13} {'tolerance':>10} {'seconds':>9} {'MB':>8}"
@@ -122,8 +124,8 @@ def cost_of_accuracy(
     targets: Sequence[float] = (1e-2, 1e-3, 1e-4),
     quantity: str = "force",
     max_seconds: float = 0.0,
-    max_bytes: int = 0,
-    max_elements: int = 0,
+    max_bytes: float = 0,
+    max_elements: float = 0,
     shape: tuple[int, int] | None = None,
     corner: tuple[float, float] | None = None,
     approach: float | None = None,
@@ -196,10 +198,10 @@ def cost_of_accuracy(
     wanted, rows = (ctypes.c_double * n)(*(relative(f"targets[{k}]", error) for k, error in enumerate(errors))), (PriceStruct * n)(*[initialised("price")][:n])
     status, message = called(
         library.contact_normal_cost_of_accuracy, ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(accuracy),
-        QUANTITIES[quantity], n, wanted, rows, keep=(scene, surface),
+        QUANTITIES[quantity], n, wanted, rows, keep=(scene, surface), options=struct,
     )
     if surface:
         surface.finish()
     check(status, message)
-    return Prices((Price.of(row) for row in rows), quantity)
+    return Prices((Price.of(row) for row in rows), quantity, estimated(scene))
 

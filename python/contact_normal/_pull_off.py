@@ -12,6 +12,7 @@ from ._library import check, library
 from ._outputs import Outputs
 from ._result import Result
 from ._scene import Scene
+from ._units import checked
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -65,7 +66,7 @@ def pull_off(
     """
     effects = {"influence": influence, "layer": layer, "period": period, "patches": patches, "coating": coating, "adhesion": adhesion}
     force = 0.0 if force is None and approach is None and mean_pressure is None else force
-    struct = options(given)
+    struct, units = options(given), checked(units)
     scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects, mean_pressure=mean_pressure,
                   young_modulus=young_modulus, e_star=e_star)
     outputs = Outputs(scene.shape, has_adhesion=True)

@@ -9,15 +9,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from . import _constants
 from ._arguments import integer
 from ._calls import called
-from ._constants import PRESCRIBED_APPROACH
+from ._constants import OK, PRESCRIBED_APPROACH
 from ._given import SceneArguments, scene_and_options
-from ._library import check, initialised, library
+from ._library import ContactNormalError, check, initialised, library
 from ._structs import QuantityRow
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     from matplotlib.axes import Axes
     from typing_extensions import Unpack
+
+    from ._scene import Scene
 
 _PREFIX = "QUANTITY_"
 # The numbers of the library, by name.
@@ -36,6 +38,11 @@ def numbers(name: str, wanted: Sequence[str]) -> Any:
         if each not in QUANTITIES:
             raise ValueError(f"{name} has {each!r}; it must hold some of {', '.join(QUANTITIES)}")
     return (ctypes.c_int32 * len(wanted))(*[QUANTITIES[each] for each in wanted])
+
+
+def estimated(scene: Scene) -> str:
+    """What the quantity "force" of a scene is."""
+    return "force" if scene.struct.load == PRESCRIBED_APPROACH else "approach"
 
 
 class Quantity(NamedTuple):
@@ -165,9 +172,10 @@ def quantities(
     rows, written = (QuantityRow * room)(initialised("quantity_row")), ctypes.c_int32(0)
     status, message = called(
         library.contact_normal_quantities, ctypes.byref(scene.struct), ctypes.byref(struct), len(wanted), wanted, grids, rows,
-        ctypes.byref(written), keep=(scene,),
+        ctypes.byref(written), keep=(scene,), options=struct,
     )
-    check(status, message)
+    if check(status, message) != OK:
+        raise ContactNormalError(status, message)
     found = Quantities(Quantity.of(row) for row in rows[: written.value])
-    found.estimated = "force" if scene.struct.load == PRESCRIBED_APPROACH else "approach"
+    found.estimated = estimated(scene)
     return found

@@ -37,7 +37,9 @@ def limits(max_seconds: Any, max_bytes: Any, max_elements: Any, surface: Surface
     """A `contact_normal_accuracy` with its limits and the surface."""
     accuracy = initialised("accuracy")
     accuracy.max_seconds = number("max_seconds", max_seconds)
-    accuracy.max_bytes, accuracy.max_elements = integer("max_bytes", max_bytes, 64), integer("max_elements", max_elements, 64)
+    for name, value in (("max_bytes", max_bytes), ("max_elements", max_elements)):
+        # 2e9 is a whole number, too.
+        setattr(accuracy, name, integer(name, int(value) if isinstance(value, float) and value.is_integer() else value, 64))
     if surface:
         accuracy.surface = surface.callback
     return accuracy

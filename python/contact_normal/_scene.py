@@ -12,9 +12,9 @@ import numpy as np
 from ._adhesion import adhesion
 from ._arguments import both, distances, doubles, integer, integers, number, pointer, shaped
 from ._bodies import bodies, load
-from ._constants import PRESCRIBED_APPROACH, PRESCRIBED_FORCE
+from ._constants import PRESCRIBED_APPROACH, PRESCRIBED_FORCE, UNSUPPORTED
 from ._friction import friction
-from ._library import initialised
+from ._library import ContactNormalError, initialised
 from ._visco import visco
 
 if TYPE_CHECKING:
@@ -47,6 +47,7 @@ class Scene:
         self.bodies, self.remark = bodies(shear_modulus, poisson_ratio, young_modulus, e_star), ""
         self._kept: list[Any] = []
         self._effects = effects
+        self._own = [name for name in ("influence", "row_tables") if effects.get(name) is not None]
         self._constants = {"shear_modulus": shear_modulus, "poisson_ratio": poisson_ratio, "young_modulus": young_modulus, "e_star": e_star}
         self.struct.my, self.struct.mx = (integer(name, m) for name, m in zip(("my", "mx"), self.h.shape))
         self.struct.dx, self.struct.dy = number("dx", dx), number("dy", dy)
@@ -63,11 +64,26 @@ class Scene:
     def __reduce__(self) -> tuple[Any, ...]:
         # What stresses below the surface need of it: structs of the library hold addresses.
         effects = {name: self._effects.get(name) for name in _OF_STRESSES}
-        return _without_load, (self.shape, self.struct.dx, self.struct.dy, self._constants, effects)
+        return _without_load, (self.shape, self.struct.dx, self.struct.dy, self._constants, effects, self._own)
 
     def on_grid(self, shape: tuple[int, int], dx: float, dy: float) -> Scene:
-        """The same bodies, without effects and load, on another grid."""
-        return _without_load(shape, dx, dy, self._constants, {})
+        """What stresses below the surface need, on another grid: without load."""
+        effects = {name: self._effects.get(name) for name in _OF_STRESSES}
+        if effects["patches"] is not None:
+            patch, factors = both("patches", effects["patches"])
+            # Elements of another grid are of the patch in which they begin.
+            rows, columns = (np.arange(m) * n // m for m, n in zip(shape, self.shape))
+            effects["patches"] = np.asarray(patch)[rows[:, None], columns], factors
+        return _without_load(shape, dx, dy, self._constants, effects, self._own)
+
+    def know_own(self, names: list[str]) -> None:
+        """Remembers which own coefficients a handle keeps: the scene leaves them out."""
+        self._own = names
+
+    def needs_half_space(self) -> None:
+        """Refuses stresses of bodies with own coefficients."""
+        for name in self._own:
+            raise ContactNormalError(UNSUPPORTED, f"{name} is given; subsurface stresses are those of a half-space")
 
     @property
     def has_particles(self) -> bool:
@@ -84,7 +100,7 @@ class Scene:
     @property
     def has_half_space(self) -> bool:
         """Whether bodies give way as half-spaces of their elastic constants do."""
-        return not any(self._effects.get(name) is not None for name in ("influence", "row_tables"))
+        return not self._own and not any(self.struct.coating)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -145,12 +161,16 @@ class Scene:
                 self._kept.append(effect)
 
 
-_OF_STRESSES = ("period", "patches", "coating", "influence", "row_tables")
+_OF_STRESSES = ("period", "patches", "coating")
 
 
-def _without_load(shape: tuple[int, int], dx: float, dy: float, constants: Mapping[str, Any], effects: Mapping[str, Any]) -> Scene:
+def _without_load(
+    shape: tuple[int, int], dx: float, dy: float, constants: Mapping[str, Any], effects: Mapping[str, Any], own: list[str]
+) -> Scene:
     """A scene with no load and no surface."""
-    return Scene(np.zeros(shape), dx, dy, None, 0.0, effects=effects, **constants)
+    scene = Scene(np.zeros(shape), dx, dy, None, 0.0, effects=effects, **constants)
+    scene.know_own(own)
+    return scene
 
 
 def coating_of(value: Any, name: str = "coating") -> Any:

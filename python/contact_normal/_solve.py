@@ -143,7 +143,7 @@ def solve(
     effects = {"influence": influence, "layer": layer, "pressure_limit": pressure_limit, "period": period, "patches": patches,
                "row_tables": row_tables, "coating": coating, "friction": friction, "adhesion": adhesion, "visco": visco}
     # Options first: a load whose name is written wrong is an unknown option, and not a load that lacks.
-    struct = options(given)
+    struct, units = options(given), checked(units)
     scene = Scene(h, dx, dy, approach, force, shear_modulus, poisson_ratio, effects, mean_pressure=mean_pressure, young_modulus=young_modulus,
                   e_star=e_star)
     outputs = Outputs(scene.shape, pressure, contact, struct, friction is not None, scene, adhesion is not None)
@@ -190,8 +190,8 @@ def solve_to_accuracy(
     contact_area_target: float = 0.0,
     targets: Mapping[str, float] | None = None,
     max_seconds: float = 0.0,
-    max_bytes: int = 0,
-    max_elements: int = 0,
+    max_bytes: float = 0,
+    max_elements: float = 0,
     shape: tuple[int, int] | None = None,
     corner: tuple[float, float] | None = None,
     approach: float | None = None,
@@ -289,7 +289,7 @@ def solve_to_accuracy(
         if surface:
             surface.finish()
         check(status, message)
-        outputs = Outputs((accuracy.my, accuracy.mx), has_friction=friction is not None, has_adhesion=adhesion is not None)
+        outputs = Outputs((accuracy.my, accuracy.mx), has_friction=friction is not None, scene=scene, has_adhesion=adhesion is not None)
         outputs.rows = ledger.rows
         if handle:
             check(*called(library.contact_normal_solver_fields, ctypes.byref(outputs.fields), handle=handle))

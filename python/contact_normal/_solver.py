@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import os
 import re
+import time
 from collections.abc import Callable, Mapping, Sequence
 from ctypes import c_int32
 from functools import partial
@@ -37,6 +38,8 @@ if TYPE_CHECKING:
     from ._arguments import Doubles
 
 _Problem = tuple[Scene, Outputs]
+# Seconds that end a call after its first cycle.
+_LEAST = 1e-9
 
 
 class Solver:
@@ -98,6 +101,7 @@ class Solver:
         self._effects = {"layer": layer, "period": period, "patches": patches, "coating": coating}
         self._given = given
         self._visco = visco
+        self._own = [name for name, table in (("influence", influence), ("row_tables", row_tables)) if table is not None]
         # The set-up reads neither the undeformed distance nor the load, but checks them. Counts that are no counts are left to the
         # library, whose message says so.
         scene = Scene(np.zeros([max(m, 0) for m in self._shape]), dx, dy, None, 0.0, **self._bodies,
@@ -121,7 +125,9 @@ class Solver:
         step = self._visco if visco is None else {**(self._visco or {}), **visco}
         effects = {"pressure_limit": pressure_limit, "friction": friction, "adhesion": adhesion, "visco": step, **self._effects}
         dx, dy = self._size
-        return Scene(shaped("h", distances("h", h), self._shape), dx, dy, **loads, **self._bodies, effects=effects)
+        scene = Scene(shaped("h", distances("h", h), self._shape), dx, dy, **loads, **self._bodies, effects=effects)
+        scene.know_own(self._own)
+        return scene
 
     def solve(
         self,
@@ -217,7 +223,13 @@ class Solver:
             guess, area = (None if values is None else values[i] for values in (pressure, contact))
             problems.append((scene, Outputs(self._shape, guess, area, struct, friction is not None, scene, adhesion is not None)))
         threads = self._given.get("threads", 1) or os.cpu_count() or 1
-        return [found for part in parts(count, threads) for found in self._solved(problems[part], struct)]
+        began, limit, results = time.monotonic(), struct.max_seconds, []
+        for part in parts(count, threads):
+            if limit > 0.0:
+                # The limit is that of the whole call. 0 would be none.
+                struct.max_seconds = max(limit - (time.monotonic() - began), _LEAST)
+            results += self._solved(problems[part], struct)
+        return results
 
     def _solved(self, problems: list[_Problem], struct: Any) -> list[Result]:
         """The results of some problems of a batch."""
@@ -229,7 +241,7 @@ class Solver:
         statuses = (c_int32 * count)(*[untouched] * count)
         status, message = called(
             library.contact_normal_solver_solve_batch, count, scenes, ctypes.byref(struct), fields, reports, statuses,
-            handle=self._handle, keep=problems,
+            handle=self._handle, keep=problems, options=struct,
         )
         if untouched in statuses:
             check(status, message)

@@ -14,6 +14,7 @@ from ._calls import called, parts
 from ._library import check, initialised, library
 from ._scene import Scene
 from ._stress import COMPONENTS, TENSOR, SubsurfaceStress
+from ._units import checked
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -32,6 +33,7 @@ def subsurface(
     threads: int,
 ) -> SubsurfaceStress:
     """See `Solved.subsurface`."""
+    scene.needs_half_space()
     scene.bodies.needs_poisson("a stress")
     levels = shaped("depths", np.atleast_1d(real("depths", depths)), dimensions="n")
     wanted = _wanted(components)
@@ -70,6 +72,7 @@ def at_points(
     scene: Scene, pressure: Doubles | None, points: npt.ArrayLike, traction: Any, body: int, threads: int, middle: tuple[float, float]
 ) -> Doubles:
     """See `Solved.stress_at_points`."""
+    scene.needs_half_space()
     scene.bodies.needs_poisson("a stress")
     places = doubles("points", points, dimensions="(n, 3)")
     if places.shape[1] != 3:
@@ -130,6 +133,7 @@ def subsurface_stress(
     >>> float(round(stress.zz[0, 4, 4] * 2 * np.pi * 20.0**2 / (3 * 0.81), 2))
     -1.0
     """
+    units = checked(units)
     scene, pressures = _loaded(pressure, traction, dx, dy, poisson_ratio, period, patches)
     found = subsurface(scene, pressures, depths, traction, body, components, principal, threads)
     found.units = units

@@ -15,6 +15,7 @@ from ._library import check, initialised, library
 from ._outputs import Outputs
 from ._result import TangentialResult
 from ._scene import Scene
+from ._units import checked
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -28,6 +29,8 @@ def with_pressures(
     h: Any, pressure: Any, dx: Any, dy: Any, loads: Mapping[str, Any], **given: Any
 ) -> tuple[Scene, Doubles | None]:
     """The scene of a surface, or of pressures that are given: then neither the surface nor the load matters."""
+    if (given["shear_modulus"] is None) == (given["young_modulus"] is None):
+        raise TypeError("give either shear_modulus or young_modulus, the elastic constants of the bodies, and only one of them")
     if pressure is None:
         if h is None:
             raise TypeError("give either h or pressure")
@@ -69,8 +72,10 @@ def solve_tangential(
         Element sizes.
     friction : mapping
         As for `solve`.
-    shear_modulus, poisson_ratio, young_modulus, influence, layer, period, coating, units, progress, **given
+    shear_modulus, poisson_ratio, young_modulus, influence, layer, coating, units, progress, **given
         As for `solve`. With `influence` the friction needs coefficients of its own, too.
+    period
+        Refused, as `solve` refuses it beside friction.
 
     Returns
     -------
@@ -93,6 +98,7 @@ def solve_tangential(
     (9.6, True)
     """
     effects, struct = {"influence": influence, "layer": layer, "period": period, "coating": coating, "friction": friction}, options(given)
+    units = checked(units)
     scene, pressures = with_pressures(None, pressure, dx, dy, {}, shear_modulus=shear_modulus, poisson_ratio=poisson_ratio,
                                       young_modulus=young_modulus, effects=effects)
     assert pressures is not None
@@ -117,6 +123,6 @@ def of_pressures(
     no_handle = [] if handle else [None]
     status, message = watched.call(
         library.contact_normal_solve_tangential, *no_handle, ctypes.byref(scene.struct), pointer(pressures), ctypes.byref(struct), 1, None,
-        ctypes.byref(results), ctypes.byref(outputs.report), handle=handle, keep=(scene, pressures, outputs),
+        ctypes.byref(results), ctypes.byref(outputs.report), handle=handle, keep=(scene, pressures, outputs), report=outputs.report,
     )
     return TangentialResult(check(status, message), message, outputs, outputs.report, scene, units)

@@ -1,10 +1,12 @@
 """What callers pass by mistake is refused by name: it does not wrap, lose its mask, or get truncated."""
 
 import unittest
+from unittest import mock
 
 import numpy as np
 
 import contact_normal as cn
+from contact_normal import _adhesion, _arguments, _calls, _constants, _visco
 
 STEEL = {"shear_modulus": 82000.0, "poisson_ratio": 0.28}
 X = np.arange(12) - 5.5
@@ -80,6 +82,86 @@ class Arguments(unittest.TestCase):
             solve(tolerance="1e-3")
         with self.assertRaisesRegex(TypeError, r"no argument and no option tolerence \(is tolerance meant\?\); options are: active_set, coarsest"):
             solve(tolerence=1e-3)
+
+    def test_arrays_at_odd_addresses(self):
+        def odd(array):
+            return np.frombuffer(b"." + array.tobytes(), array.dtype, offset=1).reshape(array.shape)
+
+        self.assertFalse(odd(H).flags.aligned)
+        patches = (X > 0).astype(np.int32) + np.zeros(H.shape, dtype=np.int32)
+        for one, other in ((_arguments.doubles("h", odd(H)), H), (_arguments.integers("patches", odd(patches), H.shape), patches)):
+            self.assertTrue(one.flags.aligned)
+            np.testing.assert_array_equal(one, other)
+        np.testing.assert_array_equal(solve(odd(H)).pressure, solve().pressure)
+
+    def test_numbers_stand_for_constants_of_effects(self):
+        given = {"work": 1.0, "range": 5.0}
+        for law, start in (("EXPONENTIAL", "FROM_CONTACT"), ("DUGDALE", "FROM_APART")):
+            numbers = {"law": _constants.value_of("law", law), "start": _constants.value_of("start", start)}
+            found = [_adhesion.adhesion({**given, **names}, H.shape)[0] for names in ({"law": law, "start": start}, numbers)]
+            self.assertEqual(*[(one.law, one.start) for one in found])
+        found = [_visco.visco({"form": form})[0].form for form in ("CREEP", _constants.value_of("form", "CREEP"))]
+        self.assertEqual(*found)
+        with self.assertRaisesRegex(TypeError, r"visco\['form'\] is 1.5; it must be an integer"):
+            _visco.visco({"form": 1.5})
+
+    def test_units_are_checked_before_the_solve(self):
+        pressure = np.ones((4, 4))
+        calls = (lambda **units: solve(**units),
+                 lambda **units: cn.pull_off(H, 0.2, 0.2, adhesion={"work": 1.0, "range": 5.0}, **units, **STEEL),
+                 lambda **units: cn.solve_tangential(pressure, 0.2, 0.2, friction={"coefficient": 0.3}, **units, **STEEL),
+                 lambda **units: cn.subsurface_stress(pressure, 0.2, 0.2, [0.1], poisson_ratio=0.3, **units))
+        for call in calls:
+            with mock.patch.object(_calls, "_told", side_effect=AssertionError("the library was called")):
+                with self.assertRaisesRegex(ValueError, "units are"):
+                    call(units=("N", "mm"))
+
+    def test_messages_name_what_the_call_takes(self):
+        pressure = np.ones((4, 4))
+        with self.assertRaisesRegex(TypeError, "^give either approach or force, and only one of them$"):
+            cn.hertz(0.1, 0.1, **STEEL)
+        for call in (lambda **given: cn.solve_tangential(pressure, 0.2, 0.2, friction={"coefficient": 0.3}, **given),
+                     lambda **given: cn.friction_batch(None, 0.2, 0.2, [(0.0, 0.0, 0.0)], pressure=pressure, friction={"coefficient": 0.3}, **given)):
+            for given in ({}, {"shear_modulus": 1.0, "young_modulus": 1.0}):
+                with self.assertRaisesRegex(TypeError, "give either shear_modulus or young_modulus,"):
+                    call(poisson_ratio=0.3, **given)
+        self.assertEqual(cn.solve(H, 0.2, 0.2, approach=0.1, shear_modulus=10**20, poisson_ratio=0.3).status, cn.OK)
+        with self.assertRaisesRegex(ValueError, "shear_modulus is 1.*; it must fit into a double"):
+            cn.solve(H, 0.2, 0.2, approach=0.1, shear_modulus=10**400, poisson_ratio=0.3)
+        for name in ("influence", "row_tables"):
+            with self.assertRaisesRegex(TypeError, rf"friction\['{name}'\] is 5; it must be \(xx, yy, xy\)"):
+                solve(friction={"coefficient": 0.3, name: 5})
+        # An old numpy makes arrays of objects of them.
+        with self.assertRaisesRegex((ValueError, TypeError), "h has (parts of different shapes|dtype object)"):
+            solve([[0.0, 1.0], [2.0]])
+        with self.assertRaisesRegex((ValueError, TypeError), "influence has (parts of different shapes|dtype object)"):
+            solve(influence=[np.ones((20, 24)), 2])
+
+    def test_a_creepage_beside_the_force_is_refused(self):
+        friction = {"coefficient": 0.3, "force": (1.0, None), "motion": "STEADY_ROLLING"}
+        with self.assertRaisesRegex(ValueError, r"friction\['creepage'\]\[0\] is 0.005 and friction\['force'\]\[0\] is 1.0; give one of them"):
+            solve(friction={**friction, "creepage": (5e-3, 0.0)})
+        for creepage in ((0.0, 1e-4), (None, 1e-4)):
+            self.assertEqual(solve(friction={**friction, "creepage": creepage}).status, cn.OK)
+
+    def test_limits_that_are_whole(self):
+        given = {"approach": 0.1, "target": 0.1, **STEEL}
+        found = cn.solve_to_accuracy(H, 0.2, 0.2, max_bytes=2e9, max_elements=1e6, **given)
+        self.assertEqual(found.status, cn.OK)
+        with self.assertRaisesRegex(TypeError, "max_bytes is 1.5; it must be an integer"):
+            cn.solve_to_accuracy(H, 0.2, 0.2, max_bytes=1.5, **given)
+
+    def test_arrays_with_x_first(self):
+        class Transposed(np.ndarray):
+            dims = ("x", "y")
+
+        square = np.ones((8, 8))
+        for call, name in ((lambda one: cn.solve(square, 0.1, 0.1, approach=1.1, layer=one, **STEEL), "layer"),
+                           (lambda one: cn.solve(square, 0.1, 0.1, approach=1.1, contact=one > 0, **STEEL), "contact"),
+                           (lambda one: cn.subsurface_stress(one, 0.1, 0.1, [0.1], poisson_ratio=0.3), "pressure"),
+                           (lambda one: cn.solve(one, 0.1, 0.1, approach=1.1, **STEEL), "h")):
+            with self.assertRaisesRegex(ValueError, rf"^{name} has the dimensions \('x', 'y'\); x must be the last one"):
+                call(square.view(Transposed))
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ import concurrent.futures
 import io
 import multiprocessing
 import unittest
+import warnings
 from contextlib import redirect_stderr
 from unittest import mock
 
@@ -239,6 +240,46 @@ class Runs(unittest.TestCase):
                            ({"eta": [np.nan]}, "eta is"), ({"axis_ratio": 0.0}, "must be positive"), ({"elements": 3}, "elements is 3")):
             with self.assertRaisesRegex(ValueError, words):
                 cn.creep_force_table(**{**self.AXES, **bad})
+
+
+class OneSided(unittest.TestCase):
+    def test_axes_that_begin_with_0(self):
+        axis = [0.0, 0.5, 1.0]
+        table = cn.creep_force_table(xi=axis, eta=axis, phi=[0.0], elements=11)
+        x, y, _, error = table.forces(0.5, 0.5, 0.0)
+        self.assertLess(max(x, y), -0.5)
+        for xi, eta in ((-0.5, 0.5), (0.5, -0.5), (-0.5, -0.5)):
+            for spin in (0.0, -0.3, 0.3):
+                found = table.forces(xi, eta, spin, hold=True)
+                np.testing.assert_array_equal(found[:2], (np.sign(xi) * x, np.sign(eta) * y))
+            np.testing.assert_array_equal(table.forces(xi, eta, 0.0), (np.sign(xi) * x, np.sign(eta) * y, found[2], error))
+        with self.assertRaisesRegex(ValueError, "eta has values outside the table"):
+            table.forces(0.5, -1.5, 0.0)
+
+    def test_a_surface(self):
+        x = (np.arange(16) - 7.5) * 0.1
+        surface = {"h": 0.1 * (x[None, :] ** 2 + x[:, None] ** 2), "dx": 0.1, "dy": 0.1, "force": 0.05, "coefficient": 0.3, "shear_modulus": 1.0,
+                   "poisson_ratio": 0.3}
+        axis = [0.0, 1e-2, 2e-2]
+        table = cn.creep_force_table(xi=axis, eta=axis, phi=[0.0], surface=surface)
+        for sign in (1.0, -1.0):
+            found = table.forces(sign * 1e-2, sign * 2e-2, 0.0)
+            np.testing.assert_array_equal(found[:2], (sign * table.force_x[0, 0, 0, 2, 1], sign * table.force_y[0, 0, 0, 2, 1]))
+
+    def test_loads_and_coefficients_in_lists(self):
+        given = {"semi_axes": (1.0, 1.0), "shear_modulus": 1.0, "poisson_ratio": 0.28, "hold": True}
+        found = TABLE.wheel_rail((1e-3, 0.0), 0.0, normal_force=2, coefficient=[0.3, 0.2], **given)
+        expected = TABLE.wheel_rail((1e-3, 0.0), 0.0, normal_force=2.0, coefficient=np.array([0.3, 0.2]), **given)
+        np.testing.assert_array_equal(found, expected)
+
+    def test_a_surface_without_friction(self):
+        surface = {"h": 0.1 * np.ones((8, 8)), "dx": 0.1, "dy": 0.1, "approach": 0.11, "coefficient": 0.0, "shear_modulus": 1.0, "poisson_ratio": 0.3}
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            table = cn.creep_force_table(xi=[0.0, 1e-3], eta=[0.0], phi=[0.0], surface=surface)
+            self.assertIn("2 entries", repr(table))
+        self.assertFalse(table.force_x.any())
+        np.testing.assert_array_equal(table.error, 0.0)
 
 
 if __name__ == "__main__":

@@ -1,10 +1,12 @@
 """Many tangential problems of one scene, as Python has them."""
 
 import unittest
+from unittest import mock
 
 import numpy as np
 
 import contact_normal as cn
+from contact_normal._bar import SolveBar
 
 STEEL = {"shear_modulus": 82000.0, "poisson_ratio": 0.28}
 M, D = 24, 0.1
@@ -52,12 +54,29 @@ class FrictionBatches(unittest.TestCase):
         self.assertEqual(done, [1, 2, 3])
         self.assertEqual(list(batch.status), [cn.OK] * 3 + [cn.CANCELLED] * 17)
         self.assertTrue(np.isnan(batch.force[3:]).all())
+        none = cn.friction_batch(H, D, D, ENTRIES, force=1000.0, friction=FRICTION, progress=lambda told: True, **STEEL)
+        self.assertEqual(set(none.status), {cn.CANCELLED})
+        with self.assertRaisesRegex(ValueError, "no entry is solved: there is nothing to draw"):
+            none.plot()
 
         def fail(told):
             raise KeyError("mine")
 
         with self.assertRaisesRegex(KeyError, "mine"):
             cn.friction_batch(None, D, D, ENTRIES, pressure=np.ones((M, M)), friction=FRICTION, progress=fail, **STEEL)
+
+    def test_the_bar_counts_entries(self):
+        for normal in ({"h": H, "force": 1000.0}, {"h": None, "pressure": cn.solve(H, D, D, force=1000.0, **STEEL).pressure}):
+            told, drawn = [], []
+            cn.friction_batch(dx=D, dy=D, entries=ENTRIES[:5], friction=FRICTION, progress=told.append, **normal, **STEEL)
+            bar = SolveBar(M * M, 1e-6, 5)
+            with mock.patch.object(bar._bar, "draw", lambda part, text, drawn=drawn: drawn.append(part)):
+                for one in told:
+                    bar._due = 0.0
+                    bar.tell(one)
+            # The cycles of the normal problem, if there is one; then the entries.
+            self.assertEqual(drawn, [0.0] * (len(told) - 5) + [0.2, 0.4, 0.6, 0.8, 1.0])
+            self.assertEqual(len(told) > 5, normal["h"] is not None)
 
 
 if __name__ == "__main__":

@@ -1,12 +1,14 @@
 """The files that docs/heights_to_gap.md and docs/profiles_to_gap.md begin with are those that the examples make."""
 
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
 import numpy as np
 
 from contact_normal import profiles
+from contact_normal.surface import Gap
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "python_examples"))
@@ -39,3 +41,16 @@ class Data(unittest.TestCase):
         sides = [np.linalg.norm(p - q) for p, q in ((a, b), (b, c), (c, a))]
         area = 0.5 * abs((b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0])
         self.assertAlmostEqual(np.prod(sides) / (4.0 * area), 13.0, delta=1e-6)
+
+
+class Texts(unittest.TestCase):
+    def test_comments_of_one_line(self):
+        gap = Gap(np.arange(6.0).reshape(2, 3), 0.1, 0.2)
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "gap.txt")
+            for comment in ("", "a\x0cb", "a\u2028b\x85"):
+                gap.write(path, comment)
+                np.testing.assert_array_equal(Gap.read(path).h, gap.h)
+            for comment in ("a\nb", "a\rb"):
+                with self.assertRaisesRegex(ValueError, "comment has several lines"):
+                    gap.write(path, comment)

@@ -109,6 +109,26 @@ class Interrupts(unittest.TestCase):
         slow = threading.Event()
         self.interrupted(lambda: cn.solve_to_accuracy(lambda x, y: slow.wait(3600), D, D, shape=(M, M), force=1000.0, **STEEL))
 
+    def test_what_is_given_up_ends(self):
+        effects = {"force": 1000.0, "layer": 1e-7, "pressure_limit": 3000.0}
+        with cn.Solver(M, M, D, D, **ENDLESS, **STEEL) as solver:
+            for call in (lambda: cn.quantities(H, D, D, force=1000.0, **ENDLESS, **STEEL),
+                         lambda: cn.what_matters(H, D, D, max_seconds=1e6, **effects, **ENDLESS, **STEEL),
+                         lambda: cn.cost_of_accuracy(H, D, D, force=1000.0, **ENDLESS, **STEEL),
+                         lambda: solver.solve_batch([H, H], force=1000.0)):
+                self.interrupted(call)
+                for given_up in list(_calls._given_up):
+                    given_up.wait(5.0)
+                self.assertFalse(_calls._given_up)
+
+    def test_adhesion_is_never_short(self):
+        x = (np.arange(16) - 7.5) * 0.4
+        pull_off = {"h": 0.5 * (x[None, :] ** 2 + x[:, None] ** 2), "dx": 0.4, "dy": 0.4, "e_star": 0.75, "adhesion": {"work": 0.3, "range": 0.56}}
+        for call in (cn.pull_off, lambda **given: cn.solve(force=-0.1, **given)):
+            with mock.patch.object(_calls, "Call", wraps=_calls.Call) as by_a_worker:
+                call(**pull_off)
+            by_a_worker.assert_called()
+
     def test_friction_batches(self):
         entries = np.random.default_rng(3).uniform(-1e-3, 1e-3, (1000000, 3))
         self.interrupted(lambda: cn.friction_batch(H, D, D, entries, force=1000.0, friction={"coefficient": 0.3}, **STEEL))
@@ -158,6 +178,20 @@ class Threads(unittest.TestCase):
         self.assertNotIn("contact-normal", names)
         solve()
         self.assertIn("contact-normal", names)
+
+    def test_a_call_that_no_worker_begins(self):
+        class Lost:
+            def give(self, call):
+                raise KeyboardInterrupt
+
+        call = _calls.Call(lambda: self.fail("it was given up"))
+        self.addCleanup(_calls._given_up.discard, call)
+        with self.assertRaises(KeyboardInterrupt):
+            call.result(Lost())
+        # The end of the process would wait for it.
+        self.assertNotIn(call, _calls._given_up)
+        call.make()
+        self.assertIsNone(call._error)
 
     def test_where_no_thread_is_to_be_had(self):
         _calls._end_workers()

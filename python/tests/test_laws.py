@@ -48,3 +48,12 @@ class Laws(unittest.TestCase):
         ):
             with self.assertRaisesRegex(error, words):
                 solved(**friction)
+
+    def test_accuracies_have_what_particles_carry(self):
+        x = (np.arange(16) - 7.5) * 0.2
+        given = {"h": 0.1 * (x[None, :] ** 2 + x[:, None] ** 2), "dx": 0.2, "dy": 0.2, "force": 0.1, "shear_modulus": 1.0, "poisson_ratio": 0.3}
+        shift = {"coefficient": 0.3, "creepage": (1e-3, 0.0), "motion": "SHIFT", "layer": {"yield_limit": 10.0}}
+        found = cn.solve_to_accuracy(target=0.5, friction=shift, **given)
+        one = cn.solve(friction=shift, **given)
+        self.assertEqual((found.friction_coefficient.max(), found.yield_limit.max()), (one.friction_coefficient.max(), one.yield_limit.max()))
+        self.assertEqual(found.yield_limit.max(), 10.0)

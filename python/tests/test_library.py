@@ -69,6 +69,11 @@ class Libraries(unittest.TestCase):
         with self.assertRaisesRegex(ImportError, "has no contact_normal_keep"):
             loaded(Without())
 
+    def test_another_library(self):
+        with mock.patch.dict(os.environ, {"CONTACT_NORMAL_LIBRARY": "libother.so"}):
+            with self.assertRaisesRegex(ImportError, "libother.so has no contact_normal_abi_version: it is another library"):
+                loaded(object())
+
     def test_one_that_is_missing(self):
         with mock.patch.dict(os.environ, {"CONTACT_NORMAL_LIBRARY": "/nowhere/libcontact_normal.so"}):
             self.assertEqual(_library.candidates(), ["/nowhere/libcontact_normal.so"])

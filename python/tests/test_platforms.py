@@ -1,7 +1,10 @@
 """Names of the library on each platform, and true tags of wheels."""
 
+import contextlib
+import os
 import re
 import shutil
+import signal
 import struct
 import subprocess
 import sys
@@ -11,7 +14,10 @@ import zipfile
 from pathlib import Path
 from unittest import mock
 
-from contact_normal import _library
+import numpy as np
+
+from contact_normal import _command_replay, _library
+from contact_normal._command import main
 from contact_normal._names import names, places
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "packaging"))
@@ -43,7 +49,7 @@ class Places(unittest.TestCase):
             found = places(self.package, [self.prefix, Path("/other")], platform)[2:]
             self.assertEqual(found, [prefix / name for prefix in (self.prefix, Path("/other")) for name in expected], platform)
 
-    def test_only_what_is_there_is_tried_and_the_system_is_asked_last(self):
+    def test_only_what_is_there_is_tried_and_the_system_is_asked_where_nothing_is(self):
         with tempfile.TemporaryDirectory() as folder:
             prefix = Path(folder)
             for platform in ("linux", "darwin", "win32"):
@@ -54,8 +60,11 @@ class Places(unittest.TestCase):
                         mock.patch.dict(_library.os.environ), mock.patch.object(_library.ctypes.util, "find_library", return_value=None):
                     _library.os.environ.pop("CONTACT_NORMAL_LIBRARY", None)
                     found = _library.candidates()
-                self.assertIn(str(place), found, platform)
-                self.assertEqual(found[-1], names(platform).installed, platform)
+                    self.assertIn(str(place), found, platform)
+                    # It starts programs.
+                    _library.ctypes.util.find_library.assert_not_called()
+                    with mock.patch.object(_library, "places", return_value=[]):
+                        self.assertEqual(_library.candidates(), [names(platform).installed], platform)
 
 
 def portable_executable(machine):
@@ -123,6 +132,35 @@ class Wheels(unittest.TestCase):
             check(self.wheel(f"linux_{machine}"))
         with self.assertRaisesRegex(ValueError, "newer than manylinux_2_5"):
             check(self.wheel(self.file.tag()), "manylinux_2_5")
+
+
+class Commands(unittest.TestCase):
+    @unittest.skipIf(sys.platform == "win32", "its program is a shell script")
+    def test_a_replay_is_looked_for_beside_a_library_that_has_a_folder(self):
+        with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
+            here = os.getcwd()
+            stack.callback(os.chdir, here)
+            os.chdir(folder)
+            program = Path(folder, "contact-normal-replay")
+            program.write_text("#!/bin/sh\nkill -SEGV $$\n")
+            program.chmod(0o755)
+            stack.enter_context(mock.patch.dict(os.environ, {"PATH": ""}))
+            candidates = stack.enter_context(mock.patch.object(_command_replay, "candidates", return_value=["libcontact_normal.so.2"]))
+            with self.assertRaises(FileNotFoundError):
+                _command_replay.program()
+            candidates.return_value = [f"{folder}/libcontact_normal.so.2"]
+            self.assertEqual(main(["replay", "failed.dump"]), 128 + signal.SIGSEGV)
+
+    def test_a_terminal_without_a_sign_of_micro(self):
+        with tempfile.TemporaryDirectory() as folder:
+            place, fields = Path(folder, "h.npy"), Path(folder, "fields.npz")
+            x = (np.arange(16) - 7.5) * 0.1
+            np.save(place, -0.1 * (x[None, :] ** 2 + x[:, None] ** 2))
+            given = ["--dx", "0.1", "--dy", "0.1", "--e-star", "1", "--approach", "0.02", "--units", "\u00b5m", "mN", "-o", str(fields)]
+            environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
+            ended = subprocess.run([sys.executable, "-m", "contact_normal", "solve", str(place), *given], capture_output=True, env=environment, check=False)
+            self.assertEqual((ended.returncode, fields.exists()), (0, True), ended.stderr)
+            self.assertIn(b"?m", ended.stdout)
 
 
 if __name__ == "__main__":

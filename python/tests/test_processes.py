@@ -1,14 +1,17 @@
 """Processes that are forked after a solve with threads solve, too; threads of Python solve at once while Python goes on."""
 
+import concurrent.futures
 import multiprocessing
 import os
 import threading
 import time
 import unittest
+from unittest import mock
 
 import numpy as np
 
 import contact_normal as cn
+from contact_normal import _creep_force_table
 
 STEEL = {"shear_modulus": 82000.0, "poisson_ratio": 0.28}
 # The child has none of the parent's threads: waiting for them would never end. This is hundreds of times what the solve takes, so that
@@ -112,6 +115,31 @@ class Threads(unittest.TestCase):
         times.append(time.perf_counter())
         thread.join()
         return np.diff(times).max() / ended[0].report["solve_seconds"]
+
+
+class GivenUp(unittest.TestCase):
+    def test_jobs_of_processes_that_are_stopped_are_not_cancelled(self):
+        # The thread of an executor prints a traceback where it tells a cancelled job that its process is gone.
+        class Executor:
+            def __init__(self, *_given, **_more):
+                jobs.clear()
+
+            def submit(self, _work, _plan, index):
+                job = concurrent.futures.Future()
+                if not jobs:
+                    job.set_result(index)
+                jobs.append(job)
+                return job
+
+            def shutdown(self, wait):
+                self.has_waited = wait
+
+        jobs = []
+        with mock.patch.object(_creep_force_table.concurrent.futures, "ProcessPoolExecutor", Executor):
+            planes = _creep_force_table._computed(None, [0, 1, 2], 2, None)
+            self.assertEqual(next(planes), (0, 0))
+            planes.close()
+        self.assertEqual([job.cancelled() for job in jobs], [False] * 3)
 
 
 if __name__ == "__main__":

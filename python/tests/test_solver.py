@@ -3,6 +3,7 @@
 import contextlib
 import gc
 import io
+import time
 import unittest
 from unittest import mock
 
@@ -138,6 +139,25 @@ class Shown(unittest.TestCase):
         self.assertRegex(repr(found), r"^<Result: solved; 16 x 16 elements, force 1000, approach 0\.\d+, max_pressure \d+\.\d, contact_area 0\.\d+ "
                                       r"\(\d\.\d+ % of the grid\), residual \d\.\de-\d\d>$")
         self.assertIs(cn.to_accuracy, cn.solve_to_accuracy)
+
+
+class Batches(unittest.TestCase):
+    def test_a_limit_of_time_is_that_of_the_whole_batch(self):
+        endless = {"method": "MULTIGRID", "smoother": "JACOBI", "relaxation": 1e-9, "max_cycles": 2**31 - 1}
+        with cn.Solver(64, 64, 0.1, 0.1, **endless, **STEEL) as solver:
+            began = time.monotonic()
+            found = solver.solve_batch([ball(64)] * 30, force=1000.0, max_seconds=0.2)
+        # One after the other; each alone would take 0.2.
+        self.assertLess(time.monotonic() - began, 2.0)
+        self.assertEqual({result.status for result in found}, {cn.ITERATION_LIMIT})
+
+    def test_elements_of_messages_are_counted_as_those_of_arrays(self):
+        h = ball(16)
+        h[3, 5] = np.nan
+        with cn.Solver(16, 16, 0.1, 0.1, **STEEL) as solver:
+            found = solver.solve_batch([ball(16), h], force=100.0)
+        self.assertEqual([result.status for result in found], [cn.OK, cn.NOT_FINITE])
+        self.assertIn("element [3, 5]", found[1].message)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """Stresses below the surface and coatings, as Python has them."""
 
+import pickle
 import unittest
 import warnings
 
@@ -62,6 +63,35 @@ class Subsurface(unittest.TestCase):
             # sxz = -qx at the surface, to round-off of the sum over the elements.
             np.testing.assert_allclose(stress.xz[0], -sign * result.traction[0], atol=1e-12 * result.traction.max())
 
+    def test_a_result_of_an_accuracy_keeps_period_and_patches(self):
+        given = {"shape": (16, 16), "mean_pressure": 0.02, "target": 1e-2, "shear_modulus": 1.0, "poisson_ratio": 0.3}
+        wavy = cn.solve_to_accuracy(lambda x, y: 0.05 * (2.0 - np.cos(2 * np.pi * x / 3.2) - np.cos(2 * np.pi * y / 3.2)), 0.2, 0.2,
+                                    period="xy", **given)
+        # Each plane carries the mean pressure.
+        np.testing.assert_allclose(wavy.subsurface([0.5, 1.6], components=["zz"]).zz.mean(axis=(1, 2)), -0.02, rtol=1e-6)
+        # Two balls on patches that do not know of each other: none of the pressure on the right is felt on the left.
+        patch = np.where(np.arange(16) < 8, 0, 1) + np.zeros((16, 1), dtype=int)
+        balls = cn.solve_to_accuracy(lambda x, y: (np.abs(x) - 0.8) ** 2 + y**2, 0.2, 0.2, patches=(patch, np.eye(2)), **given)
+        left = np.where(balls.x < 0.0, balls.pressure, 0.0)
+        alone = cn.subsurface_stress(left, balls.dx, balls.dy, [0.1], poisson_ratio=0.3, components=["zz"]).zz
+        found = balls.subsurface([0.1], components=["zz"]).zz
+        half = balls.pressure.shape[1] // 2
+        self.assertGreater(len(balls.x), 16)
+        np.testing.assert_allclose(found[..., :half], alone[..., :half], atol=1e-12 * balls.max_pressure)
+
+    def test_a_solver_knows_that_its_coefficients_are_no_half_space(self):
+        h, bodies = H[::2, ::2], {"shear_modulus": 1.0, "poisson_ratio": 0.3}
+        m = len(h)
+        table = cn.influence_half_space(m, m, D, D, shear_modulus=1e3, poisson_ratio=0.3)
+        with cn.Solver(m, m, D, D, influence=table, **bodies) as solver:
+            found = solver.solve(h, force=1.0)
+        for result in (found, pickle.loads(pickle.dumps(found)), cn.solve(h, D, D, force=1.0, influence=table, **bodies)):
+            # Its pressures are more than E*/5 of a half-space that there is not.
+            self.assertEqual(result.warnings, ())
+            for call in (lambda: result.subsurface([0.1]), lambda: result.stress_at_points([(0.0, 0.0, 0.1)])):
+                with self.assertRaisesRegex(cn.ContactNormalError, "influence is given; subsurface stresses are those of a half-space"):
+                    call()
+
     def test_pictures(self):
         import matplotlib
 
@@ -72,6 +102,12 @@ class Subsurface(unittest.TestCase):
         self.assertEqual(len(stress.plot_depth().get_lines()), 6)
         with self.assertRaisesRegex(ValueError, "x is 9"):
             stress.plot_section(x=9.0)
+        result = cn.solve(H, D, D, force=1000.0, **STEEL)
+        with self.assertRaisesRegex(ValueError, f"along x has 1 depths of {M} elements; it must have two of each"):
+            result.subsurface([0.1]).plot_section()
+        line = cn.subsurface_stress(result.pressure[:, :1], D, D, [0.1, 0.2], poisson_ratio=0.3)
+        with self.assertRaisesRegex(ValueError, "along x has 2 depths of 1 elements"):
+            line.plot_section()
 
 
 class Coatings(unittest.TestCase):
@@ -87,6 +123,9 @@ class Coatings(unittest.TestCase):
             cn.solve(H, D, D, force=1000.0, coating=((0.1, 1.0), None), **STEEL)
         with self.assertRaisesRegex(cn.ContactNormalError, "coating"):
             stiff.subsurface([0.1])
+        accurate = cn.solve_to_accuracy(H, D, D, force=1000.0, coating=((0.1, 4 * 82000.0, 0.3), None), target=0.1, **STEEL)
+        with self.assertRaisesRegex(cn.ContactNormalError, "coating"):
+            accurate.subsurface([0.1])
 
 
 if __name__ == "__main__":

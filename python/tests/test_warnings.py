@@ -75,6 +75,25 @@ class Warnings(unittest.TestCase):
             self.assertRegex(result.message, rf"E\* is {told}" if told else "^((?!E\\* is).)*$")
             self.assertEqual(pickle.loads(pickle.dumps(result)).warnings, result.warnings)
 
+    def test_coated_bodies_have_no_modulus_of_their_own(self) -> None:
+        # Gel on steel, and steel on gel.
+        given = {"approach": 1e-3, "units": ("m", "N"), "poisson_ratio": 0.28}
+        for below, coating, told in ((82.0, (5.0, 82e4, 0.3), ()), (82.0, None, ("MODULUS",))):
+            result = cn.solve(BALL, 0.1, 0.1, shear_modulus=below, coating=(coating, None), **given)
+            self.assertEqual(tuple(name for name in result.warnings if name in ("MODULUS", "STRAIN")), told)
+
+    def test_tangential_problems_tell_of_a_law(self) -> None:
+        law = {"kind": "LINEAR", "kinetic": 0.1, "falling": 0.2, "half_speed": 1e-6, "speed": 1.0, "memory_distance": 1e-9, "memory_speed": 1e-9}
+        friction = {"coefficient": 0.3, "motion": "STEADY_ROLLING", "law": law, "creepage": (1e-4, 0.0)}
+        pressure = cn.solve(BALL, 0.1, 0.1, force=100.0, **STEEL).pressure
+        found = cn.solve_tangential(pressure, 0.1, 0.1, friction=friction, **STEEL)
+        self.assertEqual((found.status, found.warnings), (cn.OK, ("LAW",)))
+        self.assertIn("friction falls so steeply", found.message)
+        batch = cn.friction_batch(None, 0.1, 0.1, [(1e-4, 0.0, 0.0)], pressure=pressure, friction=friction, **STEEL)
+        self.assertEqual(batch.status[0], cn.OK)
+        self.assertTrue(batch.report["warnings"] & cn.WARNING_LAW)
+        self.assertIn("friction falls so steeply", batch.message)
+
     def test_a_limit_of_time(self) -> None:
         result = cn.solve(BALL, 0.1, 0.1, force=100.0, max_seconds=1e-9, tolerance=1e-14, method="NORM", **STEEL)
         self.assertEqual(result.status, cn.ITERATION_LIMIT)

@@ -27,6 +27,13 @@ class Quantities(unittest.TestCase):
         self.assertEqual(rows[1].lack, "one grid")
         self.assertIn("64 x 64", str(rows))
 
+    def test_a_scene_that_is_not_solved_is_refused(self):
+        for given, status in (({"max_seconds": 1e-9}, cn.ITERATION_LIMIT), ({"max_cycles": 1, "method": "NORM", "tolerance": 1e-14}, cn.ITERATION_LIMIT)):
+            with self.assertRaises(cn.ContactNormalError) as caught:
+                cn.quantities(H, 0.1, 0.1, **BALL, **given)
+            self.assertEqual(caught.exception.status, status)
+            self.assertTrue(caught.exception.message)
+
     def test_what_is_no_quantity_is_refused(self):
         with self.assertRaisesRegex(ValueError, "names has 'area'"):
             cn.quantities(H, 0.1, 0.1, names=["area"], **BALL)
@@ -60,6 +67,22 @@ class WhatMatters(unittest.TestCase):
         self.assertIn("verdict at 0.01", str(bill))
         self.assertEqual(list(cn.what_matters(H, 0.1, 0.1, **BALL)), [])
 
+    def test_a_bill_that_is_cut_short_says_so(self):
+        bill = cn.what_matters(H, 0.1, 0.1, layer=1e-7, max_seconds=1e-9, **BALL)
+        self.assertEqual({row.lack for row in bill}, {"unsolved"})
+        self.assertEqual(bill.message, "max_seconds was reached")
+        self.assertTrue(str(bill).endswith("\nmax_seconds was reached"))
+        self.assertEqual(cn.what_matters(H, 0.1, 0.1, layer=1e-7, **BALL).message, "")
+
+    def test_all_that_may_be_left_out_is_told(self):
+        for name in cn._bill.OMISSIONS.values():
+            self.assertIn(f'"{name}"', cn._bill.BillRow.__doc__)
+
+    def test_the_force_is_called_an_approach_where_it_is_one(self):
+        given = {"e_star": E_STAR, "layer": 1e-7, "pairs": False}
+        for load, last in (({"approach": APPROACH}, "layer"), ({"force": 1e4}, "force is that of the approach: the force is prescribed")):
+            self.assertTrue(str(cn.what_matters(H, 0.1, 0.1, **load, **given)).splitlines()[-1].startswith(last))
+
     def test_what_is_negligible_is_left_out(self):
         result = cn.solve(H, 0.1, 0.1, layer=1e-12, pressure_limit=1000.0, neglect_below=1e-2, **BALL)
         self.assertEqual(result.neglected, ("layer",))
@@ -80,6 +103,11 @@ class WhatMatters(unittest.TestCase):
         self.assertEqual([line.get_label() for line in drawn.get_lines() if line.get_label()[0] != "_"], ["force", "stiffness"])
         prices = cn.cost_of_accuracy(H, 0.1, 0.1, targets=[1e-2, 1e-3], **BALL)
         self.assertEqual(prices.plot(measured=[(1e-3, 1e-2)]).get_xscale(), "log")
+        by_force = {**BALL, "approach": None, "force": 1e4}
+        axes = cn.cost_of_accuracy(H, 0.1, 0.1, targets=[1e-2, 1e-3], **by_force).plot()
+        self.assertEqual((prices.plot().get_ylabel(), axes.get_ylabel()), ("relative error of the force", "relative error of the approach"))
+        drawn = cn.what_matters(H, 0.1, 0.1, layer=1e-7, pairs=False, **by_force).plot()
+        self.assertEqual(drawn.get_legend_handles_labels()[1], ["approach", "max pressure", "contact area"])
 
 
 if __name__ == "__main__":

@@ -52,6 +52,21 @@ class Datasets(unittest.TestCase):
         # The place of the largest pressure, by its coordinates.
         self.assertAlmostEqual(float(dataset.pressure.idxmax("x").max("y")), found.x[found.pressure.max(axis=0).argmax()])
 
+    def test_fields_of_effects(self):
+        rolling = {"coefficient": 0.3, "motion": "SHIFT", "creepage": (1e-3, 0.0), "layer": {"yield_limit": 1e3}}
+        given = {"force": 100.0, "units": ("mm", "N"), **STEEL}
+        for effect, names in (({"friction": rolling}, ("friction_coefficient", "yield_limit")),
+                              ({"adhesion": {"work": 1e-3, "range": 1e-3}}, ("contact_pressure", "attraction"))):
+            found = cn.solve(H, 0.1, 0.12, **effect, **given)
+            found.to_netcdf(self.path)
+            dataset = self.read()
+            for name in names:
+                self.assertTrue(dataset[name].values.any())
+                np.testing.assert_array_equal(dataset[name].values, getattr(found, name))
+                self.assertEqual((dataset[name].dims, dataset[name].attrs.get("units")), (("y", "x"), None if name == "friction_coefficient" else "MPa"))
+            others = {"friction_coefficient", "yield_limit", "contact_pressure", "attraction"} - set(names)
+            self.assertFalse(others & set(dataset.data_vars))
+
     def test_without_friction_and_units(self):
         dataset = cn.solve(H, 0.1, 0.12, force=100.0, **STEEL).to_xarray()
         self.assertFalse({"traction", "slip", "stick_slip", "component"} & (set(dataset.data_vars) | set(dataset.coords)))
