@@ -71,7 +71,7 @@ pub struct contact_normal_effects_row {
     pub reserved: i32,
     /// The value of the scene as it is, on the last of the small grids; NaN: there is none.
     pub value: f64,
-    /// The change of the quantity by leaving out; NaN: not known.
+    /// The change of the quantity by leaving out, on the last of the small grids; NaN: not known, as where that grid is not solved.
     pub change: f64,
     /// How far the change may be off; < 0: not known.
     pub change_error: f64,
@@ -119,8 +119,9 @@ impl From<&BillRow> for contact_normal_effects_row {
 /// for at most 5 % of its own predicted seconds or 100 ms, or `options->max_seconds` where that is given.
 ///
 /// `*count` is the number of rows: n for each effect, in the order of the constants, then n for each pair. `rows` has room for the first
-/// `capacity` of them; rows NULL asks for the count alone, which takes no time. ITERATION_LIMIT, CANCELLED: by `options`; rows have the results
-/// so far. UNSUPPORTED: own coefficients, tractions kept by a handle, FIXED contact. Since 0.2.
+/// `capacity` of them; rows NULL asks for the count alone, which takes no time. ITERATION_LIMIT: `max_cycles` ended a
+/// solve of the last grid, and rows that need it have no change (LACK_UNSOLVED); or `max_seconds` was reached. Then, and after CANCELLED, rows have
+/// the results of the last grid that was solved with and without all effects. UNSUPPORTED: own coefficients, tractions kept by a handle, FIXED contact. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_effects_bill(
     scene: *const contact_normal_scene,

@@ -19,7 +19,7 @@ pub const CONTACT_NORMAL_LACK_NO_FRICTION: i32 = 1;
 pub const CONTACT_NORMAL_LACK_PRESCRIBED: i32 = 2;
 /// `lack`: there is no value, since an effect of the scene stands against it: stresses are those of half-spaces.
 pub const CONTACT_NORMAL_LACK_EFFECT: i32 = 3;
-/// `lack`: there is no value, since there is no contact.
+/// `lack`: there is no value, since there is no contact; or no error of a value of 0, since the grid is too coarse to touch.
 pub const CONTACT_NORMAL_LACK_NO_CONTACT: i32 = 4;
 /// `lack`: there is no error, since the value grows from grid to grid.
 pub const CONTACT_NORMAL_LACK_SINGULAR: i32 = 5;
@@ -100,7 +100,7 @@ const MOST_COARSER: i32 = 12;
 /// nothing, and writes `n` rows for each grid, coarsest first: `rows[k n + i]` is that of `quantities[i]` (CONTACT_NORMAL_QUANTITY_...) on grid k.
 /// There are `(coarser + 1) n` rows; where a grid of few elements cannot be halved any more, fewer grids, and `*written` (NULL: not wanted)
 /// has the number of rows. Errors of force, largest pressure and area are the estimates of the report; errors of all others follow from the
-/// grids before, so that the coarsest has none. Arrays of one value per element have their means on coarser grids. ITERATION_LIMIT, STAGNATED:
+/// grids before, so that the coarsest has none. Where nothing touches on the scene's own grid, values of 0 have the error 0. Arrays of one value per element have their means on coarser grids. ITERATION_LIMIT, STAGNATED:
 /// the scene's own grid was not solved. UNSUPPORTED: own coefficients, tractions kept by a handle, FIXED contact. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_quantities(

@@ -99,7 +99,8 @@ pub struct contact_normal_report_accuracy {
     /// Of the pressures: rms of the error over that of p.
     pub error_pressure: f64,
     /// Of the tangential force in x and y, or of the creepage where the force is prescribed. They are estimated when `error_force` is, of
-    /// shifts from rest, and for bodies that are alike of steady rolling from rest.
+    /// shifts from rest, and for bodies that are alike of steady rolling from rest; with a law of friction, or a layer that hardens or softens, of
+    /// shifts by creepages only.
     pub error_tangential: [f64; 2],
     /// CONTACT_NORMAL_UNTRUSTED_... bits.
     pub untrusted: i32,
