@@ -5,10 +5,10 @@ use std::ptr::null_mut;
 
 use contact_normal::ffi::*;
 
+use crate::adhesion_call::{ask, Asked, Found};
 use crate::adhesion_case::{traction, Case};
 use crate::call::{bare_scene, last_error};
 use crate::effect_structs::effect_structs;
-use crate::effects::Values;
 use crate::grid::Load;
 use crate::half_space::compliance;
 use crate::init::initialised;
@@ -31,33 +31,6 @@ pub struct Run {
     pub products: Option<f64>,
 }
 
-/// What a call wrote.
-#[derive(Clone)]
-struct Found {
-    status: i32,
-    message: String,
-    p: Vec<f64>,
-    q: Vec<f64>,
-    contact: Vec<i32>,
-    tractions: [Vec<f64>; 2],
-    report: contact_normal_report,
-}
-
-impl Found {
-    fn bits(&self) -> Vec<u64> {
-        let fields = self.p.iter().chain(&self.q).chain(&self.tractions[0]).map(|value| value.to_bits());
-        fields.chain([self.report.normal.approach.to_bits(), self.status as u64]).collect()
-    }
-}
-
-/// Who is asked.
-enum Asked {
-    Solve,
-    PullOff,
-    /// A handle, and whether it goes on from its last result.
-    Handle(*mut contact_normal_solver, bool),
-}
-
 /// A random case: alone and again, or twice with a handle.
 pub fn run(random: &mut Random) -> Run {
     let case = Case::random(random);
@@ -78,58 +51,6 @@ pub fn run(random: &mut Random) -> Run {
         verdict.add(is_too_much(&case, force, &found.message, &mut statuses));
     }
     Run { case, statuses, verdict, products }
-}
-
-fn ask(case: &Case, load: Load, asked: &Asked) -> Found {
-    let n = case.grid.len();
-    let structs = effect_structs(&case.effects);
-    let mut scene = bare_scene(&case.grid, &case.h, (case.shear_modulus, case.poisson_ratio), load);
-    structs.point_from(&mut scene, &case.effects);
-    let mut adhesion = initialised(contact_normal_adhesion_init);
-    (adhesion.law, adhesion.start, adhesion.smear, adhesion.range) = (case.law, case.start, case.smear, case.range);
-    match &case.work {
-        Values::Uniform(work) => adhesion.work_of_adhesion = *work,
-        Values::PerElement(works) => adhesion.works_of_adhesion = works.as_ptr(),
-    }
-    let mut friction = initialised(contact_normal_friction_init);
-    if let Some((mu, strength, shift)) = case.friction {
-        adhesion.shear_strength = strength;
-        (friction.coefficient, friction.creepage[0]) = (mu, shift * case.range);
-        scene.friction = &friction;
-    }
-    scene.adhesion = &adhesion;
-    let mut options = initialised(contact_normal_options_init);
-    if let Asked::Handle(_, true) = asked {
-        options.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS;
-    }
-    let mut found = Found {
-        status: 0,
-        message: String::new(),
-        p: vec![0.0; n],
-        q: vec![0.0; n],
-        contact: vec![0; n],
-        tractions: [vec![0.0; n], vec![0.0; n]],
-        report: initialised(contact_normal_report_init),
-    };
-    let mut fields = initialised(contact_normal_fields_init);
-    (fields.pressure, fields.contact) = (found.p.as_mut_ptr(), found.contact.as_mut_ptr());
-    fields.contact_pressure = found.q.as_mut_ptr();
-    if case.friction.is_some() {
-        fields.traction = [found.tractions[0].as_mut_ptr(), found.tractions[1].as_mut_ptr()];
-    }
-    let report = &raw mut found.report;
-    // SAFETY: structs with the arrays that they declare, and a handle that no one else uses.
-    found.status = unsafe {
-        match *asked {
-            Asked::Solve => contact_normal_solve(&scene, &options, &mut fields, report),
-            Asked::PullOff => contact_normal_pull_off(&scene, &options, &mut fields, report),
-            Asked::Handle(handle, _) => contact_normal_solver_solve(handle, &scene, &options, &mut fields, report),
-        }
-    };
-    if found.status != CONTACT_NORMAL_OK {
-        found.message = last_error();
-    }
-    found
 }
 
 /// Two steps of a handle: the second is not far from the first.
@@ -157,9 +78,33 @@ fn with_handle(case: &Case, step: f64, statuses: &mut Vec<i32>) -> Verdict {
         let second = ask(case, load, &Asked::Handle(handle, true));
         verdict.add(judge(case, load, &second).within("a step: "));
         statuses.push(second.status);
+        if second.status >= CONTACT_NORMAL_OK {
+            verdict.add(stays(case, handle, &second));
+        }
     }
     // SAFETY: made above.
     unsafe { contact_normal_solver_free(handle) };
+    verdict
+}
+
+/// A solve that is refused leaves the last result, with its contact pressures.
+fn stays(case: &Case, handle: *mut contact_normal_solver, last: &Found) -> Verdict {
+    let structs = effect_structs(&case.effects);
+    let mut scene = bare_scene(&case.grid, &case.h, (case.shear_modulus, case.poisson_ratio), Load::Force(f64::MAX));
+    structs.point_from(&mut scene, &case.effects);
+    let (mut p, mut q) = (vec![0.0; last.p.len()], vec![0.0; last.q.len()]);
+    let mut fields = initialised(contact_normal_fields_init);
+    (fields.pressure, fields.contact_pressure) = (p.as_mut_ptr(), q.as_mut_ptr());
+    // SAFETY: a handle that no one else uses, and structs with the arrays that they declare.
+    let statuses = unsafe {
+        let refused =
+            contact_normal_solver_solve(handle, &scene, std::ptr::null(), std::ptr::null_mut(), std::ptr::null_mut());
+        [refused, contact_normal_solver_fields(handle, &mut fields)]
+    };
+    let mut verdict = Verdict::default();
+    let is_refused = statuses[0] < 0 && statuses[1] == CONTACT_NORMAL_OK;
+    verdict.unless(is_refused, "the largest force is refused", || format!("{}: {statuses:?}", case.describe()));
+    verdict.unless(p == last.p && q == last.q, "a refused solve leaves the last result", || case.describe());
     verdict
 }
 

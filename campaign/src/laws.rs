@@ -96,6 +96,26 @@ impl Run {
             law.put(friction, Some(&particles));
         });
         self.check(&handed, &found, (&before, &particles));
+        // Few cycles leave tractions on their way.
+        let mut short = case.stop.clone();
+        short.max_cycles = self.heat.beside(0xc07).integer(1, 12) as i32;
+        let found =
+            call_changed(None, (&case.place, &case.slide, From::Slide), &short, |friction| law.put(friction, None));
+        self.bounded(&found);
+    }
+
+    /// Whatever the status: no traction is longer than mu p, and what touches sticks or slips.
+    fn bounded(&mut self, found: &Found) {
+        if found.status < 0 {
+            return;
+        }
+        let mu = &self.case.slide.mu;
+        let beyond = |i: usize| length(found.q[i]) - mu[i] * found.p[i].max(0.0) * (1.0 + 1e-15);
+        let most = (0..found.q.len()).map(beyond).fold(f64::NEG_INFINITY, f64::max);
+        self.unless(most <= 0.0, "a law keeps tractions within mu p", || format!("status {}: {most:e}", found.status));
+        let of = &found.report.tangential;
+        let (told, touching) = (of.stick_count + of.slip_count, found.p.iter().filter(|p| **p > 0.0).count() as i64);
+        self.unless(told == touching, "stick and slip are the contact", || format!("{told} of {touching}"));
     }
 
     fn unless(&mut self, kept: bool, promise: &'static str, details: impl FnOnce() -> String) {
@@ -122,6 +142,7 @@ impl Run {
         let numbers = found.q.iter().chain(&found.slip).flatten().chain([&slope, &found.report.tangential.residual]);
         let all = numbers.copied().all(f64::is_finite);
         self.unless(all, "a law returns numbers", || format!("status {status}"));
+        self.bounded(found);
         let is_warned = found.report.warnings & CONTACT_NORMAL_WARNING_LAW != 0;
         self.unless(is_warned == (slope >= STEEP), "LAW warns of a law_slope of .5 and more", || format!("{slope}"));
         self.wear(case, found);

@@ -11,6 +11,7 @@
 pub mod account;
 pub mod accuracy;
 pub mod adhesion;
+pub mod adhesion_call;
 pub mod adhesion_case;
 pub mod batch;
 pub mod bytes;

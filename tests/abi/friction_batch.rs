@@ -115,7 +115,7 @@ fn entries_that_time_ends_have_reached_a_limit() {
     assert!(call.status.contains(&CONTACT_NORMAL_ITERATION_LIMIT));
     // One problem, on all threads.
     let mut call = Call::new();
-    (call.options.max_seconds, call.options.tolerance) = (1e-9, 1e-12);
+    (call.options.max_seconds, call.friction.creepage) = (1e-9, [-1e-6, 2e-7]);
     let (status, message) = call.run_with(call.pressure.as_ptr(), 1, null());
     assert_eq!((status, call.status[0]), (CONTACT_NORMAL_ITERATION_LIMIT, CONTACT_NORMAL_ITERATION_LIMIT), "{message}");
 }

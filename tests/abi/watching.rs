@@ -68,12 +68,13 @@ unsafe extern "C" fn set_stop(_: *const contact_normal_progress, user: *mut libc
     0
 }
 
-/// The small grids that show what is negligible ask, too: the third call is made on the first of them.
+/// The small grids that show what is negligible ask, too.
 #[test]
 fn what_leaves_effects_out_asks_as_well() {
     let told = |neglect_below: f64| {
         let mut grids = Vec::new();
         let mut call = Call::new();
+        call.use_layer().compliance = 1e-15;
         call.options.known.neglect_below = neglect_below;
         call.options.known.progress = Some(note_grid);
         call.options.known.user = (&raw mut grids).cast();
@@ -82,9 +83,10 @@ fn what_leaves_effects_out_asks_as_well() {
         grids
     };
     let (with, without): (Vec<i32>, Vec<i32>) = (told(1e-3), told(0.0));
-    assert!(with.len() > without.len() && with.ends_with(&without), "{with:?} {without:?}");
+    assert!(!without.is_empty() && with.len() > without.len(), "{with:?} {without:?}");
 
     let (mut call, stop) = (Call::new(), 1);
+    call.use_layer().compliance = 1e-15;
     call.options.known.neglect_below = 1e-3;
     call.options.known.stop = &raw const stop;
     let mut grids: Vec<i32> = Vec::new();

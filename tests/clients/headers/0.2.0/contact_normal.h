@@ -17,12 +17,12 @@
 #define CONTACT_NORMAL_OK 0
 
 /*
- `max_cycles` or a limit of an accuracy was reached; outputs hold the best iterate.
+ `max_cycles`, `max_seconds` or a limit of an accuracy was reached; outputs hold the best iterate.
  */
 #define CONTACT_NORMAL_ITERATION_LIMIT 1
 
 /*
- A callback cancelled; outputs hold the best iterate.
+ A callback or `options->stop` cancelled; outputs hold the best iterate.
  */
 #define CONTACT_NORMAL_CANCELLED 2
 
@@ -628,7 +628,8 @@
 #define CONTACT_NORMAL_OBSTACLE_NONE 0
 
 /*
- `obstacle`: no grid is known to suffice: the largest pressure is singular or not resolved, or contact is on single elements.
+ `obstacle`: no grid is known to suffice: the quantity is singular or not resolved, contact is on single elements, nothing touches and the
+ quantity is not 0 then, or no grid was solved.
  */
 #define CONTACT_NORMAL_OBSTACLE_SINGULAR 1
 
@@ -678,7 +679,7 @@
 #define CONTACT_NORMAL_LACK_EFFECT 3
 
 /*
- `lack`: there is no value, since there is no contact.
+ `lack`: there is no value, since there is no contact; or no error of a value of 0, since the grid is too coarse to touch.
  */
 #define CONTACT_NORMAL_LACK_NO_CONTACT 4
 
@@ -1228,7 +1229,7 @@ typedef struct contact_normal_adhesion {
  Effect: bodies that relax, and a step of `time_step` of them. The `shear_modulus` of the scene is that at once, and falls to
  `G(t) = G - sum of modulus (1 - exp(-t/time))` at a constant Poisson ratio; of a coated body it is that of the coating, on a rigid body. A
  solver handle remembers the steps before: the first step has `continues` 0, the others 1. `displacement` and `deformed_distance` contain what is
- left of the steps before. See docs/visco.md.
+ left of the steps before. A step that stops early counts as a step. See docs/visco.md.
  */
 typedef struct contact_normal_visco {
   /*
@@ -1508,12 +1509,13 @@ typedef struct contact_normal_options {
   const int32_t *stop;
   /*
    The path of a file, or NULL (default): where a call that ends neither as OK nor as CANCELLED writes its arguments, for
-   `contact-normal-replay` (docs/dump.md). %p in it is the number of the process, %n that of the dump in the process, %% a %.
+   `contact-normal-replay` (docs/dump.md); not by `contact_normal_quantities` and `contact_normal_effects_bill`. %p in it is the number of the process, %n that of the dump in the process, %% a %.
    */
   const char *dump;
   /*
    > 0, of `contact_normal_solve` alone: effects whose omission changes force or approach, largest pressure, area and tangential forces
    by less than this part, as `contact_normal_effects_bill` says, are left out; `report->accuracy.neglected` has which. Friction stays.
+   `progress` is told of the cycles on the small grids that show it.
    Below 1. Default 0: nothing is left out. Since 0.2.
    */
   double neglect_below;
@@ -1808,7 +1810,8 @@ typedef struct contact_normal_report_accuracy {
   double error_pressure;
   /*
    Of the tangential force in x and y, or of the creepage where the force is prescribed. They are estimated when `error_force` is, of
-   shifts from rest, and for bodies that are alike of steady rolling from rest.
+   shifts from rest, and for bodies that are alike of steady rolling from rest; with a law of friction, or a layer that hardens or softens, of
+   shifts by creepages only.
    */
   double error_tangential[2];
   /*
@@ -2399,7 +2402,7 @@ typedef struct contact_normal_effects_row {
    */
   double value;
   /*
-   The change of the quantity by leaving out; NaN: not known.
+   The change of the quantity by leaving out, on the last of the small grids; NaN: not known, as where that grid is not solved.
    */
   double change;
   /*
@@ -2888,7 +2891,7 @@ contact_normal_status contact_normal_solver_stiffness(struct contact_normal_solv
 
  `progress` is called on the calling thread: after the cycles of the normal problem, and then about once for each entry; `cycles` counts
  the entries that are done and `residual` is that of the last one. When it cancels, the results of
- entries that are not done stay as they are, with the status CANCELLED. Since 0.2.
+ entries that are not done stay as they are, with the status CANCELLED; by `max_seconds` with ITERATION_LIMIT. Since 0.2.
  */
 contact_normal_status contact_normal_solve_tangential(struct contact_normal_solver *solver,
                                                       const struct contact_normal_scene *scene,
@@ -2950,11 +2953,15 @@ contact_normal_status contact_normal_solve_to_accuracy(const struct contact_norm
 /*
  Predicts the cost of each of `n` relative errors of a `quantity`: `rows[i]` is that of `targets[i]`, and `contact_normal_price_init(rows)`
  has set the size of a row. The scene is solved on small grids over its rectangle only, for at most 2 % of the seconds of the most
- expensive row that can be reached, or 50 ms; for some 2 s where no row is known by then. Of `accuracy` (NULL: the defaults) `max_seconds`,
- `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit names it as its obstacle, and has the cost without the limit. With a surface the scene's undeformed
+ expensive row that can be reached (the least that its samples predict; on a busy machine the last sample may take longer), or 50 ms; for some
+ 2 s where no row is known by then. Where nothing touches on the scene's grid, a quantity of 0 is exact: the row has that grid and the error 0.
+ Of `accuracy` (NULL: the defaults) `max_seconds`,
+ `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit names it as its obstacle, and has the cost without the limit.
+ With a surface the scene's undeformed
  distance is not read and may be NULL. Without one small grids sample it, and grids finer than the scene's are refined from it, as
- `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface or `options->stop`; ITERATION_LIMIT: `options->max_seconds` was reached;
- rows have the results so far. UNSUPPORTED: own coefficients, FIXED contact, or a step of bodies that relax which continues. Since 0.2.
+ `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface or `options->stop`; ITERATION_LIMIT: `options->max_seconds` was reached,
+ and rows have the results so far; or `max_cycles`, and neither the scene's grid nor a coarser one was solved. STAGNATED: neither was solved.
+ UNSUPPORTED: own coefficients, FIXED contact, or a step of bodies that relax which continues. Since 0.2.
  */
 contact_normal_status contact_normal_cost_of_accuracy(const struct contact_normal_scene *scene,
                                                       const struct contact_normal_options *options,
@@ -2969,7 +2976,7 @@ contact_normal_status contact_normal_cost_of_accuracy(const struct contact_norma
  nothing, and writes `n` rows for each grid, coarsest first: `rows[k n + i]` is that of `quantities[i]` (CONTACT_NORMAL_QUANTITY_...) on grid k.
  There are `(coarser + 1) n` rows; where a grid of few elements cannot be halved any more, fewer grids, and `*written` (NULL: not wanted)
  has the number of rows. Errors of force, largest pressure and area are the estimates of the report; errors of all others follow from the
- grids before, so that the coarsest has none. Arrays of one value per element have their means on coarser grids. ITERATION_LIMIT, STAGNATED:
+ grids before, so that the coarsest has none. Where nothing touches on the scene's own grid, values of 0 have the error 0. Arrays of one value per element have their means on coarser grids. ITERATION_LIMIT, STAGNATED:
  the scene's own grid was not solved. UNSUPPORTED: own coefficients, tractions kept by a handle, FIXED contact. Since 0.2.
  */
 contact_normal_status contact_normal_quantities(const struct contact_normal_scene *scene,
@@ -2988,8 +2995,9 @@ contact_normal_status contact_normal_quantities(const struct contact_normal_scen
  for at most 5 % of its own predicted seconds or 100 ms, or `options->max_seconds` where that is given.
 
  `*count` is the number of rows: n for each effect, in the order of the constants, then n for each pair. `rows` has room for the first
- `capacity` of them; rows NULL asks for the count alone, which takes no time. ITERATION_LIMIT, CANCELLED: by `options`; rows have the results
- so far. UNSUPPORTED: own coefficients, tractions kept by a handle, FIXED contact. Since 0.2.
+ `capacity` of them; rows NULL asks for the count alone, which takes no time. ITERATION_LIMIT: `max_cycles` ended a
+ solve of the last grid, and rows that need it have no change (LACK_UNSOLVED); or `max_seconds` was reached. Then, and after CANCELLED, rows have
+ the results of the last grid that was solved with and without all effects. UNSUPPORTED: own coefficients, tractions kept by a handle, FIXED contact. Since 0.2.
  */
 contact_normal_status contact_normal_effects_bill(const struct contact_normal_scene *scene,
                                                   const struct contact_normal_options *options,
@@ -3015,7 +3023,8 @@ contact_normal_status contact_normal_hertz(double curvature_x,
 
 /*
  The influence coefficients of the half-space for elements `dx` by `dy`, as a table over offsets -cx..cx-1 by -cy..cy-1:
- `coefficients[2 cy][2 cx]`, x fastest, as `contact_normal_influence` takes it. Since 0.1.
+ `coefficients[2 cy][2 cx]`, x fastest, as `contact_normal_influence` takes it. NOT_FINITE, INVALID_ARGUMENT: coefficients beyond the range of
+ doubles. Since 0.1.
  */
 contact_normal_status contact_normal_influence_half_space(int32_t cx,
                                                           int32_t cy,
@@ -3063,8 +3072,9 @@ contact_normal_status contact_normal_influence_rolling_tangential(int32_t cx,
  `[my][mx]`, constant on each element. NULL: none; one of them at least must be given. Tractions are those that act on this body, in +x
  and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, a `period` in both directions,
  and `patches` matter: below an element of a patch the loads on another one count times the factor between both. With a `coating` on this
- body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options (NULL: the defaults) `threads` and `progress`
- matter; a cycle is a depth. CANCELLED: the depths done so far are written, others are left alone. Since 0.2.
+ body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options (NULL: the defaults) `threads`, `progress`,
+ `max_seconds` and `stop` matter; a cycle is a depth. CANCELLED, or ITERATION_LIMIT by `max_seconds`: the depths done so far are written, others
+ are left alone. Since 0.2.
  */
 contact_normal_status contact_normal_subsurface_stress(const struct contact_normal_scene *scene,
                                                        int32_t body,
@@ -3145,9 +3155,10 @@ contact_normal_status contact_normal_keep(int64_t bytes);
 contact_normal_status contact_normal_kept(int64_t *bytes, int32_t *threads);
 
 /*
- 1 if this library has the feature of this name, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop"), a
- member of the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "yield_limit"), or a task of
- calls ("batch", "accuracy", "price_list", "stress", "flash_temperature", "frictional_wear", "influence_rolling",
+ 1 if this library has the feature of this name, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop",
+ "error_ratio", "neglect_below"), a
+ member of the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "branch", "previous_coefficient",
+ "yield_limit"), or a task of calls ("batch", "accuracy", "price_list", "quantities", "effects_bill", "stress", "coating_compliance", "flash_temperature", "frictional_wear", "influence_rolling",
  "influence_rolling_tangential", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump", "set_option",
  "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
  */
