@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
+#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,9 +27,14 @@ template <class Call>
 contact_normal_status run(const scene &of, result &found, const contact_normal_options &how, const progress &told, Call call)
 {
     outputs to;
-    const std::string wrong = to.begin(of, found, how);
-    if (!wrong.empty()) {
-        outputs::refuse(found, CONTACT_NORMAL_INVALID_ARGUMENT, wrong);
+    try {
+        const std::string wrong = to.begin(of, found, how);
+        if (!wrong.empty()) {
+            outputs::refuse(found, CONTACT_NORMAL_INVALID_ARGUMENT, wrong);
+            return found.status;
+        }
+    } catch (const std::bad_alloc &) {
+        outputs::refuse(found, CONTACT_NORMAL_OUT_OF_MEMORY, "there is no memory for the results");
         return found.status;
     }
     watched_options options(how, told);
@@ -272,11 +278,16 @@ inline void solver::solve_all(const std::vector<scene> &scenes, batch &found, co
 
 inline contact_normal_status solver::solve_batch_into(const std::vector<scene> &scenes, batch &found, const options &how)
 {
+    const auto refuse = [&](contact_normal_status status, const char *why) {
+        found.status = status, found.message = why;
+        for (result &each : found.results) detail::outputs::refuse(each, status, why);
+    };
     try {
         solve_all(scenes, found, how);
     } catch (const error &refused) {
-        found.status = refused.status(), found.message = refused.what();
-        for (result &each : found.results) detail::outputs::refuse(each, refused.status(), refused.what());
+        refuse(refused.status(), refused.what());
+    } catch (const std::bad_alloc &) {
+        refuse(CONTACT_NORMAL_OUT_OF_MEMORY, "there is no memory for the results");
     }
     return found.status;
 }

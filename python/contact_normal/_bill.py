@@ -92,7 +92,7 @@ class Bill(list[BillRow]):
     estimated : str
         What the quantity "force" is: "force", or "approach" where the force is prescribed.
     message : str
-        Why rows are not solved, where `max_seconds` ended the call; else "".
+        Why rows are not solved, where `max_seconds` or `max_cycles` ended the call; else "".
     """
 
     target: float

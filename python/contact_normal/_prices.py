@@ -77,15 +77,17 @@ class Prices(list[Price]):
         Of what the errors are.
     estimated : str
         What the quantity "force" is: "force", or "approach" where the force is prescribed.
+    message : str
+        Why, if a limit ended the call or no grid was solved; else "".
     """
 
-    def __init__(self, rows: Iterable[Price], quantity: str, estimated: str = "force") -> None:
+    def __init__(self, rows: Iterable[Price], quantity: str, estimated: str = "force", message: str = "") -> None:
         super().__init__(rows)
-        self.quantity, self.estimated = quantity, estimated
+        self.quantity, self.estimated, self.message = quantity, estimated, message
 
     def __str__(self) -> str:
         head = f"{'relative error':>14} {'elements':>13} {'tolerance':>10} {'seconds':>9} {'MB':>8}"
-        return "\n".join([head, *(_line(price) for price in self)])
+        return "\n".join([head, *(_line(price) for price in self), *([self.message] if self.message else [])])
 
     def plot(self, axes: Axes | None = None, measured: Sequence[tuple[float, float]] = ()) -> Axes:
         """Draws error against seconds, with the elements of each grid.
@@ -203,5 +205,5 @@ def cost_of_accuracy(
     if surface:
         surface.finish()
     check(status, message)
-    return Prices((Price.of(row) for row in rows), quantity, estimated(scene))
+    return Prices((Price.of(row) for row in rows), quantity, estimated(scene), message)
 

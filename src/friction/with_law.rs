@@ -50,8 +50,13 @@ impl Had<'_> {
     fn before(&self, i: usize) -> Particle {
         let kept = self.kept.get(i).copied().unwrap_or(self.fresh(i));
         Particle {
-            coefficient: self.friction.coefficients_before.map_or(kept.coefficient, |of| of[i]),
-            yield_limit: self.friction.yield_limits.map_or(kept.yield_limit, |of| of[i]),
+            coefficient: self
+                .friction
+                .coefficients_before
+                .and_then(|of| of.get(i))
+                .copied()
+                .unwrap_or(kept.coefficient),
+            yield_limit: self.friction.yield_limits.and_then(|of| of.get(i)).copied().unwrap_or(kept.yield_limit),
         }
     }
 }

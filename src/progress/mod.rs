@@ -143,8 +143,8 @@ impl<'a> Monitor<'a> {
         !self.cancelled
     }
 
-    /// Reports an iteration of the tangential problem, which is not counted; false when the caller cancels.
-    pub fn tangential_done(&mut self, grid: &Grid, residual: f64) -> bool {
+    /// Reports an iteration that is not counted, of the tangential problem or on a coarser grid; false when the caller cancels.
+    pub fn uncounted_done(&mut self, grid: &Grid, residual: f64) -> bool {
         self.tell(grid, 0, 0.0, residual)
     }
 

@@ -37,12 +37,16 @@ impl Frozen for Plain {
         problem.refresh(state, NonNegative)?;
         let survey = Survey::by(state, &problem.threads);
         let own_grid = state.grid;
+        // A separate monitor, because cycles on coarser grids are not cycles of this grid.
         let mut tell = |progress: &Progress| {
             let Progress { mx, my, active_set_changes, update, residual, .. } = *progress;
             let grid = Grid { mx, my, ..own_grid };
-            !monitor.cycle_done(&grid, active_set_changes, update, residual)
+            if (mx, my) == (own_grid.mx, own_grid.my) {
+                !monitor.cycle_done(&grid, active_set_changes, update, residual)
+            } else {
+                !monitor.uncounted_done(&grid, residual)
+            }
         };
-        // A separate monitor, because cycles on coarser grids are not cycles of this grid.
         let mut own = Monitor::new(Some(&mut tell), Vec::new(), false);
         let goal = Goal { criterion: Criterion::Residual, tolerance, max_cycles };
         let mut task = Task { problem, state, lowest, set: NonNegative, goal, monitor: &mut own };

@@ -61,7 +61,9 @@ impl Solver {
         let converged = matches!(outcome, Ok((Outcome::Converged, _)));
         if on_the_way && converged && options.initial_guess != InitialGuess::Previous {
             // Only iterates reached a limit: the result has the bits of the scene without limits, if there is still time for it.
-            let found = (self.state.copy(&self.problem.threads)?, std::mem::take(&mut monitor.ledger.rows));
+            let window = self.methods.projected_cg.current_window();
+            let found = (self.state.copy(&self.problem.threads)?, std::mem::take(&mut monitor.ledger), monitor.count);
+            monitor.ledger.estimates = found.1.estimates;
             monitor.enter_grid();
             self.methods.forget_iterates();
             let without = self.run((scene, lowest), NonNegative, options, guess, monitor);
@@ -69,9 +71,13 @@ impl Solver {
             if matches!(without, Ok((Outcome::Converged, _))) && !exceeds {
                 outcome = without;
             } else {
-                (self.state, monitor.ledger.rows) = found;
+                let work_units = monitor.count.work_units;
+                (self.state, monitor.ledger, monitor.count) = found;
+                (monitor.survey, self.has_result) = (None, true);
+                monitor.count.work_units = work_units;
                 self.methods.forget_iterates();
                 self.methods.projected_cg.forget_solutions();
+                self.methods.projected_cg.go_back_to(window);
             }
         }
         self.limits = limits;

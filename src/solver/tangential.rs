@@ -146,7 +146,7 @@ impl Tangent {
             is_cancelled: monitor.is_cancelled(),
             estimates: turn.options.estimates,
         };
-        self.solver.solve(&request, &mut |grid, residual| monitor.tangential_done(grid, residual))
+        self.solver.solve(&request, &mut |grid, residual| monitor.uncounted_done(grid, residual))
     }
 
     /// Solves with the pressures of a normal problem that ended with `stop`. If it did not converge, or is to be solved again for unlike bodies, its

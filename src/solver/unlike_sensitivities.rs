@@ -109,7 +109,7 @@ impl Linear<'_> {
         let first = norm(&left);
         let mut directions: Vec<Direction> = Vec::new();
         while directions.len() < MOST_TURNS && norm(&left) > TOLERANCE * first {
-            if !monitor.tangential_done(&grid, norm(&left) / first) {
+            if !monitor.uncounted_done(&grid, norm(&left) / first) {
                 return Ok(None);
             }
             let Some(direction) = self.direction(&left, &directions)? else { break };

@@ -39,7 +39,8 @@ fn tractions_are_bounded_where_cycles_end_and_at_loose_tolerances() {
         let normal = Scene::new(grid, &h, steel, Load::Force(force));
         let largest = solve(&normal, &Options::default()).expect("a solve").2.measures.max_pressure;
         for (hardening, yields) in [(1e4, 0.1), (1e6, 0.02), (1e7, 0.1)] {
-            for law in [None, Some(FrictionLaw::new(Fall::Rational, (0.4, 0.6), 1e-3, 1.0))] {
+            let falls = FrictionLaw::new(Fall::Rational, (0.4, 0.6), 1e-3, 1.0);
+            for law in [None, Some(falls), Some(FrictionLaw { memory_distance: 0.05, memory_speed: 1e-3, ..falls })] {
                 for motion in [Motion::Shift, Motion::TransientRolling, Motion::SteadyRolling] {
                     for prescribed in [Prescribed::Force(0.6 * MU * force), Prescribed::Creepage(1e-3)] {
                         let layer = Some(PlasticLayer { yield_limit: yields * MU * largest, hardening });
@@ -56,4 +57,31 @@ fn tractions_are_bounded_where_cycles_end_and_at_loose_tolerances() {
         }
     }
     assert!(cut_short > 50, "{cut_short}");
+}
+
+/// With memory a particle keeps the coefficient of where it comes from: here twice that of its place. Its tractions were cut to mu p, and the solve stagnated.
+#[test]
+fn with_memory_the_bound_is_that_of_what_particles_bring() {
+    let (grid, h) = ball((24, 24), 0.02);
+    let steel = Bodies { shear_modulus: [82000.0; 2], poisson_ratio: [0.28; 2] };
+    let before = vec![2.0 * MU; grid.len()];
+    let law = FrictionLaw {
+        memory_distance: 1.0,
+        memory_speed: 1e-6,
+        ..FrictionLaw::new(Fall::Rational, (0.4, 0.6), 1e-3, 1.0)
+    };
+    for motion in [Motion::Shift, Motion::TransientRolling] {
+        let friction = Friction {
+            motion,
+            prescribed: [Prescribed::Creepage(0.05), Prescribed::Creepage(0.0)],
+            law: Some(law),
+            coefficients_before: Some(&before),
+            ..Friction::new(MU)
+        };
+        let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, steel, Load::Force(11.52)) };
+        let (_, outcome, report) = solve(&scene, &Options::default()).expect("a solvable scene");
+        assert_eq!(outcome, contact_normal::solver::Outcome::Converged, "{motion:?}");
+        let force = report.friction.expect("a report of friction").force[0].abs();
+        assert!(force > 1.5 * MU * 11.52, "{motion:?}: {force}");
+    }
 }

@@ -80,20 +80,20 @@ pub(super) fn onto_circles(problem: &mut Problem, state: &mut State, tangent: &T
     problem.refresh_unclipped(state);
 }
 
-/// Clips tractions to mu p with the coefficient at rest, which no bound exceeds, with a fresh product if any was longer.
-fn clip_to_rest(problem: &mut Problem, state: &mut State, march: &March) {
+/// Clips tractions to their [largest bounds](March::largest_bound), with a fresh product if any was longer.
+fn clip_to_largest(problem: &mut Problem, state: &mut State, march: &March) {
     let threads = problem.threads().clone();
-    let exceeds = |k: usize, q: Vector| square(q).sqrt() > march.bound_at_rest(k);
+    let exceeds = |k: usize, q: Vector| square(q).sqrt() > march.largest_bound(k);
     let [count] = fields::sum(&threads, state.q.len(), |k| [f64::from(u8::from(exceeds(k, state.q[k])))]);
     if count > 0.0 {
-        fields::map(&threads, &mut state.q, |k, q| if exceeds(k, q) { clip(q, march.bound_at_rest(k)) } else { q });
+        fields::map(&threads, &mut state.q, |k, q| if exceeds(k, q) { clip(q, march.largest_bound(k)) } else { q });
         problem.refresh_unclipped(state);
     }
 }
 
-/// Clips tractions to mu p, and sets the bounds of slipping elements to their |q|. Returns the larger residual of both certificates.
+/// Clips tractions to their largest bounds, and sets the bounds of slipping elements to their |q|. Returns the larger residual of both certificates.
 pub(super) fn freeze(problem: &mut Problem, state: &mut State, tangent: &Tangent, march: &mut March) -> f64 {
-    clip_to_rest(problem, state, march);
+    clip_to_largest(problem, state, march);
     lag(problem, state, tangent, march);
     let of = |k: usize| match tangent.side[k] {
         Side::Slip => [(square(state.q[k]).sqrt() - problem.bound[k]).powi(2)],

@@ -130,8 +130,10 @@ impl Course {
     /// The error on the last grid from the sequence, if a single grid gives no estimate. Forces, pressures and areas have one only if nothing is
     /// estimated at all (`lacks_estimates`), because a single peak without an estimate is singular or not resolved. It then takes at least three
     /// grids, because only the changes reveal an infinite value.
+    /// An area of 0 has none: a few elements stick on finer grids only.
     pub fn falling(&self, lacks_estimates: bool) -> Option<Falling> {
         match (self.quantity, self.last) {
+            (quantity, _) if quantity.is_area() && self.values.value() == Some(0.0) => None,
             (quantity, _) if quantity.has_estimate() && !(lacks_estimates && self.len() > 2) => None,
             (Quantity::MaxPressure, _) => self.values.falling(),
             (Quantity::VonMisesDepth, Some(peak)) => self.of_depth(peak),
