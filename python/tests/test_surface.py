@@ -331,7 +331,41 @@ class Balance(unittest.TestCase):
         centre = (level.pressure.sum(axis=0) @ level.x) / level.pressure.sum()
         self.assertGreater(abs(centre - 0.1), 0.01)
 
+    def test_a_body_of_one_row_tilts_along_it(self):
+        x = (np.arange(33) - 16.0) * 0.02
+        h = (x**2 / 4.0 + 0.01 * x)[None, :]
+        whole = np.full((5, 33), np.inf)
+        whole[2] = h[0]
+        for one, along in ((h, 0), (h.T, 1), (whole, 0), (np.ascontiguousarray(whole.T), 1)):
+            found = surface.balance(surface.Gap(one, 0.02, 0.02), 1e-4, e_star=1.0)
+            self.assertEqual(found.result.status, cn.OK)
+            self.assertAlmostEqual(found.tilt[along], 0.01, delta=1e-4)
+            self.assertAlmostEqual(found.tilt[1 - along], 0.0, delta=1e-12)
+
+    def test_a_search_that_is_cancelled_ends(self):
+        gap = surface.gap(surface.heights(1e-3 * rough(), 1.0, 1.0))
+        calls = []
+        found = surface.balance(gap, 1.0, e_star=1.0, progress=lambda _: calls.append(1) or True)
+        self.assertEqual((found.result.status, len(calls)), (cn.CANCELLED, 1))
+        given = []
+
+        def solve(gap, **scene):
+            given.append(scene["max_seconds"])
+            return solved(gap, **{**scene, "max_seconds": 0.0})
+
+        solved = surface.Gap.solve
+        with mock.patch.object(surface.Gap, "solve", solve):
+            surface.balance(gap, 1.0, e_star=1.0, max_seconds=100.0)
+        self.assertLess(np.diff(given).max(), 0.0)
+        found = surface.balance(gap, 1.0, e_star=1.0, max_seconds=1e-9)
+        self.assertIn("max_seconds was reached", found.result.message)
+
     def test_what_cannot_be_balanced_is_refused(self):
+        flat = surface.Gap(np.zeros((4, 4)), 1.0, 1.0)
+        for given, text in (({"force": 0.0}, "force is 0; a body that nothing presses"), ({"period": "xy"}, "a body with a period cannot tilt"),
+                            ({"at": (np.nan, 0.0)}, "at is .nan, 0.0.; it must be finite"), ({"tolerance": 0.0}, "tolerance is 0.0; it must be positive")):
+            with self.assertRaisesRegex(ValueError, text):
+                surface.balance(flat, **{"force": 1.0, "e_star": 1.0, **given})
         h = np.full((20, 20), np.inf)
         h[8:12, 8:12] = 0.0
         with self.assertRaisesRegex(ValueError, "are there elements all around it"):
