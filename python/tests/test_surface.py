@@ -53,6 +53,11 @@ class Arrays(unittest.TestCase):
         falling = surface.heights(self.Z, x=[2.5, 2.0, 1.5, 1.0], y=[4.0, 2.0, 0.0])
         np.testing.assert_array_equal(falling.z, self.Z[::-1, ::-1])
         self.assertEqual((falling.dx, falling.dy), (0.5, 2.0))
+        # That the first row is the upper one is then said twice.
+        twice = surface.heights(self.Z, x=[1.0, 1.5, 2.0, 2.5], y=[4.0, 2.0, 0.0], top_first=True)
+        np.testing.assert_array_equal(twice.z, self.Z[::-1])
+        with self.assertRaisesRegex(ValueError, "y has one place, which tells no spacing: give dx and dy"):
+            surface.heights(self.Z[:1], x=[1.0, 1.5, 2.0, 2.5], y=[0.0])
         for given in ({}, {"dx": 1.0, "dy": 1.0, "size": (1.0, 1.0)}, {"size": (1.0, 1.0), "span": (1.0, 1.0)}):
             with self.assertRaisesRegex(TypeError, "give the size of an element in one way"):
                 surface.heights(self.Z, **given)
@@ -79,6 +84,20 @@ class Arrays(unittest.TestCase):
         np.testing.assert_array_equal(surface.heights(self.Z, 1, 1).without(self.Z > 9).holes, self.Z > 9)
         with self.assertRaisesRegex(ValueError, "it must be a mask of booleans"):
             surface.heights(self.Z, 1, 1).without(np.ones((3, 4)))
+
+
+    def test_masked_values_are_numbers(self):
+        rows = [np.ma.masked_equal(row, 5.0) for row in self.Z]
+        self.assertEqual(np.argwhere(surface.heights(rows, 1, 1).holes).tolist(), [[1, 1]])
+        for values in (self.Z * 1j, self.Z > 1, self.Z.astype(str)):
+            with self.assertRaisesRegex(TypeError, "it must hold real numbers"):
+                surface.heights(np.ma.masked_array(values, self.Z == 5.0), 1, 1)
+
+    def test_fill_values_of_single_precision_that_a_reader_made_double(self):
+        values = np.where(self.Z == 5.0, -9999.9, self.Z).astype(np.float32).astype(np.float64)
+        self.assertEqual(np.argwhere(surface.heights(values, 1, 1, fill=-9999.9).holes).tolist(), [[1, 1]])
+        with self.assertRaisesRegex(TypeError, "fill is '-9999'; it must be a real number"):
+            surface.heights(values, 1, 1, fill="-9999")
 
 
 class Faults(unittest.TestCase):
