@@ -206,10 +206,10 @@ def real(name: str, values: Any) -> Doubles:
     return doubled
 
 
-def _without_mask(name: str, values: Any) -> Any:
+def without_mask(name: str, values: Any) -> Any:
     """With +infinity in the places of what is masked."""
     if isinstance(values, (list, tuple)):
-        return [_without_mask(name, one) for one in values]
+        return [without_mask(name, one) for one in values]
     if not isinstance(values, np.ma.MaskedArray):
         return values
     filled = np.array(real(name, values.filled(0)))
@@ -233,7 +233,7 @@ def distances(name: str, values: Any) -> Doubles:
         return real(name, values)
     refuse_x_first(name, values)
     array: Any = np.asanyarray(values) if not isinstance(values, (list, tuple)) else values
-    return real(name, _without_mask(name, array if isinstance(array, np.ma.MaskedArray) else values))
+    return real(name, without_mask(name, array if isinstance(array, np.ma.MaskedArray) else values))
 
 
 def doubles(name: str, values: Any, shape: tuple[int, ...] | None = None, dimensions: str = "(my, mx)") -> Doubles:

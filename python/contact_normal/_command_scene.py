@@ -29,7 +29,7 @@ def add_scene(command: argparse.ArgumentParser) -> None:
     surface.add_argument("--variable", metavar="NAME", help="which array of an .npz, .nc, .mat or instrument's file")
     surface.add_argument("--dx", type=float, help="element size along a row; by default what the file says")
     surface.add_argument("--dy", type=float, help="element size across rows; by default what the file says, else dx")
-    surface.add_argument("--axes", choices=("yx", "xy"), help="what the indices of the array are: yx (default): [iy, ix]; xy: [ix, iy]")
+    surface.add_argument("--axes", choices=("yx", "xy"), help="what the indices of the array are: yx: [iy, ix]; xy: [ix, iy]; by default what the file says, else yx")
     surface.add_argument("--top-first", action="store_true", help="the first row is that of the largest y, as in an image")
     surface.add_argument("--hole", type=float, metavar="VALUE", help="elements with this value have no surface, as those with NaN")
     surface.add_argument("--units", nargs=2, metavar=("LENGTH", "FORCE"), help="names for output, as: --units m N; they change no number")

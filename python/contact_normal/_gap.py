@@ -104,6 +104,8 @@ class Gap(Short):
             mx, my, dx, dy = int(first), int(second), float(third), float(fourth)
         except ValueError:
             raise ValueError(f"{path} has {lines[2]!r} in line 3; it must have mx my dx dy") from None
+        if min(mx, my) < 1 or not (0.0 < dx < np.inf and 0.0 < dy < np.inf):
+            raise ValueError(f"{path} has {lines[2]!r} in line 3; mx, my, dx and dy must be positive")
         try:
             h = np.array([float(line) for line in lines[3:]])
         except ValueError as error:

@@ -75,8 +75,8 @@ def _symbol(name: str) -> str:
 
 
 def _latin(name: str) -> str:
-    """The name of a unit with a u for both signs of micro."""
-    return name.replace("\u00b5", "u").replace("\u03bc", "u")
+    """The name of a unit with a u for both signs of micro, and one sign of angstrom."""
+    return name.replace("\u00b5", "u").replace("\u03bc", "u").replace("\u212b", "\u00c5")
 
 
 def unit(kind: str, units: Units) -> str:

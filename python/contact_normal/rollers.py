@@ -20,7 +20,7 @@ import numpy as np
 from ._arguments import both, integer, number
 from ._gap import Gap
 from ._grid import centres
-from ._units import Units
+from ._units import Units, checked
 
 if TYPE_CHECKING:
     from ._arguments import Doubles
@@ -44,10 +44,10 @@ __all__ = ["crown", "gap", "iso_16281", "logarithmic", "no_drop"]
 
 
 def _positive(name: str, value: Any) -> float:
-    checked = number(name, value)
-    if not (checked > 0.0 and np.isfinite(checked)):
-        raise ValueError(f"{name} is {checked}; it must be positive and finite")
-    return checked
+    found = number(name, value)
+    if not (found > 0.0 and np.isfinite(found)):
+        raise ValueError(f"{name} is {found}; it must be positive and finite")
+    return found
 
 
 def _several(name: str, radii: Any) -> tuple[float, ...]:
@@ -227,4 +227,4 @@ def gap(
     half = min((getattr(one, "half", np.inf) for one in drops), default=np.inf)
     _warn_of_ends(along, 0.5 * ly if half > 0.501 * ly and np.isfinite(half) else None, half, across)
     h = across[None, :] + (along + tilt * y)[:, None]
-    return Gap(np.ascontiguousarray(h), dx, dy, units=units)
+    return Gap(np.ascontiguousarray(h), dx, dy, units=checked(units))

@@ -54,3 +54,13 @@ class Texts(unittest.TestCase):
             for comment in ("a\nb", "a\rb"):
                 with self.assertRaisesRegex(ValueError, "comment has several lines"):
                     gap.write(path, comment)
+
+    def test_sizes_are_positive(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "gap.txt")
+            Gap(np.zeros((2, 2)), 1.0, 1.0).write(path)
+            text = path.read_text()
+            for sizes in ("-2 -2 1.0 1.0", "2 2 0.0 1.0", "2 2 nan 1.0", "2 2 1.0 inf"):
+                path.write_text(text.replace("2 2 1.0 1.0", sizes))
+                with self.assertRaisesRegex(ValueError, f"'{sizes}' in line 3; mx, my, dx and dy must be positive"):
+                    Gap.read(path)

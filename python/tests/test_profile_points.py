@@ -69,6 +69,28 @@ class Thinned(unittest.TestCase):
         self.assertLess(np.abs(off[corner]).max(), 1.5 * (3.0 / (2.0 * np.pi)) ** 2 / 13.0)
 
 
+class FarOff(unittest.TestCase):
+    def test_a_point_on_the_flange_is_refused(self):
+        # There its neighbours are as steep as a face, behind which a profile would end.
+        wheel = profiles.read(ARCS / "arcs.prw")
+        steep = np.abs(np.diff(wheel.z) / np.diff(wheel.y)) > 2.0
+        chosen = [k for k in range(8, len(wheel.y) - 8) if steep[k - 5 : k + 5].all()]
+        self.assertGreater(len(chosen), 3)
+        for k in chosen[::3]:
+            for off in (-3.0, -1.0, 1.0, 3.0):
+                z = wheel.z.copy()
+                z[k] += off
+                with self.assertRaisesRegex(ValueError, re.escape(f"far off, at y = {wheel.y[k]:.6g}, z = {z[k]:.6g}")):
+                    profiles.Profile(wheel.y, z, "wheel").curve()
+        self.assertEqual(len(profiles.Profile(np.delete(wheel.y, k), np.delete(wheel.z, k), "wheel").curve().y), len(wheel.curve().y) - 1)
+
+    def test_a_step_is_a_face(self):
+        # Behind a step down the profile goes on in its direction, but not from point to point.
+        y = np.linspace(0.0, 60.0, 121)
+        z = 0.001 * (y - 20.0) ** 2 + np.where(y > 50.2, 6.0, 0.0)
+        self.assertEqual(len(profiles.Profile(y, z, "rail").curve().y), 101)
+
+
 class Uncertain(unittest.TestCase):
     def setUp(self):
         self.rail, self.wheel = profiles.read(ARCS / "arcs.prr"), profiles.read(ARCS / "arcs.prw")

@@ -1,12 +1,15 @@
 """From two profiles to a gap: profiles of lines and arcs, whose contact is known in closed form."""
 
+import time
 import unittest
 import warnings
+from unittest import mock
 
 import numpy as np
 
 import contact_normal as cn
 from contact_normal import profiles
+from contact_normal.surface import Gap
 
 STEEL = {"shear_modulus": 82000.0, "poisson_ratio": 0.28}
 # A conical tread, and a head that is one arc between two flanks. Lengths in mm.
@@ -194,10 +197,44 @@ class Loaded(unittest.TestCase):
         by_approach = touching.gap(0.3, 0.3, 0.02).solve(approach=0.02, **STEEL)
         self.assertAlmostEqual(by_position.force / by_approach.force, 1.0, delta=1e-3)
 
+    def test_a_press_that_is_cancelled_ends(self):
+        point, friction = profiles.contact_points(self.TRACK, self.WHEELSET)[0], {"coefficient": 0.3}
+        for beside in ({}, {"friction": friction}):
+            calls = []
+
+            def once(_, calls=calls):
+                calls.append(1)
+                return len(calls) == 1
+
+            self.assertEqual(point.press(10e3, 0.3, 0.3, progress=once, **beside, **STEEL)[1].status, cn.CANCELLED)
+            self.assertEqual(len(calls), 1)
+
+    def test_a_limit_of_time_is_that_of_all_solves(self):
+        point = profiles.contact_points(self.TRACK, self.WHEELSET)[0]
+        given = []
+
+        def solve(gap, **scene):
+            given.append(scene["max_seconds"])
+            time.sleep(0.01)
+            return solved(gap, **{**scene, "max_seconds": 0.0})
+
+        solved = Gap.solve
+        with mock.patch.object(Gap, "solve", solve):
+            point.press(10e3, 0.3, 0.3, max_seconds=100.0, friction={"coefficient": 0.3}, **STEEL)
+            seconds = np.array(given)
+            self.assertGreater(len(given), 1)
+            self.assertLess(np.diff(seconds).max(), -0.009)
+            given.clear()
+            point.press(10e3, 0.3, 0.3, friction={"coefficient": 0.3}, max_seconds=0.005, **STEEL)
+            self.assertEqual(given[-1], 1e-9)
+        self.assertIn("max_seconds was reached", point.press(10e3, 0.3, 0.3, max_seconds=1e-9, **STEEL)[1].message)
+
     def test_a_grid_that_cannot_be_large_enough_is_refused(self):
         point = profiles.contact_points(self.TRACK, self.WHEELSET)[0]
         with self.assertRaisesRegex(ValueError, "the grid would need more than 2048 elements"):
             point.gap(1e-4, 1e-4, 1.0)
+        with self.assertRaisesRegex(ValueError, "dx is inf; it must be positive and finite"):
+            point.gap(np.inf, 0.1, 1.0)
         with self.assertRaisesRegex(ValueError, "depth is 0.0; it must be positive"):
             point.gap(0.1, 0.1, 0.0)
 

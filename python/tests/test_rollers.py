@@ -69,6 +69,11 @@ class Gaps(unittest.TestCase):
             with self.assertRaisesRegex(TypeError, "drop has a number; it must be a function of places y"):
                 rollers.gap((1, 1), (4, 4), (6.0,), drop=drop)
 
+    def test_units_are_a_pair_of_names(self):
+        for units, kind, text in (("mm", TypeError, "units is 'mm'; it must be a pair"), (("N", "mm"), ValueError, "the first is that of lengths")):
+            with self.assertRaisesRegex(kind, text):
+                rollers.gap((1, 1), (4, 4), (6.0,), units=units)
+
     def test_a_radius_of_zero_is_refused(self):
         for name, radii, crown in (("radii", (0.0, 1.0), ()), ("radii", (np.inf, -0.0), ()), ("crown_radii", (6.0, 5.0), (1.0, 0.0))):
             with self.assertRaisesRegex(ValueError, f"{name} are .*none may be 0"):

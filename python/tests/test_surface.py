@@ -53,6 +53,11 @@ class Arrays(unittest.TestCase):
         falling = surface.heights(self.Z, x=[2.5, 2.0, 1.5, 1.0], y=[4.0, 2.0, 0.0])
         np.testing.assert_array_equal(falling.z, self.Z[::-1, ::-1])
         self.assertEqual((falling.dx, falling.dy), (0.5, 2.0))
+        # That the first row is the upper one is then said twice.
+        twice = surface.heights(self.Z, x=[1.0, 1.5, 2.0, 2.5], y=[4.0, 2.0, 0.0], top_first=True)
+        np.testing.assert_array_equal(twice.z, self.Z[::-1])
+        with self.assertRaisesRegex(ValueError, "y has one place, which tells no spacing: give dx and dy"):
+            surface.heights(self.Z[:1], x=[1.0, 1.5, 2.0, 2.5], y=[0.0])
         for given in ({}, {"dx": 1.0, "dy": 1.0, "size": (1.0, 1.0)}, {"size": (1.0, 1.0), "span": (1.0, 1.0)}):
             with self.assertRaisesRegex(TypeError, "give the size of an element in one way"):
                 surface.heights(self.Z, **given)
@@ -79,6 +84,20 @@ class Arrays(unittest.TestCase):
         np.testing.assert_array_equal(surface.heights(self.Z, 1, 1).without(self.Z > 9).holes, self.Z > 9)
         with self.assertRaisesRegex(ValueError, "it must be a mask of booleans"):
             surface.heights(self.Z, 1, 1).without(np.ones((3, 4)))
+
+
+    def test_masked_values_are_numbers(self):
+        rows = [np.ma.masked_equal(row, 5.0) for row in self.Z]
+        self.assertEqual(np.argwhere(surface.heights(rows, 1, 1).holes).tolist(), [[1, 1]])
+        for values in (self.Z * 1j, self.Z > 1, self.Z.astype(str)):
+            with self.assertRaisesRegex(TypeError, "it must hold real numbers"):
+                surface.heights(np.ma.masked_array(values, self.Z == 5.0), 1, 1)
+
+    def test_fill_values_of_single_precision_that_a_reader_made_double(self):
+        values = np.where(self.Z == 5.0, -9999.9, self.Z).astype(np.float32).astype(np.float64)
+        self.assertEqual(np.argwhere(surface.heights(values, 1, 1, fill=-9999.9).holes).tolist(), [[1, 1]])
+        with self.assertRaisesRegex(TypeError, "fill is '-9999'; it must be a real number"):
+            surface.heights(values, 1, 1, fill="-9999")
 
 
 class Faults(unittest.TestCase):
@@ -331,7 +350,41 @@ class Balance(unittest.TestCase):
         centre = (level.pressure.sum(axis=0) @ level.x) / level.pressure.sum()
         self.assertGreater(abs(centre - 0.1), 0.01)
 
+    def test_a_body_of_one_row_tilts_along_it(self):
+        x = (np.arange(33) - 16.0) * 0.02
+        h = (x**2 / 4.0 + 0.01 * x)[None, :]
+        whole = np.full((5, 33), np.inf)
+        whole[2] = h[0]
+        for one, along in ((h, 0), (h.T, 1), (whole, 0), (np.ascontiguousarray(whole.T), 1)):
+            found = surface.balance(surface.Gap(one, 0.02, 0.02), 1e-4, e_star=1.0)
+            self.assertEqual(found.result.status, cn.OK)
+            self.assertAlmostEqual(found.tilt[along], 0.01, delta=1e-4)
+            self.assertAlmostEqual(found.tilt[1 - along], 0.0, delta=1e-12)
+
+    def test_a_search_that_is_cancelled_ends(self):
+        gap = surface.gap(surface.heights(1e-3 * rough(), 1.0, 1.0))
+        calls = []
+        found = surface.balance(gap, 1.0, e_star=1.0, progress=lambda _: calls.append(1) or True)
+        self.assertEqual((found.result.status, len(calls)), (cn.CANCELLED, 1))
+        given = []
+
+        def solve(gap, **scene):
+            given.append(scene["max_seconds"])
+            return solved(gap, **{**scene, "max_seconds": 0.0})
+
+        solved = surface.Gap.solve
+        with mock.patch.object(surface.Gap, "solve", solve):
+            surface.balance(gap, 1.0, e_star=1.0, max_seconds=100.0)
+        self.assertLess(np.diff(given).max(), 0.0)
+        found = surface.balance(gap, 1.0, e_star=1.0, max_seconds=1e-9)
+        self.assertIn("max_seconds was reached", found.result.message)
+
     def test_what_cannot_be_balanced_is_refused(self):
+        flat = surface.Gap(np.zeros((4, 4)), 1.0, 1.0)
+        for given, text in (({"force": 0.0}, "force is 0; a body that nothing presses"), ({"period": "xy"}, "a body with a period cannot tilt"),
+                            ({"at": (np.nan, 0.0)}, "at is .nan, 0.0.; it must be finite"), ({"tolerance": 0.0}, "tolerance is 0.0; it must be positive")):
+            with self.assertRaisesRegex(ValueError, text):
+                surface.balance(flat, **{"force": 1.0, "e_star": 1.0, **given})
         h = np.full((20, 20), np.inf)
         h[8:12, 8:12] = 0.0
         with self.assertRaisesRegex(ValueError, "are there elements all around it"):

@@ -69,10 +69,14 @@ class Files(unittest.TestCase):
             surface.read(self.folder / "a.txt", units=("um", "N"))
         for text, told in ((head.format(point=".", unit="um", value="V"), "values are in V: they are no heights"),
                            (head.format(point=".", unit="um", value=""), "values are in no unit"),
-                           (head.format(point=".", unit="deg", value="m"), "Width: 10.50 deg, which is no unit of length")):
+                           (head.format(point=".", unit="deg", value="m"), "Width: 10.50 deg, which is no unit of length"),
+                           (head.format(point=",000.", unit="um", value="m"), "a.txt says Width: 10,000.50 um; it must be a positive number without"),
+                           (head.replace("10{point}50", "0.00").format(unit="um", value="m"), "says Width: 0.00 um; it must be a positive number")):
             (self.folder / "a.txt").write_text(text + rows)
             with self.assertRaisesRegex(ValueError, told):
                 surface.read(self.folder / "a.txt")
+        (self.folder / "a.txt").write_text(head.format(point=".", unit="\u212b", value="\u00c5") + rows, encoding="utf-8")
+        self.assertEqual(surface.read(self.folder / "a.txt").units, ("\u00c5", "N"))
         # A character that is cut where the reader stops is no reason for another encoding.
         for more in range(4):
             (self.folder / "a.txt").write_bytes((head.format(point=".", unit="\u00b5m", value="m") + "# " + "x" * more + "\u20ac" * 2000 + "\n" + rows).encode())
@@ -283,8 +287,26 @@ class Files(unittest.TestCase):
         np.testing.assert_array_equal(made.z, z.T)
         self.assertEqual((made.dx, made.dy, made.period, made.units), (1.0 / 5, 2.0 / 16, "xy", ("um", "N")))
         self.assertIsNone(surface.from_topography(topography, period=None).period)
+        # Lengths stay with their indices.
+        turned = surface.from_topography(topography, axes="yx")
+        np.testing.assert_array_equal(turned.z, z)
+        self.assertEqual((turned.dx, turned.dy), (2.0 / 16, 1.0 / 5))
         with self.assertRaisesRegex(ValueError, "a line scan or not uniform"):
             surface.from_topography(mock.Mock(dim=1, is_uniform=True))
+
+    def test_sizes_and_axes_of_arrays_with_coordinates(self):
+        z = 1e-4 * np.arange(16.0).reshape(4, 4)
+        array = DataArray(z, ("y", "x"), None, None)
+        for given in ({"span": (3.0, 6.0)}, {"x": np.arange(4.0), "y": 2.0 * np.arange(4.0)}, {"dx": 1.0, "dy": 2.0}):
+            made = surface.from_xarray(array, **given)
+            self.assertEqual((made.dx, made.dy), (1.0, 2.0))
+        with self.assertRaisesRegex(TypeError, "give dx, too"):
+            surface.from_xarray(array, dy=1.0)
+        for dims, axes in ((("x", "y"), "xy"), (("a", "b"), "xy")):
+            np.testing.assert_array_equal(surface.from_xarray(DataArray(z, dims, None, None), axes=axes).z, z.T)
+        for dims, axes in ((("x", "y"), "yx"), (("y", "x"), "xy")):
+            with self.assertRaisesRegex(ValueError, f"axes is '{axes}', but the array has the dimensions .*: leave axes out"):
+                surface.from_xarray(DataArray(z, dims, None, None), axes=axes)
 
 
     def test_matrices_have_y_by_rows_and_one_of_several_is_named(self):

@@ -45,6 +45,8 @@ class Lists(unittest.TestCase):
         colours = self.random.integers(0, 255, (3, 63)).astype(float)
         with self.assertWarnsRegex(UserWarning, "of 6 columns, numbers 1 and 2 are read as x and y, and number 3 as the heights"):
             self.assert_grid(self.read(x, y, z, *colours))
+        with self.assertRaisesRegex(ValueError, "has x, y and z of points, and no indices: leave out axes"):
+            self.read(x, y, z, axes="xy")
         stage = self.random.normal(0.0, 1e-4, 63)
         self.assertAlmostEqual(self.read(x + stage, y, z).dx, 0.5, delta=1e-4)
 

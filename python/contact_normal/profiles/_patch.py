@@ -10,6 +10,7 @@ import numpy as np
 
 from .._arguments import number
 from .._gap import Gap
+from .._time_limit import TimeLimit
 from . import _sampling
 from ._bodies import Position
 from ._curve import Curve
@@ -139,8 +140,8 @@ class ContactPoint:
         """
         dx, dy, depth = number("dx", dx), number("dy", dy), number("depth", depth)
         for name, value in (("dx", dx), ("dy", dy), ("depth", depth)):
-            if not value > 0.0:
-                raise ValueError(f"{name} is {value}; it must be positive")
+            if not 0.0 < value < np.inf:
+                raise ValueError(f"{name} is {value}; it must be positive and finite")
         reach = _LEAST
         while True:
             if reach > _FARTHEST:
@@ -176,12 +177,15 @@ class ContactPoint:
         friction : dict, optional
             As that of `contact_normal.solve`. Its spin is about the contact point.
         **scene
-            Elastic constants, effects and options of `contact_normal.solve`.
+            Elastic constants, effects and options of `contact_normal.solve`. `max_seconds` is the limit of all solves together. One that is cancelled, or
+            ended by this limit, is the result, without friction.
         """
-        may_shrink = True
+        may_shrink, limit = True, TimeLimit(scene)
         while True:
             gap = self.gap(dx, dy, depth)
-            result = gap.solve(force=force, **scene)
+            result = gap.solve(force=force, **{**scene, **limit.left})
+            if limit.ended(result):
+                return gap, result
             approach = result.approach - float(gap.h.min())
             if approach > _DEEPEST * self.rolling_radius:
                 raise ValueError(f"wheel and rail approach by {approach:.3g} mm, more than {_DEEPEST:g} of the rolling radius: "
@@ -198,7 +202,7 @@ class ContactPoint:
         _sampling.warn(bodies, gap.y, result, stacklevel=2)
         if friction is not None:
             centre = (-gap.middle[0], -gap.middle[1])
-            result = gap.solve(force=force, friction={"spin_centre": centre, **friction}, **scene)
+            result = gap.solve(force=force, friction={"spin_centre": centre, **friction}, **{**scene, **limit.left})
         return gap, result
 
     def _warn_of_others(self, gap: Gap, approach: float) -> None:

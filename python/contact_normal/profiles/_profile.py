@@ -45,6 +45,9 @@ CLOSEST = 1e-3
 # Behind a face the next points lie up or down. Where one of so many lies mainly beside it, the profile goes on: the points are out of order.
 _BEHIND = 5
 
+# Without one point that is far off the profile goes on in its direction, to this cosine from point to point.
+_AHEAD = 0.9
+
 # A spike leaves the line through its neighbours by this length, in mm, and by so many times as much as most of so many points around it.
 _SPIKE, _TIMES, _AROUND = 0.03, 10.0, 12
 
@@ -203,10 +206,28 @@ class Profile(Short):
         beyond = end + way * np.arange(1, _BEHIND + 1)
         beyond = beyond[(beyond >= 0) & (beyond < len(y))]
         if (way * (y[beyond] - y[end]) > np.abs(z[beyond] - z[end])).any():
-            raise ValueError(f"{self._title()} has a point out of order, or far off, at y = {y[beyond[0]]:.6g}, z = {z[beyond[0]]:.6g}, beside "
-                             f"y = {y[end]:.6g}, z = {z[end]:.6g}; from point to point y must grow but at steep faces, behind which the profile ends: "
-                             "sort the points, or leave this one out; where points are closer to each other than their noise, thinned(step) takes the mean of "
-                             "each step in mm")
+            self._refuse_point(y, z, beyond[0], end)
+        # On a flange, which is steep itself, a point that is far off looks like a face.
+        for off, beside in ((end + way, end), (end, end + way)):
+            k = off + way * np.array([-2, -1, *range(1, _BEHIND + 1)])
+            if k.min() < 0 or k.max() >= len(y):
+                continue
+            steps = np.stack([way * np.diff(y[k]), np.diff(z[k])])
+            lengths = np.hypot(*steps)
+            steps /= lengths
+            # How far the point is from the line through its neighbours, and how far the next ones are from their directions: noise.
+            far = abs(steps[0, 1] * (z[off] - z[k[1]]) - way * steps[1, 1] * (y[off] - y[k[1]]))
+            noise = np.median(np.abs(steps[0, 1:] * steps[1, :-1] - steps[1, 1:] * steps[0, :-1]) * lengths[1:])
+            goes_on = (steps[0] > np.abs(steps[1]) / np.tan(STEEPEST)).all() and ((steps[:, 1:] * steps[:, :-1]).sum(axis=0) > _AHEAD).all()
+            if goes_on and far > max(_SPIKE, _TIMES * noise):
+                self._refuse_point(y, z, off, beside)
+
+    def _refuse_point(self, y: Doubles, z: Doubles, k: int, beside: int) -> None:
+        """Refuses a point that is out of order beside another one."""
+        raise ValueError(f"{self._title()} has a point out of order, or far off, at y = {y[k]:.6g}, z = {z[k]:.6g}, beside "
+                         f"y = {y[beside]:.6g}, z = {z[beside]:.6g}; from point to point y must grow but at steep faces, behind which the profile ends: "
+                         "sort the points, or leave this one out; where points are closer to each other than their noise, thinned(step) takes the mean of "
+                         "each step in mm")
 
     def spikes(self) -> Any:
         """Indices of points that stand out by themselves, as dust or a fault of a measurement does: from the line through its neighbours such a point

@@ -55,5 +55,11 @@ def header_of(path: str | os.PathLike[str]) -> dict[str, Any]:
         length = in_metres(of_length)
         if length is None:
             raise ValueError(f"{path} says {name}: {number} {of_length}, which is no unit of length")
-        sizes.append(float(number.replace(",", ".")) * length / unit)
+        try:
+            size = float(number.replace(",", ".")) * length / unit
+        except ValueError:
+            size = 0.0
+        if not 0.0 < size < float("inf"):
+            raise ValueError(f"{path} says {name}: {number} {of_length}; it must be a positive number without signs between thousands")
+        sizes.append(size)
     return {"size": tuple(sizes), "unit": value[1]}

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from .._arguments import flag, number, real, refuse_x_first, two
+from .._arguments import flag, number, real, refuse_x_first, two, without_mask
 from .._grid import centres
 from .._short import Short
 from .._units import Units, checked
@@ -27,6 +27,9 @@ _EQUAL = 1e-3
 # The median slope of a surface is less, that of a root mean square of 1, if there are so many slopes; and nine of ten slopes are not all below the last one:
 # those of heights in m beside um are.
 _STEEP, _STEPS, _LEVEL = 0.67, 64, 2e-7
+
+# The largest number of single precision.
+_LARGEST_SINGLE = float(np.finfo(np.float32).max)
 
 # Elements that are worked on at a time: some megabytes.
 _BLOCK = 1 << 18
@@ -118,7 +121,9 @@ def refuse_others(**given: Any) -> None:
 def _spacing(name: str, places: Any, count: int) -> tuple[float, bool]:
     """The spacing of coordinates, and whether they fall."""
     values = real(name, places)
-    if values.shape != (count,) or count < 2:
+    if count < 2:
+        raise ValueError(f"{name} has one place, which tells no spacing: give dx and dy in the place of x and y")
+    if values.shape != (count,):
         raise ValueError(f"{name} has shape {values.shape}; it must be ({count},): the centre of each element")
     steps = np.diff(values)
     d = float(steps.mean())
@@ -129,9 +134,7 @@ def _spacing(name: str, places: Any, count: int) -> tuple[float, bool]:
 
 def _plain(values: Any) -> Doubles:
     """An array of two indices, NaN where nothing was measured."""
-    if isinstance(values, np.ma.MaskedArray):
-        values = np.ma.filled(values.astype(np.float64), np.nan)
-    z = real("values", values)
+    z = real("values", without_mask("values", values))
     if z.ndim != 2 or not z.size:
         raise ValueError(f"values has shape {z.shape}; heights have two indices{'' if z.size else ', and one element at least'}")
     return np.asarray(np.where(np.isfinite(z), z, np.nan))
@@ -198,7 +201,7 @@ def heights(
     axes : {"yx", "xy"}
         What the indices of `values` are: "yx": values[iy, ix]; "xy": values[ix, iy].
     top_first : bool
-        Whether the first row is that of the largest y, as in an image.
+        Whether the first row is that of the largest y, as in an image. Coordinates y that fall say the same.
     fill : float, optional
         A value that stands for "not measured", in the unit of the array. `faults` finds it if you do not know it. A warning tells if no element has it.
     period : {"x", "y", "xy"}, optional
@@ -219,14 +222,16 @@ def heights(
         raise ValueError(f'period is {period!r}; it must be "x", "y" or "xy"')
     z = z.T if axes == "xy" else z
     (one, other), (x_falls, y_falls) = _element_sizes(z.shape, dx, dy, size, span, x, y)
-    if flag("top_first", top_first):
-        y_falls = not y_falls
-    z = z[:: -1 if y_falls else 1, :: -1 if x_falls else 1]
+    z = z[:: -1 if flag("top_first", top_first) or y_falls else 1, :: -1 if x_falls else 1]
     if fill is not None:
-        # As the array holds it: in single precision -9999.9 is another number.
+        # As the array holds it: in single precision -9999.9 is another number. Readers of files may have made doubles of such numbers.
         own = getattr(values, "dtype", np.dtype(float))
-        as_held = float(own.type(number("fill", fill))) if own.kind == "f" else fill
+        as_held = number("fill", fill)
+        if own.kind == "f":
+            as_held = float(own.type(as_held))
         filled = z == as_held
+        if not filled.any() and abs(as_held) <= _LARGEST_SINGLE:
+            filled = z == float(np.float32(as_held))
         # What is no number, or infinite, is a hole already.
         if np.isfinite(as_held) and not filled.any():
             warnings.warn(f"no element has the value {fill!r} that stands for 'not measured': the heights are from {np.nanmin(z):g} to {np.nanmax(z):g}"

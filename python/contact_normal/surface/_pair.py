@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from .._arguments import number, two
 from .._gap import Gap
+from .._time_limit import TimeLimit
 from .._units import same_length
 from ._faults import warn_of_fill_values
 from ._heights import Heights, refuse_others
@@ -77,7 +79,7 @@ def e_star(young_modulus: Both, poisson_ratio: Both) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Balanced:
-    """What `balance` found.
+    """What `balance` found; where `result.status` is not `OK`, what it had so far.
 
     Attributes
     ----------
@@ -114,7 +116,9 @@ def _start(gap: Gap) -> Doubles:
 
 def _centre(gap: Gap, result: Result) -> Doubles:
     """Centre of the pressures, in coordinates of the gap."""
-    weights = result.pressure / result.pressure.sum()
+    total = result.pressure.sum()
+    # A solve that was ended at once has no pressures yet.
+    weights = result.pressure / (total if total != 0.0 else np.nan)
     return np.array([weights.sum(axis=0) @ gap.x, weights.sum(axis=1) @ gap.y])
 
 
@@ -122,24 +126,26 @@ def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolera
     """The tilt that a body takes which is pressed on by a force at a point and free to tilt: the moments of the pressures about this point are 0.
 
     Unlike a least-squares plane it depends on the load: a body rests on its summits. The tilt minimises a convex energy, so it is the only one. It is
-    found by Newton's method with Broyden's updates, in four to ten solves.
+    found by Newton's method with Broyden's updates, in four to ten solves. In a direction in which the elements with a surface do not extend, as those of one
+    row, nothing is tilted.
 
     Parameters
     ----------
     gap : Gap
         Without a period: a body that repeats itself cannot tilt.
     force : float
-        Normal force.
+        Normal force; not 0.
     at : (float, float)
         Where the force acts, in coordinates of the gap.
     tolerance : float
         How close the centre of the pressures must come to `at`, relative to the length of the grid.
     **scene
-        Elastic constants, effects and options of `contact_normal.solve`.
+        Elastic constants, effects and options of `contact_normal.solve`. `max_seconds` is the limit of all solves together.
 
     Returns
     -------
     Balanced
+        Of a solve that was cancelled, or ended by `max_seconds`: its tilt, and `result.status` tells.
 
     Raises
     ------
@@ -148,27 +154,58 @@ def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolera
     """
     if not isinstance(gap, Gap):
         raise TypeError(f"gap is a {type(gap).__name__}; it must be a Gap: surface.gap(heights)")
-    if gap.period:
-        raise ValueError(f"the gap repeats itself in {gap.period}: a body with a period cannot tilt")
+    if period := scene.get("period", gap.period):
+        raise ValueError(f"the gap repeats itself in {period}: a body with a period cannot tilt")
+    if number("force", force) == 0.0:
+        raise ValueError("force is 0; a body that nothing presses takes no tilt")
     aim = np.array(two("at", at))
-    sizes = np.array([gap.h.shape[1] * gap.dx, gap.h.shape[0] * gap.dy])
+    if not np.isfinite(aim).all():
+        raise ValueError(f"at is {at}; it must be finite")
+    if not number("tolerance", tolerance) > 0.0:
+        raise ValueError(f"tolerance is {tolerance}; it must be positive")
+    limit = TimeLimit(scene)
 
     def solved(tilt: Doubles) -> tuple[Result, Doubles]:
-        result = _tilted(gap, tilt).solve(force=force, **scene)
-        return result, _centre(gap, result) - aim
+        result = _tilted(gap, tilt).solve(force=force, **{**scene, **limit.left})
+        off = _centre(gap, result) - aim
+        if limit.ended(result):
+            raise _Ended(_balanced(gap, tilt, result, off + aim))
+        return result, off
 
+    try:
+        return _search(gap, aim, tolerance, solved)
+    except _Ended as ended:
+        return ended.so_far
+
+
+class _Ended(Exception):
+    """A solve of a search was cancelled, or has no time left."""
+
+    def __init__(self, so_far: Balanced) -> None:
+        super().__init__()
+        self.so_far = so_far
+
+
+def _balanced(gap: Gap, tilt: Doubles, result: Result, centre: Doubles) -> Balanced:
+    (x, y), (along_x, along_y) = centre.tolist(), tilt.tolist()
+    return Balanced(_tilted(gap, tilt), (along_x, along_y), result, (x, y))
+
+
+def _search(gap: Gap, aim: Doubles, tolerance: float, solved: Callable[[Doubles], tuple[Result, Doubles]]) -> Balanced:
+    """The tilt whose pressures have their centre at `aim`. `solved` returns the result of a tilt, and how far its centre is off."""
+    sizes = np.array([gap.h.shape[1] * gap.dx, gap.h.shape[0] * gap.dy])
     tilt = _start(gap)
     result, off = solved(tilt)
     begun = _tilted(gap, tilt).h
     trial = _TRIAL * max(result.approach, 1e-3 * float(np.ptp(begun[np.isfinite(begun)]))) / sizes
-    slopes = np.empty((2, 2))
-    for k in range(2):
+    slopes, known = np.eye(2), np.isfinite(gap.h)
+    # Of elements in one line across a direction the centre stays in it.
+    for k in (k for k in range(2) if np.count_nonzero(known.any(axis=k)) > 1):
         step = np.where(np.arange(2) == k, trial * -np.sign(off + 1e-300), 0.0)
         slopes[:, k] = (solved(tilt + step)[1] - off) / step[k]
     for _ in range(_SOLVES):
         if np.abs(off / sizes).max() <= tolerance:
-            x, y = (float(place) for place in off + aim)
-            return Balanced(_tilted(gap, tilt), (float(tilt[0]), float(tilt[1])), result, (x, y))
+            return _balanced(gap, tilt, result, off + aim)
         try:
             step = -np.linalg.solve(slopes, off)
         except np.linalg.LinAlgError:
@@ -182,5 +219,5 @@ def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolera
         step = part * step
         slopes += np.outer(there - off - slopes @ step, step) / (step @ step)
         tilt, result, off = tilt + step, moved, there
-    raise ValueError(f"no tilt was found that brings the centre of the pressures to {at}: it stays {tuple(off.tolist())} away; "
+    raise ValueError(f"no tilt was found that brings the centre of the pressures to {tuple(aim.tolist())}: it stays {tuple(off.tolist())} away; "
                      "are there elements all around it?")

@@ -24,8 +24,8 @@ from ._texts import of_text
 def from_xarray(array: Any, **given: Any) -> Heights:
     """Heights of an `xarray.DataArray` with two dimensions that have coordinates, in any order.
 
-    The dimension of x is the one whose name begins with "x", or else the second one. Units of lengths are those of the attribute "units", if x, y and
-    the heights have it; units that differ are refused. With dx or size the coordinates are not read. The attributes "length_unit" and "periodic" of
+    The dimension of x is the one whose name begins with "x", or else the second one, or with axes="xy" the first one. Units of lengths are those of the attribute "units", if x, y and
+    the heights have it; units that differ are refused. With dx, size, span, or x and y the coordinates are not read. The attributes "length_unit" and "periodic" of
     coordinates are those of SurfaceTopography's files: the unit of all lengths, and a direction in which the surface repeats itself.
     """
     if len(array.dims) != 2:
@@ -34,13 +34,19 @@ def from_xarray(array: Any, **given: Any) -> Heights:
             raise ValueError(f"the array has the dimensions {tuple(array.dims)}; heights have two: choose one map by isel")
         array = array.squeeze([name for name in array.dims if name not in kept], drop=True)
     y, x = array.dims
-    if str(y).lower().startswith("x") and not str(x).lower().startswith("x"):
+    first, last = (str(name).lower().startswith("x") for name in (y, x))
+    axes, given = given.get("axes"), {name: one for name, one in given.items() if name != "axes"}
+    if axes not in (None, "yx", "xy"):
+        raise ValueError(f'axes is {axes!r}; it must be "yx" or "xy"')
+    if axes and first != last and (axes == "xy") != first:
+        raise ValueError(f"axes is {axes!r}, but the array has the dimensions {tuple(array.dims)}: leave axes out")
+    if first and not last or axes == "xy":
         x, y = y, x
     ordered = array.transpose(y, x)
     of_axes = [array[name].attrs if name in array.coords else {} for name in (x, y)]
     if period := "".join(axis for axis, one in zip("xy", of_axes) if one.get("periodic")):
         given = {"period": period, **given}
-    if "dx" in given or "size" in given:
+    if _SIZES & set(given):
         return heights(ordered.values, **_with_unit(array.attrs.get("units"), given))
     for name in (x, y):
         if name not in array.coords:
@@ -71,13 +77,16 @@ def _with_unit(unit: Any, given: dict[str, Any]) -> dict[str, Any]:
 
 
 def from_topography(topography: Any, **given: Any) -> Heights:
-    """Heights of a uniform topography of the package SurfaceTopography, whose arrays have x as the first index."""
+    """Heights of a uniform topography of the package SurfaceTopography, whose arrays have x as the first index. With axes="yx" it is y, and the first
+    of its lengths is that in y."""
     if getattr(topography, "dim", 2) != 2 or not getattr(topography, "is_uniform", True):
         raise ValueError("the topography is a line scan or not uniform; it must be a map")
     unit = getattr(topography, "unit", None)
     said: dict[str, Any] = {"size": tuple(float(length) for length in topography.physical_sizes), "axes": "xy"}
     if topography.is_periodic:
         said["period"] = "xy"
+    if given.get("axes") == "yx":
+        said["size"] = said["size"][::-1]
     if _SIZES & set(given):
         del said["size"]
     return heights(topography.heights(), **{**said, **_with_unit(unit, given)})
@@ -127,7 +136,7 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     if end == ".xyz" and not _SIZES & set(given):
         lattice = _of_points(path)
         if lattice is not None:
-            return heights(lattice.z, x=lattice.x, y=lattice.y, **_with_unit(unit_of_columns(path), given))
+            return _of_lattice(path, lattice, unit_of_columns(path), given)
     topography = of_instrument(path, end, variable, bool(_SIZES & set(given)))
     if end == ".mat":
         given = {"axes": "yx", **given}
@@ -163,7 +172,7 @@ def _of_numbers(path: str | os.PathLike[str], values: Any, given: dict[str, Any]
     sizes = sorted(_SIZES & set(given))
     if not sizes and (lattice := lattice_of(values)) is not None:
         unit = None if Path(path).suffix.lower() in (".npy", ".npz") else unit_of_columns(path)
-        return heights(lattice.z, x=lattice.x, y=lattice.y, **_with_unit(unit, given))
+        return _of_lattice(path, lattice, unit, given)
     if reason := why_no_map(values):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -173,6 +182,13 @@ def _of_numbers(path: str | os.PathLike[str], values: Any, given: dict[str, Any]
     if reason := doubt(values):
         warnings.warn(f"{path} {reason}", stacklevel=3)
     return heights(values, **given)
+
+
+def _of_lattice(path: str | os.PathLike[str], lattice: Lattice, unit: str | None, given: dict[str, Any]) -> Heights:
+    """Heights of a list of points, whose columns say what x and y are."""
+    if given.get("axes", "yx") != "yx":
+        raise ValueError(f"{path} has x, y and z of points, and no indices: leave out axes; where the first column is y, exchange the columns")
+    return heights(lattice.z, x=lattice.x, y=lattice.y, **_with_unit(unit, given))
 
 
 # How the size of an element is given.
