@@ -13,7 +13,7 @@ pub struct contact_normal_progress {
     pub mx: i32,
     /// Elements in y.
     pub my: i32,
-    /// Cycles on that grid so far.
+    /// Cycles on that grid so far. Iterations of the tangential problem, and with adhesion those on coarser grids, are told but not counted.
     pub cycles: i64,
     /// Elements that changed sides in the last cycle.
     pub active_set_changes: i64,

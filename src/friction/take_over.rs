@@ -185,14 +185,15 @@ impl Solver {
         let moves = problem.rigid.iter().any(|w| *w != [0.0; 2]);
         if displaced > 0.0 && (is_far(slip) || is_far(problem.rms_slip()) || moves && !(slip / displaced > LEAST_RATIO))
         {
-            // A length that overflows in the scene's units has no number; the mean of tiny slips is 0.
+            // The mean of tiny slips is 0.
             let largest = problem.rigid.iter().flatten().fold(0.0, |most: f64, w| most.max(w.abs()));
-            let slip = if slip > 0.0 { slip.max(problem.rms_slip()) } else { largest };
+            let slip = if slip > 0.0 { slip } else { largest }.max(problem.rms_slip());
+            let motion = if slip > displaced { "a smaller motion" } else { "a larger motion or none" };
+            let rule = format!("choose {motion}, coefficients of friction or shear moduli of another order");
+            // A length that overflows in the scene's units has no number.
             let own = self.scales.own_displacement([slip, displaced]);
             let [slip, displaced] =
                 own.map(|length| if length.is_finite() { format!("{length:e}") } else { "1e308 or more".into() });
-            let rule = if slip > displaced { "choose a smaller motion" } else { "choose a larger motion or none" };
-            let rule = format!("{rule}, coefficients of friction or shear moduli of another order");
             return invalid(format!(
                 "slips are of order {slip}, displacements by friction of order {displaced}, more than 1e30 times or less than 1e-60 times that; {rule}"
             ));

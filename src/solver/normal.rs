@@ -78,6 +78,9 @@ impl Solver {
                 self.methods.forget_iterates();
                 self.methods.projected_cg.forget_solutions();
                 self.methods.projected_cg.go_back_to(window);
+                if let (Ok((stop, _)), true) = (&mut outcome, monitor.is_cancelled()) {
+                    *stop = Outcome::Cancelled;
+                }
             }
         }
         self.limits = limits;

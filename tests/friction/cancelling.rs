@@ -5,8 +5,8 @@ use contact_normal::scene::{
     Bodies, Friction, Layer, Load, Motion, Period, Prescribed, PressureLimit, Previous, Scene,
 };
 use contact_normal::solver::{
-    cost_of_accuracy, solve_friction_batch, solve_tangential, solve_to_accuracy, Accuracy, ActiveSet, Entry, Guess,
-    InitialGuess, Method, Options, Outcome, Progress, ProgressCallback, Quantity, Solver,
+    cost_of_accuracy, solve, solve_friction_batch, solve_tangential, solve_to_accuracy, Accuracy, ActiveSet, Entry,
+    Guess, InitialGuess, Method, Options, Outcome, Progress, ProgressCallback, Quantity, Solver,
 };
 use contact_normal::stress::{subsurface_stress, Body, Loads, Wanted};
 use contact_normal::threads::Threads;
@@ -82,9 +82,13 @@ fn the_normal_problem_by_every_method() {
     let limit = Some(PressureLimit::Uniform(0.01));
     for load in [Load::Force(0.03), Load::Approach(0.015)] {
         let plain = Scene::new(grid, &h, LIKE, load);
+        // Iterates reach it, the result does not: a second solve is without it.
+        let largest = solve(&plain, &Options::default()).expect("a solve").2.measures.max_pressure;
+        let above = Some(PressureLimit::Uniform(1.0001 * largest));
         let scenes = [
             ("plain", plain.clone(), false),
             ("a limit", Scene { pressure_limit: limit, ..plain.clone() }, false),
+            ("a limit above", Scene { pressure_limit: above, ..plain.clone() }, false),
             ("a fixed area", plain.clone(), true),
             ("a period", Scene { period: Some(Period { x: true, y: false }), ..plain.clone() }, false),
             ("a layer", Scene { layer: Some(Layer::Uniform(0.01)), ..plain }, false),

@@ -183,9 +183,11 @@ fn slips_that_dwarf_what_tractions_displace_are_refused() {
         solver(&grid, 0.3).solve(&request, &mut |_, _| true)
     };
     // An element displaces itself by some 0.1 per traction, and tractions are of order mu.
-    for (by, mu) in [(1e32, 1.0), (1e-62, 1.0), (1.0, 1e62), (1.0, 1e-32)] {
-        let refused = shifted(by, mu).unwrap_err();
-        assert!(refused.to_string().contains("more than 1e30 times or less than 1e-60 times that"), "{refused}");
+    for (by, mu) in [(1e32, 1.0), (1e-62, 1.0), (1.0, 1e62), (1.0, 1e-32), (2e40, 1.0), (5e-90, 1.0), (1e-300, 1.0)] {
+        let refused = shifted(by, mu).unwrap_err().to_string();
+        assert!(refused.contains("more than 1e30 times or less than 1e-60 times that"), "{refused}");
+        let remedy = if by > mu { "choose a smaller motion" } else { "choose a larger motion or none" };
+        assert!(refused.contains(remedy) && !refused.contains("of order 0e0"), "{by} {mu}: {refused}");
     }
     for (by, mu) in [(1e28, 1.0), (1e-57, 1.0), (1.0, 1e28), (1.0, 1e-28)] {
         let (end, report) = shifted(by, mu).unwrap();

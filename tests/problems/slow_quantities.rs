@@ -120,3 +120,23 @@ fn a_search_for_the_stress_below_a_peak_resolves_the_peak() {
     let truth = of(2 * m);
     assert!((of(m) - truth).abs() <= target * truth, "{m} elements: {} for {truth}", of(m));
 }
+
+/// All of a ball slips. Finer grids might have elements that stick, so that a stick area of 0 has no error: it was taken for exact.
+#[test]
+fn a_stick_area_of_zero_is_not_known_to_be_exact() {
+    let bowl: Surface = |x, y| 0.5 * (x * x + y * y);
+    let friction =
+        Friction { prescribed: [Prescribed::Creepage(1.0), Prescribed::Creepage(0.0)], ..Friction::new(0.3) };
+    let (grid, h) = on(32, bowl);
+    let bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3; 2] };
+    let scene = Scene { friction: Some(friction), ..Scene::new(grid, &h, bodies, Load::Force(0.02)) };
+    let wanted = [Quantity::StickArea];
+    let (_, rows) = quantities(&scene, &Options::default(), &wanted, 3, None).expect("a solvable scene");
+    for (k, row) in rows.iter().enumerate() {
+        let lack = if k == 0 { Lack::OneGrid } else { Lack::Unsettled };
+        assert_eq!((row.value, row.error, row.lack), (Some(0.0), None, Some(lack)), "{:?}", row.grid);
+    }
+    let accuracy = Accuracy { max_elements: 128 * 128, ..Accuracy::new(0.1).with(Quantity::StickArea, 0.1) };
+    let found = solve_to_accuracy(&scene, &Options::default(), &accuracy, None, None).expect("a solvable scene");
+    assert_ne!(found.stop, Outcome::Converged, "{}", found.reason);
+}
