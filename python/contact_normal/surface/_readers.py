@@ -122,6 +122,9 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     # Some instruments write binary files of these ends.
     if end in (".txt", ".dat", ".csv") and is_text(path):
         told = header_of(path)
+        if told and given.get("axes") == "xy":
+            # Width is that of the columns of the file, which are y then.
+            told = {**told, "size": told["size"][::-1]}
         made = _of_numbers(path, of_text(path, end), _with_header(told, given))
         _warn_of_size(path, told, made)
         return made
