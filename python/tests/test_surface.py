@@ -96,6 +96,14 @@ class Arrays(unittest.TestCase):
     def test_fill_values_of_single_precision_that_a_reader_made_double(self):
         values = np.where(self.Z == 5.0, -9999.9, self.Z).astype(np.float32).astype(np.float64)
         self.assertEqual(np.argwhere(surface.heights(values, 1, 1, fill=-9999.9).holes).tolist(), [[1, 1]])
+        # The text of the largest number of single precision is above it.
+        for largest in (3.4028235e38, -3.4028235e38):
+            values = np.where(self.Z == 5.0, largest, self.Z).astype(np.float32).astype(np.float64)
+            self.assertEqual(np.argwhere(surface.heights(values, 1, 1, fill=largest).holes).tolist(), [[1, 1]])
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            with self.assertRaisesRegex(UserWarning, "no element has the value 1e\\+300"):
+                surface.heights(self.Z, 1, 1, fill=1e300)
         with self.assertRaisesRegex(TypeError, "fill is '-9999'; it must be a real number"):
             surface.heights(values, 1, 1, fill="-9999")
 
