@@ -82,6 +82,20 @@ class Files(unittest.TestCase):
             (self.folder / "a.txt").write_bytes((head.format(point=".", unit="\u00b5m", value="m") + "# " + "x" * more + "\u20ac" * 2000 + "\n" + rows).encode())
             self.assertAlmostEqual(surface.read(self.folder / "a.txt").dy, 5e-6 / 32, delta=1e-18)
 
+    def test_a_bad_size_of_a_header_gives_way_to_one_that_is_given(self):
+        np.savetxt(self.folder / "z.txt", 1e-8 * rough(4)[:3], fmt="%.17g")
+        rows = (self.folder / "z.txt").read_text()
+        places = {"x": 2e-6 * np.arange(4), "y": 1e-6 * np.arange(3)}
+        for width in ("0.00 um", "-10 um", "10,000.50 um", "10 px"):
+            (self.folder / "a.txt").write_text(f"# Width: {width}\n# Height: 5.00 um\n# Value units: m\n" + rows)
+            for given in ({"size": (8e-6, 3e-6)}, {"dx": 2e-6, "dy": 1e-6}, {"span": (6e-6, 2e-6)}, places, {"size": (6e-6, 4e-6), "axes": "xy"}):
+                with self.subTest(width, given=given):
+                    made = surface.read(self.folder / "a.txt", **given)
+                    np.testing.assert_allclose((made.dx, made.dy), (2e-6, 1e-6), rtol=1e-14)
+                    self.assertEqual(made.units, ("m", "N"))
+            with self.assertRaisesRegex(ValueError, r"; or give size=\(...\)"):
+                surface.read(self.folder / "a.txt")
+
     def test_the_size_of_a_header_stays_with_its_indices(self):
         z = 1e-8 * rough(4)[:3]
         np.savetxt(self.folder / "a.txt", z, fmt="%.17g", header="Width: 10.00 um\nHeight: 5.00 um\nValue units: m")
