@@ -1,5 +1,6 @@
 """From heights to a gap: each step against what is known of it, and what a mistake costs."""
 
+import time
 import unittest
 import warnings
 from unittest import mock
@@ -386,6 +387,24 @@ class Balance(unittest.TestCase):
         self.assertLess(np.diff(given).max(), 0.0)
         found = surface.balance(gap, 1.0, e_star=1.0, max_seconds=1e-9)
         self.assertIn("max_seconds was reached", found.result.message)
+
+        def slowly(gap, progress=None, **scene):
+            result = solve(gap, **{"max_seconds": 1.0, **scene})
+            time.sleep(0.01)
+            if progress:
+                progress(None)
+            return result
+
+        # A solve that is complete is what was had so far.
+        for given_to, status, why in (({"max_seconds": 0.005}, cn.ITERATION_LIMIT, "max_seconds was reached before a tilt"),
+                                      ({"progress": lambda _: True}, cn.CANCELLED, "the progress callback cancelled")):
+            given.clear()
+            with mock.patch.object(surface.Gap, "solve", slowly):
+                found = surface.balance(gap, 1.0, e_star=1.0, **given_to)
+            self.assertEqual((len(given), found.result.status), (1, status))
+            self.assertTrue(found.result.message.startswith(why), found.result.message)
+            self.assertAlmostEqual(found.result.force, 1.0, delta=1e-4)
+            self.assertTrue(np.isfinite(found.centre).all())
 
     def test_what_cannot_be_balanced_is_refused(self):
         flat = surface.Gap(np.zeros((4, 4)), 1.0, 1.0)
