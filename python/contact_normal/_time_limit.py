@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from ._arguments import number
-from ._constants import CANCELLED, OK
+from ._constants import CANCELLED, ITERATION_LIMIT, OK
 
 if TYPE_CHECKING:
     from ._result import Result
@@ -17,17 +17,45 @@ _LEAST = 1e-9
 
 
 class TimeLimit:
-    """That of the option `max_seconds`, if it is given, from now on."""
+    """That of the option `max_seconds`, if it is given, from now on. A callable `progress` that cancels a solve ends the others, too."""
 
     def __init__(self, given: Mapping[str, Any]) -> None:
         self._began, self._seconds = time.monotonic(), number("max_seconds", given.get("max_seconds", 0.0))
+        self._progress: Any = given.get("progress")
+        self._is_cancelled = False
 
     @property
-    def left(self) -> dict[str, float]:
-        """The option for the next solve."""
-        return {"max_seconds": max(self._seconds - (time.monotonic() - self._began), _LEAST)} if self._seconds > 0.0 else {}
+    def left(self) -> dict[str, Any]:
+        """The options for the next solve."""
+        told = {"progress": self._tell} if callable(self._progress) else {}
+        return {**told, "max_seconds": max(self._seconds - (time.monotonic() - self._began), _LEAST)} if self._seconds > 0.0 else told
+
+    def _tell(self, progress: Any) -> bool:
+        # The status of the solve may tell of something else.
+        if is_cancelled := bool(self._progress(progress)):
+            self._is_cancelled = True
+        return is_cancelled
+
+    @property
+    def _is_over(self) -> bool:
+        return self._seconds > 0.0 and time.monotonic() - self._began >= self._seconds
 
     def ended(self, result: Result) -> bool:
-        """Whether a solve was cancelled, or stopped early since no time is left: no other one may follow it."""
-        is_over = self._seconds > 0.0 and time.monotonic() - self._began >= self._seconds
-        return result.status == CANCELLED or (result.status != OK and is_over)
+        """Whether a solve was cancelled, or stopped early since no time is left: no other one may follow it. The status tells that it was cancelled."""
+        if self._is_cancelled and result.status == OK:
+            _stop(result, CANCELLED, "the progress callback cancelled")
+        return self._is_cancelled or result.status == CANCELLED or (result.status != OK and self._is_over)
+
+    def leaves_none(self, result: Result, why: str) -> bool:
+        """Whether no time is left for a solve after this one; its status and message then tell so, and what is missing."""
+        if self._is_over:
+            _stop(result, ITERATION_LIMIT, f"max_seconds was reached {why}")
+            return True
+        return False
+
+
+def _stop(result: Result, status: int, why: str) -> None:
+    """Says of a result that what was asked for ended at it."""
+    if result.status == OK:
+        result.status = status
+    result.message = "\n".join(text for text in (why, result.message) if text)

@@ -209,6 +209,22 @@ class Loaded(unittest.TestCase):
             self.assertEqual(point.press(10e3, 0.3, 0.3, progress=once, **beside, **STEEL)[1].status, cn.CANCELLED)
             self.assertEqual(len(calls), 1)
 
+    def test_a_press_that_is_cancelled_ends_whatever_its_solve_says(self):
+        point, told = profiles.contact_points(self.TRACK, self.WHEELSET)[0], []
+
+        def solve(gap, progress, **scene):
+            result = solved(gap, **scene)
+            told.append(progress(None))
+            return result
+
+        solved = Gap.solve
+        for given, status in (({}, cn.CANCELLED), ({"max_cycles": 1, "method": "NORM"}, cn.ITERATION_LIMIT)):
+            told.clear()
+            with mock.patch.object(Gap, "solve", solve):
+                result = point.press(10e3, 0.3, 0.3, progress=lambda _: 1, friction={"coefficient": 0.3}, **given, **STEEL)[1]
+            self.assertEqual((result.status, told), (status, [True]))
+            self.assertEqual(result.message.startswith("the progress callback cancelled"), status == cn.CANCELLED)
+
     def test_a_limit_of_time_is_that_of_all_solves(self):
         point = profiles.contact_points(self.TRACK, self.WHEELSET)[0]
         given = []
@@ -224,9 +240,20 @@ class Loaded(unittest.TestCase):
             seconds = np.array(given)
             self.assertGreater(len(given), 1)
             self.assertLess(np.diff(seconds).max(), -0.009)
+            # Without time a complete solve is kept, on a grid that is too small, or too large, or without friction.
+            approach = 0.02111
+            for depth, friction, why in ((0.5 * approach, None, "on a grid for an approach of 0.0106 mm; the approach is 0.02"),
+                                         (2.0 * approach, None, "on a grid for an approach of 0.0422 mm; the approach is 0.0211 mm"),
+                                         (1.2 * approach, {"coefficient": 0.3}, "before friction was solved")):
+                given.clear()
+                gap, result = point.press(10e3, 0.3, 0.3, depth=depth, friction=friction, max_seconds=0.005, **STEEL)
+                self.assertEqual((len(given), result.status), (1, cn.ITERATION_LIMIT))
+                self.assertTrue(result.message.startswith(f"max_seconds was reached {why}"), result.message)
+                self.assertAlmostEqual(result.force, 10e3, delta=1.0)
+                self.assertEqual(result.pressure.shape, gap.h.shape)
+                self.assertFalse(result.traction.any())
             given.clear()
-            point.press(10e3, 0.3, 0.3, friction={"coefficient": 0.3}, max_seconds=0.005, **STEEL)
-            self.assertEqual(given[-1], 1e-9)
+            self.assertEqual(point.press(10e3, 0.3, 0.3, depth=1.2 * approach, max_seconds=0.005, **STEEL)[1].status, cn.OK)
         self.assertIn("max_seconds was reached", point.press(10e3, 0.3, 0.3, max_seconds=1e-9, **STEEL)[1].message)
 
     def test_a_grid_that_cannot_be_large_enough_is_refused(self):

@@ -1,5 +1,6 @@
 """From heights to a gap: each step against what is known of it, and what a mistake costs."""
 
+import time
 import unittest
 import warnings
 from unittest import mock
@@ -96,6 +97,14 @@ class Arrays(unittest.TestCase):
     def test_fill_values_of_single_precision_that_a_reader_made_double(self):
         values = np.where(self.Z == 5.0, -9999.9, self.Z).astype(np.float32).astype(np.float64)
         self.assertEqual(np.argwhere(surface.heights(values, 1, 1, fill=-9999.9).holes).tolist(), [[1, 1]])
+        # The text of the largest number of single precision is above it.
+        for largest in (3.4028235e38, -3.4028235e38):
+            values = np.where(self.Z == 5.0, largest, self.Z).astype(np.float32).astype(np.float64)
+            self.assertEqual(np.argwhere(surface.heights(values, 1, 1, fill=largest).holes).tolist(), [[1, 1]])
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            with self.assertRaisesRegex(UserWarning, "no element has the value 1e\\+300"):
+                surface.heights(self.Z, 1, 1, fill=1e300)
         with self.assertRaisesRegex(TypeError, "fill is '-9999'; it must be a real number"):
             surface.heights(values, 1, 1, fill="-9999")
 
@@ -378,6 +387,24 @@ class Balance(unittest.TestCase):
         self.assertLess(np.diff(given).max(), 0.0)
         found = surface.balance(gap, 1.0, e_star=1.0, max_seconds=1e-9)
         self.assertIn("max_seconds was reached", found.result.message)
+
+        def slowly(gap, progress=None, **scene):
+            result = solve(gap, **{"max_seconds": 1.0, **scene})
+            time.sleep(0.01)
+            if progress:
+                progress(None)
+            return result
+
+        # A solve that is complete is what was had so far.
+        for given_to, status, why in (({"max_seconds": 0.005}, cn.ITERATION_LIMIT, "max_seconds was reached before a tilt"),
+                                      ({"progress": lambda _: True}, cn.CANCELLED, "the progress callback cancelled")):
+            given.clear()
+            with mock.patch.object(surface.Gap, "solve", slowly):
+                found = surface.balance(gap, 1.0, e_star=1.0, **given_to)
+            self.assertEqual((len(given), found.result.status), (1, status))
+            self.assertTrue(found.result.message.startswith(why), found.result.message)
+            self.assertAlmostEqual(found.result.force, 1.0, delta=1e-4)
+            self.assertTrue(np.isfinite(found.centre).all())
 
     def test_what_cannot_be_balanced_is_refused(self):
         flat = surface.Gap(np.zeros((4, 4)), 1.0, 1.0)

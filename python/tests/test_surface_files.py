@@ -82,6 +82,32 @@ class Files(unittest.TestCase):
             (self.folder / "a.txt").write_bytes((head.format(point=".", unit="\u00b5m", value="m") + "# " + "x" * more + "\u20ac" * 2000 + "\n" + rows).encode())
             self.assertAlmostEqual(surface.read(self.folder / "a.txt").dy, 5e-6 / 32, delta=1e-18)
 
+    def test_a_bad_size_of_a_header_gives_way_to_one_that_is_given(self):
+        np.savetxt(self.folder / "z.txt", 1e-8 * rough(4)[:3], fmt="%.17g")
+        rows = (self.folder / "z.txt").read_text()
+        places = {"x": 2e-6 * np.arange(4), "y": 1e-6 * np.arange(3)}
+        for width in ("0.00 um", "-10 um", "10,000.50 um", "10 px"):
+            (self.folder / "a.txt").write_text(f"# Width: {width}\n# Height: 5.00 um\n# Value units: m\n" + rows)
+            for given in ({"size": (8e-6, 3e-6)}, {"dx": 2e-6, "dy": 1e-6}, {"span": (6e-6, 2e-6)}, places, {"size": (6e-6, 4e-6), "axes": "xy"}):
+                with self.subTest(width, given=given):
+                    made = surface.read(self.folder / "a.txt", **given)
+                    np.testing.assert_allclose((made.dx, made.dy), (2e-6, 1e-6), rtol=1e-14)
+                    self.assertEqual(made.units, ("m", "N"))
+            with self.assertRaisesRegex(ValueError, r"; or give size=\(...\)"):
+                surface.read(self.folder / "a.txt")
+
+    def test_the_size_of_a_header_stays_with_its_indices(self):
+        z = 1e-8 * rough(4)[:3]
+        np.savetxt(self.folder / "a.txt", z, fmt="%.17g", header="Width: 10.00 um\nHeight: 5.00 um\nValue units: m")
+        made = surface.read(self.folder / "a.txt", axes="xy")
+        np.testing.assert_array_equal(made.z, z.T)
+        np.testing.assert_allclose((made.dx, made.dy), (5e-6 / 3, 10e-6 / 4), rtol=1e-14)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            surface.read(self.folder / "a.txt", axes="xy", size=(5e-6, 10e-6))
+        with self.assertWarnsRegex(UserWarning, "says that the field is 5e-06 m long in x, and 1e-05 is given"):
+            surface.read(self.folder / "a.txt", axes="xy", size=(10e-6, 5e-6))
+
     def test_attributes_of_surface_topographys_files(self):
         z = rough(4)
         for periodic, given, period in (((1, 1), {}, "xy"), ((0, 1), {}, "y"), ((0, 0), {}, None), ((1, 1), {"period": None}, None), ((1, 1), {"dx": 1.0, "dy": 1.0}, "xy")):

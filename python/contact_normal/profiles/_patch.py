@@ -177,12 +177,13 @@ class ContactPoint:
         friction : dict, optional
             As that of `contact_normal.solve`. Its spin is about the contact point.
         **scene
-            Elastic constants, effects and options of `contact_normal.solve`. `max_seconds` is the limit of all solves together. One that is cancelled, or
-            ended by this limit, is the result, without friction.
+            Elastic constants, effects and options of `contact_normal.solve`. `max_seconds` is the limit of all solves together, of which that of friction
+            is the last one. No other one follows a solve that is cancelled, or ended by this limit: it is the result. Where no time is left for the next
+            solve, the one before is the result; its `status` is `ITERATION_LIMIT` then, and `message` tells what is missing.
         """
         may_shrink, limit = True, TimeLimit(scene)
+        gap = self.gap(dx, dy, depth)
         while True:
-            gap = self.gap(dx, dy, depth)
             result = gap.solve(force=force, **{**scene, **limit.left})
             if limit.ended(result):
                 return gap, result
@@ -196,11 +197,14 @@ class ContactPoint:
                     break
                 may_shrink = False
             # A grid that is too small finds a larger approach than there is.
-            depth = _RESERVE * approach
+            anew = self.gap(dx, dy, _RESERVE * approach)
+            if limit.leaves_none(result, f"on a grid for an approach of {depth:.3g} mm; the approach is {approach:.3g} mm"):
+                return gap, result
+            gap, depth = anew, _RESERVE * approach
         self._warn_of_others(gap, approach)
         bodies = _sampling.Body("rail", self._pair.rail, self._on_rail), _sampling.Body("wheel", self._pair.tread, self._on_wheel)
         _sampling.warn(bodies, gap.y, result, stacklevel=2)
-        if friction is not None:
+        if friction is not None and not limit.leaves_none(result, "before friction was solved"):
             centre = (-gap.middle[0], -gap.middle[1])
             result = gap.solve(force=force, friction={"spin_centre": centre, **friction}, **{**scene, **limit.left})
         return gap, result

@@ -39,9 +39,9 @@ def unit_of_columns(path: str | os.PathLike[str]) -> str | None:
     return None
 
 
-def header_of(path: str | os.PathLike[str]) -> dict[str, Any]:
+def header_of(path: str | os.PathLike[str], is_given: bool = False) -> dict[str, Any]:
     """`size` and `unit` of a text whose header says `# Width: 10.00 um`, `# Height: 5.00 um` and `# Value units: m`: the size is in the unit of the
-    heights. Empty without such a header."""
+    heights. Empty without such a header. A size that is no positive length is refused; where the caller gives sizes, it is None."""
     text = _head(path)
     lengths, value = {name: (number, unit) for name, number, unit in _LENGTH.findall(text)}, _UNIT.search(text)
     if len(lengths) < 2 or value is None:
@@ -53,13 +53,14 @@ def header_of(path: str | os.PathLike[str]) -> dict[str, Any]:
     for name in ("Width", "Height"):
         number, of_length = lengths[name]
         length = in_metres(of_length)
-        if length is None:
-            raise ValueError(f"{path} says {name}: {number} {of_length}, which is no unit of length")
         try:
-            size = float(number.replace(",", ".")) * length / unit
+            size = float(number.replace(",", ".")) * (length or 0.0) / unit
         except ValueError:
             size = 0.0
         if not 0.0 < size < float("inf"):
-            raise ValueError(f"{path} says {name}: {number} {of_length}; it must be a positive number without signs between thousands")
+            if is_given:
+                return {"size": None, "unit": value[1]}
+            why = ", which is no unit of length" if length is None else "; it must be a positive number without signs between thousands"
+            raise ValueError(f"{path} says {name}: {number} {of_length}{why}; or give size=(...)")
         sizes.append(size)
     return {"size": tuple(sizes), "unit": value[1]}

@@ -28,9 +28,6 @@ _EQUAL = 1e-3
 # those of heights in m beside um are.
 _STEEP, _STEPS, _LEVEL = 0.67, 64, 2e-7
 
-# The largest number of single precision.
-_LARGEST_SINGLE = float(np.finfo(np.float32).max)
-
 # Elements that are worked on at a time: some megabytes.
 _BLOCK = 1 << 18
 
@@ -230,8 +227,11 @@ def heights(
         if own.kind == "f":
             as_held = float(own.type(as_held))
         filled = z == as_held
-        if not filled.any() and abs(as_held) <= _LARGEST_SINGLE:
-            filled = z == float(np.float32(as_held))
+        if not filled.any():
+            # The largest one is written as 3.4028235e38, which is above it.
+            with np.errstate(over="ignore"):
+                single = float(np.float32(as_held))
+            filled = z == single if np.isfinite(single) else filled
         # What is no number, or infinite, is a hole already.
         if np.isfinite(as_held) and not filled.any():
             warnings.warn(f"no element has the value {fill!r} that stands for 'not measured': the heights are from {np.nanmin(z):g} to {np.nanmax(z):g}"

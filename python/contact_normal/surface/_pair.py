@@ -145,7 +145,7 @@ def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolera
     Returns
     -------
     Balanced
-        Of a solve that was cancelled, or ended by `max_seconds`: its tilt, and `result.status` tells.
+        Where a solve was cancelled, or `max_seconds` is over: the tilt of the last solve, and `result.status` tells.
 
     Raises
     ------
@@ -163,13 +163,16 @@ def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolera
         raise ValueError(f"at is {at}; it must be finite")
     if not number("tolerance", tolerance) > 0.0:
         raise ValueError(f"tolerance is {tolerance}; it must be positive")
-    limit = TimeLimit(scene)
+    limit, last = TimeLimit(scene), list[Balanced]()
 
     def solved(tilt: Doubles) -> tuple[Result, Doubles]:
+        if last and limit.leaves_none(last[-1].result, "before a tilt was found that balances the force"):
+            raise _Ended(last[-1])
         result = _tilted(gap, tilt).solve(force=force, **{**scene, **limit.left})
         off = _centre(gap, result) - aim
+        last[:] = [_balanced(gap, tilt, result, off + aim)]
         if limit.ended(result):
-            raise _Ended(_balanced(gap, tilt, result, off + aim))
+            raise _Ended(last[-1])
         return result, off
 
     try:

@@ -121,7 +121,10 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         return _of_numbers(path, values, given) if is_plain else heights(values, **given)
     # Some instruments write binary files of these ends.
     if end in (".txt", ".dat", ".csv") and is_text(path):
-        told = header_of(path)
+        told = header_of(path, bool(_SIZES & set(given)))
+        if given.get("axes") == "xy" and told.get("size"):
+            # Width is that of the columns of the file, which are y then.
+            told = {**told, "size": told["size"][::-1]}
         made = _of_numbers(path, of_text(path, end), _with_header(told, given))
         _warn_of_size(path, told, made)
         return made
@@ -158,7 +161,7 @@ def _with_header(told: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
 
 def _warn_of_size(path: str | os.PathLike[str], told: dict[str, Any], made: Heights) -> None:
     """Warns of a size that is not that of the header, by more than a caller's n - 1 for n."""
-    if not told:
+    if not told.get("size"):
         return
     for name, n, d, length in zip("xy", made.z.shape[::-1], (made.dx, made.dy), told["size"]):
         if abs(n * d - length) > (0.01 + 1.0 / n) * length:
