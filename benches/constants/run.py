@@ -36,7 +36,7 @@ def compared(base, changed):
     ratio = sum(b[0] for _, b in pairs) / sum(a[0] for a, _ in pairs)
     worst = max(b[0] / a[0] for a, b in pairs if a[0])
     other = sum(a[1] != b[1] for a, b in pairs)
-    return f"{ratio:.3f} ({worst:.2g})" + (f", {other} other statuses" if other else "")
+    return f"{ratio:.3f} ({worst:.2g})" + (f", {other} other status{'es' if other > 1 else ''}" if other else "")
 
 
 def main():
