@@ -1374,7 +1374,7 @@ typedef struct contact_normal_progress {
    */
   int32_t my;
   /*
-   Cycles on that grid so far.
+   Cycles on that grid so far. Iterations of the tangential problem, and with adhesion those on coarser grids, are told but not counted.
    */
   int64_t cycles;
   /*
