@@ -250,6 +250,10 @@ class Commands(unittest.TestCase):
         # Enough for forces: docs/accuracy.md.
         self.assertGreaterEqual(int(rows[1][1]), 8)
         self.assertTrue(out.rstrip().endswith("below round-off"), out)
+        # Effects reach the library: it refuses a compliance that is negative.
+        code, out, told = called("prices", self.npy, *BALL, "--layer", "-1e-12")
+        self.assertNotEqual(code, 0)
+        self.assertIn("compliance", told)
 
     def test_bills(self):
         code, out, told = called("bill", self.npy, *BALL, "--layer", "1e-12", "--pressure-limit", "300", "--plot", self.folder / "bill.svg")
