@@ -1509,14 +1509,14 @@ typedef struct contact_normal_options {
   const int32_t *stop;
   /*
    The path of a file, or NULL (default): where a call that ends neither as OK nor as CANCELLED writes its arguments, for
-   `contact-normal-replay` (docs/dump.md); not by `contact_normal_quantities` and `contact_normal_effects_bill`. %p in it is the number of the process, %n that of the dump in the process, %% a %.
+   `contact-normal-replay` (docs/dump.md); not by `contact_normal_quantities` and `contact_normal_effects_bill`. %p in it is the number of
+   the process, %n that of the dump in the process, %% a %.
    */
   const char *dump;
   /*
-   > 0, of `contact_normal_solve` alone: effects whose omission changes force or approach, largest pressure, area and tangential forces
-   by less than this part, as `contact_normal_effects_bill` says, are left out; `report->accuracy.neglected` has which. Friction stays.
-   `progress` is told of the cycles on the small grids that show it.
-   Below 1. Default 0: nothing is left out. Since 0.2.
+   > 0, of `contact_normal_solve` alone: effects whose omission changes force or approach, largest pressure, area and tangential forces by
+   less than this part, as `contact_normal_effects_bill` says, are left out; `report->accuracy.neglected` has which. Friction stays.
+   `progress` is told of the cycles on the small grids that show it. Below 1. Default 0: nothing is left out. Since 0.2.
    */
   double neglect_below;
 } contact_normal_options;
@@ -2951,17 +2951,16 @@ contact_normal_status contact_normal_solve_to_accuracy(const struct contact_norm
                                                        struct contact_normal_report *report);
 
 /*
- Predicts the cost of each of `n` relative errors of a `quantity`: `rows[i]` is that of `targets[i]`, and `contact_normal_price_init(rows)`
- has set the size of a row. The scene is solved on small grids over its rectangle only, for at most 2 % of the seconds of the most
- expensive row that can be reached (the least that its samples predict; on a busy machine the last sample may take longer), or 50 ms; for some
- 2 s where no row is known by then. Where nothing touches on the scene's grid, a quantity of 0 is exact: the row has that grid and the error 0.
- Of `accuracy` (NULL: the defaults) `max_seconds`,
- `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit names it as its obstacle, and has the cost without the limit.
- With a surface the scene's undeformed
- distance is not read and may be NULL. Without one small grids sample it, and grids finer than the scene's are refined from it, as
- `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface or `options->stop`; ITERATION_LIMIT: `options->max_seconds` was reached,
- and rows have the results so far; or `max_cycles`, and neither the scene's grid nor a coarser one was solved. STAGNATED: neither was solved.
- UNSUPPORTED: own coefficients, FIXED contact, or a step of bodies that relax which continues. Since 0.2.
+ Predicts the cost of each of `n` relative errors of a `quantity`: `rows[i]` is that of `targets[i]`, and `contact_normal_price_init(rows)` has
+ set the size of a row. The scene is solved on small grids over its rectangle only, for at most 2 % of the seconds of the most expensive row
+ that can be reached (the least that its samples predict; on a busy machine the last sample may take longer), or 50 ms; for some 2 s where no
+ row is known by then. Where nothing touches on the scene's grid, a quantity of 0 is exact: the row has that grid and the error 0. Of
+ `accuracy` (NULL: the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit names it as
+ its obstacle, and has the cost without the limit. With a surface the scene's undeformed distance is not read and may be NULL. Without one
+ small grids sample it, and grids finer than the scene's are refined from it, as `contact_normal_solve_to_accuracy` does. CANCELLED: by the
+ surface or `options->stop`; ITERATION_LIMIT: `options->max_seconds` was reached, and rows have the results so far; or `max_cycles`, and
+ neither the scene's grid nor a coarser one was solved. STAGNATED: neither was solved. UNSUPPORTED: own coefficients, FIXED contact, or a step
+ of bodies that relax which continues. Since 0.2.
  */
 contact_normal_status contact_normal_cost_of_accuracy(const struct contact_normal_scene *scene,
                                                       const struct contact_normal_options *options,
@@ -2973,11 +2972,12 @@ contact_normal_status contact_normal_cost_of_accuracy(const struct contact_norma
 
 /*
  Solves the scene on its grid and on `coarser` grids (0 to 12), each with half the elements of the next in both directions and solved from
- nothing, and writes `n` rows for each grid, coarsest first: `rows[k n + i]` is that of `quantities[i]` (CONTACT_NORMAL_QUANTITY_...) on grid k.
- There are `(coarser + 1) n` rows; where a grid of few elements cannot be halved any more, fewer grids, and `*written` (NULL: not wanted)
- has the number of rows. Errors of force, largest pressure and area are the estimates of the report; errors of all others follow from the
- grids before, so that the coarsest has none. Where nothing touches on the scene's own grid, values of 0 have the error 0. Arrays of one value per element have their means on coarser grids. ITERATION_LIMIT, STAGNATED:
- the scene's own grid was not solved. UNSUPPORTED: own coefficients, tractions kept by a handle, FIXED contact. Since 0.2.
+ nothing, and writes `n` rows for each grid, coarsest first: `rows[k n + i]` is that of `quantities[i]` (CONTACT_NORMAL_QUANTITY_...) on grid
+ k. There are `(coarser + 1) n` rows; where a grid of few elements cannot be halved any more, fewer grids, and `*written` (NULL: not wanted)
+ has the number of rows. Errors of force, largest pressure and area are the estimates of the report; errors of all others follow from the grids
+ before, so that the coarsest has none. Where nothing touches on the scene's own grid, values of 0 have the error 0. Arrays of one value per
+ element have their means on coarser grids. ITERATION_LIMIT, STAGNATED: the scene's own grid was not solved. UNSUPPORTED: own coefficients,
+ tractions kept by a handle, FIXED contact. Since 0.2.
  */
 contact_normal_status contact_normal_quantities(const struct contact_normal_scene *scene,
                                                 const struct contact_normal_options *options,
@@ -2995,9 +2995,9 @@ contact_normal_status contact_normal_quantities(const struct contact_normal_scen
  for at most 5 % of its own predicted seconds or 100 ms, or `options->max_seconds` where that is given.
 
  `*count` is the number of rows: n for each effect, in the order of the constants, then n for each pair. `rows` has room for the first
- `capacity` of them; rows NULL asks for the count alone, which takes no time. ITERATION_LIMIT: `max_cycles` ended a
- solve of the last grid, and rows that need it have no change (LACK_UNSOLVED); or `max_seconds` was reached. Then, and after CANCELLED, rows have
- the results of the last grid that was solved with and without all effects. UNSUPPORTED: own coefficients, tractions kept by a handle, FIXED contact. Since 0.2.
+ `capacity` of them; rows NULL asks for the count alone, which takes no time. ITERATION_LIMIT: `max_cycles` ended a solve of the last grid, and
+ rows that need it have no change (LACK_UNSOLVED); or `max_seconds` was reached. Then, and after CANCELLED, rows have the results of the last
+ grid that was solved with and without all effects. UNSUPPORTED: own coefficients, tractions kept by a handle, FIXED contact. Since 0.2.
  */
 contact_normal_status contact_normal_effects_bill(const struct contact_normal_scene *scene,
                                                   const struct contact_normal_options *options,
@@ -3156,11 +3156,11 @@ contact_normal_status contact_normal_kept(int64_t *bytes, int32_t *threads);
 
 /*
  1 if this library has the feature of this name, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop",
- "error_ratio", "neglect_below"), a
- member of the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "branch", "previous_coefficient",
- "yield_limit"), or a task of calls ("batch", "accuracy", "price_list", "quantities", "effects_bill", "stress", "coating_compliance", "flash_temperature", "frictional_wear", "influence_rolling",
- "influence_rolling_tangential", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump", "set_option",
- "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
+ "error_ratio", "neglect_below"), a member of the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables",
+ "law", "branch", "previous_coefficient", "yield_limit"), or a task of calls ("batch", "accuracy", "price_list", "quantities", "effects_bill",
+ "stress", "coating_compliance", "flash_temperature", "frictional_wear", "influence_rolling", "influence_rolling_tangential",
+ "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump", "set_option", "constant", "product", "stiffness").
+ Names of later versions are unknown here: 0. Since 0.2.
  */
 int32_t contact_normal_has(const char *name);
 

@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ._arguments import doubles, flag, integer, number, pointer
-from ._constants import value_of
+from ._arguments import constant, doubles, flag, number, pointer
 from ._library import initialised
 
 _KNOWN = ("law", "work", "range", "smear", "start", "stiffness", "stability", "shear_strength")
@@ -35,8 +34,7 @@ def adhesion(value: Any, shape: tuple[int, int]) -> tuple[Any, Any]:
             setattr(effect, name, number(f"adhesion['{name}']", given[name]))
     for name in ("law", "start"):
         if name in given:
-            one = given[name]
-            setattr(effect, name, value_of(name, one) if isinstance(one, str) else integer(f"adhesion['{name}']", one))
+            setattr(effect, name, constant(f"adhesion['{name}']", name, given[name]))
     for name in ("stiffness", "stability"):
         setattr(effect, name, flag(f"adhesion['{name}']", given.get(name, False)))
     return effect, works

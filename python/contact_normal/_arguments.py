@@ -263,6 +263,11 @@ def integers(name: str, values: Any, shape: tuple[int, ...]) -> Integers:
     return np.require(array, np.int32, ("C_CONTIGUOUS", "ALIGNED"))
 
 
+def constant(name: str, option: str, value: Any) -> int:
+    """A constant of a named option, by its name or its number."""
+    return _constants.value_of(option, value) if isinstance(value, str) else integer(name, value)
+
+
 def pair(name: str, value: Any) -> Any:
     """One value for both bodies, or two."""
     if isinstance(value, float):

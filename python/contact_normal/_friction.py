@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arguments import both, doubles, flag, integer, number, pointer, two
-from ._constants import MOTION_SHIFT, PRESCRIBED_TANGENTIAL_FORCE, value_of
+from ._arguments import both, constant, doubles, flag, number, pointer, two
+from ._constants import MOTION_SHIFT, PRESCRIBED_TANGENTIAL_FORCE
 from ._library import initialised
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def friction(value: Any, shape: tuple[int, int], length: float = 0.0) -> tuple[A
     kept = _one_or_each(effect, "coefficient", given.get("coefficient", 0.0), shape)
     kept += _one_or_each(effect, "compliance", given.get("compliance", 0.0), shape)
     motion = given.get("motion", MOTION_SHIFT)
-    effect.motion = value_of("motion", motion) if isinstance(motion, str) else integer("friction['motion']", motion)
+    effect.motion = constant("friction['motion']", "motion", motion)
     for name in _FLAGS:
         setattr(effect, name, flag(f"friction['{name}']", given.get(name, False)))
     forces = both("friction['force']", given.get("force", (None, None)), "a pair, None where the creepage is given")
@@ -69,7 +69,7 @@ def friction(value: Any, shape: tuple[int, int], length: float = 0.0) -> tuple[A
             kept.append(doubles(f"friction['{name}']", given[name], shape))
             setattr(effect, name, pointer(kept[-1]))
     branch = given.get("branch", 0)
-    effect.branch = value_of("friction_branch", branch) if isinstance(branch, str) else integer("friction['branch']", branch)
+    effect.branch = constant("friction['branch']", "friction_branch", branch)
     _law(effect, given.get("law"))
     _layer(effect, given.get("layer"))
     kept += _influence(effect, given)
@@ -130,7 +130,7 @@ def _law(effect: Any, value: Any) -> None:
     if "kind" not in given:
         raise ValueError("friction['law'] has no kind; it must be 'LINEAR', 'RATIONAL' or 'EXPONENTIAL'")
     kind = given["kind"]
-    effect.law = value_of("friction_law", kind) if isinstance(kind, str) else integer("friction['law']['kind']", kind)
+    effect.law = constant("friction['law']['kind']", "friction_law", kind)
     for name in _OF_LAW:
         if name in given:
             setattr(effect, name, number(f"friction['law']['{name}']", given[name]))

@@ -62,13 +62,17 @@ class Scene:
                 self._name(name, value)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # What stresses below the surface need of it: structs of the library hold addresses.
-        effects = {name: self._effects.get(name) for name in _OF_STRESSES}
-        return _without_load, (self.shape, self.struct.dx, self.struct.dy, self._constants, effects, self._own)
+        # Structs of the library hold addresses.
+        return _without_load, (self.shape, self.struct.dx, self.struct.dy, self._constants, self._of_stresses, self._own)
+
+    @property
+    def _of_stresses(self) -> dict[str, Any]:
+        """The effects that stresses below the surface need."""
+        return {name: self._effects.get(name) for name in _OF_STRESSES}
 
     def on_grid(self, shape: tuple[int, int], dx: float, dy: float) -> Scene:
         """What stresses below the surface need, on another grid: without load."""
-        effects = {name: self._effects.get(name) for name in _OF_STRESSES}
+        effects = self._of_stresses
         if effects["patches"] is not None:
             patch, factors = both("patches", effects["patches"])
             # Elements of another grid are of the patch in which they begin.

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import os
 import re
-import time
 from collections.abc import Callable, Mapping, Sequence
 from ctypes import c_int32
 from functools import partial
@@ -29,6 +28,7 @@ from ._scene import Scene, influence as influence_of
 from ._structs import Fields, Report
 from ._structs import Scene as SceneStruct
 from ._tangential import of_pressures
+from ._time_limit import Clock
 from ._units import checked
 
 if TYPE_CHECKING:
@@ -38,8 +38,6 @@ if TYPE_CHECKING:
     from ._arguments import Doubles
 
 _Problem = tuple[Scene, Outputs]
-# Seconds that end a call after its first cycle.
-_LEAST = 1e-9
 
 
 class Solver:
@@ -223,11 +221,10 @@ class Solver:
             guess, area = (None if values is None else values[i] for values in (pressure, contact))
             problems.append((scene, Outputs(self._shape, guess, area, struct, friction is not None, scene, adhesion is not None)))
         threads = self._given.get("threads", 1) or os.cpu_count() or 1
-        began, limit, results = time.monotonic(), struct.max_seconds, []
+        # The limit is that of the whole call.
+        clock, results = Clock(struct.max_seconds), []
         for part in parts(count, threads):
-            if limit > 0.0:
-                # The limit is that of the whole call. 0 would be none.
-                struct.max_seconds = max(limit - (time.monotonic() - began), _LEAST)
+            struct.max_seconds = clock.left
             results += self._solved(problems[part], struct)
         return results
 

@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ._arguments import both, doubles, flag, integer, number, pointer
-from ._constants import value_of
+from ._arguments import both, constant, doubles, flag, number, pointer
 from ._library import initialised
 
 _KNOWN = ("modulus", "time", "time_step", "form", "continues")
@@ -39,6 +38,6 @@ def visco(value: Any) -> tuple[Any, Any]:
     effect.time_step = number("visco['time_step']", given.get("time_step", 0.0))
     if "form" in given:
         form = given["form"]
-        effect.form = value_of("form", form) if isinstance(form, str) else integer("visco['form']", form)
+        effect.form = constant("visco['form']", "form", form)
     effect.continues = flag("visco['continues']", given.get("continues", False))
     return effect, kept

@@ -259,10 +259,10 @@ impl Solver {
             return Ok(without);
         };
         self.levels[0].now.copy_from(&least.at)?;
-        if without == Walk::Interrupted {
-            return Ok(without);
-        }
-        Ok(Walk::Least { sum: least.sum, approach: least.approach() })
+        Ok(match without {
+            Walk::Interrupted => without,
+            _ => Walk::Least { sum: least.sum, approach: least.approach() },
+        })
     }
 
     /// The first pressing force, by the state of the least force if one is known.

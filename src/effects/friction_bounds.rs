@@ -44,6 +44,16 @@ impl Friction<'_> {
         self.yield_limits.map_or(layer.yield_limit, |limits| limits[i])
     }
 
+    /// The coefficients of particles before the step; none are read without a law or a layer that changes.
+    pub(crate) fn coefficients_read(&self) -> Option<&[f64]> {
+        self.coefficients_before.filter(|_| self.has_law())
+    }
+
+    /// The yield limits of particles before the step; none are read without a layer.
+    pub(crate) fn yield_limits_read(&self) -> Option<&[f64]> {
+        self.yield_limits.filter(|_| self.layer.is_some())
+    }
+
     /// Refuses invalid laws, layers and histories, and those that are not solved with the rest.
     pub(super) fn check_law(&self, grid: &Grid) -> Result<()> {
         if let Some(law) = &self.law {
@@ -53,12 +63,9 @@ impl Friction<'_> {
             positive("friction->yield_limit", layer.yield_limit)?;
             require(layer.hardening.is_finite(), "friction->hardening", layer.hardening, "it must be finite")?;
         }
-        // Without a law or a layer nothing is read of the particles; without a layer no yield limits.
-        self.coefficients_before
-            .filter(|_| self.has_law())
+        self.coefficients_read()
             .map_or(Ok(()), |values| check_values("friction->previous_coefficient", values, grid, not_negative))?;
-        self.yield_limits
-            .filter(|_| self.layer.is_some())
+        self.yield_limits_read()
             .map_or(Ok(()), |values| check_values("friction->previous_yield_limit", values, grid, positive))?;
         if !self.has_law() {
             return Ok(());

@@ -232,7 +232,8 @@ impl NotOk {
         }
     }
 
-    /// The return value of the call: the status of the first, and a line for each: "problem 3: ...", where `each` is a problem; the warnings if all are OK.
+    /// The return value of the call: the status of the first, and a line for each: "problem 3: ...", where `each` is a problem; the warnings if
+    /// all are OK.
     pub fn outcome(self, each: &str) -> Conclusion {
         let status = self.first.first().map_or(CONTACT_NORMAL_OK, |(_, outcome)| outcome.status);
         let line = |(i, outcome): &(usize, Conclusion)| format!("{each} {i}: {}", outcome.message);

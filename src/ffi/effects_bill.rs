@@ -119,9 +119,9 @@ impl From<&BillRow> for contact_normal_effects_row {
 /// for at most 5 % of its own predicted seconds or 100 ms, or `options->max_seconds` where that is given.
 ///
 /// `*count` is the number of rows: n for each effect, in the order of the constants, then n for each pair. `rows` has room for the first
-/// `capacity` of them; rows NULL asks for the count alone, which takes no time. ITERATION_LIMIT: `max_cycles` ended a
-/// solve of the last grid, and rows that need it have no change (LACK_UNSOLVED); or `max_seconds` was reached. Then, and after CANCELLED, rows have
-/// the results of the last grid that was solved with and without all effects. UNSUPPORTED: own coefficients, tractions kept by a handle, FIXED contact. Since 0.2.
+/// `capacity` of them; rows NULL asks for the count alone, which takes no time. ITERATION_LIMIT: `max_cycles` ended a solve of the last grid, and
+/// rows that need it have no change (LACK_UNSOLVED); or `max_seconds` was reached. Then, and after CANCELLED, rows have the results of the last
+/// grid that was solved with and without all effects. UNSUPPORTED: own coefficients, tractions kept by a handle, FIXED contact. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_effects_bill(
     scene: *const contact_normal_scene,

@@ -112,9 +112,7 @@ impl contact_normal_friction_results {
         }
         outcome
     }
-}
 
-impl contact_normal_friction_results {
     /// `max_seconds` ended the call: entries that were cancelled for it reached a limit.
     pub(super) unsafe fn late(&self, n: usize) {
         for i in (0..n).filter(|_| !self.status.is_null()) {

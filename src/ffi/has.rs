@@ -55,11 +55,11 @@ const NAMES: [&str; 46] = [
 ];
 
 /// 1 if this library has the feature of this name, else 0: an effect of a scene ("friction", "adhesion"), an option ("max_seconds", "stop",
-/// "error_ratio", "neglect_below"), a
-/// member of the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables", "law", "branch", "previous_coefficient",
-/// "yield_limit"), or a task of calls ("batch", "accuracy", "price_list", "quantities", "effects_bill", "stress", "coating_compliance", "flash_temperature", "frictional_wear", "influence_rolling",
-/// "influence_rolling_tangential", "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump", "set_option",
-/// "constant", "product", "stiffness"). Names of later versions are unknown here: 0. Since 0.2.
+/// "error_ratio", "neglect_below"), a member of the friction ("initial_traction", "compliance", "creepage_weight", "tangential_row_tables",
+/// "law", "branch", "previous_coefficient", "yield_limit"), or a task of calls ("batch", "accuracy", "price_list", "quantities", "effects_bill",
+/// "stress", "coating_compliance", "flash_temperature", "frictional_wear", "influence_rolling", "influence_rolling_tangential",
+/// "solve_tangential", "pull_off", "sensitivities", "warnings", "keep", "release", "dump", "set_option", "constant", "product", "stiffness").
+/// Names of later versions are unknown here: 0. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_has(name: *const c_char) -> i32 {
     if name.is_null() {

@@ -104,12 +104,12 @@ pub struct contact_normal_options {
     /// An integer that any thread may set, or NULL (default): once it is not 0, the call ends as CANCELLED after the cycle that it is in.
     pub stop: *const i32,
     /// The path of a file, or NULL (default): where a call that ends neither as OK nor as CANCELLED writes its arguments, for
-    /// `contact-normal-replay` (docs/dump.md); not by `contact_normal_quantities` and `contact_normal_effects_bill`. %p in it is the number of the process, %n that of the dump in the process, %% a %.
+    /// `contact-normal-replay` (docs/dump.md); not by `contact_normal_quantities` and `contact_normal_effects_bill`. %p in it is the number of
+    /// the process, %n that of the dump in the process, %% a %.
     pub dump: *const c_char,
-    /// > 0, of `contact_normal_solve` alone: effects whose omission changes force or approach, largest pressure, area and tangential forces
-    /// by less than this part, as `contact_normal_effects_bill` says, are left out; `report->accuracy.neglected` has which. Friction stays.
-    /// `progress` is told of the cycles on the small grids that show it.
-    /// Below 1. Default 0: nothing is left out. Since 0.2.
+    /// > 0, of `contact_normal_solve` alone: effects whose omission changes force or approach, largest pressure, area and tangential forces by
+    /// less than this part, as `contact_normal_effects_bill` says, are left out; `report->accuracy.neglected` has which. Friction stays.
+    /// `progress` is told of the cycles on the small grids that show it. Below 1. Default 0: nothing is left out. Since 0.2.
     pub neglect_below: f64,
 }
 

@@ -128,17 +128,16 @@ impl From<&Price> for contact_normal_price {
     }
 }
 
-/// Predicts the cost of each of `n` relative errors of a `quantity`: `rows[i]` is that of `targets[i]`, and `contact_normal_price_init(rows)`
-/// has set the size of a row. The scene is solved on small grids over its rectangle only, for at most 2 % of the seconds of the most
-/// expensive row that can be reached (the least that its samples predict; on a busy machine the last sample may take longer), or 50 ms; for some
-/// 2 s where no row is known by then. Where nothing touches on the scene's grid, a quantity of 0 is exact: the row has that grid and the error 0.
-/// Of `accuracy` (NULL: the defaults) `max_seconds`,
-/// `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit names it as its obstacle, and has the cost without the limit.
-/// With a surface the scene's undeformed
-/// distance is not read and may be NULL. Without one small grids sample it, and grids finer than the scene's are refined from it, as
-/// `contact_normal_solve_to_accuracy` does. CANCELLED: by the surface or `options->stop`; ITERATION_LIMIT: `options->max_seconds` was reached,
-/// and rows have the results so far; or `max_cycles`, and neither the scene's grid nor a coarser one was solved. STAGNATED: neither was solved.
-/// UNSUPPORTED: own coefficients, FIXED contact, or a step of bodies that relax which continues. Since 0.2.
+/// Predicts the cost of each of `n` relative errors of a `quantity`: `rows[i]` is that of `targets[i]`, and `contact_normal_price_init(rows)` has
+/// set the size of a row. The scene is solved on small grids over its rectangle only, for at most 2 % of the seconds of the most expensive row
+/// that can be reached (the least that its samples predict; on a busy machine the last sample may take longer), or 50 ms; for some 2 s where no
+/// row is known by then. Where nothing touches on the scene's grid, a quantity of 0 is exact: the row has that grid and the error 0. Of
+/// `accuracy` (NULL: the defaults) `max_seconds`, `max_bytes`, `max_elements`, `surface` and `user` are read: a row beyond a limit names it as
+/// its obstacle, and has the cost without the limit. With a surface the scene's undeformed distance is not read and may be NULL. Without one
+/// small grids sample it, and grids finer than the scene's are refined from it, as `contact_normal_solve_to_accuracy` does. CANCELLED: by the
+/// surface or `options->stop`; ITERATION_LIMIT: `options->max_seconds` was reached, and rows have the results so far; or `max_cycles`, and
+/// neither the scene's grid nor a coarser one was solved. STAGNATED: neither was solved. UNSUPPORTED: own coefficients, FIXED contact, or a step
+/// of bodies that relax which continues. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_cost_of_accuracy(
     scene: *const contact_normal_scene,

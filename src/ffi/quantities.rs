@@ -97,11 +97,12 @@ pub(super) fn quantities_of(numbers: &[i32]) -> Result<Vec<Quantity>, Refusal> {
 const MOST_COARSER: i32 = 12;
 
 /// Solves the scene on its grid and on `coarser` grids (0 to 12), each with half the elements of the next in both directions and solved from
-/// nothing, and writes `n` rows for each grid, coarsest first: `rows[k n + i]` is that of `quantities[i]` (CONTACT_NORMAL_QUANTITY_...) on grid k.
-/// There are `(coarser + 1) n` rows; where a grid of few elements cannot be halved any more, fewer grids, and `*written` (NULL: not wanted)
-/// has the number of rows. Errors of force, largest pressure and area are the estimates of the report; errors of all others follow from the
-/// grids before, so that the coarsest has none. Where nothing touches on the scene's own grid, values of 0 have the error 0. Arrays of one value per element have their means on coarser grids. ITERATION_LIMIT, STAGNATED:
-/// the scene's own grid was not solved. UNSUPPORTED: own coefficients, tractions kept by a handle, FIXED contact. Since 0.2.
+/// nothing, and writes `n` rows for each grid, coarsest first: `rows[k n + i]` is that of `quantities[i]` (CONTACT_NORMAL_QUANTITY_...) on grid
+/// k. There are `(coarser + 1) n` rows; where a grid of few elements cannot be halved any more, fewer grids, and `*written` (NULL: not wanted)
+/// has the number of rows. Errors of force, largest pressure and area are the estimates of the report; errors of all others follow from the grids
+/// before, so that the coarsest has none. Where nothing touches on the scene's own grid, values of 0 have the error 0. Arrays of one value per
+/// element have their means on coarser grids. ITERATION_LIMIT, STAGNATED: the scene's own grid was not solved. UNSUPPORTED: own coefficients,
+/// tractions kept by a handle, FIXED contact. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_quantities(
     scene: *const contact_normal_scene,

@@ -11,13 +11,11 @@ use super::report::contact_normal_report;
 use super::scene::{contact_normal_scene, Named};
 use super::status::{contact_normal_status, Refusal};
 use super::warnings::advice_on_law;
-use super::watcher::{watched, why, Watcher};
+use super::watcher::{told_to, watched, why, Watcher};
 use crate::contact::State;
 use crate::effects;
 use crate::scene::{Load, Scene};
-use crate::solver::{
-    ActiveSet, InitialGuess, Method, Neglected, Options, Outcome, Progress, ProgressCallback, Report, Solver,
-};
+use crate::solver::{ActiveSet, InitialGuess, Method, Neglected, Options, Outcome, ProgressCallback, Report, Solver};
 
 /// Solves one scene. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.1.
 #[no_mangle]
@@ -39,9 +37,8 @@ pub unsafe extern "C" fn contact_normal_solve(
         outputs.check_inputs(&options.options, scene.grid.len())?;
         let mut watcher = Watcher::of(&options);
         if options.given.neglect_below > 0.0 {
-            let mut told = watcher.as_mut().map(|watcher| |progress: &Progress| watcher.told(progress));
-            let progress = told.as_mut().map(|told| told as ProgressCallback<'_>);
-            let neglected = Neglected::of(&scene, &options.options, options.given.neglect_below, progress)?;
+            let target = options.given.neglect_below;
+            let neglected = told_to(&mut watcher, |told| Neglected::of(&scene, &options.options, target, told))?;
             scene = neglected.leave_out(&scene);
             outputs.neglected = Some(neglected);
         }

@@ -197,7 +197,7 @@ impl Call<'_> {
         self.concluded(concluded?, table.len())
     }
 
-    /// The end of a call with so many entries. Those that `max_seconds` ended have the status of the call.
+    /// Ends a call of n entries. An entry that `max_seconds` ended gets the status of the call.
     fn concluded(&self, of: Conclusion, n: usize) -> Result<contact_normal_status, Refusal> {
         if of.is_late {
             // SAFETY: the caller's arrays were checked.

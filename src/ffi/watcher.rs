@@ -46,7 +46,7 @@ impl Watcher {
     }
 
     /// Whether to cancel; once it did, for good.
-    pub fn told(&mut self, progress: &Progress) -> bool {
+    fn told(&mut self, progress: &Progress) -> bool {
         if self.reason.is_some() {
             return true;
         }
@@ -104,13 +104,18 @@ pub(super) fn why(outcome: Outcome) -> &'static str {
     }
 }
 
+/// Tells a watcher, if there is one, of the cycles of this work.
+pub(super) fn told_to<T>(watcher: &mut Option<Watcher>, work: impl FnOnce(Option<ProgressCallback<'_>>) -> T) -> T {
+    let mut told = watcher.as_mut().map(|watcher| |progress: &Progress| watcher.told(progress));
+    work(told.as_mut().map(|told| told as ProgressCallback<'_>))
+}
+
 /// The conclusion of a solve that a watcher, if there is one, is told of.
 pub(super) fn watched(
     mut watcher: Option<Watcher>,
     solve: impl FnOnce(Option<ProgressCallback<'_>>) -> Result<Conclusion, Refusal>,
 ) -> Result<Conclusion, Refusal> {
-    let mut told = watcher.as_mut().map(|watcher| |progress: &Progress| watcher.told(progress));
-    let found = solve(told.as_mut().map(|told| told as ProgressCallback<'_>))?;
+    let found = told_to(&mut watcher, solve)?;
     Ok(match watcher {
         Some(watcher) => watcher.conclusion(found),
         None => found,

@@ -50,13 +50,8 @@ impl Had<'_> {
     fn before(&self, i: usize) -> Particle {
         let kept = self.kept.get(i).copied().unwrap_or(self.fresh(i));
         Particle {
-            coefficient: self
-                .friction
-                .coefficients_before
-                .and_then(|of| of.get(i))
-                .copied()
-                .unwrap_or(kept.coefficient),
-            yield_limit: self.friction.yield_limits.and_then(|of| of.get(i)).copied().unwrap_or(kept.yield_limit),
+            coefficient: self.friction.coefficients_read().map_or(kept.coefficient, |of| of[i]),
+            yield_limit: self.friction.yield_limits_read().map_or(kept.yield_limit, |of| of[i]),
         }
     }
 }

@@ -126,8 +126,7 @@ impl Solver {
         take_distance(&mut self.state, scene.undeformed_distance, &self.problem.threads);
         let outcome = self.run_adhesive((scene, lowest), (adhesion, pull_off), (options, guess, goes_on), &mut monitor);
         self.ledger = std::mem::take(&mut monitor.ledger.rows);
-        let outcome = outcome.and_then(|(stop, found)| {
-            let split = self.adhesion.as_ref().map(|solver| solver.split()).transpose()?;
+        let outcome = outcome.and_then(|(stop, found, split)| {
             let (stop, friction) = self.rub(scene, (adhesion, &split), options, stop, &mut monitor)?;
             Ok((stop, found, friction, split))
         });
@@ -135,7 +134,7 @@ impl Solver {
             self.go_back(kept);
         }
         let (stop, found, friction, split) = outcome?;
-        (self.has_result, self.split, self.compliance) = (true, split, 1.0);
+        (self.has_result, self.split, self.compliance) = (true, Some(split), 1.0);
         effects::keep(scene, &mut self.beside.histories);
         let mut report = Report { adhesion: Some(found), friction, ..Report::of(&monitor, options.tolerance) };
         report.measures = self.ledger.last().map(|row| row.measures).unwrap_or_default();
@@ -153,7 +152,7 @@ impl Solver {
         (adhesion, pull_off): (&Adhesion<'_>, bool),
         (options, guess, goes_on): (&Options, Option<Guess<'_>>, bool),
         monitor: &mut Monitor<'_>,
-    ) -> Result<(Outcome, adhesion::Report)> {
+    ) -> Result<(Outcome, adhesion::Report, adhesion::Split)> {
         let mut solver = match self.adhesion.take() {
             Some(solver) => solver,
             None => {
@@ -201,6 +200,7 @@ impl Solver {
             (state.load, state.approach, state.reached_limit) = (scene.load, found.now.approach(), false);
             (state.round_off, state.u_is) = (self.problem.round_off(), Freshness::Exact);
         }
+        let outcome = outcome.and_then(|(stop, found)| Ok((stop, found, solver.split()?)));
         self.adhesion = Some(solver);
         outcome
     }

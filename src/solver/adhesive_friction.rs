@@ -70,12 +70,12 @@ impl Solver {
     pub(super) fn rub(
         &mut self,
         scene: &Scene<'_>,
-        (adhesion, split): (&Adhesion<'_>, &Option<Split>),
+        (adhesion, split): (&Adhesion<'_>, &Split),
         options: &Options,
         stop: Outcome,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, Option<Report>)> {
-        let (Some(friction), Some(split)) = (&scene.friction, split) else {
+        let Some(friction) = &scene.friction else {
             // There is no previous step any more.
             self.friction.iter_mut().for_each(|before| before.forget());
             return Ok((stop, None));

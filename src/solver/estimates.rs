@@ -93,8 +93,8 @@ impl Parts {
             return None;
         }
         let force = state.force();
-        // In full contact of two periods the mean displacement is 0, but for round-off and rows that are not sampled, so that dF/d(approach) is arbitrary.
-        // With a given force no error depends on it.
+        // The mean displacement of full contact with two periods is 0. What is computed is round-off, and dF/d(approach) would be arbitrary. With a given
+        // force no error depends on it.
         let is_full = repeats == (true, true) && count == state.grid.len();
         let stiffness = match state.load {
             Load::Force(_) if is_full => 0.0,

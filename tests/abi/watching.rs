@@ -68,7 +68,7 @@ unsafe extern "C" fn set_stop(_: *const contact_normal_progress, user: *mut libc
     0
 }
 
-/// The small grids that show what is negligible ask, too.
+/// The bill of `neglect_below` calls `progress` and looks at `stop`.
 #[test]
 fn what_leaves_effects_out_asks_as_well() {
     let told = |neglect_below: f64| {

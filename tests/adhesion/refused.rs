@@ -54,7 +54,7 @@ fn what_is_refused_for_its_friction_leaves_a_result_of_adhesion() {
     let mut solver = Solver::new(&of(0.1), &Options::default()).expect("a solver");
     assert_eq!(solver.solve(&of(0.1), &Options::default(), None, None).expect("a solve").0, Outcome::Converged);
     let (before, p) = (split(&solver), solver.state().p.clone());
-    // Of another work, too.
+    // A refused scene with another work of adhesion changes nothing either.
     let own = Adhesion { work: Work::Uniform(0.1), ..sphere.adhesion };
     refused(&mut solver, &Scene { adhesion: Some(own), ..of(1e3) });
     refused(&mut solver, &of(1e3));

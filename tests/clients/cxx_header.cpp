@@ -1,5 +1,5 @@
 // contact_normal.hpp: what its classes promise. Prints one line per check that fails, and the number of checks.
-#include <contact_normal.hpp>
+#include "cxx_expect.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,17 +9,6 @@
 #include <vector>
 
 namespace cn = contact_normal;
-
-static int failed = 0, checked = 0;
-
-static void expect(bool holds, const char *what)
-{
-    checked++;
-    if (!holds) {
-        failed++;
-        std::printf("FAILED: %s\n", what);
-    }
-}
 
 static const cn::grid GRID{32, 24, 0.1, 0.1};
 static const cn::body STEEL{82000.0, 0.28};

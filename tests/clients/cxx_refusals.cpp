@@ -1,23 +1,12 @@
 // contact_normal.hpp: what is refused comes as `error`, or as a status of what ends with `_into`, and a refused result holds nothing. Prints one
 // line per check that fails, and the number of checks.
-#include <contact_normal.hpp>
+#include "cxx_expect.hpp"
 
 #include <cstdio>
 #include <string>
 #include <vector>
 
 namespace cn = contact_normal;
-
-static int failed = 0, checked = 0;
-
-static void expect(bool holds, const char *what)
-{
-    checked++;
-    if (!holds) {
-        failed++;
-        std::printf("FAILED: %s (last error: %s)\n", what, contact_normal_last_error());
-    }
-}
 
 static const cn::grid GRID{32, 24, 0.1, 0.1}, TOO_LARGE{2000000000, 2000000000, 0.1, 0.1};
 static const cn::body STEEL{82000.0, 0.28};

@@ -1,5 +1,5 @@
 // contact_normal.hpp: what else C has, each called once and compared. Prints one line per check that fails, and the number of checks.
-#include <contact_normal.hpp>
+#include "cxx_expect.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,17 +11,6 @@
 #include <vector>
 
 namespace cn = contact_normal;
-
-static int failed = 0, checked = 0;
-
-static void expect(bool holds, const char *what)
-{
-    checked++;
-    if (!holds) {
-        failed++;
-        std::printf("FAILED: %s (last error: %s)\n", what, contact_normal_last_error());
-    }
-}
 
 static constexpr cn::fields of_adhesion = cn::fields::contact_pressure | cn::fields::attraction;
 static constexpr cn::fields of_effects = of_adhesion | cn::fields::traction | cn::fields::slip | cn::fields::stick_slip

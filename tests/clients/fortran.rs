@@ -211,22 +211,23 @@ fn the_module_works_with_other_default_kinds() {
     }
 }
 
-#[test]
-fn what_is_attached_wrong_is_said() {
+/// A program that checks itself, under valgrind and with wider default integers, too.
+fn all_hold(name: &str) {
     for (i, flags) in [&["-g", "-O1", "-fcheck=all"][..], &["-O2", "-fdefault-integer-8"]].into_iter().enumerate() {
-        let folder = scratch(&format!("fortran_setters_{i}"));
-        let program = compile("tests/clients/fortran_setters.f90", flags, &folder);
+        let folder = scratch(&format!("{name}_{i}"));
+        let program = compile(&format!("tests/clients/{name}.f90"), flags, &folder);
         assert_eq!(run_under_valgrind(&program, &[], &folder), "all hold\n", "{flags:?}");
     }
 }
 
 #[test]
+fn what_is_attached_wrong_is_said() {
+    all_hold("fortran_setters");
+}
+
+#[test]
 fn arrays_of_another_shape_are_said() {
-    for (i, flags) in [&["-g", "-O1", "-fcheck=all"][..], &["-O2", "-fdefault-integer-8"]].into_iter().enumerate() {
-        let folder = scratch(&format!("fortran_shapes_{i}"));
-        let program = compile("tests/clients/fortran_shapes.f90", flags, &folder);
-        assert_eq!(run_under_valgrind(&program, &[], &folder), "all hold\n", "{flags:?}");
-    }
+    all_hold("fortran_shapes");
 }
 
 /// A part of an array with gaps would be copied, and the copy would be gone when the library reads it.

@@ -1,9 +1,10 @@
 //! Bounds from slips, and the residuals of the conditions with them.
 
 use super::super::certificate::{scale, Certificate};
-use super::super::plane::{clip, dot, square, Vector};
+use super::super::plane::{clip, dot, square};
 use super::super::problem::{Problem, State};
 use super::super::tangent::{Side, Tangent};
+use super::element::Particle;
 use super::march::March;
 use super::STEEP;
 use crate::methods::fields;
@@ -80,13 +81,20 @@ pub(super) fn onto_circles(problem: &mut Problem, state: &mut State, tangent: &T
     problem.refresh_unclipped(state);
 }
 
-/// Clips tractions to their [largest bounds](March::largest_bound), with a fresh product if any was longer.
-fn clip_to_largest(problem: &mut Problem, state: &mut State, march: &March) {
-    let threads = problem.threads().clone();
-    let exceeds = |k: usize, q: Vector| square(q).sqrt() > march.largest_bound(k);
-    let [count] = fields::sum(&threads, state.q.len(), |k| [f64::from(u8::from(exceeds(k, state.q[k])))]);
-    if count > 0.0 {
-        fields::map(&threads, &mut state.q, |k, q| if exceeds(k, q) { clip(q, march.largest_bound(k)) } else { q });
+/// Clips tractions to p times the largest coefficient that a particle can have: that at rest or, with memory, the one that it brings. A fresh product
+/// follows if any was longer.
+fn clip_to_largest(problem: &mut Problem, state: &mut State, march: &mut March) {
+    let has_memory = march.law.fall.is_some_and(|law| law.memory_distance > 0.0);
+    let mut is_clipped = false;
+    march.go(|k, place, had| {
+        let coefficient = if has_memory { place.coefficient.max(had.coefficient) } else { place.coefficient };
+        let largest = place.pressure * coefficient;
+        if square(state.q[k]).sqrt() > largest {
+            (state.q[k], is_clipped) = (clip(state.q[k], largest), true);
+        }
+        Particle { coefficient, ..had }
+    });
+    if is_clipped {
         problem.refresh_unclipped(state);
     }
 }

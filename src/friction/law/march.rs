@@ -18,8 +18,6 @@ pub struct March {
     /// The largest slopes with which bounds fall and rise with the slip, times an element's influence on itself.
     pub falls: f64,
     pub rises: f64,
-    /// See [`largest_bound`](March::largest_bound).
-    largest: Vec<f64>,
     /// The result of the last [`resolve`](March::resolve) on each element.
     resolved: Vec<Resolved>,
     /// The state of each particle during a march.
@@ -41,7 +39,7 @@ impl March {
     ) -> Result<March> {
         let n = grid.len();
         let has_upstream = motion == Motion::SteadyRolling && by.0.fract() == 0.0 && by.1.fract() == 0.0;
-        let mut march = March {
+        Ok(March {
             grid,
             law,
             places: collected((0..n).map(place), WHAT)?,
@@ -52,31 +50,12 @@ impl March {
             resolved: collected((0..n).map(|_| Resolved::default()), WHAT)?,
             carries: collected((0..n).map(|_| Particle::default()), WHAT)?,
             entered: collected((0..n).map(|_| false), WHAT)?,
-            largest: collected((0..n).map(|_| 0.0), WHAT)?,
-        };
-        march.find_largest();
-        Ok(march)
-    }
-
-    fn find_largest(&mut self) {
-        let has_memory = self.law.fall.is_some_and(|law| law.memory_distance > 0.0);
-        let mut largest = std::mem::take(&mut self.largest);
-        self.go(|k, place, had| {
-            let mu = if has_memory { place.coefficient.max(had.coefficient) } else { place.coefficient };
-            largest[k] = place.pressure * mu;
-            Particle { coefficient: mu, ..had }
-        });
-        self.largest = largest;
+        })
     }
 
     /// The result of the last [`resolve`](March::resolve) on an element.
     pub fn resolved(&self, k: usize) -> &Resolved {
         &self.resolved[k]
-    }
-
-    /// p times the largest coefficient that an element's particle can have: that at rest or, with memory, what it brings.
-    pub fn largest_bound(&self, k: usize) -> f64 {
-        self.largest[k]
     }
 
     /// Calls `each(k, place, state before)` in the order in which particles pass; it returns the state afterwards. In steady rolling particles are

@@ -88,6 +88,11 @@ impl Course {
         self.quantity
     }
 
+    /// Whether the last value is an area of 0: finer grids may have a few elements of it.
+    pub fn is_empty(&self) -> bool {
+        self.quantity.is_area() && self.values.value() == Some(0.0)
+    }
+
     /// Adds the value on a grid after so many doublings. `residual` is its relative uncertainty.
     pub fn add(&mut self, doublings: i32, found: Value, residual: f64) {
         self.values.add(doublings, found.value, residual * found.value.abs());
@@ -130,10 +135,10 @@ impl Course {
     /// The error on the last grid from the sequence, if a single grid gives no estimate. Forces, pressures and areas have one only if nothing is
     /// estimated at all (`lacks_estimates`), because a single peak without an estimate is singular or not resolved. It then takes at least three
     /// grids, because only the changes reveal an infinite value.
-    /// An area of 0 has none: a few elements stick on finer grids only.
+    /// An [empty](Course::is_empty) area has none.
     pub fn falling(&self, lacks_estimates: bool) -> Option<Falling> {
         match (self.quantity, self.last) {
-            (quantity, _) if quantity.is_area() && self.values.value() == Some(0.0) => None,
+            _ if self.is_empty() => None,
             (quantity, _) if quantity.has_estimate() && !(lacks_estimates && self.len() > 2) => None,
             (Quantity::MaxPressure, _) => self.values.falling(),
             (Quantity::VonMisesDepth, Some(peak)) => self.of_depth(peak),

@@ -186,8 +186,7 @@ fn row(k: usize, found: &OnGrid, doublings: i32, course: &mut Course) -> Quantit
         (Ok(_), None) if is_zero => Some(Lack::NoContact),
         (Ok(_), Some(_)) => None,
         (Ok(_), None) if course.len() < 2 + usize::from(found.lacks_estimates) => Some(Lack::OneGrid),
-        // Finer grids may have elements that stick.
-        (Ok(value), None) if course.quantity().is_area() && value.value == 0.0 => Some(Lack::Unsettled),
+        (Ok(_), None) if course.is_empty() => Some(Lack::Unsettled),
         // The report of one grid has no estimate.
         (Ok(_), None) if course.tells_singular() || course.quantity().has_estimate() => Some(Lack::Singular),
         (Ok(_), None) => Some(Lack::Unsettled),
