@@ -5,11 +5,12 @@ use crate::contact::State;
 use crate::error::Result;
 use crate::memory::collected;
 
-/// The law and the works of a result. A later scene with others, and other coefficients, leave it.
+/// The law and the works of adhesion of a result. They stay when the handle later gets another scene or other
+/// coefficients.
 pub struct Split(Surface);
 
 impl Split {
-    /// The split of a solution between these surfaces.
+    /// The split of a solution for these surfaces.
     pub fn of(surface: &Surface) -> Result<Split> {
         let works = collected(surface.works.iter().copied(), "works of adhesion")?;
         Ok(Split(Surface { h: Vec::new(), attraction: surface.attraction, works, work: surface.work }))

@@ -71,7 +71,7 @@ impl Unknowns {
         Ok(())
     }
 
-    /// Extrapolates from other unknowns, by this part of the difference. The contact area stays.
+    /// Extrapolates from other unknowns through these: adds `part` times the difference. The contact area stays.
     pub fn go_along(&mut self, from: &Unknowns, part: f64, threads: &Threads) {
         let on = |[to]: [f64; 1], [from]: [f64; 1]| [to + part * (to - from)];
         fields::map(threads, &mut self.p.field, |i, to| on(to, from.p.field[i]));
@@ -146,8 +146,8 @@ pub struct Surface {
     pub work: f64,
 }
 
-/// Pressures below this part of sigma(0) count as 0, as between bodies apart under a law of finite range.
-const NOTHING: f64 = f64::EPSILON;
+/// Least scale of pressures, relative to w/range: bodies that are apart under a law of finite range have no pressures.
+const LEAST_PRESSURE_SCALE: f64 = f64::EPSILON;
 
 impl Surface {
     /// w of element i.
@@ -169,7 +169,7 @@ impl Surface {
     }
 }
 
-/// Contact pressures and attraction cancel if p is below this part of them.
+/// Contact pressures q and attraction cancel if p is below this share of q.
 pub const CANCELLED: f64 = 1e-3;
 /// Relative round-off of `h - approach` for h equal to the approach, as in plain contact problems.
 const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
@@ -178,10 +178,11 @@ const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
 /// load, total pressures are round-off: the scale of pressures is p, or [`CANCELLED`] times q if that is larger.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Measured {
-    /// rms over C of e, relative to that of `h - approach`, or to the displacement of one element by itself under p or [`CANCELLED`] q, whichever
-    /// is larger. 0 if both are the round-off of bodies that fit exactly.
+    /// rms over C of e, relative to that of `h - approach`, or to the displacement of one element by itself under p or
+    /// [`CANCELLED`] q, whichever is larger. 0 if both are the round-off of bodies that fit exactly. At least the size
+    /// of `opening`, relative to the rms of `h - approach`.
     pub distance: f64,
-    /// Largest -e outside C, a length.
+    /// The largest -e outside C, a length; 0 if there is none.
     pub penetration: f64,
     /// The penetration relative to the scale of `distance`.
     pub violation: f64,
@@ -261,7 +262,7 @@ pub fn measure(
     let outside = |i: usize| if unknowns.contact[i] { 0.0 } else { approach - surface.h[i] - u[i][0] };
     let penetration = fields::largest(threads, u.len(), outside);
     let n = f64::max(count, 1.0);
-    let (part, nothing) = (CANCELLED * CANCELLED * qc, NOTHING * surface.work / surface.attraction.range);
+    let (part, nothing) = (CANCELLED * CANCELLED * qc, LEAST_PRESSURE_SCALE * surface.work / surface.attraction.range);
     let scale = (dd / n).sqrt().max(self_influence * (pc.max(part) / n).sqrt());
     let scale = if count > 0.0 { scale } else { scale.max(self_influence * (pp / u.len() as f64).sqrt()) };
     let ratio = |value: f64, of: f64| if value == 0.0 { 0.0 } else { value / of };

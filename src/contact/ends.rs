@@ -1,20 +1,22 @@
 //! The effect of the position of a surface's end within the contact.
 //!
-//! Elements only tell between which two centres an edge of the surface lies. Pressures are singular there,
-//! `p ~ K/sqrt(2 pi s)` at the distance s. If the surface ends farther out by t, the approach of a given force F falls by the
-//! energy released (Irwin 1957; Rice 1968):
+//! An edge of the surface lies somewhere between two centres of elements. Pressures are singular at the edge:
+//! `p ~ K/sqrt(2 pi s)` at the distance s from it. If the surface ends farther out by t, the approach of a given force
+//! F falls by the energy released (Irwin 1957; Rice 1968):
 //!
 //! ```text
 //! F d(approach) = -t integral along the edge of K^2/E*,    K^2 = (pi/2) d p^2
 //! ```
 //!
-//! with the pressure p of the last element, d long across the edge. A layer of compliance c adds `t integral of c p^2`. The force of
-//! a given approach changes by `F d(approach) S/F`, S = dF/d(approach): pressures grow with the approach as `p S/F` for a flat punch, and for
-//! other surfaces nearly so. For other quantities at the edge, as tractions, these replace one of the two factors p.
+//! with the pressure p of the last element, d long across the edge. A layer of compliance c adds `t integral of c p^2`.
+//! The force of a given approach changes by `F d(approach) S/F`, S = dF/d(approach): pressures grow with the approach
+//! as `p S/F` for a flat punch, and for other surfaces nearly so. For the change of another quantity at the edge, such
+//! as tractions, that quantity replaces one of the two factors p.
 //!
-//! t is at most about half an element along a straight edge parallel to the elements, a part of it being an error of the singularity itself. Along
-//! edges in steps most of it cancels. At the border of the grid, and if the caller's elements are the surface, the edge lies exactly on edges of
-//! elements. (Measured, in elements: straight -0.46 to 0.2, in steps -0.15 to 0.05, on edges of elements -0.15.)
+//! Along a straight edge parallel to the elements t is at most about half an element. A part of this is the
+//! discretisation error of the singularity. Along an edge with steps most of t cancels. At the border of the grid, and
+//! if the caller's elements are the surface, the edge lies exactly on edges of elements. (Measured, in elements:
+//! straight -0.46 to 0.2, in steps -0.15 to 0.05, on edges of elements -0.15.)
 
 use std::f64::consts::PI;
 
@@ -22,10 +24,10 @@ use super::direction::Direction;
 use super::outline::STRAIGHT;
 use super::{Problem, State};
 
-/// t, in elements.
-const AT_STRAIGHT: f64 = 0.55;
-const AT_STEPS: f64 = 0.12;
-const AT_EXACT: f64 = 0.2;
+/// t in elements: at a straight edge, at an edge with steps, and where the edge lies on edges of elements.
+const STRAIGHT_EDGE: f64 = 0.55;
+const STEPPED_EDGE: f64 = 0.12;
+const EXACT_EDGE: f64 = 0.2;
 
 /// The neighbour of an element.
 #[derive(Clone, Copy, PartialEq)]
@@ -53,12 +55,12 @@ pub fn at_ends<const N: usize>(problem: &Problem, state: &State, weights: impl F
             for side in [0, 1] {
                 let elements = match beside(across, state, (i, place[k]), side) {
                     Beside::Surface => continue,
-                    Beside::Border => AT_EXACT,
-                    Beside::Hole if problem.exact_edges => AT_EXACT,
+                    Beside::Border => EXACT_EDGE,
+                    Beside::Hole if problem.exact_edges => EXACT_EDGE,
                     Beside::Hole if is_straight(along, state, (i, place[1 - k]), (across, place[k], side)) => {
-                        AT_STRAIGHT
+                        STRAIGHT_EDGE
                     }
-                    Beside::Hole => AT_STEPS,
+                    Beside::Hole => STEPPED_EDGE,
                 };
                 let part = elements * (flexibility * sizes[k] + problem.layer(i)) * state.p[i] * grid.element_area();
                 let weights = weights(i);

@@ -1,12 +1,12 @@
 //! The guard against cycles of the active set.
 //!
-//! Exchanging all violators at once is fast but may cycle. Block principal pivoting (Judice & Pires 1994; Kim & Park 2011)
-//! terminates for P-matrices. All violators are exchanged while their number reaches new minima, with up to three tries in
-//! between. After that only the violator of the highest index is exchanged, until there is a new minimum. With limits of pressures and a
-//! prescribed force it may cycle all the same.
+//! Exchanging all violators at once is fast but may cycle. Block principal pivoting (Judice & Pires 1994; Kim & Park
+//! 2011) terminates for P-matrices. All violators are exchanged when their number is a new minimum, and up to two times
+//! more after it. Then only the violator of the highest index is exchanged, until there is a new minimum. With pressure
+//! limits and a prescribed force even this may cycle.
 
-/// Full exchanges allowed without a new minimum.
-const TRIES: u32 = 3;
+/// Full exchanges from a new minimum on, including the one at the minimum.
+const FULL_EXCHANGES: u32 = 3;
 
 /// Decides whether all violators may be exchanged, or one.
 #[derive(Clone, Copy, Debug)]
@@ -17,7 +17,7 @@ pub struct ExchangeGuard {
 
 impl Default for ExchangeGuard {
     fn default() -> ExchangeGuard {
-        ExchangeGuard { fewest: usize::MAX, tries: TRIES }
+        ExchangeGuard { fewest: usize::MAX, tries: FULL_EXCHANGES }
     }
 }
 
@@ -26,7 +26,7 @@ impl ExchangeGuard {
     pub fn allows_all(&mut self, violators: usize) -> bool {
         if violators < self.fewest {
             self.fewest = violators;
-            self.tries = TRIES;
+            self.tries = FULL_EXCHANGES;
             return true;
         }
         self.tries = self.tries.saturating_sub(1);

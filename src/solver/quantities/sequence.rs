@@ -1,21 +1,22 @@
 //! The error of a quantity from its values on finer and finer grids.
 //!
-//! With elements of size h a value has the error `c h^q`, q = 1 or 2 (Richardson). With the change d between two grids, k doublings apart, the
-//! remaining error is `d/(2^k - 1)` for q = 1, and `d/(4^k - 1)` for q = 2. Areas change irregularly from grid to grid. So no error is less than the
-//! prediction at first order on the grid before, unless both grids indicate second order.
+//! With elements of size h a value has the error `c h^q`, q = 1 or 2 (Richardson). With the change d between two grids,
+//! k doublings apart, the remaining error is `d/(2^k - 1)` for q = 1, and `d/(4^k - 1)` for q = 2. Areas change
+//! irregularly from grid to grid. So the error is not less than the prediction of the grid before at first order,
+//! unless the last two changes indicate second order.
 
 use crate::solver::falling::Falling;
 
-/// Ratio of successive changes at a doubling above which, three times or as often as known, the quantity is singular. A logarithm has the ratio
-/// 1, first order 1/2.
-const SINGULAR: f64 = 0.8;
-/// Largest error of second order, relative to that predicted at first order: a quarter, and half of that for irregularity.
-const SECOND_ORDER: f64 = 0.38;
-/// Factor on an error of second order, whose order is known from three grids only.
+/// A quantity is singular if the ratios of its last three changes (of two, if there are no more), each per doubling,
+/// are above this. A logarithm has the ratio 1, first order 1/2.
+const SINGULAR_RATIO: f64 = 0.8;
+/// Largest ratio of successive changes at a doubling for second order: a quarter, and half of that for irregularity.
+const SECOND_ORDER_RATIO: f64 = 0.38;
+/// Factor on an error of second order, because only three grids indicate this order.
 const MARGIN: f64 = 2.0;
 
-/// Ratio of changes of first order, and least ratio for slower ones.
-const LEAST: f64 = 0.5;
+/// Ratio of successive changes at a doubling for first order.
+const FIRST_ORDER_RATIO: f64 = 0.5;
 
 /// Values of one quantity on grids of the same rectangle, coarsest first.
 #[derive(Clone, Debug, Default)]
@@ -31,7 +32,8 @@ struct Point {
 }
 
 impl Sequence {
-    /// Adds a grid at `doublings`, more than the one before. `hidden`: the error of the value by the residual.
+    /// Adds a grid; its `doublings` exceed those of the grid before. `hidden`: the error of the value due to the
+    /// residual.
     pub fn add(&mut self, doublings: i32, value: f64, hidden: f64) {
         self.points.push(Point { doublings, value, hidden });
     }
@@ -41,7 +43,7 @@ impl Sequence {
         self.points.last().map(|point| point.value)
     }
 
-    /// The error of the last value by the residual.
+    /// The error of the last value due to the residual.
     pub fn hidden(&self) -> Option<f64> {
         self.points.last().map(|point| point.hidden)
     }
@@ -68,30 +70,30 @@ impl Sequence {
         if is_singular(&changes, hidden) {
             return None;
         }
-        let promised = before.promises(newest);
+        let predicted = before.predicts(newest);
         let found = newest.first_order();
-        if found <= 2.0 * SECOND_ORDER * promised {
+        if found <= 2.0 * SECOND_ORDER_RATIO * predicted {
             let second = newest.second_order().max(before.second_order() * 0.25_f64.powi(newest.doublings));
             return Some(Falling { by_four: MARGIN * second, hidden, ..Falling::default() });
         }
-        Some(Falling { by_two: found.max(promised), hidden, ..Falling::default() })
+        Some(Falling { by_two: found.max(predicted), hidden, ..Falling::default() })
     }
 
     /// The error of an irregular quantity of first order, for which a small change does not indicate second order.
     pub fn of_first_order(&self) -> Option<Falling> {
         let falling = self.falling()?;
         let [.., before, newest] = self.changes()[..] else { return Some(falling) };
-        let by_two = newest.first_order().max(before.promises(&newest));
+        let by_two = newest.first_order().max(before.predicts(&newest));
         Some(Falling { by_two, by_four: 0.0, ..falling })
     }
 
-    /// The error of a quantity known to converge, whether its changes fall yet or not: the rest of a geometric series with the ratio of the last
-    /// two changes, clamped between 1/2 and `ratio` at a doubling.
+    /// The error of a quantity that is known to converge, even if its changes do not fall yet: the rest of a geometric
+    /// series with the ratio of the last two changes, clamped between 1/2 and `ratio` at a doubling.
     pub fn slow(&self, ratio: f64) -> Option<Falling> {
         let (last, falls) = match self.changes().iter().map(|change| change.of_one().abs()).collect::<Vec<f64>>()[..] {
             [] => return None,
-            [only] => (only, LEAST),
-            [.., before, newest] if before > 0.0 => (newest.max(LEAST * before), (newest / before).clamp(LEAST, ratio)),
+            [only] => (only, FIRST_ORDER_RATIO),
+            [.., before, newest] if before > 0.0 => (newest.max(FIRST_ORDER_RATIO * before), (newest / before).clamp(FIRST_ORDER_RATIO, ratio)),
             [.., newest] => (newest, ratio),
         };
         Some(Falling { by_two: last * falls / (1.0 - falls), hidden: self.hidden()?, ..Falling::default() })
@@ -125,7 +127,7 @@ impl Change {
     }
 
     /// The error of first order after the `next` change, predicted by this one.
-    fn promises(&self, next: &Change) -> f64 {
+    fn predicts(&self, next: &Change) -> f64 {
         self.first_order() * 0.5_f64.powi(next.doublings)
     }
 
@@ -135,12 +137,13 @@ impl Change {
     }
 }
 
-/// Whether the last three changes, or two if there are no more, have one sign and do not fall. Changes below `hidden` are ignored.
+/// Whether the last three changes, or two if there are no more, have one sign and do not fall. Changes below `hidden`
+/// do not indicate a singularity.
 fn is_singular(changes: &[Change], hidden: f64) -> bool {
     let last = &changes[changes.len().saturating_sub(3)..];
     last.windows(2).all(|pair| {
         let (before, now) = (pair[0].of_one(), pair[1].of_one());
-        now.abs() > hidden && before * now > 0.0 && now.abs() > SINGULAR * before.abs()
+        now.abs() > hidden && before * now > 0.0 && now.abs() > SINGULAR_RATIO * before.abs()
     })
 }
 

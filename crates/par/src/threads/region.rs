@@ -1,7 +1,8 @@
 //! Work of one caller that workers may share.
 //!
-//! Each worker takes a seat, under the lock of the list of regions. After its own part the caller removes the region from the list: no more seats are
-//! taken, and it waits for the workers with a seat. So it never waits for a worker that has not begun.
+//! Each worker takes a seat under the lock of the list of regions. After its own part the caller removes the region
+//! from the list, so that no more seats are taken, and waits for the workers that have a seat. So the caller never
+//! waits for a worker that has not begun.
 
 use std::any::Any;
 use std::panic::{catch_unwind, AssertUnwindSafe};
@@ -49,7 +50,7 @@ impl Region {
         Region { call, seats, taken, left, end: Mutex::default(), is_left: Condvar::new() }
     }
 
-    /// A seat, if there is one left. Only under the lock of the list.
+    /// Takes a seat, if one is left. The caller holds the lock of the list.
     pub fn take_seat(&self) -> Option<usize> {
         let seat = self.taken.load(Ordering::Relaxed);
         (seat < self.seats).then(|| self.taken.fetch_add(1, Ordering::Relaxed))
@@ -69,7 +70,8 @@ impl Region {
         }
     }
 
-    /// Waits until all taken seats are left: spins for a while, then sleeps, which frees the core for a worker without one.
+    /// Waits until all taken seats are left: spins for the time `awake`, then sleeps, which frees the core for a worker
+    /// that waits for one.
     pub fn wait(&self, awake: Duration) {
         let (taken, began) = (self.taken.load(Ordering::Relaxed), Instant::now());
         let is_over = || self.left.load(Ordering::Acquire) == taken;

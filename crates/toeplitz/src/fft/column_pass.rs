@@ -19,13 +19,14 @@ pub struct Blocks<'a, T, const K: usize> {
     pub blocks: [&'a mut [Complex<T>]; K],
     /// Number of defined columns.
     pub columns: usize,
-    /// The places of the next blocks, of as many rows.
+    /// Addresses of the next blocks, which have as many rows; used for prefetching only.
     pub next: [*const Complex<T>; K],
     /// Rows that hold values.
     pub loaded: [Range<usize>; K],
 }
 
-/// The place of values in a block of columns: value q of a block of the last stage, whose first row is `row`, in a vector of columns.
+/// The place of values in a block of columns: bin q of a block of the last stage, in one vector of columns. `row` is
+/// the first row of that block.
 #[derive(Clone, Copy)]
 pub struct At<'a> {
     pub kept: &'a Kept,
@@ -67,7 +68,7 @@ pub struct Multiply<'a, T: Scalar, F, const K: usize> {
 impl<T: Scalar, F: Factor<T, K>, const K: usize> WithSimd for Multiply<'_, T, F, K> {
     type Output = ();
 
-    /// One vector of columns after the other, each within the nearest cache.
+    /// Takes one vector of columns after the other, so that each stays in the nearest cache.
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) {
         let vectors = self.blocks.columns.min(BLOCK).div_ceil(lane_count::<T, S>());
@@ -137,8 +138,9 @@ impl<T: Scalar, F: Factor<T, K>, const K: usize> Multiply<'_, T, F, K> {
     }
 }
 
-/// The stages between the first and the last, with the product `product(kept rows of a block, its first row, value of the block, values)`.
-/// `prefetch_part(part, count)` is called for each part of the next values.
+/// The stages between the first and the last, with the product
+/// `product(kept rows of a block, its first row, bin q of the block, values)`. `prefetch_part(part, count)` prefetches
+/// one part of the next vector.
 #[inline(always)]
 fn between<T: Scalar, S: Simd, const K: usize>(
     a: Arithmetic<T, S>,
@@ -154,7 +156,7 @@ fn between<T: Scalar, S: Simd, const K: usize>(
             of_radix!(stage.radix, forward, a, stage, rows);
         }
     }
-    // Then part by part, in the nearest cache.
+    // Then part by part: a part fits in the nearest cache.
     let blocks = stages.part / stages.last;
     let (mut part, parts) = (0, stages.length() / stages.part * (2 * near.len() + 1));
     let mut prefetch_next = inlined(

@@ -1,16 +1,16 @@
-//! The stages of transforms of many columns, or rows, at a time (Cooley and Tukey 1965).
+//! The stages of the transforms of several columns, or rows, at a time (Cooley and Tukey 1965).
 //!
-//! A stage of radix R cuts a transform of `n = R m` rows in R of m rows, with `w = exp(-2 pi i/n)`:
+//! A stage of radix R cuts a transform of `n = R m` rows into R transforms of m rows, with `w = exp(-2 pi i/n)`:
 //!
 //! ```text
 //! forward     x_(j + q m) <- w^(q j) sum_k x_(j + k m) exp(-2 pi i q k/R)      bins q, q + R, q + 2 R .. are now in rows q m .. (q + 1) m
 //! backwards   x_(j + k m) <- sum_q w^(q j) x_(j + q m) exp(-2 pi i q k/R)
 //! ```
 //!
-//! So transforms are in place, and bins stay in the order of the stages' output. The inverse is the transform of numbers with swapped real and
-//! imaginary parts, swapped back.
+//! So transforms are in place, and the bins stay in the order in which the stages write them. The inverse is the
+//! transform with real and imaginary parts swapped before and after it.
 //!
-//! Loops run over indices of slices of one length: with iterators they take 3 to 7 % longer.
+//! Loops run over indices of slices that have one length; iterators take 3 to 7 % longer.
 #![allow(clippy::needless_range_loop)]
 
 use std::marker::PhantomData;
@@ -40,22 +40,22 @@ impl<T: Scalar> Stage<T> {
     }
 }
 
-/// Bytes of a line of the cache, as long as the longest vector.
+/// Bytes of a cache line; the longest vector has as many.
 const LINE: usize = 64;
 
-/// Most complex numbers before the first line.
+/// The most complex numbers that memory can have before its first cache line.
 pub(crate) const fn before_a_line<T>() -> usize {
     LINE / size_of::<Complex<T>>() - 1
 }
 
-/// Memory from a line of the cache on: vectors of 64 bytes across two lines take twice as long.
+/// Memory from its first cache line on. Vectors of 64 bytes that straddle two lines take twice as long.
 #[inline(always)]
 pub(crate) fn from_a_line<T>(memory: &mut [Complex<T>]) -> &mut [Complex<T>] {
     let before = memory.as_ptr().align_offset(LINE).min(before_a_line::<T>());
     &mut memory[before..]
 }
 
-/// Rows of vectors, from a line of the cache on.
+/// Memory as rows of vectors, from its first cache line on.
 #[inline(always)]
 pub(crate) fn rows_of<T: Scalar, S: Simd>(memory: &mut [Complex<T>]) -> &mut [Row<T, S>] {
     let values = parts_mut(from_a_line(memory));
@@ -63,7 +63,7 @@ pub(crate) fn rows_of<T: Scalar, S: Simd>(memory: &mut [Complex<T>]) -> &mut [Ro
     pulp::as_arrays_mut::<2, _>(T::vectors_mut::<S>(&mut values[..whole])).0
 }
 
-/// Returns a closure, so that it may have an attribute, which expressions alone may not.
+/// Returns a closure. As an argument a closure may have an attribute; elsewhere an expression may not.
 #[inline(always)]
 pub(crate) fn inlined<F>(closure: F) -> F {
     closure
@@ -177,7 +177,8 @@ pub(crate) fn forward<T: Scalar, S: Simd, const R: usize>(
     }
 }
 
-/// The last stage forward of K components, `product(block of R rows, q, values)` of their values, and the first stage backwards.
+/// The last stage forward of K components, the product `product(block of R rows, q, values)`, and the first stage
+/// backwards.
 #[inline(always)]
 pub(crate) fn multiply<T: Scalar, S: Simd, const R: usize, const K: usize>(
     a: Arithmetic<T, S>,
