@@ -15,14 +15,15 @@ use crate::progress::Monitor;
 
 /// Most secant steps between two states.
 const SECANTS: u32 = 40;
-/// Least distance of a secant step from both states, as a part of their distance.
+/// Least distance of a secant step from both states, relative to the distance between them.
 const END: f64 = 0.02;
 /// Most steps of growing approach, and the ratio of successive steps.
 const MOST_STEPS: u32 = 80;
 const GROWTH: f64 = 1.5;
-/// The first of these steps, as a part of the length of the contact.
+/// The first of these steps, relative to the length of the contact.
 const STEP: f64 = 0.02;
-/// A prescribed pull is sought on the branches of a pull-off, too, if it is weaker than this many times the strongest pull found.
+/// A prescribed pull is also sought on the branches of a pull-off if it is weaker than this many times the strongest
+/// pull found.
 const HARDLY: f64 = 1.02;
 
 impl Walker<'_, '_, '_> {

@@ -1,4 +1,5 @@
-//! The exact Hertz solution: two smooth bodies, `h = A x^2 + B y^2 - approach` on half-spaces with `1/E*` in series.
+//! The exact Hertz solution: two smooth bodies, `h = A x^2 + B y^2 - approach` on half-spaces whose compliances add up
+//! to `1/E*`.
 //!
 //! Contact is an ellipse with semi-axes `a`, `b` and pressures `p0 sqrt(1 - (x/a)^2 - (y/b)^2)` (Johnson, Contact
 //! Mechanics, section 4.2). With the shorter semi-axis in the direction of the larger curvature, `k = b/a < 1` say, `e^2 = 1 - k^2`
@@ -41,7 +42,7 @@ pub fn hertz(curvature_x: f64, curvature_y: f64, approach: f64, compliance: f64)
     // The long axis lies along the smaller curvature.
     let (small, large) = (curvature_x.min(curvature_y), curvature_x.max(curvature_y));
     let shape = Shape::of(large / small);
-    let long = (approach / (small * shape.small_over_approach)).sqrt();
+    let long = (approach / (small * shape.approach_ratio)).sqrt();
     let short = shape.k * long;
     let max_pressure = approach / (compliance * short * shape.first);
     let (semi_axis_x, semi_axis_y) = if curvature_x <= curvature_y { (long, short) } else { (short, long) };
@@ -72,8 +73,8 @@ struct Shape {
     k: f64,
     /// `K(e)`.
     first: f64,
-    /// `small curvature * a^2 / approach`, inverted: `e^2 K / (K - E)`.
-    small_over_approach: f64,
+    /// `approach / (A a^2) = e^2 K / (K - E)`, with the smaller curvature A.
+    approach_ratio: f64,
 }
 
 impl Shape {
@@ -97,7 +98,7 @@ impl Shape {
         }
         let k = if ratio == 1.0 { 1.0 } else { (0.5 * (low + high)).exp() };
         let (first, d, _) = elliptic(k);
-        Shape { k, first, small_over_approach: first / d }
+        Shape { k, first, approach_ratio: first / d }
     }
 }
 

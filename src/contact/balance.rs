@@ -18,7 +18,7 @@ const ROUND_OFF: f64 = 1e-12;
 /// Forces below this part of the sum of |p| are carried by adding to p, not by scaling p.
 const CANCELLED: f64 = 1e-3;
 
-/// Distances from which squares overflow in sums; such gaps never close.
+/// From this distance on, sums of squares may overflow. Such gaps never close.
 const OUT_OF_REACH: f64 = 1e140;
 
 impl State {
@@ -112,7 +112,8 @@ impl State {
         blocks::fold(&self.grid, threads, [0.0; 3], of_block, |sums, block| from_fn(|k| sums[k] + block[k]))
     }
 
-    /// Elements of C beyond their limit leave C for it. Elements at their limit get its value, exterior ones 0.
+    /// Elements of C with a pressure above the limit leave C and are at their limit. Elements at their limit get the
+    /// pressure of the limit, exterior elements 0.
     pub fn project<S: AdmissibleSet>(&mut self, set: S) {
         if !S::LIMITED || !self.reached_limit && !set.any_beyond(0, self.p.iter().copied()) {
             return;

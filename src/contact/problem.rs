@@ -14,7 +14,7 @@ use crate::threads::Threads;
 
 /// Round-off of a displacement by FFT, relative to that of an element by itself: some units of round-off.
 const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
-/// Elements of a wave whose response is about an element's influence on itself.
+/// The length in elements of a wave whose response is about an element's influence on itself.
 const WAVE: f64 = 16.0;
 
 /// `e = h - approach + A p` on one grid, without h, the load and the unknowns, which a [`State`] holds.
@@ -146,7 +146,7 @@ impl Problem {
         Ok(())
     }
 
-    /// Makes p carry the prescribed force, u = A p by a fresh product, and the approach fit both.
+    /// Makes p carry the prescribed force, computes u = A p by a fresh product, and fits the approach to both.
     pub fn refresh<S: AdmissibleSet>(&mut self, state: &mut State, set: S) -> Result<()> {
         state.carry_force(set, &self.threads);
         self.displace(&state.p, &mut state.u)?;

@@ -13,7 +13,7 @@ use crate::scene::Load;
 use crate::sums::{sum_where, Sums};
 use crate::threads::Threads;
 
-/// Elements with an undeformed distance of more than this many approaches are never in contact.
+/// Elements that are higher above the lowest one than this many indentations are never in contact.
 const OUT_OF_REACH: f64 = 1e6;
 
 /// Pressures, displacements and contact area on one grid, with their undeformed distance.
@@ -51,7 +51,7 @@ impl State {
         Ok(state)
     }
 
-    /// The same with large arrays at rest. [`wake`](State::wake) them before use.
+    /// A new state with its large arrays at rest. [`wake`](State::wake) them before use.
     pub fn at_rest(grid: Grid, (load, estimate): (Load, f64), threads: &Threads) -> Result<State> {
         let mut arrays = [Vec::new(), Vec::new(), Vec::new()];
         for (values, what) in arrays.iter_mut().zip(["undeformed distances", "pressures", "displacements"]) {
@@ -152,7 +152,8 @@ impl State {
         columns + rows - corners
     }
 
-    /// The same on the first or last column, on the first or last row, and on both.
+    /// The elements of [`edge_count`](State::edge_count) on the first or last column, on the first or last row, and on
+    /// both.
     pub fn edge_counts(&self) -> [usize; 3] {
         let Grid { mx, my, .. } = self.grid;
         let mut counts = [0; 3];

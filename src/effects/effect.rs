@@ -65,7 +65,8 @@ pub trait Effect {
         None
     }
 
-    /// Refuses tractions with the library's coefficients, if there are none with this effect, or if they would change the pressures.
+    /// Refuses tractions if the library has no tangential coefficients for this effect, or if tractions would change
+    /// the pressures.
     fn check_tractions(&self, _scene: &Plain<'_>) -> Result<()> {
         Ok(())
     }

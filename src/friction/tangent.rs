@@ -19,12 +19,14 @@ use crate::error::Result;
 use crate::memory::zeros;
 use crate::methods::fields::{self, BLOCK};
 
-/// Weight of D over the influence of an element on itself, in the preconditioner's transition from the inverse of A to that of D.
+/// Factor on D/a0 in `E = 1/(1 + MIXED D/a0)`. In the preconditioner E is the weight of the inverse of A, and 1 - E
+/// that of the inverse of D + a0.
 pub(super) const MIXED: f64 = 0.5;
 
 /// Distance from the circle, relative to its radius, within which tractions count as near.
 pub(super) const NEAR_THE_CIRCLE: f64 = 0.2;
-/// Least cosine of the angle by which the natural map turns near tractions. Tractions along their slip must reverse.
+/// Least cosine of the angle between q and tau at which tractions near their circle have n = q/|q|. Tractions along
+/// their slip must reverse, so their n is that of tau.
 pub(super) const ALIGNED: f64 = 0.9;
 
 /// Whether an element sticks or slips.
@@ -47,7 +49,7 @@ pub struct Tangent {
     pub normal: Vec<Vector>,
     /// D; 0 where nothing slips.
     pub curvature: Vec<f64>,
-    /// E of the preconditioner: 1 where C sticks.
+    /// E of the preconditioner: 1 on stick, unless a layer is softer there than elsewhere.
     pub mixing: Vec<f64>,
     /// `P(-s)`.
     pub projected: Vec<Vector>,
@@ -94,7 +96,7 @@ pub(super) fn rho_of((bound, slip): (f64, f64), most: f64) -> f64 {
     }
 }
 
-/// E of the preconditioner: 1 where C sticks. `a0` is the influence of an element on itself.
+/// E of the preconditioner for the curvature D. `a0` is the influence of an element on itself.
 #[inline]
 pub(super) fn mixing(curvature: f64, a0: f64) -> f64 {
     1.0 / (1.0 + MIXED * curvature / a0)

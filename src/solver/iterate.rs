@@ -10,7 +10,8 @@
 //! until max_cycles, a callback that cancels, or no progress: then the best iterate is the result
 //! ```
 //!
-//! The order of (4.1) and (4.2) matters: with the product before the truncation the loop would cycle.
+//! The product comes after the truncation of (4.1) and before (4.2). With a product before the truncation the loop
+//! would cycle.
 
 use super::best::Best;
 use crate::contact::{admit, all_stay, truncate, AdmissibleSet, Freshness, Survey};
@@ -28,7 +29,7 @@ pub fn iterate<S: AdmissibleSet>(
     let (set, goal) = (task.set, task.goal);
     method.begin(task.state)?;
     let (mut chatter, mut least, mut since) = (0, f64::INFINITY, 0);
-    // A step need not count as a cycle, but steps are bounded by the cycles allowed.
+    // Not every step counts as a cycle, but `max_cycles` bounds the number of steps as well.
     for _ in 0..=goal.max_cycles {
         if task.is_interrupted() {
             break;
@@ -78,8 +79,8 @@ pub fn iterate<S: AdmissibleSet>(
     Ok(task.monitor.interrupted())
 }
 
-/// A step and its products. Coefficients of an elastic body are positive definite: if round-off violates this the method ends; only a caller's table
-/// is refused for it.
+/// A step and its products. Coefficients of an elastic body are positive definite, so only round-off violates this, and
+/// the method gives up. A caller's table is refused.
 fn step<S: AdmissibleSet>(method: &mut dyn Step<S>, task: &mut Task<'_, '_, S>) -> Result<Change> {
     let change = match method.step(task) {
         Err(Error::NotPositiveDefinite(message)) if !task.problem.given => {

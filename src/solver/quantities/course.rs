@@ -23,8 +23,9 @@ const SURFACE: f64 = 0.75;
 /// From this depth in elements on a stress is a mean of many pressures. Measured where a roller's rounded ends begin: stresses at 0.6 to 1.8 elements
 /// had errors of 2 to 10 % with changes of 1 % from grid to grid. From 2.8 elements on the errors were below 2 %.
 const DEEP: f64 = 4.0;
-/// The least error of an area in elements, over the root of their number. The outline of a circle of n elements has `3.5 sqrt(n)` elements. Two grids
-/// may agree on them by chance. Stiffnesses of the contact area, which on two grids agreed by chance, had up to 0.25 of their own over this root.
+/// The least error of an area in elements, over the root of their number. The outline of a circle of n elements has
+/// `3.5 sqrt(n)` elements. Two grids may agree on them by chance. Stiffnesses that agreed on two grids by chance had
+/// errors of up to 0.25 of their value over this root.
 const OUTLINE: f64 = 0.3;
 
 /// The value of a quantity.
@@ -93,7 +94,8 @@ impl Course {
         self.quantity.is_area() && self.values.value() == Some(0.0)
     }
 
-    /// Adds the value on a grid after so many doublings. `residual` is its relative uncertainty.
+    /// Adds the value on a grid. `doublings`: those from the first grid. `residual`: the relative uncertainty of the
+    /// value.
     pub fn add(&mut self, doublings: i32, found: Value, residual: f64) {
         self.values.add(doublings, found.value, residual * found.value.abs());
         self.last = found.peak;
@@ -116,7 +118,7 @@ impl Course {
         self.pressure_is_known = is_known;
     }
 
-    /// Whether there are enough grids for a search to accept the error.
+    /// Whether a search may accept the error: grids are enough and fine enough (see "Lucky changes" above).
     pub fn is_believed(&self) -> bool {
         let is_settled = self.pressure_is_known || self.last.is_none_or(|peak| peak.elements >= DEEP);
         is_settled && (!self.is_steep || self.len() > 2)

@@ -1,4 +1,4 @@
-//! Transforms of real rows: an even length n by a complex transform of half of it (Cooley, Lewis and Welch 1970).
+//! Transforms of real rows. An even length n takes a complex transform of length n/2 (Cooley, Lewis and Welch 1970).
 //!
 //! ```text
 //! z_j = x_2j + i x_(2j+1),   Z = F z,   w_k = exp(-2 pi i k/n)
@@ -208,7 +208,7 @@ impl<T: Real, const FORWARD: bool> pulp::NullaryFnOnce for Passes<'_, T, FORWARD
     }
 }
 
-/// All bins k and n/2 - k but the outermost; `back` is the mirror image of `front`.
+/// Turns all bins k (in `a`) and n/2 - k (in `b`, in reverse order) except the outermost.
 #[inline(always)]
 fn pass<T: Real, const FORWARD: bool>(w: &[Complex<T>], a: &mut [Complex<T>], b: &mut [Complex<T>]) {
     let (count, half) = (w.len(), T::one() / (T::one() + T::one()));
