@@ -1,6 +1,6 @@
 """Makes the constants of a copy of the source adjustable: `instrument.py COPY`, of a clone that is thrown away afterwards.
 
-Each `const NAME: f64 = ...;` (or u32, u64) of the solvers becomes a function that reads the environment once: CN_CONSTANT="solver/stages.rs:SHARE=0.8" sets
+Each `const NAME: f64 = ...;` (or u32, u64) of the solvers becomes a function that reads the environment once: CN_CONSTANT="solver/stages.rs:METHOD_SHARE=0.8" sets
 one, and CN_CONSTANTS_READ names a file in which each constant that is used has a line. Constants in array lengths, patterns and traits stay.
 """
 
@@ -9,7 +9,7 @@ import re
 import sys
 
 FOLDERS = ("adhesion", "friction", "solver", "methods", "contact", "visco", "progress", "operator")
-STAY = {"methods/fields.rs:ROUND_OFF", "solver/quantities/deepest.rs:FIRST", "solver/quantities/deepest.rs:RATIO", "solver/by_creepages.rs:FAR"}
+STAY = {"methods/fields.rs:ROUND_OFF", "solver/quantities/deepest.rs:FIRST_DEPTH", "solver/quantities/deepest.rs:DEPTH_RATIO", "solver/by_creepages.rs:FAR"}
 DECLARED = re.compile(r"^(\s*)((?:pub(?:\([a-z: ]*\))? )?)const ([A-Z_0-9]+): (f64|u32|u64) = ([^;]+);")
 USED = re.compile(r"\buse [^;]+;")
 NAME = re.compile(r"((?:\b\w+::)*)\b([A-Z_][A-Z_0-9]+)\b")

@@ -13,26 +13,26 @@ use crate::error::{Error, Result};
 use crate::progress::Monitor;
 
 /// Without a state of less force, bodies are first pressed together by this part of the whole attraction.
-const PRESSED: f64 = 0.01;
-/// A pressing force is MORE times the size of the least known force, or MORE times the last pressing force. At most WAYS ways lead down from pressed
+const FIRST_PRESSING_FORCE: f64 = 0.01;
+/// A pressing force is PRESSING_FORCE_RATIO times the size of the least known force, or PRESSING_FORCE_RATIO times the last pressing force. At most MOST_WAYS_DOWN ways lead down from pressed
 /// bodies.
-const MORE: f64 = 10.0;
-const WAYS: u32 = 4;
+const PRESSING_FORCE_RATIO: f64 = 10.0;
+const MOST_WAYS_DOWN: u32 = 4;
 /// Pulls below this part of the whole attraction count as none.
-const HELD: f64 = 1e-6;
+const LEAST_PULL: f64 = 1e-6;
 /// A way has found a stronger pull if it exceeds the strongest known by this factor.
-const LESS: f64 = 1.0 + 1e-6;
-/// The first way of a search for a pull may take PULL_OFF times the cycles of a solve, each state of a pull-off 1/STATES of them.
-const PULL_OFF: u64 = 3;
-const STATES: u64 = 4;
-/// If the way of a pull-off is lost, at most ANEW further ways begin below it. Each begin is sought in STEPS_BELOW steps of BELOW times
+const STRONGER_PULL: f64 = 1.0 + 1e-6;
+/// The first way of a search for a pull may take PULL_OFF_CYCLES times the cycles of a solve, each state of a pull-off 1/STATES_OF_PULL_OFF of them.
+const PULL_OFF_CYCLES: u64 = 3;
+const STATES_OF_PULL_OFF: u64 = 4;
+/// If the way of a pull-off is lost, at most MOST_WAYS_BELOW further ways begin below it. Each begin is sought in STEPS_BELOW steps of STEP_BELOW times
 /// the length of the contact.
-const ANEW: u32 = 4;
+const MOST_WAYS_BELOW: u32 = 4;
 const STEPS_BELOW: u32 = 6;
-const BELOW: f64 = 0.1;
-/// Each further way may take TIMES times the cycles of the first way, plus AT_LEAST, or all cycles of the goal if these are more.
-const TIMES: u64 = 4;
-const AT_LEAST: u64 = 500;
+const STEP_BELOW: f64 = 0.1;
+/// Each further way may take FURTHER_WAY_CYCLES times the cycles of the first way, plus LEAST_WAY_CYCLES, or all cycles of the goal if these are more.
+const FURTHER_WAY_CYCLES: u64 = 4;
+const LEAST_WAY_CYCLES: u64 = 500;
 
 impl Solver {
     pub(super) fn begin_anew(
@@ -116,7 +116,7 @@ impl Solver {
         Walker::new(&mut self.levels[0], goal, make, monitor)
     }
 
-    /// The walker of the first way of a search for a pull. This way has many states, and a snap behind the strongest. [`PULL_OFF`] and [`STATES`]
+    /// The walker of the first way of a search for a pull. This way has many states, and a snap behind the strongest. [`PULL_OFF_CYCLES`] and [`STATES_OF_PULL_OFF`]
     /// bound its cycles.
     fn first_walker<'a, 'm, 'c>(
         &'a mut self,
@@ -128,9 +128,9 @@ impl Solver {
         if goal.wanted.is_some() && !pulls(goal) {
             return self.walker(goal, make, monitor);
         }
-        let left = goal.most.saturating_mul(PULL_OFF).saturating_sub(spent);
+        let left = goal.most.saturating_mul(PULL_OFF_CYCLES).saturating_sub(spent);
         let most = monitor.count.cycles.saturating_add(left);
-        let each = if goal.wanted.is_some() { u64::MAX } else { goal.most / STATES + 1 };
+        let each = if goal.wanted.is_some() { u64::MAX } else { goal.most / STATES_OF_PULL_OFF + 1 };
         Walker { each, ..self.walker(Goal { most, ..goal }, make, monitor) }
     }
 
@@ -140,7 +140,7 @@ impl Solver {
         let before = monitor.count.cycles;
         let mut ended = self.first_walker(goal, 0, make, monitor).walk(None)?;
         let mut spent = monitor.count.cycles - before;
-        for _ in 0..ANEW {
+        for _ in 0..MOST_WAYS_BELOW {
             if ended != Walk::Lost || goal.wanted.is_some() {
                 break;
             }
@@ -173,8 +173,8 @@ impl Solver {
         monitor: &mut Monitor<'_>,
     ) -> Result<bool> {
         let from = self.levels[0].now.approach();
-        let step = self.walker(goal, make, monitor).first_step(BELOW)?;
-        let each = Goal { wanted: None, most: goal.most / STATES + 1, ..goal };
+        let step = self.walker(goal, make, monitor).first_step(STEP_BELOW)?;
+        let each = Goal { wanted: None, most: goal.most / STATES_OF_PULL_OFF + 1, ..goal };
         for k in (1..=STEPS_BELOW).filter(|_| step > 0.0) {
             self.levels.iter_mut().for_each(|level| level.now.p.border = [from - f64::from(k) * step]);
             let ended = nested::solve(&mut self.levels, each, (Start::Auto, make), monitor)?;
@@ -222,12 +222,12 @@ impl Solver {
                 }
                 ended => return Ok(ended),
             }
-            most = goal.most.max(TIMES * spent + AT_LEAST);
+            most = goal.most.max(FURTHER_WAY_CYCLES * spent + LEAST_WAY_CYCLES);
         } else {
             before = Some(Place::of(&self.levels[0], Met::of(&self.levels[0]).sum)?);
         }
         let mut pressing = self.first_pressing(least.as_ref(), goal);
-        for _ in 0..WAYS {
+        for _ in 0..MOST_WAYS_DOWN {
             let pressed = Goal { wanted: Some(pressing), most, ..goal };
             let ended = nested::solve(&mut self.levels, pressed, (Start::Auto, make), monitor)?;
             let walk = match ended.end {
@@ -240,12 +240,12 @@ impl Solver {
                 without = Walk::Interrupted;
                 break;
             }
-            pressing *= MORE;
+            pressing *= PRESSING_FORCE_RATIO;
             match walk {
                 Walk::Found => return Ok(Walk::Found),
-                Walk::Least { sum, .. } if least.as_ref().is_none_or(|least| sum < LESS * least.sum) => {
+                Walk::Least { sum, .. } if least.as_ref().is_none_or(|least| sum < STRONGER_PULL * least.sum) => {
                     met = Some(Met::of(&self.levels[0]));
-                    pressing = if self.is_pull(sum) { MORE * sum.abs() } else { pressing };
+                    pressing = if self.is_pull(sum) { PRESSING_FORCE_RATIO * sum.abs() } else { pressing };
                     least = Some(Place::of(&self.levels[0], sum)?);
                 }
                 Walk::Lost if least.is_none() => {}
@@ -268,16 +268,16 @@ impl Solver {
     /// The first pressing force, by the state of the least force if one is known.
     fn first_pressing(&self, least: Option<&Place>, goal: Goal) -> f64 {
         match (least.filter(|least| self.is_pull(least.sum)), goal.wanted.unwrap_or(0.0)) {
-            (Some(least), _) => MORE * least.sum.abs(),
-            (None, wanted) if wanted > 0.0 => MORE * wanted,
+            (Some(least), _) => PRESSING_FORCE_RATIO * least.sum.abs(),
+            (None, wanted) if wanted > 0.0 => PRESSING_FORCE_RATIO * wanted,
             (None, wanted) if wanted < 0.0 => wanted.abs().min(self.most_attraction()),
-            _ => PRESSED * self.most_attraction(),
+            _ => FIRST_PRESSING_FORCE * self.most_attraction(),
         }
     }
 
     /// Whether a sum of p is a pull, and not what the last attraction of bodies leaves of one that nothing holds.
     fn is_pull(&self, sum: f64) -> bool {
-        sum < -HELD * self.most_attraction()
+        sum < -LEAST_PULL * self.most_attraction()
     }
 
     /// The sum of all attraction, at a distance of 0 everywhere.

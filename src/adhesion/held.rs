@@ -14,17 +14,17 @@ use crate::error::Result;
 use crate::progress::Monitor;
 
 /// Most secant steps between two states.
-const SECANTS: u32 = 40;
+const MOST_SECANTS: u32 = 40;
 /// Least distance of a secant step from both states, relative to the distance between them.
-const END: f64 = 0.02;
+const SECANT_MARGIN: f64 = 0.02;
 /// Most steps of growing approach, and the ratio of successive steps.
 const MOST_STEPS: u32 = 80;
 const GROWTH: f64 = 1.5;
 /// The first of these steps, relative to the length of the contact.
-const STEP: f64 = 0.02;
+const FIRST_STEP: f64 = 0.02;
 /// A prescribed pull is also sought on the branches of a pull-off if it is weaker than this many times the strongest
 /// pull found.
-const HARDLY: f64 = 1.02;
+const PULL_MARGIN: f64 = 1.02;
 
 impl Walker<'_, '_, '_> {
     /// Keeps the level's equilibrium of the wanted force if it is stable. Otherwise climbs to the stable one.
@@ -40,7 +40,7 @@ impl Walker<'_, '_, '_> {
     /// Increases the approach from the level's state, whose sum is at most the wanted one, to the stable state of the wanted force.
     pub fn climb(&mut self, mut sum_low: f64) -> Result<Walk> {
         let Some(wanted) = self.goal.wanted else { return Ok(Walk::Lost) };
-        let mut step = self.first_step(STEP)?;
+        let mut step = self.first_step(FIRST_STEP)?;
         if !(step > 0.0) {
             return Ok(Walk::Lost);
         }
@@ -63,12 +63,12 @@ impl Walker<'_, '_, '_> {
     /// The state of the wanted force, between the `best` state of more force and a state of less.
     pub fn between(&mut self, best: &mut Place, (mut sum_low, mut low): (f64, f64)) -> Result<Walk> {
         let Some(wanted) = self.goal.wanted else { return Ok(Walk::Lost) };
-        for secant in 0..SECANTS {
+        for secant in 0..MOST_SECANTS {
             if self.goal.is_interrupted(self.monitor) {
                 self.level.now.copy_from(&best.at)?;
                 return Ok(Walk::Interrupted);
             }
-            let part = ((best.sum - wanted) / (best.sum - sum_low)).clamp(END, 1.0 - END);
+            let part = ((best.sum - wanted) / (best.sum - sum_low)).clamp(SECANT_MARGIN, 1.0 - SECANT_MARGIN);
             // Every third step bisects: secants may stall near one end.
             let part = if secant % 3 == 2 { 0.5 } else { part };
             let approach = best.approach() + part * (low - best.approach());
@@ -141,7 +141,7 @@ impl Solver {
         monitor: &mut Monitor<'_>,
     ) -> Result<Walk> {
         let Some(wanted) =
-            goal.wanted.filter(|wanted| matches!(known, Walk::Least { sum, .. } if *wanted > HARDLY * sum))
+            goal.wanted.filter(|wanted| matches!(known, Walk::Least { sum, .. } if *wanted > PULL_MARGIN * sum))
         else {
             return Ok(known);
         };

@@ -36,7 +36,7 @@ pub type Still = (Box<dyn Frozen>, State);
 pub type MakeFrozen<'a> = &'a dyn Fn(&contact::Problem) -> Result<Box<dyn Frozen>>;
 
 /// Part of the range of pressures below which elements leave the contact at an opening.
-const OPENED: f64 = 0.01;
+const OPENING_PRESSURE: f64 = 0.01;
 
 /// M, the inverse of a circulant near A, in single precision. Residuals are not extended beyond C, where separate equations determine
 /// them: a sphere of Tabor's parameter 3 on 256 x 256 elements takes 18 to 21 products, and 30 to 47 with the normal problem's extension.
@@ -131,7 +131,7 @@ impl Level {
         };
         let widen = |(least, most): (f64, f64), value: f64| (least.min(value), most.max(value));
         let (least, most) = (0..n).map(pressing).fold((f64::INFINITY, f64::NEG_INFINITY), widen);
-        let by = least + OPENED * (most - least);
+        let by = least + OPENING_PRESSURE * (most - least);
         fields::map(&self.problem.threads, &mut self.now.p.field, |_, [p]| [p - by]);
     }
 

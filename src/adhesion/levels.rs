@@ -18,7 +18,7 @@ use crate::threads::Threads;
 const COARSEST: usize = 31;
 const MEMORY: &str = "the surfaces of adhesion";
 /// `kappa = s a0` of the shortest range that elements resolve.
-pub const CARRIED: f64 = 0.4;
+pub const RESOLVED_KAPPA: f64 = 0.4;
 
 /// The inputs of a scene for all grids, except undeformed distances.
 #[derive(Clone, Copy, Debug)]
@@ -65,7 +65,7 @@ pub fn take_surfaces(levels: &mut [Level], given: Surfaces<'_>) -> Result<()> {
         let (finer, coarser) = levels.split_at_mut(l);
         let Level { problem, surface, .. } = &mut coarser[0];
         let (n, a0) = (problem.grid.len(), problem.self_influence());
-        let carried = law.shortest_range(largest, a0, CARRIED);
+        let carried = law.shortest_range(largest, a0, RESOLVED_KAPPA);
         let range = match finer.first() {
             None if given.range > 0.0 => given.range,
             None => carried,

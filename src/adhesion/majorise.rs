@@ -16,11 +16,11 @@ use crate::methods::fields::{self, BLOCK};
 use crate::progress::{Monitor, Outcome};
 use crate::scene::Load;
 
-/// Tolerance of a frozen problem, relative to the error of the attraction, at most `LEAST`.
-const PART: f64 = 0.05;
-const LEAST: f64 = 1e-2;
+/// Tolerance of a frozen problem, relative to the error of the attraction, at most `LARGEST_TOLERANCE`.
+const TOLERANCE_PER_ERROR: f64 = 0.05;
+const LARGEST_TOLERANCE: f64 = 1e-2;
 /// Least tolerance of a frozen problem, relative to the goal's.
-const ENOUGH: f64 = 0.5;
+const TOLERANCE_PER_GOAL: f64 = 0.5;
 
 /// How descent ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,8 +67,8 @@ fn descend_with(
         if goal.is_interrupted(monitor) {
             return Ok((Descent::By(End::Interrupted), measured));
         }
-        let off = if step == 0 { LEAST / PART } else { measured.law };
-        let tolerance = (PART * off).min(LEAST).max(ENOUGH * goal.tolerance);
+        let off = if step == 0 { LARGEST_TOLERANCE / TOLERANCE_PER_ERROR } else { measured.law };
+        let tolerance = (TOLERANCE_PER_ERROR * off).min(LARGEST_TOLERANCE).max(TOLERANCE_PER_GOAL * goal.tolerance);
         match one(level, still, (goal, tolerance), steps.from_none && step == 0, monitor)? {
             Step::Parted => return Ok((Descent::Parted, measured)),
             Step::Unsolved => return Ok((Descent::By(End::Failed), measured)),

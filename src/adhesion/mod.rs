@@ -44,7 +44,7 @@ mod way;
 pub use law::{Attraction, Law};
 pub use level::Frozen;
 pub use levels::Surfaces;
-pub use report::{Report, CONTAINED, RESOLVED, UNSTABLE};
+pub use report::{Report, LARGEST_BORDER_SHARE, RESOLVED, UNSTABLE_KAPPA};
 pub use request::{Request, Start, State};
 pub use solver::Solver;
 pub use split::Split;

@@ -6,23 +6,23 @@ use super::levels::prolong;
 use super::majorise::{descend, Descent, Steps};
 use super::newton::{End, Goal};
 use super::request::Start;
-use super::robust::{self, Ended, BETWEEN};
+use super::robust::{self, Ended, DESCENT_STEPS};
 use crate::error::Result;
 use crate::progress::Monitor;
 use crate::sums::mean;
 
 /// Tolerance on coarser grids: larger errors cost more on the finest grid.
-pub const COARSE: f64 = 1e-2;
+pub const COARSE_TOLERANCE: f64 = 1e-2;
 /// Steps of descent before Newton's method: on the coarsest grid, and on the finest from bodies apart.
-const FIRST: u64 = 3;
-const FROM_APART: u64 = 12;
+const COARSEST_DESCENT: u64 = 3;
+const DESCENT_FROM_APART: u64 = 12;
 /// A start from contact: the additional approach in ranges, and its steps.
-const DEEPER: f64 = 4.0;
-const DEEPER_STEPS: u32 = 4;
+const ADDED_APPROACH: f64 = 4.0;
+const ADDED_APPROACH_STEPS: u32 = 4;
 /// Largest additional approach with two periods, as a part of the way to the mean distance.
-const SHUT: f64 = 0.9;
+const LARGEST_CLOSING: f64 = 0.9;
 
-/// Solves the finest of `levels` without a start.
+/// Solves the finest of `levels` from p = 0.
 pub fn solve(
     levels: &mut [Level],
     goal: Goal,
@@ -33,7 +33,7 @@ pub fn solve(
     if start == Start::Apart && goal.wanted.is_none() {
         let level = &mut levels[0];
         begin(level, goal);
-        let steps = Steps { most: FROM_APART, from_none: true, make };
+        let steps = Steps { most: DESCENT_FROM_APART, from_none: true, make };
         let (end, measured) = descend(level, goal, steps, monitor)?;
         return match end {
             Descent::By(End::Failed) => robust::solve(level, goal, (false, make), monitor),
@@ -60,11 +60,11 @@ pub fn solve(
 pub fn coarse_goal(levels: &[Level], l: usize, goal: Goal) -> Goal {
     let area = |l: usize| levels[l].problem.grid.element_area();
     let wanted = goal.wanted.map(|wanted| wanted * area(0) / area(l));
-    let tolerance = if l == 0 { goal.tolerance } else { goal.tolerance.max(COARSE) };
+    let tolerance = if l == 0 { goal.tolerance } else { goal.tolerance.max(COARSE_TOLERANCE) };
     Goal { tolerance, wanted, certified: l == 0, ..goal }
 }
 
-/// Solves one grid, the coarsest without a start.
+/// Solves one grid: the coarsest from p = 0, the others from their state.
 fn one(
     levels: &mut [Level],
     l: usize,
@@ -79,14 +79,14 @@ fn one(
         if start == Start::Contact && goal.wanted.is_none() {
             return from_contact(level, goal, (approach, make), monitor);
         }
-        let steps = Steps { most: FIRST, from_none: true, make };
+        let steps = Steps { most: COARSEST_DESCENT, from_none: true, make };
         let (end, measured) = descend(level, goal, steps, monitor)?;
         if matches!(end, Descent::By(End::Interrupted)) {
             return Ok(Ended { end, measured, is_lost: false });
         }
         if end == Descent::Parted {
             // Without attraction no contact carries a force of 0. With attraction, descent from p = 0 is far cheaper than Newton's method.
-            let steps = Steps { most: BETWEEN, from_none: false, make };
+            let steps = Steps { most: DESCENT_STEPS, from_none: false, make };
             let (end, measured) = descend(level, goal, steps, monitor)?;
             if end != Descent::By(End::Failed) {
                 return Ok(Ended { end, measured, is_lost: true });
@@ -114,16 +114,21 @@ fn from_contact(
     monitor: &mut Monitor<'_>,
 ) -> Result<Ended> {
     let apart = (crate::contact::lowest(&level.surface.h) - approach).max(0.0);
-    let deeper = Some(apart + DEEPER * level.surface.attraction.range).filter(|by| by.is_finite()).unwrap_or(0.0);
+    let deeper =
+        Some(apart + ADDED_APPROACH * level.surface.attraction.range).filter(|by| by.is_finite()).unwrap_or(0.0);
     // With two periods no pressure brings bodies nearer than their mean distance.
-    let room = if level.is_mean_free() { SHUT * (mean(&level.surface.h) - approach).max(0.0) } else { f64::INFINITY };
+    let room = if level.is_mean_free() {
+        LARGEST_CLOSING * (mean(&level.surface.h) - approach).max(0.0)
+    } else {
+        f64::INFINITY
+    };
     let deeper = deeper.min(room);
     level.now.p.border = [approach + deeper];
-    let first = Goal { tolerance: goal.tolerance.max(COARSE), certified: false, ..goal };
-    descend(level, first, Steps { most: FIRST, from_none: true, make }, monitor)?;
-    for step in (1..=DEEPER_STEPS).rev() {
-        level.now.p.border = [approach + deeper * f64::from(step) / f64::from(DEEPER_STEPS)];
-        robust::solve(level, first, (step < DEEPER_STEPS, make), monitor)?;
+    let first = Goal { tolerance: goal.tolerance.max(COARSE_TOLERANCE), certified: false, ..goal };
+    descend(level, first, Steps { most: COARSEST_DESCENT, from_none: true, make }, monitor)?;
+    for step in (1..=ADDED_APPROACH_STEPS).rev() {
+        level.now.p.border = [approach + deeper * f64::from(step) / f64::from(ADDED_APPROACH_STEPS)];
+        robust::solve(level, first, (step < ADDED_APPROACH_STEPS, make), monitor)?;
     }
     level.now.p.border = [approach];
     robust::solve(level, goal, (true, make), monitor)

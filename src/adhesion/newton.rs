@@ -30,33 +30,33 @@ use crate::progress::Monitor;
 
 /// Most steps.
 const MOST_STEPS: u64 = 20;
-/// Above this residual a step linearises at the mean distance and solves its linear system to `FAR`, below to `NEAR`.
-const CLOSE: f64 = 2e-2;
-const FAR: f64 = 0.2;
-const NEAR: f64 = 0.1;
+/// Above this residual a step linearises at the mean distance and solves its linear system to `FAR_TOLERANCE`, below to `CLOSE_TOLERANCE`.
+const CLOSE_RESIDUAL: f64 = 2e-2;
+const FAR_TOLERANCE: f64 = 0.2;
+const CLOSE_TOLERANCE: f64 = 0.1;
 /// Largest distance of the place of linearisation from e, in ranges.
-const WITHIN: f64 = 3.0;
+const MOST_RANGES_FROM_E: f64 = 3.0;
 /// Most directions of a linear solve: systems that take more are nearly singular. Grids that are not small have `IN_MEMORY`, those of more than
-/// `LARGE` elements `AT_FIRST`, doubled after each solve for which they were too few.
-const DIRECTIONS: usize = 30;
+/// `LARGE_GRID` elements `FIRST_DIRECTIONS`, doubled after each solve for which they were too few.
+const MOST_DIRECTIONS: usize = 30;
 pub const IN_MEMORY: usize = 2 * PRODUCTS;
-const LARGE: usize = 1 << 16;
-const AT_FIRST: usize = 6;
+const LARGE_GRID: usize = 1 << 16;
+const FIRST_DIRECTIONS: usize = 6;
 /// The part of the slope in a cautious step.
-const CAUTIOUS: f64 = 0.7;
+const CAUTIOUS_SLOPE: f64 = 0.7;
 /// Rise of the residual at which a full step counts as failed: steps between both edges of a smeared law may recur for ever.
-const RISEN: f64 = 2.0;
+const FAILED_RISE: f64 = 2.0;
 /// The next full step is tried below this part of the residual of the failed one.
-const AGAIN: f64 = 0.1;
-/// Most cautious steps below [`CLOSE`]: next to a fold of the branch they converge slowly.
+const FULL_STEP_AGAIN: f64 = 0.1;
+/// Most cautious steps below [`CLOSE_RESIDUAL`]: next to a fold of the branch they converge slowly.
 const MOST_CAUTIOUS: u64 = 30;
 /// Most firm steps, and the relative tolerances of their linear systems far from the solution and near it.
 const MOST_FIRM: u64 = 60;
-const FIRM: [f64; 2] = [0.1, 0.03];
+const FIRM_TOLERANCES: [f64; 2] = [0.1, 0.03];
 /// Largest s a0, which is stored in single precision.
-const STIFFEST: f64 = 1e30;
+const LARGEST_STIFFNESS: f64 = 1e30;
 /// Steps have failed if the residual is not below this.
-const LOST: f64 = 1e12;
+const LOST_RESIDUAL: f64 = 1e12;
 
 /// How a loop ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,9 +107,9 @@ pub fn newton(level: &mut Level, goal: Goal, keeps: bool, monitor: &mut Monitor<
     let mut measured = Measured::default();
     let (mut last, mut whole_below) = (f64::INFINITY, f64::INFINITY);
     let (mut directions, most) = match level.now.u.len() {
-        n if is_small(n) => (DIRECTIONS, DIRECTIONS),
-        n if n <= LARGE => (IN_MEMORY, IN_MEMORY),
-        _ => (AT_FIRST, IN_MEMORY),
+        n if is_small(n) => (MOST_DIRECTIONS, MOST_DIRECTIONS),
+        n if n <= LARGE_GRID => (IN_MEMORY, IN_MEMORY),
+        _ => (FIRST_DIRECTIONS, IN_MEMORY),
     };
     for step in 0..=MOST_FIRM {
         measured = level.measure(keeps && step == 0, goal.wanted);
@@ -135,17 +135,17 @@ pub fn newton(level: &mut Level, goal: Goal, keeps: bool, monitor: &mut Monitor<
         let residual = measured.residual();
         let most_steps = match goal.pace {
             Pace::Firm => MOST_FIRM,
-            Pace::Cautious if residual < CLOSE => MOST_CAUTIOUS,
+            Pace::Cautious if residual < CLOSE_RESIDUAL => MOST_CAUTIOUS,
             _ => MOST_STEPS,
         };
-        if !(worst < LOST) || step >= most_steps {
+        if !(worst < LOST_RESIDUAL) || step >= most_steps {
             break;
         }
-        if residual > RISEN * last {
-            whole_below = AGAIN * last;
+        if residual > FAILED_RISE * last {
+            whole_below = FULL_STEP_AGAIN * last;
         }
-        let is_far =
-            residual > CLOSE || goal.pace == Pace::Cautious && (measured.changed > 0 || residual > whole_below);
+        let is_far = residual > CLOSE_RESIDUAL
+            || goal.pace == Pace::Cautious && (measured.changed > 0 || residual > whole_below);
         last = if is_far { f64::INFINITY } else { residual };
         if !take_step(level, goal, is_far, directions)? {
             directions = (2 * directions).min(most);
@@ -168,7 +168,7 @@ fn take_step(level: &mut Level, Goal { wanted, pace, .. }: Goal, is_far: bool, m
     let weight = if wanted.is_some() { 1.0 / f64::max(count, 1.0) } else { 0.0 };
     let r = Bordered { field: right, border };
     let norm = (fields::dot(&threads, &r.field, &r.field) + weight * border[0] * border[0]).sqrt();
-    let [far, near] = if pace == Pace::Firm { FIRM } else { [FAR, NEAR] };
+    let [far, near] = if pace == Pace::Firm { FIRM_TOLERANCES } else { [FAR_TOLERANCE, CLOSE_TOLERANCE] };
     let until = Until { target: norm * if is_far { far } else { near }, most };
     let mut system = Linearised::new(level, &stiffness, wanted.is_some(), &mut fields)?;
     let found = system.solve(r, (until, weight), &threads, &mut fields)?;
@@ -188,7 +188,7 @@ pub fn stiffnesses<T: Real>(level: &Level, place: impl Fn(usize, f64) -> f64 + S
         if now.contact[i] || !e.is_finite() {
             return [T::zero()];
         }
-        [T::of((surface.attraction.stiffness(surface.work_at(i), place(i, e)) * a0).min(STIFFEST))]
+        [T::of((surface.attraction.stiffness(surface.work_at(i), place(i, e)) * a0).min(LARGEST_STIFFNESS))]
     });
 }
 
@@ -205,13 +205,13 @@ fn linearise(level: &Level, pace: Pace, is_far: bool, stiffness: &mut [Short], r
             true => {
                 let of_pressure = surface.attraction.distance_of(surface.work_at(i), -now.p.field[i][0]);
                 let of_pressure = if of_pressure.is_finite() { of_pressure.max(0.0) } else { e };
-                (0.5 * (e + of_pressure.clamp(e - WITHIN * range, e + WITHIN * range))).max(0.0)
+                (0.5 * (e + of_pressure.clamp(e - MOST_RANGES_FROM_E * range, e + MOST_RANGES_FROM_E * range))).max(0.0)
             }
         }
     };
     stiffnesses(level, place, stiffness);
     if is_far && pace == Pace::Cautious {
-        fields::scale(threads, stiffness, CAUTIOUS);
+        fields::scale(threads, stiffness, CAUTIOUS_SLOPE);
     }
     let stiffness = &*stiffness;
     fields::fill(threads, right, |i| {

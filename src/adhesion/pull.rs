@@ -13,32 +13,32 @@ use super::way::{Walker, Way};
 use crate::error::Result;
 use crate::methods::fields;
 
-/// The longest step of a way, as a part of the length that the energy and the stiffness of the contact give. LONG serves a way that may still meet
-/// the state of an earlier way.
-const STEP: f64 = 0.1;
-const LONG: f64 = 0.3;
+/// The longest step of a way, relative to the length that the energy and the stiffness of the contact give.
+/// LONGEST_STEP_TO_MEET serves a way that may still meet the state of an earlier way.
+const LONGEST_STEP: f64 = 0.1;
+const LONGEST_STEP_TO_MEET: f64 = 0.3;
 /// The least length, relative to the range. Bodies in contact without attraction have a length that falls with their force, and a way in parts of
 /// that length has no end.
-const SHORTEST: f64 = 1e-3;
+const LEAST_LENGTH: f64 = 1e-3;
 /// A step of surfaces locked in contact, relative to the range.
-const OF_RANGE: f64 = 0.1;
+const LOCKED_STEP: f64 = 0.1;
 /// Most steps.
 const MOST_STEPS: u32 = 400;
 /// Parts of each step that is repeated where the force was nearly the least. The edge of a contact is pinned at rings of elements, and the force of a
 /// sphere has a minimum at each ring.
-const PARTS: u32 = 8;
+const PARTS_OF_STEP: u32 = 8;
 /// Relative excess over the least force, divided by the square of kappa, of forces that are nearly the least; bounds of the excess. The minima of a
 /// sphere at neighbouring rings lie 1 % below the forces between them for kappa 0.4, and 0.01 % for kappa 0.14.
-const NEARLY: f64 = 0.1;
-const NEARLY_WITHIN: (f64, f64) = (0.005, 0.02);
+const NEARLY_LEAST: f64 = 0.1;
+const NEARLY_LEAST_BOUNDS: (f64, f64) = (0.005, 0.02);
 /// The search around the minimum begins at one of these numbers of small steps above it, the first at which a state is found.
-const UP: [f64; 4] = [0.0, 0.25, 0.5, 1.0];
+const STARTS_ABOVE: [f64; 4] = [0.0, 0.25, 0.5, 1.0];
 /// Steps from the minimum to both sides, which are halved: the last elements of a contact part at a cusp.
-const LAST: u32 = 5;
+const LAST_STEPS: u32 = 5;
 /// Difference of the sums of p, relative to the whole attraction or repulsion, at which two ways meet.
-const SAME: f64 = 1e-3;
-/// Contact pressures of parting elements are below this part of sigma(0).
-const PARTING: f64 = 1e-9;
+const MEETING_DIFFERENCE: f64 = 1e-3;
+/// Contact pressures of parting elements are below this share of sigma(0).
+const PARTING_PRESSURE: f64 = 1e-9;
 
 /// The least force on a way.
 struct Least {
@@ -59,12 +59,12 @@ fn is_nearly(sum: f64, least: f64, part: f64) -> bool {
 }
 
 impl Least {
-    /// The least force at the begin of a way.
+    /// The least force at the start of a way.
     fn of(level: &Level, way: &Way) -> Result<Least> {
         let Way { here, longest, .. } = way;
         let place = || Place::of(level, here.sum);
         let kappa = level.surface.attraction.resolution(level.surface.work, level.self_influence());
-        let nearly = (NEARLY * kappa * kappa).clamp(NEARLY_WITHIN.0, NEARLY_WITHIN.1);
+        let nearly = (NEARLY_LEAST * kappa * kappa).clamp(NEARLY_LEAST_BOUNDS.0, NEARLY_LEAST_BOUNDS.1);
         Ok(Least { at: place()?, above: place()?, first: here.sum, last: here.approach(), step: *longest, nearly })
     }
 
@@ -97,7 +97,7 @@ impl Walker<'_, '_, '_> {
             false => self.solve_at(self.level.now.approach())?,
         };
         let Some(sum) = first else { return Ok(self.lost()) };
-        let step = self.first_step(if met.is_some() { LONG } else { STEP })?;
+        let step = self.first_step(if met.is_some() { LONGEST_STEP_TO_MEET } else { LONGEST_STEP })?;
         if !(step > 0.0) {
             return Ok(self.lost());
         }
@@ -137,15 +137,15 @@ impl Walker<'_, '_, '_> {
             }
             least.look_at(self.level, sum, &way)?;
             if let Some(at) = meets.filter(|met| approach == met.approach) {
-                if (sum - at.sum).abs() <= SAME * at.all {
+                if (sum - at.sum).abs() <= MEETING_DIFFERENCE * at.all {
                     // A force less than at the meeting lies on this way only.
-                    let is_less = least.at.sum < sum - SAME * at.all;
+                    let is_less = least.at.sum < sum - MEETING_DIFFERENCE * at.all;
                     return Ok(if is_less { Ok(least) } else { Err(Walk::Met) });
                 }
                 met = None;
             }
             let stiffness = (way.here.sum - sum) / (way.here.approach() - approach);
-            let part = if met.is_some() { LONG } else { STEP };
+            let part = if met.is_some() { LONGEST_STEP_TO_MEET } else { LONGEST_STEP };
             way.step = way.step.min(part * self.length(stiffness));
             way.take(self.level, sum)?;
         }
@@ -156,7 +156,7 @@ impl Walker<'_, '_, '_> {
     /// Repeats the way in small steps where the force was nearly the least.
     fn closer(&mut self, least: Least) -> Result<Walk> {
         let Least { at: mut best, above, last, step, nearly, .. } = least;
-        let (to, small) = (last - step, step / f64::from(PARTS));
+        let (to, small) = (last - step, step / f64::from(PARTS_OF_STEP));
         self.level.now.copy_from(&above.at)?;
         let mut way = Way::from(self.level, above.sum, step, true)?;
         way.step = small;
@@ -194,7 +194,7 @@ impl Walker<'_, '_, '_> {
     fn last(&mut self, found: Place, (mut step, nearly): (f64, f64)) -> Result<Walk> {
         let mut best = None::<Place>;
         // Next to the end of a branch its last state may miss the tolerance.
-        for up in UP {
+        for up in STARTS_ABOVE {
             self.level.now.copy_from(&found.at)?;
             let sum = self.solve_at(found.approach() + up * step)?;
             if self.goal.is_interrupted(self.monitor) {
@@ -210,7 +210,7 @@ impl Walker<'_, '_, '_> {
             self.level.now.copy_from(&found.at)?;
             return Ok(self.lost());
         };
-        'steps: for _ in 0..LAST {
+        'steps: for _ in 0..LAST_STEPS {
             step *= 0.5;
             for by in [-step, step] {
                 self.level.now.copy_from(&best.at)?;
@@ -240,7 +240,7 @@ impl Walker<'_, '_, '_> {
     /// The first step of a walk.
     pub fn first_step(&mut self, part: f64) -> Result<f64> {
         if is_locked(self.level) || self.level.now.contact.iter().all(|&inside| !inside) {
-            return Ok(OF_RANGE * self.level.surface.attraction.range);
+            return Ok(LOCKED_STEP * self.level.surface.attraction.range);
         }
         let stiffness = stiffness_of_contact(self.level, self.monitor)?;
         Ok(part * self.length(stiffness))
@@ -253,7 +253,7 @@ impl Walker<'_, '_, '_> {
         let [elastic, _] = energies(surface, now, &problem.threads);
         let of_element = |i: usize| [if now.contact[i] { surface.work_at(i) } else { 0.0 }];
         let [parting] = fields::sum(&problem.threads, now.u.len(), of_element);
-        ((elastic + parting) / stiffness.abs()).sqrt().max(SHORTEST * surface.attraction.range)
+        ((elastic + parting) / stiffness.abs()).sqrt().max(LEAST_LENGTH * surface.attraction.range)
     }
 
     /// Lowers the pressures of surfaces locked in contact, which fall uniformly, to the wanted force or until the first element parts. Returns the
@@ -267,7 +267,8 @@ impl Walker<'_, '_, '_> {
         let wanted = self.goal.wanted.map(|wanted| (sum - wanted) / n as f64).filter(|by| *by <= least);
         let by = wanted.unwrap_or(least);
         for i in 0..n {
-            now.contact[i] = wanted.is_some() || now.p.field[i][0] + surface.traction(i, 0.0) - by > PARTING * most;
+            now.contact[i] =
+                wanted.is_some() || now.p.field[i][0] + surface.traction(i, 0.0) - by > PARTING_PRESSURE * most;
         }
         now.p.field.iter_mut().for_each(|p| p[0] -= by);
         self.level.refresh()?;

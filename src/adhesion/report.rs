@@ -39,9 +39,9 @@ pub struct Report {
 /// kappa up to which elements resolve the attraction.
 pub const RESOLVED: f64 = 0.5;
 /// kappa above which a single element is unstable.
-pub const UNSTABLE: f64 = 1.0;
+pub const UNSTABLE_KAPPA: f64 = 1.0;
 /// Largest part of the attraction on the border of a grid that contains it.
-pub const CONTAINED: f64 = 1e-3;
+pub const LARGEST_BORDER_SHARE: f64 = 1e-3;
 
 impl Report {
     /// The report of a grid's state.
@@ -79,7 +79,7 @@ impl Report {
     /// Bits of [`DiscretisationError`] for elements that are too coarse or a grid that is too small.
     pub fn untrusted(&self) -> u32 {
         let all = DiscretisationError::FORCE | DiscretisationError::MAX_PRESSURE | DiscretisationError::PRESSURE;
-        if self.resolution > RESOLVED || self.border_share > CONTAINED {
+        if self.resolution > RESOLVED || self.border_share > LARGEST_BORDER_SHARE {
             all
         } else {
             0
@@ -124,7 +124,7 @@ pub fn measures(level: &Level, measured: &Measured) -> Measures {
     let area = grid.element_area();
     Measures {
         certificate: Certificate {
-            // A force that is missed whole counts as 1, also of pressures of 0.
+            // A missing force counts as 1 at most, even if all pressures are 0.
             residual: largest([measured.distance, measured.force.min(1.0)]),
             violation: measured.penetration,
             complementarity: if work == 0.0 { 0.0 } else { work / elastic.max(own) },

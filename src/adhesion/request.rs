@@ -3,7 +3,7 @@
 use super::levels::Surfaces;
 use crate::scene::Load;
 
-/// The begin of a solve without a state: several states may belong to one approach.
+/// The start of a solve without a state: several states may belong to one approach.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Start {
     /// On coarser grids with longer ranges, from the contact without attraction.
@@ -35,7 +35,7 @@ pub struct Request<'a> {
     pub load: Load,
     /// Whether the least force is sought, from the load on.
     pub pull_off: bool,
-    /// The begin without a state.
+    /// The start without a state.
     pub start: Start,
     /// The state to start from.
     pub state: Option<State<'a>>,

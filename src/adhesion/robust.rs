@@ -10,15 +10,15 @@ use crate::error::Result;
 use crate::progress::Monitor;
 
 /// Most trials of Newton's method.
-const ROUNDS: u32 = 12;
+const NEWTON_TRIALS: u32 = 12;
 /// Steps of descent between.
-pub const BETWEEN: u64 = 5;
+pub const DESCENT_STEPS: u64 = 5;
 /// Relative increase of energy that counts as uphill.
 const UPHILL: f64 = 1e-6;
-/// Elements of a grid up to which stability is always tested, at little cost. Larger grids are tested if Newton's method takes more than SHORT steps:
+/// Elements of a grid up to which stability is always tested, at little cost. Larger grids are tested if Newton's method takes more than FEW_STEPS steps:
 /// they start near the equilibrium of a coarser grid or of the last load, and few steps from a stable equilibrium end at a stable one.
-const ASKED: usize = 1024;
-const SHORT: u64 = 6;
+const ALWAYS_TESTED: usize = 1024;
+const FEW_STEPS: u64 = 6;
 
 /// The end of a solve of a grid.
 #[derive(Clone, Copy, Debug)]
@@ -47,7 +47,7 @@ pub fn energy(level: &Level, wanted: Option<f64>) -> f64 {
 /// Whether Newton's method ended at an equilibrium that does not minimise the energy at a given approach. With a given force the end of the whole
 /// solve tests this.
 fn is_saddle(level: &mut Level, goal: Goal, is_long: bool, monitor: &mut Monitor<'_>) -> Result<bool> {
-    let is_asked = level.now.u.len() <= ASKED || goal.certified && is_long;
+    let is_asked = level.now.u.len() <= ALWAYS_TESTED || goal.certified && is_long;
     Ok(goal.wanted.is_none() && is_asked && !is_stable(level, false, monitor)?)
 }
 
@@ -73,12 +73,12 @@ pub fn solve(
     good.take(&level.now, &level.problem.threads)?;
     let mut ended = None;
     let (mut least, mut is_lost, mut has_descended) = (f64::INFINITY, false, false);
-    for round in 0..ROUNDS {
+    for round in 0..NEWTON_TRIALS {
         let before = monitor.count.cycles;
         let pace = pace_of(round, goal.pace);
         let keeps = keeps && !has_descended;
         let (end, measured) = newton(level, Goal { pace, ..goal }, keeps, monitor)?;
-        let is_long = monitor.count.cycles - before > SHORT;
+        let is_long = monitor.count.cycles - before > FEW_STEPS;
         let is_downhill = || energy(level, goal.wanted) <= least + UPHILL * least.abs();
         if end == End::Interrupted || end == End::Solved && is_downhill() && !is_saddle(level, goal, is_long, monitor)?
         {
@@ -95,7 +95,7 @@ pub fn solve(
             continue;
         }
         has_descended = true;
-        let steps = Steps { most: BETWEEN, from_none: false, make };
+        let steps = Steps { most: DESCENT_STEPS, from_none: false, make };
         let (end, measured) = descend(level, goal, steps, monitor)?;
         if end != Descent::By(End::Failed) {
             ended = Some((end, measured));

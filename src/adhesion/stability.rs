@@ -19,7 +19,7 @@ use crate::threads::Threads;
 
 /// Most steps of Lanczos' iteration, and the change of lambda at which it ends.
 const MOST_STEPS: usize = 20;
-const ENOUGH: f64 = 1e-4;
+const LAMBDA_CHANGE: f64 = 1e-4;
 /// The effort of each linear system. The error of lambda, a Rayleigh quotient, is the square of the relative residual. On large grids the vectors of
 /// Lanczos' iteration take the memory of many directions.
 const INNER: Effort = Effort { part: 1e-3, most: 60, at_once: 8 };
@@ -61,7 +61,7 @@ fn largest_eigenvalue(level: &mut Level, roots: &[Short], threads: &Threads, fie
         diagonal.push(along);
         let found = largest_of_tridiagonal(&diagonal, &beside);
         last = fields::dot(threads, &w, &w).sqrt();
-        let is_last = (found - lambda).abs() <= ENOUGH || !(last > ENOUGH * found);
+        let is_last = (found - lambda).abs() <= LAMBDA_CHANGE || !(last > LAMBDA_CHANGE * found);
         lambda = found;
         std::mem::swap(&mut before, &mut v);
         std::mem::swap(&mut v, &mut w);

@@ -12,8 +12,8 @@
 //! On large grids preconditioned vectors are not kept. The preconditioner is the same linear map for all directions, so it is applied once to the
 //! sum of basis vectors that makes the solution. Products are kept while they are few.
 //!
-//! Vectors are stored in single precision, [`Short`], as a linear solve ends at a tenth of its right-hand side. So are the s a0, which are of
-//! order 1.
+//! Vectors are stored in single precision, [`Short`], because a linear solve ends at a tenth of its right-hand side. So
+//! are the s a0, which are of order 1.
 
 use super::level::Level;
 use super::unknowns::{is_small, One};

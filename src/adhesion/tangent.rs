@@ -25,8 +25,8 @@ use crate::methods::fields;
 use crate::progress::Monitor;
 
 /// The relative tolerance of the linear system, the smaller one for cases that the larger one does not decide. The most directions of each.
-const LOOSE: f64 = 1e-3;
-const FIRM: f64 = 1e-5;
+const LOOSE_TOLERANCE: f64 = 1e-3;
+const FIRM_TOLERANCE: f64 = 1e-5;
 const DIRECTIONS: [usize; 2] = [30, 90];
 /// A solve on a large grid keeps this many directions. y and its product use the memory of two more.
 const AT_ONCE: usize = IN_MEMORY - 2;
@@ -36,10 +36,10 @@ const ROUGHLY_FIRST: usize = 1024;
 const ROUGH: (f64, usize) = (0.03, 18);
 const BEYOND_DOUBT: f64 = 0.3;
 /// Below this fraction of the sum of |y| the sum of y counts as near 0.
-const NEAR: f64 = 0.05;
+const NEAR_ZERO: f64 = 0.05;
 /// g next to the contact area is near 0, and may be slightly negative in a loose solve. At a saddle it is about -1, and further below if lambda is
 /// near 1.
-const CLOSING: f64 = -0.05;
+const CLOSING_BOUND: f64 = -0.05;
 
 /// The tangent.
 #[derive(Clone, Copy, Debug)]
@@ -56,12 +56,12 @@ struct Tangent {
 
 impl Tangent {
     fn is_stiffness_clear(&self) -> bool {
-        self.is_solved && self.stiffness.abs() > NEAR * self.all
+        self.is_solved && self.stiffness.abs() > NEAR_ZERO * self.all
     }
 
     /// Whether the stability is certain.
     fn is_clear(&self, by_force: bool) -> bool {
-        self.is_solved && self.closing > CLOSING && (!by_force || self.is_stiffness_clear())
+        self.is_solved && self.closing > CLOSING_BOUND && (!by_force || self.is_stiffness_clear())
     }
 }
 
@@ -93,11 +93,11 @@ fn tangent(level: &mut Level, (part, most): (f64, usize), monitor: &mut Monitor<
 
 /// The tangent. It is solved again to a smaller tolerance unless it is clear.
 fn sure_tangent(level: &mut Level, is_clear: fn(&Tangent) -> bool, monitor: &mut Monitor<'_>) -> Result<Tangent> {
-    let found = tangent(level, (LOOSE, DIRECTIONS[0]), monitor)?;
+    let found = tangent(level, (LOOSE_TOLERANCE, DIRECTIONS[0]), monitor)?;
     if is_clear(&found) {
         return Ok(found);
     }
-    tangent(level, (FIRM, DIRECTIONS[1]), monitor)
+    tangent(level, (FIRM_TOLERANCE, DIRECTIONS[1]), monitor)
 }
 
 /// Whether all elements are in contact. Then no attraction changes.
@@ -136,5 +136,5 @@ pub fn is_stable(level: &mut Level, by_force: bool, monitor: &mut Monitor<'_>) -
     if by_force && !(found.stiffness > 0.0) {
         return Ok(false);
     }
-    Ok(found.closing > CLOSING || stability(level, monitor)? > 0.0)
+    Ok(found.closing > CLOSING_BOUND || stability(level, monitor)? > 0.0)
 }

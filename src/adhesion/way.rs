@@ -12,21 +12,21 @@ use crate::error::Result;
 use crate::progress::Monitor;
 
 /// The tolerance of each measure of the states on a way, and of states in small steps.
-const ON_THE_WAY: f64 = 1e-3;
-const IN_SMALL_STEPS: f64 = 1e-4;
+const WAY_TOLERANCE: f64 = 1e-3;
+const SMALL_STEP_TOLERANCE: f64 = 1e-4;
 /// The most Newton steps for one state.
-const TRIED: u64 = 14;
+const MOST_NEWTON_STEPS: u64 = 14;
 /// The most halvings of a step, and doublings of a step over a snap.
 const HALVINGS: u32 = 2;
-const LEAPS: u32 = 2;
+const SNAP_DOUBLINGS: u32 = 2;
 /// A snap may take this many times the cycles of a state on the way.
-const LONGER: u64 = 4;
-/// After at most so many Newton steps, the next step along the branch is longer by this factor.
-const EASY: u64 = 6;
+const SNAP_CYCLES: u64 = 4;
+/// If a state took at most EASY_STEPS Newton steps, the next step along the branch is GROWTH times as long.
+const EASY_STEPS: u64 = 6;
 const GROWTH: f64 = 1.5;
 /// The first step after a snap is this fraction of the longest step.
 const AFTER_SNAP: f64 = 0.25;
-/// The contact has snapped if more than this fraction of it changes, plus so many elements.
+/// The contact has snapped if its number of elements changes by more than this fraction plus this number.
 const SNAPPED: (f64, f64) = (0.5, 8.0);
 
 /// Continues from state to state on one grid.
@@ -85,7 +85,7 @@ impl Way {
         self.here.take(level, sum)
     }
 
-    /// Whether so many elements in contact indicate another branch.
+    /// Whether a contact of `count` elements indicates another branch.
     fn is_snap(&self, count: usize) -> bool {
         let (part, few) = SNAPPED;
         self.count.abs_diff(count) as f64 > part * self.count as f64 + few
@@ -134,7 +134,7 @@ impl Walker<'_, '_, '_> {
                 return Ok(None);
             }
             if found.is_some() {
-                let is_easy = self.monitor.count.cycles - cycles <= EASY;
+                let is_easy = self.monitor.count.cycles - cycles <= EASY_STEPS;
                 let wide = if halving == 0 { way.step } else { 0.0 };
                 log::debug!("adhesion: {found:?} at an approach of {approach:e}, {} in contact", way.count);
                 way.step = if is_easy { wide.max(GROWTH * by.abs()).min(way.longest) } else { by.abs() };
@@ -156,12 +156,12 @@ impl Walker<'_, '_, '_> {
             now.go_along(&before.at, part, &self.level.problem.threads);
         }
         now.p.border = [approach];
-        let most = self.goal.most.min(self.monitor.count.cycles.saturating_add(TRIED.min(self.each)));
+        let most = self.goal.most.min(self.monitor.count.cycles.saturating_add(MOST_NEWTON_STEPS.min(self.each)));
         let enough = match self.goal.wanted {
             // Forces are compared with the prescribed force.
             Some(_) => 0.0,
-            None if way.is_close => IN_SMALL_STEPS,
-            None => ON_THE_WAY,
+            None if way.is_close => SMALL_STEP_TOLERANCE,
+            None => WAY_TOLERANCE,
         };
         let tolerance = self.goal.tolerance.max(enough);
         let goal = Goal { wanted: None, tolerance, certified: false, most, pace: Pace::Cautious };
@@ -173,7 +173,7 @@ impl Walker<'_, '_, '_> {
     /// Crosses the end of a branch. That may take more cycles than a state on the branch.
     fn snap(&mut self, way: &Way) -> Result<Option<f64>> {
         let each = self.each;
-        self.each = each.saturating_mul(LONGER);
+        self.each = each.saturating_mul(SNAP_CYCLES);
         let found = self.leap(way);
         self.each = each;
         found
@@ -182,7 +182,7 @@ impl Walker<'_, '_, '_> {
     /// Finds a state beyond the end, by longer and longer steps.
     fn leap(&mut self, way: &Way) -> Result<Option<f64>> {
         let mut by = way.longest;
-        for leap in 0..=LEAPS {
+        for leap in 0..=SNAP_DOUBLINGS {
             self.level.now.copy_from(&way.here.at)?;
             let found = self.solve_at(way.here.approach() - by)?;
             log::debug!("adhesion: after a snap {found:?}, {by:e} beyond an approach of {:e}", way.here.approach());

@@ -8,9 +8,9 @@ use crate::scene::Load;
 use crate::threads::Threads;
 
 /// Most elements whose state depends on displacements, relative to those at their limit. With more, a start from coarser grids is better.
-const UNDECIDED: f64 = 0.1;
+const UNDECIDED_SHARE: f64 = 0.1;
 /// Accuracy of the depth, relative to the largest displacement.
-const DEPTH: f64 = 0.25;
+const DEPTH_ACCURACY: f64 = 0.25;
 /// Most halvings of a bracket of the depth: the bits of a double.
 const HALVINGS: u32 = 64;
 
@@ -41,7 +41,7 @@ impl State {
         let reach = self.deepest(&held, self_influence);
         let undecided = self.h.iter().filter(|&h| low - reach <= *h && *h <= high + reach).count();
         // The count is 0 if the approach is less than all distances.
-        if held.count == 0 || !(undecided as f64 <= UNDECIDED * held.count as f64) {
+        if held.count == 0 || !(undecided as f64 <= UNDECIDED_SHARE * held.count as f64) {
             return None;
         }
         self.u.fill(0.0);
@@ -58,7 +58,7 @@ impl State {
         for _ in 0..HALVINGS {
             let middle = low + 0.5 * (high - low);
             let below = self.below(set, middle);
-            if high - low <= DEPTH * self.deepest(&below, self_influence) {
+            if high - low <= DEPTH_ACCURACY * self.deepest(&below, self_influence) {
                 break;
             }
             if below.limits < pressures {

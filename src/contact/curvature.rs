@@ -7,9 +7,9 @@ use super::{each_jump, Jump, Outline, Problem, State};
 use crate::rectangle::Rectangle;
 
 /// Least rows of the contact area that are sampled. Means over more rows hardly differ.
-const ROWS: usize = 32;
+const SAMPLED_ROWS: usize = 32;
 /// Largest run that is counted: its error, `(2.5/run)^2`, is 2 %.
-const LONG: usize = 16;
+const LONGEST_RUN: usize = 16;
 
 /// Second differences of h and p over the contact area.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -21,7 +21,8 @@ pub struct Curvature {
     pub depth: f64,
     /// u = approach - h, its mean with the weights of a flat punch's pressures: the force over dF/d(approach) (Betti).
     pub displaced: f64,
-    /// The mean over the rim of `|bend|` over the squared elements of the shorter run through an element, times the weight of the rim.
+    /// The mean over the rim of `|bend|/run^2`, times the weight of the rim. `run`: the elements of the shorter run
+    /// through an element.
     pub short: f64,
     /// rms of the second differences of p, over that of p.
     pub pressure: f64,
@@ -47,7 +48,7 @@ struct Sums {
 impl Curvature {
     /// The curvature of a state with this outline.
     pub fn of(problem: &Problem, state: &State, outline: &Outline) -> Curvature {
-        let stride = (outline.rows / ROWS).max(1);
+        let stride = (outline.rows / SAMPLED_ROWS).max(1);
         let (mx, my) = (state.grid.mx, state.grid.my);
         let (repeats, layered) = (problem.coefficients.repeats(&state.grid), problem.coefficients.has_layer());
         let directions = Direction::both(&state.grid, repeats);
@@ -96,7 +97,7 @@ impl Sums {
         let finite = |difference: f64| if difference.is_finite() { difference / 24.0 } else { 0.0 };
         let bend = finite(second(h, left, right)) + finite(second(h, below, above));
         let is_rim = !(contact[left] && contact[right] && contact[below] && contact[above]);
-        let rim = is_rim.then(|| shortest_run(directions, contact, at, LONG));
+        let rim = is_rim.then(|| shortest_run(directions, contact, at, LONGEST_RUN));
         let difference = second(p, left, right) + second(p, below, above);
         self.count_in(state, at, (bend, difference, rim));
     }
@@ -120,7 +121,7 @@ impl Sums {
                 difference += p(pair[0]) + p(pair[1]) - 2.0 * state.p[at];
             }
         }
-        let rim = is_rim.then(|| shortest_run(directions, &state.contact, at, LONG));
+        let rim = is_rim.then(|| shortest_run(directions, &state.contact, at, LONGEST_RUN));
         self.count_in(state, at, (bend, difference, rim));
     }
 
@@ -192,8 +193,8 @@ fn area_weight(problem: &Problem, state: &State, outline: &Outline) -> f64 {
     of_places + (1.0 - of_places) * (4.0 * of_strips - 3.0)
 }
 
-/// The jumps of h next to contact (see [`Curvature::jumps`]), and their contributions at the rim to second differences of h, and to these over the
-/// squared elements of their run.
+/// The jumps of h next to contact (see [`Curvature::jumps`]), and the sums of their contributions to the second
+/// differences of h at the rim: as they are, and over the squared elements of the run.
 fn jumps(problem: &Problem, state: &State, repeats: (bool, bool)) -> (f64, [f64; 2]) {
     let (grid, contact, directions) = (&state.grid, &state.contact, Direction::both(&state.grid, repeats));
     let (mut sum, mut bend, mut short) = (0.0, 0.0, 0.0);
@@ -202,7 +203,7 @@ fn jumps(problem: &Problem, state: &State, repeats: (bool, bool)) -> (f64, [f64;
         // Next to a jump within contact the second differences have opposite signs.
         if contact[i] != contact[j] {
             let (inside, up) = if contact[i] { (i, height) } else { (j, -height) };
-            let run = shortest_run(&directions, contact, inside, LONG);
+            let run = shortest_run(&directions, contact, inside, LONGEST_RUN);
             bend += lines * up;
             short += lines * up.abs() / (run * run) as f64;
         }

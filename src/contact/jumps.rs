@@ -14,12 +14,12 @@ use crate::rectangle::Rectangle;
 /// Least number of lines that are searched.
 const LINES: usize = 32;
 /// Ratio of a jump's third difference to those around it.
-const STANDS_OUT: f64 = 8.0;
+const JUMP_RATIO: f64 = 8.0;
 /// Least ratio, or inverse ratio, of the jump in the next line for a jump that continues.
-const GOES_ON: f64 = 0.5;
+const CONTINUATION_RATIO: f64 = 0.5;
 /// Uncertainty of a jump in elements, along a straight line and otherwise.
-const AT_STRAIGHT: f64 = 0.5;
-const AT_STEPS: f64 = 0.15;
+const STRAIGHT_JUMP: f64 = 0.5;
+const STEPPED_JUMP: f64 = 0.15;
 
 /// A row or a column.
 #[derive(Clone, Copy)]
@@ -121,21 +121,21 @@ impl Line {
         // Second differences of short waves have opposite signs as well, but change as much farther off.
         let around = [change(-2, -1), change(2, 3), change(-1, 2)].into_iter().flatten().reduce(f64::max);
         // Without values around, a jump cannot be distinguished from a bend.
-        if !around.is_some_and(|around| found.abs() > STANDS_OUT * around) {
+        if !around.is_some_and(|around| found.abs() > JUMP_RATIO * around) {
             return 0.0;
         }
         let beside = [-1, 1].map(|next| self.across.place(self.number as isize + next));
         let beside: Vec<Line> = beside.into_iter().flatten().map(|number| Line { number, ..*self }).collect();
         let goes_on = |line: &Line, mut places: Range<isize>| {
             let third = |k: isize| line.second(place + k + 1, value) - line.second(place + k, value);
-            places.any(|k| (GOES_ON..=1.0 / GOES_ON).contains(&(third(k) / found)))
+            places.any(|k| (CONTINUATION_RATIO..=1.0 / CONTINUATION_RATIO).contains(&(third(k) / found)))
         };
         if !beside.is_empty() && !beside.iter().any(|line| goes_on(line, -1..2)) {
             return 0.0;
         }
         match beside.iter().all(|line| goes_on(line, 0..1)) {
-            true => AT_STRAIGHT,
-            false => AT_STEPS,
+            true => STRAIGHT_JUMP,
+            false => STEPPED_JUMP,
         }
     }
 

@@ -22,11 +22,11 @@ use crate::threads::Threads;
 
 /// Grids of at most so many elements use direct summation, which needs no set-up. Measured on a first call with a separate table: it takes
 /// 0.64 of the time with an operator for one element, 0.68 for 2 x 2 elements.
-const SUMMED: usize = 4;
+const DIRECT_SUMMATION: usize = 4;
 /// Grids of fewer elements use one operator for all products. There is little to save, and many small problems have many contact areas.
 const SMALLEST_GRID: usize = 128 * 128;
 /// A reach gets a separate operator if its periods have at most this fraction of the elements of the full periods.
-const WORTHWHILE: f64 = 0.8;
+const LARGEST_PERIODS: f64 = 0.8;
 
 /// The inputs of an operator.
 #[derive(Clone, Copy)]
@@ -40,7 +40,7 @@ pub(super) struct MadeOf<'a> {
 #[derive(Default)]
 pub(super) struct Operators {
     /// A itself by rows, on grids with direct summation.
-    matrix: Option<[f64; SUMMED * SUMMED]>,
+    matrix: Option<[f64; DIRECT_SUMMATION * DIRECT_SUMMATION]>,
     /// The operator for any p.
     whole: Option<Arc<Operator<f64>>>,
     /// The last operator for p on a part of the grid, and whether its coefficients are the current ones.
@@ -67,10 +67,13 @@ impl Operators {
     }
 
     /// A, on grids with direct summation.
-    fn matrix(&mut self, MadeOf { coefficients, grid, .. }: MadeOf<'_>) -> Option<&[f64; SUMMED * SUMMED]> {
+    fn matrix(
+        &mut self,
+        MadeOf { coefficients, grid, .. }: MadeOf<'_>,
+    ) -> Option<&[f64; DIRECT_SUMMATION * DIRECT_SUMMATION]> {
         let n = grid.len();
         let fill = || from_fn(|k| if k < n * n { coefficients.entry(grid, k / n, k % n) } else { 0.0 });
-        (n <= SUMMED).then(|| &*self.matrix.get_or_insert_with(fill))
+        (n <= DIRECT_SUMMATION).then(|| &*self.matrix.get_or_insert_with(fill))
     }
 
     /// Sets up the operator for any p and its workspace, if all products use it.
@@ -97,7 +100,7 @@ impl Operators {
 
     /// The operator for any p, if the product with p needs it.
     pub fn whole_if_needed(&mut self, of: MadeOf<'_>, p: &[f64]) -> Result<Option<Arc<Operator<f64>>>> {
-        match of.grid.len() > SUMMED && of.reach_of(p).is_none() {
+        match of.grid.len() > DIRECT_SUMMATION && of.reach_of(p).is_none() {
             true => Ok(Some(self.whole(of)?.clone())),
             false => Ok(None),
         }
@@ -119,7 +122,7 @@ impl Operators {
 
     /// `p = A p`.
     pub fn displace_in_place(&mut self, of: MadeOf<'_>, p: &mut [f64]) -> Result<()> {
-        if p.len() <= SUMMED {
+        if p.len() <= DIRECT_SUMMATION {
             let given = p.to_vec();
             return self.displace(of, &given, p);
         }
@@ -207,7 +210,7 @@ impl MadeOf<'_> {
         let periods = |x: usize, y: usize| even_periods(self.coefficients, self.grid, (2 * x, 2 * y));
         let ((px, py), (full_x, full_y)) = (periods(farthest(x, mx), farthest(y, my)), periods(mx - 1, my - 1));
         let reach = ((px / 2).min(mx - 1), (py / 2).min(my - 1));
-        ((px * py) as f64 <= WORTHWHILE * (full_x * full_y) as f64).then_some(reach)
+        ((px * py) as f64 <= LARGEST_PERIODS * (full_x * full_y) as f64).then_some(reach)
     }
 }
 

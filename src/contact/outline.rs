@@ -21,7 +21,7 @@ use crate::grid::Grid;
 use crate::memory::collected;
 
 /// Part of an element by which each change overestimates the area.
-const SHARE: f64 = (PI - 1.0 + LN_2) / 24.0;
+const EXCESS_PER_CHANGE: f64 = (PI - 1.0 + LN_2) / 24.0;
 /// Least elements of a straight piece.
 pub(super) const STRAIGHT: usize = 8;
 
@@ -140,7 +140,7 @@ impl Outline {
 
     /// A*: the area of `count` elements in contact, corrected.
     pub fn corrected_area(&self, state: &State, count: usize) -> f64 {
-        (count as f64 - SHARE * self.changes as f64).max(0.0) * state.grid.element_area()
+        (count as f64 - EXCESS_PER_CHANGE * self.changes as f64).max(0.0) * state.grid.element_area()
     }
 }
 

@@ -15,7 +15,7 @@ use crate::threads::Threads;
 /// Round-off of a displacement by FFT, relative to that of an element by itself: some units of round-off.
 const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 /// The length in elements of a wave whose response is about an element's influence on itself.
-const WAVE: f64 = 16.0;
+const WAVE_OF_SELF_INFLUENCE: f64 = 16.0;
 
 /// `e = h - approach + A p` on one grid, without h, the load and the unknowns, which a [`State`] holds.
 pub struct Problem {
@@ -119,7 +119,7 @@ impl Problem {
         let own = ROUND_OFF * self.self_influence();
         match self.coefficients.is_mean_free() {
             // Displacements by waves of up to the whole grid cancel.
-            true => own * (1.0 + self.grid.mx.max(self.grid.my) as f64 / WAVE),
+            true => own * (1.0 + self.grid.mx.max(self.grid.my) as f64 / WAVE_OF_SELF_INFLUENCE),
             false => own,
         }
     }

@@ -31,7 +31,7 @@ fn estimate_approach(grid: &Grid, h: &[f64], force: f64, self_influence: f64) ->
         let area = count * grid.element_area();
         2.0 * modulus * (area / std::f64::consts::PI).sqrt() * sum / f64::max(count, 1.0)
     };
-    // One element alone carries `force` at the second of these, so the answer lies below it.
+    // At the upper end the lowest element alone carries `force`, so the answer lies below it.
     let alone = force / (2.0 * modulus * (grid.element_area() / std::f64::consts::PI).sqrt());
     let (mut low, mut high) = (lowest, lowest + alone.min(2.0 * (highest - lowest) + alone));
     for _ in 0..60 {

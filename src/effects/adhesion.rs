@@ -29,7 +29,7 @@ pub struct Adhesion<'a> {
     pub law: Law,
     /// The work of adhesion, >= 0.
     pub work: Work<'a>,
-    /// The range rho, a length; 0: the shortest that the elements carry.
+    /// The range rho, a length; 0: the shortest that the elements resolve.
     pub range: f64,
     /// Which of several states is found without a state to start from.
     pub start: Start,

@@ -12,11 +12,12 @@ use crate::scene::{Bodies, Plain};
 
 /// Bound on the shear modulus of a coating over that of its substrate.
 const STIFFEST: f64 = 1e4;
-/// Ratio of moduli below which, or on a rigid body, an incompressible layer must be at least THINNEST elements thick: it has no other compliance.
-const RIGID: f64 = 1e-4;
+/// An incompressible layer must be at least THINNEST elements thick if its modulus is below this share of the
+/// substrate's, as on a rigid body. It has no other compliance.
+const RIGID_RATIO: f64 = 1e-4;
 const THINNEST: f64 = 0.125;
 /// Thickness, relative to an element, below which there is no layer.
-const NOTHING: f64 = 1e-100;
+const LEAST_THICKNESS: f64 = 1e-100;
 
 /// A bonded elastic layer; the body's own shear modulus and Poisson ratio are then those of the substrate, which may be rigid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +52,7 @@ impl Coating {
     pub fn in_effect(&self, b: usize, scene: &Plain<'_>) -> Option<CoatingLayer> {
         let (modulus, ratio) = (scene.bodies.shear_modulus[b], scene.bodies.poisson_ratio[b]);
         let is_none = |layer: &CoatingLayer| {
-            layer.thickness <= NOTHING * f64::min(scene.grid.dx, scene.grid.dy)
+            layer.thickness <= LEAST_THICKNESS * f64::min(scene.grid.dx, scene.grid.dy)
                 || (layer.shear_modulus == modulus && layer.poisson_ratio == ratio)
         };
         self.layers[b].filter(|layer| !is_none(layer))
@@ -75,7 +76,7 @@ impl Coating {
         let (s, transfer) = (PI * t / longer, &radial.transfer);
         // B(s) of a thin layer: the substrate, its compression, and its shear.
         let is_sheared = transfer.substrate + transfer.of_mean * s < 2.0 / 3.0 * s.powi(3) || transfer.of_mean == 0.0;
-        if self.ratio(b, scene)? < RIGID && *t < THINNEST * longer && is_sheared {
+        if self.ratio(b, scene)? < RIGID_RATIO && *t < THINNEST * longer && is_sheared {
             return invalid(format!(
                 "{} is {t} on elements {} x {}; a layer that is almost incompressible, on a body that is rigid beside it, must be at least \
                  {THINNEST} of the longer side: take smaller elements",
@@ -85,7 +86,7 @@ impl Coating {
         Ok(())
     }
 
-    /// The shear modulus of a layer in that of the body: 0 on a rigid one.
+    /// The shear modulus of a layer relative to that of the body: 0 on a rigid body.
     fn ratio(&self, b: usize, scene: &Plain<'_>) -> Result<f64> {
         let (modulus, below) = (self.layers[b].map_or(1.0, |layer| layer.shear_modulus), scene.bodies.shear_modulus[b]);
         match modulus / below {
@@ -187,7 +188,7 @@ impl Effect for Coating {
         (0..2).filter_map(|b| self.in_effect(b, scene)).any(|layer| !(layer.poisson_ratio >= 0.5))
     }
 
-    // Of different coated bodies the coupling of both problems is not a difference of moduli.
+    // The normal and the tangential problem of different coated bodies are coupled by more than a difference of moduli.
     fn check_tractions(&self, scene: &Plain<'_>) -> Result<()> {
         // A layer or a body without meaning is refused by its own check.
         let is_checked = self.check(&scene.grid).is_ok() && scene.bodies.check_each().is_ok();

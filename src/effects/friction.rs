@@ -164,7 +164,8 @@ impl Friction<'_> {
         }
     }
 
-    /// The elements that a step of rolling covers in x and in y. Whole numbers are freed of round-off: coefficients are simpler there.
+    /// The elements that a step of rolling covers in x and in y. Numbers that are whole up to round-off are rounded,
+    /// because coefficients are simpler there.
     pub fn elements_rolled(&self, grid: &Grid) -> (f64, f64) {
         let (distance, (sine, cosine)) = (self.distance(grid), self.rolling_direction.sin_cos());
         let clean = |value: f64| {

@@ -13,7 +13,7 @@ const SHORTEST_STEADY_STEP: f64 = 0.1;
 const OTHER_UNITS: &str = "friction needs numbers below 1e140: choose other units";
 
 /// Distance from a whole number of elements at which a step of rolling counts as whole.
-const WHOLE: f64 = 1e-9;
+const WHOLE_STEP: f64 = 1e-9;
 
 impl Friction<'_> {
     /// Refuses steps beyond all grids, and steps of steady rolling that elements do not resolve.
@@ -127,12 +127,12 @@ impl Friction<'_> {
         if self.motion != Motion::Shift {
             let (distance, (sine, cosine)) = (self.distance(grid), self.rolling_direction.sin_cos());
             let (x, y) = (distance * cosine / grid.dx, distance * sine / grid.dy);
-            if influence.by_row && y.abs() > WHOLE {
+            if influence.by_row && y.abs() > WHOLE_STEP {
                 return Err(Error::Unsupported(format!(
                     "friction->row_tables are given, and a step of rolling goes ({x}, {y}) elements far; it must go along x"
                 )));
             }
-            if (x - x.round()).abs().max((y - y.round()).abs()) > WHOLE {
+            if (x - x.round()).abs().max((y - y.round()).abs()) > WHOLE_STEP {
                 return Err(Error::Unsupported(format!(
                     "{} is given, and a step of rolling goes ({x}, {y}) elements far; it must be whole elements",
                     influence.name()

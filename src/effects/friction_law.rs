@@ -22,7 +22,7 @@ pub enum Branch {
     Near,
     /// The solution reached from the bounds of no slip.
     Low,
-    /// The solution that begins with the bounds of any speed.
+    /// The solution reached from the bounds of unlimited slip.
     High,
 }
 

@@ -69,7 +69,8 @@ pub struct Continues {
 pub struct Properties<'a> {
     /// The effects that exclude this one; one of a pair names the other.
     pub excludes: &'static [&'static str],
-    /// The effect that MULTIGRID and FULL_MULTIGRID refuse: without smoother or without coarser grids.
+    /// The name of the effect if MULTIGRID and FULL_MULTIGRID refuse it, because it has no smoother or no coarser
+    /// grids.
     pub without_multigrid: Option<&'static str>,
     /// Whether the effect works on a given contact area.
     pub with_given_area: bool,

@@ -4,9 +4,10 @@ use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
 use crate::memory::collected;
 
-/// The caller's tangential influence coefficients: three tables over offsets `-cx..cx-1` by `-cy..cy-1`, x fastest, in the layout of the normal
-/// table. Axx and Ayy must be even in both directions, Axy odd in both. In steady rolling only y needs this symmetry: relaxing bodies are softer
-/// behind. With `by_row` there is a table for each loaded row (`tangential_rows.rs`).
+/// The caller's tangential influence coefficients: three tables over offsets `-cx..cx-1` by `-cy..cy-1`, x fastest, in
+/// the layout of the normal table. Axx and Ayy must be even in both directions, Axy odd in both. In steady rolling they
+/// need this symmetry in y only, because relaxing bodies are softer behind. With `by_row` there is a table for each
+/// loaded row (`tangential_rows.rs`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TangentialInfluence<'a> {
     /// Columns of the tables' grid.

@@ -8,7 +8,7 @@ use super::visco_step::{Body, Step};
 use crate::error::{invalid, not_negative, positive, require, Error, Result};
 use crate::grid::Grid;
 use crate::scene::{Bodies, Load, Plain};
-use crate::visco::{Form, Series, MOST};
+use crate::visco::{Form, Series, MOST_BRANCHES};
 
 /// The branches of a body's Prony series.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -145,8 +145,8 @@ impl Effect for Visco<'_> {
 
     fn check(&self, _grid: &Grid) -> Result<()> {
         for (Branches { modulus, time }, [count, g, t]) in self.bodies.iter().zip(NAMES) {
-            if modulus.len() > MOST || modulus.len() != time.len() {
-                let rule = format!("there are {MOST} at most, each with a time");
+            if modulus.len() > MOST_BRANCHES || modulus.len() != time.len() {
+                let rule = format!("there are {MOST_BRANCHES} at most, each with a time");
                 return invalid(format!("{count} is {} and {}; {rule}", modulus.len(), time.len()));
             }
             for (modulus, time) in modulus.iter().zip(*time) {

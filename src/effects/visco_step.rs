@@ -5,7 +5,7 @@
 use super::coupled::History;
 use super::memory::Memory;
 use crate::contact::State;
-use crate::visco::{Form, Map, Report, Series, MOST};
+use crate::visco::{Form, Map, Report, Series, MOST_BRANCHES};
 
 /// A body: its share of the instantaneous compliance, and its step.
 pub struct Body {
@@ -38,7 +38,7 @@ impl Step {
 
     /// H of element i by the maps of either form, from the fields `[A p, q...]`.
     fn history(bodies: &[Body], fields: &[Vec<f64>], i: usize) -> f64 {
-        let (mut sum, mut first, mut q) = (0.0, 1, [0.0; MOST]);
+        let (mut sum, mut first, mut q) = (0.0, 1, [0.0; MOST_BRANCHES]);
         for Body { share, map } in bodies {
             let n = map.branches();
             fields[first..first + n].iter().zip(&mut q).for_each(|(field, q)| *q = field[i]);
@@ -90,7 +90,7 @@ impl Memory for Step {
         history.error += off;
         let (time, sum) = (history.time, history.error);
         let fields = history.known_mut();
-        let (mut q, mut after) = ([0.0; MOST], [0.0; MOST]);
+        let (mut q, mut after) = ([0.0; MOST_BRANCHES], [0.0; MOST_BRANCHES]);
         for i in 0..state.u.len() {
             let (before, now, mut first) = (fields[0][i], state.u[i], 1);
             for Body { share, map } in &self.bodies {

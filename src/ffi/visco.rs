@@ -5,7 +5,7 @@ use super::status::Refusal;
 use super::structs::versioned;
 use crate::grid::Grid;
 use crate::scene::{Branches, Visco};
-use crate::visco::{Form, Report, MOST};
+use crate::visco::{Form, Report, MOST_BRANCHES};
 
 /// `form`: RELAXATION where the approach is given, CREEP where the force is.
 pub const CONTACT_NORMAL_FORM_AUTO: i32 = 0;
@@ -59,8 +59,8 @@ impl contact_normal_visco {
                 continue;
             }
             let branches = count(name, self.branches[b])?;
-            if branches > MOST {
-                return Err(Refusal::invalid(format!("{name} is {branches}; it must be at most {MOST}")));
+            if branches > MOST_BRANCHES {
+                return Err(Refusal::invalid(format!("{name} is {branches}; it must be at most {MOST_BRANCHES}")));
             }
             // SAFETY: NULL or as many values as branches, by the conventions of the ABI.
             let (modulus, time) =
@@ -84,7 +84,7 @@ impl contact_normal_visco {
 
     /// Values that are read of a body.
     fn values(&self, b: usize) -> usize {
-        usize::try_from(self.branches[b]).ok().filter(|branches| *branches <= MOST).unwrap_or(0)
+        usize::try_from(self.branches[b]).ok().filter(|branches| *branches <= MOST_BRANCHES).unwrap_or(0)
     }
 }
 

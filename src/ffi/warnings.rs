@@ -3,7 +3,7 @@
 use std::ffi::{CStr, CString};
 use std::sync::OnceLock;
 
-use crate::adhesion::{CONTAINED, UNSTABLE};
+use crate::adhesion::{LARGEST_BORDER_SHARE, UNSTABLE_KAPPA};
 use crate::contact::State;
 use crate::effects;
 use crate::friction::law::STEEP;
@@ -82,8 +82,8 @@ pub(super) fn of(scene: &Scene<'_>, options: &Options, report: &Report, state: &
 /// Those of adhesion.
 fn of_adhesion(report: &Report) -> i32 {
     let Some(found) = &report.adhesion else { return 0 };
-    let range = if found.resolution > UNSTABLE { CONTACT_NORMAL_WARNING_RANGE } else { 0 };
-    range | if found.border_share > CONTAINED { CONTACT_NORMAL_WARNING_ATTRACTION } else { 0 }
+    let range = if found.resolution > UNSTABLE_KAPPA { CONTACT_NORMAL_WARNING_RANGE } else { 0 };
+    range | if found.border_share > LARGEST_BORDER_SHARE { CONTACT_NORMAL_WARNING_ATTRACTION } else { 0 }
 }
 
 /// That of a law of friction, by `law_slope`.

@@ -15,7 +15,7 @@ use super::system::pseudo_inverse;
 use crate::methods::fields;
 
 /// Missing force, relative to the sum of all bounds, at which forces are met.
-const MET: f64 = 1e-13;
+const FORCES_MET: f64 = 1e-13;
 /// Most trials: halvings from the largest creepage to round-off.
 const MOST_TRIALS: usize = 200;
 /// A trial with more than this part of the last missing force is followed by the centre of the corral.
@@ -64,7 +64,7 @@ pub fn balanced(problem: &Problem, state: &State, rho: f64, forces: Forces) -> V
         if missing < least.0 {
             least = (missing, dc);
         }
-        if !(missing > MET) {
+        if !(missing > FORCES_MET) {
             break;
         }
         corral.cut(dc, excess);

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::methods::fields::{self, Fields};
 
 /// Relative uncertainty of a residual from displacements that are not fresh: round-off of single precision.
-const HIDDEN: f64 = f32::EPSILON as f64;
+const STALE_UNCERTAINTY: f64 = f32::EPSILON as f64;
 
 /// Tractions, their creepages, and their largest measure.
 pub struct Best {
@@ -24,9 +24,9 @@ impl Best {
         Best { q: Vec::new(), offset: [0.0; 2], worst: f64::INFINITY }
     }
 
-    /// Keeps the state's tractions if they are better. Their measure counts as [`HIDDEN`] or more if the displacements are not fresh.
+    /// Keeps the state's tractions if they are better. Their measure counts as [`STALE_UNCERTAINTY`] or more if the displacements are not fresh.
     pub fn see(&mut self, problem: &Problem, state: &State, worst: f64, fields: &mut Fields) -> Result<()> {
-        let worst = if state.is_exact { worst } else { worst.max(HIDDEN) };
+        let worst = if state.is_exact { worst } else { worst.max(STALE_UNCERTAINTY) };
         if !(worst < self.worst) {
             return Ok(());
         }

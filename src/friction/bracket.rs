@@ -22,15 +22,15 @@ use crate::progress::Outcome;
 
 /// A trial is good if its missing force is at most this part of the least so far.
 const PROGRESS: f64 = 0.5;
-/// Each time the missing force falls to CLOSE times the last value, Newton's method with balanced creepages gets FINISH products.
-const CLOSE: f64 = 0.1;
-const FINISH: u64 = 30;
+/// Each time the missing force falls to CLOSE_RATIO times the last value, Newton's method with balanced creepages gets FINISHING_PRODUCTS products.
+const CLOSE_RATIO: f64 = 0.1;
+const FINISHING_PRODUCTS: u64 = 30;
 /// Factor on the residual of solves if other creepages leave the forces unchanged, and its least value.
 const TIGHTER: f64 = 0.03;
 const LEAST_INNER: f64 = 1e-14;
 /// Relative accuracy of the derivatives of forces, and the relative determinant below which their matrix is singular.
-const SLOPE: f64 = 1e-2;
-const SINGULAR: f64 = 1e-8;
+const DERIVATIVE_ACCURACY: f64 = 1e-2;
+const SINGULAR_DETERMINANT: f64 = 1e-8;
 /// Most trials.
 const MOST_TRIALS: u32 = 400;
 
@@ -79,9 +79,9 @@ pub fn solve(
         if missing < tolerance {
             return Ok(Outcome::Converged);
         }
-        if missing < CLOSE * tried {
+        if missing < CLOSE_RATIO * tried {
             tried = missing;
-            let left = limit.saturating_sub(problem.operators.products - made).min(FINISH);
+            let left = limit.saturating_sub(problem.operators.products - made).min(FINISHING_PRODUCTS);
             let goal = Goal { tolerance, limit: left, certified, watch: &mut *watch };
             let end = finish(problem, state, memory, forces, goal)?;
             if end == Outcome::Converged || end == Outcome::Cancelled {
@@ -222,14 +222,16 @@ fn slope(problem: &mut Problem, memory: &mut Memory, forces: Forces) -> Result<[
         let mut change = fields.take(problem.grid.len())?;
         let unit = [[1.0, 0.0], [0.0, 1.0]][k];
         fields::fill(problem.threads(), &mut change, |i| problem.weighted(i, unit));
-        sensitivity::solve(problem, tangent, (fields, &mut change), SLOPE, &mut |_| true)?;
+        sensitivity::solve(problem, tangent, (fields, &mut change), DERIVATIVE_ACCURACY, &mut |_| true)?;
         let by = forces.only_given(sum_of(problem, &change));
         (falls[0][k], falls[1][k]) = (-by[0], -by[1]);
         fields.give(change);
     }
     let [[a, b], [c, d]] = falls;
     let determinant = a * d - b * c;
-    if forces.given == [true; 2] && determinant.abs() > SINGULAR * (a.abs() + b.abs() + c.abs() + d.abs()).powi(2) {
+    if forces.given == [true; 2]
+        && determinant.abs() > SINGULAR_DETERMINANT * (a.abs() + b.abs() + c.abs() + d.abs()).powi(2)
+    {
         return Ok([[d / determinant, -b / determinant], [-c / determinant, a / determinant]]);
     }
     Ok(pseudo_inverse(falls))

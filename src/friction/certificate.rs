@@ -16,7 +16,7 @@ use super::plane::{add, dot, square, Vector};
 use super::problem::{Problem, State};
 use crate::methods::fields::{self, BLOCK};
 
-/// Part of the bound from which tractions are on the circle: round-off of the projection is far below.
+/// Tractions of at least this share of the bound are on the circle. The round-off of the projection is far smaller.
 pub const ON_THE_CIRCLE: f64 = 1.0 - 1e-7;
 
 /// The measures of a solution.
@@ -82,7 +82,7 @@ pub fn is_on_circle(q: Vector, g: f64) -> bool {
     square(q) >= (g * ON_THE_CIRCLE) * (g * ON_THE_CIRCLE)
 }
 
-/// The square of the residual of the slip s: on the circle, for s opposite to q, the part across q.
+/// The square of the residual slip: of s, or of the part of s across q if q is on the circle and s is opposite to it.
 #[inline]
 pub fn rest(s: Vector, q: Vector, g: f64) -> f64 {
     if dot(s, q) < 0.0 && is_on_circle(q, g) {

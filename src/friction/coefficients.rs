@@ -117,7 +117,7 @@ impl Tangential {
         Ok(Tangential { own, rows, coat, layer: self.layer, ..Tangential::of_shape(dx, dy, of.compliance, shape) })
     }
 
-    /// The coefficients with lengths in units of `length`, and the unit of displacements by tractions of 1 with which they are of order 1.
+    /// The coefficients with lengths in units of `length`, and the unit of displacements in which they are of order 1.
     pub fn in_units_of(&self, length: f64) -> (Tangential, f64) {
         let HalfSpace { dx, dy, compliance, .. } = self.half_space;
         let (stiff, unit) = match &self.own {

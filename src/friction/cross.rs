@@ -29,12 +29,12 @@ use crate::operator::{Operator, Workspace};
 use crate::threads::Threads;
 
 /// Half-diagonals from which the series suffices, with TERMS terms after the first: the next is `6^-18`, 1e-14 of the first, times m_18.
-const FAR: f64 = 6.0;
+const SERIES_DISTANCE: f64 = 6.0;
 const TERMS: usize = 8;
 /// Distance up to which differences over corners serve next to the element, in units of its shorter side.
-const CORNERS: f64 = 2.0;
-/// Ratio of the distances of a panel's end and begin, beyond CORNERS.
-const PANELS: f64 = 1.5;
+const CORNERS_DISTANCE: f64 = 2.0;
+/// Ratio of the distances of a panel's end and begin, beyond CORNERS_DISTANCE.
+const PANEL_RATIO: f64 = 1.5;
 
 /// The source of Axz and Ayz.
 #[derive(Clone, Debug)]
@@ -128,7 +128,7 @@ impl Kernel for Cross {
 pub fn integrals(x: f64, y: f64, dx: f64, dy: f64) -> [f64; 2] {
     let (kx, ky) = (x.abs(), y.abs());
     let (px, py) = (kx * dx, ky * dy);
-    let far = FAR * 0.5 * dx.hypot(dy);
+    let far = SERIES_DISTANCE * 0.5 * dx.hypot(dy);
     let [jx, jy] = if px * px + py * py >= far * far { series(px, py, dx, dy) } else { near(kx, ky, dx, dy) };
     // Odd functions: exactly 0 at the centre.
     let odd = |x: f64, value: f64| if x == 0.0 { 0.0 } else { value.copysign(x) };
@@ -179,13 +179,14 @@ fn near(kx: f64, ky: f64, dx: f64, dy: f64) -> [f64; 2] {
 /// corners, the rest by panels in x. Over a long element differences of corners would lose digits.
 fn beside(x: f64, ky: f64, length: f64) -> [f64; 2] {
     let (from, to) = (x - 0.5 * length, x + 0.5 * length);
-    let (near_from, near_to) = (from.clamp(-CORNERS, CORNERS), to.clamp(-CORNERS, CORNERS));
+    let (near_from, near_to) =
+        (from.clamp(-CORNERS_DISTANCE, CORNERS_DISTANCE), to.clamp(-CORNERS_DISTANCE, CORNERS_DISTANCE));
     let mut sum = if near_from < near_to { corners((near_from, near_to), ky) } else { [0.0; 2] };
     // The integral of x/r^2 is odd in x.
-    for (sign, first, last) in [(1.0, from.max(CORNERS), to), (-1.0, (-to).max(CORNERS), -from)] {
+    for (sign, first, last) in [(1.0, from.max(CORNERS_DISTANCE), to), (-1.0, (-to).max(CORNERS_DISTANCE), -from)] {
         let mut at = first;
         while at < last {
-            let next = (PANELS * at).min(last);
+            let next = (PANEL_RATIO * at).min(last);
             let panel = |component: usize| gauss(0.5 * (at + next), next - at, |x| along(ky, 1.0, x)[component]);
             // Integrals over y at the distance x: x and y are exchanged.
             sum = [sum[0] + sign * panel(1), sum[1] + panel(0)];

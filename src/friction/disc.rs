@@ -4,7 +4,7 @@ use pulp::Simd;
 
 use super::certificate::ON_THE_CIRCLE;
 use super::lanes::{Arithmetic, Pair};
-use super::tangent::{ALIGNED, MIXED, NEAR_THE_CIRCLE};
+use super::tangent::{ALIGNED, CURVATURE_WEIGHT, NEAR_THE_CIRCLE};
 
 /// The units, and constants of the formulas in them.
 #[derive(Clone, Copy, Default)]
@@ -19,7 +19,7 @@ pub struct Units {
 }
 
 /// The prediction of the natural map on an element of C: see [`Tangent::predict`](super::tangent::Tangent::predict).
-pub struct Seen<S: Simd> {
+pub struct Prediction<S: Simd> {
     /// The normal n; 0 on stick.
     pub normal: Pair<S>,
     /// D.
@@ -51,7 +51,7 @@ impl<S: Simd> Disc<S> {
             rho: a.splat(units.rho),
             inverse_rho: a.splat(1.0 / units.rho),
             a0: a.splat(units.a0),
-            mixed: a.splat(MIXED / units.a0),
+            mixed: a.splat(CURVATURE_WEIGHT / units.a0),
             zero: a.splat(0.0),
             one: a.splat(1.0),
         }
@@ -59,7 +59,7 @@ impl<S: Simd> Disc<S> {
 
     /// The prediction for elements of tractions q, slips s and bounds g.
     #[inline(always)]
-    pub fn look(&self, q: Pair<S>, s: Pair<S>, g: S::f64s) -> Seen<S> {
+    pub fn predict(&self, q: Pair<S>, s: Pair<S>, g: S::f64s) -> Prediction<S> {
         let Disc { a, zero, one, .. } = *self;
         let tau = a.sub_pair(q, a.scale(self.rho, s));
         let (square_q, square_tau) = (a.square(q), a.square(tau));
@@ -77,7 +77,7 @@ impl<S: Simd> Disc<S> {
         let normal = a.select_pair(slips, n, [zero; 2]);
         let curvature = a.select(slips, a.select(is_near, bent, turned), zero);
         let projected = a.sub_pair(a.scale(a.dot(s, normal), normal), s);
-        Seen { normal, curvature, projected, rest: self.rest(s, q, square_q, g) }
+        Prediction { normal, curvature, projected, rest: self.rest(s, q, square_q, g) }
     }
 
     /// See [`rest`](super::certificate::rest).

@@ -23,9 +23,9 @@ use crate::progress::Outcome;
 
 /// Relative tolerance of linear solves, and most directions of one step.
 const INNER: f64 = 0.1;
-const MOST: usize = 16;
+const MOST_DIRECTIONS: usize = 16;
 /// The last linear solve stops at this part of the tolerance.
-const ENOUGH: f64 = 0.5;
+const TOLERANCE_SHARE: f64 = 0.5;
 /// Most rounds to carry a force.
 const ROUNDS: u32 = 4;
 /// Steps without a new least residual after which the energy changes by round-off only.
@@ -73,8 +73,8 @@ pub fn solve(
         if left == 0 {
             return Ok(Outcome::IterationLimit);
         }
-        let inner = INNER.max(ENOUGH * tolerance / residual);
-        let effort = Effort { inner, most: MOST.min(left as usize), left: residual, length: 1.0 };
+        let inner = INNER.max(TOLERANCE_SHARE * tolerance / residual);
+        let effort = Effort { inner, most: MOST_DIRECTIONS.min(left as usize), left: residual, length: 1.0 };
         let part = go(problem, state, tangent, (effort, rho), fields)?;
         if !(part > 0.0) {
             problem.refresh(state);

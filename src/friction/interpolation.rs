@@ -18,7 +18,7 @@ use crate::memory::{collected, zeros};
 
 /// Weight of the turn of tractions against the slip. With it 22 of 204 cases of rolling take too many products, without it 30
 /// (docs/notes/2026-11-friction.md).
-const TURNING: f64 = 0.3;
+const TURN_WEIGHT: f64 = 0.3;
 
 /// Elements of a grid in one of the next coarser.
 pub fn children(fine: &Grid, coarse: &Grid) -> usize {
@@ -124,13 +124,13 @@ impl Mean {
     }
 }
 
-/// `d - TURNING k^2 s/|s|` with k = |s|/stiff, projected onto the disc of radius 1; k may be infinite.
+/// `d - TURN_WEIGHT k^2 s/|s|` with k = |s|/stiff, projected onto the disc of radius 1; k may be infinite.
 fn turned_against(d: Vector, s: Vector, stiff: f64) -> Vector {
     let length = s[0].hypot(s[1]);
     if length == 0.0 {
         return onto_disc(d, 1.0);
     }
-    let weight = TURNING * (length / stiff).powi(2);
+    let weight = TURN_WEIGHT * (length / stiff).powi(2);
     let (share, rest) = (1.0 / (1.0 + 1.0 / weight), 1.0 / (1.0 + weight));
     let turned = plus(d.map(|v| rest * v), -share, s.map(|s| s / length));
     let by = square(turned).sqrt().max(rest);

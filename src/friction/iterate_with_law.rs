@@ -1,5 +1,5 @@
-//! The iteration with a [law](super::law) or a yielding layer: the nearest solution by Newton's method, a branch by turns, and each if the
-//! other fails.
+//! The iteration with a [law](super::law) or a yielding layer: the nearest solution by Newton's method, in alternation
+//! with turns if that fails; a branch by turns.
 
 use super::certificate::Certificate;
 use super::forces::Forces;
@@ -21,11 +21,11 @@ use crate::rectangle::Rectangle;
 const KEPT_BACK: u64 = 3;
 const KEPT_BACK_OF_TURNS: u64 = 5;
 /// With given forces: tolerance of the first solve, of Coulomb's law with the coefficients at rest.
-const FIRST: f64 = 1e-2;
+const FIRST_TOLERANCE: f64 = 1e-2;
 
 /// The residual of the first turns before Newton's method is tried again, and its factor for the next ones.
-const NEARER: f64 = 1e-2;
-const FURTHER: f64 = 0.1;
+const FIRST_TURNS_RESIDUAL: f64 = 1e-2;
+const TURNS_RESIDUAL_RATIO: f64 = 0.1;
 /// The name of this memory in messages.
 const KEPT: &str = "the tractions before turns";
 
@@ -54,9 +54,9 @@ impl Solver {
     ) -> Result<Outcome> {
         let friction = request.friction;
         if forces.any() && !request.is_cancelled {
-            let first = Request { tolerance: request.tolerance.max(FIRST), ..*request };
+            let first = Request { tolerance: request.tolerance.max(FIRST_TOLERANCE), ..*request };
             let end = self.iterate(&first, forces, began, watch, report)?;
-            // That of Coulomb's law.
+            // The coarser result is that of Coulomb's law.
             report.coarser = None;
             if end == Outcome::Cancelled {
                 let Level { problem, state, .. } = &self.levels[0];
@@ -90,7 +90,7 @@ impl Solver {
         self.alternate((request, began.1), &mut march, watch, report)
     }
 
-    /// After Newton's method found no solution: turns of the branch LOW down to [`NEARER`], then Newton's method from there. If this fails, the next
+    /// After Newton's method found no solution: turns of the branch LOW down to [`FIRST_TURNS_RESIDUAL`], then Newton's method from there. If this fails, the next
     /// turns go ten times as far, and so on. Ends with the best state if all fail.
     fn alternate(
         &mut self,
@@ -99,7 +99,7 @@ impl Solver {
         watch: &mut dyn FnMut(&Grid, f64) -> bool,
         report: &mut Report,
     ) -> Result<Outcome> {
-        let (mut best, mut aim, mut begins) = (self.keep(report)?, NEARER.max(request.tolerance), true);
+        let (mut best, mut aim, mut begins) = (self.keep(report)?, FIRST_TURNS_RESIDUAL.max(request.tolerance), true);
         loop {
             let turns = Request { tolerance: aim, ..*request };
             let turned = self.in_turns((&turns, (false, had_slip)), (march, begins), watch, report)?;
@@ -125,7 +125,7 @@ impl Solver {
             best = if last.is_better(&best) { last } else { best };
             self.put_back(&kept, report);
             best = if kept.is_better(&best) { kept } else { best };
-            (aim, begins) = ((FURTHER * aim).max(request.tolerance), false);
+            (aim, begins) = ((TURNS_RESIDUAL_RATIO * aim).max(request.tolerance), false);
         }
     }
 

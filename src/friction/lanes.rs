@@ -1,7 +1,7 @@
 //! Vectorised passes over fields, component by component.
 //!
-//! A pass processes fields of the same length, a multiple of [`LANES`]. It sums in so many lanes for any vector length of the machine. So no bit of a
-//! sum depends on the machine.
+//! A pass processes fields of the same length, a multiple of [`LANES`]. It sums in [`LANES`] lanes, whatever the vector
+//! length of the machine. So no bit of a sum depends on the machine.
 //!
 //! Loops run over indices, because closures of array methods are not always compiled for the vector instructions of this machine.
 #![allow(clippy::needless_range_loop)]

@@ -27,8 +27,8 @@ use crate::threads::Threads;
 
 /// A side with fewer elements is not coarsened.
 const COARSEST: usize = 24;
-/// Place ahead of a coarse element's centre at which the slip by spin is taken, as a part of the difference of both steps.
-const AHEAD: f64 = 1.0 / 3.0;
+/// The slip by spin of a coarse element is taken ahead of its centre by this share of the difference of both steps.
+const SPIN_SHIFT: f64 = 1.0 / 3.0;
 
 /// One grid: its problem, its unknowns, the memory of its iteration.
 pub struct Level {
@@ -118,7 +118,7 @@ pub fn restrict(fine: &Problem, coarse: &mut Level) -> Result<()> {
     let (from, to) = (fine.grid, problem.grid);
     let longer = step_ratio(problem, fine);
     let all = children(&from, &to);
-    let turned = fine.ahead.map(|w| AHEAD * longer * (longer - 1.0) * w);
+    let turned = fine.ahead.map(|w| SPIN_SHIFT * longer * (longer - 1.0) * w);
     let element = |i: usize| {
         let (mut bound, mut slip, mut rigid, mut count) = (0.0, [0.0; 2], [0.0; 2], 0);
         for child in to.children(&from, i).filter(|&child| fine.bound[child] > 0.0) {

@@ -18,21 +18,21 @@ use crate::grid::Grid;
 use crate::progress::Outcome;
 
 /// Residual on coarser grids: larger errors cost more on the finest grid.
-pub const COARSE: f64 = 1e-3;
+pub const COARSE_TOLERANCE: f64 = 1e-3;
 /// Residual on the grid next to the finest if its forces are used: their error is then about 1e-5 of mu N.
-pub const COUNTS: f64 = 1e-4;
+pub const COUNTED_TOLERANCE: f64 = 1e-4;
 /// Most gradient iterations on each coarser grid.
 const COARSE_LIMIT: u64 = 60;
 /// Largest part of the products for all coarser grids together.
 const COARSE_SHARE: f64 = 0.5;
 /// Largest part of the remaining products for a method that is not the last.
-const SHARE: f64 = 0.4;
+const METHOD_SHARE: f64 = 0.4;
 
 /// Products of Newton's method with balanced creepages, which comes first near full slip: half of 3800 random scenes then take less than half of the
 /// products. If a single element sticks, the method cycles.
-const TRIED: u64 = 8;
+const BALANCED_PRODUCTS: u64 = 8;
 /// Products of plain Newton steps, which come next and may cycle as well.
-const PLAIN: u64 = 60;
+const PLAIN_PRODUCTS: u64 = 60;
 /// Products reserved for the certificates at the end of an unfinished solve.
 const KEPT_BACK: u64 = 5;
 
@@ -87,7 +87,7 @@ pub fn solve(
             let part = level.problem.grid.len() as f64 / finest;
             let area = level.problem.grid.element_area() / finest_area;
             let forces = forces.times(1.0 / area);
-            let coarse = if l == 1 { work.coarse } else { COARSE };
+            let coarse = if l == 1 { work.coarse } else { COARSE_TOLERANCE };
             let end = one(level, (forces, forces.any()), tolerance.max(coarse), part, work)?;
             if end == Outcome::Cancelled {
                 return Ok(end);
@@ -109,7 +109,11 @@ fn ways(forces: Forces, newton_first: bool, (is_rolling, certified): (bool, bool
         // The next grid starts from their last state.
         as_many(&[Newton(Manner::Plain), Newton(Manner::Balanced)])
     } else if slips {
-        vec![(Newton(Manner::Balanced), TRIED), (Newton(Manner::Plain), PLAIN), (Way::Bracket, u64::MAX)]
+        vec![
+            (Newton(Manner::Balanced), BALANCED_PRODUCTS),
+            (Newton(Manner::Plain), PLAIN_PRODUCTS),
+            (Way::Bracket, u64::MAX),
+        ]
     } else if forces.any() {
         as_many(&[Newton(Manner::Plain), Newton(Manner::Balanced), Newton(Manner::InTurns), Way::Bracket])
     } else if is_rolling {
@@ -170,7 +174,7 @@ fn one(
             continue;
         }
         let another = k + 1 < ways.len();
-        let limit = (if another { SHARE * left } else { left }.ceil() as u64).min(most);
+        let limit = (if another { METHOD_SHARE * left } else { left }.ceil() as u64).min(most);
         if limit == 0 {
             end = Outcome::IterationLimit;
             break;

@@ -29,9 +29,9 @@ use crate::progress::Outcome;
 /// Relative tolerance of the linear solve of a step, and in rolling.
 const INNER: f64 = 0.15;
 const INNER_ROLLING: f64 = 0.35;
-/// The last linear solve stops at ENOUGH times the tolerance. Below NEAR times the tolerance `polish` takes the certificate.
-const ENOUGH: f64 = 0.9;
-const NEAR: f64 = 1.5;
+/// The last linear solve stops at LAST_TOLERANCE_SHARE times the tolerance. Below POLISH_BELOW times the tolerance `polish` takes the certificate.
+const LAST_TOLERANCE_SHARE: f64 = 0.9;
+const POLISH_BELOW: f64 = 1.5;
 /// Largest relative tolerance of a linear solve.
 const LEAST_GAIN: f64 = 0.5;
 /// Residuals below this are round-off, of which displacements that are not fresh hide more: the certificate is taken, whatever the tolerance.
@@ -40,14 +40,14 @@ const ROUND_OFF: f64 = 1e-15;
 const CUT: f64 = 0.3;
 const LEAST_INNER: f64 = 0.01;
 /// Directions of a linear solve. Without progress it gets as many as it has unknowns, which solve it with any preconditioner, if they
-/// hold at most KEPT vectors together.
+/// hold at most MOST_VALUES vectors together.
 const DIRECTIONS: usize = 40;
-const KEPT: usize = 1 << 21;
+const MOST_VALUES: usize = 1 << 21;
 /// Length of steps after an odd number of cuts: full steps may alternate between two slip areas for ever.
-const PART: f64 = 0.5;
-/// The preconditioner is left out of `polish` once TIMES_WORSE certificates in a row find more than WORSE times the residual before. A
+const SHORT_STEP: f64 = 0.5;
+/// The preconditioner is left out of `polish` once TIMES_WORSE certificates in a row find more than WORSE_CERTIFICATE times the residual before. A
 /// single one may come from displacements that were not fresh.
-const WORSE: f64 = 1.5;
+const WORSE_CERTIFICATE: f64 = 1.5;
 const TIMES_WORSE: u32 = 2;
 /// Steps without progress before a cut; progress is a residual below PROGRESS times the least.
 const PATIENCE: u32 = 4;
@@ -116,7 +116,7 @@ impl StepControl {
     /// The length of the next step.
     fn length(&self) -> f64 {
         if self.cuts % 2 == 1 {
-            PART
+            SHORT_STEP
         } else {
             1.0
         }
@@ -136,7 +136,7 @@ impl Certificates {
     /// Compares the residual after a certificate with the prediction before it.
     fn compare(&mut self, residual: f64) {
         if let Some(before) = self.before.take().filter(|_| self.is_by_step()) {
-            self.worse = if residual > WORSE * before { self.worse + 1 } else { 0 };
+            self.worse = if residual > WORSE_CERTIFICATE * before { self.worse + 1 } else { 0 };
         }
     }
 
@@ -147,7 +147,7 @@ impl Certificates {
 
     /// Whether to take a certificate.
     fn is_near(&self, measures: Measures, missing: f64, tolerance: f64) -> bool {
-        let part = if self.is_by_step() { NEAR } else { 1.0 };
+        let part = if self.is_by_step() { POLISH_BELOW } else { 1.0 };
         measures.residual < part * tolerance && measures.excess.max(missing) < tolerance
     }
 }
@@ -202,7 +202,7 @@ pub fn solve(
             return Ok(Outcome::IterationLimit);
         }
         iterations += 1;
-        let enough = control.inner.max((ENOUGH * tolerance / worst).min(LEAST_GAIN));
+        let enough = control.inner.max((LAST_TOLERANCE_SHARE * tolerance / worst).min(LEAST_GAIN));
         let most = if control.factor < 1.0 { all_directions(problem) } else { DIRECTIONS }.min(left as usize);
         let effort = Effort { inner: enough, most, left: measures.residual, length: control.length() };
         step(problem, state, tangent, (of_step, effort), fields)?;
@@ -224,7 +224,7 @@ fn largest(values: [f64; 3]) -> f64 {
     values.into_iter().fold(0.0, |most, value| if most.is_nan() || value <= most { most } else { value })
 }
 
-/// As many directions as unknowns, within KEPT vectors together.
+/// As many directions as unknowns, within MOST_VALUES vectors together.
 fn all_directions(problem: &Problem) -> usize {
-    (KEPT / problem.grid.len()).min(2 * problem.count() + 2).max(DIRECTIONS)
+    (MOST_VALUES / problem.grid.len()).min(2 * problem.count() + 2).max(DIRECTIONS)
 }

@@ -15,7 +15,7 @@ use crate::threads::Threads;
 use toeplitz::Memory;
 
 /// Factor on the number of elements in the choice of threads: an iteration multiplies more than the normal problem.
-const WORK: usize = 4;
+const WORK_FACTOR: usize = 4;
 
 /// Products with A, or in steady rolling with B, in double and in single precision, and with a circulant near the inverse of A.
 pub struct Operators {
@@ -52,7 +52,7 @@ impl Operators {
         single: bool,
         threads: &Threads,
     ) -> Result<Operators> {
-        let (tangential, threads) = (quadrant.tangential(), &threads.suited_to(WORK * grid.len()));
+        let (tangential, threads) = (quadrant.tangential(), &threads.suited_to(WORK_FACTOR * grid.len()));
         let rows = match (tangential.rows(), rolling) {
             (None, _) => None,
             (Some(rows), Some(rolling)) => Some(RowProduct::rolling(tangential, rows, grid, rolling.by.0, threads)?),

@@ -144,8 +144,8 @@ impl Places {
         self.count
     }
 
-    /// Whether nearly all of C slips if so many elements do. Newton's method is faster then, and methods that find creepages and tractions in turns
-    /// succeed.
+    /// Whether nearly all of C slips if `slipping` elements do. Newton's method is faster then, and methods that find
+    /// creepages and tractions in turns succeed.
     pub fn is_mostly_slip(&self, slipping: usize) -> bool {
         slipping as f64 > MOSTLY_SLIP * self.count as f64
     }

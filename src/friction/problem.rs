@@ -27,7 +27,7 @@ use crate::threads::Threads;
 const FIELDS: &str = "tangential fields";
 
 /// A residual far above the round-off of a product in single precision.
-const SINGLE: f64 = 1e-6;
+const SINGLE_PRECISION_RESIDUAL: f64 = 1e-6;
 
 /// Least weight of an element, relative to the largest, that bounds the creepages.
 const LEAST_WEIGHT: f64 = 1e-6;
@@ -270,7 +270,7 @@ impl Problem {
 
     /// [`Problem::refresh`], in single precision if that suffices for the tolerance.
     pub fn refresh_to(&mut self, state: &mut State, tolerance: f64) {
-        if tolerance < SINGLE {
+        if tolerance < SINGLE_PRECISION_RESIDUAL {
             return self.refresh(state);
         }
         self.clip(state);

@@ -7,8 +7,8 @@ use super::Tangential;
 use crate::grid::Grid;
 
 /// The range of units of displacements, so that their inverses are finite.
-const SMALLEST: f64 = 1e-290;
-const LARGEST: f64 = 1e290;
+const SMALLEST_UNIT: f64 = 1e-290;
+const LARGEST_UNIT: f64 = 1e290;
 
 /// The units of one grid and one step.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +30,7 @@ impl Scales {
     /// Fits the unit of tractions to a step, whose tractions are at most `largest`.
     pub fn fit(&mut self, largest: f64) {
         let traction = unit_of(largest);
-        let displacement = (traction * self.compliance).clamp(SMALLEST, LARGEST);
+        let displacement = (traction * self.compliance).clamp(SMALLEST_UNIT, LARGEST_UNIT);
         self.traction = unit_of(displacement / self.compliance);
     }
 

@@ -5,7 +5,7 @@ use super::displaced::Displaced;
 use super::forces::Forces;
 use super::law::Particle;
 use super::levels::{levels, Level};
-use super::nested::{self, Work, COARSE, COUNTS};
+use super::nested::{self, Work, COARSE_TOLERANCE, COUNTED_TOLERANCE};
 use super::plane::Vector;
 use super::problem::Problem;
 use super::request::{before, Request, Start};
@@ -248,8 +248,12 @@ impl Solver {
         let scales = self.scales;
         let watch = &mut |grid: &Grid, residual: f64| watch(&scales.own_grid(grid), residual);
         let compared = nested && request.estimates && request.friction.motion == Motion::SteadyRolling;
-        let mut work =
-            Work { products: 0.0, limit: request.limit, coarse: if compared { COUNTS } else { COARSE }, watch };
+        let mut work = Work {
+            products: 0.0,
+            limit: request.limit,
+            coarse: if compared { COUNTED_TOLERANCE } else { COARSE_TOLERANCE },
+            watch,
+        };
         let end = nested::solve(&mut self.levels, forces, (nested, had_slip), request.tolerance, &mut work)?;
         report.products += work.products;
         let own = |(force, creepage)| (scales.own_force(force), scales.own_creepage(creepage));

@@ -22,12 +22,12 @@ use crate::threads::Threads;
 
 /// theta on stick, and the weight of D in its growth to 1.
 const LEAST_THETA: f64 = 0.8;
-const TURNED: f64 = 0.1;
+const THETA_GROWTH: f64 = 0.1;
 
 /// The step onto the circles is short if three ratios are below this: its displacement to the residual of the linear solve, its size relative to the
 /// bounds to the residual, and the slips of elements inside their circles to the projected slips. (For slips of 1e10 times the displacements by
 /// tractions round-off is projected, and a step of 1e-6 of the bounds is the residual.)
-const SHORT: f64 = 0.1;
+const SHORT_STEP: f64 = 0.1;
 
 /// The kind of a step.
 #[derive(Clone, Copy, Debug)]
@@ -94,7 +94,7 @@ impl Start {
         system.precondition_field(&tangent.projected, &mut along);
         let (a0, bound) = (system.problem.operators.self_influence, &system.problem.bound);
         fields::map(&threads, &mut along, |i, z| {
-            let theta = 1.0 - (1.0 - LEAST_THETA) / (1.0 + TURNED * tangent.curvature[i] / a0);
+            let theta = 1.0 - (1.0 - LEAST_THETA) / (1.0 + THETA_GROWTH * tangent.curvature[i] / a0);
             z.map(|z| theta * z)
         });
         let mut gained = fields.take(n)?;
@@ -173,8 +173,9 @@ pub fn step(
     let mut product = fields.take(n)?;
     let [way, inside] = way_to_the_circles(system.problem, tangent, state);
     let all = effort.left * system.problem.rms_bound() * (system.problem.count() as f64).sqrt();
-    let is_short =
-        compliance(system.problem) * way <= SHORT * target && way <= SHORT * all && inside <= SHORT * projected.sqrt();
+    let is_short = compliance(system.problem) * way <= SHORT_STEP * target
+        && way <= SHORT_STEP * all
+        && inside <= SHORT_STEP * projected.sqrt();
     let Start { gained, along, by } = if is_short {
         fields::fill(&threads, &mut product, |_| [0.0; 2]);
         Start::nothing(n, &threads, fields)?

@@ -16,7 +16,7 @@ use crate::methods::fgmres::{Bordered, Direction, System};
 use crate::methods::fields::{self, Fields};
 
 /// Eigenvalues of the border below this part of the largest count as 0.
-const SINGULAR: f64 = 1e-8;
+const SINGULAR_EIGENVALUE: f64 = 1e-8;
 
 /// The system, at the state that the tangent predicts.
 pub struct TangentSystem<'a> {
@@ -146,7 +146,7 @@ pub fn pseudo_inverse([[a, b], [c, d]]: [Vector; 2]) -> [Vector; 2] {
     let largest = mean.abs() + radius;
     let mut inverse = [[0.0; 2]; 2];
     for (value, v) in [(mean + radius, [angle.cos(), angle.sin()]), (mean - radius, [-angle.sin(), angle.cos()])] {
-        if value.abs() > SINGULAR * largest {
+        if value.abs() > SINGULAR_EIGENVALUE * largest {
             for (i, row) in inverse.iter_mut().enumerate() {
                 *row = [row[0] + v[i] * v[0] / value, row[1] + v[i] * v[1] / value];
             }

@@ -25,7 +25,7 @@ const LEAST_RATIO: f64 = 1e-60;
 
 /// Bounds below this fraction of the largest are round-off and make the system singular. Their elements are solved with the bound 0, and get their
 /// traction from the slip.
-const NEGLIGIBLE: f64 = 1e-17;
+const NEGLIGIBLE_BOUND: f64 = 1e-17;
 /// Largest ratio of tractions before the step to the largest bound.
 const LARGEST_BEFORE: f64 = 1e150;
 
@@ -90,7 +90,7 @@ impl Solver {
             let places = window.row(grid, iy);
             for ((g, rigid), i) in bounds.iter_mut().zip(rigid).zip(places) {
                 let traction = scales.traction(bound(i));
-                *g = if traction < NEGLIGIBLE { 0.0 } else { traction };
+                *g = if traction < NEGLIGIBLE_BOUND { 0.0 } else { traction };
                 let sideways = request.sideways.map_or([0.0; 2], |sideways| sideways[i]);
                 *rigid = scales.displacement(add(friction.rigid_slip_at(grid, i), sideways));
             }

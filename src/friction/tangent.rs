@@ -19,9 +19,9 @@ use crate::error::Result;
 use crate::memory::zeros;
 use crate::methods::fields::{self, BLOCK};
 
-/// Factor on D/a0 in `E = 1/(1 + MIXED D/a0)`. In the preconditioner E is the weight of the inverse of A, and 1 - E
+/// Factor on D/a0 in `E = 1/(1 + CURVATURE_WEIGHT D/a0)`. In the preconditioner E is the weight of the inverse of A, and 1 - E
 /// that of the inverse of D + a0.
-pub(super) const MIXED: f64 = 0.5;
+pub(super) const CURVATURE_WEIGHT: f64 = 0.5;
 
 /// Distance from the circle, relative to its radius, within which tractions count as near.
 pub(super) const NEAR_THE_CIRCLE: f64 = 0.2;
@@ -67,7 +67,7 @@ pub struct Measures {
 }
 
 /// The prediction for an element of C: see [`Tangent`]; n is 0 on stick.
-pub(super) struct Seen {
+pub(super) struct Prediction {
     pub side: Side,
     pub normal: Vector,
     pub curvature: f64,
@@ -78,13 +78,13 @@ pub(super) struct Seen {
 
 /// The prediction for an element with q, s and the bound g.
 #[inline]
-pub(super) fn look((q, s): (Vector, Vector), g: f64, (rho, inverse_rho): (f64, f64)) -> Seen {
+pub(super) fn predict_element((q, s): (Vector, Vector), g: f64, (rho, inverse_rho): (f64, f64)) -> Prediction {
     let (tau, against, rest) = (plus(q, -rho, s), [-s[0], -s[1]], rest(s, q, g));
     if !(square(tau) > g * g) {
-        return Seen { side: Side::Stick, normal: [0.0; 2], curvature: 0.0, projected: against, rest };
+        return Prediction { side: Side::Stick, normal: [0.0; 2], curvature: 0.0, projected: against, rest };
     }
     let (normal, curvature) = normal_and_curvature((q, s), g, tau, inverse_rho);
-    Seen { side: Side::Slip, normal, curvature, projected: plus(against, dot(s, normal), normal), rest }
+    Prediction { side: Side::Slip, normal, curvature, projected: plus(against, dot(s, normal), normal), rest }
 }
 
 /// rho of the natural map, at most `most`, with which the rms slip moves tractions by the rms bound.
@@ -99,7 +99,7 @@ pub(super) fn rho_of((bound, slip): (f64, f64), most: f64) -> f64 {
 /// E of the preconditioner for the curvature D. `a0` is the influence of an element on itself.
 #[inline]
 pub(super) fn mixing(curvature: f64, a0: f64) -> f64 {
-    1.0 / (1.0 + MIXED * curvature / a0)
+    1.0 / (1.0 + CURVATURE_WEIGHT * curvature / a0)
 }
 
 /// P v, with the normal n. It is v if n = 0.
@@ -169,11 +169,11 @@ impl Tangent {
                     }
                     rigid += square(add(problem.rigid[i], problem.weighted(i, problem.offset)));
                     displaced += square(u[i]);
-                    let seen = look((q, s), g, (rho, inverse_rho));
-                    squares += seen.rest;
-                    slips += f64::from(u8::from(seen.side == Side::Slip));
-                    (side[k], normal[k], projected[k]) = (seen.side, seen.normal, seen.projected);
-                    (curvature[k], mixings[k]) = (seen.curvature, mixing(seen.curvature + beyond(i), a0));
+                    let predicted = predict_element((q, s), g, (rho, inverse_rho));
+                    squares += predicted.rest;
+                    slips += f64::from(u8::from(predicted.side == Side::Slip));
+                    (side[k], normal[k], projected[k]) = (predicted.side, predicted.normal, predicted.projected);
+                    (curvature[k], mixings[k]) = (predicted.curvature, mixing(predicted.curvature + beyond(i), a0));
                 }
                 [squares, excess, slips, rigid, displaced]
             });

@@ -26,7 +26,7 @@ const HERE: (f64, f64) = (0.0, 0.0);
 
 /// Steps by whole elements that lengthen the period by at most one part in this many use the even product: it saves half of the symbol and three
 /// quarters of its set-up.
-const LONGER: usize = 8;
+const LONGER_PERIOD: usize = 8;
 
 /// The operator of one grid.
 pub struct Toeplitz<T: Real> {
@@ -262,7 +262,7 @@ fn inverted([xx, yy, xy]: [f64; 3]) -> ([f64; 3], f64) {
 
 /// The whole elements of a short step along x; none for other steps.
 fn whole_step(grid: &Grid, by: (f64, f64)) -> Option<i64> {
-    (by.1 == 0.0 && by.0.fract() == 0.0 && by.0.abs() * LONGER as f64 <= grid.mx as f64).then_some(by.0 as i64)
+    (by.1 == 0.0 && by.0.fract() == 0.0 && by.0.abs() * LONGER_PERIOD as f64 <= grid.mx as f64).then_some(by.0 as i64)
 }
 
 /// The range of loaded rows: the first, and the one behind the last; the number of rows and 0 if none is loaded.

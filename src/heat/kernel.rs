@@ -15,7 +15,7 @@
 //!
 //! g has a logarithmic singularity at x = 0, and behind a fast source one of `x^(-1/2)`. The substitution `x = L s^4` makes both smooth. g changes
 //! on the scales of half the width of the element and of 1/P. L is the smaller scale, or the end of the element. Beyond L panels follow, each longer
-//! by the factor [`WIDER`]. Without motion the integral is Love's.
+//! by the factor [`PANEL_RATIO`]. Without motion the integral is Love's.
 
 use std::f64::consts::PI;
 
@@ -24,9 +24,9 @@ const FADED: f64 = 40.0;
 /// Longest panel in t, on which the rule integrates exp(-a cosh t) to 1e-10.
 const PANEL: f64 = 2.0;
 /// Ratio of the ends of panels in x.
-const WIDER: f64 = 4.0;
+const PANEL_RATIO: f64 = 4.0;
 /// Least length of the first panel in x, as a part of an element.
-const SHORTEST: f64 = 1e-6;
+const SHORTEST_PANEL: f64 = 1e-6;
 
 /// Nodes and weights on [0, 1].
 pub type Rule = [(f64, f64)];
@@ -39,7 +39,7 @@ pub fn of_element((x, y): (f64, f64), (dx, dy): (f64, f64), wave: f64, rule: &Ru
     }
     let edges = (y.abs() - 0.5 * dy, y.abs() + 0.5 * dy);
     let (from, to) = (x - 0.5 * dx, x + 0.5 * dx);
-    let near = (0.5 * dy).min(1.0 / wave).max(SHORTEST * dx);
+    let near = (0.5 * dy).min(1.0 / wave).max(SHORTEST_PANEL * dx);
     let behind =
         |from: f64, to: f64| along((from, to), near, rule, |distance| strip(distance, edges, (wave, true), rule));
     let ahead = |from: f64, to: f64| {
@@ -70,7 +70,7 @@ fn along((from, to): (f64, f64), near: f64, rule: &Rule, f: impl Fn(f64) -> f64)
         sum = rule.iter().map(|(s, weight)| weight * 4.0 * start * s.powi(3) * f(start * s.powi(4))).sum();
     }
     while start < to {
-        let end = to.min(WIDER * start);
+        let end = to.min(PANEL_RATIO * start);
         let length = end - start;
         sum += length * rule.iter().map(|(s, weight)| weight * f(start + length * s)).sum::<f64>();
         start = end;

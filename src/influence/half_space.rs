@@ -41,7 +41,7 @@ const MOST_KEPT: usize = 1024;
 const QUADRANTS: [usize; 12] = [8, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512];
 
 /// Largest quadrant that is computed as a whole for any part of it.
-const SMALL: usize = 64;
+const SMALL_QUADRANT: usize = 64;
 
 /// Coefficients of the half-space for one element size.
 #[derive(Clone, Debug)]
@@ -107,7 +107,7 @@ impl Shape {
         let known = large_enough().find_map(|(size, quadrant)| Some((size, quadrant.get()?)));
         let (size, quadrant) = known.or_else(|| {
             // A large quadrant costs more than it saves if only a part of it is needed: on a long grid, or for one coefficient.
-            let worthwhile = |size: usize| size <= SMALL || end.min(ky + 1) >= size / 4;
+            let worthwhile = |size: usize| size <= SMALL_QUADRANT || end.min(ky + 1) >= size / 4;
             let (size, quadrant) = large_enough().next().filter(|(size, _)| worthwhile(**size))?;
             Some((size, quadrant.get_or_init(|| self.quadrant(*size))))
         })?;

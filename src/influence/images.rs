@@ -1,8 +1,8 @@
 //! The images of a periodic scene: the contribution of all but the near ones, as a polynomial.
 //!
-//! The sum over the images is smooth on one period: a polynomial in x^2 and y^2 through 12 x 12 Chebyshev nodes, whose means over
-//! elements are its integrals. Images are summed in lines along the period, or along the shorter of two: at the nodes a line is the
-//! sum of `1/|x + n L| - 1/|n L|`, whose tail is a multipole series.
+//! The sum over the far images is smooth on one period. A polynomial in x^2 and y^2 through 12 x 12 Chebyshev nodes
+//! replaces it, and its means over elements follow. Images are summed in lines along the period, or along the shorter
+//! of two: at the nodes a line is the sum of `1/|x + n L| - 1/|n L|`, whose tail is a multipole series.
 //!
 //! *Bounded work.* A line of images of period L has waves along it that decay with the distance y as `exp(-2 pi |y|/L)`. Beyond [`FADED`] L
 //! only the mean remains, which has a closed form. So images are summed for nearer rows only, and with two periods in the nearer of the other
@@ -18,7 +18,7 @@ use crate::grid::Grid;
 /// `reach`), so the error is `4.5^-24 = 2e-16`.
 pub(super) const NODES: usize = 12;
 /// The part of its period that a grid of 8 elements covers: half, and half an element.
-const COARSE: f64 = 0.5626;
+const COVERED_PERIOD: f64 = 0.5626;
 /// Periods beyond which the waves of a line of images vanish: `exp(-2 pi 6) = 4e-17`.
 const FADED: f64 = 6.0;
 /// Ratio of the periods from which waves of other lines vanish at the farthest offset: half the period less half an element, at least a
@@ -69,7 +69,7 @@ pub(super) struct Far {
     half: (f64, f64),
     /// The direction of the lines.
     pub lines: Lines,
-    /// Whether offsets reach across the lines beyond their waves, and beyond those of other lines.
+    /// Whether the waves of all lines vanish within the offsets across them, so that only means remain beyond.
     fades: bool,
     /// Other lines on either side whose waves do not vanish; the mean of lines beyond is not in the polynomial.
     pub other_lines: usize,
@@ -111,8 +111,8 @@ impl Far {
         let (half, images, coefficients) = ((0.0, 0.0), (0, 0), [[0.0; NODES]; NODES]);
         let mut far = Far { directions, lengths, half, lines, fades, other_lines: 0, images, coefficients };
         let (own_along, own_across) = lines.turn(far.near(grid).half());
-        let along = own_along.max(COARSE * length);
-        let (mut across, mut near_lines) = (own_across.max(COARSE * width), 0);
+        let along = own_along.max(COVERED_PERIOD * length);
+        let (mut across, mut near_lines) = (own_across.max(COVERED_PERIOD * width), 0);
         if fades {
             // Across lines coarser elements reach farther, at most to the end.
             let ((_, count), (_, d)) = (lines.turn(offsets(directions, grid)), lines.turn((grid.dx, grid.dy)));

@@ -17,9 +17,9 @@ pub const HALO: usize = 4;
 pub const ROWS: usize = 2 * HALO + 1;
 
 /// Distance, in longer sides, from which differences up to the fourth suffice: the sixth is 2e-12 of 1/r^3.
-const FAR: f64 = 128.0;
+const FOURTH_DIFFERENCES: f64 = 128.0;
 /// Neighbours on either side in a mean beyond this distance.
-const FEW: usize = 2;
+const FAR_HALO: usize = 2;
 
 /// `1/24, -17/5760, ..`
 const SERIES: [f64; HALO] = [1.0 / 24.0, -17.0 / 5760.0, 367.0 / 967_680.0, -27859.0 / 464_486_400.0];
@@ -37,7 +37,7 @@ const MEAN: [f64; HALO + 1] = {
 };
 
 /// The weights of a mean to the fourth difference.
-const FAR_MEAN: [f64; FEW + 1] = {
+const FAR_MEAN: [f64; FAR_HALO + 1] = {
     let [a, b, ..] = SERIES;
     [1.0 - 2.0 * a + 6.0 * b, a - 4.0 * b, b]
 };
@@ -84,7 +84,7 @@ impl pulp::NullaryFnOnce for Combine<'_> {
 }
 
 /// `combine` to the fourth difference.
-fn combine_few([a, b, c, d, e]: [&[f64]; 2 * FEW + 1], out: &mut [f64]) {
+fn combine_few([a, b, c, d, e]: [&[f64]; 2 * FAR_HALO + 1], out: &mut [f64]) {
     let n = out.len();
     let (a, b, c, d, e) = (&a[..n], &b[..n], &c[..n], &d[..n], &e[..n]);
     for (k, out) in out.iter_mut().enumerate() {
@@ -105,7 +105,7 @@ pub fn means(
     let mut points = zeros(columns + 2 * HALO, what)?;
     let mut last = zeros(ROWS * columns, what)?;
     let mut out = zeros(columns, what)?;
-    let is_far = |ky: usize| ky as f64 * row_distance >= FAR;
+    let is_far = |ky: usize| ky as f64 * row_distance >= FOURTH_DIFFERENCES;
     for row in 0..rows + 2 * HALO {
         let ky = row.abs_diff(HALO);
         // The values for the rows around, with their neighbours.
@@ -118,7 +118,7 @@ pub fn means(
         let slot = row % ROWS;
         let of_row = &mut last[slot * columns + start..(slot + 1) * columns];
         match is_far(ky) {
-            true => combine_few(std::array::from_fn(|k| &points[start + HALO - FEW + k..]), of_row),
+            true => combine_few(std::array::from_fn(|k| &points[start + HALO - FAR_HALO + k..]), of_row),
             false => in_x(&points[start..], of_row),
         }
         if row >= 2 * HALO {
@@ -126,7 +126,7 @@ pub fn means(
             let start = first(ky);
             let rows = |distance: usize, k: usize| &last[(middle - distance + k) % ROWS * columns + start..];
             match is_far(ky) {
-                true => combine_few(std::array::from_fn(|k| rows(FEW, k)), &mut out[start..]),
+                true => combine_few(std::array::from_fn(|k| rows(FAR_HALO, k)), &mut out[start..]),
                 false => combine(std::array::from_fn(|k| rows(HALO, k)), &mut out[start..]),
             }
             each(ky, &out);

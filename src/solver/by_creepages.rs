@@ -19,17 +19,17 @@ use crate::friction::{dot, length, Vector};
 use crate::progress::Outcome;
 use crate::scene::{Load, Prescribed, Scene};
 
-/// If forces miss less than CLOSE times mu N, tractions by force are tried with the same pressures, with FINISH products.
-const CLOSE: f64 = 1e-4;
-const FINISH: usize = 30;
+/// If forces miss less than CLOSE_FORCES times mu N, tractions by force are tried with the same pressures, with FINISHING_PRODUCTS products.
+const CLOSE_FORCES: f64 = 1e-4;
+const FINISHING_PRODUCTS: usize = 30;
 /// Most creepages.
 const MOST_TRIALS: u32 = 30;
-/// Creepages that are tried, relative to those of turns by force. With two forces, those from BEHIND on are opposite to the force.
-const ABOUT: [f64; 14] = [1.0, 1.3, 2.0, 4.0, 16.0, 64.0, 256.0, 1e3, 1e4, FAR, 0.75, 0.5, 0.25, 0.1];
-const BEHIND: f64 = 64.0;
+/// Creepages that are tried, relative to those of turns by force. With two forces, those from OPPOSITE_FROM on are opposite to the force.
+const TRIED_RATIOS: [f64; 14] = [1.0, 1.3, 2.0, 4.0, 16.0, 64.0, 256.0, 1e3, 1e4, FAR, 0.75, 0.5, 0.25, 0.1];
+const OPPOSITE_FROM: f64 = 64.0;
 /// If turns by force miss more than this part of mu N, only the creepage FAR is tried: before full slip pressures carry at most some hundredths more
 /// (0.9 % on a flat punch of mu = 1 or 2 on a rigid body).
-const BEYOND: f64 = 3e-2;
+const BEYOND_REACH: f64 = 3e-2;
 const FAR: f64 = 1e6;
 /// Largest creepage times the length rolled, over the displacement of full slip. All elements slip long before. A solve refuses 1e30 times that
 /// displacement, and the pressures of a turn change it by less than the factor between.
@@ -67,8 +67,8 @@ impl InTurns<'_, '_, '_> {
         }
         log::info!("turns by force leave {:e} of mu N, turns with creepages go on", from.missing());
         let mut refusal = friction.take_refusal();
-        let is_beyond = refusal.is_some() && from.missing() > BEYOND;
-        let parts = if is_beyond { &[FAR] } else { &ABOUT[..] };
+        let is_beyond = refusal.is_some() && from.missing() > BEYOND_REACH;
+        let parts = if is_beyond { &[FAR] } else { &TRIED_RATIOS[..] };
         let mut peak = Peak::default();
         let (from, mut end) = self.look_about(from, parts, &mut peak)?;
         if let (Some(from), Outcome::Converged) = (from, end) {
@@ -96,7 +96,7 @@ impl InTurns<'_, '_, '_> {
         let (has_peak, mut parts) = (parts.len() > 1 && given != [true; 2], parts.iter().copied());
         while let Some(part) = parts.next().or_else(|| if has_peak { peak.next() } else { None }) {
             // Far away both forces are opposite to the creepages.
-            let is_far = part >= BEHIND && given == [true; 2] && length(wanted) > 0.0;
+            let is_far = part >= OPPOSITE_FROM && given == [true; 2] && length(wanted) > 0.0;
             let against = wanted.map(|force| -force / length(wanted) * length(along));
             let held = if is_far { against } else { along }.map(|c| part * c);
             let end = self.turns_with(held)?;
@@ -122,7 +122,7 @@ impl InTurns<'_, '_, '_> {
             if found.missing() <= self.options.tolerance {
                 return Ok(Outcome::Converged);
             }
-            if found.missing() < CLOSE && self.finish()? {
+            if found.missing() < CLOSE_FORCES && self.finish()? {
                 return Ok(Outcome::Converged);
             }
             let next = trials.next(found);
@@ -161,7 +161,7 @@ impl InTurns<'_, '_, '_> {
     fn finish(&mut self) -> Result<bool> {
         let InTurns { solver, turns, monitor, .. } = self;
         if let Some(friction) = &mut turns.friction {
-            (friction.held, friction.most) = (None, FINISH);
+            (friction.held, friction.most) = (None, FINISHING_PRODUCTS);
         }
         let end = turns.solve(true, Outcome::Converged, &solver.state, monitor)?;
         let (distance, change) = turns.distance(&solver.state);

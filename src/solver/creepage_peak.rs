@@ -5,19 +5,19 @@
 const SECTION: f64 = 0.381_966_011_250_105_2;
 /// Ratio of the intervals next to the largest force above which the longer one is cut: if a force rises steeply on one side, parabolas would leave
 /// that side unchanged.
-const UNLIKE: f64 = 3.0;
+const UNLIKE_INTERVALS: f64 = 3.0;
 /// Least distance of a parabola's vertex from the largest force, as a part of its interval.
-const CLOSE: f64 = 0.02;
+const LEAST_DISTANCE: f64 = 0.02;
 /// Bound on the rise of the largest force above the known ones, over the parabola's prediction, for intervals narrower than [`NARROW`] in the
 /// logarithm of the creepage: forces may rise steeply up to the largest, and fall slowly from there.
 const RISE: f64 = 10.0;
 const NARROW: f64 = 0.3;
 /// Ratio of a creepage below all others to the least.
-const LESS: f64 = 0.3;
+const LOWER_CREEPAGE: f64 = 0.3;
 /// Most creepages.
-const MOST: usize = 16;
+const MOST_CREEPAGES: usize = 16;
 /// Excess over the last force below which a force is round-off of full slip.
-const ABOVE: f64 = 1e-6;
+const LEAST_EXCESS: f64 = 1e-6;
 
 /// Creepages, relative to a length, and the excess of their forces over the wanted one, relative to mu N.
 #[derive(Default)]
@@ -44,26 +44,26 @@ impl Peak {
         let (best, (least, first)) =
             (self.looked.iter().position(|looked| looked.1 == largest)?, *self.looked.first()?);
         // If the least creepage has the largest force, or all forces are those of full slip, the largest force lies below.
-        let exceeds = largest - last >= ABOVE;
-        let is_below = best == 0 || !exceeds && first > last - ABOVE;
-        if self.tried == MOST || !(is_below || exceeds) {
+        let exceeds = largest - last >= LEAST_EXCESS;
+        let is_below = best == 0 || !exceeds && first > last - LEAST_EXCESS;
+        if self.tried == MOST_CREEPAGES || !(is_below || exceeds) {
             return None;
         }
         self.tried += 1;
         if is_below {
-            return Some(LESS * least);
+            return Some(LOWER_CREEPAGE * least);
         }
         let known = [self.looked[best - 1], self.looked[best], *self.looked.get(best + 1)?];
         let [below, at, above] = known.map(|(creepage, _)| creepage.ln());
         let section = at + SECTION * if above - at > at - below { above - at } else { below - at };
-        if (above - at).max(at - below) > UNLIKE * (above - at).min(at - below) {
+        if (above - at).max(at - below) > UNLIKE_INTERVALS * (above - at).min(at - below) {
             return Some(section.exp());
         }
         let (vertex, rise) = parabola([below, at, above], known.map(|known| known.1));
         if above - below < NARROW && largest + RISE * rise < 0.0 {
             return None;
         }
-        let is_apart = (vertex - at).abs() > CLOSE * (above - below);
+        let is_apart = (vertex - at).abs() > LEAST_DISTANCE * (above - below);
         Some(if is_apart { vertex } else { section }.exp())
     }
 }

@@ -6,13 +6,13 @@ use crate::friction::{dot, length, Vector};
 const PROGRESS: f64 = 0.5;
 /// With two forces: a trial that misses more than this times the least is followed by one halfway back.
 const WORSE: f64 = 2.0;
-/// The first step along the creepages, relative to these, at most MOST_STEPS times the missing force. No step exceeds LONGEST times the
+/// The first step along the creepages, relative to these, at most MOST_STEPS times the missing force. No step exceeds LONGEST_STEP times the
 /// creepages.
-const FIRST: f64 = 0.1;
+const FIRST_STEP: f64 = 0.1;
 const MOST_STEPS: f64 = 1e6;
-const LONGEST: f64 = 0.8;
+const LONGEST_STEP: f64 = 0.8;
 /// Least size of creepages in step lengths, relative to the slips.
-const SMALL: f64 = 1e-3;
+const SMALL_CREEPAGE: f64 = 1e-3;
 
 /// A place in the search.
 #[derive(Clone, Copy)]
@@ -48,14 +48,14 @@ impl Trials {
     /// Begins at a place; slips are of the order of `scale`. Across the creepages forces turn with them; along them the first step is short.
     pub fn new(from: Place, given: [bool; 2], scale: f64) -> Trials {
         let only = |v: Vector| [0, 1].map(|k| if given[k] { v[k] } else { 0.0 });
-        let small = SMALL * scale;
+        let small = SMALL_CREEPAGE * scale;
         let size = length(only(from.creepage)).max(small);
         let along = match only(from.creepage) {
             [0.0, 0.0] => only(from.excess),
             along => along,
         };
         let along = along.map(|c| c / length(along));
-        let steps = (FIRST / dot(along, from.excess).abs()).clamp(1.0, MOST_STEPS);
+        let steps = (FIRST_STEP / dot(along, from.excess).abs()).clamp(1.0, MOST_STEPS);
         let row = |k: usize| {
             let of = |l: usize| f64::from(u8::from(k == l)) + (steps - 1.0) * along[k] * along[l];
             only([size * of(0), size * of(1)])
@@ -82,7 +82,7 @@ impl Trials {
             self.best = at;
         }
         let by = self.slope.map(|row| dot(row, excess));
-        let shorter = (LONGEST * length(creepage).max(self.small) / length(by)).min(1.0);
+        let shorter = (LONGEST_STEP * length(creepage).max(self.small) / length(by)).min(1.0);
         let secant = [0, 1].map(|k| creepage[k] + shorter * by[k]);
         match self.given {
             [true, true] if missing > WORSE * self.best.missing() => {

@@ -15,9 +15,9 @@
 //! At ends of the surface pressures are infinite, and the end lies anywhere between two centres ([`at_ends`]). A jump of the surface also lies
 //! anywhere between two centres ([`Curvature::jumps`]). Both errors are of first order in the size of the elements.
 //!
-//! *Pressures.* Their errors are fractions of the second differences within the contact area and across its boundary: [`PEAK`] for the largest
+//! *Pressures.* Their errors are fractions of the second differences within the contact area and across its boundary: [`PEAK_ERROR`] for the largest
 //! pressure,
-//! [`PRESSURES`] in the rms. A peak with a large relative second difference is singular or not resolved. It has no estimate.
+//! [`PRESSURES_ERROR`] in the rms. A peak with a large relative second difference is singular or not resolved. It has no estimate.
 //!
 //! *The contact area* is estimated from its outline ([`Outline`]). The correction is the error of counting. A fraction of the correction is the error
 //! of the corrected area. Straight pieces and straight ends of the surface have an error of half an element. Ends in steps have the square root of
@@ -32,17 +32,17 @@ use crate::progress::{DiscretisationError, LedgerRow};
 use crate::scene::Load;
 
 /// s: the error of approaches over the bend, in the mean, and as a bound for most.
-const PART: f64 = 0.5;
-const AT_MOST: f64 = 0.58;
+const MEAN_ERROR: f64 = 0.5;
+const ERROR_BOUND: f64 = 0.58;
 /// The error for straight outlines, in `pressure/E*` (a Hertz contact has a bend of `(pi/32) sides d/N` of its mean pressure over E*; along straight
 /// lines twice as much). The chord for the error of few elements: `(chord/2.5)^-2`, times the scatter, because among many spots of contact the
 /// sharpest carry most.
-const STRAIGHT: f64 = 0.2;
+const STRAIGHT_ERROR: f64 = 0.2;
 const SHORT_CHORD: f64 = 2.5;
 /// Factor on the error from single runs of elements instead of the mean chord: with it no map with spikes of one element misses its target.
-const RUNS: f64 = 0.5;
+const RUNS_FACTOR: f64 = 0.5;
 /// Error of forces over the uncertainty of a jump: 98 of 100 have less, wherever the jump lies.
-const JUMPS: f64 = 0.6;
+const JUMPS_FACTOR: f64 = 0.6;
 /// Pressure at ends of the surface over the peak above which the peak has no estimate: pressures at ends are singular and grow as the square root of
 /// the number of elements. With a quarter, the peak remains the largest pressure for the three doublings that a search predicts.
 const PEAK_OVER_ENDS: f64 = 0.25;
@@ -51,10 +51,10 @@ pub(super) const LEAST_CHORD: f64 = 1.5;
 /// Relative error of a direction of one element without a period.
 const ONE_ELEMENT: f64 = 0.26;
 /// Error over second differences of the pressures, of the largest and in the rms; and the relative differences of a singular and a sharp peak.
-const PEAK: f64 = 0.1;
-const PRESSURES: f64 = 0.25;
-const SINGULAR: f64 = 0.18;
-const SHARP: f64 = 0.08;
+const PEAK_ERROR: f64 = 0.1;
+const PRESSURES_ERROR: f64 = 0.25;
+const SINGULAR_PEAK: f64 = 0.18;
+const SHARP_PEAK: f64 = 0.08;
 /// Error of the corrected area, over the correction, and in elements along straight outlines and edges.
 const CORRECTION_OFF: f64 = 0.3;
 const STRAIGHT_OFF: f64 = 0.4;
@@ -106,15 +106,16 @@ impl Parts {
             Load::Approach(_) => (stiffness, 1.0, force),
         };
         let pressure = force / (count as f64 * state.grid.element_area());
-        let along_lines = STRAIGHT * pressure / problem.modulus() * outline.straight_length(&state.grid) / count as f64;
+        let along_lines =
+            STRAIGHT_ERROR * pressure / problem.modulus() * outline.straight_length(&state.grid) / count as f64;
         // For many spots of contact the error depends on the chord of the sharpest, not on the mean chord.
-        let of_runs = (curvature.bend.abs() / (chord * chord)).max(RUNS * curvature.short);
-        let short = AT_MOST * by * outline.scatter(count, repeats) * SHORT_CHORD * SHORT_CHORD * of_runs;
-        let smooth = AT_MOST * by * (curvature.bend.abs() + along_lines);
+        let of_runs = (curvature.bend.abs() / (chord * chord)).max(RUNS_FACTOR * curvature.short);
+        let short = ERROR_BOUND * by * outline.scatter(count, repeats) * SHORT_CHORD * SHORT_CHORD * of_runs;
+        let smooth = ERROR_BOUND * by * (curvature.bend.abs() + along_lines);
         let (ends, highest_at_ends) = ends(problem, state, outline);
         let ends = by * ends + one_element(problem, state) * found.abs();
-        let jumps = if problem.exact_edges { 0.0 } else { JUMPS * by * curvature.jumps / count as f64 };
-        let likely = sign * PART * by * curvature.bend;
+        let jumps = if problem.exact_edges { 0.0 } else { JUMPS_FACTOR * by * curvature.jumps / count as f64 };
+        let likely = sign * MEAN_ERROR * by * curvature.bend;
         let parts = Parts { smooth, short, ends, jumps, stiffness, by, highest_at_ends, likely };
         (parts.error().is_finite() && stiffness.is_finite()).then_some(parts)
     }
@@ -203,8 +204,9 @@ pub fn estimate(
     let measures = last.measures;
     let at_ends = parts.map_or(0.0, |parts| parts.highest_at_ends);
     let is_peak = at_ends <= PEAK_OVER_ENDS * measures.max_pressure;
-    let peak = Curvature::of_peak(problem, finest, measures.max_pressure).filter(|bend| is_peak && *bend <= SINGULAR);
-    let pressure = parts.map(|_| PRESSURES * curvature.pressure);
+    let peak =
+        Curvature::of_peak(problem, finest, measures.max_pressure).filter(|bend| is_peak && *bend <= SINGULAR_PEAK);
+    let pressure = parts.map(|_| PRESSURES_ERROR * curvature.pressure);
     let untrusted = untrusted(parts.is_some(), peak.is_some(), pressure.is_some());
     let residual = measures.certificate.residual;
     let found = measures.found(finest.load);
@@ -225,7 +227,7 @@ pub fn estimate(
             false => (row.measures.found(finest.load) - (found - parts.likely)).abs() + parts.of_first_order(),
         });
         let highest = peak.map(|bend| {
-            let missed = PEAK * bend * (1.0 + (bend / SHARP).powi(2)) * measures.max_pressure;
+            let missed = PEAK_ERROR * bend * (1.0 + (bend / SHARP_PEAK).powi(2)) * measures.max_pressure;
             missed + (row.measures.max_pressure - measures.max_pressure).abs()
         });
         let correction = (row.measures.contact_area - row.measures.corrected_area).abs();

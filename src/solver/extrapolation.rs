@@ -18,10 +18,10 @@ use crate::memory::reserve;
 use crate::sums::in_blocks;
 
 /// Ratio of successive changes above which turns are slow.
-const SLOW: f64 = 0.5;
+const SLOW_RATIO: f64 = 0.5;
 /// Number of kept changes from turn to turn. Unlike bodies at .9997 of mu N and a tolerance of 1e-9, 16 x 16 elements, take more than 50 turns with
 /// none, or with one as in Irons and Tuck, and 15 with five.
-const DEPTH: usize = 5;
+const KEPT_CHANGES: usize = 5;
 
 /// Round-off of the Gram matrix, relative to its trace: products of numbers with a round-off of 1e-16.
 const ROUND_OFF: f64 = 1e-14;
@@ -51,12 +51,12 @@ impl Extrapolation {
 
     /// Takes a turn from x to y that changed the distance by `change`.
     pub fn turn(&mut self, x: &[f64], y: &[f64], change: f64) -> Result<()> {
-        let is_slow = change > SLOW * self.change;
+        let is_slow = change > SLOW_RATIO * self.change;
         self.change = change;
         if !is_slow && self.last.r.is_empty() {
             return Ok(());
         }
-        let mut pair = if self.changes.len() < DEPTH { Pair::default() } else { self.changes.remove(0) };
+        let mut pair = if self.changes.len() < KEPT_CHANGES { Pair::default() } else { self.changes.remove(0) };
         // Elements without a surface do not change.
         let values = || x.iter().zip(y).map(|(x, y)| if x.is_finite() { [y - x, *y] } else { [0.0; 2] });
         difference(&mut pair.r, values().map(|[r, _]| r), &self.last.r)?;

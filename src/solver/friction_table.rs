@@ -1,7 +1,7 @@
 //! A table of tangential problems with the same pressures, one for each motion or force, spread over threads.
 //!
 //! Entries are solved in runs of [`RUN`] consecutive entries. The first of a run starts from rest, each other one from the tractions of the one
-//! before, unless that is [far](NEAR) away. An entry that ends without its certificate is solved again from rest. Runs do not depend on the thread:
+//! before, unless that is [far](NEAR_CREEPAGE) away. An entry that ends without its certificate is solved again from rest. Runs do not depend on the thread:
 //! the results have the same bits for any number of threads.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -25,7 +25,7 @@ pub const RUN: usize = 16;
 const NEAR_FORCE: f64 = 0.05;
 /// Relative difference of creepages, and of spin times the radius of the contact area, from which entries are far apart. Starts at a distance of .01
 /// take 10 products in the mean, of .1 14, of .4 18, from rest 16.
-const NEAR: f64 = 0.1;
+const NEAR_CREEPAGE: f64 = 0.1;
 
 /// The motion or force of one entry of a table.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -193,7 +193,7 @@ impl<'a> Table<'a> {
         }
         motion += ((now.spin - before.spin) * self.radius).powi(2);
         size += (before.spin * self.radius).powi(2);
-        force.sqrt() <= self.near_force && motion.sqrt() <= NEAR * size.sqrt()
+        force.sqrt() <= self.near_force && motion.sqrt() <= NEAR_CREEPAGE * size.sqrt()
     }
 
     fn is_cancelled(&self) -> bool {

@@ -12,7 +12,7 @@ use crate::sums::in_blocks;
 /// Relative residual at which the equations of a stiffness are solved.
 const TOLERANCE: f64 = 1e-10;
 /// Relative residual that suffices if round-off prevents [`TOLERANCE`].
-const ENOUGH: f64 = 1e-6;
+const SUFFICIENT_RESIDUAL: f64 = 1e-6;
 
 /// dF/d approach of a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -103,7 +103,7 @@ impl Solver {
         let sum = in_blocks(self.state.p.iter().copied());
         let residual = Survey::of(&self.state).certificate().residual;
         let stiffness = Stiffness { value: sum * grid.element_area() / unit, residual };
-        let stop = if residual <= ENOUGH { Outcome::Converged } else { stop };
+        let stop = if residual <= SUFFICIENT_RESIDUAL { Outcome::Converged } else { stop };
         Ok((stop, stiffness))
     }
 }

@@ -17,7 +17,7 @@ use crate::scene::{Bodies, Load, Scene};
 /// Elements in a direction of the timed grids.
 const SIZES: [usize; 4] = [32, 64, 128, 256];
 /// Products on each grid; the first ones are slow.
-const TIMES: usize = 4;
+const PRODUCTS_PER_GRID: usize = 4;
 /// Least and largest power of the number of elements.
 const POWERS: (f64, f64) = (1.0, 1.2);
 /// The power without timings (docs/performance.md).
@@ -27,9 +27,9 @@ const SETUP_GROWTH: (f64, f64) = (0.1, 1.08);
 /// The largest power of the number of elements with which seconds of a solve grow.
 const MOST_GROWTH: f64 = 1.2;
 /// Largest growth of the number of products with a doubling.
-pub const MOST_MORE: f64 = 1.25;
+pub const MOST_PRODUCTS_RATIO: f64 = 1.25;
 /// Least products of a sample that counts for seconds, relative to the last sample.
-const SEES: f64 = 0.5;
+const LEAST_PRODUCTS: f64 = 0.5;
 
 /// The cost of a solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +67,7 @@ pub fn seconds_on(samples: &[Cost], elements: f64) -> f64 {
         _ => SETUP_GROWTH.1,
     };
     let of_setup = if seen.is_finite() { seen.clamp(SETUP_GROWTH.0, SETUP_GROWTH.1) } else { SETUP_GROWTH.1 };
-    let least = samples.last().map_or(0.0, |last| SEES * last.products);
+    let least = samples.last().map_or(0.0, |last| LEAST_PRODUCTS * last.products);
     let of_solve = grown(samples, least);
     let more = more_products(samples, elements);
     let carried = |sample: &Cost| {
@@ -95,7 +95,7 @@ fn more_products(samples: &[Cost], elements: f64) -> f64 {
         [.., before, last] => {
             let doublings = |from: f64, to: f64| 0.5 * (to / from).log2();
             let seen = (last.products / before.products).powf(1.0 / doublings(before.elements, last.elements));
-            let each = if seen.is_finite() { seen.clamp(1.0, MOST_MORE) } else { 1.0 };
+            let each = if seen.is_finite() { seen.clamp(1.0, MOST_PRODUCTS_RATIO) } else { 1.0 };
             last.products * each.powf(doublings(last.elements, elements).max(0.0))
         }
         _ => samples.last().map_or(0.0, |last| last.products),
@@ -118,7 +118,7 @@ fn time(m: usize) -> Result<Timed> {
     let (mut p, mut u) = (zeros(grid.len(), "pressures")?, zeros(grid.len(), "displacements")?);
     p[grid.len() / 2] = 1.0;
     let mut least = f64::INFINITY;
-    for _ in 0..TIMES {
+    for _ in 0..PRODUCTS_PER_GRID {
         let began = Instant::now();
         solver.product(&p, &mut u)?;
         least = least.min(began.elapsed().as_secs_f64());

@@ -17,10 +17,10 @@ use crate::methods::{Start, Step, Task};
 use crate::progress::{Outcome, UPDATE_RESIDUAL};
 
 /// Violation of a guess above which a start from the coarser grids is better.
-const WORTHLESS: f64 = 0.3;
+const LARGEST_USEFUL: f64 = 0.3;
 /// Displacements below this part of the approach are round-off of the distances. No step improves a bearing area then: it is the solution if
 /// its certificate holds.
-const HIDDEN: f64 = 8.0 * f64::EPSILON;
+const HIDDEN_DISPLACEMENT: f64 = 8.0 * f64::EPSILON;
 
 /// The methods of a solver, set up at first use and kept.
 pub struct Methods {
@@ -118,7 +118,7 @@ impl Methods {
         let (state, set) = (&mut *task.state, task.set);
         let violation = survey.violation(set);
         let on_coarser_grids = matches!(stage, Stage::Direct | Stage::ProjectedCg) && !S::FIXED;
-        if on_coarser_grids && !(violation <= WORTHLESS) {
+        if on_coarser_grids && !(violation <= LARGEST_USEFUL) {
             admit(state, set);
             return Ok(Beginning::FromNothing);
         }
@@ -138,7 +138,7 @@ impl Methods {
         if stage != Stage::ProjectedCg {
             log::info!("no further progress on this scene: {stage:?} takes over");
             self.best.restore(task)?;
-            let worthless = !(task.survey().violation(task.set) <= WORTHLESS);
+            let worthless = !(task.survey().violation(task.set) <= LARGEST_USEFUL);
             if worthless && !S::FIXED && stage == Stage::Norm {
                 self.start(stage, task, Start::Nothing, 0.0)?;
             }
@@ -162,7 +162,7 @@ impl Methods {
                     task.state.unload();
                 }
                 match task.state.start_on_bearing_area(task.set, self_influence, threads) {
-                    Some(most) if most <= HIDDEN * task.state.approach.abs() => {
+                    Some(most) if most <= HIDDEN_DISPLACEMENT * task.state.approach.abs() => {
                         task.refresh()?;
                         task.count_products();
                         if is_solved(task, task.survey()) {

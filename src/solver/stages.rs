@@ -6,7 +6,7 @@ use crate::contact::AdmissibleSet;
 /// The fraction of the remaining cycles that a method may use before the next one follows. It gets at least LEAST_SHARE cycles, or half of those
 /// that remain if that is less.
 /// AUTO of a plain scene has 400, 240, 144, and the rest of 1000 for NORM, which converges on every contact area.
-const SHARE: f64 = 0.4;
+const METHOD_SHARE: f64 = 0.4;
 const LEAST_SHARE: u64 = 60;
 /// Most cycles of PROJECTED_CG with limits. Most scenes with limits take fewer. After more, the method usually cycles, and the projected Newton
 /// method continues from its best iterate.
@@ -26,7 +26,7 @@ pub enum Stage {
 /// The cycle count at which a method ends, from the cycles done: a fraction of the rest, so that cycles remain for every method of the list.
 pub fn share<S: AdmissibleSet>(stage: Stage, done: u64, most: u64) -> u64 {
     let left = most.saturating_sub(done);
-    let share = LEAST_SHARE.min(left / 2).max((SHARE * left as f64) as u64);
+    let share = LEAST_SHARE.min(left / 2).max((METHOD_SHARE * left as f64) as u64);
     done + if S::LIMITED && stage == Stage::ProjectedCg { share.min(LIMITED_SHARE) } else { share }
 }
 

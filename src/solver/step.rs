@@ -58,7 +58,8 @@ impl Solver {
         outcome
     }
 
-    /// Solves all of them, with the requested derivatives. Without a result the last step stays. A cancelled solve stays cancelled.
+    /// Solves the further problems, with the requested derivatives. An error restores the last tractions. A cancelled
+    /// solve stays cancelled.
     fn solve_step(
         &mut self,
         tangent: Option<&mut Tangent>,

@@ -12,10 +12,10 @@ use crate::scene::{Load, Scene};
 use crate::threads::Threads;
 
 /// Residual of a guess, relative to `h - approach` over C, above which it is discarded; p = 0 has 1.
-const WORSE_THAN_NONE: f64 = 1e3;
+const WORST_GUESS: f64 = 1e3;
 
 /// Relative distance from the greatest force that counts as 0: round-off of the sum of the limits.
-const FULL: f64 = 1e-12;
+const FULL_FORCE: f64 = 1e-12;
 
 /// Copies the undeformed distance, as a callback may change the caller's.
 pub fn take_distance(state: &mut State, given: &[f64], threads: &Threads) {
@@ -68,7 +68,7 @@ pub fn take_over<S: AdmissibleSet>(
         survey = Survey::by(state, &problem.threads);
     }
     let Survey { residual, distance, .. } = survey;
-    if residual.is_finite() && residual <= WORSE_THAN_NONE * distance || residual == 0.0 {
+    if residual.is_finite() && residual <= WORST_GUESS * distance || residual == 0.0 {
         return Ok((from, Some(survey)));
     }
     if !S::FIXED {
@@ -174,7 +174,7 @@ pub fn fills_limits<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, 
     let of_block = |block: Range<usize>| block.map(limit).sum::<f64>();
     let greatest = blocks::fold(&state.grid, &problem.threads, 0.0, of_block, |sum, block| sum + block);
     let greatest = greatest * state.grid.element_area();
-    if !(force >= greatest * (1.0 - FULL)) {
+    if !(force >= greatest * (1.0 - FULL_FORCE)) {
         return Ok(false);
     }
     put_at_limits(problem, state, set)?;

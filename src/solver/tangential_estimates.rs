@@ -5,11 +5,11 @@
 //! so that most of it cancels. The error from the outline of the contact remains, which is larger with fewer elements across:
 //!
 //! ```text
-//! e = PART bend/depth (1 + (CHORD/elements across)^2) mu N
+//! e = SHIFT_ERROR bend/depth (1 + (OUTLINE_CHORD/elements across)^2) mu N
 //! ```
 //!
 //! *Steady rolling* is of first order in the step: the difference to the next coarser grid of the nested iteration, with these pressures, is
-//! about the error (with spin half of it), `e = ROLLING |F - F_coarse|`, plus a part of the above.
+//! about the error (with spin half of it), `e = ROLLING_FACTOR |F - F_coarse|`, plus a part of the above.
 //!
 //! *With a given approach* the error e_N of the normal force adds to the tangential one: `mu e_N` in full slip, else less,
 //! `mu e_N (1 - (1 - F/(mu N))^(1/3))` with a parabola's pressures. The same holds for jumps of the surface.
@@ -20,7 +20,7 @@
 //! *Where mu jumps* the jump lies anywhere between two centres, and with it that of `mu p` on slip ([`at_jumps`]).
 //!
 //! With a prescribed force the creepage has the error `e/(dF/dxi)`, with `dF/dxi = (F/xi) (1 - F/(mu N))^(1/3)`, which is that of
-//! Cattaneo's and of Carter's curve or less. A residual R adds an error of at most R mu N (docs/friction.md). PART, CHORD and ROLLING are
+//! Cattaneo's and of Carter's curve or less. A residual R adds an error of at most R mu N (docs/friction.md). SHIFT_ERROR, OUTLINE_CHORD and ROLLING_FACTOR are
 //! measured on balls and ellipses of 7 to 54 elements across (docs/notes/2026-11-friction.md) and tested (`tests/friction/estimates.rs`).
 //! They hold for flat punches and jumps of mu on 11 to 68 elements across.
 //!
@@ -34,18 +34,18 @@ use crate::rectangle::Rectangle;
 use crate::scene::{Friction, Load, Motion, Prescribed};
 
 /// Relative error of the force of a shift, over the bend relative to the depth.
-const PART: f64 = 0.3;
+const SHIFT_ERROR: f64 = 0.3;
 /// Elements across at which the outline's error equals the rest.
-const CHORD: f64 = 13.0;
+const OUTLINE_CHORD: f64 = 13.0;
 /// Factors in steady rolling: on the difference to the coarser grid, on the error of a shift, on the difference in the other direction.
-const ROLLING: f64 = 3.0;
-const ROLLING_SHIFT: f64 = 3.0;
-const ACROSS: f64 = 0.25;
+const ROLLING_FACTOR: f64 = 3.0;
+const SHIFT_FACTOR: f64 = 3.0;
+const ACROSS_FACTOR: f64 = 0.25;
 /// Factor for shifts of unlike bodies, measured up to 3.4 times the estimate: pressures displace sideways, so force and creepage do not
 /// vanish together.
-const UNLIKE: f64 = 8.0;
+const UNLIKE_FACTOR: f64 = 8.0;
 /// Factor for shifts of coated bodies, measured up to 1.5 times the estimate: neither parabola nor half-space.
-const COATED: f64 = 2.0;
+const COATED_FACTOR: f64 = 2.0;
 /// With a given normal force, the factor on errors at ends is this times `(1 - F/(mu N))^(1/3)`, at most 1.
 const BEFORE_SLIP: f64 = 2.0;
 
@@ -78,8 +78,8 @@ pub fn estimate(solved: &Solved<'_>, found: &Report) -> Vector {
         return unknown;
     }
     let Some(parts) = solved.parts else { return unknown };
-    let widened = 1.0 + (CHORD / chord).powi(2);
-    let of_shift = PART * curvature.bend.abs() / curvature.depth * widened * found.carried;
+    let widened = 1.0 + (OUTLINE_CHORD / chord).powi(2);
+    let of_shift = SHIFT_ERROR * curvature.bend.abs() / curvature.depth * widened * found.carried;
     let hidden = found.certificate.residual * found.carried;
     let force = found.force[0].hypot(found.force[1]);
     let creepage = found.creepage[0].hypot(found.creepage[1]);
@@ -97,19 +97,19 @@ pub fn estimate(solved: &Solved<'_>, found: &Report) -> Vector {
         _ => return unknown,
     };
     let part = match friction.motion {
-        Motion::Shift if coated => COATED,
+        Motion::Shift if coated => COATED_FACTOR,
         Motion::Shift if alike => 1.0,
-        Motion::Shift => UNLIKE,
-        _ => ROLLING_SHIFT,
+        Motion::Shift => UNLIKE_FACTOR,
+        _ => SHIFT_FACTOR,
     };
     let ends = solved.ends(&parts, stuck);
     let more = solved.by_the_normal_force(&parts, found.carried) * (1.0 - stuck) + solved.jumps();
     [0, 1].map(|k| {
-        let at_least = |of: Vector| of[k].max(ACROSS * of[1 - k]);
+        let at_least = |of: Vector| of[k].max(ACROSS_FACTOR * of[1 - k]);
         let of_surface = part * of_shift + at_least(ends) + more;
         let error = match friction.prescribed[k] {
-            Prescribed::Creepage(_) => ROLLING * at_least(differences[0]) + of_surface + hidden,
-            Prescribed::Force(_) => ROLLING * at_least(differences[1]) + (of_surface + hidden) * compliance,
+            Prescribed::Creepage(_) => ROLLING_FACTOR * at_least(differences[0]) + of_surface + hidden,
+            Prescribed::Force(_) => ROLLING_FACTOR * at_least(differences[1]) + (of_surface + hidden) * compliance,
         };
         if error.is_finite() {
             error

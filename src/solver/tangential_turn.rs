@@ -29,16 +29,20 @@ pub struct TangentialTurn<'a> {
 
 /// Residuals below this are round-off.
 pub const ROUND_OFF: f64 = 1e-11;
-/// Turns by a force above NEAR times mu N get BY_FORCE of the products, so that turns with creepages can follow.
-const NEAR: f64 = 0.8;
-const BY_FORCE: f64 = 0.6;
-/// Tolerance of turns with creepages, relative to the options', as the forces of two turns are compared; and its least value, round-off.
-const SHARPER: f64 = 0.1;
+/// Turns by a force above NEAR_FULL_SLIP times mu N get BY_FORCE_SHARE of the products, so that turns with creepages can follow.
+const NEAR_FULL_SLIP: f64 = 0.8;
+const BY_FORCE_SHARE: f64 = 0.6;
+/// Tolerance of turns with creepages, relative to the options'. It is tighter, because the forces of two turns are
+/// compared. Its least value is round-off.
+const CREEPAGES_TOLERANCE: f64 = 0.1;
 const LEAST_TOLERANCE: f64 = 1e-13;
 
 /// Options of turns with creepages.
 pub fn sharper(options: &Options) -> Options {
-    Options { tolerance: (SHARPER * options.tolerance).max(LEAST_TOLERANCE.min(options.tolerance)), ..*options }
+    Options {
+        tolerance: (CREEPAGES_TOLERANCE * options.tolerance).max(LEAST_TOLERANCE.min(options.tolerance)),
+        ..*options
+    }
 }
 
 impl<'a> TangentialTurn<'a> {
@@ -52,10 +56,10 @@ impl<'a> TangentialTurn<'a> {
         TangentialTurn { tangent, turn, found: None, held: None, most: usize::MAX, by_force, refusal: None }
     }
 
-    /// Iterations left by the options.
+    /// The products that remain of `max_cycles`.
     fn left(&self) -> usize {
         let done = self.found.as_ref().map_or(0, |found| found.products as usize);
-        let share = if self.is_near() { BY_FORCE } else { 1.0 };
+        let share = if self.is_near() { BY_FORCE_SHARE } else { 1.0 };
         ((share * self.turn.options.max_cycles as f64).ceil() as usize).saturating_sub(done)
     }
 
@@ -67,7 +71,7 @@ impl<'a> TangentialTurn<'a> {
     /// Whether turns are by a force at which nearly all of C slips.
     pub fn is_near(&self) -> bool {
         let wanted = length(self.wanted());
-        self.by_force && self.found.as_ref().is_some_and(|found| wanted > NEAR * found.carried)
+        self.by_force && self.found.as_ref().is_some_and(|found| wanted > NEAR_FULL_SLIP * found.carried)
     }
 
     /// Whether the residual of the last solve is round-off.

@@ -28,7 +28,7 @@ use crate::scene::Load;
 /// Relative residual of the fixed point.
 const TOLERANCE: f64 = 1e-6;
 /// Relative residual of each normal problem.
-const NORMAL: f64 = 1e-7;
+const NORMAL_TOLERANCE: f64 = 1e-7;
 /// Most turns.
 const MOST_TURNS: usize = 30;
 /// The name of this memory in messages.
@@ -175,7 +175,7 @@ impl Linear<'_> {
         state.fit_approach(&problem.threads);
         let survey = Survey::by(state, &problem.threads);
         let max_cycles = turn.options.max_cycles as u64;
-        let goal = Goal { criterion: Criterion::Residual, tolerance: NORMAL, max_cycles };
+        let goal = Goal { criterion: Criterion::Residual, tolerance: NORMAL_TOLERANCE, max_cycles };
         let mut own = Monitor::silent();
         let stages = stages::stages::<Fixed>(Method::Auto, problem.symmetric, set_up.without_multigrid.is_none());
         let mut task = Task { problem, state, lowest: 0.0, set: Fixed, goal, monitor: &mut own };

@@ -2,8 +2,8 @@
 //!
 //! By the distance between the centres, in longer sides of an element:
 //!
-//! * below [`NEAR`] the closed form of [`element`](super::element), whose corner differences lose digits with the distance;
-//! * below [`FAR`] point forces at 4 x 4 Gauss points of the element;
+//! * below [`CLOSED_FORM_DISTANCE`] the closed form of [`element`](super::element), whose corner differences lose digits with the distance;
+//! * below [`GAUSS_DISTANCE`] point forces at 4 x 4 Gauss points of the element;
 //! * beyond, point forces at the centres of the elements, from which means over elements follow (see [`means`](crate::influence::means)):
 //!   one evaluation per element, and no cancellation at any distance.
 
@@ -15,9 +15,9 @@ use crate::influence::means::{in_x, in_y, HALO, ROWS};
 use crate::memory::zeros;
 
 /// The closed form is used up to this distance.
-const NEAR: f64 = 12.0;
+const CLOSED_FORM_DISTANCE: f64 = 12.0;
 /// Gauss points are used up to this distance.
-const FAR: f64 = 32.0;
+const GAUSS_DISTANCE: f64 = 32.0;
 /// Nodes and weights of the 4-point Gauss-Legendre rule on [-1/2, 1/2] (Abramowitz & Stegun 25.4).
 const GAUSS: [(f64, f64); 4] = [
     (-0.430_568_155_797_026_3, 0.173_927_422_568_726_93),
@@ -103,7 +103,7 @@ impl Kernels {
     pub fn combine(&mut self, body: &Body, depths: &[(f64, f64)]) {
         self.fill_far(body, depths);
         let least = depths.iter().fold(f64::INFINITY, |least, (z, _)| z.min(least));
-        if least < FAR {
+        if least < GAUSS_DISTANCE {
             self.fill_near(body, depths, least);
         }
     }
@@ -156,13 +156,13 @@ impl Kernels {
         };
         for ky in 0..my {
             let y = ky as f64 * dy;
-            let far = within(FAR, y, least);
+            let far = within(GAUSS_DISTANCE, y, least);
             if far == 0 {
                 break;
             }
             self.tables.chunks_exact_mut(mx * my).for_each(|table| table[ky * mx..ky * mx + far].fill(0.0));
             for &(z, factor) in depths {
-                let near = within(NEAR, y, z);
+                let near = within(CLOSED_FORM_DISTANCE, y, z);
                 for kx in 0..near {
                     let values = element::stresses(body, self.asked.loaded, (kx as f64 * dx, y, z), (dx, dy));
                     self.add((kx, ky), |load, c| factor * values[load][c]);
@@ -205,7 +205,7 @@ pub(super) fn by_gauss(body: &Body, loaded: Loaded, (x, y, z): (f64, f64, f64)) 
 
 /// Stresses by unit loads on an element, at one place.
 pub(super) fn at(body: &Body, loaded: Loaded, (x, y, z): (f64, f64, f64)) -> [[f64; 6]; 3] {
-    if x * x + y * y + z * z < NEAR * NEAR {
+    if x * x + y * y + z * z < CLOSED_FORM_DISTANCE * CLOSED_FORM_DISTANCE {
         return element::stresses(body, loaded, (x, y, z), body.element());
     }
     by_gauss(body, loaded, (x, y, z)).map(|of_load| of_load.map(|lanes| lanes[0]))

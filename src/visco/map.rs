@@ -74,7 +74,7 @@ impl Map {
             let x = mode.rate * dt;
             let (e, now, before) = weights(x);
             // 1/rate of slow modes overflows.
-            let (now, before) = match x < SMALL {
+            let (now, before) = match x < SERIES_BELOW {
                 true => (dt * slow(x).0, dt * slow(x).1),
                 false => (now / mode.rate, before / mode.rate),
             };
@@ -134,11 +134,11 @@ impl Map {
 }
 
 /// x below which differences are computed by series.
-const SMALL: f64 = 0.1;
+const SERIES_BELOW: f64 = 0.1;
 
 /// `(exp(-x), 1 - g, g - exp(-x))` with `g = (1 - exp(-x))/x`.
 fn weights(x: f64) -> (f64, f64, f64) {
-    if x < SMALL {
+    if x < SERIES_BELOW {
         let (now, before) = slow(x);
         return ((-x).exp(), x * now, x * before);
     }

@@ -23,7 +23,7 @@ mod series;
 
 pub use map::{Form, Map};
 pub use rolling::{rolling_table, RollingBody};
-pub use series::{Series, MOST};
+pub use series::{Series, MOST_BRANCHES};
 
 /// The results of a step in time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -10,7 +10,7 @@
 //!
 //! a is smooth except at the edges of the element. Intervals end there, and panels get shorter towards them: in the element's own row down to a
 //! fraction of its shorter side, in other rows down to the distance from the edge. That distance is short if elements are long in x. Lengths are in
-//! elements, and times in passages of one element. To all digits, W is a for a time below [`SHORTEST`], and 0 for a time above [`LONGEST_TIME`]. So
+//! elements, and times in passages of one element. To all digits, W is a for a time below [`SHORTEST_TIME`], and 0 for a time above [`LONGEST_TIME`]. So
 //! such times are set to these bounds. Element sizes and compliances are split into a number near 1 and a power of two. The table is multiplied by
 //! that power at the end.
 
@@ -25,20 +25,20 @@ use crate::powers::{apart, times_power};
 /// Nodes of a panel.
 const NODES: usize = 12;
 /// The longest panel, and the distance after which `exp(-s/L)` is negligible (4e-18), in L.
-const LONGEST: f64 = 2.0;
+const LONGEST_PANEL: f64 = 2.0;
 const DECAYED: f64 = 40.0;
 /// Panels next to an edge: each ends at this fraction of the distance at which it begins, so that 12 nodes give 14 digits.
-const SHORTER: f64 = 0.35;
+const PANEL_RATIO: f64 = 0.35;
 /// The last panel at an edge is this fraction of the shorter side of the element. The slope of `a` grows there as a logarithm. The rule integrates it
 /// with an error of 5e-5 of the square of the panel's length.
-const FINEST: f64 = 1e-5;
+const FINEST_PANEL: f64 = 1e-5;
 /// Below this length in elements no value changes.
-const NOTHING: f64 = 1e-17;
+const LEAST_LENGTH: f64 = 1e-17;
 /// Far away a panel is at most this fraction of the distance.
 const OF_DISTANCE: f64 = 0.5;
 /// Bounds of times as powers of two, in passages of an element. Within the shorter time the slope of `a` has no effect. The longer time exceeds
 /// 1e14 (the slowest mode over its branch's time), times 1e14 (the largest weight of a mode), times 1e16 (all digits): 1e44 < 2^200.
-const SHORTEST: i32 = -100;
+const SHORTEST_TIME: i32 = -100;
 const LONGEST_TIME: i32 = 200;
 const WHAT: &str = "a row of coefficients";
 
@@ -69,9 +69,9 @@ pub struct Row<'a, const N: usize> {
 /// The length of panels at the edges of the loaded element in a row ky away, for elements of width dy.
 pub fn finest(ky: usize, dy: f64) -> f64 {
     match ky {
-        0 => (FINEST * dy.min(1.0)).max(NOTHING),
+        0 => (FINEST_PANEL * dy.min(1.0)).max(LEAST_LENGTH),
         // The distance of the edge.
-        _ => ((ky as f64 - 0.5) * dy).max(NOTHING),
+        _ => ((ky as f64 - 0.5) * dy).max(LEAST_LENGTH),
     }
 }
 
@@ -96,7 +96,7 @@ impl<const N: usize> Row<'_, N> {
         if !(to > from) {
             return [0.0; N];
         }
-        let panels = ((to - from) / (LONGEST * length)).ceil().max(1.0);
+        let panels = ((to - from) / (LONGEST_PANEL * length)).ceil().max(1.0);
         let d = (to - from) / panels;
         let panel = |k: usize| self.panel(kx, (from + k as f64 * d, d), length);
         (0..panels as usize).fold([0.0; N], |sum, k| plus(sum, 1.0, panel(k)))
@@ -111,8 +111,8 @@ impl<const N: usize> Row<'_, N> {
         };
         let has_edge = kx == 0 || kx == -1;
         while has_edge && far > self.finest {
-            sum = plus(sum, 1.0, between(far, SHORTER * far));
-            far *= SHORTER;
+            sum = plus(sum, 1.0, between(far, PANEL_RATIO * far));
+            far *= PANEL_RATIO;
         }
         plus(sum, 1.0, between(far, 0.0))
     }
@@ -121,7 +121,7 @@ impl<const N: usize> Row<'_, N> {
     fn tail(&self, kx: i64, length: f64) -> [f64; N] {
         let (mut sum, mut s) = ([0.0; N], 0.0);
         while s < DECAYED * length {
-            let d = (OF_DISTANCE * (kx as f64 + s)).max(OF_DISTANCE).min(LONGEST * length);
+            let d = (OF_DISTANCE * (kx as f64 + s)).max(OF_DISTANCE).min(LONGEST_PANEL * length);
             sum = plus(sum, 1.0, self.panel(kx as f64, (s, d), length));
             s += d;
         }
@@ -152,7 +152,7 @@ fn by_elements(series: &Series, dx: f64, speed: f64) -> Option<Series> {
     let passing = |t: &f64| {
         let (t, of_t) = apart(*t);
         let power = of_t + of_v - of_d;
-        times_power(t * v / d, power.clamp(SHORTEST, LONGEST_TIME))
+        times_power(t * v / d, power.clamp(SHORTEST_TIME, LONGEST_TIME))
     };
     let times: Vec<f64> = series.times.iter().map(passing).collect();
     Series::new(1.0, &series.fractions, &times)

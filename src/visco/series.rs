@@ -1,12 +1,12 @@
 //! A Prony series, sorted by time.
 
 /// Most branches of a body.
-pub const MOST: usize = 32;
+pub const MOST_BRANCHES: usize = 32;
 
-/// Relative round-off of a sum of moduli: [`MOST`] additions, 32 EPSILON = 7e-15.
+/// Relative round-off of a sum of moduli: [`MOST_BRANCHES`] additions, 32 EPSILON = 7e-15.
 const ROUNDING: f64 = 1e-14;
 /// Relative difference below which times are equal.
-const EQUAL: f64 = 1e-9;
+const EQUAL_TIMES: f64 = 1e-9;
 
 /// `r_k` and `t_k`, the longest time first, all of them positive, no two times equal to nine digits.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,7 +34,7 @@ impl Series {
         for (t, r) in branches {
             series.rest -= r;
             match series.times.last() {
-                Some(last) if last - t <= EQUAL * last => *series.fractions.last_mut()? += r,
+                Some(last) if last - t <= EQUAL_TIMES * last => *series.fractions.last_mut()? += r,
                 _ => {
                     series.times.push(t);
                     series.fractions.push(r);

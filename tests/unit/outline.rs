@@ -22,7 +22,7 @@ fn changes_and_edges_of_a_corner() {
     assert_eq!((outline.changes, outline.edges, outline.border, outline.rows), (2, 2, (2, 2), 2));
     // Two runs along rows, two along columns: of 2 and 1 elements.
     assert_eq!(outline.chord(3, (false, false)), 1.5);
-    assert_eq!(outline.corrected_area(&state, 3), (3.0 - 2.0 * SHARE) * 2.0);
+    assert_eq!(outline.corrected_area(&state, 3), (3.0 - 2.0 * EXCESS_PER_CHANGE) * 2.0);
 }
 
 /// A circle of radius r is crossed twice by each of 2 r rows and 2 r columns: M = 8 r.

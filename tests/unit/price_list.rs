@@ -21,10 +21,10 @@ fn row(seconds: f64, obstacle: Option<Obstacle>) -> Price {
 #[test]
 fn the_dearest_row_pays_for_the_samples_at_its_least() {
     let mut budget = Budget::default();
-    assert_eq!(budget.after(&[row(1e9, Some(Obstacle::Elements))]), SECONDS);
-    assert_eq!(budget.after(&[row(10.0, None), row(1e3, None), row(1e9, Some(Obstacle::Memory))]), PART * 1e3);
-    assert_eq!(budget.after(&[row(300.0, None)]), PART * 300.0);
-    assert_eq!(budget.after(&[row(2e3, None)]), PART * 300.0);
-    assert_eq!(budget.after(&[row(-1.0, Some(Obstacle::Singular))]), PART * 300.0);
-    assert_eq!(budget.after(&[row(1.0, None)]), SECONDS);
+    assert_eq!(budget.after(&[row(1e9, Some(Obstacle::Elements))]), SAMPLES_SECONDS);
+    assert_eq!(budget.after(&[row(10.0, None), row(1e3, None), row(1e9, Some(Obstacle::Memory))]), SAMPLES_SHARE * 1e3);
+    assert_eq!(budget.after(&[row(300.0, None)]), SAMPLES_SHARE * 300.0);
+    assert_eq!(budget.after(&[row(2e3, None)]), SAMPLES_SHARE * 300.0);
+    assert_eq!(budget.after(&[row(-1.0, Some(Obstacle::Singular))]), SAMPLES_SHARE * 300.0);
+    assert_eq!(budget.after(&[row(1.0, None)]), SAMPLES_SECONDS);
 }

@@ -64,11 +64,11 @@ fn by_definition(punches: &Punches, r: &[f64], without_force: bool) -> Vec<f64> 
     for Joint { left, right, energy, .. } in &punches.joints {
         let (l, r_) = (&shapes[*left as usize], &shapes[*right as usize]);
         let apart: Vec<f64> = (0..n).map(|i| l[i] - r_[i]).collect();
-        let force = FORCES * product(&apart, r) / energy;
+        let force = FORCES_FACTOR * product(&apart, r) / energy;
         z.iter_mut().zip(&apart).for_each(|(z, apart)| *z += force * apart);
     }
     if let (Some(g), Some(all), false) = (shapes.last(), punches.punches.last(), without_force) {
-        let force = FORCES * product(g, r) / all.energy;
+        let force = FORCES_FACTOR * product(g, r) / all.energy;
         z.iter_mut().zip(g).for_each(|(z, g)| *z += force * g);
     }
     z

@@ -28,11 +28,11 @@ impl WithSimd for Predict<'_, '_> {
             #[inline(always)]
             |[g, excess, wx, wy, qx, qy, ux, uy], _| {
                 let u = [ux, uy];
-                let seen = disc.look([qx, qy], a.add_pair([wx, wy], u), g);
-                let [nx, ny] = seen.normal;
-                let [rx, ry] = seen.projected;
-                let [zx, zy] = a.scale(disc.mixing(a.add(seen.curvature, excess)), seen.projected);
-                ([seen.curvature, nx, ny, rx, ry, zx, zy], [seen.rest, a.square(u)])
+                let predicted = disc.predict([qx, qy], a.add_pair([wx, wy], u), g);
+                let [nx, ny] = predicted.normal;
+                let [rx, ry] = predicted.projected;
+                let [zx, zy] = a.scale(disc.mixing(a.add(predicted.curvature, excess)), predicted.projected);
+                ([predicted.curvature, nx, ny, rx, ry, zx, zy], [predicted.rest, a.square(u)])
             },
         )
     }
@@ -167,9 +167,9 @@ impl WithSimd for Go<'_, '_> {
                 let late = a.plus(a.sub_pair(new, straight), left, [lx, ly]);
                 let way = a.sub_pair(new, q);
                 let u = a.plus([ux, uy], length, [px, py]);
-                let seen = disc.look(new, a.add_pair([wx, wy], u), g);
-                let z = a.scale(disc.mixing(a.add(seen.curvature, excess)), seen.projected);
-                let ([nx, ny], [rx, ry]) = (seen.normal, seen.projected);
+                let predicted = disc.predict(new, a.add_pair([wx, wy], u), g);
+                let z = a.scale(disc.mixing(a.add(predicted.curvature, excess)), predicted.projected);
+                let ([nx, ny], [rx, ry]) = (predicted.normal, predicted.projected);
                 (
                     [
                         new[0],
@@ -182,13 +182,13 @@ impl WithSimd for Go<'_, '_> {
                         t[1],
                         late[0],
                         late[1],
-                        seen.curvature,
+                        predicted.curvature,
                         rx,
                         ry,
                         z[0],
                         z[1],
                     ],
-                    [seen.rest, a.square(u), a.square(late), a.square(way)],
+                    [predicted.rest, a.square(u), a.square(late), a.square(way)],
                 )
             },
         )

@@ -99,7 +99,8 @@ fn clip_to_largest(problem: &mut Problem, state: &mut State, march: &mut March) 
     }
 }
 
-/// Clips tractions to their largest bounds, and sets the bounds of slipping elements to their |q|. Returns the larger residual of both certificates.
+/// Clips tractions to their largest bounds. Sets the bounds of slipping elements to their |q|, and raises those of
+/// sticking elements to it. Returns the larger of the residuals of the slips and of the bounds.
 pub(super) fn freeze(problem: &mut Problem, state: &mut State, tangent: &Tangent, march: &mut March) -> f64 {
     clip_to_largest(problem, state, march);
     lag(problem, state, tangent, march);

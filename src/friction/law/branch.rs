@@ -1,7 +1,7 @@
 //! Named solutions of a problem with several. Coulomb's problem is solved in turns, each with the bounds of the last slips (as in CONTACT).
 //!
 //! ```text
-//! LOW:  the first bounds are those of no slip        HIGH: those of any speed
+//! LOW:  the first bounds are those of no slip        HIGH: those of unlimited slip
 //! ```
 //!
 //! Bounds that rise with the slip are damped. They occur on a layer that hardens, or with a memory of smaller bounds.
@@ -20,21 +20,21 @@ use crate::memory::zeros;
 use crate::progress::Outcome;
 
 /// The most turns, and the most turns in a row without a residual below the fraction `GAIN` of the least one.
-const MOST: u32 = 400;
+const MOST_TURNS: u32 = 400;
 const PATIENCE: u32 = 60;
 const GAIN: f64 = 0.95;
-/// The tolerance of a turn: this fraction of the error of its bounds, but at most `FIRST`, as in the first turn, and at least the fraction `ENOUGH`
+/// The tolerance of a turn: this fraction of the error of its bounds, but at most `FIRST_TOLERANCE`, as in the first turn, and at least the fraction `TOLERANCE_SHARE`
 /// of the tolerance.
 const INNER: f64 = 0.05;
-const FIRST: f64 = 1e-3;
-const ENOUGH: f64 = 0.3;
+const FIRST_TOLERANCE: f64 = 1e-3;
+const TOLERANCE_SHARE: f64 = 0.3;
 /// If a residual grows from turn to turn, the steps of rising bounds are reduced by this factor from then on, down to the least factor.
-const DAMPED: f64 = 0.7;
+const DAMPING: f64 = 0.7;
 const LEAST_DAMPING: f64 = 0.01;
 /// Below this residual tractions are projected onto the circles before a turn, because the turn counts those near a circle as on it.
-const NEAR: f64 = 1e-6;
+const PROJECTED_BELOW: f64 = 1e-6;
 /// A length beyond all slips, whose square does not overflow.
-const ANY: f64 = 1e150;
+const BEYOND_ALL_SLIPS: f64 = 1e150;
 
 /// The progress of the turns.
 pub struct Turns {
@@ -53,14 +53,14 @@ impl Turns {
 
     /// The tolerance of the next turn.
     pub fn inner(&self, tolerance: f64) -> f64 {
-        (INNER * self.last).clamp(ENOUGH * tolerance, FIRST.max(ENOUGH * tolerance))
+        (INNER * self.last).clamp(TOLERANCE_SHARE * tolerance, FIRST_TOLERANCE.max(TOLERANCE_SHARE * tolerance))
     }
 
     /// Takes the residual after a turn. Returns the outcome if the turns end.
     pub fn end(&mut self, left: f64, tolerance: f64) -> Option<Outcome> {
         self.made += 1;
         if !(left < self.last) {
-            self.damping = (DAMPED * self.damping).max(LEAST_DAMPING);
+            self.damping = (DAMPING * self.damping).max(LEAST_DAMPING);
         }
         self.since = if left < GAIN * self.least { 0 } else { self.since + 1 };
         (self.least, self.last) = (self.least.min(left), left);
@@ -73,14 +73,14 @@ impl Turns {
 
     /// Whether further turns are useless.
     pub fn are_in_vain(&self) -> bool {
-        self.since > PATIENCE || self.made >= MOST
+        self.since > PATIENCE || self.made >= MOST_TURNS
     }
 }
 
 /// The bounds of the first turn.
 pub fn begin(problem: &mut Problem, march: &mut March, is_high: bool) {
     let law = march.law;
-    let slip = if is_high { ANY } else { 0.0 };
+    let slip = if is_high { BEYOND_ALL_SLIPS } else { 0.0 };
     march.go(|k, place, had| {
         let is_inside = place.pressure > 0.0;
         let response = law.at(if is_inside { slip } else { 0.0 }, place, had);
@@ -148,12 +148,12 @@ pub fn go_on(level: &mut Level, march: &mut March, (turns, best): (&Turns, &Best
         bounds::follow(problem, state, &memory.tangent, march, Some(rho));
         problem.bound.iter_mut().zip(&best.last).for_each(|(bound, last)| *bound = last + part * (*bound - last));
     }
-    if turns.last < NEAR {
+    if turns.last < PROJECTED_BELOW {
         bounds::onto_circles(problem, state, &memory.tangent);
     }
 }
 
-/// Recomputes the state. Returns the larger residual of both certificates.
+/// Recomputes the state. Returns the larger of the residuals of the slips and of the bounds.
 pub fn certify(level: &mut Level, march: &mut March) -> f64 {
     let Level { problem, state, memory, .. } = level;
     bounds::settle(problem, state, &memory.tangent, march);

@@ -3,9 +3,9 @@
 use crate::effects::{FrictionLaw, PlasticLayer};
 
 /// Least yield limit by softening, relative to that of fresh material.
-const SOFTEST: f64 = 1e-3;
+const LEAST_YIELD_LIMIT: f64 = 1e-3;
 /// Least coefficient, relative to that at rest.
-const LEAST: f64 = 1e-9;
+const LEAST_COEFFICIENT: f64 = 1e-9;
 /// Most steps of the bracketed search for a slip, and its relative precision.
 const STEPS: u32 = 80;
 const PRECISION: f64 = 1e-14;
@@ -81,8 +81,8 @@ impl Law {
                 (mu, of_mu) = (steady, [by_slip, 0.0, 0.0]);
             }
         }
-        if mu < LEAST * coefficient {
-            (mu, of_mu) = (LEAST * coefficient, [0.0; 3]);
+        if mu < LEAST_COEFFICIENT * coefficient {
+            (mu, of_mu) = (LEAST_COEFFICIENT * coefficient, [0.0; 3]);
         }
         let (cap, of_cap) = (pressure * mu, of_mu.map(|slope| pressure * slope));
         let limit = had.yield_limit;
@@ -95,7 +95,7 @@ impl Law {
             yields: false,
         };
         let Some(layer) = self.layer.filter(|_| limit < cap) else { return by_friction(limit, kept) };
-        let least = SOFTEST * layer.yield_limit;
+        let least = LEAST_YIELD_LIMIT * layer.yield_limit;
         let (hardened, of_hardened) = match limit + layer.hardening * slip {
             value if value < least.min(limit) => (least.min(limit), if limit < least { kept } else { [0.0; 3] }),
             value => (value, [layer.hardening, 0.0, 1.0]),

@@ -14,9 +14,9 @@ use super::march::March;
 use crate::error::Result;
 use crate::memory::zeros;
 
-/// Slip velocities per factor of two, and factors of two about each half speed and about the speed of the memory.
-const EACH: i32 = 8;
-const REACH: i32 = 20;
+/// Slip velocities per octave, and octaves on either side of each half speed and of the speed of the memory.
+const SLIPS_PER_OCTAVE: i32 = 8;
+const OCTAVES: i32 = 20;
 
 /// Sets the largest slopes with which bounds fall and rise, each times the influence of its element on itself.
 pub fn measure(march: &mut March, influence: impl Fn(usize) -> f64) -> Result<()> {
@@ -98,8 +98,8 @@ impl Law {
     fn slopes(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         // Just below the velocities, one of which is the kink of a linear law.
         let below = 1.0 - 2.0 * f64::EPSILON;
-        let place = move |h: f64, k: i32| below * h * (f64::from(k) / f64::from(EACH)).exp2();
-        let places = move |h: f64| (-EACH * REACH..=EACH * REACH).map(move |k| place(h, k));
+        let place = move |h: f64, k: i32| below * h * (f64::from(k) / f64::from(SLIPS_PER_OCTAVE)).exp2();
+        let places = move |h: f64| (-SLIPS_PER_OCTAVE * OCTAVES..=SLIPS_PER_OCTAVE * OCTAVES).map(move |k| place(h, k));
         self.fall.iter().flat_map(move |law| {
             let (c, dt) = (law.memory_distance, self.duration);
             let at = move |v: f64| {

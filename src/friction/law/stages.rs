@@ -1,7 +1,7 @@
 //! The two stages of a solve with a law.
 //!
 //! 1. lagged: before each Newton step with fixed bounds, the bounds of slipping elements are updated from the slips of the step before;
-//! 2. below a residual of [`SWITCH`], Newton's method with the derivatives of the bounds ([`system`](super::system)); without progress a few
+//! 2. below a residual of [`NEWTON_RESIDUAL`], Newton's method with the derivatives of the bounds ([`system`](super::system)); without progress a few
 //!    lagged steps follow.
 //!
 //! With given forces both steps are bordered by the creepages. The iteration then begins with the solution of Coulomb's law, the least
@@ -27,22 +27,22 @@ use crate::methods::fields::{self, Fields};
 use crate::progress::Outcome;
 
 /// Residual below which steps are Newton's.
-const SWITCH: f64 = 1e-2;
-/// A Newton step must reduce the residual to this part of the least so far; if not, HELD lagged steps follow.
+const NEWTON_RESIDUAL: f64 = 1e-2;
+/// A Newton step must reduce the residual to this part of the least so far; if not, LAGGED_STEPS lagged steps follow.
 const PROGRESS: f64 = 0.7;
-const HELD: u32 = 5;
-/// Relative residual of linear solves, of Newton steps and of lagged ones. The last one ends at ENOUGH times the tolerance, at most at the relative
+const LAGGED_STEPS: u32 = 5;
+/// Relative residual of linear solves, of Newton steps and of lagged ones. The last one ends at TOLERANCE_SHARE times the tolerance, at most at the relative
 /// residual LEAST_GAIN. A linear solve has at most DIRECTIONS directions.
 const INNER: f64 = 0.2;
 const INNER_LAGGED: f64 = 0.35;
-const ENOUGH: f64 = 0.5;
+const TOLERANCE_SHARE: f64 = 0.5;
 const LEAST_GAIN: f64 = 0.5;
 const DIRECTIONS: usize = 40;
 /// rho of the natural map in Newton steps, over the inverse of an element's influence on itself: more than the largest slope of a bound, so
 /// that each element has one state. 4 takes 15 to 24 products, 2 takes 15 to 36 (192 x 176 elements to 1e-6).
 const RHO: f64 = 4.0;
-/// At residuals above [`SWITCH`], rho a0 is at least ABOVE times the largest downward slope of a bound, and at most RHO.
-const ABOVE: f64 = 2.0;
+/// At residuals above [`NEWTON_RESIDUAL`], rho a0 is at least RHO_PER_SLOPE times the largest downward slope of a bound, and at most RHO.
+const RHO_PER_SLOPE: f64 = 2.0;
 /// Steps without a residual below GAIN times the least, after which the iteration ends.
 const PATIENCE: u32 = 15;
 const GAIN: f64 = 0.9;
@@ -157,7 +157,7 @@ fn iterate(
         }
         let Some(is_newton) = course.next(worst) else { return Ok(Outcome::Stagnated) };
         let inner = if is_newton { INNER } else { INNER_LAGGED };
-        let inner = inner.max((ENOUGH * tolerance / worst).min(LEAST_GAIN));
+        let inner = inner.max((TOLERANCE_SHARE * tolerance / worst).min(LEAST_GAIN));
         let most = DIRECTIONS.min(left as usize);
         if is_newton {
             let rho = rho_of_newton(problem, march, worst, rho);
@@ -183,18 +183,18 @@ fn rho_of_newton(problem: &Problem, march: &March, worst: f64, rho: f64) -> f64 
     let near = RHO / problem.operators.self_influence;
     match march.law.fall {
         None => rho,
-        Some(_) if worst < SWITCH => near,
+        Some(_) if worst < NEWTON_RESIDUAL => near,
         // Far from a solution, slips times the rho of `near` would reverse tractions.
-        Some(_) => rho.max(ABOVE * march.falls / problem.operators.self_influence).min(near),
+        Some(_) => rho.max(RHO_PER_SLOPE * march.falls / problem.operators.self_influence).min(near),
     }
 }
 
 impl Course {
     /// Whether the next step is Newton's. None if the iteration ends.
     fn next(&mut self, worst: f64) -> Option<bool> {
-        let mut is_newton = self.hardens || worst < SWITCH && self.held == 0;
+        let mut is_newton = self.hardens || worst < NEWTON_RESIDUAL && self.held == 0;
         if is_newton && !self.hardens && self.was_newton && worst > PROGRESS * self.least {
-            (self.held, is_newton) = (HELD, false);
+            (self.held, is_newton) = (LAGGED_STEPS, false);
         }
         self.since = if worst < GAIN * self.least { 0 } else { self.since + 1 };
         self.least = self.least.min(worst);

@@ -1,4 +1,4 @@
-//! The linear system of a Newton step with a friction law. Elements in slip have both components as unknowns, too.
+//! The linear system of a Newton step with a friction law. Elements in slip also have both components as unknowns.
 //!
 //! ```text
 //! stick:        B x                                        = -s
@@ -38,13 +38,13 @@ struct RadialSystem<'a> {
 }
 
 /// A determinant below this fraction of its largest product counts as 0.
-const SINGULAR: f64 = 1e-8;
+const SINGULAR_DETERMINANT: f64 = 1e-8;
 
 /// The inverse of the derivatives of sums by creepages. It is not symmetric if bounds are carried from element to element.
 fn inverse(matrix: [Vector; 2]) -> [Vector; 2] {
     let [[a, b], [c, d]] = matrix;
     let (determinant, largest) = (a * d - b * c, [a, b, c, d].into_iter().fold(0.0, |most: f64, m| most.max(m.abs())));
-    if determinant.abs() > SINGULAR * largest * largest {
+    if determinant.abs() > SINGULAR_DETERMINANT * largest * largest {
         return [[d / determinant, -b / determinant], [-c / determinant, a / determinant]];
     }
     pseudo_inverse(matrix)
@@ -132,7 +132,7 @@ impl System for RadialSystem<'_> {
     }
 }
 
-/// One Newton step. Its linear system is solved to the relative residual `inner`, with so many directions at most.
+/// One Newton step. Its linear system is solved to the relative residual `inner`, with at most `most` directions.
 pub fn step(
     problem: &mut Problem,
     state: &mut State,

@@ -4,9 +4,10 @@
 //! A(X, Y) = sum over bodies of c_b [b L(X, Y) + (1/t) integral over the element of F_b(r/t) dA],   c_b = (1 - nu1)/(2 pi G1)
 //! ```
 //!
-//! with L the integral of 1/r ([`HalfSpace`]), and a radial correction F_b ([`Radial`]) to a half-space of the layer's material, b = 1, at
-//! distances below t, to one of the substrate's, b = B0, beyond. With one base alone, either digits are lost or the integrand has a
-//! singularity. A body without a coating has b = 1 and no correction.
+//! L is the integral of 1/r ([`HalfSpace`]). The base b L is that of a half-space: of the layer's material, b = 1, at
+//! distances below t, and of the substrate's, b = B0, beyond. F_b is the radial correction to the base ([`Radial`]).
+//! With one base for all distances, either digits are lost or the integrand has a singularity. A body without a coating
+//! has b = 1 and no correction.
 
 mod hankel;
 mod known;
@@ -120,7 +121,7 @@ impl CoatedBody {
         self.layer.as_ref().map_or(self.compliance, |(t, radial)| self.compliance * radial.roughly(k * t))
     }
 
-    /// c b, near or far.
+    /// c b: of the substrate's base, or of the layer's.
     fn base(&self, of_substrate: bool) -> f64 {
         match &self.layer {
             Some((_, radial)) if of_substrate => self.compliance * radial.transfer.substrate,

@@ -25,7 +25,7 @@ pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
 /// The mesh size h of the coarsest of Ogata's rules. Its nodes begin at `pi^2 h/3`; the integrand may vary on ten times this scale.
 const MESH: f64 = 0.004;
 /// Argument of psi beyond which nodes are zeros of J0.
-const LAST: f64 = 3.6;
+const LAST_ARGUMENT: f64 = 3.6;
 /// Number of rules, each with half the mesh size of the one before.
 const RULES: usize = 8;
 
@@ -40,7 +40,7 @@ pub fn hankel_rule(scale: f64) -> &'static [(f64, f64)] {
     let rule = (0.3 / scale).log2().ceil().clamp(0.0, RULES as f64 - 1.0) as usize;
     KNOWN[rule].get_or_init(|| {
         let mesh = MESH / (1u32 << rule) as f64;
-        let zeros = (1..).map(zero_of_j0).take_while(|zero| zero * mesh / PI < LAST);
+        let zeros = (1..).map(zero_of_j0).take_while(|zero| zero * mesh / PI < LAST_ARGUMENT);
         zeros.map(|zero| rule_at(zero, mesh)).filter(|(_, w)| w.abs() > 1e-19).collect()
     })
 }

@@ -20,7 +20,7 @@
 //! compressible or not.
 
 use super::response::{quotient, Response, TERMS};
-use super::transfer::{term, Fade, Transfer, PLAIN};
+use super::transfer::{term, Fade, Transfer, NEGLIGIBLE_EXPONENTIALS};
 
 /// L of one layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +42,7 @@ impl Along {
 
 impl Response for Along {
     fn at(&self, s: f64) -> f64 {
-        if s > PLAIN {
+        if s > NEGLIGIBLE_EXPONENTIALS {
             return 1.0 + self.less_one_plain(s);
         }
         let Transfer { lambda, kappa, less_lambda, less_both, .. } = self.0;

@@ -38,7 +38,7 @@ const MEMBRANE: f64 = 30.0;
 /// `(n!)^4/((2n + 1)((2n)!)^2) r^-2n`, is at most 3e-13 where a rule begins; the last rule begins at 400.
 const POINTS: [(f64, usize); 4] = [(12.0, 7), (40.0, 4), (400.0, 3), (f64::INFINITY, 2)];
 /// Points of the rule for lines.
-const LINE: usize = 40;
+const LINE_POINTS: usize = 40;
 
 static KNOWN: Known<Tensor> = Known::new();
 
@@ -179,7 +179,7 @@ fn along_ray<R: Response>((radial, base): (&Radial<R>, Base), from: f64, to: f64
 
 fn line() -> &'static [(f64, f64)] {
     static KNOWN: OnceLock<Vec<(f64, f64)>> = OnceLock::new();
-    KNOWN.get_or_init(|| gauss_legendre(LINE))
+    KNOWN.get_or_init(|| gauss_legendre(LINE_POINTS))
 }
 
 /// The rules of tensor Gauss.

@@ -21,7 +21,7 @@
 use super::response::{quotient, Response, TERMS};
 
 /// Beyond this s, exponentials are below exp(-40) = 4e-18, so that nothing cancels.
-pub(super) const PLAIN: f64 = 20.0;
+pub(super) const NEGLIGIBLE_EXPONENTIALS: f64 = 20.0;
 
 /// B of one layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +67,7 @@ impl Transfer {
     /// D, which is the same for all loads.
     pub(super) fn denominator(&self, s: f64, Fade { th, less }: Fade) -> f64 {
         let Transfer { lambda, kappa, .. } = *self;
-        if kappa < 0.0 || s > PLAIN {
+        if kappa < 0.0 || s > NEGLIGIBLE_EXPONENTIALS {
             return 1.0 - (lambda + kappa + 4.0 * kappa * s * s) * th + lambda * kappa * th * th;
         }
         // th (sinh^2 s - s^2) = th (sinh s - s) (sinh s - s + 2 s)
@@ -99,7 +99,7 @@ impl Transfer {
 
 impl Response for Transfer {
     fn at(&self, s: f64) -> f64 {
-        if s > PLAIN {
+        if s > NEGLIGIBLE_EXPONENTIALS {
             return 1.0 + self.less_one_plain(s);
         }
         let Transfer { lambda, kappa, .. } = *self;

@@ -35,14 +35,14 @@ use crate::threads::Threads;
 use boxes::{Collect, Count, Extend, Share, BOX, CHUNK, REACH, ROWS};
 
 /// c, as a part of a box.
-const ABSENT: f64 = 0.125;
+const C_PER_BOX: f64 = 0.125;
 /// Least elements of a grid for which the extension saves more time than it takes. Processor times of cold calls with it on all grids, relative to
 /// those without it (table "cold" of `make bench`, programs in turns): 1.2 where the box around C has some 100 or 400 elements (ellipse 16, 32), 1.0
 /// to 1.15 at 2000 to 4000 (ellipse 64, wheel-rail y4_82kN), 0.87 at 15000 (wheel-rail y4_82kN x2), 0.92 and 0.83 at 65000 and 260000 (rough).
-const LEAST: usize = 8192;
+const LEAST_ELEMENTS: usize = 8192;
 /// Least elements in the shorter direction of a grid with the extension. With it, strips of 9 to 36 rows with two periods end in
 /// cycles. Strips of 64 rows and more take half of the iterations.
-const NARROW: usize = 64;
+const LEAST_SIDE: usize = 64;
 const WHAT: &str = "the extended residual";
 
 /// E of fields of K components, and the memory for it.
@@ -61,7 +61,9 @@ pub struct Extension<T: Real, const K: usize> {
 impl<T: Real, const K: usize> Extension<T, K> {
     /// The extension on `grid`. None if it would not save time.
     pub fn if_worthwhile(grid: &Grid, threads: &Threads) -> Result<Option<Extension<T, K>>> {
-        (grid.len() >= LEAST && grid.mx.min(grid.my) >= NARROW).then(|| Extension::new(grid, threads)).transpose()
+        (grid.len() >= LEAST_ELEMENTS && grid.mx.min(grid.my) >= LEAST_SIDE)
+            .then(|| Extension::new(grid, threads))
+            .transpose()
     }
 
     /// Memory for a contact area on `grid`. Before use, call [`Extension::wake`] and [`Extension::count`].
@@ -98,7 +100,7 @@ impl<T: Real, const K: usize> Extension<T, K> {
     /// c, for `compliance`: an element's influence on itself, relative to that without a layer.
     fn absent(&self, compliance: f64) -> T {
         let in_a_box = BOX.min(self.mx) * BOX.min(self.my);
-        T::of(ABSENT * in_a_box as f64 * compliance * compliance)
+        T::of(C_PER_BOX * in_a_box as f64 * compliance * compliance)
     }
 
     /// values = E z of component k, for z zero outside C.

@@ -20,11 +20,11 @@ use crate::rectangle::Rectangle;
 use crate::sums::Sums;
 
 /// Ratio of the sum of a change to the sum of its absolute values from which it carries force; rolling moves pressures without force.
-const CARRIES: f64 = 0.5;
+const CARRYING_RATIO: f64 = 0.5;
 /// Least change of e by a first step along d, relative to the residual.
-const WORTHWHILE: f64 = 0.1;
+const LEAST_FIRST_STEP: f64 = 0.1;
 /// A change below this part of the pressures is round-off.
-const LEAST: f64 = 1e-6;
+const LEAST_CHANGE: f64 = 1e-6;
 
 impl<T: Real> Iteration<T> {
     /// Makes the deflation direction from the change of `state`, the part of a grid of `mx` columns in the window, since the last solution; none if
@@ -59,7 +59,7 @@ impl<T: Real> Iteration<T> {
             });
         }
         let [sum, absolute, all, measures @ ..] = sums.values();
-        if f64::abs(sum) > CARRIES * absolute && absolute > LEAST * all {
+        if f64::abs(sum) > CARRYING_RATIO * absolute && absolute > LEAST_CHANGE * all {
             self.deflation.take_measures(measures);
         }
         Ok(0)
@@ -144,7 +144,7 @@ impl<T: Real> Iteration<T> {
             |block| block.sum([h, u], [&d[..]], formula),
         );
         let gamma = rd / energy;
-        if !(gamma.is_finite() && gamma * gamma * size > WORTHWHILE * WORTHWHILE * rr) {
+        if !(gamma.is_finite() && gamma * gamma * size > LEAST_FIRST_STEP * LEAST_FIRST_STEP * rr) {
             return;
         }
         let State { p, contact, .. } = state;

@@ -32,24 +32,24 @@ use crate::scene::Load;
 use crate::sums::{in_blocks, mean};
 
 /// Residual of the solve of the first force; of the next ones, relative to the distance between approaches.
-const LOOSE: f64 = 0.1;
-const PART: f64 = 0.3;
+const FIRST_RESIDUAL: f64 = 0.1;
+const RESIDUAL_PER_DISTANCE: f64 = 0.3;
 /// Largest factor of a change of the force (60 lines of 3000 and 9600 elements take at most 85 products; with 4 they take 400), and largest
 /// extrapolation of p, in its last change.
 const FURTHEST: f64 = 2.0;
 const FURTHEST_P: f64 = 4.0;
 /// A force is near if m has to change by at most this part of its last change, and by less than this.
-const NEAR: (f64, f64) = (0.3, 0.5);
+const NEAR_FORCE: (f64, f64) = (0.3, 0.5);
 /// Allowed error of the approach, relative to the tolerance.
-const ENOUGH: f64 = 0.5;
+const APPROACH_ERROR: f64 = 0.5;
 /// Most forces; most iterations along the change of p, unless these reduced the residual to this part.
-const MOST: usize = 20;
-const ALONG: u64 = 40;
-const BROUGHT: f64 = 0.1;
+const MOST_FORCES: usize = 20;
+const MOST_ALONG: u64 = 40;
+const ALONG_GAIN: f64 = 0.1;
 /// Round-off of u in single precision, in the residual and in the approach.
 const ROUNDING: f64 = 1e-6;
 /// The part of the elements in C above which a uniform pressure is added.
-const MANY: f64 = 0.25;
+const UNIFORM_SHARE: f64 = 0.25;
 
 /// Pressures of a force, with its approach and residual.
 #[derive(Default)]
@@ -110,12 +110,12 @@ impl FindForce {
         }
         let (before, mean) = (task.monitor.count.cycles, mean(&task.state.h));
         let mut rounding = if task.state.u_is == Freshness::Exact { 0.0 } else { ROUNDING };
-        for _ in 0..MOST {
+        for _ in 0..MOST_FORCES {
             let most = goal.max_cycles.saturating_sub(task.monitor.count.cycles - before);
-            let residual = goal.tolerance.max(self.tolerance.unwrap_or(LOOSE));
+            let residual = goal.tolerance.max(self.tolerance.unwrap_or(FIRST_RESIDUAL));
             let inner = Goal { tolerance: residual, max_cycles: most.min(at_once), ..*goal };
             let (end, found) = self.run_force(task, &inner, mean)?;
-            let is_enough = found.off() <= f64::max(rounding, ENOUGH * goal.tolerance);
+            let is_enough = found.off() <= f64::max(rounding, APPROACH_ERROR * goal.tolerance);
             let goes_on = end == End::Met || end == End::Limit && most > at_once;
             if !goes_on || is_enough && residual <= f64::max(rounding, goal.tolerance) {
                 self.tolerance = Some(goal.tolerance);
@@ -123,9 +123,9 @@ impl FindForce {
             }
             rounding = ROUNDING;
             if end == End::Met && self.goes_along(&found) {
-                let along = Goal { max_cycles: most.min(ALONG), ..*goal };
+                let along = Goal { max_cycles: most.min(MOST_ALONG), ..*goal };
                 let end = self.run_along(task, &along)?;
-                self.is_near |= end == End::Limit && task.monitor.count.residual < BROUGHT * residual;
+                self.is_near |= end == End::Limit && task.monitor.count.residual < ALONG_GAIN * residual;
                 self.has_failed = !self.is_near;
                 if !matches!(end, End::Stagnated | End::Breakdown) {
                     return Ok(end);
@@ -134,9 +134,9 @@ impl FindForce {
             if is_enough {
                 self.tolerance = Some(goal.tolerance);
             } else if end == End::Met && residual > goal.tolerance && found.may_be_loose() {
-                self.tolerance = Some(LOOSE * residual);
+                self.tolerance = Some(FIRST_RESIDUAL * residual);
             } else {
-                self.tolerance = Some(residual.min(PART * found.off()).max(ROUNDING));
+                self.tolerance = Some(residual.min(RESIDUAL_PER_DISTANCE * found.off()).max(ROUNDING));
                 if !self.change(task.state, &found)? {
                     return Ok(End::Stagnated);
                 }
@@ -172,8 +172,8 @@ impl FindForce {
     fn goes_along(&self, found: &Found) -> bool {
         let Known { p, approach, .. } = &self.before;
         let (m, missing) = (found.m(found.approach), found.m(found.wanted) - found.m(found.approach));
-        let is_near = missing.abs() <= NEAR.0 * (m - found.m(*approach)).abs();
-        let is_near = is_near && (found.mean.is_none() || missing.abs() < NEAR.1);
+        let is_near = missing.abs() <= NEAR_FORCE.0 * (m - found.m(*approach)).abs();
+        let is_near = is_near && (found.mean.is_none() || missing.abs() < NEAR_FORCE.1);
         !p.is_empty() && !self.has_failed && !found.is_full() && is_near && self.clearness(found) > 1.0
     }
 
@@ -241,7 +241,7 @@ impl FindForce {
         let (n, is_first) = (state.p.len(), self.before.p.is_empty());
         let by = Some((next - force) / (force - self.before.force)).filter(|by| by.abs() <= FURTHEST_P);
         let by = if is_first { 0.0 } else { by.unwrap_or(0.0) };
-        let many = MANY * (n as f64) < state.contact_count() as f64;
+        let many = UNIFORM_SHARE * (n as f64) < state.contact_count() as f64;
         let keeps = is_first || found.off() > found.residual * self.clearness(found).min(1.0);
         reserve(&mut self.before.p, n, "pressures of the force before")?;
         self.before.p.resize(n, 0.0);

@@ -13,7 +13,7 @@ use crate::sums::Sums;
 
 /// Penetration at which an element enters, in standard deviations of the residual. Three lines of 9600 elements with two periods take 43, 66 and 48
 /// products with 3, and 58, 80 and 62 with 10 (by force, from a uniform pressure). With 1 they do not converge.
-const ALLOWED: f64 = 3.0;
+const ALLOWED_DEVIATIONS: f64 = 3.0;
 
 impl<T: Real> Iteration<T> {
     /// Whether the grid is a line in plane strain.
@@ -33,7 +33,7 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// Sets the penetration from which exterior elements enter: the mean of the residual, in z, plus [`ALLOWED`] standard deviations. Smaller
+    /// Sets the penetration from which exterior elements enter: the mean of the residual, in z, plus [`ALLOWED_DEVIATIONS`] standard deviations. Smaller
     /// penetrations are as uncertain as the residual; most such elements would leave at once. With a prescribed approach the mean may be negative. As
     /// with a prescribed force, distances are relative to their mean over C.
     pub(super) fn find_allowance(&mut self) {
@@ -41,7 +41,7 @@ impl<T: Real> Iteration<T> {
         sums.add([], [&self.z], |[], [r]| [r, r * r]);
         let ([sum, squares], count) = (sums.values(), self.segments.count().max(1) as f64);
         let mean = sum / count;
-        self.allowance = mean + ALLOWED * (squares / count - mean * mean).max(0.0).sqrt();
+        self.allowance = mean + ALLOWED_DEVIATIONS * (squares / count - mean * mean).max(0.0).sqrt();
     }
 
     /// Sets the deflation direction to the pressure of a flat punch on C, with mean 1 there.

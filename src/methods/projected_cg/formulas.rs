@@ -7,7 +7,7 @@ use super::step_sums::Update;
 use crate::contact::AdmissibleSet;
 
 /// An element was clipped if the forecast step leaves at most this part of its pressure: round-off of single precision.
-pub(super) const HELD_BACK: f64 = 1e-6;
+pub(super) const CLIPPED_SHARE: f64 = 1e-6;
 
 /// The sum of `h - approach + u`, u being that after `update` without w.
 #[derive(Clone, Copy)]
@@ -110,7 +110,7 @@ pub(super) struct Free {
 impl Terms<1, 1, 3> for Free {
     #[inline(always)]
     fn of<S: Simd>(&self, [p]: [Vector<S>; 1], [t]: [Vector<S>; 1]) -> [Vector<S>; 3] {
-        let held = (p + self.forecast * t).is_at_most(HELD_BACK * p);
+        let held = (p + self.forecast * t).is_at_most(CLIPPED_SHARE * p);
         [t, t.abs(), held.choose(t.all(0.0), t.all(1.0))]
     }
 }
@@ -220,14 +220,14 @@ impl<Set: AdmissibleSet> Wanted<2> for Leaving<Set> {
         let mut leaves = to.is_below(p.all(0.0));
         let foreseen = forecast.map(|forecast| p + forecast * t);
         if let Some(foreseen) = foreseen {
-            leaves = leaves | foreseen.is_at_most(HELD_BACK * p);
+            leaves = leaves | foreseen.is_at_most(CLIPPED_SHARE * p);
         }
         if Set::LIMITED {
             // Beyond the last element a vector is padded.
             let limits = p.of_each(|lane| if first + lane < *elements { set.limit(first + lane) } else { 0.0 });
             leaves = leaves | limits.is_below(to);
             if let Some(foreseen) = foreseen {
-                leaves = leaves | (limits * (1.0 - HELD_BACK)).is_at_most(foreseen);
+                leaves = leaves | (limits * (1.0 - CLIPPED_SHARE)).is_at_most(foreseen);
             }
         }
         leaves

@@ -51,12 +51,12 @@ use crate::progress::Goal;
 
 /// A correction is deferred if it is at most this fraction of the step, both as sums of absolute pressures. Measured: the number of
 /// products hardly varies for values from 0.02 to 0.4.
-pub(super) const DEFERRED: f64 = 0.1;
+pub(super) const LARGEST_DEFERRED: f64 = 0.1;
 /// The length of a first step without a direction: `2/(1 + 4)`, the optimum for eigenvalues from 1 to 4.
 const FIRST_STEP: f64 = 0.4;
 /// The longest step over the forecast one. Elements were clipped for the forecast length, and a longer step truncates far more than
 /// it gains. Strips of two periods do not converge without this bound.
-const LONGEST: f64 = 2.0;
+const LONGEST_STEP: f64 = 2.0;
 /// The rounding of directions leaves short waves in p that are hardly visible in the residual. So without a fresh u the residual is
 /// reduced to no less than this many roundings of its first value.
 const ROUNDINGS: f64 = 800.0;
@@ -217,7 +217,7 @@ impl<T: Real> Iteration<T> {
             return None;
         }
         let alpha = self.step_length(&step, search, S::LIMITED && state.has_limited());
-        let alpha = held_back.map_or(alpha, |forecast| alpha.min(LONGEST * forecast));
+        let alpha = held_back.map_or(alpha, |forecast| alpha.min(LONGEST_STEP * forecast));
         let held_back = search.believed(alpha);
         let near = S::LIMITED && (state.reached_limit || self.reaches_limit(state, set, alpha, held_back));
         if near {
@@ -241,7 +241,7 @@ impl<T: Real> Iteration<T> {
         let mut update = Update { alpha, gamma, ..Update::default() };
         let sums = step.energy.map(|energy| self.after_truncation(state, energy.after(alpha), alpha, included));
         let (limited, deferred) = (S::LIMITED && state.has_limited(), self.truncation.sum());
-        if deferred > DEFERRED * alpha.abs() * step.t1 || search.forecast.is_none() && deferred > 0.0 {
+        if deferred > LARGEST_DEFERRED * alpha.abs() * step.t1 || search.forecast.is_none() && deferred > 0.0 {
             self.correct_now();
             update.is_corrected = true;
             if limited {
@@ -267,7 +267,7 @@ impl<T: Real> Iteration<T> {
         let alpha = step.rt / step.tq;
         search.tq = step.tq;
         let includes = std::mem::take(&mut search.is_first) || limited;
-        if includes && self.truncation.sum() > DEFERRED * alpha.abs() * step.t1 {
+        if includes && self.truncation.sum() > LARGEST_DEFERRED * alpha.abs() * step.t1 {
             search.tq = 0.0;
             return search.forecast.unwrap_or(1.0);
         }

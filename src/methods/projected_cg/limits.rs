@@ -18,7 +18,7 @@
 //! u, as both ends of the step are then exact. The next product includes a large deferred correction as a whole, by a step of the forecast length.
 
 use super::formulas::Carried;
-use super::formulas::HELD_BACK;
+use super::formulas::CLIPPED_SHARE;
 use super::passes::none;
 use super::step_sums::Update;
 use super::vectors::{Beyond, Iteration};
@@ -31,11 +31,11 @@ use crate::scene::Load;
 /// Elements wait at their limit while their e is less than this part of the residual on C. Measured on 140 scenes
 /// (`examples/pressure_limits`): at 0, 0.1, 0.3, 0.4, 1 the work is 2.0, 1.71, 1.71, 1.7, 1.78 times that of the plain scene in the mean
 /// and 7.3, 4.2, 3.3, 3.3, 3.3 in the worst of 48.
-const WAITS: f64 = 0.4;
+const WAITING_E: f64 = 0.4;
 
 /// Relative excess of force above which p is scaled down. Measured on 36 scenes (ellipse and rough surface of 64 to 256, limits of 0.3 to 0.9 of
 /// the greatest pressure): without scaling, the work is 1.16 times as much in the mean and 2.2 times in the worst case.
-const TOO_MUCH: f64 = 0.05;
+const FORCE_EXCESS: f64 = 0.05;
 
 impl Beyond {
     /// Forgets the iteration before.
@@ -47,7 +47,7 @@ impl Beyond {
     pub(super) fn waits(&self, h: &[f64], u: &[f64], at_limit: &[bool], approach: f64) -> bool {
         let distances =
             h.iter().zip(u).zip(at_limit).filter(|(_, &at_limit)| at_limit).map(|((h, u), _)| h - approach + u);
-        distances.filter(|e| *e > 0.0).map(|e| e * e).sum::<f64>() < WAITS * WAITS * self.residual
+        distances.filter(|e| *e > 0.0).map(|e| e * e).sum::<f64>() < WAITING_E * WAITING_E * self.residual
     }
 }
 
@@ -67,7 +67,7 @@ impl<T: Real> Iteration<T> {
         }
         let pressures = force / state.grid.element_area();
         let carried = state.pressures(&self.threads);
-        if carried > (1.0 + TOO_MUCH) * pressures {
+        if carried > (1.0 + FORCE_EXCESS) * pressures {
             let factor = pressures / carried;
             state.p.iter_mut().for_each(|p| *p *= factor);
             self.truncation.scale(factor);
@@ -143,7 +143,7 @@ impl<T: Real> Iteration<T> {
             let beyond = block.segments().any(|(elements, _)| {
                 let steps =
                     state.p[elements.clone()].iter().zip(&t[elements.clone()]).zip(&state.contact[elements.clone()]);
-                let to = |(p, t): (&f64, &T)| (p + farthest * t.to_double()) * (1.0 + 2.0 * HELD_BACK);
+                let to = |(p, t): (&f64, &T)| (p + farthest * t.to_double()) * (1.0 + 2.0 * CLIPPED_SHARE);
                 set.any_beyond(elements.start, steps.map(|(step, inside)| if *inside { to(step) } else { 0.0 }))
             });
             [f64::from(u8::from(beyond))]

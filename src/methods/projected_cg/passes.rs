@@ -10,7 +10,7 @@ use crate::scene::Load;
 /// Largest force of a direction without force, relative to the sum of |t|.
 const SMALL_FORCE: f64 = 1e-2;
 /// Most Newton steps.
-const LOWERINGS: u32 = 8;
+const NEWTON_STEPS: u32 = 8;
 
 /// No arrays of the iteration's precision.
 pub(super) const fn none<'a, T>() -> [&'a [T]; 0] {
@@ -116,7 +116,7 @@ impl<T: Real> Iteration<T> {
     /// Lowers t where it is not clipped until its sum over C is `missing`, as clipped elements would add to the force. The sum is a convex function
     /// of the shift: Newton's method converges from one side.
     fn remove_force(&mut self, state: &State, missing: f64, forecast: f64) {
-        for _ in 0..LOWERINGS {
+        for _ in 0..NEWTON_STEPS {
             let (t, formula) = (&self.t[..], Free { forecast });
             let [sum, absolute, free] = self.segments.sum(
                 &state.contact,

@@ -25,14 +25,14 @@ use crate::memory::{reserve, zeros};
 use crate::operator::fft::Real;
 
 /// Least elements of a line with punches.
-const LEAST: usize = 64;
+const LEAST_ELEMENTS: usize = 64;
 /// Elements of a piece up to which its energy is computed from g; that of longer ones is read from the kernel.
-const SHORT: usize = 8;
+const SHORT_PIECE: usize = 8;
 /// The least energy of a joint relative to that of one element. Coefficients of elastic bodies are above it.
 const LEAST_ENERGY: f64 = 1e-3;
 /// Factor on the forces, which have the least eigenvalues of M' A. With 1 conjugate gradients take up to 1.25 times as many iterations, with 4 the
 /// same.
-const FORCES: f64 = 2.0;
+const FORCES_FACTOR: f64 = 2.0;
 const WHAT: &str = "the pieces of a line";
 
 /// The coefficient at an offset along a line.
@@ -90,7 +90,7 @@ impl Punches {
     pub(super) fn serve(influence: &Coefficients, grid: &Grid) -> bool {
         let n = grid.len();
         let fall = |k: usize| along(influence, grid, k) - along(influence, grid, 2 * k);
-        let is_line = n == grid.mx.max(grid.my) && n >= LEAST;
+        let is_line = n == grid.mx.max(grid.my) && n >= LEAST_ELEMENTS;
         is_line && !influence.depends_on_place() && fall(n / 8) > 0.5 * fall(1)
     }
 
@@ -183,7 +183,7 @@ impl Punches {
     /// (g, A g) of a piece.
     fn energy(&self, start: usize, end: usize) -> f64 {
         let g = &self.weights[start..end];
-        if g.len() > SHORT {
+        if g.len() > SHORT_PIECE {
             return self.at(0.25 * g.len() as f64);
         }
         let displaced = |i: usize| -> f64 { g.iter().enumerate().map(|(j, g)| g * self.kernel[i.abs_diff(j)]).sum() };
@@ -245,7 +245,7 @@ impl Punches {
         for (&(start, end), force) in self.pieces.iter().zip(&self.values) {
             let piece = start as usize..end as usize;
             let (z, g) = (&mut z[piece.clone()], &self.weights[piece]);
-            let missing = FORCES * force - z.iter().map(|z| z.to_double()).sum::<f64>();
+            let missing = FORCES_FACTOR * force - z.iter().map(|z| z.to_double()).sum::<f64>();
             z.iter_mut().zip(g).for_each(|(z, g)| *z += T::of(missing * g));
         }
     }

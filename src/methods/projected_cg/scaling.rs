@@ -8,7 +8,7 @@ use crate::threads::Threads;
 
 /// Largest exponent of two of numbers that are not scaled. With sums over 2^24 elements, a tolerance of 2^-40 and the inverse of A, results stay
 /// within 2^-126 to 2^127.
-const AS_IT_IS: i32 = 48;
+const LARGEST_EXPONENT: i32 = 48;
 
 /// Factors from the scene's units to the iteration's.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,9 +104,9 @@ fn exponent(value: f64) -> i32 {
     (value.to_bits() >> 52 & 0x7ff) as i32 - 1023
 }
 
-/// 1 for a value within [`AS_IT_IS`], else the power of two that brings it to [1, 2).
+/// 1 for a value within [`LARGEST_EXPONENT`], else the power of two that brings it to [1, 2).
 fn towards_one(value: f64) -> f64 {
-    if exponent(value).abs() <= AS_IT_IS {
+    if exponent(value).abs() <= LARGEST_EXPONENT {
         1.0
     } else {
         to_one(value)

@@ -34,14 +34,14 @@ const FINE_AIM: f64 = 0.5;
 const NOISE: f64 = 25.0;
 /// Most iterations before a certificate. With the [patience](Step::policy) of three certificates, an iteration that does not halve its violation in
 /// 180 iterations ends. Convergent ones need fewer for all digits, or halve it in about 40.
-const ROUND: u64 = 60;
+const MOST_ITERATIONS: u64 = 60;
 /// An iteration that stagnates above this residual does so by the contact area, which a fresh u does not change; below, by round-off.
 const STALLED: f64 = 0.1;
 /// Residual at which the first iteration on the finest grid ends if contact is scattered: elements that enter from outside the window raise the
 /// residual to about this, so that smaller residuals are wasted.
-const LOOK: f64 = 1e-2;
+const SCATTERED_RESIDUAL: f64 = 1e-2;
 /// Largest ratio of the residual by a fresh product to the recursive one for a valid last update.
-const BELIEVED: f64 = 2.0;
+const VALID_UPDATE_RATIO: f64 = 2.0;
 
 /// The method's windows, operators and coarser grids.
 pub struct ProjectedCg {
@@ -185,7 +185,7 @@ impl ProjectedCg {
         if was != Freshness::Exact {
             return f64::INFINITY;
         }
-        let believed = residual_norm(state) <= BELIEVED * self.recursive * norm_of_distance(state);
+        let believed = residual_norm(state) <= VALID_UPDATE_RATIO * self.recursive * norm_of_distance(state);
         if believed {
             last
         } else {
@@ -226,9 +226,9 @@ impl<S: AdmissibleSet> Step<S> for ProjectedCg {
         }
         let aim = if goal.tolerance < f64::from(f32::EPSILON) { FINE_AIM } else { AIM };
         let tolerance = if goal.by_update() { goal.tolerance } else { aim * goal.tolerance };
-        let max_cycles = goal.max_cycles.saturating_sub(monitor.count.cycles).min(ROUND);
+        let max_cycles = goal.max_cycles.saturating_sub(monitor.count.cycles).min(MOST_ITERATIONS);
         let looks = std::mem::take(&mut self.is_new) && !goal.by_update() && self.finest.is_scattered(state);
-        let tolerance = if looks { tolerance.max(LOOK) } else { tolerance };
+        let tolerance = if looks { tolerance.max(SCATTERED_RESIDUAL) } else { tolerance };
         let inner = Goal { tolerance, max_cycles, ..*goal };
         let by_approach = self.predicted && matches!(state.load, Load::Approach(_));
         let whole = self.whole_operator(problem, state)?;
@@ -236,7 +236,7 @@ impl<S: AdmissibleSet> Step<S> for ProjectedCg {
         let (level, whole, finest) = (&mut self.finest, whole.as_deref(), problem.grid.len());
         let mut on_finest = LevelTask { level, state, set: *set, whole, finest, monitor };
         let end = if FindForce::serves(&on_finest, &inner) {
-            let max_cycles = goal.max_cycles.saturating_sub(on_finest.monitor.count.cycles).min(4 * ROUND);
+            let max_cycles = goal.max_cycles.saturating_sub(on_finest.monitor.count.cycles).min(4 * MOST_ITERATIONS);
             self.find_force.run(&mut on_finest, &Goal { max_cycles, ..inner }, u64::MAX)?
         } else {
             on_finest.run(was, last, &inner)?

@@ -28,11 +28,11 @@ use crate::scene::Load;
 use crate::sums::{in_blocks, Sums};
 
 /// Ratio to the mean above which pressures are those of few elements.
-const FEW: f64 = 8.0;
+const CONCENTRATED_RATIO: f64 = 8.0;
 /// Part of the force beyond this ratio from which few elements carry much.
-const MUCH: f64 = 0.01;
+const CONCENTRATED_FORCE: f64 = 0.01;
 /// d is set up again when C has changed by its number of elements over this.
-const ANOTHER: u64 = 4;
+const CHANGED_SHARE: u64 = 4;
 
 impl<T: Real> Iteration<T> {
     /// Sets up the deflation direction, if the load needs one, no change is known and there is memory. Returns the products that this takes.
@@ -68,9 +68,9 @@ impl<T: Real> Iteration<T> {
         let count = self.segments.count() as u64;
         if self.deflation.is_there() {
             let grown = if self.is_plane_strain() { count.saturating_sub(self.deflation.elements) } else { 0 };
-            self.deflation.is_uniform && ANOTHER * grown.max(self.deflation.left() as u64) > count
+            self.deflation.is_uniform && CHANGED_SHARE * grown.max(self.deflation.left() as u64) > count
         } else {
-            iterations.is_power_of_two() && ANOTHER * cycle.changes > count
+            iterations.is_power_of_two() && CHANGED_SHARE * cycle.changes > count
         }
     }
 }
@@ -79,7 +79,7 @@ impl<T: Real> Iteration<T> {
 fn few_carry_much(state: &State, count: usize) -> bool {
     let sum = in_blocks(state.p.iter().map(|p| p.max(0.0)));
     let (mean, mut sums) = (sum / count as f64, Sums::new());
-    sums.add::<f64, 1, 0>([&state.p], [], |[p], []| [(p - FEW * mean).max(0.0)]);
+    sums.add::<f64, 1, 0>([&state.p], [], |[p], []| [(p - CONCENTRATED_RATIO * mean).max(0.0)]);
     let [beyond] = sums.values();
-    beyond > MUCH * sum
+    beyond > CONCENTRATED_FORCE * sum
 }

@@ -17,12 +17,12 @@ use crate::threads::Threads;
 /// ellipse 64 and wheel-rail y4_82kN took 1.07 and 1.13 times as long. With none they took the same time. Additional margin on each side: the length
 /// of the area divided by this. With 32, cold calls on ellipses of 512 to 2048 took 1.03 to 1.06 times as long.
 const MARGIN: usize = 2;
-const PART: usize = 64;
+const MARGIN_DIVISOR: usize = 64;
 /// Largest part of the grid for a window with its own operator. With 0.6, steps in time on ellipse 64 and 256 and on both wheel-rail
 /// contacts took 1.1 to 1.2 times as long, and cold calls 1.0 to 1.35 times. With 0.95 they took the same time.
-const WORTHWHILE: f64 = 0.85;
+const LARGEST_WINDOW: f64 = 0.85;
 /// A window stays while contact spans more than this part of it.
-const FILLED: f64 = 0.3;
+const LEAST_FILLED: f64 = 0.3;
 /// Least elements of a grid with windows.
 const SMALLEST_GRID: usize = 64 * 64;
 
@@ -38,7 +38,7 @@ pub(super) fn around(state: &State, current: Option<&Rectangle>, even: bool, thr
         return current.clone();
     }
     let span = |range: &Range<usize>, m: usize| {
-        let margin = MARGIN + range.len() / PART;
+        let margin = MARGIN + range.len() / MARGIN_DIVISOR;
         let (start, end) = (range.start.saturating_sub(margin), (range.end + margin).min(m));
         // The period is 2k - 2 for k elements of an even kernel, else 2k - 1: the window fills it.
         let (less, length): (_, fn(usize) -> usize) = if even { (2, length_for_stages) } else { (1, good_length) };
@@ -47,7 +47,7 @@ pub(super) fn around(state: &State, current: Option<&Rectangle>, even: bool, thr
         start..start + length
     };
     let window = Rectangle { x: span(&area.x, grid.mx), y: span(&area.y, grid.my) };
-    if window.count() as f64 <= WORTHWHILE * grid.len() as f64 {
+    if window.count() as f64 <= LARGEST_WINDOW * grid.len() as f64 {
         window
     } else {
         full
@@ -59,7 +59,7 @@ fn serves(window: &Rectangle, area: &Rectangle, grid: &Grid) -> bool {
     let has_room = |outer: &Range<usize>, inner: &Range<usize>, m: usize| {
         (outer.start == 0 || outer.start < inner.start) && (outer.end == m || inner.end < outer.end)
     };
-    let fills = area.count() as f64 > FILLED * window.count() as f64;
+    let fills = area.count() as f64 > LEAST_FILLED * window.count() as f64;
     has_room(&window.x, &area.x, grid.mx) && has_room(&window.y, &area.y, grid.my) && fills
 }
 

@@ -15,14 +15,14 @@ use crate::scene::Load;
 use crate::sums::in_blocks;
 
 /// Relative residual of a direction, to e on the free elements: the set of free elements changes before more accuracy pays.
-const ENOUGH: f64 = 0.25;
+const RESIDUAL_RATIO: f64 = 0.25;
 /// Residual of a direction over the residual wanted, below which no iteration goes.
-const NEEDED: f64 = 0.3;
+const WANTED_RESIDUAL_SHARE: f64 = 0.3;
 /// A uniform pressure displaces nothing if its displacement is below this part of that of each element by itself: on all elements it is
 /// round-off, on all but one as large as that of the one.
 const ROUND_OFF: f64 = 1e-10;
 /// If a uniform pressure displaces nothing, t takes it as displacing this part of the elements' own, and goes to the nearest bound at least.
-const TAKEN: f64 = 1e-2;
+const ASSUMED_DISPLACEMENT: f64 = 1e-2;
 
 impl ProjectedNewton {
     /// Finds t.
@@ -44,8 +44,8 @@ impl ProjectedNewton {
             let norm = dot(&self.r, &self.r).sqrt();
             if k == 0 {
                 // A few violating elements may be below the residual allowed in C: they are solved for all the same.
-                let needed = NEEDED * task.goal.tolerance * scale;
-                target = if norm > needed { needed.max(ENOUGH * norm) } else { ENOUGH * norm };
+                let needed = WANTED_RESIDUAL_SHARE * task.goal.tolerance * scale;
+                target = if norm > needed { needed.max(RESIDUAL_RATIO * norm) } else { RESIDUAL_RATIO * norm };
             }
             if !(norm > target) || task.is_interrupted() {
                 break;
@@ -85,7 +85,7 @@ impl ProjectedNewton {
         let alone = task.problem.self_influence() * count as f64;
         let work = dot(&self.along, &self.along_product);
         let is_free = work < ROUND_OFF * alone;
-        let displaced = if is_free { TAKEN * alone } else { work };
+        let displaced = if is_free { ASSUMED_DISPLACEMENT * alone } else { work };
         self.uniform_product.copy_from_slice(&self.along_product);
         let mut amount = in_blocks(self.r.iter().copied()) / displaced;
         if is_free && amount != 0.0 {

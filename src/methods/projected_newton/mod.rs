@@ -31,15 +31,15 @@ use crate::sums::in_blocks;
 const MEMORY: &str = "the workspace of the projected Newton method";
 
 /// Most conjugate gradients of one direction.
-const MOST: u32 = 16;
+const MOST_GRADIENTS: u32 = 16;
 /// Steps below this part of d are short. If the best part is at least 1/2, all of d lowers the energy as well (a parabola).
-const SHORT: f64 = 0.5;
+const SHORT_STEP: f64 = 0.5;
 /// Directions recomputed without the elements that t would move beyond a bound; after these all elements at a bound stay there.
-const TRIES: u32 = 3;
+const MOST_RECOMPUTED: u32 = 3;
 /// Steps lower the energy, but not always the violation: with limits that differ a thousandfold it may stagnate for over a hundred steps.
 const PATIENCE: u32 = 400;
 /// Factor on t if p + t leads uphill.
-const SHORTER: f64 = 0.25;
+const STEP_RATIO: f64 = 0.25;
 /// Shortest t, relative to the first: if it leads uphill, t is round-off.
 const ROUND_OFF: f64 = 1e-9;
 
@@ -91,7 +91,7 @@ impl<S: AdmissibleSet> Step<S> for ProjectedNewton {
             }
             self.free = zeros(n, MEMORY)?;
         }
-        (self.most, self.began) = (MOST, false);
+        (self.most, self.began) = (MOST_GRADIENTS, false);
         Ok(())
     }
 
@@ -155,13 +155,14 @@ impl ProjectedNewton {
             tries += 1;
             self.find_direction(task)?;
             let slope = self.project(task.state, task.set, 1.0);
-            if slope < 0.0 || !keep_at_bounds((task.state, task.set), &self.t, &mut self.free, tries > TRIES) {
+            if slope < 0.0 || !keep_at_bounds((task.state, task.set), &self.t, &mut self.free, tries > MOST_RECOMPUTED)
+            {
                 break slope;
             }
         };
         let mut length = 1.0;
         while !(slope < 0.0 || length < ROUND_OFF) {
-            length *= SHORTER;
+            length *= STEP_RATIO;
             slope = self.project(task.state, task.set, length);
         }
         self.t.iter_mut().for_each(|t| *t *= length);
@@ -173,7 +174,7 @@ impl ProjectedNewton {
         task.problem.displace(&self.change, &mut self.change_product)?;
         let first = self.length(slope);
         let mut found = first;
-        if first.part < SHORT {
+        if first.part < SHORT_STEP {
             // The first d is kept in vectors that are free now.
             std::mem::swap(&mut self.change, &mut self.r);
             std::mem::swap(&mut self.change_product, &mut self.z);
@@ -186,9 +187,9 @@ impl ProjectedNewton {
                 found = first;
             }
         }
-        self.most = if first.part < SHORT { (self.most / 2).max(1) } else { (2 * self.most).min(MOST) };
+        self.most = if first.part < SHORT_STEP { (self.most / 2).max(1) } else { (2 * self.most).min(MOST_GRADIENTS) };
         // All of d lowers the energy as well, and moves elements to their bounds.
-        let part = if found.part >= SHORT { 1.0 } else { found.part };
+        let part = if found.part >= SHORT_STEP { 1.0 } else { found.part };
         Ok(Length { part, ..found })
     }
 

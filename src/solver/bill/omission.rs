@@ -183,7 +183,7 @@ fn alike(bodies: &Bodies) -> Bodies {
 }
 
 /// Wave number times thickness of a long wave. The error of a thin layer is of this order.
-const LONG: f64 = 1e-3;
+const LONG_WAVE: f64 = 1e-3;
 
 /// The thin layer with the response of the coatings to long waves, together with the scene's layer. None if that layer differs between elements, or
 /// if the coatings are stiffer than the bodies.
@@ -196,7 +196,7 @@ fn as_layer<'a>(scene: &Scene<'a>) -> Option<Layer<'a>> {
     let (plain, coating) = (scene.plain(), scene.coating?);
     let thickest =
         (0..2).filter_map(|body| coating.in_effect(body, &plain)).map(|layer| layer.thickness).fold(0.0, f64::max);
-    let wave_number = LONG / thickest;
+    let wave_number = LONG_WAVE / thickest;
     // Half-spaces alone have the response 2/(E* k).
     let added = coating.compliance(&plain, wave_number).ok()? - 2.0 * scene.bodies.compliance() / wave_number;
     if added < 0.0 {

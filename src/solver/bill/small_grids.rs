@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::asked::BillOptions;
 use super::effort::effort;
 use super::omission::Omission;
-use super::verdict::{self, BillRow, Measured, MOVES};
+use super::verdict::{self, BillRow, Measured, MOST_MOVED};
 use crate::effects;
 use crate::error::{require, Error, Result};
 use crate::grid::Grid;
@@ -17,15 +17,15 @@ use crate::solver::{Options, Outcome, ProgressCallback};
 use crate::threads::Threads;
 
 /// The least effort of a bill in ns: below a tenth of a second, as counts are not exact.
-const EFFORT: f64 = 7e7;
+const LEAST_EFFORT: f64 = 7e7;
 /// The effort of a bill relative to the scene's.
-const PART: f64 = 0.05;
+const EFFORT_SHARE: f64 = 0.05;
 /// The power of the elements with which the effort of a scene grows.
 const GROWTH: f64 = 1.1;
 /// Bound on the ratio of the effort of the next grid.
-const NEXT: f64 = 5.0;
+const NEXT_GRID_RATIO: f64 = 5.0;
 /// Least elements of the first grid in its longer direction.
-const FIRST: usize = 16;
+const FIRST_GRID: usize = 16;
 /// Elements that change sides at once: four with two planes of symmetry. Areas do not resolve smaller changes.
 const JUMP: f64 = 4.0;
 /// Tolerance of solves relative to the target.
@@ -134,7 +134,7 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
         }
         let elements = self.scene.grid.mx.max(self.scene.grid.my);
         // At least two grids, as one alone gives no errors.
-        let first = -((elements / FIRST).max(2).ilog2() as i32);
+        let first = -((elements / FIRST_GRID).max(2).ilog2() as i32);
         let mut spent = 0.0;
         for doublings in first..=0 {
             let entered = Instant::now();
@@ -144,11 +144,11 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
             let effort: f64 = self.variants.iter().map(|variant| variant.effort).sum();
             spent += effort;
             let over = if self.asked.max_seconds > 0.0 {
-                let next = entered.elapsed().as_secs_f64() * NEXT;
+                let next = entered.elapsed().as_secs_f64() * NEXT_GRID_RATIO;
                 began.elapsed().as_secs_f64() + next > self.asked.max_seconds
             } else {
                 let whole = self.variants[0].effort * self.ratio.powf(GROWTH);
-                spent + NEXT * effort > EFFORT.max(PART * whole)
+                spent + NEXT_GRID_RATIO * effort > LEAST_EFFORT.max(EFFORT_SHARE * whole)
             };
             if doublings > first && over {
                 break;
@@ -211,7 +211,7 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
                 if let (Ok(value), Some(Ok(before))) = (variant.values[q], as_it_is.get(q)) {
                     // On the scene's own grid the change of an area is exact.
                     let by_elements = match quantity.is_area() && doublings < 0 {
-                        true => (JUMP * grid.element_area()).min(MOVES * variant.moved * before.abs()),
+                        true => (JUMP * grid.element_area()).min(MOST_MOVED * variant.moved * before.abs()),
                         false => 0.0,
                     };
                     variant.changes[q].add(doublings, value - before, by_elements + found.residual * before.abs());

@@ -1,14 +1,14 @@
 //! One row of the bill: a change, its error, and the verdict.
 
 use super::omission::Omission;
-use crate::solver::quantities::{Lack, Quantity, Sequence, SUM};
+use crate::solver::quantities::{Lack, Quantity, Sequence, SUM_RATIO};
 
 /// Bound on the relative change of an area, or of a peak that elements do not resolve, over the largest of the other quantities. The area
 /// of a Hertz contact changes as the approach does, that of other smooth surfaces up to twice as much.
-pub const MOVES: f64 = 3.0;
+pub const MOST_MOVED: f64 = 3.0;
 
 /// Bound on the relative error of single pressures over the residual (docs/accuracy.md: a hundredth of the target for these).
-const OF_RESIDUAL: f64 = 100.0;
+const ERROR_PER_RESIDUAL: f64 = 100.0;
 
 /// The verdict of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,13 +64,13 @@ impl Measured<'_> {
     /// The error of the change on the scene's grid. An unresolved peak changes as the other quantities do, except by a limit that only peaks reach.
     fn error(&self, left_out: &[Omission]) -> Option<f64> {
         // A change of a sum converges, as the sum does.
-        let slow = if self.quantity.is_local() { None } else { self.change.slow(SUM) };
+        let slow = if self.quantity.is_local() { None } else { self.change.slow(SUM_RATIO) };
         let falling = self.change.falling().or(slow).map(|falling| falling.now());
         match self.quantity {
             // The change on the scene's grid counts, whatever the ones before.
-            _ if self.on_own_grid => falling.or(self.change.hidden().map(|hidden| OF_RESIDUAL * hidden)),
+            _ if self.on_own_grid => falling.or(self.change.hidden().map(|hidden| ERROR_PER_RESIDUAL * hidden)),
             Quantity::MaxPressure if !self.has_peaks => {
-                let error = falling?.max(MOVES * self.moved * self.value.ok()?.abs());
+                let error = falling?.max(MOST_MOVED * self.moved * self.value.ok()?.abs());
                 (error.is_finite() && !left_out.contains(&Omission::PressureLimit)).then_some(error)
             }
             _ => falling,

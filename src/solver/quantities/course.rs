@@ -18,8 +18,8 @@ use crate::scene::{Motion, Scene};
 use crate::solver::falling::Falling;
 
 /// The largest ratio of successive changes with a doubling, for a sum and for a stress close to the surface.
-pub const SUM: f64 = 2.0 / 3.0;
-const SURFACE: f64 = 0.75;
+pub const SUM_RATIO: f64 = 2.0 / 3.0;
+const SURFACE_RATIO: f64 = 0.75;
 /// From this depth in elements on a stress is a mean of many pressures. Measured where a roller's rounded ends begin: stresses at 0.6 to 1.8 elements
 /// had errors of 2 to 10 % with changes of 1 % from grid to grid. From 2.8 elements on the errors were below 2 %.
 const DEEP: f64 = 4.0;
@@ -147,8 +147,8 @@ impl Course {
             (_, Some(peak)) => self.of_stress(peak),
             _ => {
                 let known = if self.is_irregular { self.values.of_first_order() } else { self.values.falling() };
-                let known = if self.is_slow { larger(known, self.values.slow(SUM)) } else { known };
-                let found = known.or(self.values.slow(SUM))?;
+                let known = if self.is_slow { larger(known, self.values.slow(SUM_RATIO)) } else { known };
+                let found = known.or(self.values.slow(SUM_RATIO))?;
                 Some(Falling { by_two: found.by_two + (self.least - found.now()).max(0.0), ..found })
             }
         }
@@ -156,7 +156,7 @@ impl Course {
 
     /// The error of the largest stress, if its position stays. Below the surface a stress is a mean of the loads and converges.
     fn of_peak(&self, peak: Peak) -> Option<Falling> {
-        let (falling, slow) = (self.stress.falling(), self.stress.slow(SURFACE));
+        let (falling, slow) = (self.stress.falling(), self.stress.slow(SURFACE_RATIO));
         if peak.is_near() {
             falling.and(larger(falling, slow))
         } else {
@@ -170,7 +170,7 @@ impl Course {
         let predicted = |(depth, stress): (&f64, &Sequence)| {
             let (change, doublings) = stress.last_change()?;
             let is_own = *depth > 0.0 && depth * 2f64.powi(doublings) > peak.elements;
-            let rest = stress.slow(SURFACE).filter(|_| change > 0.0 && !is_own)?;
+            let rest = stress.slow(SURFACE_RATIO).filter(|_| change > 0.0 && !is_own)?;
             Some(stress.value()? + rest.now())
         };
         let largest = CLOSE.iter().zip(&self.close).filter_map(predicted).fold(f64::NEG_INFINITY, f64::max);
@@ -184,7 +184,7 @@ impl Course {
     }
 
     fn of_depth(&self, peak: Peak) -> Option<Falling> {
-        let own = self.values.falling().or(self.values.slow(SUM))?;
+        let own = self.values.falling().or(self.values.slow(SUM_RATIO))?;
         let stress = self.of_peak(peak).filter(|_| !peak.is_near());
         let rises = stress.is_some_and(|stress| self.overtakes(peak, -stress.now()) > 0.0);
         let more = if rises { peak.depth - own.now() } else { 0.0 };

@@ -14,21 +14,21 @@ use crate::stress::{subsurface_stress, Body, Depth, Loads, Wanted, MOST_SLENDER}
 use crate::threads::Threads;
 
 /// The ratio of successive depths.
-const RATIO: f64 = 1.6;
+const DEPTH_RATIO: f64 = 1.6;
 /// The first depth, in longer sides of an element.
-const FIRST: f64 = 0.25;
+const FIRST_DEPTH: f64 = 0.25;
 /// Most parabolas, and the relative change of depth at which they end.
 const PARABOLAS: usize = 8;
-const NEAR: f64 = 1e-3;
+const DEPTH_CHANGE: f64 = 1e-3;
 /// The depths next to the surface, in longer sides of an element: the first of those searched.
 pub const CLOSE: [f64; 7] = [
     0.0,
-    FIRST,
-    FIRST * RATIO,
-    FIRST * RATIO * RATIO,
-    FIRST * RATIO * RATIO * RATIO,
-    FIRST * RATIO * RATIO * RATIO * RATIO,
-    FIRST * RATIO * RATIO * RATIO * RATIO * RATIO,
+    FIRST_DEPTH,
+    FIRST_DEPTH * DEPTH_RATIO,
+    FIRST_DEPTH * DEPTH_RATIO * DEPTH_RATIO,
+    FIRST_DEPTH * DEPTH_RATIO * DEPTH_RATIO * DEPTH_RATIO,
+    FIRST_DEPTH * DEPTH_RATIO * DEPTH_RATIO * DEPTH_RATIO * DEPTH_RATIO,
+    FIRST_DEPTH * DEPTH_RATIO * DEPTH_RATIO * DEPTH_RATIO * DEPTH_RATIO * DEPTH_RATIO,
 ];
 
 /// A largest value, and its depth.
@@ -127,10 +127,12 @@ impl<'a> Surface<'a> {
         let (short, long) = (self.grid.dx.min(self.grid.dy), self.grid.dx.max(self.grid.dy));
         // For very slender elements of periodic bodies, stresses near the surface are not computed.
         let slender = self.periodic && long > MOST_SLENDER * short;
-        let first = if slender { long } else { FIRST * long };
+        let first = if slender { long } else { FIRST_DEPTH * long };
         let extent = (self.grid.mx as f64 * self.grid.dx).max(self.grid.my as f64 * self.grid.dy);
         let mut depths: Vec<f64> = if slender { vec![] } else { vec![0.0] };
-        depths.extend(std::iter::successors(Some(first), |z| Some(z * RATIO)).take_while(|z| *z < RATIO * extent));
+        depths.extend(
+            std::iter::successors(Some(first), |z| Some(z * DEPTH_RATIO)).take_while(|z| *z < DEPTH_RATIO * extent),
+        );
         let of = |depths: &[f64]| self.largest(stress, poisson_ratio, depths, threads);
         let mut known = of(&depths)?;
         let at = |k: usize| known.get(k).or(known.last()).map_or(0.0, |peak| peak.value);
@@ -141,7 +143,7 @@ impl<'a> Surface<'a> {
                 break;
             }
             let z = vertex([known[best - 1], known[best], known[best + 1]]);
-            if (z - known[best].depth).abs() <= NEAR * known[best].depth {
+            if (z - known[best].depth).abs() <= DEPTH_CHANGE * known[best].depth {
                 break;
             }
             let at = if z < known[best].depth { best } else { best + 1 };

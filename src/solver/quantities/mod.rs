@@ -9,7 +9,7 @@ mod on_grids;
 mod sequence;
 mod values;
 
-pub use course::{Course, Value, SUM};
+pub use course::{Course, Value, SUM_RATIO};
 pub use on_grids::{quantities, OnGrid, QuantityRow};
 pub use sequence::Sequence;
 pub use values::{values, Lack};

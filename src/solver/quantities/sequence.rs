@@ -93,7 +93,9 @@ impl Sequence {
         let (last, falls) = match self.changes().iter().map(|change| change.of_one().abs()).collect::<Vec<f64>>()[..] {
             [] => return None,
             [only] => (only, FIRST_ORDER_RATIO),
-            [.., before, newest] if before > 0.0 => (newest.max(FIRST_ORDER_RATIO * before), (newest / before).clamp(FIRST_ORDER_RATIO, ratio)),
+            [.., before, newest] if before > 0.0 => {
+                (newest.max(FIRST_ORDER_RATIO * before), (newest / before).clamp(FIRST_ORDER_RATIO, ratio))
+            }
             [.., newest] => (newest, ratio),
         };
         Some(Falling { by_two: last * falls / (1.0 - falls), hidden: self.hidden()?, ..Falling::default() })

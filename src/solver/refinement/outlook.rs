@@ -10,7 +10,7 @@ use crate::solver::{Report, Solver};
 use crate::threads::Threads;
 
 /// Least elements in the shorter direction of the first grid of a history.
-const LEAST: usize = 16;
+const LEAST_ELEMENTS: usize = 16;
 
 /// The relative errors of a solution, where they are known.
 #[derive(Clone, Copy, Debug, Default)]
@@ -72,9 +72,9 @@ impl History {
         let is_steep = scene.friction.is_some() || scene.pressure_limit.is_some();
         let of_several = || self.courses.iter().map(Course::quantity).filter(|quantity| !quantity.has_estimate());
         if is_steep && of_several().all(Quantity::is_stress) {
-            LEAST / 2
+            LEAST_ELEMENTS / 2
         } else {
-            LEAST
+            LEAST_ELEMENTS
         }
     }
 

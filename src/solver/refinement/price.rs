@@ -6,16 +6,16 @@ use super::Accuracy;
 use crate::grid::Grid;
 use crate::scene::{scaled, Scene};
 use crate::solver::falling::Falling;
-use crate::solver::machine::{seconds_on, Cost, MOST_MORE};
+use crate::solver::machine::{seconds_on, Cost, MOST_PRODUCTS_RATIO};
 use crate::solver::quantities::Quantity;
 
 /// The initial residual of a grid over that of the next coarser grid. A grid starts from the result of the coarser grid. The initial residual comes
 /// from the error of this result at the boundary of contact.
-const BEGINS: f64 = 0.35;
+const FIRST_RESIDUAL_RATIO: f64 = 0.35;
 /// The usual growth of tangential products with a doubling, measured on six surfaces (docs/notes/2026-11-accuracy.md).
-const MORE: f64 = 1.1;
+const PRODUCTS_GROWTH: f64 = 1.1;
 /// The fewest elements across the contact of a sample that can be extrapolated.
-pub(super) const ACROSS: usize = 12;
+pub(super) const FEWEST_ACROSS: usize = 12;
 
 /// The reason why an accuracy cannot be reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,12 +103,12 @@ fn to(samples: &[Sample], doublings: i32, tolerance: f64) -> (f64, f64) {
     let at = samples.iter().rposition(|sample| sample.doublings <= doublings).unwrap_or(0);
     let Some(sample) = samples.get(at) else { return (1.0, 0.0) };
     let finer = (doublings - sample.doublings).max(0);
-    let begins = tolerance / BEGINS.powi(finer);
+    let begins = tolerance / FIRST_RESIDUAL_RATIO.powi(finer);
     if let Some((part, tangential)) = sample.between(tolerance) {
         let before = at.checked_sub(1).and_then(|before| samples[before].between(tolerance));
         // The growth between two samples is irregular. The prediction is its geometric mean with the usual growth.
-        let seen = before.filter(|before| before.1 > 0.0).map_or(MORE, |before| tangential / before.1);
-        let grows = (seen * MORE).sqrt().clamp(1.0, MOST_MORE);
+        let seen = before.filter(|before| before.1 > 0.0).map_or(PRODUCTS_GROWTH, |before| tangential / before.1);
+        let grows = (seen * PRODUCTS_GROWTH).sqrt().clamp(1.0, MOST_PRODUCTS_RATIO);
         return (part, sample.normal(tolerance, begins) + tangential * grows.powi(finer));
     }
     let (seconds, products) = sample.to(tolerance, begins);
@@ -139,7 +139,7 @@ pub(super) fn price(
     if target < ROUND_OFF {
         return Price { obstacle: Some(Obstacle::RoundOff), ..nothing };
     }
-    let last = samples.last().filter(|last| last.across >= ACROSS || last.is_exact());
+    let last = samples.last().filter(|last| last.across >= FEWEST_ACROSS || last.is_exact());
     let error_of = |last: &Sample| if last.is_exact() { Some(Falling::default()) } else { last.falling() };
     let Some((last, falling)) = last.and_then(|last| Some((last, error_of(last)?))) else { return nothing };
     let Some((k, seconds)) = predict(scene, samples, (quantity, target)) else {

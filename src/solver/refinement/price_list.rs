@@ -8,7 +8,7 @@ use std::time::Instant;
 use super::accuracy::{require_target, tolerance_for, LEAST_TOLERANCE};
 use super::next_grid::MOST_WITHOUT;
 use super::outlook::History;
-use super::price::{price, Counted, ACROSS};
+use super::price::{price, Counted, FEWEST_ACROSS};
 pub use super::price::{Obstacle, Price};
 use super::sample::{Callbacks, Sample, Taken};
 use super::{check, Accuracy, SurfaceCallback};
@@ -19,25 +19,27 @@ use crate::solver::machine;
 use crate::solver::quantities::Quantity;
 use crate::solver::{Options, Outcome, ProgressCallback};
 
-/// Most seconds of all samples: this part of the dearest accuracy's, or SECONDS; less a margin for the last sample.
-const PART: f64 = 0.014;
-const SECONDS: f64 = 0.035;
-/// Elements of the first sample in a direction, about.
-const FIRST: usize = 32;
+/// Most seconds of all samples, including those predicted for the next one: SAMPLES_SECONDS, or this share of the
+/// seconds of the dearest accuracy if that is more.
+const SAMPLES_SHARE: f64 = 0.014;
+const SAMPLES_SECONDS: f64 = 0.035;
+/// The first sample has from this many to twice as many elements in its longer direction, if the grid can be halved so
+/// often.
+const FIRST_SAMPLE: usize = 32;
 /// Upper bound on the cost ratio of a grid with four times the elements, until samples show it.
-const NEXT: f64 = 5.0;
+const NEXT_COST_RATIO: f64 = 5.0;
 /// Lower bound on that ratio.
-const LEAST_NEXT: f64 = 2.0;
+const LEAST_COST_RATIO: f64 = 2.0;
 
-/// Elements of a sample beyond which an unresolved contact is accepted. Up to there samples go on, however long they take.
-const UNRESOLVED: f64 = 2e5;
-/// Most seconds of the samples, about, while no row is known.
-const UNKNOWN: f64 = 2.0;
+/// Elements of a sample beyond which an unresolved contact is accepted. Up to there samples go on for UNKNOWN_SECONDS.
+const UNRESOLVED_ELEMENTS: f64 = 2e5;
+/// About the most seconds of the samples while no row is known.
+const UNKNOWN_SECONDS: f64 = 2.0;
 /// Most samples.
 const MOST_SAMPLES: usize = 12;
 /// Most seconds for counting the products of small rows.
 const FOR_COUNTS: f64 = 0.005;
-/// Part of the seconds for timing samples again.
+/// Share of the remaining SAMPLES_SECONDS for repeated timings of a sample.
 const FOR_TIMES: f64 = 0.5;
 
 /// Predicts the cost of each of the relative errors `targets` of a quantity, from solves on small grids over the rectangle of the scene. Uses
@@ -68,7 +70,7 @@ pub fn cost_of_accuracy(
     let list = |samples: &[Sample]| list_with(samples, &[], 1.0);
     let mut budget = Budget::default();
     while samples.len() < MOST_SAMPLES {
-        let spare = FOR_TIMES * (SECONDS - began.elapsed().as_secs_f64());
+        let spare = FOR_TIMES * (SAMPLES_SECONDS - began.elapsed().as_secs_f64());
         let sample = match Sample::take(scene, &one, (doublings, spare), quantity, (&mut surface, &mut progress))? {
             Taken::Sample(sample) => sample.carried_on(&mut history),
             Taken::Cancelled => return Ok((Outcome::Cancelled, list(&samples))),
@@ -80,7 +82,7 @@ pub fn cost_of_accuracy(
             Taken::Unsolved(outcome) if samples.is_empty() => return Ok((outcome, list(&samples))),
             Taken::Unsolved(_) => break,
         };
-        let next = sample.cost.seconds * NEXT;
+        let next = sample.cost.seconds * NEXT_COST_RATIO;
         samples.push(sample);
         doublings += 1;
         let most = budget.after(&list(&samples));
@@ -89,7 +91,7 @@ pub fn cost_of_accuracy(
             return Ok((Outcome::Cancelled, list(&samples)));
         }
         let ends = began.elapsed().as_secs_f64() + next;
-        let is_over = ends > most && (ends > UNKNOWN || is_known(&samples, history.is_believed()));
+        let is_over = ends > most && (ends > UNKNOWN_SECONDS || is_known(&samples, history.is_believed()));
         if is_over || is_apart(&samples) || scaled(&scene.grid, doublings).is_err() {
             break;
         }
@@ -102,7 +104,7 @@ pub fn cost_of_accuracy(
     })
 }
 
-/// Refuses a price list that is none.
+/// Refuses invalid limits, scenes, targets and quantities.
 fn check_asked(
     (scene, options, has_surface): (&Scene<'_>, &Options, bool),
     accuracy: &Accuracy,
@@ -126,19 +128,19 @@ impl Budget {
         let had = rows.iter().filter(|price| price.obstacle.is_none()).map(|price| price.seconds);
         let dearest = had.reduce(f64::max);
         self.least = self.least.into_iter().chain(dearest).reduce(f64::min);
-        SECONDS.max(PART * self.least.unwrap_or(0.0))
+        SAMPLES_SECONDS.max(SAMPLES_SHARE * self.least.unwrap_or(0.0))
     }
 }
 
-/// Whether rows follow from the samples, or more of them would be too large.
+/// Whether the samples determine the rows, or the last one is too large for another.
 fn is_known(samples: &[Sample], is_believed: bool) -> bool {
     let Some(last) = samples.last() else { return false };
     // Without estimates from one grid, errors need three grids, or four if two changes happen to be equal. A search needs as many.
     let has_error = last.falling().is_some() && is_believed || samples.len() > 3;
-    last.across >= ACROSS && has_error || last.cost.elements > UNRESOLVED
+    last.across >= FEWEST_ACROSS && has_error || last.cost.elements > UNRESOLVED_ELEMENTS
 }
 
-/// Whether nothing touches, on as many grids as end a search.
+/// Whether nothing touches on so many grids that a search would end.
 fn is_apart(samples: &[Sample]) -> bool {
     samples.iter().rev().take_while(|sample| sample.across == 0 && sample.doublings >= 0).count() >= MOST_WITHOUT
 }
@@ -170,7 +172,7 @@ fn speed_up(
     (samples, quantity): (&[Sample], Quantity),
     callbacks: Callbacks<'_, '_, '_>,
 ) -> Result<Option<f64>> {
-    let last = samples.last().filter(|last| options.threads != 1 && last.cost.seconds < SECONDS);
+    let last = samples.last().filter(|last| options.threads != 1 && last.cost.seconds < SAMPLES_SECONDS);
     let Some(last) = last else { return Ok(Some(1.0)) };
     Ok(match Sample::take(scene, options, (last.doublings, last.cost.seconds), quantity, callbacks)? {
         Taken::Sample(again) => Some((last.cost.seconds / again.cost.seconds).max(1.0)),
@@ -192,7 +194,7 @@ fn count(
         let (Some(grid), tolerance) = (row.grid, row.tolerance) else { continue };
         let doublings = (grid.mx.max(grid.my) as f64 / scene.grid.mx.max(scene.grid.my) as f64).log2().round() as i32;
         let finer = doublings - last.doublings;
-        let seconds = last.solve * if finer > 0 { NEXT } else { LEAST_NEXT }.powi(finer);
+        let seconds = last.solve * if finer > 0 { NEXT_COST_RATIO } else { LEAST_COST_RATIO }.powi(finer);
         let is_known = counted.iter().any(|one| one.is_of(&grid, tolerance));
         if is_known || began.elapsed().as_secs_f64() + seconds > FOR_COUNTS {
             continue;
@@ -209,7 +211,7 @@ fn count(
 
 /// Doublings from the scene's grid to the first sample; negative: halvings.
 fn first(grid: &Grid) -> i32 {
-    let halves = (0..).take_while(|k| grid.mx.max(grid.my) >> k >= 2 * FIRST && scaled(grid, -(k + 1)).is_ok());
+    let halves = (0..).take_while(|k| grid.mx.max(grid.my) >> k >= 2 * FIRST_SAMPLE && scaled(grid, -(k + 1)).is_ok());
     -(halves.count() as i32)
 }
 

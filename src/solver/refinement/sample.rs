@@ -13,7 +13,7 @@ use crate::solver::quantities::Quantity;
 use crate::solver::{Options, Outcome, Progress, ProgressCallback};
 
 /// Most repeated timings of a sample: the first solve of a size is slow, and machines are busy.
-const AGAIN: usize = 3;
+const REPEATED_TIMINGS: usize = 3;
 
 /// The callbacks of a sample: the surface, and whether to go on.
 pub(super) type Callbacks<'c, 's, 'p> = (&'c mut Option<SurfaceCallback<'s>>, &'c mut Option<ProgressCallback<'p>>);
@@ -79,7 +79,7 @@ impl Sample {
     ) -> Result<Taken> {
         let (began, mut spent) = (Instant::now(), 0.0);
         let mut taken = Sample::take_once(scene, options, (doublings, &[quantity]), (surface, progress))?;
-        for _ in 0..AGAIN {
+        for _ in 0..REPEATED_TIMINGS {
             let Taken::Sample(best) = &mut taken else { break };
             if spent + 2.0 * best.cost.seconds > spare {
                 break;

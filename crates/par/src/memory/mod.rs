@@ -29,12 +29,12 @@ static ALLOWED: AtomicUsize = AtomicUsize::new(MOST_KEPT);
 /// The allocator itself keeps smaller blocks.
 const LEAST_KEPT: usize = 1 << 13;
 /// Before more bytes are requested from the system, all kept arrays return to it.
-const TOO_LARGE_TO_KEEP: usize = 96 << 20;
+const RETURNED_ABOVE: usize = 96 << 20;
 /// The default of the least number of values of an array that rests. From 4096 x 4096 elements on memory is scarce, and mapping pages again is cheap
 /// compared with a product.
-const RESTS: usize = 1 << 23;
+const LEAST_AT_REST: usize = 1 << 23;
 /// The current least number of values.
-static RESTING: AtomicUsize = AtomicUsize::new(RESTS);
+static RESTING: AtomicUsize = AtomicUsize::new(LEAST_AT_REST);
 
 /// A `Vec` of some type, with its last values.
 struct Kept {
@@ -117,7 +117,7 @@ pub fn sparse<A>(n: usize, what: &str) -> Result<Vec<A>> {
 
 /// Capacity for n values from the system.
 fn allocate<A>(v: &mut Vec<A>, n: usize, what: &str) -> Result<()> {
-    if n.saturating_mul(size_of::<A>()) > TOO_LARGE_TO_KEEP {
+    if n.saturating_mul(size_of::<A>()) > RETURNED_ABOVE {
         release();
     }
     let refused = |_| OutOfMemory(format!("no memory for {n} values of {what}"));

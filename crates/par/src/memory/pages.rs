@@ -22,13 +22,13 @@ pub(super) fn give_pages_back<A>(values: &mut Vec<A>) {
 pub(super) fn give_pages_back<A>(_: &mut Vec<A>) {}
 
 /// Least bytes that one thread touches.
-const TOUCHED: usize = 1 << 19;
+const LEAST_TOUCHED: usize = 1 << 19;
 
 /// Extends an array to n values within its capacity. The threads share the first writes: the system clears each page at its first touch,
 /// which takes as long as several passes.
 #[allow(unsafe_code)]
 pub(super) fn lengthen<A: Copy + Send + Sync>(values: &mut Vec<A>, n: usize, mark: A, threads: &Threads) {
-    let (known, piece) = (values.len(), TOUCHED / size_of::<A>());
+    let (known, piece) = (values.len(), LEAST_TOUCHED / size_of::<A>());
     if threads.count() == 1 || n <= known + piece {
         return values.resize(n, mark);
     }

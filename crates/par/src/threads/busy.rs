@@ -9,11 +9,11 @@ use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 /// Least loss: an interrupt by the system is shorter, a wait for a core longer.
-pub(super) const LOSS: Duration = Duration::from_micros(500);
+pub(super) const LEAST_LOSS: Duration = Duration::from_micros(500);
 
 /// Nanoseconds that the caller works alone after a loss: first, and most. A try loses one turn of the scheduler, about 3 ms.
-const FIRST: u64 = 30_000_000;
-const LONGEST: u64 = 960_000_000;
+const FIRST_ALONE: u64 = 30_000_000;
+const LONGEST_ALONE: u64 = 960_000_000;
 
 /// The time at which work is shared again.
 #[derive(Default)]
@@ -39,7 +39,7 @@ impl Busy {
     pub fn note(&self, now: u64, is_lost: bool) {
         let (until, alone) = (self.until.load(Ordering::Relaxed), self.alone.load(Ordering::Relaxed));
         if is_lost {
-            let alone = (2 * alone).clamp(FIRST, LONGEST);
+            let alone = (2 * alone).clamp(FIRST_ALONE, LONGEST_ALONE);
             self.alone.store(alone, Ordering::Relaxed);
             self.until.store(now + alone, Ordering::Relaxed);
         } else if alone > 0 && now - until.min(now) > alone {

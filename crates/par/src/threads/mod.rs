@@ -34,10 +34,10 @@ pub enum Threads {
 const WORTH_WAKING: usize = 110 * 110;
 
 /// Attempts to take a lock before it counts as held for long.
-const PATIENCE: usize = 1000;
+const LOCK_ATTEMPTS: usize = 1000;
 
 /// Pieces of work per thread. If one thread is delayed, the others take over its pieces. With 6 to 16 pieces measured times differ by noise.
-const PIECES: usize = 8;
+const PIECES_PER_THREAD: usize = 8;
 
 impl Threads {
     /// `count` threads. 0 means one per core of the machine.
@@ -128,7 +128,7 @@ impl Threads {
 
     /// Rows of each piece of work on `rows` rows.
     fn rows_per_piece(&self, rows: usize) -> usize {
-        let pieces = if self.count() == 1 { 1 } else { PIECES * self.count() };
+        let pieces = if self.count() == 1 { 1 } else { PIECES_PER_THREAD * self.count() };
         rows.div_ceil(pieces).max(1)
     }
 
@@ -252,7 +252,7 @@ pub fn kept() -> usize {
 /// Takes the lock of data that the process shares. None if another thread holds it for long: a process that was forked while another thread
 /// held the lock would wait for ever.
 pub fn lock<A>(shared: &Mutex<A>) -> Option<MutexGuard<'_, A>> {
-    for _ in 0..PATIENCE {
+    for _ in 0..LOCK_ATTEMPTS {
         match shared.try_lock() {
             Ok(held) => return Some(held),
             Err(TryLockError::Poisoned(held)) => return Some(held.into_inner()),

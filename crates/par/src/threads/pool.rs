@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicPtr, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::busy::{time_of_this_thread, LOSS};
+use super::busy::{time_of_this_thread, LEAST_LOSS};
 use super::crew::Crew;
 use crate::error::Result;
 
@@ -98,7 +98,7 @@ impl Pool {
         let ((pieces, took, time_then), waited) = self.waiting(items, work, timed);
         let worked = time.zip(time_then).map_or(took, |(before, then)| then.saturating_sub(before));
         // A worker's last piece takes as long as one of the caller's, or twice as long.
-        let is_lost = took.saturating_sub(worked) > LOSS || waited > 2 * took / pieces.max(1) + LOSS;
+        let is_lost = took.saturating_sub(worked) > LEAST_LOSS || waited > 2 * took / pieces.max(1) + LEAST_LOSS;
         let busy = &self.crew.busy;
         busy.note(busy.now(), is_lost);
     }

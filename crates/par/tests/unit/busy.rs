@@ -6,12 +6,12 @@ use super::*;
 fn who_loses_time_works_alone_the_longer_the_more_often() {
     let busy = Busy::default();
     assert!(busy.is_over(0));
-    let (mut now, mut alone) = (5, FIRST);
+    let (mut now, mut alone) = (5, FIRST_ALONE);
     for _ in 0..10 {
         busy.note(now, true);
         assert!(!busy.is_over(now) && !busy.is_over(now + alone - 1) && busy.is_over(now + alone));
         now += alone;
-        alone = (2 * alone).min(LONGEST);
+        alone = (2 * alone).min(LONGEST_ALONE);
     }
 }
 
@@ -19,22 +19,22 @@ fn who_loses_time_works_alone_the_longer_the_more_often() {
 fn what_goes_well_for_as_long_is_forgotten() {
     let busy = Busy::default();
     busy.note(0, true);
-    busy.note(FIRST, true);
+    busy.note(FIRST_ALONE, true);
     // It went well for less than the last time alone.
-    let tried = 3 * FIRST;
-    busy.note(tried + FIRST, false);
-    busy.note(tried + FIRST, true);
-    assert!(!busy.is_over(tried + 5 * FIRST - 1) && busy.is_over(tried + 5 * FIRST));
+    let tried = 3 * FIRST_ALONE;
+    busy.note(tried + FIRST_ALONE, false);
+    busy.note(tried + FIRST_ALONE, true);
+    assert!(!busy.is_over(tried + 5 * FIRST_ALONE - 1) && busy.is_over(tried + 5 * FIRST_ALONE));
     // And for longer.
-    busy.note(tried + 10 * FIRST, false);
-    busy.note(tried + 10 * FIRST, true);
-    assert!(busy.is_over(tried + 11 * FIRST));
+    busy.note(tried + 10 * FIRST_ALONE, false);
+    busy.note(tried + 10 * FIRST_ALONE, true);
+    assert!(busy.is_over(tried + 11 * FIRST_ALONE));
 }
 
 #[test]
 fn a_thread_that_waits_takes_no_time_of_the_processor() {
     let (Some(before), began) = (time_of_this_thread(), Instant::now()) else { return };
-    std::thread::sleep(4 * LOSS);
+    std::thread::sleep(4 * LEAST_LOSS);
     let worked = time_of_this_thread().unwrap() - before;
-    assert!(began.elapsed() - worked > LOSS, "{worked:?} of {:?}", began.elapsed());
+    assert!(began.elapsed() - worked > LEAST_LOSS, "{worked:?} of {:?}", began.elapsed());
 }

@@ -51,7 +51,7 @@ fn what_rests_is_empty_and_has_its_room() {
     assert_eq!(values.len(), n);
     rest_from(1);
     rest(&mut values);
-    rest_from(RESTS);
+    rest_from(LEAST_AT_REST);
     assert!(values.is_empty() && values.capacity() >= n);
     let room = values.as_ptr();
     wake(&mut values, n, 1.0, &Threads::One);

@@ -11,14 +11,14 @@ use crate::fft::stages::{inlined, Row};
 use crate::real::{Complex, Scalar};
 
 /// Lanes of the longest vector.
-const MOST: usize = BLOCK;
+const MOST_LANES: usize = BLOCK;
 /// Columns that are transposed together.
 const FOUR: usize = 4;
 
 /// Four values of each row, `values(row)`, as four vectors.
 #[inline(always)]
 fn from_rows<T: Scalar, S: Simd>(simd: S, values: impl Fn(usize) -> [T; FOUR]) -> [T::Vector<S>; FOUR] {
-    let (n, mut rows) = (lane_count::<T, S>(), [[T::zero(); FOUR]; MOST]);
+    let (n, mut rows) = (lane_count::<T, S>(), [[T::zero(); FOUR]; MOST_LANES]);
     for (r, row) in rows.iter_mut().enumerate().take(n) {
         *row = values(r);
     }
@@ -29,7 +29,7 @@ fn from_rows<T: Scalar, S: Simd>(simd: S, values: impl Fn(usize) -> [T; FOUR]) -
 /// The reverse of [`from_rows`]: calls `write(row, values)`.
 #[inline(always)]
 fn to_rows<T: Scalar, S: Simd>(simd: S, vectors: [T::Vector<S>; FOUR], mut write: impl FnMut(usize, [T; FOUR])) {
-    let (n, mut rows) = (lane_count::<T, S>(), [[T::zero(); FOUR]; MOST]);
+    let (n, mut rows) = (lane_count::<T, S>(), [[T::zero(); FOUR]; MOST_LANES]);
     T::vectors_mut::<S>(&mut rows.as_flattened_mut()[..FOUR * n]).copy_from_slice(&T::to_rows(simd, vectors));
     for (r, row) in rows.into_iter().enumerate().take(n) {
         write(r, row);
@@ -44,7 +44,7 @@ const PER_BLOCK: usize = BLOCK / FOUR;
 pub(crate) fn load<T: Scalar, S: Simd>(a: Arithmetic<T, S>, rows: &[T], width: usize, z: &mut [Row<T, S>]) {
     let count = rows.len() / width;
     let row = |r: usize| &rows[r.min(count - 1) * width..][..width];
-    let mut fours: [&[[T; FOUR]]; MOST] = [&[]; MOST];
+    let mut fours: [&[[T; FOUR]]; MOST_LANES] = [&[]; MOST_LANES];
     for (r, fours) in fours.iter_mut().enumerate() {
         *fours = pulp::as_arrays::<FOUR, _>(row(r)).0;
     }
@@ -204,7 +204,7 @@ pub(crate) fn store<T: Scalar, S: Simd>(a: Arithmetic<T, S>, z: &[Row<T, S>], ro
         );
     }
     // Missing rows are empty.
-    let mut fours: [&mut [[T; FOUR]]; MOST] = Default::default();
+    let mut fours: [&mut [[T; FOUR]]; MOST_LANES] = Default::default();
     for (row, fours) in rows.chunks_exact_mut(width).zip(&mut fours) {
         *fours = pulp::as_arrays_mut::<FOUR, _>(row).0;
     }

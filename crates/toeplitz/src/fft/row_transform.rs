@@ -22,7 +22,7 @@ use par::memory::collected;
 use par::Result;
 
 /// The longest short row, and the number of short rows transformed together.
-const SHORT: usize = 256;
+const LONGEST_SHORT: usize = 256;
 const MOST_ROWS: usize = 8;
 
 /// Transforms of real rows of one length `n` to `n/2 + 1` complex bins and back (unnormalised).
@@ -70,7 +70,7 @@ impl<T: Real> RowTransform<T> {
     /// Rows transformed together. For short rows, calling the complex transform takes as long as its work. Long rows are transformed out of
     /// place, one after the other: together, their intermediate values would leave the nearest cache.
     pub fn at_a_time(&self) -> usize {
-        if self.n > SHORT {
+        if self.n > LONGEST_SHORT {
             1
         } else {
             MOST_ROWS

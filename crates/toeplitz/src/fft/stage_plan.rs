@@ -11,7 +11,7 @@ use crate::plan::PLAN;
 use crate::real::{twiddle, Scalar};
 
 /// Rows of a vector (16 kB with AVX2, 32 kB with AVX-512) that fit the nearest cache together with other data.
-const NEAR: usize = 256;
+const NEAR_ROWS: usize = 256;
 /// Bytes of rows that fit the nearest cache without other data.
 const NEAREST_CACHE: usize = 1 << 15;
 
@@ -112,6 +112,6 @@ fn near_parts<T: Scalar>(middle: &[Stage<T>], length: usize, after_first: usize)
         return (0, length);
     }
     let after = |stages: usize| middle[..stages].last().map_or(after_first, Stage::stride);
-    let wide = (0..middle.len()).find(|&stages| after(stages) <= NEAR).unwrap_or(middle.len());
+    let wide = (0..middle.len()).find(|&stages| after(stages) <= NEAR_ROWS).unwrap_or(middle.len());
     (wide, after(wide))
 }

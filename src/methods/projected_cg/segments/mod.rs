@@ -29,7 +29,7 @@ use crate::threads::Threads;
 
 /// Most blocks, and least elements of a block: each costs some additions.
 const BLOCKS: usize = 64;
-const LEAST: usize = 512;
+const LEAST_ELEMENTS: usize = 512;
 /// Most sums of a pass.
 const MOST_SUMS: usize = 9;
 
@@ -70,7 +70,7 @@ impl Found {
 impl Segments {
     /// No contact. Memory for any contact area is reserved, and touched when needed.
     pub fn new(grid: &Grid, threads: &Threads) -> Result<Segments> {
-        let block = (grid.rows_of_blocks(BLOCKS, LEAST) * grid.mx).next_multiple_of(EIGHT);
+        let block = (grid.rows_of_blocks(BLOCKS, LEAST_ELEMENTS) * grid.mx).next_multiple_of(EIGHT);
         let blocks = grid.len().div_ceil(block);
         let mut found = Vec::new();
         found.resize_with(blocks, Found::default);
