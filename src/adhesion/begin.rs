@@ -14,8 +14,8 @@ use crate::progress::Monitor;
 
 /// Without a state of less force, bodies are first pressed together by this part of the whole attraction.
 const FIRST_PRESSING_FORCE: f64 = 0.01;
-/// A pressing force is PRESSING_FORCE_RATIO times the size of the least known force, or PRESSING_FORCE_RATIO times the last pressing force. At most MOST_WAYS_DOWN ways lead down from pressed
-/// bodies.
+/// A pressing force is PRESSING_FORCE_RATIO times the size of the least known force, or times the last pressing force.
+/// At most MOST_WAYS_DOWN ways lead down from pressed bodies.
 const PRESSING_FORCE_RATIO: f64 = 10.0;
 const MOST_WAYS_DOWN: u32 = 4;
 /// Pulls below this part of the whole attraction count as none.
@@ -25,8 +25,8 @@ const STRONGER_PULL: f64 = 1.0 + 1e-6;
 /// The first way of a search for a pull may take PULL_OFF_CYCLES times the cycles of a solve, each state of a pull-off 1/STATES_OF_PULL_OFF of them.
 const PULL_OFF_CYCLES: u64 = 3;
 const STATES_OF_PULL_OFF: u64 = 4;
-/// If the way of a pull-off is lost, at most MOST_WAYS_BELOW further ways begin below it. Each begin is sought in STEPS_BELOW steps of STEP_BELOW times
-/// the length of the contact.
+/// If the way of a pull-off is lost, at most MOST_WAYS_BELOW further ways begin below it. Each start is sought in
+/// STEPS_BELOW steps of STEP_BELOW times the length of the contact.
 const MOST_WAYS_BELOW: u32 = 4;
 const STEPS_BELOW: u32 = 6;
 const STEP_BELOW: f64 = 0.1;
@@ -116,8 +116,8 @@ impl Solver {
         Walker::new(&mut self.levels[0], goal, make, monitor)
     }
 
-    /// The walker of the first way of a search for a pull. This way has many states, and a snap behind the strongest. [`PULL_OFF_CYCLES`] and [`STATES_OF_PULL_OFF`]
-    /// bound its cycles.
+    /// The walker of the first way of a search for a pull. This way has many states, and a snap after the strongest.
+    /// [`PULL_OFF_CYCLES`] and [`STATES_OF_PULL_OFF`] bound its cycles.
     fn first_walker<'a, 'm, 'c>(
         &'a mut self,
         goal: Goal,
@@ -275,7 +275,7 @@ impl Solver {
         }
     }
 
-    /// Whether a sum of p is a pull, and not what the last attraction of bodies leaves of one that nothing holds.
+    /// Whether a sum of p is a pull, and not the remaining attraction of bodies that have parted.
     fn is_pull(&self, sum: f64) -> bool {
         sum < -LEAST_PULL * self.most_attraction()
     }

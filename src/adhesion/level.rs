@@ -35,7 +35,7 @@ pub type Still = (Box<dyn Frozen>, State);
 /// Makes the solver of frozen problems on a grid.
 pub type MakeFrozen<'a> = &'a dyn Fn(&contact::Problem) -> Result<Box<dyn Frozen>>;
 
-/// Part of the range of pressures below which elements leave the contact at an opening.
+/// At an opening elements leave the contact whose q - e/a0 exceeds the least one by less than this share of its range.
 const OPENING_PRESSURE: f64 = 0.01;
 
 /// M, the inverse of a circulant near A, in single precision. Residuals are not extended beyond C, where separate equations determine
@@ -109,7 +109,8 @@ impl Level {
         measure(&self.surface, &mut self.now, of_element, (is_kept, wanted, is_mean_free), &self.problem.threads)
     }
 
-    /// Whether bodies are apart beyond the reach of the attraction, undeformed and deformed: those drawn together hold each other from farther away.
+    /// Whether no element touches, and none attracts at its undeformed or at its deformed distance. Bodies that are
+    /// drawn together attract each other although their undeformed distance is beyond the reach.
     pub fn leaves_nothing(&self) -> bool {
         let (surface, now) = (&self.surface, &self.now);
         let distances = |i: usize| [surface.h[i] - now.approach(), surface.distance(i, now)];

@@ -32,7 +32,8 @@ pub struct Report {
     pub stability: Option<f64>,
     /// Whether the bodies have snapped: the state before could not be followed, and more than a quarter of the contact differs.
     pub jumped: bool,
-    /// Whether cycles ended on the ways down to a pull, which have not come to it: the state is that of the strongest pull on them.
+    /// Whether the cycles ended before a way down reached the prescribed pull. The state is then that of the strongest
+    /// pull on the ways.
     pub is_short: bool,
 }
 

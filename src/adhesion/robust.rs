@@ -11,12 +11,13 @@ use crate::progress::Monitor;
 
 /// Most trials of Newton's method.
 const NEWTON_TRIALS: u32 = 12;
-/// Steps of descent between.
+/// Steps of descent between two trials.
 pub const DESCENT_STEPS: u64 = 5;
 /// Relative increase of energy that counts as uphill.
 const UPHILL: f64 = 1e-6;
-/// Elements of a grid up to which stability is always tested, at little cost. Larger grids are tested if Newton's method takes more than FEW_STEPS steps:
-/// they start near the equilibrium of a coarser grid or of the last load, and few steps from a stable equilibrium end at a stable one.
+/// Elements of a grid up to which stability is always tested, at little cost. Larger grids are tested if Newton's
+/// method takes more than FEW_STEPS steps: they start near the equilibrium of a coarser grid or of the last load, and
+/// few steps from a stable equilibrium end at a stable one.
 const ALWAYS_TESTED: usize = 1024;
 const FEW_STEPS: u64 = 6;
 

@@ -189,7 +189,7 @@ impl Solver {
             end = Descent::By(End::Solved);
         }
         if end == Descent::By(End::Solved) && level.leaves_nothing() {
-            // Whatever is left of pressures is that of states before.
+            // The remaining pressures are those of earlier states.
             level.now.unload(&level.problem.threads);
         }
         if end != Descent::By(End::Solved) {
@@ -198,7 +198,7 @@ impl Solver {
         }
         let mut measured = level.measure(false, wanted);
         if request.pull_off {
-            // The load is where the search began.
+            // The search only begins at the load, so no force is missing.
             measured.force = 0.0;
         }
         let mut report = Report::of(level, &measured);

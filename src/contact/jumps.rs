@@ -15,7 +15,7 @@ use crate::rectangle::Rectangle;
 const LINES: usize = 32;
 /// Ratio of a jump's third difference to those around it.
 const JUMP_RATIO: f64 = 8.0;
-/// Least ratio, or inverse ratio, of the jump in the next line for a jump that continues.
+/// A jump continues in the next line if the ratio of both third differences lies between this and its inverse.
 const CONTINUATION_RATIO: f64 = 0.5;
 /// Uncertainty of a jump in elements, along a straight line and otherwise.
 const STRAIGHT_JUMP: f64 = 0.5;

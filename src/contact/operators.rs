@@ -5,8 +5,9 @@
 //! period = 2 reach                      m + (e - s) - 2 for contact in the middle of the grid, 2 m - 2 for any p
 //! ```
 //!
-//! If contact covers 0.6 of each side in the middle of the grid, a product takes three quarters of the time, and so does the set-up of its
-//! spectrum. The choice of the operator depends on p alone. So no bit of a product depends on earlier products.
+//! If contact covers 0.6 of each side in the middle of the grid, a product takes three quarters of the time, and so
+//! does the set-up of its symbol. The choice of the operator depends on p alone. So no bit of a product depends on
+//! earlier products.
 
 use std::array::from_fn;
 use std::ops::Range;
@@ -20,8 +21,8 @@ use crate::operator::{even_periods, Needs, Operator, Reach, SetUp, Workspace};
 use crate::rectangle::Rectangle;
 use crate::threads::Threads;
 
-/// Grids of at most so many elements use direct summation, which needs no set-up. Measured on a first call with a separate table: it takes
-/// 0.64 of the time with an operator for one element, 0.68 for 2 x 2 elements.
+/// Grids of at most this many elements use direct summation, which needs no set-up. Measured on a first call with a
+/// separate table: it takes 0.64 of the time with an operator for one element, 0.68 for 2 x 2 elements.
 const DIRECT_SUMMATION: usize = 4;
 /// Grids of fewer elements use one operator for all products. There is little to save, and many small problems have many contact areas.
 const SMALLEST_GRID: usize = 128 * 128;

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`coefficients`], `half_space`, `compliance`, `near_element`, `series`, `quadrant` | influence coefficients of tangential tractions: their sources, near and far from an element; those kept for all operators |
 //! | [`Toeplitz`], [`dense`] | products of two components, by FFT and by direct summation |
-//! | `operators`, `window` | the operators of the box around C |
+//! | `operators`, `displaced` | the operators of the box around C, and displacements between its centres |
 //! | `problem`, `plane`, `certificate`, `tangent` | the problem on one grid, its certificate, stick and slip |
 //! | `tables`, `row_tables`, `row_product` | the caller's coefficients, also per loaded row, and products with these |
 //! | `rolling_tables` | tables of bodies that relax and roll steadily |
@@ -12,10 +12,11 @@
 //! | `lanes`, `beside` | SIMD passes over fields by component, extension of residuals beyond C; fields of pairs: `methods::fields` |
 //! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for given motions; their fields, on C alone |
 //! | `newton`, `step`, `system`, `sweep`, `forces`, `best` | semismooth Newton, for steady rolling, for given forces and if the gradients stall |
+//! | `downhill` | projected Newton, for given motions if the other methods cycle |
 //! | `balance`, `corral`, `bracket` | creepages of given forces if Newton's method stalls |
 //! | `sensitivity`, `derivatives` | derivatives of the forces by creepages and spin |
 //! | [`cross`] | unlike bodies: the coupling of the normal and the tangential problem |
-//! | [`law`], `with_law` | bounds that depend on the slip, and the state of the interface's particles |
+//! | [`law`], `with_law`, `iterate_with_law` | bounds that depend on the slip, and the state of the interface's particles |
 //! | `levels`, `interpolation`, `nested`, `request`, `unit`, `scales`, `take_over`, `solver`, `result`, `last` | coarser grids, nested iteration, units, the whole solve, and its undoing |
 
 mod balance;

@@ -39,8 +39,8 @@ const ROUND_OFF: f64 = 1e-15;
 /// Factor on the relative tolerance and on rho when steps make no progress, and the least relative tolerance.
 const CUT: f64 = 0.3;
 const LEAST_INNER: f64 = 0.01;
-/// Directions of a linear solve. Without progress it gets as many as it has unknowns, which solve it with any preconditioner, if they
-/// hold at most MOST_VALUES vectors together.
+/// Directions of a linear solve. Without progress it gets as many as it has unknowns, which solve it with any
+/// preconditioner. Together they hold at most MOST_VALUES values of two components.
 const DIRECTIONS: usize = 40;
 const MOST_VALUES: usize = 1 << 21;
 /// Length of steps after an odd number of cuts: full steps may alternate between two slip areas for ever.
@@ -224,7 +224,7 @@ fn largest(values: [f64; 3]) -> f64 {
     values.into_iter().fold(0.0, |most, value| if most.is_nan() || value <= most { most } else { value })
 }
 
-/// As many directions as unknowns, within MOST_VALUES vectors together.
+/// As many directions as unknowns, if they hold at most MOST_VALUES values together.
 fn all_directions(problem: &Problem) -> usize {
     (MOST_VALUES / problem.grid.len()).min(2 * problem.count() + 2).max(DIRECTIONS)
 }

@@ -145,7 +145,7 @@ impl Operators {
         self.products += 1;
     }
 
-    /// The product of fields by component, in units of a traction, and of that times [`unit`](Self::unit).
+    /// The product of fields by component. Displacements are in the unit of the tractions times [`unit`](Self::unit).
     pub fn multiply_plain<S: Real>(&mut self, q: [&[S]; 2], u: [&mut [S]; 2]) {
         let [ux, uy] = u;
         match (&mut self.rows, &mut self.exact, &mut self.fast) {
@@ -196,7 +196,7 @@ impl Operators {
         self.precondition_scaled(u, (scales, 1.0 / self.a0), q);
     }
 
-    /// [`Operators::precondition_components`] in units of a traction, and of that times [`unit`](Self::unit).
+    /// [`Operators::precondition_components`] in the units of [`Operators::multiply_plain`].
     pub fn precondition_plain<S: Real>(&mut self, u: [&[S]; 2], q: [&mut [S]; 2]) {
         self.precondition_scaled(u, ([1.0; 2], self.unit / self.a0), q);
     }

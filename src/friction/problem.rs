@@ -35,9 +35,9 @@ const LEAST_WEIGHT: f64 = 1e-6;
 /// The scale of residuals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// The larger of the rigid slip and the displacements: a shift.
+    /// The larger of the rigid slip and the displacements: a shift, and steady rolling by a force.
     SlipOrDisplacement,
-    /// The rigid slip of the step: rolling.
+    /// The rigid slip of the step: other rolling.
     Slip,
 }
 

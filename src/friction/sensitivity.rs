@@ -34,9 +34,9 @@ pub fn predict(problem: &mut Problem, state: &State, tangent: &mut Tangent) -> R
     Ok(())
 }
 
-/// Computes dq for a change dw of the rigid slip, on the grid of the problem. The array holds dw on entry and dq on return. dq = 0
-/// without motion or tractions. `tolerance` is that of the relative residual. `goes_on(relative residual)` is asked before each restart; without its
-/// leave dq is that so far.
+/// Computes dq for a change dw of the rigid slip, on the grid of the problem. The array holds dw on entry and dq on
+/// return. dq = 0 without motion or tractions. `tolerance` is that of the relative residual.
+/// `goes_on(relative residual)` is called before each restart. If it returns false, dq is the present approximation.
 pub fn solve(
     problem: &mut Problem,
     tangent: &Tangent,

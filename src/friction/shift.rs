@@ -7,8 +7,9 @@
 //! q moves by a t: on stick straight, projected onto the disc; on slip along the circle, g (g n + a t)/|g n + a t|
 //! ```
 //!
-//! The move is curved, so its chord at the forecast length f, that of the step before, is the direction that is multiplied. The difference of a step
-//! of another length is a deferred correction: the next product includes it, or an extra product if it is large.
+//! The move is curved, so its chord at the forecast length f, the length of the step before, is multiplied. The
+//! difference of a step of another length is a deferred correction: the next product includes it, or an extra product
+//! if it is large.
 //!
 //! Fields are on C only ([`Discs`]).
 
@@ -29,7 +30,7 @@ const PROGRESS: f64 = 0.9;
 const MOST_DEFERRED: f64 = 0.2;
 
 /// Least forecast length: on rough surfaces steps are short.
-const LEAST_HELD_BACK: f64 = 0.2;
+const LEAST_FORECAST: f64 = 0.2;
 
 /// Memory of the iterations.
 #[derive(Default)]
@@ -64,7 +65,7 @@ impl Memory {
 /// Lengths of the steps: see the module.
 struct Steps {
     /// f.
-    held_back: f64,
+    forecast: f64,
     /// `t.(A + D) t` of the last direction; 0: forgotten.
     energy: f64,
 }
@@ -88,7 +89,7 @@ fn until_it_ends<T: Real>(problem: &mut Problem, state: &mut State, discs: &mut 
     let Goal { tolerance, limit, certified, watch } = goal;
     let threads = problem.threads().clone();
     let rigid = discs.scaled(problem.rms_rigid());
-    let mut steps = Steps { held_back: 0.9, energy: 0.0 };
+    let mut steps = Steps { forecast: 0.9, energy: 0.0 };
     let (mut least, mut since, mut iterations) = (f64::INFINITY, 0, 0);
     let mut sums = discs.predict(&problem.places, &threads);
     loop {
@@ -132,23 +133,23 @@ fn residual(problem: &Problem, rigid: f64, sums: Sums) -> f64 {
 fn step<T: Real>(problem: &mut Problem, discs: &mut Discs<T>, steps: &mut Steps) -> Sums {
     let along_last = discs.precondition(problem);
     let beta = if steps.energy > 0.0 { (-along_last / steps.energy).max(0.0) } else { 0.0 };
-    discs.choose_direction(problem, (beta, steps.held_back));
+    discs.choose_direction(problem, (beta, steps.forecast));
     let [energy, gain] = discs.multiply(problem);
     let (length, next) = choose_length(gain / energy, energy, steps);
     let threads = problem.threads().clone();
-    let mut sums = discs.go(&problem.places, &threads, length, steps.held_back);
+    let mut sums = discs.go(&problem.places, &threads, length, steps.forecast);
     problem.update = discs.own_traction(problem.rms_of(sums.moved));
     if sums.deferred > MOST_DEFERRED * MOST_DEFERRED * sums.moved {
         discs.correct(problem);
         sums = discs.predict(&problem.places, &threads);
     }
-    steps.held_back = next.clamp(LEAST_HELD_BACK, 1.0);
+    steps.forecast = next.clamp(LEAST_FORECAST, 1.0);
     sums
 }
 
 /// The step along the chord, and the next forecast.
 fn choose_length(length: f64, energy: f64, steps: &mut Steps) -> (f64, f64) {
-    let f = steps.held_back;
+    let f = steps.forecast;
     steps.energy = energy;
     if length >= 0.25 * f && length <= 4.0 * f {
         return (length, length);

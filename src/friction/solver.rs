@@ -174,7 +174,7 @@ impl Solver {
             [report.carried, _] = self.scales.own_traction([carried * self.grid.element_area(), 0.0]);
         }
         self.window = window;
-        // Before the result is written, so that a failure leaves the last result.
+        // Derivatives come before the result is written, so that a failure leaves the last result.
         if friction.sensitivities && end != Outcome::Cancelled {
             report.sensitivities = self.sensitivities(friction, watch)?;
             end = if report.sensitivities.is_some() { end } else { Outcome::Cancelled };

@@ -61,7 +61,8 @@ impl Solver {
         Ok(())
     }
 
-    /// Sets g, w, and for rolling the initial tractions. Rejects slips out of range. Returns whether most of C slipped before.
+    /// Sets g, w and the tractions of the start. Rejects slips out of range. Returns whether nearly all of C slips at
+    /// the start.
     pub(super) fn begin(
         &mut self,
         request: &Request<'_>,
@@ -202,7 +203,8 @@ impl Solver {
     }
 }
 
-/// Sets the start of unknown creepages, the scale of residuals, and the gain of the slip by spin; `last`: the last creepages found.
+/// Sets the start of unknown creepages, the scale of residuals, and the change of the slip by spin over a step; `last`:
+/// the last creepages found.
 fn take_step(problem: &mut Problem, friction: &Friction<'_>, grid: &Grid, (scales, last): (&Scales, Vector)) {
     // A warm start of steady rolling includes the last creepages.
     let is_warm = friction.motion == Motion::SteadyRolling && friction.previous == Previous::Kept;

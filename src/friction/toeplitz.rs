@@ -267,7 +267,7 @@ fn whole_step(grid: &Grid, by: (f64, f64)) -> Option<i64> {
 
 /// The range of loaded rows: the first, and the one behind the last; the number of rows and 0 if none is loaded.
 fn rows_with<A>(q: &[A], mx: usize, is_loaded: impl Fn(&A) -> bool) -> (usize, usize) {
-    // All of a row: the compiler vectorises this.
+    // The fold has no early exit, so that the compiler vectorises it.
     let has_any = |row: &[A]| row.iter().fold(false, |any, q| any | is_loaded(q));
     let first = q.chunks_exact(mx).position(has_any);
     let last = q.chunks_exact(mx).rposition(has_any);

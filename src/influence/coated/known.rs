@@ -17,7 +17,7 @@ impl<T> Known<T> {
         Known(Mutex::new(Vec::new()))
     }
 
-    /// The table of some materials. It is computed once.
+    /// The table of some materials, computed if the cache does not have it.
     pub fn get(&self, materials: Materials, make: impl FnOnce() -> T) -> Arc<T> {
         let known = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, table)) = known().iter().find(|(of, _)| *of == materials) {

@@ -14,14 +14,16 @@ use crate::methods::Task;
 use crate::scene::Load;
 use crate::sums::in_blocks;
 
-/// Relative residual of a direction, to e on the free elements: the set of free elements changes before more accuracy pays.
+/// Residual of a direction, relative to e on the free elements. The set of free elements changes before more accuracy
+/// pays.
 const RESIDUAL_RATIO: f64 = 0.25;
-/// Residual of a direction over the residual wanted, below which no iteration goes.
+/// A residual of a direction that begins above this share of the wanted residual is not reduced below it.
 const WANTED_RESIDUAL_SHARE: f64 = 0.3;
-/// A uniform pressure displaces nothing if its displacement is below this part of that of each element by itself: on all elements it is
-/// round-off, on all but one as large as that of the one.
+/// A uniform pressure displaces nothing if its displacement is below this part of that of each element by itself: on
+/// all elements its displacement is round-off, on all but one it is as large as that of the missing one.
 const ROUND_OFF: f64 = 1e-10;
-/// If a uniform pressure displaces nothing, t takes it as displacing this part of the elements' own, and goes to the nearest bound at least.
+/// If a uniform pressure displaces nothing, t is computed as if it displaced this share of the elements' own
+/// displacement. But t reaches at least the nearest bound.
 const ASSUMED_DISPLACEMENT: f64 = 1e-2;
 
 impl ProjectedNewton {
@@ -72,7 +74,8 @@ impl ProjectedNewton {
         Ok(())
     }
 
-    /// Makes t uniform if that is needed. Returns (1, A 1), or 0, and whether a uniform pressure displaces nothing.
+    /// Makes t uniform if that is needed. Returns (1, A 1), or its assumed value, or 0 if t stays 0; and whether a
+    /// uniform pressure displaces nothing.
     fn begin_uniformly<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<(f64, bool)> {
         let count = self.free.iter().filter(|free| **free).count();
         if !task.problem.coefficients.is_mean_free() || 2 * count <= self.free.len() {

@@ -16,15 +16,15 @@ use crate::solver::refinement::LEAST_TOLERANCE;
 use crate::solver::{Options, Outcome, ProgressCallback};
 use crate::threads::Threads;
 
-/// The least effort of a bill in ns: below a tenth of a second, as counts are not exact.
+/// The effort in ns that a bill may always take: below a tenth of a second, because it is not measured exactly.
 const LEAST_EFFORT: f64 = 7e7;
-/// The effort of a bill relative to the scene's.
+/// The effort that a bill may take, relative to the scene's.
 const EFFORT_SHARE: f64 = 0.05;
 /// The power of the elements with which the effort of a scene grows.
 const GROWTH: f64 = 1.1;
-/// Bound on the ratio of the effort of the next grid.
+/// Bound on the effort of the next grid, relative to that of the last.
 const NEXT_GRID_RATIO: f64 = 5.0;
-/// Least elements of the first grid in its longer direction.
+/// Least elements of the first grid in its longer direction, if the scene's grid has twice as many.
 const FIRST_GRID: usize = 16;
 /// Elements that change sides at once: four with two planes of symmetry. Areas do not resolve smaller changes.
 const JUMP: f64 = 4.0;
@@ -88,7 +88,7 @@ pub struct SmallGrids<'s, 'a> {
     pub variants: Vec<Variant>,
     /// Elements of the scene's grid over those of the last grid.
     ratio: f64,
-    /// ITERATION_LIMIT if a variant ended so on the last grid.
+    /// ITERATION_LIMIT if a variant ended with it on the last grid.
     outcome: Outcome,
 }
 
