@@ -22,15 +22,16 @@ const MOST_WAYS_DOWN: u32 = 4;
 const LEAST_PULL: f64 = 1e-6;
 /// A way has found a stronger pull if it exceeds the strongest known by this factor.
 const STRONGER_PULL: f64 = 1.0 + 1e-6;
-/// The first way of a search for a pull may take PULL_OFF_CYCLES times the cycles of a solve, each state of a pull-off 1/STATES_OF_PULL_OFF of them.
+/// The first way of a search for a pull may take the cycles of PULL_OFF_CYCLES solves.
 const PULL_OFF_CYCLES: u64 = 3;
+/// Each state of a pull-off may take 1/STATES_OF_PULL_OFF of the cycles of a solve.
 const STATES_OF_PULL_OFF: u64 = 4;
 /// If the way of a pull-off is lost, at most MOST_WAYS_BELOW further ways begin below it. Each start is sought in
 /// STEPS_BELOW steps of STEP_BELOW times the length of the contact.
 const MOST_WAYS_BELOW: u32 = 4;
 const STEPS_BELOW: u32 = 6;
 const STEP_BELOW: f64 = 0.1;
-/// Each further way may take FURTHER_WAY_CYCLES times the cycles of the first way, plus LEAST_WAY_CYCLES, or all cycles of the goal if these are more.
+/// Cycles of a further way: FURTHER_WAY_CYCLES times the first way's, plus LEAST_WAY_CYCLES; at least the goal's.
 const FURTHER_WAY_CYCLES: u64 = 4;
 const LEAST_WAY_CYCLES: u64 = 500;
 
@@ -53,11 +54,10 @@ impl Solver {
             Walk::Least { sum, approach } => {
                 let area = self.levels[0].problem.grid.element_area();
                 let force = goal.wanted.unwrap_or(0.0) * area;
-                let found = match sum < 0.0 {
-                    true => {
-                        format!("holds a pull of {:e} (the pull-off force), at an approach of {approach:e}", sum * area)
-                    }
-                    false => "does not pull: nothing holds the bodies without a pressing force".into(),
+                let found = if sum < 0.0 {
+                    format!("holds a pull of {:e} (the pull-off force), at an approach of {approach:e}", sum * area)
+                } else {
+                    "does not pull: nothing holds the bodies without a pressing force".into()
                 };
                 Err(Error::Infeasible(format!(
                     "force is {force:e}; the strongest state that was found, on the ways down from no load and from bodies pressed together, \
@@ -117,7 +117,6 @@ impl Solver {
     }
 
     /// The walker of the first way of a search for a pull. This way has many states, and a snap after the strongest.
-    /// [`PULL_OFF_CYCLES`] and [`STATES_OF_PULL_OFF`] bound its cycles.
     fn first_walker<'a, 'm, 'c>(
         &'a mut self,
         goal: Goal,

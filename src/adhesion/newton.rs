@@ -30,7 +30,8 @@ use crate::progress::Monitor;
 
 /// Most steps.
 const MOST_STEPS: u64 = 20;
-/// Above this residual a step linearises at the mean distance and solves its linear system to `FAR_TOLERANCE`, below to `CLOSE_TOLERANCE`.
+/// Above this residual a step linearises at the mean distance and solves its linear system to `FAR_TOLERANCE`, below to
+/// `CLOSE_TOLERANCE`.
 const CLOSE_RESIDUAL: f64 = 2e-2;
 const FAR_TOLERANCE: f64 = 0.2;
 const CLOSE_TOLERANCE: f64 = 0.1;

@@ -89,7 +89,8 @@ impl History {
         (self.has_step, self.is_given, self.time, self.error) = (false, false, 0.0, 0.0);
     }
 
-    /// All of it as numbers: the time, the error, then the fields one after the other; none before the first step, and without fields.
+    /// The history as numbers: the time, the error, then the fields one after the other; none before the first step,
+    /// and without fields.
     pub fn numbers(&self) -> Option<Vec<f64>> {
         let is_there = self.has_step && !self.fields.is_empty();
         is_there.then(|| [self.time, self.error].into_iter().chain(self.fields.iter().flatten().copied()).collect())

@@ -24,7 +24,8 @@ impl Best {
         Best { q: Vec::new(), offset: [0.0; 2], worst: f64::INFINITY }
     }
 
-    /// Keeps the state's tractions if they are better. Their measure counts as [`STALE_UNCERTAINTY`] or more if the displacements are not fresh.
+    /// Keeps the state's tractions if they are better. Their measure counts as [`STALE_UNCERTAINTY`] or more if the
+    /// displacements are not fresh.
     pub fn see(&mut self, problem: &Problem, state: &State, worst: f64, fields: &mut Fields) -> Result<()> {
         let worst = if state.is_exact { worst } else { worst.max(STALE_UNCERTAINTY) };
         if !(worst < self.worst) {

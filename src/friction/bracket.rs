@@ -22,7 +22,8 @@ use crate::progress::Outcome;
 
 /// A trial is good if its missing force is at most this part of the least so far.
 const PROGRESS: f64 = 0.5;
-/// Each time the missing force falls to CLOSE_RATIO times the last value, Newton's method with balanced creepages gets FINISHING_PRODUCTS products.
+/// Each time the missing force falls to CLOSE_RATIO times the last value, Newton's method with balanced creepages gets
+/// FINISHING_PRODUCTS products.
 const CLOSE_RATIO: f64 = 0.1;
 const FINISHING_PRODUCTS: u64 = 30;
 /// Factor on the residual of solves if other creepages leave the forces unchanged, and its least value.

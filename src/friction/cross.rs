@@ -33,7 +33,7 @@ const SERIES_DISTANCE: f64 = 6.0;
 const TERMS: usize = 8;
 /// Distance up to which differences over corners serve next to the element, in units of its shorter side.
 const CORNERS_DISTANCE: f64 = 2.0;
-/// Ratio of the distances of a panel's end and begin, beyond CORNERS_DISTANCE.
+/// Beyond CORNERS_DISTANCE, the end of a panel is this many times as far away as its start.
 const PANEL_RATIO: f64 = 1.5;
 
 /// The source of Axz and Ayz.

@@ -90,8 +90,9 @@ impl Solver {
         self.alternate((request, began.1), &mut march, watch, report)
     }
 
-    /// After Newton's method found no solution: turns of the branch LOW down to [`FIRST_TURNS_RESIDUAL`], then Newton's method from there. If this fails, the next
-    /// turns go ten times as far, and so on. Ends with the best state if all fail.
+    /// After Newton's method found no solution: turns of the branch LOW down to [`FIRST_TURNS_RESIDUAL`], then Newton's
+    /// method from there. If this fails, the next turns go ten times as far, and so on. Ends with the best state if all
+    /// fail.
     fn alternate(
         &mut self,
         (request, had_slip): (&Request<'_>, bool),

@@ -106,7 +106,7 @@ fn ways(forces: Forces, newton_first: bool, (is_rolling, certified): (bool, bool
     use Way::{Gradients, Newton};
     let as_many = |ways: &[Way]| ways.iter().map(|way| (*way, u64::MAX)).collect();
     if forces.any() && !certified {
-        // The next grid starts from their last state.
+        // On a coarser grid these need not converge: the next grid starts from their last state.
         as_many(&[Newton(Manner::Plain), Newton(Manner::Balanced)])
     } else if slips {
         vec![

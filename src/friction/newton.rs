@@ -29,7 +29,8 @@ use crate::progress::Outcome;
 /// Relative tolerance of the linear solve of a step, and in rolling.
 const INNER: f64 = 0.15;
 const INNER_ROLLING: f64 = 0.35;
-/// The last linear solve stops at LAST_TOLERANCE_SHARE times the tolerance. Below POLISH_BELOW times the tolerance `polish` takes the certificate.
+/// The last linear solve stops at LAST_TOLERANCE_SHARE times the tolerance. Below POLISH_BELOW times the tolerance
+/// `polish` takes the certificate.
 const LAST_TOLERANCE_SHARE: f64 = 0.9;
 const POLISH_BELOW: f64 = 1.5;
 /// Largest relative tolerance of a linear solve.
@@ -45,8 +46,8 @@ const DIRECTIONS: usize = 40;
 const MOST_VALUES: usize = 1 << 21;
 /// Length of steps after an odd number of cuts: full steps may alternate between two slip areas for ever.
 const SHORT_STEP: f64 = 0.5;
-/// The preconditioner is left out of `polish` once TIMES_WORSE certificates in a row find more than WORSE_CERTIFICATE times the residual before. A
-/// single one may come from displacements that were not fresh.
+/// The preconditioner is left out of `polish` once TIMES_WORSE certificates in a row find more than WORSE_CERTIFICATE
+/// times the residual before. A single one may come from displacements that were not fresh.
 const WORSE_CERTIFICATE: f64 = 1.5;
 const TIMES_WORSE: u32 = 2;
 /// Steps without progress before a cut; progress is a residual below PROGRESS times the least.

@@ -248,12 +248,8 @@ impl Solver {
         let scales = self.scales;
         let watch = &mut |grid: &Grid, residual: f64| watch(&scales.own_grid(grid), residual);
         let compared = nested && request.estimates && request.friction.motion == Motion::SteadyRolling;
-        let mut work = Work {
-            products: 0.0,
-            limit: request.limit,
-            coarse: if compared { COUNTED_TOLERANCE } else { COARSE_TOLERANCE },
-            watch,
-        };
+        let coarse = if compared { COUNTED_TOLERANCE } else { COARSE_TOLERANCE };
+        let mut work = Work { products: 0.0, limit: request.limit, coarse, watch };
         let end = nested::solve(&mut self.levels, forces, (nested, had_slip), request.tolerance, &mut work)?;
         report.products += work.products;
         let own = |(force, creepage)| (scales.own_force(force), scales.own_creepage(creepage));

@@ -36,7 +36,8 @@ pub struct Sweep {
 }
 
 impl Rolling {
-    /// The step on a coarser grid, of as many elements but at least one: the slip per length depends little on the step.
+    /// The step on a coarser grid: as many elements, but at least one. The slip per length depends little on the length
+    /// of the step.
     pub fn on(&self, fine: &Grid, coarse: &Grid) -> Rolling {
         let (is_along_x, length) = (self.by.0.abs() >= self.by.1.abs(), self.by.0.abs().max(self.by.1.abs()));
         let factor = if is_along_x { coarse.dx / fine.dx } else { coarse.dy / fine.dy } / length.min(1.0);

@@ -19,8 +19,8 @@ use crate::error::Result;
 use crate::memory::zeros;
 use crate::methods::fields::{self, BLOCK};
 
-/// Factor on D/a0 in `E = 1/(1 + CURVATURE_WEIGHT D/a0)`. In the preconditioner E is the weight of the inverse of A, and 1 - E
-/// that of the inverse of D + a0.
+/// Factor on D/a0 in `E = 1/(1 + CURVATURE_WEIGHT D/a0)`. In the preconditioner E is the weight of the inverse of A,
+/// and 1 - E that of the inverse of D + a0.
 pub(super) const CURVATURE_WEIGHT: f64 = 0.5;
 
 /// Distance from the circle, relative to its radius, within which tractions count as near.

@@ -32,7 +32,7 @@ const MOST_TERMS: usize = 8;
 /// `z^(K+1) <= 2e-15` (1e-14 at the first distance, where `|q_9| < 0.1`).
 const SERIES: [(f64, usize); 4] = [(6.0, 8), (12.0, 6), (40.0, 4), (300.0, 2)];
 
-/// Most coefficients of one quadrant nearer than the series that are kept.
+/// The most kept coefficients of one quadrant at offsets nearer than the series.
 const MOST_KEPT: usize = 1024;
 
 /// Sizes of quadrants of coefficients that are kept once a grid of this size needs them. Computing them takes as long as a product or more, and
@@ -199,10 +199,9 @@ impl HalfSpace {
         HalfSpace { dx, dy, compliance: compliance / PI, shape: Shape::of(dx, dy) }
     }
 
-    /// The coefficients of the same bodies for another element size.
+    /// The coefficients of the same bodies for another element size. A shape depends on dx/dy alone.
     pub fn for_element(&self, dx: f64, dy: f64) -> HalfSpace {
-        let same_shape = dx / self.dx == dy / self.dy;
-        let shape = if same_shape { self.shape.clone() } else { Shape::of(dx, dy) };
+        let shape = if dx / self.dx == dy / self.dy { self.shape.clone() } else { Shape::of(dx, dy) };
         HalfSpace { dx, dy, compliance: self.compliance, shape }
     }
 }

@@ -32,7 +32,7 @@ pub struct Operator<T: Real> {
 }
 
 impl<T: Real> Operator<T> {
-    /// Sets up products on `grid`; the spectrum is computed in double precision for either `T`.
+    /// Sets up products on `grid`; the symbol is computed in double precision for either `T`.
     pub fn new(coefficients: &Coefficients, grid: &Grid, threads: &Threads) -> Result<Operator<T>> {
         Operator::scaled(coefficients, 1.0, grid, threads)
     }

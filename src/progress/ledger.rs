@@ -53,8 +53,8 @@ impl Measures {
     }
 }
 
-/// Estimated errors (module `estimates`). Negative: unknown, as no estimates were requested, or, with its bit in `untrusted`, as the grid
-/// does not resolve the contact, or the peak is singular.
+/// Estimated errors (module `estimates`). Negative: unknown, because no estimates were requested, or, with its bit in
+/// `untrusted`, as the grid does not resolve the contact, or the peak is singular.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiscretisationError {
     /// The error of the force (of the approach, when the force is prescribed).

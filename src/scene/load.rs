@@ -7,7 +7,8 @@ use crate::error::{invalid, Error, Number, Result};
 pub enum Load {
     /// Prescribed approach (penetration): `e = h - approach + A p`.
     Approach(f64),
-    /// Prescribed normal force, `sum of p dx dy`; the approach is found. Negative: only on a given contact area.
+    /// Prescribed normal force, `sum of p dx dy`; the approach is found. Negative only on a given contact area or with
+    /// adhesion.
     Force(f64),
 }
 
@@ -24,7 +25,7 @@ impl Load {
         Ok(())
     }
 
-    /// Refuses a force that pulls, unless the contact area is given: pressures may pull there.
+    /// Refuses a force that pulls, unless pressures may pull: on a given contact area, or with adhesion.
     pub fn check_sign(&self, is_fixed: bool) -> Result<()> {
         match *self {
             Load::Force(force) if force < 0.0 && !is_fixed => invalid(format!(

@@ -19,12 +19,14 @@ use crate::friction::{dot, length, Vector};
 use crate::progress::Outcome;
 use crate::scene::{Load, Prescribed, Scene};
 
-/// If forces miss less than CLOSE_FORCES times mu N, tractions by force are tried with the same pressures, with FINISHING_PRODUCTS products.
+/// If forces miss less than CLOSE_FORCES times mu N, tractions by force are tried with the same pressures, with
+/// FINISHING_PRODUCTS products.
 const CLOSE_FORCES: f64 = 1e-4;
 const FINISHING_PRODUCTS: usize = 30;
 /// Most creepages.
 const MOST_TRIALS: u32 = 30;
-/// Creepages that are tried, relative to those of turns by force. With two forces, those from OPPOSITE_FROM on are opposite to the force.
+/// Creepages that are tried, relative to those of turns by force. With two forces, those from OPPOSITE_FROM on are
+/// opposite to the force.
 const TRIED_RATIOS: [f64; 14] = [1.0, 1.3, 2.0, 4.0, 16.0, 64.0, 256.0, 1e3, 1e4, FAR, 0.75, 0.5, 0.25, 0.1];
 const OPPOSITE_FROM: f64 = 64.0;
 /// If turns by force miss more than this part of mu N, only the creepage FAR is tried: before full slip pressures carry at most some hundredths more

@@ -6,8 +6,8 @@ use crate::friction::{dot, length, Vector};
 const PROGRESS: f64 = 0.5;
 /// With two forces: a trial that misses more than this times the least is followed by one halfway back.
 const WORSE: f64 = 2.0;
-/// The first step along the creepages, relative to these, at most MOST_STEPS times the missing force. No step exceeds LONGEST_STEP times the
-/// creepages.
+/// The first step along the creepages, relative to these, at most MOST_STEPS times the missing force. No step exceeds
+/// LONGEST_STEP times the creepages.
 const FIRST_STEP: f64 = 0.1;
 const MOST_STEPS: f64 = 1e6;
 const LONGEST_STEP: f64 = 0.8;

@@ -15,9 +15,9 @@
 //! At ends of the surface pressures are infinite, and the end lies anywhere between two centres ([`at_ends`]). A jump of the surface also lies
 //! anywhere between two centres ([`Curvature::jumps`]). Both errors are of first order in the size of the elements.
 //!
-//! *Pressures.* Their errors are fractions of the second differences within the contact area and across its boundary: [`PEAK_ERROR`] for the largest
-//! pressure,
-//! [`PRESSURES_ERROR`] in the rms. A peak with a large relative second difference is singular or not resolved. It has no estimate.
+//! *Pressures.* Their errors are fractions of the second differences within the contact area and across its boundary:
+//! [`PEAK_ERROR`] for the largest pressure, [`PRESSURES_ERROR`] in the rms. A peak with a large relative second
+//! difference is singular or not resolved. It has no estimate.
 //!
 //! *The contact area* is estimated from its outline ([`Outline`]). The correction is the error of counting. A fraction of the correction is the error
 //! of the corrected area. Straight pieces and straight ends of the surface have an error of half an element. Ends in steps have the square root of

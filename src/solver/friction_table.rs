@@ -1,8 +1,9 @@
 //! A table of tangential problems with the same pressures, one for each motion or force, spread over threads.
 //!
-//! Entries are solved in runs of [`RUN`] consecutive entries. The first of a run starts from rest, each other one from the tractions of the one
-//! before, unless that is [far](NEAR_CREEPAGE) away. An entry that ends without its certificate is solved again from rest. Runs do not depend on the thread:
-//! the results have the same bits for any number of threads.
+//! Entries are solved in runs of [`RUN`] consecutive entries. The first of a run starts from rest, each other one from
+//! the tractions of the one before, unless that is [far](NEAR_CREEPAGE) away. An entry that ends without its
+//! certificate is solved again from rest. Runs do not depend on the thread: the results have the same bits for any
+//! number of threads.
 
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};

@@ -187,7 +187,7 @@ fn on_grid(
     }
 }
 
-/// As [`on_grid`], with the errors of any grid.
+/// [`on_grid`], except that the refusal of a coarser grid is an error.
 fn solve_on(
     scene: &Scene<'_>,
     (options, wanted): (&Options, &[Quantity]),

@@ -19,10 +19,11 @@
 //!
 //! *Where mu jumps* the jump lies anywhere between two centres, and with it that of `mu p` on slip ([`at_jumps`]).
 //!
-//! With a prescribed force the creepage has the error `e/(dF/dxi)`, with `dF/dxi = (F/xi) (1 - F/(mu N))^(1/3)`, which is that of
-//! Cattaneo's and of Carter's curve or less. A residual R adds an error of at most R mu N (docs/friction.md). SHIFT_ERROR, OUTLINE_CHORD and ROLLING_FACTOR are
-//! measured on balls and ellipses of 7 to 54 elements across (docs/notes/2026-11-friction.md) and tested (`tests/friction/estimates.rs`).
-//! They hold for flat punches and jumps of mu on 11 to 68 elements across.
+//! With a prescribed force the creepage has the error `e/(dF/dxi)`, with `dF/dxi = (F/xi) (1 - F/(mu N))^(1/3)`, which
+//! is that of Cattaneo's and of Carter's curve or less. A residual R adds an error of at most R mu N
+//! (docs/friction.md). SHIFT_ERROR, OUTLINE_CHORD and ROLLING_FACTOR are measured on balls and ellipses of 7 to 54
+//! elements across (docs/notes/2026-11-friction.md) and tested (`tests/friction/estimates.rs`). They hold for flat
+//! punches and jumps of mu on 11 to 68 elements across.
 //!
 //! [`estimates`]: super::estimates
 

@@ -29,7 +29,8 @@ pub struct TangentialTurn<'a> {
 
 /// Residuals below this are round-off.
 pub const ROUND_OFF: f64 = 1e-11;
-/// Turns by a force above NEAR_FULL_SLIP times mu N get BY_FORCE_SHARE of the products, so that turns with creepages can follow.
+/// Turns by a force above NEAR_FULL_SLIP times mu N get BY_FORCE_SHARE of the products, so that turns with creepages
+/// can follow.
 const NEAR_FULL_SLIP: f64 = 0.8;
 const BY_FORCE_SHARE: f64 = 0.6;
 /// Tolerance of turns with creepages, relative to the options'. It is tighter, because the forces of two turns are

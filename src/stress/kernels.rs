@@ -2,7 +2,8 @@
 //!
 //! By the distance between the centres, in longer sides of an element:
 //!
-//! * below [`CLOSED_FORM_DISTANCE`] the closed form of [`element`](super::element), whose corner differences lose digits with the distance;
+//! * below [`CLOSED_FORM_DISTANCE`] the closed form of [`element`](super::element), whose corner differences lose
+//!   digits with the distance;
 //! * below [`GAUSS_DISTANCE`] point forces at 4 x 4 Gauss points of the element;
 //! * beyond, point forces at the centres of the elements, from which means over elements follow (see [`means`](crate::influence::means)):
 //!   one evaluation per element, and no cancellation at any distance.

@@ -5,8 +5,8 @@ use crate::effects::{self, Stresses};
 use crate::error::{invalid, Error, Result};
 use crate::scene::{Patches, Scene};
 
-/// The half-space that is `body` 1 or 2 of a scene, with pressures and tractions on it, `[my][mx]`; none: not there. Refuses effects with which
-/// stresses are not known. The distance and the load of the scene are not looked at.
+/// The half-space that is `body` 1 or 2 of a scene, with pressures and tractions on it, `[my][mx]`; none: not there.
+/// Refuses effects with which stresses are not known. The distance and the load of the scene are not used.
 pub fn of_scene<'a>(scene: &'a Scene<'a>, body: i32, loads: [Option<&'a [f64]>; 3]) -> Result<(Body, Loads<'a>)> {
     effects::check_effects(scene)?;
     let b = match body {

@@ -8,11 +8,12 @@
 //! W(x) = 1/L integral over 0 < s < dx of exp(-s/L) a(x + s)  +  exp(-dx/L) W(x + dx)
 //! ```
 //!
-//! a is smooth except at the edges of the element. Intervals end there, and panels get shorter towards them: in the element's own row down to a
-//! fraction of its shorter side, in other rows down to the distance from the edge. That distance is short if elements are long in x. Lengths are in
-//! elements, and times in passages of one element. To all digits, W is a for a time below [`SHORTEST_TIME`], and 0 for a time above [`LONGEST_TIME`]. So
-//! such times are set to these bounds. Element sizes and compliances are split into a number near 1 and a power of two. The table is multiplied by
-//! that power at the end.
+//! a is smooth except at the edges of the element. Intervals end there, and panels get shorter towards them: in the
+//! element's own row down to a fraction of its shorter side, in other rows down to the distance from the edge. That
+//! distance is short if elements are long in x. Lengths are in elements, and times in passages of one element. To all
+//! digits, W is a for a time below [`SHORTEST_TIME`], and 0 for a time above [`LONGEST_TIME`]. So such times are set to
+//! these bounds. Element sizes and compliances are split into a number near 1 and a power of two. The table is
+//! multiplied by that power at the end.
 
 use super::modes::Mode;
 use super::series::Series;

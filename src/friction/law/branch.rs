@@ -23,8 +23,8 @@ use crate::progress::Outcome;
 const MOST_TURNS: u32 = 400;
 const PATIENCE: u32 = 60;
 const GAIN: f64 = 0.95;
-/// The tolerance of a turn: this fraction of the error of its bounds, but at most `FIRST_TOLERANCE`, as in the first turn, and at least the fraction `TOLERANCE_SHARE`
-/// of the tolerance.
+/// The tolerance of a turn: this fraction of the error of its bounds, but at most `FIRST_TOLERANCE`, as in the first
+/// turn, and at least the fraction `TOLERANCE_SHARE` of the tolerance.
 const INNER: f64 = 0.05;
 const FIRST_TOLERANCE: f64 = 1e-3;
 const TOLERANCE_SHARE: f64 = 0.3;

@@ -1,8 +1,8 @@
 //! The two stages of a solve with a law.
 //!
 //! 1. lagged: before each Newton step with fixed bounds, the bounds of slipping elements are updated from the slips of the step before;
-//! 2. below a residual of [`NEWTON_RESIDUAL`], Newton's method with the derivatives of the bounds ([`system`](super::system)); without progress a few
-//!    lagged steps follow.
+//! 2. below a residual of [`NEWTON_RESIDUAL`], Newton's method with the derivatives of the bounds
+//!    ([`system`](super::system)); without progress a few lagged steps follow.
 //!
 //! With given forces both steps are bordered by the creepages. The iteration then begins with the solution of Coulomb's law, the least
 //! creepage that carries the forces.
@@ -31,8 +31,8 @@ const NEWTON_RESIDUAL: f64 = 1e-2;
 /// A Newton step must reduce the residual to this part of the least so far; if not, LAGGED_STEPS lagged steps follow.
 const PROGRESS: f64 = 0.7;
 const LAGGED_STEPS: u32 = 5;
-/// Relative residual of linear solves, of Newton steps and of lagged ones. The last one ends at TOLERANCE_SHARE times the tolerance, at most at the relative
-/// residual LEAST_GAIN. A linear solve has at most DIRECTIONS directions.
+/// Relative residual of linear solves, of Newton steps and of lagged ones. The last one ends at TOLERANCE_SHARE times
+/// the tolerance, at most at the relative residual LEAST_GAIN. A linear solve has at most DIRECTIONS directions.
 const INNER: f64 = 0.2;
 const INNER_LAGGED: f64 = 0.35;
 const TOLERANCE_SHARE: f64 = 0.5;
@@ -41,7 +41,8 @@ const DIRECTIONS: usize = 40;
 /// rho of the natural map in Newton steps, over the inverse of an element's influence on itself: more than the largest slope of a bound, so
 /// that each element has one state. 4 takes 15 to 24 products, 2 takes 15 to 36 (192 x 176 elements to 1e-6).
 const RHO: f64 = 4.0;
-/// At residuals above [`NEWTON_RESIDUAL`], rho a0 is at least RHO_PER_SLOPE times the largest downward slope of a bound, and at most RHO.
+/// At residuals above [`NEWTON_RESIDUAL`], rho a0 is at least RHO_PER_SLOPE times the largest downward slope of a
+/// bound, and at most RHO.
 const RHO_PER_SLOPE: f64 = 2.0;
 /// Steps without a residual below GAIN times the least, after which the iteration ends.
 const PATIENCE: u32 = 15;

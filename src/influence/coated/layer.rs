@@ -2,7 +2,8 @@
 //!
 //! The integral over an element, by the larger of its distance and t, in longer sides of an element:
 //!
-//! * beyond [`STENCIL_DISTANCE`], by values at the centres of the element and its neighbours (see [`means`]): one evaluation per element;
+//! * beyond [`STENCIL_DISTANCE`], by values at the centres of the element and its neighbours (see [`means`]): one
+//!   evaluation per element;
 //! * nearer, by tensor Gauss, or up to [`CORNERS`] diagonals by corner differences of `S(x, y) = integral from 0 to x and 0 to y of F`,
 //!
 //! ```text

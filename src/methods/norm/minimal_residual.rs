@@ -63,7 +63,8 @@ impl Krylov {
         let (basis, w) = self.basis.split_at_mut((k + 1) * m);
         self.columns.resize((k + 1) * RESTART, 0.0);
         let column = &mut self.columns[k * RESTART..];
-        // Twice, and the mean each time: no residual would show a mean left by round-off.
+        // The direction is orthogonalised twice, and its mean removed each time. No residual would show a mean that
+        // round-off leaves.
         for _ in 0..2 {
             project(w);
             for (h, v) in column.iter_mut().zip(basis.chunks_exact(m)) {

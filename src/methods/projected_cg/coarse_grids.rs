@@ -32,7 +32,7 @@ use crate::threads::Threads;
 const COARSEST: usize = 8;
 /// Tolerance on the coarsest grid: its discretisation error is larger.
 const COARSEST_TOLERANCE: f64 = 1e-3;
-/// Most iterations on the coarsest grid, and on the grids between it and the finest: with 3 to 5 there all products are 1.0 to 1.1 times as many.
+/// Most iterations on the coarsest grid, and on those between (with 3 to 5 there, 1.0 to 1.1 times as many products).
 const COARSEST_ITERATIONS: u64 = 50;
 const COARSE_ITERATIONS: u64 = 2;
 /// Iterations with elements at their limit: on 48 scenes (`examples/pressure_limits`) 4, 5, 6, 8 take at most 6.0, 3.2, 3.3, 3.6 times the work of

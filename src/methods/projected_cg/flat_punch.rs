@@ -33,9 +33,10 @@ impl<T: Real> Iteration<T> {
         }
     }
 
-    /// Sets the penetration from which exterior elements enter: the mean of the residual, in z, plus [`ALLOWED_DEVIATIONS`] standard deviations. Smaller
-    /// penetrations are as uncertain as the residual; most such elements would leave at once. With a prescribed approach the mean may be negative. As
-    /// with a prescribed force, distances are relative to their mean over C.
+    /// Sets the penetration from which exterior elements enter: the mean of the residual, in z, plus
+    /// [`ALLOWED_DEVIATIONS`] standard deviations. Smaller penetrations are as uncertain as the residual; most such
+    /// elements would leave at once. With a prescribed approach the mean may be negative. As with a prescribed force,
+    /// distances are relative to their mean over C.
     pub(super) fn find_allowance(&mut self) {
         let mut sums = Sums::new();
         sums.add([], [&self.z], |[], [r]| [r, r * r]);

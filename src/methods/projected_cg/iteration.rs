@@ -7,7 +7,7 @@
 //! t = max(t, -p/alpha')           alpha': a forecast of alpha
 //! q = A t,                        alpha = (r, t)/(t, q)
 //! p = p + alpha t, u = u + alpha q
-//! 4.1  elements with p < 0, and those held at -p/alpha', leave C with p = 0
+//! 4.1  elements with p < 0, and those clipped at -p/alpha', leave C with p = 0
 //! 4.2  elements with e < 0 enter C
 //! ```
 //!
@@ -204,7 +204,7 @@ impl<T: Real> Iteration<T> {
     fn iterate<S: AdmissibleSet>(&mut self, state: &mut State, set: S, search: &mut Search) -> Option<Cycle> {
         // z = M r, t = max(z + beta t, -p/alpha'), and the deferred correction
         self.precondition(state);
-        let held_back = search.forecast.filter(|_| search.may_hold_back && !S::FIXED);
+        let held_back = search.forecast.filter(|_| search.may_clip && !S::FIXED);
         self.direct(state, search.tq, held_back);
         held_back.filter(|_| S::LIMITED).into_iter().for_each(|forecast| self.hold_at_limit(state, set, forecast));
         let forecast = search.forecast.unwrap_or(1.0);

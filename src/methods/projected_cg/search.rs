@@ -12,7 +12,7 @@ pub(super) struct Search {
     /// alpha', if there is one.
     pub(super) forecast: Option<f64>,
     /// Whether steps may be clipped. Clipped directions may fail to descend; then the next one is neither clipped nor conjugate to this one.
-    pub(super) may_hold_back: bool,
+    pub(super) may_clip: bool,
     /// (t, q); 0 if the next direction is conjugate to none.
     pub(super) tq: f64,
     pub(super) is_first: bool,
@@ -23,14 +23,14 @@ pub(super) struct Search {
 impl Search {
     /// The state before the first iteration.
     pub(super) fn new(forecast: Option<f64>) -> Search {
-        Search { forecast, may_hold_back: true, tq: 0.0, is_first: true, products: 0 }
+        Search { forecast, may_clip: true, tq: 0.0, is_first: true, products: 0 }
     }
 
     /// The forecast, unless it was [`FAR_OFF`].
     pub(super) fn believed(&mut self, alpha: f64) -> Option<f64> {
-        let good = self.forecast.filter(|forecast| self.may_hold_back && within_factor(alpha, *forecast, FAR_OFF));
-        self.may_hold_back = !self.may_hold_back || good.is_some();
-        if !self.may_hold_back {
+        let good = self.forecast.filter(|forecast| self.may_clip && within_factor(alpha, *forecast, FAR_OFF));
+        self.may_clip = !self.may_clip || good.is_some();
+        if !self.may_clip {
             self.tq = 0.0;
         }
         good

@@ -31,8 +31,8 @@ use crate::sums::{in_blocks, Sums};
 const CONCENTRATED_RATIO: f64 = 8.0;
 /// Part of the force beyond this ratio from which few elements carry much.
 const CONCENTRATED_FORCE: f64 = 0.01;
-/// d is set up again when C has changed by its number of elements over this.
-const CHANGED_SHARE: u64 = 4;
+/// d is set up again when more than 1/CHANGED_DIVISOR of the elements of C have changed.
+const CHANGED_DIVISOR: u64 = 4;
 
 impl<T: Real> Iteration<T> {
     /// Sets up the deflation direction, if the load needs one, no change is known and there is memory. Returns the products that this takes.
@@ -68,9 +68,9 @@ impl<T: Real> Iteration<T> {
         let count = self.segments.count() as u64;
         if self.deflation.is_there() {
             let grown = if self.is_plane_strain() { count.saturating_sub(self.deflation.elements) } else { 0 };
-            self.deflation.is_uniform && CHANGED_SHARE * grown.max(self.deflation.left() as u64) > count
+            self.deflation.is_uniform && CHANGED_DIVISOR * grown.max(self.deflation.left() as u64) > count
         } else {
-            iterations.is_power_of_two() && CHANGED_SHARE * cycle.changes > count
+            iterations.is_power_of_two() && CHANGED_DIVISOR * cycle.changes > count
         }
     }
 }

@@ -55,7 +55,8 @@ const EXPONENTS: (f64, f64) = (0.9, 1.25);
 const WORTH_A_TRY: f64 = 1.2;
 
 impl Past {
-    /// `scene`: the grid of the scene. `entered`, `now`: seconds from the begin of the first grid to that of this one, and to its end.
+    /// `scene`: the grid of the scene. `entered`, `now`: seconds from the start of the first grid to the start and to
+    /// the end of this one.
     pub fn of(
         (solved, is_believed): (&Solved, bool),
         (accuracy, scene): (&Accuracy, &Grid),

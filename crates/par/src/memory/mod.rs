@@ -28,7 +28,7 @@ const MOST_KEPT: usize = 112 << 20;
 static ALLOWED: AtomicUsize = AtomicUsize::new(MOST_KEPT);
 /// The allocator itself keeps smaller blocks.
 const LEAST_KEPT: usize = 1 << 13;
-/// Before more bytes are requested from the system, all kept arrays return to it.
+/// Before an array of more bytes is requested from the system, all kept arrays return to it.
 const RETURNED_ABOVE: usize = 96 << 20;
 /// The default of the least number of values of an array that rests. From 4096 x 4096 elements on memory is scarce, and mapping pages again is cheap
 /// compared with a product.
