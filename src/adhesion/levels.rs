@@ -97,8 +97,8 @@ pub fn take_surfaces(levels: &mut [Level], given: Surfaces<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Prolongs the pressures of the next coarser grid, piecewise constant, with displacements by a fresh product, the approach, and the fields of
-/// linear solves.
+/// Starts from the pressures of the next coarser grid, piecewise constant, and from its approach. Displacements follow
+/// by a fresh product. The memory of linear solves passes to the finer grid.
 pub fn prolong(coarse: &mut Level, fine: &mut Level) -> Result<()> {
     fine.fields = std::mem::take(&mut coarse.fields);
     fine.fields.leave_smaller(fine.now.u.len());

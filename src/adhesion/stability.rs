@@ -20,8 +20,8 @@ use crate::threads::Threads;
 /// Most steps of Lanczos' iteration, and the change of lambda at which it ends.
 const MOST_STEPS: usize = 20;
 const LAMBDA_CHANGE: f64 = 1e-4;
-/// The effort of each linear system. The error of lambda, a Rayleigh quotient, is the square of the relative residual. On large grids the vectors of
-/// Lanczos' iteration take the memory of many directions.
+/// The effort of each linear system. The error of lambda, a Rayleigh quotient, is the square of the relative residual.
+/// On large grids a system keeps few directions, since the vectors of Lanczos' iteration need memory as well.
 const INNER: Effort = Effort { part: 1e-3, most: 60, at_once: 8 };
 /// Halvings of the interval around an eigenvalue.
 const HALVINGS: u32 = 60;

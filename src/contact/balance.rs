@@ -85,7 +85,8 @@ impl State {
         self.p.iter_mut().zip(&self.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p += uniform);
     }
 
-    /// Whether a prescribed force is negligible compared with the sum of |p|: the sum of p is then round-off and does not measure p.
+    /// Whether a prescribed force is much smaller than the sum of |p|. Then p must not be scaled to the force: the sum
+    /// of p says little about the size of p.
     pub fn is_cancelled(&self, threads: &Threads) -> bool {
         let Load::Force(force) = self.load else { return false };
         let [all] = self.sum_pressures(threads, |p| [p.abs()]);

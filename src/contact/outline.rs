@@ -10,8 +10,8 @@
 //! c is a mean over all directions of the outline, in units of the elements. For elements that are not square the outline is stretched to
 //! square ones: N_a and M are the same, and the area scales by dx dy.
 //!
-//! Along a straight outline parallel to the elements there is no mean over directions: all of it has the error of the same part of an
-//! element. Such pieces are counted.
+//! c does not hold for a straight outline parallel to the elements: all of it is off by the same part of an element.
+//! Changes in such pieces are counted.
 
 use std::borrow::Cow;
 use std::f64::consts::{LN_2, PI};
@@ -30,7 +30,8 @@ pub(super) const STRAIGHT: usize = 8;
 pub struct Outline {
     /// M: changes between contact and an exterior element that has a surface, along all rows and columns.
     pub changes: usize,
-    /// Changes in straight pieces, of 8 elements and more or from one end of the grid to the other: along columns, along rows.
+    /// Changes in straight pieces, of 8 elements and more or from one end of the grid to the other: pieces along
+    /// columns, and along rows.
     pub straight: (usize, usize),
     /// Sides of elements in contact beside an element without a surface.
     pub edges: usize,
@@ -116,7 +117,7 @@ impl Outline {
         self.edges + border(self.border.0, repeats.0) + border(self.border.1, repeats.1)
     }
 
-    /// Sides in straight pieces, each with the size of elements across it.
+    /// The sum over the changes in straight pieces of the element's size across the piece.
     pub fn straight_length(&self, grid: &Grid) -> f64 {
         self.straight.0 as f64 * grid.dx + self.straight.1 as f64 * grid.dy
     }

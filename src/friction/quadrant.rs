@@ -87,7 +87,8 @@ impl Quadrant {
     }
 }
 
-/// The period of the circulant near A, an element longer than the grid, and the offsets up to half of it; one offset for a single row or column.
+/// The period of the circulant that approximates A, at least an element longer than the grid, and the number of offsets
+/// up to half of it; one offset for a single row or column.
 pub fn circulant_period(grid: &Grid) -> ((usize, usize), (usize, usize)) {
     let (px, py) = vector_period((grid.mx + 1, grid.my + 1));
     let given = |m: usize, period: usize| if m == 1 { 1 } else { period / 2 + 1 };

@@ -137,7 +137,7 @@ pub fn solve<const K: usize, T: Stored>(
 }
 
 impl Kept {
-    /// Returns the fields of directions that are not kept, the last direction being new.
+    /// After a new direction, the last: gives the fields that are not kept back to the pool.
     fn forget<const K: usize, T: Stored>(self, directions: &mut [Direction<K, T>], fields: &mut Fields<K>) {
         let Kept::Products(most) = self else { return };
         let count = directions.len();
@@ -200,7 +200,7 @@ fn scale<const K: usize, T: Stored>(threads: &Threads, v: &mut Bordered<K, T>, a
 }
 
 impl<const K: usize, T: Stored> Direction<K, T> {
-    /// Returns the fields.
+    /// Gives the fields back to the pool.
     fn give(self, fields: &mut Fields<K>) {
         [self.z.field, self.product]
             .into_iter()

@@ -15,7 +15,7 @@ pub const BLOCK: usize = 1024;
 pub struct Fields<const K: usize = 2> {
     free: Vec<Vec<[f64; K]>>,
     single: Vec<Vec<[f32; K]>>,
-    /// The threads that touch new fields first, at which the system clears their pages.
+    /// The threads that first touch new fields. The system clears a page when it is first touched.
     threads: Threads,
 }
 
@@ -109,7 +109,7 @@ impl<const K: usize> Fields<K> {
         T::of_pool(self).push(field);
     }
 
-    /// Drops fields of fewer elements than n, so that they are not enlarged in place of freed ones.
+    /// Frees the fields of fewer than n elements. A field of n elements is then newly allocated instead of enlarged.
     pub fn leave_smaller(&mut self, n: usize) {
         self.free.retain(|field| field.capacity() >= n);
         self.single.retain(|field| field.capacity() >= n);

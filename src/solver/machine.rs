@@ -1,9 +1,11 @@
 //! The growth of seconds with the number of elements on this machine.
 //!
-//! A product of n elements takes `n log n` operations, but its arrays exceed one cache after the other, at sizes that depend on the machine. So a few
-//! products of half-spaces are timed at the first prediction of seconds in a process: 32 x 32 to 256 x 256 elements, the least of some times each, a
-//! few milliseconds on one thread. Threads that predict at the same time each measure. Between these sizes growth is that of a power, beyond them
-//! that of the last two. Bounds on the powers limit the error on a busy machine. No solve depends on it.
+//! A product of n elements takes `n log n` operations, but its arrays exceed one cache after the other, at sizes that
+//! depend on the machine. So products of half-spaces of 32 x 32 to 256 x 256 elements are timed when a process first
+//! predicts seconds. Each is timed a few times, and the least time counts. All takes a few milliseconds on one thread.
+//! Threads that predict at the same time each measure. Between two of these sizes seconds grow with a power of the
+//! number of elements, beyond the last with the power between the last two. Bounds on the powers limit the error on a
+//! busy machine. No solve depends on these times.
 
 use std::sync::OnceLock;
 use std::time::Instant;
@@ -58,9 +60,10 @@ pub fn growth(from: f64, to: f64) -> f64 {
     growth_by(MACHINE.get().map_or(&[], Vec::as_slice), from, to)
 }
 
-/// Seconds of one thread on a grid of `elements`; 0 without samples. The sample with the least prediction counts, as others were disturbed or are
-/// mostly overhead. Samples with less than half the products of the last hardly resolve the contact and do not count. The number of products grows
-/// as from sample to sample, the set-up as from the last but one to the last (with a period it hardly grows). No grid takes longer than a finer one.
+/// Seconds of one thread on a grid of `elements`; 0 without samples. Each sample predicts them. The least prediction
+/// counts, because the other samples were disturbed or are mostly overhead. Samples with less than half the products of
+/// the last do not count: they hardly resolve the contact. The number of products and the seconds of the set-up grow as
+/// between the last two samples. (With a period the set-up hardly grows.) No grid takes longer than a finer one.
 pub fn seconds_on(samples: &[Cost], elements: f64) -> f64 {
     let seen = match samples {
         [.., before, last] => (last.setup / before.setup).ln() / (last.elements / before.elements).ln(),
@@ -102,8 +105,9 @@ fn more_products(samples: &[Cost], elements: f64) -> f64 {
     }
 }
 
-/// The power of the number of elements with which the seconds of the samples grow, if each has `least` products: solves in turns, of unlike bodies,
-/// take longer than their products. The least power from sample to sample, as others were disturbed.
+/// The power of the number of elements with which seconds grow: the least power between successive samples, because
+/// others were disturbed. Pairs count if the first sample has `least` products. The seconds of solves in turns, of
+/// unlike bodies, grow more than their products.
 fn grown(samples: &[Cost], least: f64) -> f64 {
     let of = |pair: &[Cost]| (pair[1].seconds / pair[0].seconds).ln() / (pair[1].elements / pair[0].elements).ln();
     let seen = samples.windows(2).filter(|pair| pair[0].products >= least).map(of);

@@ -15,8 +15,8 @@ pub(super) const REACH: usize = 4;
 pub(super) const CHUNK: usize = 64;
 /// Rows that are processed together. Their boxes overlap largely.
 pub(super) const ROWS: usize = 4;
-/// Chunks whose columns are summed, then by threes, before the first of them is summed across. A load that overlaps two recent stores would stall
-/// until they are in the cache.
+/// Chunks that are summed together: first the columns of all, then threes of these, then across. If each chunk were
+/// summed at once, loads that overlap two recent stores would stall until these are in the cache.
 const TOGETHER: usize = 2;
 /// Columns of a chunk's boxes.
 const LENGTH: usize = CHUNK + BOX - 1;

@@ -21,7 +21,7 @@ use super::formulas::Carried;
 use super::formulas::CLIPPED_SHARE;
 use super::passes::none;
 use super::step_sums::Update;
-use super::vectors::{Beyond, Iteration};
+use super::vectors::{Iteration, WithLimits};
 use crate::contact::{AdmissibleSet, State};
 use crate::error::Result;
 use crate::operator::fft::Real;
@@ -37,7 +37,7 @@ const WAITING_E: f64 = 0.4;
 /// the greatest pressure): without scaling, the work is 1.16 times as much in the mean and 2.2 times in the worst case.
 const FORCE_EXCESS: f64 = 0.05;
 
-impl Beyond {
+impl WithLimits {
     /// Forgets the iteration before.
     pub(super) fn forget(&mut self) {
         (self.missing, self.shift, self.residual, self.went_back) = (0.0, 0.0, 0.0, false);
@@ -86,8 +86,9 @@ impl<T: Real> Iteration<T> {
         Some(1.0)
     }
 
-    /// Scales p and the deferred corrections to carry the prescribed force. Returns the factor, with which u is to be scaled. On a given area a
-    /// negligible force does not determine the scale of p. Directions keep it up to round-off, which the next certificate detects.
+    /// Scales p and the deferred corrections to carry the prescribed force. Returns the factor, with which u is to be
+    /// scaled. On a given area a negligible force does not determine the scale of p. Directions keep the force up to
+    /// round-off, which the next certificate detects.
     pub(super) fn carry_force<S: AdmissibleSet>(&mut self, state: &mut State) -> f64 {
         let Load::Force(force) = state.load else { return 1.0 };
         if S::FIXED && state.is_cancelled(&self.threads) {

@@ -18,12 +18,12 @@ use crate::operator::{Needs, Operator, SetUp, Workspace};
 use crate::progress::Goal;
 use crate::threads::Threads;
 
-/// Parts beyond the plain iteration.
+/// Quantities of an iteration with limits of the pressures.
 #[derive(Default)]
-pub(super) struct Beyond {
+pub(super) struct WithLimits {
     /// The missing part of a prescribed force, as a sum of pressures.
     pub(super) missing: f64,
-    /// The change of the approach for it.
+    /// The change of the approach that restores it.
     pub(super) shift: f64,
     /// The sum of e^2 over C, of the last iteration.
     pub(super) residual: f64,
@@ -33,7 +33,7 @@ pub(super) struct Beyond {
     pub(super) known: Vec<f64>,
 }
 
-impl Beyond {
+impl WithLimits {
     /// Whether the pressures carry the prescribed force.
     pub(super) fn carries(&self, state: &State, goal: &Goal) -> bool {
         self.missing.abs() <= goal.tolerance * state.p.iter().sum::<f64>()
@@ -87,8 +87,8 @@ pub struct Iteration<T: Real> {
     pub(super) allowance: f64,
     /// By approach: whether p is scaled to the least energy after each step.
     pub(super) is_scaled: bool,
-    /// The state of limits.
-    pub(super) limits: Beyond,
+    /// Used if pressures have limits.
+    pub(super) limits: WithLimits,
     pub(super) threads: Threads,
 }
 
@@ -118,7 +118,7 @@ impl<T: Real> Iteration<T> {
             deflation: Deflation::default(),
             allowance: 0.0,
             is_scaled: false,
-            limits: Beyond::default(),
+            limits: WithLimits::default(),
             threads: threads.clone(),
         })
     }
