@@ -48,7 +48,7 @@ pub(super) struct Operators {
     part: Option<(Operator<f64>, bool)>,
     /// The workspace of the last product, and the needs that it satisfies.
     workspace: Option<(Needs, Workspace<f64>)>,
-    /// Memory for other coefficients.
+    /// Memory for the set-up with other coefficients.
     set_up: SetUp,
 }
 

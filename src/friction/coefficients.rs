@@ -23,7 +23,8 @@ use crate::influence::{Base, Coat};
 #[derive(Clone, Debug)]
 pub struct Tangential {
     half_space: HalfSpace,
-    /// The common coating of both bodies, whose material is that of the half-space, and the half-space of the substrates.
+    /// The common coating of both bodies, and the half-space of the substrates. `half_space` then has the coating's
+    /// material.
     coat: Option<(Coat, HalfSpace)>,
     /// The caller's tables, in place of these.
     own: Option<Tables>,

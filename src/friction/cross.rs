@@ -11,8 +11,8 @@
 //!
 //! * beyond six half-diagonals a series in the moments of the element, `dx dy sum_k m_2k/Z^(2k+1)`, `Z = X + i Y`;
 //! * nearer, the closed form in one direction and Gauss-Legendre in the other;
-//! * next to the element differences of `Y ln r + X atan(Y/X)` over its corners, for a slender element over those of its near part, with
-//!   Gauss-Legendre over growing panels beyond.
+//! * next to the element differences of `Y ln r + X atan(Y/X)` over its corners. For a slender element the corners are
+//!   those of its near part, and the rest is integrated by Gauss-Legendre over growing panels.
 
 use std::f64::consts::PI;
 use std::sync::Arc;

@@ -213,7 +213,7 @@ impl Regridded {
                 previous: pair(&self.previous).map_or(Previous::None, Previous::Given),
                 rolling_distance: self.rolling_distance,
                 initial: None,
-                // They belong to the elements of one grid, and a law that reads them is refused on several.
+                // These belong to the elements of one grid. A law that reads them is refused on several grids.
                 coefficients_before: None,
                 yield_limits: None,
                 ..friction

@@ -188,8 +188,8 @@ impl CoarseGrids {
         Ok(())
     }
 
-    /// The error of p on the finest grid from a u in single precision, relative to p (rms over elements with pressure). Errors `EPSILON u` with a
-    /// white spectrum over wave numbers k correspond to pressures of `E* |k|/2` times themselves.
+    /// The error of p on the finest grid by single-precision errors of u, relative to p (rms over elements with
+    /// pressure). They have a white spectrum: with the wave number k an error takes `E* |k|/2` times as much pressure.
     pub fn noise(&self, fine: &Problem) -> f64 {
         let Some(Coarse { state, .. }) = self.grids.first() else { return 0.0 };
         let Survey { squares, contact_count, .. } = self.found;

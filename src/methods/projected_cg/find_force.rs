@@ -34,15 +34,15 @@ use crate::sums::{in_blocks, mean};
 /// Residual of the solve of the first force; of the next ones, relative to the distance between approaches.
 const FIRST_RESIDUAL: f64 = 0.1;
 const RESIDUAL_PER_DISTANCE: f64 = 0.3;
-/// Largest factor of a change of the force (60 lines of 3000 and 9600 elements take at most 85 products; with 4 they take 400), and largest
-/// extrapolation of p, in its last change.
-const FURTHEST: f64 = 2.0;
-const FURTHEST_P: f64 = 4.0;
-/// A force is near if m has to change by at most this part of its last change, and by less than this.
+/// The force changes by at most this factor. (60 lines of 3000 and 9600 elements take at most 85 products; with 4, 400.)
+const LARGEST_FORCE_RATIO: f64 = 2.0;
+/// Largest extrapolation of p, relative to its last change.
+const LARGEST_EXTRAPOLATION: f64 = 4.0;
+/// A force is near if m has to change by at most the first number times its last change, and by less than the second.
 const NEAR_FORCE: (f64, f64) = (0.3, 0.5);
 /// Allowed error of the approach, relative to the tolerance.
 const APPROACH_ERROR: f64 = 0.5;
-/// Most forces; most iterations along the change of p, unless these reduced the residual to this part.
+/// Most forces, and most iterations along the change of p. More follow if these reduced the residual to this part.
 const MOST_FORCES: usize = 20;
 const MOST_ALONG: u64 = 40;
 const ALONG_GAIN: f64 = 0.1;
@@ -188,7 +188,7 @@ impl FindForce {
         let (force, m) = (found.force, found.m(found.approach));
         if found.is_full() {
             self.full = Some(self.full.map_or(force, |full| full.min(force)));
-            return self.last.map_or(force / FURTHEST, |last| 0.5 * (last.0 + force));
+            return self.last.map_or(force / LARGEST_FORCE_RATIO, |last| 0.5 * (last.0 + force));
         }
         let slope = self.last.map(|last| (force - last.0) / (m - last.1));
         let next = match slope.filter(|slope| *slope < 0.0 && slope.is_finite()) {
@@ -196,7 +196,7 @@ impl FindForce {
             None => found.first_change(),
         };
         self.last = Some((force, m));
-        let next = next.clamp(force / FURTHEST, FURTHEST * force);
+        let next = next.clamp(force / LARGEST_FORCE_RATIO, LARGEST_FORCE_RATIO * force);
         match self.full.filter(|full| *full <= next && force < *full) {
             Some(full) => 0.5 * (force + full),
             None => next,
@@ -239,7 +239,7 @@ impl FindForce {
             return Ok(false);
         }
         let (n, is_first) = (state.p.len(), self.before.p.is_empty());
-        let by = Some((next - force) / (force - self.before.force)).filter(|by| by.abs() <= FURTHEST_P);
+        let by = Some((next - force) / (force - self.before.force)).filter(|by| by.abs() <= LARGEST_EXTRAPOLATION);
         let by = if is_first { 0.0 } else { by.unwrap_or(0.0) };
         let many = UNIFORM_SHARE * (n as f64) < state.contact_count() as f64;
         let keeps = is_first || found.off() > found.residual * self.clearness(found).min(1.0);

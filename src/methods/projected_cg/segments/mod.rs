@@ -1,8 +1,8 @@
 //! The contact area in segments, and passes over it.
 //!
-//! A segment is a vector of eight neighbours with at least one element in contact. Contact is often a small part of the grid: passes touch the
-//! segments only. On a rough surface runs of contact do not fill a vector (five elements); the other elements of a segment are computed as well and
-//! masked, without a branch.
+//! A segment is a vector of eight neighbours with at least one element in contact. Contact is often a small part of the
+//! grid: passes touch the segments only. On a rough surface a run of contact, of about five elements, does not fill a
+//! vector. The other elements of a segment are computed as well and masked, without a branch.
 //!
 //! Sums are taken per block of the grid and added in the order of the blocks. Neither the blocks nor the bits of the sums depend on the number of
 //! threads.
