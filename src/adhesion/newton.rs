@@ -20,7 +20,7 @@
 
 use super::law::Law;
 use super::level::Level;
-use super::system::{Linearised, Short, PRODUCTS};
+use super::system::{Linearised, Short, KEPT_PRODUCTS};
 use super::unknowns::{is_small, Measured};
 use crate::error::Result;
 use crate::methods::fgmres::{Bordered, Until};
@@ -40,7 +40,7 @@ const MOST_RANGES_FROM_E: f64 = 3.0;
 /// Most directions of a linear solve: systems that take more are nearly singular. Grids that are not small have `IN_MEMORY`, those of more than
 /// `LARGE_GRID` elements `FIRST_DIRECTIONS`, doubled after each solve for which they were too few.
 const MOST_DIRECTIONS: usize = 30;
-pub const IN_MEMORY: usize = 2 * PRODUCTS;
+pub const IN_MEMORY: usize = 2 * KEPT_PRODUCTS;
 const LARGE_GRID: usize = 1 << 16;
 const FIRST_DIRECTIONS: usize = 6;
 /// The part of the slope in a cautious step.

@@ -25,9 +25,9 @@ use crate::threads::Threads;
 /// Least diagonal of a row outside C in the preconditioner. The diagonal `1 - s a0` is 0 or less for elements that snap alone.
 const LEAST_DIAGONAL: f64 = 0.5;
 
-/// Directions up to which products are kept on large grids; with more, one more product of their sum replaces them. 22 vectors of the basis without
-/// products take the memory of 11 with them.
-pub const PRODUCTS: usize = 11;
+/// Products are kept for at most this many directions on large grids. With more directions, one more product of their
+/// sum replaces them. 22 vectors of the basis without products take the memory of 11 with them.
+pub const KEPT_PRODUCTS: usize = 11;
 
 /// A number per element in single precision.
 pub type Short = [f32; 1];
@@ -86,7 +86,7 @@ impl<'a> Linearised<'a> {
         }
     }
 
-    /// Returns the system's fields.
+    /// Gives the system's fields back to the pool.
     pub fn give(self, fields: &mut Fields<1>) {
         if !self.column.is_empty() {
             fields.give_of(self.column);
@@ -166,7 +166,7 @@ impl System<1, f32> for Linearised<'_> {
     fn kept(&self) -> Kept {
         match is_small(self.stiffness.len()) {
             true => Kept::All,
-            false => Kept::Products(PRODUCTS),
+            false => Kept::Products(KEPT_PRODUCTS),
         }
     }
 

@@ -24,9 +24,10 @@ use crate::threads::Threads;
 const LEAST_THETA: f64 = 0.8;
 const THETA_GROWTH: f64 = 0.1;
 
-/// The step onto the circles is short if three ratios are below this: its displacement to the residual of the linear solve, its size relative to the
-/// bounds to the residual, and the slips of elements inside their circles to the projected slips. (For slips of 1e10 times the displacements by
-/// tractions round-off is projected, and a step of 1e-6 of the bounds is the residual.)
+/// The step onto the circles is short if three ratios are at most this: its displacement over the residual at which the
+/// linear solve ends, its size relative to the bounds over the relative residual, and the slips of elements inside
+/// their circles over the projected slips. (If slips are 1e10 times the displacements by tractions, the projected slips
+/// are round-off, and a step of 1e-6 of the bounds is the residual.)
 const SHORT_STEP: f64 = 0.1;
 
 /// The kind of a step.

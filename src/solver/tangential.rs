@@ -12,8 +12,9 @@ use crate::progress::Monitor;
 use crate::scene::{Friction, Prescribed, Scene};
 use crate::threads::Threads;
 
-/// Force to solve for if pressures carry less than the given one, relative to the force that they carry. Nearly all elements slip then, and the next
-/// pressures carry the force of full slip to 1e-4 (tests/friction/unlike_forces.rs).
+/// If pressures carry less than the given force, the problem is solved for this part of the force that they carry.
+/// Nearly all elements slip then, and the next pressures carry the force of full slip to 1e-4
+/// (tests/friction/unlike_forces.rs).
 const IN_REACH: f64 = 1.0 - 1e-7;
 
 /// The state of a solver for scenes with friction.

@@ -34,7 +34,7 @@ use crate::sums::{in_blocks, mean};
 /// Residual of the solve of the first force; of the next ones, relative to the distance between approaches.
 const FIRST_RESIDUAL: f64 = 0.1;
 const RESIDUAL_PER_DISTANCE: f64 = 0.3;
-/// The force changes by at most this factor. (60 lines of 3000 and 9600 elements take at most 85 products; with 4, 400.)
+/// The force changes by at most this factor. 60 lines of 3000 and 9600 elements take at most 85 products; with 4, 400.
 const LARGEST_FORCE_RATIO: f64 = 2.0;
 /// Largest extrapolation of p, relative to its last change.
 const LARGEST_EXTRAPOLATION: f64 = 4.0;

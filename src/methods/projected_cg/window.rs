@@ -13,11 +13,11 @@ use crate::operator::length_for_stages;
 use crate::rectangle::Rectangle;
 use crate::threads::Threads;
 
-/// Least margin of a new window in elements: one for entering elements, one for an area that still moves. With two for the
-/// latter, cold calls on ellipse 64 and wheel-rail y4_82kN took 1.07 and 1.13 times as long. With none they took the same
-/// time.
+/// Least margin of a new window in elements: one for entering elements, one for an area that moves. With two for the
+/// latter, cold calls on ellipse 64 and wheel-rail y4_82kN took 1.07 and 1.13 times as long. With none they took the
+/// same time.
 const MARGIN: usize = 2;
-/// Additional margin on each side: the length of the area divided by this. With 32, cold calls on ellipses of 512 to 2048
+/// Additional margin on each side: the length of the area over this. With 32, cold calls on ellipses of 512 to 2048
 /// took 1.03 to 1.06 times as long.
 const MARGIN_DIVISOR: usize = 64;
 /// Largest part of the grid for a window with its own operator. With 0.6, steps in time on ellipse 64 and 256 and on both wheel-rail

@@ -116,8 +116,9 @@ pub struct Values {
     pub lack_estimates: bool,
 }
 
-/// Elements across the contact area, along x and y; unlimited in a direction in which a periodic area has no end. An area without any end, and bodies
-/// apart that attract, have the elements of the grid, which are unlimited along a row or column of elements that is the whole grid of the scene.
+/// Elements across the contact area, along x and y; unlimited in a direction in which a periodic area has no end. An
+/// area without any end, and bodies apart that attract, have the elements of the grid. For a scene of one column these
+/// are unlimited along x, for one of one row along y.
 pub fn across(state: &State, repeats: (bool, bool), scene: &Grid) -> (usize, usize) {
     let State { grid, p, .. } = state;
     let around = Rectangle::around_values(&touching(state), grid, &Threads::One, |row| row.contains(&true));
