@@ -116,7 +116,7 @@ pub fn limits<'s>(scene: &'s Scene<'_>) -> Option<PressureLimit<'s>> {
     first(scene, |properties| properties.limits).map(|(_, limits)| limits)
 }
 
-/// The effects with a further problem.
+/// The effects with a problem beside the normal one.
 pub fn beside<'s>(scene: &'s Scene<'_>) -> impl Iterator<Item = &'static str> + 's {
     effects(scene).filter(|effect| effect.properties().is_beside).map(Effect::name)
 }

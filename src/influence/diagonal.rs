@@ -13,9 +13,9 @@ use crate::memory::collected;
 /// The name of this memory in messages.
 const LAYER: &str = "the layer";
 
-/// The response of A that means over c add to c, in units of the self-influence. The smallest eigenvalue of A is 0.3.
-/// Measured: with 2 an iteration needs up to a third fewer products than with 0.3, and fewer levels; 1 to 4 differ
-/// little.
+/// Means over c are geometric means of c plus this response of A, in units of the self-influence. The smallest
+/// eigenvalue of A is 0.3. Measured: with 2 an iteration needs up to a third fewer products than with 0.3, and fewer
+/// levels; 1 to 4 differ little.
 const MEAN_RESPONSE: f64 = 2.0;
 /// The ratio of neighbouring levels of c for preconditioners, and the most levels.
 const LEVEL_RATIO: f64 = 6.0;

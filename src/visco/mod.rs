@@ -30,7 +30,8 @@ pub use series::{Series, MOST_BRANCHES};
 pub struct Report {
     /// The time since the bodies were at rest.
     pub time: f64,
-    /// The difference between the form of the step and another form: rms of the displacements in contact, over that of h - approach.
+    /// An estimate of the error of the step: the difference between its displacements in contact and those by another
+    /// form of the step, as rms over that of h - approach.
     pub step_error: f64,
     /// The step errors of all steps since rest, added up as lengths, without decay.
     pub time_error: f64,

@@ -1,4 +1,4 @@
-//! The linear system of a Newton step with a friction law. Elements in slip also have both components as unknowns.
+//! The linear system of a Newton step with a friction law. On elements in slip, too, both components are unknowns.
 //!
 //! ```text
 //! stick:        B x                                        = -s
