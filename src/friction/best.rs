@@ -77,7 +77,7 @@ impl Best {
 /// The largest measure of feasible tractions.
 fn measured(problem: &mut Problem, state: &mut State, forces: Forces) -> f64 {
     problem.refresh(state);
-    let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
+    let missing = forces.missing(problem, &state.q);
     let residual = Certificate::of(problem, state).residual;
     if missing.is_nan() || residual.is_nan() {
         f64::INFINITY

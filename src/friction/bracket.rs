@@ -15,7 +15,7 @@ use super::problem::{Problem, State};
 use super::sensitivity;
 use super::shift::{self, Goal, Memory};
 use super::step::compliance;
-use super::system::pseudo_inverse;
+use super::system::inverse;
 use crate::error::Result;
 use crate::methods::fields;
 use crate::progress::Outcome;
@@ -28,9 +28,8 @@ const FINISH: u64 = 30;
 /// Factor on the residual of solves if other creepages leave the forces unchanged, and its least value.
 const TIGHTER: f64 = 0.03;
 const LEAST_INNER: f64 = 1e-14;
-/// Relative accuracy of the derivatives of forces, and the relative determinant below which their matrix is singular.
+/// Relative accuracy of the derivatives of forces.
 const SLOPE: f64 = 1e-2;
-const SINGULAR: f64 = 1e-8;
 /// Most trials.
 const MOST_TRIALS: u32 = 400;
 
@@ -72,8 +71,7 @@ pub fn solve(
         if end != Outcome::Converged && !(end == Outcome::Stagnated && residual < tolerance) {
             return Ok(end);
         }
-        let sum = sum_of(problem, &state.q);
-        let excess = forces.only_given([sum[0] - forces.sum[0], sum[1] - forces.sum[1]]);
+        let excess = forces.less(|| sum_of(problem, &state.q)).map(|missing| -missing);
         let missing = square(excess).sqrt() / bounds;
         best.see(problem, state, missing.max(tolerance), &mut memory.fields)?;
         if missing < tolerance {
@@ -227,10 +225,5 @@ fn slope(problem: &mut Problem, memory: &mut Memory, forces: Forces) -> Result<[
         (falls[0][k], falls[1][k]) = (-by[0], -by[1]);
         fields.give(change);
     }
-    let [[a, b], [c, d]] = falls;
-    let determinant = a * d - b * c;
-    if forces.given == [true; 2] && determinant.abs() > SINGULAR * (a.abs() + b.abs() + c.abs() + d.abs()).powi(2) {
-        return Ok([[d / determinant, -b / determinant], [-c / determinant, a / determinant]]);
-    }
-    Ok(pseudo_inverse(falls))
+    Ok(inverse(falls))
 }

@@ -162,7 +162,7 @@ impl Solver {
         let goal = Goal { tolerance: request.tolerance, limit, certified: true, watch };
         let ended = stages::solve(problem, state, (tangent, fields), (march, forces, has_slipped), goal)?;
         report.products += problem.take_products() as f64;
-        let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
+        let missing = forces.missing(problem, &state.q);
         report.certificate = Certificate { residual: ended.residual.max(missing), ..Certificate::of(problem, state) };
         Ok(ended.outcome)
     }

@@ -177,7 +177,7 @@ pub fn solve(
             problem.offset = balanced(problem, state, rho, forces);
         }
         let measures = tangent.predict(problem, state, rho);
-        let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
+        let missing = forces.missing(problem, &state.q);
         let excess = if certified { measures.excess } else { measures.excess / COARSE_EXCESS };
         let worst = largest([measures.residual, excess, missing]);
         if !worst.is_finite() {

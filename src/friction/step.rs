@@ -99,14 +99,10 @@ impl Start {
         });
         let mut gained = fields.take(n)?;
         fields::fill(&threads, &mut gained, |i| add(to_the_circle(tangent, bound, state, i), along[i]));
-        let mut by = [0.0; 2];
-        if forces.any() {
-            let sum = sum_of_both(system.problem, &state.q, &gained);
-            let missing = forces.only_given([forces.sum[0] - sum[0], forces.sum[1] - sum[1]]);
-            by = system.creepages(missing.map(|value| -value));
-            system.balance(by, &mut along);
-            system.balance(by, &mut gained);
-        }
+        let missing = forces.less(|| sum_of_both(system.problem, &state.q, &gained));
+        let by = system.border.creepages(missing.map(|value| -value));
+        system.border.balance(&threads, by, &mut along);
+        system.border.balance(&threads, by, &mut gained);
         Ok(Start { gained, along, by })
     }
 }
@@ -165,8 +161,7 @@ pub fn step(
 ) -> Result<()> {
     let (n, threads) = (state.q.len(), problem.threads().clone());
     let weight = border_weight(problem, state, forces);
-    let sum = sum_of(problem, &state.q);
-    let missing = forces.only_given([forces.sum[0] - sum[0], forces.sum[1] - sum[1]]);
+    let missing = forces.less(|| sum_of(problem, &state.q));
     let projected = fields::dot(&threads, &tangent.projected, &tangent.projected);
     let target = effort.inner * projected.max(weight * square(missing)).sqrt();
     let mut system = TangentSystem::new(problem, tangent, forces, fields)?;
@@ -193,11 +188,7 @@ pub fn step(
         plus(left, -tangent.curvature[i], along[i])
     });
     fields.give(along);
-    let mut border = [0.0; 2];
-    if forces.any() {
-        let sum = sum_of_both(system.problem, &state.q, &gained);
-        border = forces.only_given([forces.sum[0] - sum[0], forces.sum[1] - sum[1]]);
-    }
+    let border = forces.less(|| sum_of_both(system.problem, &state.q, &gained));
     let (r, until) = (Bordered { field: r, border }, Until { target, most: effort.most });
     let found = fgmres::solve(&mut system, r, (until, weight), &threads, fields)?;
     let mut gained = Bordered { field: gained, border: by };

@@ -133,7 +133,7 @@ fn iterate(
         lag(problem, state, tangent, march);
         let rho = rho_of((problem.rms_bound(), problem.rms_slip()), cap);
         let measures = tangent.predict(problem, state, rho);
-        let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
+        let missing = forces.missing(problem, &state.q);
         let worst = worst(problem, state, tangent).max(missing);
         if !worst.is_finite() || missing.is_nan() || forces.any() && is_far(problem) {
             return Ok(Outcome::Stagnated);
