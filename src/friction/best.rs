@@ -52,13 +52,14 @@ impl Best {
         }
     }
 
-    /// Restores the best tractions, if there are any.
-    pub fn take_up(&mut self, problem: &mut Problem, state: &mut State) {
-        if self.q.len() == state.q.len() {
-            fields::map(&problem.threads().clone(), &mut state.q, |i, _| self.q[i]);
-            problem.offset = self.offset;
-            problem.refresh(state);
+    /// Restores the best tractions without their displacements. Returns whether there are any.
+    pub fn take_up(&self, problem: &mut Problem, state: &mut State) -> bool {
+        if self.q.len() != state.q.len() {
+            return false;
         }
+        fields::fill(problem.threads(), &mut state.q, |i| self.q[i]);
+        problem.offset = self.offset;
+        true
     }
 
     fn swap(&mut self, problem: &mut Problem, state: &mut State) {

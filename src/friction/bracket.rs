@@ -117,8 +117,8 @@ fn finish(
     let (mut here, mut best) = (Best::none(), Best::none());
     here.see(problem, state, 0.0, fields)?;
     let end = newton::solve(problem, state, (tangent, fields, &mut best), (forces, Manner::Balanced), goal)?;
-    if end != Outcome::Converged {
-        here.take_up(problem, state);
+    if end != Outcome::Converged && here.take_up(problem, state) {
+        problem.refresh(state);
     }
     here.give(fields);
     best.give(fields);
@@ -141,14 +141,14 @@ fn by_creepages(problem: &mut Problem, state: &mut State, memory: &mut Memory, g
         }
     }
     let mut end = Outcome::Stagnated;
-    for manner in [Manner::Plain, Manner::Bold] {
+    for manner in [Manner::Plain, Manner::Balanced] {
         let left = limit.saturating_sub(problem.operators.products - made);
         let goal = Goal { tolerance, limit: left, certified, watch: &mut *watch };
         let mut best = Best::none();
         let Memory { tangent, fields, .. } = memory;
         end = newton::solve(problem, state, (tangent, fields, &mut best), (Forces::NONE, manner), goal)?;
-        if end == Outcome::Stagnated {
-            best.take_up(problem, state);
+        if end == Outcome::Stagnated && best.take_up(problem, state) {
+            problem.refresh(state);
         }
         best.give(fields);
         if end != Outcome::Stagnated {

@@ -113,7 +113,7 @@ fn ways(forces: Forces, newton_first: bool, (is_rolling, certified): (bool, bool
     } else if forces.any() {
         as_many(&[Newton(Manner::Plain), Newton(Manner::Balanced), Newton(Manner::InTurns), Way::Bracket])
     } else if is_rolling {
-        as_many(&[Newton(Manner::Plain), Newton(Manner::Bold), Newton(Manner::Plain)])
+        as_many(&[Newton(Manner::Plain), Newton(Manner::Balanced), Newton(Manner::Plain)])
     } else {
         as_many(&[if newton_first { Newton(Manner::Plain) } else { Gradients }, Newton(Manner::Plain), Way::Downhill])
     }
@@ -177,7 +177,9 @@ fn one(
         }
         if k > 0 {
             log::info!("tangential problem: no further progress, {} goes on", way.name());
-            best.take_up(problem, state);
+            if best.take_up(problem, state) {
+                problem.refresh(state);
+            }
         }
         let watch = &mut |residual: f64| (work.watch)(&grid, residual);
         let goal = Goal { tolerance, limit, certified, watch };

@@ -20,6 +20,11 @@ use crate::methods::fgmres::{self, Bordered, Until};
 use crate::methods::fields::{self, Fields};
 use crate::threads::Threads;
 
+/// Most directions of a linear solve.
+pub const DIRECTIONS: usize = 40;
+/// The last linear solve stops at ENOUGH times the tolerance, and none at more than the relative residual LEAST_GAIN.
+const ENOUGH: f64 = 0.9;
+const LEAST_GAIN: f64 = 0.5;
 /// theta on stick, and the weight of D in its growth to 1.
 const LEAST_THETA: f64 = 0.8;
 const TURNED: f64 = 0.1;
@@ -50,6 +55,11 @@ struct Start {
     along: Vec<Vector>,
     /// dc.
     by: Vector,
+}
+
+/// The relative residual of a linear solve, `inner` far from the tolerance.
+pub fn enough(inner: f64, tolerance: f64, residual: f64) -> f64 {
+    inner.max((ENOUGH * tolerance / residual).min(LEAST_GAIN))
 }
 
 /// The displacement by tractions on all of C; in steady rolling, where near and far tractions cancel in a step, by those on one element.
