@@ -11,7 +11,7 @@ use super::corral::Corral;
 use super::forces::{sum_of_bounds, Forces};
 use super::plane::{add, onto_disc, plus, square, Vector};
 use super::problem::{Problem, State};
-use super::system::pseudo_inverse;
+use super::system::inverse;
 use crate::methods::fields;
 
 /// Missing force, relative to the sum of all bounds, at which forces are met.
@@ -59,7 +59,7 @@ pub fn balanced(problem: &Problem, state: &State, rho: f64, forces: Forces) -> V
     let (mut dc, mut least, mut last) = ([0.0; 2], (f64::INFINITY, [0.0; 2]), f64::INFINITY);
     for _ in 0..MOST_TRIALS {
         let (sum, slope) = response(problem, state, rho, dc);
-        let excess = forces.only_given([sum[0] - forces.sum[0], sum[1] - forces.sum[1]]);
+        let excess = forces.less(|| sum).map(|missing| -missing);
         let missing = square(excess).sqrt() / bounds;
         if missing < least.0 {
             least = (missing, dc);
@@ -68,8 +68,7 @@ pub fn balanced(problem: &Problem, state: &State, rho: f64, forces: Forces) -> V
             break;
         }
         corral.cut(dc, excess);
-        let inverse = pseudo_inverse(only_given(slope, forces));
-        let step = inverse.map(|row| (row[0] * excess[0] + row[1] * excess[1]) / rho);
+        let step = inverse(only_given(slope, forces)).map(|row| (row[0] * excess[0] + row[1] * excess[1]) / rho);
         let newton = plus(dc, 1.0, forces.only_given(step));
         let is_step = newton != dc && missing <= PROGRESS * last && corral.holds(newton);
         let next = if is_step { newton } else { corral.centre() };

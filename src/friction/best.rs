@@ -53,13 +53,14 @@ impl Best {
         }
     }
 
-    /// Restores the best tractions, if there are any.
-    pub fn take_up(&mut self, problem: &mut Problem, state: &mut State) {
-        if self.q.len() == state.q.len() {
-            fields::map(&problem.threads().clone(), &mut state.q, |i, _| self.q[i]);
-            problem.offset = self.offset;
-            problem.refresh(state);
+    /// Restores the best tractions without their displacements. Returns whether there are any.
+    pub fn take_up(&self, problem: &mut Problem, state: &mut State) -> bool {
+        if self.q.len() != state.q.len() {
+            return false;
         }
+        fields::fill(problem.threads(), &mut state.q, |i| self.q[i]);
+        problem.offset = self.offset;
+        true
     }
 
     fn swap(&mut self, problem: &mut Problem, state: &mut State) {
@@ -78,7 +79,7 @@ impl Best {
 /// The largest measure of feasible tractions.
 fn measured(problem: &mut Problem, state: &mut State, forces: Forces) -> f64 {
     problem.refresh(state);
-    let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
+    let missing = forces.missing(problem, &state.q);
     let residual = Certificate::of(problem, state).residual;
     if missing.is_nan() || residual.is_nan() {
         f64::INFINITY

@@ -15,7 +15,7 @@ use super::problem::{Problem, State};
 use super::sensitivity;
 use super::shift::{self, Goal, Memory};
 use super::step::compliance;
-use super::system::pseudo_inverse;
+use super::system::inverse;
 use crate::error::Result;
 use crate::methods::fields;
 use crate::progress::Outcome;
@@ -29,9 +29,8 @@ const FINISHING_PRODUCTS: u64 = 30;
 /// Factor on the residual of solves if other creepages leave the forces unchanged, and its least value.
 const TIGHTER: f64 = 0.03;
 const LEAST_INNER: f64 = 1e-14;
-/// Relative accuracy of the derivatives of forces, and the relative determinant below which their matrix is singular.
+/// Relative accuracy of the derivatives of forces.
 const DERIVATIVE_ACCURACY: f64 = 1e-2;
-const SINGULAR_DETERMINANT: f64 = 1e-8;
 /// Most trials.
 const MOST_TRIALS: u32 = 400;
 
@@ -73,8 +72,7 @@ pub fn solve(
         if end != Outcome::Converged && !(end == Outcome::Stagnated && residual < tolerance) {
             return Ok(end);
         }
-        let sum = sum_of(problem, &state.q);
-        let excess = forces.only_given([sum[0] - forces.sum[0], sum[1] - forces.sum[1]]);
+        let excess = forces.less(|| sum_of(problem, &state.q)).map(|missing| -missing);
         let missing = square(excess).sqrt() / bounds;
         best.see(problem, state, missing.max(tolerance), &mut memory.fields)?;
         if missing < tolerance {
@@ -120,8 +118,8 @@ fn finish(
     let (mut here, mut best) = (Best::none(), Best::none());
     here.see(problem, state, 0.0, fields)?;
     let end = newton::solve(problem, state, (tangent, fields, &mut best), (forces, Manner::Balanced), goal)?;
-    if end != Outcome::Converged {
-        here.take_up(problem, state);
+    if end != Outcome::Converged && here.take_up(problem, state) {
+        problem.refresh(state);
     }
     here.give(fields);
     best.give(fields);
@@ -144,14 +142,14 @@ fn by_creepages(problem: &mut Problem, state: &mut State, memory: &mut Memory, g
         }
     }
     let mut end = Outcome::Stagnated;
-    for manner in [Manner::Plain, Manner::Bold] {
+    for manner in [Manner::Plain, Manner::Balanced] {
         let left = limit.saturating_sub(problem.operators.products - made);
         let goal = Goal { tolerance, limit: left, certified, watch: &mut *watch };
         let mut best = Best::none();
         let Memory { tangent, fields, .. } = memory;
         end = newton::solve(problem, state, (tangent, fields, &mut best), (Forces::NONE, manner), goal)?;
-        if end == Outcome::Stagnated {
-            best.take_up(problem, state);
+        if end == Outcome::Stagnated && best.take_up(problem, state) {
+            problem.refresh(state);
         }
         best.give(fields);
         if end != Outcome::Stagnated {
@@ -228,12 +226,5 @@ fn slope(problem: &mut Problem, memory: &mut Memory, forces: Forces) -> Result<[
         (falls[0][k], falls[1][k]) = (-by[0], -by[1]);
         fields.give(change);
     }
-    let [[a, b], [c, d]] = falls;
-    let determinant = a * d - b * c;
-    if forces.given == [true; 2]
-        && determinant.abs() > SINGULAR_DETERMINANT * (a.abs() + b.abs() + c.abs() + d.abs()).powi(2)
-    {
-        return Ok([[d / determinant, -b / determinant], [-c / determinant, a / determinant]]);
-    }
-    Ok(pseudo_inverse(falls))
+    Ok(inverse(falls))
 }

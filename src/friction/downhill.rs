@@ -15,7 +15,7 @@ use super::forces::Forces;
 use super::plane::{add, clip, dot, plus, square, Vector};
 use super::problem::{Problem, State};
 use super::shift::Goal;
-use super::step::{compliance, step, Effort};
+use super::step::{compliance, enough, step, Effort};
 use super::tangent::{rho_of, Tangent};
 use crate::error::Result;
 use crate::methods::fields::{self, Fields};
@@ -24,8 +24,6 @@ use crate::progress::Outcome;
 /// Relative tolerance of linear solves, and most directions of one step.
 const INNER: f64 = 0.1;
 const MOST_DIRECTIONS: usize = 16;
-/// The last linear solve stops at this part of the tolerance.
-const TOLERANCE_SHARE: f64 = 0.5;
 /// Most rounds to carry a force.
 const ROUNDS: u32 = 4;
 /// Steps without a new least residual after which the energy changes by round-off only.
@@ -73,7 +71,7 @@ pub fn solve(
         if left == 0 {
             return Ok(Outcome::IterationLimit);
         }
-        let inner = INNER.max(TOLERANCE_SHARE * tolerance / residual);
+        let inner = enough(INNER, tolerance, residual);
         let effort = Effort { inner, most: MOST_DIRECTIONS.min(left as usize), left: residual, length: 1.0 };
         let part = go(problem, state, tangent, (effort, rho), fields)?;
         if !(part > 0.0) {

@@ -1,6 +1,6 @@
 //! Given tangential forces.
 
-use super::plane::{add, square, Vector};
+use super::plane::{add, plus, square, Vector};
 use super::problem::Problem;
 use super::scales::Scales;
 use crate::effects::{Friction, Prescribed};
@@ -8,7 +8,7 @@ use crate::error::{Error, Number, Result};
 use crate::grid::Grid;
 use crate::memory::sparse;
 use crate::methods::fields;
-use crate::sums::in_blocks;
+use crate::sums::{in_blocks, ROUND_OFF};
 
 /// Given forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,9 +37,6 @@ impl Reach {
         )
     }
 }
-
-/// Relative round-off of the sum of all bounds: that of a sum of 2^31 bounds in any order.
-const ROUND_OFF: f64 = 1e-12;
 
 /// Halvings of an interval around a minimum, whose value is then exact to round-off.
 const HALVINGS: u32 = 60;
@@ -144,11 +141,22 @@ impl Forces {
         [if self.given[0] { v[0] } else { 0.0 }, if self.given[1] { v[1] } else { 0.0 }]
     }
 
-    /// The missing part of the forces, relative to the sum of g.
+    /// The given forces less a sum of tractions, which is only taken if a force is given.
+    pub fn less(&self, sum: impl FnOnce() -> Vector) -> Vector {
+        if self.any() {
+            self.only_given(plus(self.sum, -1.0, sum()))
+        } else {
+            [0.0; 2]
+        }
+    }
+
+    /// The missing part of the forces, relative to the sum of g; 0 if no force is given.
     pub fn missing(&self, problem: &Problem, q: &[Vector]) -> f64 {
-        let sum = sum_of(problem, q);
-        let missing = self.only_given([self.sum[0] - sum[0], self.sum[1] - sum[1]]);
-        square(missing).sqrt() / sum_of_bounds(problem)
+        if self.any() {
+            square(self.less(|| sum_of(problem, q))).sqrt() / sum_of_bounds(problem)
+        } else {
+            0.0
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use super::certificate::Certificate;
 use super::forces::Forces;
 use super::law::{branch, slope, stages, March, Place};
 use super::levels::Level;
+use super::nested::KEPT_BACK;
 use super::plane::Vector;
 use super::request::Request;
 use super::shift::{Goal, Memory};
@@ -17,9 +18,6 @@ use crate::memory::collected;
 use crate::progress::Outcome;
 use crate::rectangle::Rectangle;
 
-/// Products reserved for the end of a solve, and of a solve in turns.
-const KEPT_BACK: u64 = 3;
-const KEPT_BACK_OF_TURNS: u64 = 5;
 /// With given forces: tolerance of the first solve, of Coulomb's law with the coefficients at rest.
 const FIRST_TOLERANCE: f64 = 1e-2;
 
@@ -163,7 +161,7 @@ impl Solver {
         let goal = Goal { tolerance: request.tolerance, limit, certified: true, watch };
         let ended = stages::solve(problem, state, (tangent, fields), (march, forces, has_slipped), goal)?;
         report.products += problem.take_products() as f64;
-        let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
+        let missing = forces.missing(problem, &state.q);
         report.certificate = Certificate { residual: ended.residual.max(missing), ..Certificate::of(problem, state) };
         Ok(ended.outcome)
     }
@@ -182,7 +180,7 @@ impl Solver {
             branch::begin(&mut self.levels[0].problem, march, request.friction.branch == Branch::High);
         }
         // The return to the best turn and onto the circles takes products as well.
-        let most = request.limit.saturating_sub(KEPT_BACK_OF_TURNS).max(1);
+        let most = request.limit.saturating_sub(KEPT_BACK).max(1);
         let (outcome, residual) = loop {
             let limit = most.saturating_sub(report.products.ceil() as u64).max(1);
             let turn = Request { tolerance: turns.inner(request.tolerance), limit, ..*request };

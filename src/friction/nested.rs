@@ -15,7 +15,7 @@ use super::shift::{self, Goal};
 use super::step::compliance;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::progress::Outcome;
+use crate::progress::{Outcome, METHOD_SHARE};
 
 /// Residual on coarser grids: larger errors cost more on the finest grid.
 pub const COARSE_TOLERANCE: f64 = 1e-3;
@@ -25,16 +25,13 @@ pub const COUNTED_TOLERANCE: f64 = 1e-4;
 const COARSE_LIMIT: u64 = 60;
 /// Largest part of the products for all coarser grids together.
 const COARSE_SHARE: f64 = 0.5;
-/// Largest part of the remaining products for a method that is not the last.
-const METHOD_SHARE: f64 = 0.4;
-
 /// Products of Newton's method with balanced creepages, which comes first near full slip: half of 3800 random scenes then take less than half of the
 /// products. If a single element sticks, the method cycles.
 const BALANCED_PRODUCTS: u64 = 8;
 /// Products of plain Newton steps, which come next and may cycle as well.
 const PLAIN_PRODUCTS: u64 = 60;
 /// Products reserved for the certificates at the end of an unfinished solve.
-const KEPT_BACK: u64 = 5;
+pub const KEPT_BACK: u64 = 5;
 
 /// The products so far, and the caller's callback.
 pub struct Work<'a> {
@@ -117,7 +114,7 @@ fn ways(forces: Forces, newton_first: bool, (is_rolling, certified): (bool, bool
     } else if forces.any() {
         as_many(&[Newton(Manner::Plain), Newton(Manner::Balanced), Newton(Manner::InTurns), Way::Bracket])
     } else if is_rolling {
-        as_many(&[Newton(Manner::Plain), Newton(Manner::Bold), Newton(Manner::Plain)])
+        as_many(&[Newton(Manner::Plain), Newton(Manner::Balanced), Newton(Manner::Plain)])
     } else {
         as_many(&[if newton_first { Newton(Manner::Plain) } else { Gradients }, Newton(Manner::Plain), Way::Downhill])
     }
@@ -181,7 +178,9 @@ fn one(
         }
         if k > 0 {
             log::info!("tangential problem: no further progress, {} goes on", way.name());
-            best.take_up(problem, state);
+            if best.take_up(problem, state) {
+                problem.refresh(state);
+            }
         }
         let watch = &mut |residual: f64| (work.watch)(&grid, residual);
         let goal = Goal { tolerance, limit, certified, watch };

@@ -20,7 +20,7 @@ use super::forces::Forces;
 use super::plane::square;
 use super::problem::{Problem, State};
 use super::shift::Goal;
-use super::step::{compliance, polish, step, Effort};
+use super::step::{compliance, enough, polish, step, Effort, DIRECTIONS};
 use super::tangent::{rho_of, Measures, Tangent};
 use crate::error::Result;
 use crate::methods::fields::Fields;
@@ -29,20 +29,15 @@ use crate::progress::Outcome;
 /// Relative tolerance of the linear solve of a step, and in rolling.
 const INNER: f64 = 0.15;
 const INNER_ROLLING: f64 = 0.35;
-/// The last linear solve stops at LAST_TOLERANCE_SHARE times the tolerance. Below POLISH_BELOW times the tolerance
-/// `polish` takes the certificate.
-const LAST_TOLERANCE_SHARE: f64 = 0.9;
+/// Below this times the tolerance `polish` takes the certificate.
 const POLISH_BELOW: f64 = 1.5;
-/// Largest relative tolerance of a linear solve.
-const LEAST_GAIN: f64 = 0.5;
 /// Residuals below this are round-off, of which displacements that are not fresh hide more: the certificate is taken, whatever the tolerance.
 const ROUND_OFF: f64 = 1e-15;
 /// Factor on the relative tolerance and on rho when steps make no progress, and the least relative tolerance.
 const CUT: f64 = 0.3;
 const LEAST_INNER: f64 = 0.01;
-/// Directions of a linear solve. Without progress it gets as many as it has unknowns, which solve it with any
-/// preconditioner. Together they hold at most MOST_VALUES values of two components.
-const DIRECTIONS: usize = 40;
+/// Without progress a linear solve gets as many directions as it has unknowns, which solve it with any preconditioner, if they hold at most this many
+/// values of two components together.
 const MOST_VALUES: usize = 1 << 21;
 /// Length of steps after an odd number of cuts: full steps may alternate between two slip areas for ever.
 const SHORT_STEP: f64 = 0.5;
@@ -67,9 +62,8 @@ const RUNAWAY: f64 = 1e4;
 pub enum Manner {
     /// By the natural map whose rho makes the rms slip move tractions by the rms bound.
     Plain,
-    /// By the natural map whose rho is the inverse compliance: elements of large slip are predicted to slip, whatever their bounds.
-    Bold,
-    /// `Bold`, with the creepages at which the natural map carries the forces.
+    /// By the natural map whose rho is the inverse compliance: elements of large slip are predicted to slip, whatever their bounds. With the creepages
+    /// at which it carries given forces.
     Balanced,
     /// `Balanced` in turns: the creepages that carry the forces at fixed displacements, then a step with these creepages given.
     InTurns,
@@ -174,11 +168,11 @@ pub fn solve(
     loop {
         let rho = control.factor
             * if manner == Manner::Plain { rho_of((problem.rms_bound(), problem.rms_slip()), cap) } else { cap };
-        if matches!(manner, Manner::Balanced | Manner::InTurns) {
+        if manner != Manner::Plain && forces.any() {
             problem.offset = balanced(problem, state, rho, forces);
         }
         let measures = tangent.predict(problem, state, rho);
-        let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
+        let missing = forces.missing(problem, &state.q);
         let excess = if certified { measures.excess } else { measures.excess / COARSE_EXCESS };
         let worst = largest([measures.residual, excess, missing]);
         if !worst.is_finite() {
@@ -203,9 +197,9 @@ pub fn solve(
             return Ok(Outcome::IterationLimit);
         }
         iterations += 1;
-        let enough = control.inner.max((LAST_TOLERANCE_SHARE * tolerance / worst).min(LEAST_GAIN));
+        let inner = enough(control.inner, tolerance, worst);
         let most = if control.factor < 1.0 { all_directions(problem) } else { DIRECTIONS }.min(left as usize);
-        let effort = Effort { inner: enough, most, left: measures.residual, length: control.length() };
+        let effort = Effort { inner, most, left: measures.residual, length: control.length() };
         step(problem, state, tangent, (of_step, effort), fields)?;
         if !watch(worst) {
             return Ok(Outcome::Cancelled);

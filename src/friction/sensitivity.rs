@@ -11,6 +11,7 @@
 use super::forces::Forces;
 use super::plane::Vector;
 use super::problem::{Problem, State};
+use super::step::DIRECTIONS;
 use super::system::TangentSystem;
 use super::tangent::Tangent;
 use crate::error::Result;
@@ -19,8 +20,6 @@ use crate::methods::fields::{self, Fields};
 
 /// The relative residual of the linear solves for reported derivatives.
 pub const TOLERANCE: f64 = 1e-5;
-/// Directions of one call.
-const DIRECTIONS: usize = 40;
 /// The most restarts.
 const MOST_CALLS: usize = 10;
 

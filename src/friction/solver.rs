@@ -287,7 +287,7 @@ impl Solver {
     fn assess_start(&mut self, forces: Forces, tolerance: f64) -> StartQuality {
         let Level { problem, state, .. } = &mut self.levels[0];
         let certificate = Certificate::of(problem, state);
-        let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
+        let missing = forces.missing(problem, &state.q);
         let below = |bound: f64| certificate.residual < bound && missing < bound;
         StartQuality {
             certificate,

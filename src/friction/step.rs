@@ -20,6 +20,11 @@ use crate::methods::fgmres::{self, Bordered, Until};
 use crate::methods::fields::{self, Fields};
 use crate::threads::Threads;
 
+/// Most directions of a linear solve.
+pub const DIRECTIONS: usize = 40;
+/// The last linear solve stops at ENOUGH times the tolerance, and none at more than the relative residual LEAST_GAIN.
+const ENOUGH: f64 = 0.9;
+const LEAST_GAIN: f64 = 0.5;
 /// theta on stick, and the weight of D in its growth to 1.
 const LEAST_THETA: f64 = 0.8;
 const THETA_GROWTH: f64 = 0.1;
@@ -51,6 +56,11 @@ struct Start {
     along: Vec<Vector>,
     /// dc.
     by: Vector,
+}
+
+/// The relative residual of a linear solve, `inner` far from the tolerance.
+pub fn enough(inner: f64, tolerance: f64, residual: f64) -> f64 {
+    inner.max((ENOUGH * tolerance / residual).min(LEAST_GAIN))
 }
 
 /// The displacement by tractions on all of C; in steady rolling, where near and far tractions cancel in a step, by those on one element.
@@ -100,14 +110,10 @@ impl Start {
         });
         let mut gained = fields.take(n)?;
         fields::fill(&threads, &mut gained, |i| add(to_the_circle(tangent, bound, state, i), along[i]));
-        let mut by = [0.0; 2];
-        if forces.any() {
-            let sum = sum_of_both(system.problem, &state.q, &gained);
-            let missing = forces.only_given([forces.sum[0] - sum[0], forces.sum[1] - sum[1]]);
-            by = system.creepages(missing.map(|value| -value));
-            system.balance(by, &mut along);
-            system.balance(by, &mut gained);
-        }
+        let missing = forces.less(|| sum_of_both(system.problem, &state.q, &gained));
+        let by = system.border.creepages(missing.map(|value| -value));
+        system.border.balance(&threads, by, &mut along);
+        system.border.balance(&threads, by, &mut gained);
         Ok(Start { gained, along, by })
     }
 }
@@ -166,8 +172,7 @@ pub fn step(
 ) -> Result<()> {
     let (n, threads) = (state.q.len(), problem.threads().clone());
     let weight = border_weight(problem, state, forces);
-    let sum = sum_of(problem, &state.q);
-    let missing = forces.only_given([forces.sum[0] - sum[0], forces.sum[1] - sum[1]]);
+    let missing = forces.less(|| sum_of(problem, &state.q));
     let projected = fields::dot(&threads, &tangent.projected, &tangent.projected);
     let target = effort.inner * projected.max(weight * square(missing)).sqrt();
     let mut system = TangentSystem::new(problem, tangent, forces, fields)?;
@@ -195,11 +200,7 @@ pub fn step(
         plus(left, -tangent.curvature[i], along[i])
     });
     fields.give(along);
-    let mut border = [0.0; 2];
-    if forces.any() {
-        let sum = sum_of_both(system.problem, &state.q, &gained);
-        border = forces.only_given([forces.sum[0] - sum[0], forces.sum[1] - sum[1]]);
-    }
+    let border = forces.less(|| sum_of_both(system.problem, &state.q, &gained));
     let (r, until) = (Bordered { field: r, border }, Until { target, most: effort.most });
     let found = fgmres::solve(&mut system, r, (until, weight), &threads, fields)?;
     let mut gained = Bordered { field: gained, border: by };

@@ -14,19 +14,73 @@ use super::tangent::Tangent;
 use crate::error::Result;
 use crate::methods::fgmres::{Bordered, Direction, System};
 use crate::methods::fields::{self, Fields};
+use crate::threads::Threads;
 
-/// Eigenvalues of the border below this part of the largest count as 0.
-const SINGULAR_EIGENVALUE: f64 = 1e-8;
+/// A determinant below this part of the square of the largest entry, and an eigenvalue below this part of the largest, count as 0.
+const SINGULAR: f64 = 1e-8;
 
 /// The system, at the state that the tangent predicts.
 pub struct TangentSystem<'a> {
     pub problem: &'a mut Problem,
     pub tangent: &'a Tangent,
-    forces: Forces,
-    /// Y, and the inverse of S.
-    border: [Vec<Vector>; 2],
-    inverse: [Vector; 2],
+    pub border: Border,
     scratch: Vec<Vector>,
+}
+
+/// The border of a system: the creepages of given forces.
+pub struct Border {
+    forces: Forces,
+    /// Y, S and its inverse.
+    columns: [Vec<Vector>; 2],
+    sums: [Vector; 2],
+    inverse: [Vector; 2],
+}
+
+impl Border {
+    /// The border before its columns.
+    pub fn new(forces: Forces) -> Border {
+        Border { forces, columns: [Vec::new(), Vec::new()], sums: [[0.0; 2]; 2], inverse: [[0.0; 2]; 2] }
+    }
+
+    /// The directions whose force is given, each with its unit creepage.
+    pub fn directions(&self) -> impl Iterator<Item = (usize, Vector)> {
+        let given = self.forces.given;
+        [[1.0, 0.0], [0.0, 1.0]].into_iter().enumerate().filter(move |(k, _)| given[*k])
+    }
+
+    /// Takes Y of direction k.
+    pub fn take(&mut self, k: usize, column: Vec<Vector>, problem: &Problem) {
+        let sum = self.forces.only_given(sum_of(problem, &column));
+        (self.sums[0][k], self.sums[1][k]) = (sum[0], sum[1]);
+        (self.inverse, self.columns[k]) = (inverse(self.sums), column);
+    }
+
+    /// dc for the excess of the sums. It is exactly 0 if the creepage is given, which may be smaller than round-off.
+    pub fn creepages(&self, too_much: Vector) -> Vector {
+        let rest = self.forces.only_given(too_much);
+        self.forces.only_given(self.inverse.map(|row| dot(row, rest)))
+    }
+
+    /// `z -= Y dc`.
+    pub fn balance(&self, threads: &Threads, creepages: Vector, z: &mut [Vector]) {
+        let columns = creepages.iter().zip(&self.columns).filter(|(_, y)| !y.is_empty());
+        let terms: Vec<(f64, &[Vector])> = columns.map(|(c, y)| (-c, &y[..])).collect();
+        fields::add_all(threads, z, &terms);
+    }
+
+    /// The sums of z where forces are given.
+    pub fn sums_of(&self, problem: &Problem, z: &[Vector]) -> Vector {
+        if self.forces.any() {
+            self.forces.only_given(sum_of(problem, z))
+        } else {
+            [0.0; 2]
+        }
+    }
+
+    /// Returns the columns.
+    pub fn give(self, fields: &mut Fields) {
+        self.columns.into_iter().filter(|field| !field.is_empty()).for_each(|field| fields.give(field));
+    }
 }
 
 impl<'a> TangentSystem<'a> {
@@ -38,31 +92,23 @@ impl<'a> TangentSystem<'a> {
         fields: &mut Fields,
     ) -> Result<TangentSystem<'a>> {
         let n = problem.bound.len();
-        let (border, inverse, scratch) = ([Vec::new(), Vec::new()], [[0.0; 2]; 2], fields.take(n)?);
-        let mut system = TangentSystem { problem, tangent, forces, border, inverse, scratch };
-        let mut matrix = [[0.0; 2]; 2];
-        for (k, e) in [[1.0, 0.0], [0.0, 1.0]].into_iter().enumerate() {
-            if !forces.given[k] {
-                continue;
-            }
+        let mut system = TangentSystem { problem, tangent, border: Border::new(forces), scratch: fields.take(n)? };
+        for (k, e) in system.border.directions() {
             let mut unit = fields.take(n)?;
             let weighted = |i: usize| system.problem.weighted(i, e);
             fields::fill(system.problem.threads(), &mut unit, |i| tangent.project_inside(i, weighted(i)));
             let mut column = fields.take(n)?;
             system.precondition_field(&unit, &mut column);
             fields.give(unit);
-            let sum = forces.only_given(sum_of(system.problem, &column));
-            (matrix[0][k], matrix[1][k]) = (sum[0], sum[1]);
-            system.border[k] = column;
+            system.border.take(k, column, system.problem);
         }
-        system.inverse = pseudo_inverse(matrix);
         Ok(system)
     }
 
     /// Returns the system's fields.
     pub fn give(self, fields: &mut Fields) {
         fields.give(self.scratch);
-        self.border.into_iter().filter(|field| !field.is_empty()).for_each(|field| fields.give(field));
+        self.border.give(fields);
     }
 
     /// `z = M r`, 0 outside C.
@@ -75,27 +121,9 @@ impl<'a> TangentSystem<'a> {
     fn precondition(&mut self, r: &Bordered, fields: &mut Fields) -> Result<Bordered> {
         let mut z = fields.take(r.field.len())?;
         self.precondition_field(&r.field, &mut z);
-        if !self.forces.any() {
-            return Ok(Bordered { field: z, border: [0.0; 2] });
-        }
-        let sum = sum_of(self.problem, &z);
-        let border = self.creepages([sum[0] - r.border[0], sum[1] - r.border[1]]);
-        self.balance(border, &mut z);
+        let border = self.border.creepages(plus(self.border.sums_of(self.problem, &z), -1.0, r.border));
+        self.border.balance(self.problem.threads(), border, &mut z);
         Ok(Bordered { field: z, border })
-    }
-
-    /// dc for the excess of the sums. It is exactly 0 if the creepage is given, which may be smaller than round-off.
-    pub fn creepages(&self, too_much: Vector) -> Vector {
-        let rest = self.forces.only_given(too_much);
-        let [upper, lower] = self.inverse;
-        self.forces.only_given([dot(upper, rest), dot(lower, rest)])
-    }
-
-    /// `z -= Y dc`.
-    pub fn balance(&self, creepages: Vector, z: &mut [Vector]) {
-        let terms: Vec<(f64, &[Vector])> =
-            creepages.iter().zip(&self.border).filter(|(_, y)| !y.is_empty()).map(|(c, y)| (-c, &y[..])).collect();
-        fields::add_all(self.problem.threads(), z, &terms);
     }
 
     /// `H z`, from the product of the field of z with A.
@@ -106,7 +134,7 @@ impl<'a> TangentSystem<'a> {
             let pushed = tangent.project_inside(i, add(product[i], self.problem.weighted(i, z.border)));
             plus(pushed, tangent.curvature[i], z.field[i])
         });
-        let border = if self.forces.any() { self.forces.only_given(sum_of(self.problem, &z.field)) } else { [0.0; 2] };
+        let border = self.border.sums_of(self.problem, &z.field);
         Ok(Bordered { field: h, border })
     }
 
@@ -136,9 +164,19 @@ impl System for TangentSystem<'_> {
     }
 }
 
+/// The inverse of a 2 x 2 matrix, of sums by creepages. It is not symmetric if bounds are carried from element to element.
+pub fn inverse(matrix: [Vector; 2]) -> [Vector; 2] {
+    let [[a, b], [c, d]] = matrix;
+    let (determinant, largest) = (a * d - b * c, [a, b, c, d].into_iter().fold(0.0, |most: f64, m| most.max(m.abs())));
+    if determinant.abs() > SINGULAR * largest * largest {
+        return [[d / determinant, -b / determinant], [-c / determinant, a / determinant]];
+    }
+    pseudo_inverse(matrix)
+}
+
 /// The pseudo-inverse of a symmetric 2 x 2 matrix, by its eigenvectors. The matrix is singular if all of C slips one way, or if one force
 /// is given.
-pub fn pseudo_inverse([[a, b], [c, d]]: [Vector; 2]) -> [Vector; 2] {
+fn pseudo_inverse([[a, b], [c, d]]: [Vector; 2]) -> [Vector; 2] {
     let off = 0.5 * (b + c);
     let (mean, half) = (0.5 * (a + d), 0.5 * (a - d));
     let radius = half.hypot(off);
@@ -146,7 +184,7 @@ pub fn pseudo_inverse([[a, b], [c, d]]: [Vector; 2]) -> [Vector; 2] {
     let largest = mean.abs() + radius;
     let mut inverse = [[0.0; 2]; 2];
     for (value, v) in [(mean + radius, [angle.cos(), angle.sin()]), (mean - radius, [-angle.sin(), angle.cos()])] {
-        if value.abs() > SINGULAR_EIGENVALUE * largest {
+        if value.abs() > SINGULAR * largest {
             for (i, row) in inverse.iter_mut().enumerate() {
                 *row = [row[0] + v[i] * v[0] / value, row[1] + v[i] * v[1] / value];
             }

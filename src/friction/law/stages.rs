@@ -12,18 +12,19 @@
 //! The result lies on its circles (unless bounds rise steeply), with a fresh product. It has two certificates: that of the conditions with
 //! fixed bounds `g = |q|`, and `R_g = rms(|q| - g(slip))/rms g(0)` over the slip area, by a march with the slips of that product.
 
+use super::super::best::Best;
 use super::super::forces::Forces;
-use super::super::plane::{plus, square, Vector};
+use super::super::plane::{plus, square};
 use super::super::problem::{Problem, State};
 use super::super::shift::Goal;
-use super::super::step::{self, compliance, Effort};
+use super::super::step::{self, compliance, enough, Effort, DIRECTIONS};
 use super::super::take_over::LARGEST_RATIO;
 use super::super::tangent::{mixing, project, rho_of, Side, Tangent};
 use super::bounds::{freeze, lag, settle, worst};
 use super::march::March;
 use super::{system, STEEP};
 use crate::error::Result;
-use crate::methods::fields::{self, Fields};
+use crate::methods::fields::Fields;
 use crate::progress::Outcome;
 
 /// Residual below which steps are Newton's.
@@ -31,13 +32,9 @@ const NEWTON_RESIDUAL: f64 = 1e-2;
 /// A Newton step must reduce the residual to this part of the least so far; if not, LAGGED_STEPS lagged steps follow.
 const PROGRESS: f64 = 0.7;
 const LAGGED_STEPS: u32 = 5;
-/// Relative residual of linear solves, of Newton steps and of lagged ones. The last one ends at TOLERANCE_SHARE times
-/// the tolerance, at most at the relative residual LEAST_GAIN. A linear solve has at most DIRECTIONS directions.
+/// Relative residual of linear solves, of Newton steps and of lagged ones.
 const INNER: f64 = 0.2;
 const INNER_LAGGED: f64 = 0.35;
-const TOLERANCE_SHARE: f64 = 0.5;
-const LEAST_GAIN: f64 = 0.5;
-const DIRECTIONS: usize = 40;
 /// rho of the natural map in Newton steps, over the inverse of an element's influence on itself: more than the largest slope of a bound, so
 /// that each element has one state. 4 takes 15 to 24 products, 2 takes 15 to 36 (192 x 176 elements to 1e-6).
 const RHO: f64 = 4.0;
@@ -66,13 +63,6 @@ pub struct Ended {
     pub residual: f64,
 }
 
-/// The best tractions so far.
-struct Best {
-    q: Vec<Vector>,
-    offset: Vector,
-    worst: f64,
-}
-
 /// Iterates from the state. `has_slipped` tells whether the state has a slip area. Otherwise no element has slipped yet.
 pub fn solve(
     problem: &mut Problem,
@@ -81,10 +71,9 @@ pub fn solve(
     (march, forces, has_slipped): (&mut March, Forces, bool),
     goal: Goal<'_>,
 ) -> Result<Ended> {
-    let n = state.q.len();
-    tangent.fit(n)?;
+    tangent.fit(state.q.len())?;
     problem.continue_residuals()?;
-    let mut best = Best { q: fields.take(n)?, offset: problem.offset, worst: f64::INFINITY };
+    let mut best = Best::none();
     if has_slipped {
         tangent.predict(problem, state, 1.0 / compliance(problem));
     } else {
@@ -97,9 +86,7 @@ pub fn solve(
         let limit = limit.saturating_sub(problem.operators.products - made);
         let goal = Goal { tolerance: aim, limit, certified, watch: &mut *watch };
         let outcome = iterate(problem, state, (tangent, fields), (march, &mut best, forces), goal)?;
-        if outcome != Outcome::Converged && best.worst.is_finite() {
-            fields::map(&problem.threads().clone(), &mut state.q, |k, _| best.q[k]);
-            problem.offset = best.offset;
+        if outcome != Outcome::Converged && best.take_up(problem, state) {
             problem.refresh_unclipped(state);
             lag(problem, state, tangent, march);
             tangent.predict(problem, state, 1.0 / compliance(problem));
@@ -113,7 +100,7 @@ pub fn solve(
         }
         aim *= TIGHTER;
     }
-    fields.give(best.q);
+    best.give(fields);
     Ok(ended)
 }
 
@@ -134,15 +121,12 @@ fn iterate(
         lag(problem, state, tangent, march);
         let rho = rho_of((problem.rms_bound(), problem.rms_slip()), cap);
         let measures = tangent.predict(problem, state, rho);
-        let missing = if forces.any() { forces.missing(problem, &state.q) } else { 0.0 };
+        let missing = forces.missing(problem, &state.q);
         let worst = worst(problem, state, tangent).max(missing);
         if !worst.is_finite() || missing.is_nan() || forces.any() && is_far(problem) {
             return Ok(Outcome::Stagnated);
         }
-        if worst < best.worst {
-            fields::fill(problem.threads(), &mut best.q, |k| state.q[k]);
-            (best.offset, best.worst) = (problem.offset, worst);
-        }
+        best.see(problem, state, worst, fields)?;
         if worst < tolerance {
             if is_fresh {
                 return Ok(Outcome::Converged);
@@ -158,7 +142,7 @@ fn iterate(
         }
         let Some(is_newton) = course.next(worst) else { return Ok(Outcome::Stagnated) };
         let inner = if is_newton { INNER } else { INNER_LAGGED };
-        let inner = inner.max((TOLERANCE_SHARE * tolerance / worst).min(LEAST_GAIN));
+        let inner = enough(inner, tolerance, worst);
         let most = DIRECTIONS.min(left as usize);
         if is_newton {
             let rho = rho_of_newton(problem, march, worst, rho);

@@ -16,7 +16,7 @@ use super::super::forces::{sum_of, Forces};
 use super::super::plane::{add, dot, plus, Vector};
 use super::super::problem::{Problem, State};
 use super::super::step::border_weight;
-use super::super::system::pseudo_inverse;
+use super::super::system::Border;
 use super::super::tangent::{project, Side, Tangent};
 use super::march::March;
 use crate::error::Result;
@@ -29,57 +29,24 @@ struct RadialSystem<'a> {
     tangent: &'a Tangent,
     march: &'a mut March,
     rho: f64,
-    forces: Forces,
-    /// Y of the prescribed forces, and the inverse of the matrix of its sums.
-    border: [Vec<Vector>; 2],
-    inverse: [Vector; 2],
+    border: Border,
     scratch: Vec<Vector>,
     along: Vec<Vector>,
-}
-
-/// A determinant below this fraction of its largest product counts as 0.
-const SINGULAR_DETERMINANT: f64 = 1e-8;
-
-/// The inverse of the derivatives of sums by creepages. It is not symmetric if bounds are carried from element to element.
-fn inverse(matrix: [Vector; 2]) -> [Vector; 2] {
-    let [[a, b], [c, d]] = matrix;
-    let (determinant, largest) = (a * d - b * c, [a, b, c, d].into_iter().fold(0.0, |most: f64, m| most.max(m.abs())));
-    if determinant.abs() > SINGULAR_DETERMINANT * largest * largest {
-        return [[d / determinant, -b / determinant], [-c / determinant, a / determinant]];
-    }
-    pseudo_inverse(matrix)
 }
 
 impl RadialSystem<'_> {
     /// Computes Y and its sums.
     fn set_border(&mut self, fields: &mut Fields) -> Result<()> {
         let n = self.problem.bound.len();
-        let mut matrix = [[0.0; 2]; 2];
-        for (k, e) in [[1.0, 0.0], [0.0, 1.0]].into_iter().enumerate() {
-            if !self.forces.given[k] {
-                continue;
-            }
+        for (k, e) in self.border.directions() {
             let nothing = fields.zeros(n, &self.problem.threads().clone())?;
             let (mut column, mut y) = (fields.take(n)?, fields.take(n)?);
             self.apply((&nothing, e), &nothing, &mut column);
             self.precondition(&column, &mut y);
             [nothing, column].into_iter().for_each(|field| fields.give(field));
-            let sum = self.forces.only_given(sum_of(self.problem, &y));
-            (matrix[0][k], matrix[1][k]) = (sum[0], sum[1]);
-            self.border[k] = y;
+            self.border.take(k, y, self.problem);
         }
-        self.inverse = inverse(matrix);
         Ok(())
-    }
-
-    /// Computes the creepages that correct an excess in the sums of z, and subtracts their effect from z.
-    fn balance(&self, too_much: Vector, z: &mut [Vector]) -> Vector {
-        let (rest, [upper, lower]) = (self.forces.only_given(too_much), self.inverse);
-        let by = self.forces.only_given([dot(upper, rest), dot(lower, rest)]);
-        let terms: Vec<(f64, &[Vector])> =
-            by.iter().zip(&self.border).filter(|(_, y)| !y.is_empty()).map(|(c, y)| (-c, &y[..])).collect();
-        fields::add_all(self.problem.threads(), z, &terms);
-        by
     }
 
     fn precondition(&mut self, r: &[Vector], z: &mut [Vector]) {
@@ -120,11 +87,9 @@ impl System for RadialSystem<'_> {
         let n = v.field.len();
         let (mut z, mut product, mut h) = (fields.take(n)?, fields.take(n)?, fields.take(n)?);
         self.precondition(&v.field, &mut z);
-        let (mut creepages, mut sum) = ([0.0; 2], [0.0; 2]);
-        if self.forces.any() {
-            creepages = self.balance(plus(sum_of(self.problem, &z), -1.0, v.border), &mut z);
-            sum = self.forces.only_given(sum_of(self.problem, &z));
-        }
+        let creepages = self.border.creepages(plus(self.border.sums_of(self.problem, &z), -1.0, v.border));
+        self.border.balance(self.problem.threads(), creepages, &mut z);
+        let sum = self.border.sums_of(self.problem, &z);
         let unit = self.problem.rms_bound();
         self.problem.operators.multiply_fast(&z, unit, &mut product);
         self.apply((&z, creepages), &product, &mut h);
@@ -156,21 +121,16 @@ pub fn step(
             }
         }
     });
-    let (weight, mut missing) = (border_weight(problem, state, forces), [0.0; 2]);
-    if forces.any() {
-        missing = forces.only_given(plus(forces.sum, -1.0, sum_of(problem, &state.q)));
-    }
+    let (weight, missing) = (border_weight(problem, state, forces), forces.less(|| sum_of(problem, &state.q)));
     let target = inner * (fields::dot(&threads, &r, &r) + weight * dot(missing, missing)).sqrt();
     let (scratch, along) = (fields.take(n)?, fields.take(n)?);
-    let (border, inverse) = ([Vec::new(), Vec::new()], [[0.0; 2]; 2]);
-    let mut system = RadialSystem { problem, tangent, march, rho, forces, border, inverse, scratch, along };
-    if forces.any() {
-        system.set_border(fields)?;
-    }
+    let mut system = RadialSystem { problem, tangent, march, rho, border: Border::new(forces), scratch, along };
+    system.set_border(fields)?;
     let r = Bordered { field: r, border: missing };
     let found = fgmres::solve(&mut system, r, (Until { target, most }, weight), &threads, fields)?;
-    let RadialSystem { scratch, along, border: [x, y], .. } = system;
-    [scratch, along, x, y].into_iter().filter(|field| !field.is_empty()).for_each(|field| fields.give(field));
+    let RadialSystem { scratch, along, border, .. } = system;
+    border.give(fields);
+    [scratch, along].into_iter().for_each(|field| fields.give(field));
     let mut gained = Bordered { field: fields.zeros(n, &threads)?, border: [0.0; 2] };
     let mut product = fields.zeros(n, &threads)?;
     found.add_to(&mut gained, &mut product, &threads, fields);

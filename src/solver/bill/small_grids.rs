@@ -10,7 +10,7 @@ use crate::effects;
 use crate::error::{require, Error, Result};
 use crate::grid::Grid;
 use crate::scene::{scaled, Regridded, Scene};
-use crate::solver::machine::{seconds_on, Cost};
+use crate::solver::machine::{seconds_on, Cost, NEXT_GRID_RATIO};
 use crate::solver::quantities::{Lack, OnGrid, Quantity, Sequence};
 use crate::solver::refinement::LEAST_TOLERANCE;
 use crate::solver::{Options, Outcome, ProgressCallback};
@@ -22,8 +22,6 @@ const LEAST_EFFORT: f64 = 7e7;
 const EFFORT_SHARE: f64 = 0.05;
 /// The power of the elements with which the effort of a scene grows.
 const GROWTH: f64 = 1.1;
-/// Bound on the effort of the next grid, relative to that of the last.
-const NEXT_GRID_RATIO: f64 = 5.0;
 /// Least elements of the first grid in its longer direction, if the scene's grid has twice as many.
 const FIRST_GRID: usize = 16;
 /// Elements that change sides at once: four with two planes of symmetry. Areas do not resolve smaller changes.

@@ -15,7 +15,7 @@ use super::{check, Accuracy, SurfaceCallback};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::scene::{scaled, Scene};
-use crate::solver::machine;
+use crate::solver::machine::{self, NEXT_GRID_RATIO};
 use crate::solver::quantities::Quantity;
 use crate::solver::{Options, Outcome, ProgressCallback};
 
@@ -26,9 +26,7 @@ const SAMPLES_SECONDS: f64 = 0.035;
 /// The first sample has from this many to twice as many elements in its longer direction, if the grid can be halved so
 /// often.
 const FIRST_SAMPLE: usize = 32;
-/// Upper bound on the cost ratio of a grid with four times the elements, until samples show it.
-const NEXT_COST_RATIO: f64 = 5.0;
-/// Lower bound on that ratio.
+/// Lower bound on the cost ratio of a grid with four times the elements.
 const LEAST_COST_RATIO: f64 = 2.0;
 
 /// Elements of a sample beyond which an unresolved contact is accepted. Up to there samples go on for UNKNOWN_SECONDS.
@@ -82,7 +80,7 @@ pub fn cost_of_accuracy(
             Taken::Unsolved(outcome) if samples.is_empty() => return Ok((outcome, list(&samples))),
             Taken::Unsolved(_) => break,
         };
-        let next = sample.cost.seconds * NEXT_COST_RATIO;
+        let next = sample.cost.seconds * NEXT_GRID_RATIO;
         samples.push(sample);
         doublings += 1;
         let most = budget.after(&list(&samples));
@@ -194,7 +192,7 @@ fn count(
         let (Some(grid), tolerance) = (row.grid, row.tolerance) else { continue };
         let doublings = (grid.mx.max(grid.my) as f64 / scene.grid.mx.max(scene.grid.my) as f64).log2().round() as i32;
         let finer = doublings - last.doublings;
-        let seconds = last.solve * if finer > 0 { NEXT_COST_RATIO } else { LEAST_COST_RATIO }.powi(finer);
+        let seconds = last.solve * if finer > 0 { NEXT_GRID_RATIO } else { LEAST_COST_RATIO }.powi(finer);
         let is_known = counted.iter().any(|one| one.is_of(&grid, tolerance));
         if is_known || began.elapsed().as_secs_f64() + seconds > FOR_COUNTS {
             continue;
