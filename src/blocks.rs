@@ -8,9 +8,13 @@ use std::ops::Range;
 use crate::grid::Grid;
 use crate::threads::Threads;
 
-/// Most blocks, and least elements of a block: each has a fixed cost.
-const BLOCKS: usize = 64;
-const LEAST: usize = 1024;
+/// Most blocks of a pass over a grid, and elements of a block, the least of a pass in blocks of rows: each block has a fixed cost, and both fields of
+/// 1024 vectors stay in the nearest cache.
+pub const BLOCKS: usize = 64;
+pub const BLOCK: usize = 1024;
+/// Lanes of a pass, as many as in the longest vector: the compiler vectorises loops over them, and no bit of their sums depends on the machine.
+/// Flags of as many elements are the bytes of a word.
+pub const LANES: usize = 8;
 
 /// Joins the results of `work(elements)` for each block to `nothing`, in the order of the blocks.
 #[inline(always)]
@@ -21,7 +25,7 @@ pub fn fold<A: Clone + Send>(
     work: impl Fn(Range<usize>) -> A + Sync + Send,
     join: impl Fn(A, A) -> A,
 ) -> A {
-    let (n, length) = (grid.len(), grid.rows_of_blocks(BLOCKS, LEAST) * grid.mx);
+    let (n, length) = (grid.len(), grid.rows_of_blocks(BLOCKS, BLOCK) * grid.mx);
     let (count, threads) = (n.div_ceil(length), threads.for_a_pass(n));
     let elements = |b: usize| b * length..((b + 1) * length).min(n);
     let pass = |found: &mut [A], first: usize| {

@@ -50,6 +50,9 @@ impl Scaled {
     }
 }
 
+/// Upper limit on lengths and tractions: sums of their squares are finite.
+pub(crate) const LARGEST: f64 = 1e140;
+
 /// A power of two as a product of three, each in range.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PowerOfTwo([f64; 3]);

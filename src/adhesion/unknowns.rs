@@ -1,6 +1,7 @@
 //! The unknowns of one grid, and their measures.
 
 use super::law::Attraction;
+use crate::contact::ROUND_OFF;
 use crate::error::Result;
 use crate::memory::unwritten;
 use crate::methods::fgmres::Bordered;
@@ -171,8 +172,6 @@ impl Surface {
 
 /// Contact pressures and attraction cancel if p is below this part of them.
 pub const CANCELLED: f64 = 1e-3;
-/// Relative round-off of `h - approach` for h equal to the approach, as in plain contact problems.
-const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
 
 /// The measures of the conditions, each relative to its own scale. If contact pressures and attraction cancel, as below a flat punch without a
 /// load, total pressures are round-off: the scale of pressures is p, or [`CANCELLED`] times q if that is larger.

@@ -5,21 +5,16 @@ use std::ops::Range;
 
 use super::{AdmissibleSet, State};
 use crate::blocks;
+use crate::powers::LARGEST;
 use crate::scene::Load;
-use crate::sums::Sums;
+use crate::sums::{Sums, ROUND_OFF};
 use crate::threads::Threads;
 
 /// Most rounds of raising pressures below their limit; each but the last brings at least one element to its limit, most bring many.
 const ROUNDS: u32 = 50;
 
-/// Round-off of the force, relative to the sum of |p| and the force: that of a sum of 2^31 pressures in any order.
-const ROUND_OFF: f64 = 1e-12;
-
 /// Forces below this part of the sum of |p| are carried by adding to p, not by scaling p.
 const CANCELLED: f64 = 1e-3;
-
-/// Distances from which squares overflow in sums; such gaps never close.
-const OUT_OF_REACH: f64 = 1e140;
 
 impl State {
     /// Whether p carries a prescribed force.
@@ -78,7 +73,7 @@ impl State {
     fn spread(&mut self, pressures: f64) {
         if self.contact_count() == 0 {
             for i in 0..self.h.len() {
-                self.contact[i] = self.h[i].abs() < OUT_OF_REACH && !self.at_limit[i];
+                self.contact[i] = self.h[i].abs() < LARGEST && !self.at_limit[i];
             }
         }
         let uniform = pressures / self.contact_count().max(1) as f64;

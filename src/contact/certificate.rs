@@ -21,7 +21,7 @@ pub struct Certificate {
 
 /// The relative round-off of `h - approach` for h equal to the approach: a sum and a mean of equal numbers. Distances below it count as 0
 /// (the bodies fit exactly). Larger ones are kept even if they may be round-off of a huge offset.
-const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
+pub const ROUND_OFF: f64 = 2.0 * f64::EPSILON;
 
 impl Survey {
     /// Surveys a state.

@@ -20,14 +20,14 @@ mod survey_pass;
 mod values;
 
 pub use admissible::{AdmissibleSet, Fixed, NonNegative};
-pub use certificate::{norm_of_distance, relative, residual_norm, Certificate, Survey};
+pub use certificate::{norm_of_distance, relative, residual_norm, Certificate, Survey, ROUND_OFF};
 pub use curvature::Curvature;
 pub use ends::at_ends;
 pub use exchange::{admit, all_stay, enter, leave, truncate};
 pub use guard::ExchangeGuard;
 pub use jumps::{at_jumps, each_jump, Jump};
 pub use outline::{touching, Outline};
-pub use problem::Problem;
+pub use problem::{Problem, OF_PRODUCT};
 pub use snapshot::Snapshot;
 pub use state::State;
 pub use values::{lowest, presses, Freshness};

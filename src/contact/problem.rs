@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::admissible::AdmissibleSet;
 use super::operators::{MadeOf, Operators};
 use super::state::{Freshness, State};
+use crate::blocks::BLOCK;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::influence::Coefficients;
@@ -12,8 +13,8 @@ use crate::operator::Operator;
 use crate::sums::Sums;
 use crate::threads::Threads;
 
-/// Round-off of a displacement by FFT, relative to that of an element by itself: some units of round-off.
-const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
+/// Round-off of a displacement by FFT, relative to that of an element by itself or to the terms of a distance: some units of round-off.
+pub const OF_PRODUCT: f64 = 16.0 * f64::EPSILON;
 /// Elements of a wave whose response is about an element's influence on itself.
 const WAVE: f64 = 16.0;
 
@@ -116,7 +117,7 @@ impl Problem {
 
     /// See [`State::round_off`].
     pub fn round_off(&self) -> f64 {
-        let own = ROUND_OFF * self.self_influence();
+        let own = OF_PRODUCT * self.self_influence();
         match self.coefficients.is_mean_free() {
             // Displacements by waves of up to the whole grid cancel.
             true => own * (1.0 + self.grid.mx.max(self.grid.my) as f64 / WAVE),
@@ -175,9 +176,6 @@ impl Problem {
         self.operators.bytes()
     }
 }
-
-/// Values of a piece of a pass.
-const BLOCK: usize = 1024;
 
 /// With two periods the mean of u is 0: removes the mean of a product, which is round-off of sums over the whole grid.
 fn remove_mean(u: &mut [f64], threads: &Threads) {

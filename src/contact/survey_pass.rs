@@ -4,6 +4,7 @@ use std::array::from_fn;
 use std::ops::Range;
 
 use super::State;
+use crate::blocks::LANES;
 
 /// The measures of one pass over a state whose u is A p.
 #[derive(Clone, Copy, Debug, Default)]
@@ -30,8 +31,6 @@ pub struct Survey {
 
 /// Elements of a chunk: loops over these are vectorised.
 const CHUNK: usize = 64;
-/// Lanes of an extreme: a comparison does not wait for the one before.
-const LANES: usize = 8;
 
 /// Sums of e^2 and `(h - approach)^2` over C, and of p, p^2, `p |e|` and `p |u|`, each in one part for each place in a chunk.
 type Parts = [[f64; CHUNK]; 6];

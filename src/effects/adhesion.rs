@@ -3,11 +3,11 @@
 //! See [`adhesion`](crate::adhesion) for the problem that is solved.
 
 use super::effect::{Effect, Value};
-use super::friction::LARGEST;
 use super::properties::{Properties, Stresses};
 use crate::adhesion::{Law, Start};
 use crate::error::{invalid, require, Error, Number, Result};
 use crate::grid::{check_values, Grid};
+use crate::powers::LARGEST;
 use crate::scene::{Load, Plain};
 
 /// Limits on work and range: their squares, and quotients of these, are finite.

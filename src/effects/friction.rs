@@ -30,9 +30,6 @@ impl Coefficient<'_> {
     }
 }
 
-/// Upper limit on slips and tractions: their squares are finite.
-pub(super) const LARGEST: f64 = 1e140;
-
 /// Relative round-off of `distance * cosine / dx`: below 1e-15 from the angle (at most 2 pi), cosine, product and quotient; ten times that.
 const ROUND_OFF: f64 = 1e-14;
 

@@ -2,9 +2,10 @@
 
 use std::f64::consts::PI;
 
-use super::friction::{Coefficient, Friction, Motion, Prescribed, Previous, LARGEST};
+use super::friction::{Coefficient, Friction, Motion, Prescribed, Previous};
 use crate::error::{finite, invalid, require, Error, Result};
 use crate::grid::{check_values, Grid};
+use crate::powers::LARGEST;
 
 /// Longest step of rolling, in elements.
 const LONGEST_STEP: f64 = 1e6;

@@ -8,7 +8,7 @@ use crate::error::{Error, Number, Result};
 use crate::grid::Grid;
 use crate::memory::sparse;
 use crate::methods::fields;
-use crate::sums::in_blocks;
+use crate::sums::{in_blocks, ROUND_OFF};
 
 /// Given forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,9 +37,6 @@ impl Reach {
         )
     }
 }
-
-/// Relative round-off of the sum of all bounds: that of a sum of 2^31 bounds in any order.
-const ROUND_OFF: f64 = 1e-12;
 
 /// Halvings of an interval around a minimum, whose value is then exact to round-off.
 const HALVINGS: u32 = 60;

@@ -8,8 +8,7 @@
 
 use pulp::Simd;
 
-/// Lanes of a sum, as many as in the longest vector.
-pub const LANES: usize = 8;
+use crate::blocks::LANES;
 
 /// Vectors of both components.
 pub type Pair<S> = [<S as Simd>::f64s; 2];

@@ -4,11 +4,10 @@
 //! grid. Blocks depend on C alone: sums by blocks have the same bits for any number of threads. Blocks are padded with zeros to a whole
 //! number of vectors.
 
-use super::lanes::LANES;
+use crate::blocks::{BLOCK, BLOCKS, LANES};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::reserve;
-use crate::methods::fields::BLOCK;
 use crate::operator::fft::Real;
 
 /// The places of the elements of C on the grid.
@@ -21,8 +20,6 @@ pub struct Places {
     count: usize,
 }
 
-/// Blocks of a full grid, as long as each has [`BLOCK`]`/4` to [`BLOCK`] elements.
-const BLOCKS: usize = 64;
 /// The part of C in slip from which nearly all of it slips.
 const MOSTLY_SLIP: f64 = 0.8;
 
@@ -118,6 +115,7 @@ impl Places {
         runs.clear();
         blocks.clear();
         let rows = bound.len() / *mx;
+        // A full grid has BLOCKS blocks, as long as each has so many elements.
         let least = (bound.len() / BLOCKS).clamp(BLOCK / 4, BLOCK);
         let mut begun = Block { runs: (0, 0), rows: (0, 0), elements: 0 };
         *count = 0;

@@ -16,6 +16,7 @@ use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::{blank, collected, unwritten, zeros};
 use crate::methods::fields;
+use crate::powers::LARGEST;
 use crate::rectangle::Rectangle;
 
 /// Largest ratio of rigid slips to displacements by tractions: single precision ends at 1e38.
@@ -26,8 +27,6 @@ const LEAST_RATIO: f64 = 1e-60;
 /// Bounds below this fraction of the largest are round-off and make the system singular. Their elements are solved with the bound 0, and get their
 /// traction from the slip.
 const NEGLIGIBLE: f64 = 1e-17;
-/// Largest ratio of tractions before the step to the largest bound.
-const LARGEST_BEFORE: f64 = 1e150;
 
 /// The name of this memory in messages.
 const FIELDS: &str = "tangential fields";
@@ -262,7 +261,7 @@ fn creepage_of(problem: &Problem, state: &State, k: usize) -> f64 {
 
 /// Tractions in the units of the iterations, clamped to their range: in steady rolling they only start the iteration.
 fn in_range(q: Vector, scales: &Scales) -> Vector {
-    q.map(|q| scales.traction(q).clamp(-LARGEST_BEFORE, LARGEST_BEFORE))
+    q.map(|q| scales.traction(q).clamp(-LARGEST, LARGEST))
 }
 
 /// The change of the slip by spin over one step of steady rolling.

@@ -1,7 +1,6 @@
 //! The largest coefficient of a table, its symmetry and finiteness, found while its rows are in cache.
 
-/// Lanes of a pass, which the compiler vectorises.
-const LANES: usize = 8;
+use crate::blocks::LANES;
 
 pub(super) use toeplitz::coefficients::SYMMETRY;
 

@@ -1,14 +1,12 @@
 //! Passes over fields of K numbers per element, in double or single precision, by several threads: sums are taken in double precision, in
 //! blocks of fixed length and order, so that they have the same bits for any number of threads.
 
+pub use crate::blocks::BLOCK;
 use crate::error::Result;
 use crate::memory::unwritten;
 use crate::operator::fft::Real;
 use crate::sums::Sums;
 use crate::threads::Threads;
-
-/// Elements of a block: both fields of it stay in the nearest cache.
-pub const BLOCK: usize = 1024;
 
 /// A pool of fields of one length, by default of vectors in the plane.
 #[derive(Default)]

@@ -9,13 +9,11 @@ use crate::error::Result;
 use crate::methods::Start;
 use crate::progress::{Goal, Monitor};
 use crate::scene::{Load, Scene};
+use crate::sums::ROUND_OFF;
 use crate::threads::Threads;
 
 /// Residual of a guess, relative to `h - approach` over C, above which it is discarded; p = 0 has 1.
 const WORSE_THAN_NONE: f64 = 1e3;
-
-/// Relative distance from the greatest force that counts as 0: round-off of the sum of the limits.
-const FULL: f64 = 1e-12;
 
 /// Copies the undeformed distance, as a callback may change the caller's.
 pub fn take_distance(state: &mut State, given: &[f64], threads: &Threads) {
@@ -174,7 +172,7 @@ pub fn fills_limits<S: AdmissibleSet>(problem: &mut Problem, state: &mut State, 
     let of_block = |block: Range<usize>| block.map(limit).sum::<f64>();
     let greatest = blocks::fold(&state.grid, &problem.threads, 0.0, of_block, |sum, block| sum + block);
     let greatest = greatest * state.grid.element_area();
-    if !(force >= greatest * (1.0 - FULL)) {
+    if !(force >= greatest * (1.0 - ROUND_OFF)) {
         return Ok(false);
     }
     put_at_limits(problem, state, set)?;

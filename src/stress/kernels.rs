@@ -9,7 +9,8 @@
 
 use super::body::{Body, Loaded};
 use super::element;
-use super::point_force::{self, Lanes, Values, LANES};
+use super::point_force::{self, Lanes, Values};
+use crate::blocks::LANES;
 use crate::error::Result;
 use crate::influence::means::{in_x, in_y, HALO, ROWS};
 use crate::memory::zeros;

@@ -28,8 +28,8 @@
 
 use super::body::Body;
 use super::kernels::{is_odd, Asked, Kernels};
-use super::point_force::LANES;
 use super::waves::{Aliased, Fading, NODES};
+use crate::blocks::LANES;
 use crate::error::{Error, Result};
 use crate::memory::zeros;
 

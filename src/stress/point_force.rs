@@ -15,9 +15,7 @@
 //! A force in y is one in x with x and y exchanged. In direction cosines nothing overflows, at any distance.
 
 use super::body::{Body, Loaded};
-
-/// Places that are computed at a time: a loop over them is vectorised.
-pub const LANES: usize = 8;
+use crate::blocks::LANES;
 
 /// One value per place.
 pub type Lanes = [f64; LANES];

@@ -3,7 +3,8 @@
 use std::f64::consts::{LOG2_E, PI};
 
 use super::body::{Body, Loaded};
-use super::point_force::{Lanes, Values, LANES};
+use super::point_force::{Lanes, Values};
+use crate::blocks::LANES;
 use crate::error::Result;
 use crate::memory::zeros;
 

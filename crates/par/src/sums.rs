@@ -10,6 +10,9 @@ const LANES: usize = 4;
 /// Lanes of single sums and of comparisons.
 const WIDE: usize = 8;
 
+/// Relative round-off of a sum of up to 2^31 terms in any order, relative to the sum of their absolute values.
+pub const ROUND_OFF: f64 = 1e-12;
+
 /// Terms of a block.
 const BLOCK: usize = 512;
 

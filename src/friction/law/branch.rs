@@ -17,6 +17,7 @@ use super::march::March;
 use super::{bounds, STEEP};
 use crate::error::Result;
 use crate::memory::zeros;
+use crate::powers::LARGEST;
 use crate::progress::Outcome;
 
 /// The most turns, and the most turns in a row without a residual below the fraction `GAIN` of the least one.
@@ -33,8 +34,6 @@ const DAMPED: f64 = 0.7;
 const LEAST_DAMPING: f64 = 0.01;
 /// Below this residual tractions are projected onto the circles before a turn, because the turn counts those near a circle as on it.
 const NEAR: f64 = 1e-6;
-/// A length beyond all slips, whose square does not overflow.
-const ANY: f64 = 1e150;
 
 /// The progress of the turns.
 pub struct Turns {
@@ -80,7 +79,7 @@ impl Turns {
 /// The bounds of the first turn.
 pub fn begin(problem: &mut Problem, march: &mut March, is_high: bool) {
     let law = march.law;
-    let slip = if is_high { ANY } else { 0.0 };
+    let slip = if is_high { LARGEST } else { 0.0 };
     march.go(|k, place, had| {
         let is_inside = place.pressure > 0.0;
         let response = law.at(if is_inside { slip } else { 0.0 }, place, had);

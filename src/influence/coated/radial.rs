@@ -25,6 +25,7 @@ use super::polynomial::{chebyshev, evaluate, integral, node, powers, terms};
 use super::quadrature::gauss_legendre;
 use super::response::{Response, TERMS};
 use super::transfer::Transfer;
+use crate::blocks::LANES;
 
 /// Most coefficients of a polynomial in w, of degree 13, and of its integral.
 pub const P: usize = 14;
@@ -253,8 +254,7 @@ impl<R: Response> Radial<R> {
     }
 }
 
-/// Places computed at a time, in vectorised loops.
-const LANES: usize = 8;
+/// The places computed at a time.
 const OFFSETS: [f64; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 /// `polynomial(((x + k dx)^2 + shift) scale)`.

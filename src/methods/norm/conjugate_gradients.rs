@@ -7,14 +7,10 @@
 //! ```
 
 use super::Workspace;
-use crate::contact::{norm_of_distance, relative, State};
+use crate::contact::{norm_of_distance, relative, State, OF_PRODUCT};
 use crate::error::{Error, Result};
 use crate::methods::Task;
 use crate::scene::Load;
-
-/// The residual of the exact solution, relative to the terms of its difference: a product by FFT has an error of
-/// some units of round-off.
-const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 
 /// The stopping criteria of the inner iteration.
 #[derive(Clone, Copy, Debug)]
@@ -107,7 +103,7 @@ fn project(values: &mut [f64], contact: &[bool], count: Option<f64>) {
 /// The round-off of a residual on `elements` with displacement `u`: a smaller residual is noise, and so is its curvature.
 pub(super) fn noise(state: &State, elements: impl Iterator<Item = usize>, u: &[f64]) -> f64 {
     let terms = |i: usize| (state.approach - state.h[i]).abs() + u[i].abs();
-    ROUND_OFF * elements.map(|i| terms(i) * terms(i)).sum::<f64>().sqrt()
+    OF_PRODUCT * elements.map(|i| terms(i) * terms(i)).sum::<f64>().sqrt()
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -1,7 +1,7 @@
 //! Scaling for single precision, whose range is 1e-38 to 1e38: a scene in nanometres, or of a huge modulus, would leave it. Factors are
 //! powers of two, so that they change no digit.
 
-use crate::blocks;
+use crate::blocks::{self, LANES};
 use crate::contact::State;
 use crate::scene::Load;
 use crate::threads::Threads;
@@ -76,7 +76,6 @@ fn farthest(state: &State, threads: &Threads) -> f64 {
 /// The largest |h - approach| of a block, in lanes that the compiler vectorises.
 #[inline(always)]
 fn farthest_of(h: &[f64], contact: &[bool], approach: f64) -> f64 {
-    const LANES: usize = 8;
     let distance = |h: f64, inside: bool| if inside | (h < approach) { (h - approach).abs() } else { 0.0 };
     let mut farthest = [0.0; LANES];
     let (h, contact) = (h.chunks_exact(LANES), contact.chunks_exact(LANES));

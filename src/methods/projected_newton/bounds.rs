@@ -2,11 +2,7 @@
 
 use crate::contact::{AdmissibleSet, State};
 use crate::scene::Load;
-use crate::sums::in_blocks;
-
-/// Distance from a bound, relative to the limit or the mean pressure, that counts as 0. If nearly all elements are at a bound, the one
-/// that carries the round-off of the force must not determine the approach.
-const AT_BOUND: f64 = 1e-12;
+use crate::sums::{in_blocks, ROUND_OFF};
 
 /// e on elements with a surface, and the free elements. With a prescribed force and C empty the approach is midway between the one that
 /// holds all elements at their limit and the one at which an exterior element touches. If these are in the wrong order, both kinds are free.
@@ -40,16 +36,17 @@ pub(super) fn keep_at_bounds<S: AdmissibleSet>(
     any
 }
 
-/// With limits: sets pressures to a bound that they equal up to round-off.
+/// With limits: sets pressures to a bound that they equal up to the round-off of the force. If nearly all elements are at a bound, the one that
+/// carries this round-off must not determine the approach.
 pub(super) fn snap<S: AdmissibleSet>(state: &mut State, set: S) {
     if !S::LIMITED {
         return;
     }
-    let least = AT_BOUND * in_blocks(state.p.iter().copied()) / state.p.len() as f64;
+    let least = ROUND_OFF * in_blocks(state.p.iter().copied()) / state.p.len() as f64;
     for (i, p) in state.p.iter_mut().enumerate() {
         if *p <= least {
             *p = 0.0;
-        } else if *p >= (1.0 - AT_BOUND) * set.limit(i) {
+        } else if *p >= (1.0 - ROUND_OFF) * set.limit(i) {
             *p = set.limit(i);
         }
     }

@@ -4,24 +4,25 @@ use std::array::from_fn;
 
 use pulp::Simd;
 
-use super::block::{Block, EIGHT};
+use super::block::Block;
 use super::vector::{Holds, Vector};
+use crate::blocks::LANES;
 use crate::operator::fft::Real;
 use crate::sums::Value;
 
 /// One segment of an array.
-pub(super) type Eight<A> = [A; EIGHT];
+pub(super) type Eight<A> = [A; LANES];
 
 /// The whole segments of a part of an array.
 #[inline(always)]
 pub(super) fn eights<A>(values: &[A]) -> &[Eight<A>] {
-    pulp::as_arrays::<EIGHT, A>(values).0
+    pulp::as_arrays::<LANES, A>(values).0
 }
 
 /// The elements behind the whole segments, padded to a segment.
 #[inline(always)]
 pub(super) fn rest<A: Copy + Default>(values: &[A]) -> Eight<A> {
-    let (mut padded, rest) = ([A::default(); EIGHT], pulp::as_arrays::<EIGHT, A>(values).1);
+    let (mut padded, rest) = ([A::default(); LANES], pulp::as_arrays::<LANES, A>(values).1);
     padded[..rest.len()].copy_from_slice(rest);
     padded
 }
@@ -88,9 +89,9 @@ pub(super) struct Segment<'a, const A: usize, const B: usize> {
 impl<'a, const A: usize, const B: usize> Segment<'a, A, B> {
     #[inline(always)]
     fn new<T: Real>(a: [&'a Eight<f64>; A], b: [&Eight<T>; B], contact: &Eight<bool>) -> Segment<'a, A, B> {
-        let mut doubles = [[0.0; EIGHT]; B];
+        let mut doubles = [[0.0; LANES]; B];
         doubles.iter_mut().zip(b).for_each(|(doubles, values)| convert(values, doubles, Value::to_double));
-        let mut ones = [0; EIGHT];
+        let mut ones = [0; LANES];
         convert(contact, &mut ones, u64::from);
         Segment { a, b: doubles, contact: ones }
     }

@@ -5,9 +5,7 @@ use std::ops::Range;
 use pulp::Simd;
 
 use super::vector::{Holds, Vector};
-
-/// Elements of a segment, one in each byte of a word.
-pub(super) const EIGHT: usize = 8;
+use crate::blocks::LANES;
 
 /// K sums of a pass over A arrays in double precision and B arrays of the iteration's precision.
 pub trait Terms<const A: usize, const B: usize, const K: usize> {
@@ -47,7 +45,7 @@ impl<'a> Block<'a> {
     /// Elements of each segment: among those of the grid, and among those of the block.
     pub fn segments(self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> + 'a {
         self.segments.iter().map(move |&k| {
-            let local = EIGHT * k as usize..self.contact.len().min(EIGHT * (k as usize + 1));
+            let local = LANES * k as usize..self.contact.len().min(LANES * (k as usize + 1));
             (self.start + local.start..self.start + local.end, local)
         })
     }

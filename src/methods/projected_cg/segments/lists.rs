@@ -3,8 +3,9 @@
 use pulp::{Simd, WithSimd};
 
 use super::arrays::{eights, parts, rest, whole, Arrays, Eight, Segment};
-use super::block::{Becomes, Block, Wanted, EIGHT};
+use super::block::{Becomes, Block, Wanted};
 use super::vector::{Holds, Vector};
+use crate::blocks::LANES;
 use crate::operator::fft::Real;
 
 /// The elements of [`Block::list`].
@@ -23,7 +24,7 @@ impl<T: Real, F: Wanted<B>, const B: usize> WithSimd for List<'_, T, F, B> {
     fn with_simd<S: Simd>(self, simd: S) {
         let List { block, list, data, arrays, wanted } = self;
         let ((segments, with_rest), eights) = (whole(block), eights(data));
-        let first = |k: usize| block.start + EIGHT * k;
+        let first = |k: usize| block.start + LANES * k;
         for &k in segments {
             let k = k as usize;
             list_segment(simd, (first(k), &eights[k]), arrays.at(k), &wanted, list);
@@ -43,7 +44,7 @@ fn list_segment<S: Simd, const B: usize>(
     list: &mut Vec<u32>,
 ) {
     for part in 0..parts::<S>() {
-        let first = first + part * EIGHT / parts::<S>();
+        let first = first + part * LANES / parts::<S>();
         let value = Vector::new(simd, S::as_simd_f64s(values).0[part]);
         let ([], b, inside) = segment.part(simd, part);
         append(simd, first, inside & wanted.of(first, value, b), list);
@@ -54,7 +55,7 @@ fn list_segment<S: Simd, const B: usize>(
 #[inline(always)]
 fn append<S: Simd>(simd: S, first: usize, wanted: Holds<S>, list: &mut Vec<u32>) {
     if wanted.anywhere() {
-        let mut ones = [0.0; EIGHT];
+        let mut ones = [0.0; LANES];
         let some = wanted.choose(Vector::splat(simd, 1.0), Vector::splat(simd, 0.0));
         S::as_mut_simd_f64s(&mut ones).0[0] = some.values();
         list.extend((first as u32..).zip(ones).filter(|(_, one)| *one > 0.0).map(|(i, _)| i));
@@ -79,10 +80,10 @@ impl<T: Real, F: Becomes<A, B>, G: Wanted<A>, const A: usize, const B: usize> Wi
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Everywhere { block, data, list, arrays, change, wanted } = self;
-        let (eights, behind) = pulp::as_arrays_mut::<EIGHT, f64>(data);
-        let end_of_whole = block.start + EIGHT * eights.len();
+        let (eights, behind) = pulp::as_arrays_mut::<LANES, f64>(data);
+        let end_of_whole = block.start + LANES * eights.len();
         for (k, values) in eights.iter_mut().enumerate() {
-            everywhere(simd, (block.start + EIGHT * k, values), arrays.at(k), (&change, &wanted), list);
+            everywhere(simd, (block.start + LANES * k, values), arrays.at(k), (&change, &wanted), list);
         }
         if !behind.is_empty() {
             let mut last = rest(behind);
@@ -104,7 +105,7 @@ fn everywhere<S: Simd, const A: usize, const B: usize>(
     list: &mut Vec<u32>,
 ) {
     for part in 0..parts::<S>() {
-        let first = first + part * EIGHT / parts::<S>();
+        let first = first + part * LANES / parts::<S>();
         let (a, b, _) = segment.part(simd, part);
         let outside = Holds::of_zeros(simd, S::as_simd_u64s(&segment.contact).0[part]);
         let to = &mut S::as_mut_simd_f64s(values).0[part];

@@ -18,18 +18,15 @@ use std::mem::take;
 use std::ops::Range;
 
 use arrays::{eights, rest};
-use block::EIGHT;
 pub use block::{Becomes, Block, Terms, Wanted};
 pub use vector::{Holds, Vector};
 
+use crate::blocks::{BLOCK, BLOCKS, LANES};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{keep, reserve, sparse};
 use crate::threads::Threads;
 
-/// Most blocks, and least elements of a block: each costs some additions.
-const BLOCKS: usize = 64;
-const LEAST: usize = 512;
 /// Most sums of a pass.
 const MOST_SUMS: usize = 9;
 
@@ -70,12 +67,12 @@ impl Found {
 impl Segments {
     /// No contact. Memory for any contact area is reserved, and touched when needed.
     pub fn new(grid: &Grid, threads: &Threads) -> Result<Segments> {
-        let block = (grid.rows_of_blocks(BLOCKS, LEAST) * grid.mx).next_multiple_of(EIGHT);
+        let block = (grid.rows_of_blocks(BLOCKS, BLOCK) * grid.mx).next_multiple_of(LANES);
         let blocks = grid.len().div_ceil(block);
         let mut found = Vec::new();
         found.resize_with(blocks, Found::default);
         for found in &mut found {
-            reserve(&mut found.segments, block / EIGHT, "the contact area")?;
+            reserve(&mut found.segments, block / LANES, "the contact area")?;
         }
         let listed = (0..blocks).map(|_| sparse(block, "the contact area")).collect::<par::Result<_>>()?;
         let sums = vec![[0.0; MOST_SUMS]; blocks];

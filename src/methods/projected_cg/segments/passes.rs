@@ -4,8 +4,9 @@
 use pulp::{Simd, WithSimd};
 
 use super::arrays::{convert, parts, rest, whole, Arrays, Eight, Segment};
-use super::block::{Becomes, Block, Terms, EIGHT};
+use super::block::{Becomes, Block, Terms};
 use super::vector::Vector;
+use crate::blocks::LANES;
 use crate::operator::fft::Real;
 use crate::sums::Value;
 
@@ -23,7 +24,7 @@ impl<T: Real, F: Terms<A, B, K>, const A: usize, const B: usize, const K: usize>
     fn with_simd<S: Simd>(self, simd: S) -> [f64; K] {
         let Sum { block, arrays, terms } = &self;
         let (segments, with_rest) = whole(*block);
-        let mut sums = [[0.0; EIGHT]; K];
+        let mut sums = [[0.0; LANES]; K];
         for &k in segments {
             add(simd, arrays.at(k as usize), terms, &mut sums);
         }
@@ -65,7 +66,7 @@ impl<D: Real, T: Real, F: Becomes<A, B>, const A: usize, const B: usize> WithSim
     fn with_simd<S: Simd>(self, simd: S) {
         let Changes { block, data, arrays, change } = self;
         let (segments, with_rest) = whole(block);
-        let (eights, behind) = pulp::as_arrays_mut::<EIGHT, D>(data);
+        let (eights, behind) = pulp::as_arrays_mut::<LANES, D>(data);
         for &k in segments {
             change_segment(simd, &mut eights[k as usize], arrays.at(k as usize), &change);
         }
@@ -84,7 +85,7 @@ fn change_segment<D: Real, S: Simd, const A: usize, const B: usize>(
     segment: Segment<'_, A, B>,
     change: &impl Becomes<A, B>,
 ) {
-    let mut doubles = [0.0; EIGHT];
+    let mut doubles = [0.0; LANES];
     convert(values, &mut doubles, Value::to_double);
     for part in 0..parts::<S>() {
         let (a, b, inside) = segment.part(simd, part);
