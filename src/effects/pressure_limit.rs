@@ -17,6 +17,7 @@ use crate::blocks;
 use crate::error::{invalid, Error, Number, Result};
 use crate::grid::{check_values, Grid};
 use crate::scene::{Load, Plain};
+use crate::sums::ROUND_OFF;
 use crate::threads::Threads;
 
 impl Effect for PressureLimit<'_> {
@@ -78,7 +79,7 @@ impl Effect for PressureLimit<'_> {
         };
         let greatest = limits * scene.grid.element_area();
         // A sum of n terms has an error of some units of round-off.
-        if force > greatest * (1.0 + 1e-12) {
+        if force > greatest * (1.0 + ROUND_OFF) {
             return Err(Error::Infeasible(format!(
                 "force is {}; with this pressure_limit the greatest force that can be carried is {}",
                 Number(force),

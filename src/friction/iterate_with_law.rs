@@ -5,6 +5,7 @@ use super::certificate::Certificate;
 use super::forces::Forces;
 use super::law::{branch, slope, stages, March, Place};
 use super::levels::Level;
+use super::nested::KEPT_BACK;
 use super::plane::Vector;
 use super::request::Request;
 use super::shift::{Goal, Memory};
@@ -17,9 +18,6 @@ use crate::memory::collected;
 use crate::progress::Outcome;
 use crate::rectangle::Rectangle;
 
-/// Products reserved for the end of a solve, and of a solve in turns.
-const KEPT_BACK: u64 = 3;
-const KEPT_BACK_OF_TURNS: u64 = 5;
 /// With given forces: tolerance of the first solve, of Coulomb's law with the coefficients at rest.
 const FIRST: f64 = 1e-2;
 
@@ -181,7 +179,7 @@ impl Solver {
             branch::begin(&mut self.levels[0].problem, march, request.friction.branch == Branch::High);
         }
         // The return to the best turn and onto the circles takes products as well.
-        let most = request.limit.saturating_sub(KEPT_BACK_OF_TURNS).max(1);
+        let most = request.limit.saturating_sub(KEPT_BACK).max(1);
         let (outcome, residual) = loop {
             let limit = most.saturating_sub(report.products.ceil() as u64).max(1);
             let turn = Request { tolerance: turns.inner(request.tolerance), limit, ..*request };

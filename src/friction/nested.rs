@@ -15,7 +15,7 @@ use super::shift::{self, Goal};
 use super::step::compliance;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::progress::Outcome;
+use crate::progress::{Outcome, SHARE};
 
 /// Residual on coarser grids: larger errors cost more on the finest grid.
 pub const COARSE: f64 = 1e-3;
@@ -25,16 +25,13 @@ pub const COUNTS: f64 = 1e-4;
 const COARSE_LIMIT: u64 = 60;
 /// Largest part of the products for all coarser grids together.
 const COARSE_SHARE: f64 = 0.5;
-/// Largest part of the remaining products for a method that is not the last.
-const SHARE: f64 = 0.4;
-
 /// Products of Newton's method with balanced creepages, which comes first near full slip: half of 3800 random scenes then take less than half of the
 /// products. If a single element sticks, the method cycles.
 const TRIED: u64 = 8;
 /// Products of plain Newton steps, which come next and may cycle as well.
 const PLAIN: u64 = 60;
 /// Products reserved for the certificates at the end of an unfinished solve.
-const KEPT_BACK: u64 = 5;
+pub const KEPT_BACK: u64 = 5;
 
 /// The products so far, and the caller's callback.
 pub struct Work<'a> {

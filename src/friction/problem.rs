@@ -24,7 +24,7 @@ use crate::methods::extension::Extension;
 use crate::methods::fields::{self, BLOCK};
 use crate::threads::Threads;
 
-const FIELDS: &str = "tangential fields";
+pub const FIELDS: &str = "tangential fields";
 
 /// A residual far above the round-off of a product in single precision.
 const SINGLE: f64 = 1e-6;

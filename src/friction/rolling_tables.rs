@@ -4,13 +4,12 @@
 //! Material behind has relaxed for longer: the tables are not even in x, and serve steady rolling.
 
 use super::coefficients::{Compliance, Entry, Tangential};
+use super::row_tables::TABLES;
 use crate::error::{finite, require, Error, Result};
 use crate::memory::zeros;
 use crate::powers::{apart, times_power};
 use crate::visco::rolling::{check, finest, parts, rule, Row, OUT_OF_RANGE};
 use crate::visco::RollingBody;
-
-const WHAT: &str = "the tangential influence coefficients";
 
 /// Refuses bodies that pressures would displace sideways, at once or later. `compliance` is 1/(2 G).
 fn check_alike(bodies: &[RollingBody; 2], nu: [f64; 2]) -> Result<()> {
@@ -47,9 +46,9 @@ pub fn rolling_tables(
         Ok((Tangential::new(d, times_power(dy, -of_d), at_once), parts(b, &bodies[b], of_compliance, dx, speed)?))
     };
     let (of_bodies, rule) = ([of_body(0)?, of_body(1)?], rule());
-    let table = || zeros(4 * cx * cy, WHAT);
+    let table = || zeros(4 * cx * cy, TABLES);
     let mut tables: [Vec<f64>; 3] = [table()?, table()?, table()?];
-    let mut row: Vec<Entry> = zeros(2 * cx + 1, WHAT)?;
+    let mut row: Vec<Entry> = zeros(2 * cx + 1, TABLES)?;
     for ky in 0..=cy {
         row.fill([0.0; 3]);
         for (tangential, parts) in &of_bodies {

@@ -12,7 +12,7 @@ use crate::effects::TangentialInfluence;
 use crate::error::Result;
 use crate::memory::zeros;
 
-const TABLES: &str = "the tangential influence coefficients";
+pub const TABLES: &str = "the tangential influence coefficients";
 
 /// `xx, yy, xy, yx`: xy is the displacement in x by a traction in y.
 pub type Full = [f64; 4];

@@ -5,7 +5,7 @@ use super::displaced::displaced;
 use super::excess::Excess;
 use super::levels::Level;
 use super::plane::{add, square, Vector};
-use super::problem::{Problem, Scale, State};
+use super::problem::{Problem, Scale, State, FIELDS};
 use super::request::{before, Request, Start};
 use super::scales::Scales;
 use super::solution::{Solution, EXTERIOR};
@@ -27,9 +27,6 @@ const LEAST_RATIO: f64 = 1e-60;
 /// Bounds below this fraction of the largest are round-off and make the system singular. Their elements are solved with the bound 0, and get their
 /// traction from the slip.
 const NEGLIGIBLE: f64 = 1e-17;
-
-/// The name of this memory in messages.
-const FIELDS: &str = "tangential fields";
 
 impl Solver {
     /// The largest bound of the elements of a window.

@@ -13,6 +13,9 @@ pub enum Criterion {
     Update,
 }
 
+/// The fraction of the remaining cycles that a method may use before the next one follows.
+/// AUTO of a plain scene has 400, 240, 144, and the rest of 1000 for NORM, which converges on every contact area.
+pub const SHARE: f64 = 0.4;
 /// Relative residual up to which a small last change counts.
 pub const UPDATE_RESIDUAL: f64 = 1e-2;
 

@@ -5,7 +5,7 @@ mod ledger;
 
 use std::time::Instant;
 
-pub use criterion::{Criterion, Goal, Outcome, UPDATE_RESIDUAL};
+pub use criterion::{Criterion, Goal, Outcome, SHARE, UPDATE_RESIDUAL};
 pub use ledger::{DiscretisationError, Ledger, LedgerRow, Measures};
 
 use crate::contact::{Outline, State, Survey};

@@ -4,6 +4,7 @@ use super::{Guess, InitialGuess, Method, Options, SetUp};
 use crate::contact::Problem;
 use crate::effects;
 use crate::error::{invalid, Error, Result};
+use crate::powers::LARGEST;
 use crate::scene::{Load, Scene};
 
 impl SetUp {
@@ -154,13 +155,13 @@ pub fn range(
             (pressure, pressure * influence, farthest)
         }
     };
-    if pressure != 0.0 && farthest >= 1e140 {
+    if pressure != 0.0 && farthest >= LARGEST {
         return invalid(format!(
                 "the undeformed distances of the contact area are of order {farthest:e}; with a prescribed force they must lie \
                  below 1e140: choose other units"
             ));
     }
-    let in_range = |value: f64| (1e-140..1e140).contains(&value);
+    let in_range = |value: f64| (1.0 / LARGEST..LARGEST).contains(&value);
     let loaded = pressure != 0.0 || displacement != 0.0;
     // A single element with two periods displaces nothing.
     if problem.grid.len() == 1 && problem.coefficients.is_mean_free() && in_range(pressure) {

@@ -18,14 +18,14 @@ use crate::scene::{Bodies, Load, Scene};
 const SIZES: [usize; 4] = [32, 64, 128, 256];
 /// Products on each grid; the first ones are slow.
 const TIMES: usize = 4;
-/// Least and largest power of the number of elements.
+/// Least and largest power of the number of elements with which seconds of a product, and at most of a solve, grow.
 const POWERS: (f64, f64) = (1.0, 1.2);
 /// The power without timings (docs/performance.md).
 const GROWTH: f64 = 1.08;
-/// The least and the largest power of the number of elements with which seconds of set-ups grow.
-const SETUP_GROWTH: (f64, f64) = (0.1, 1.08);
-/// The largest power of the number of elements with which seconds of a solve grow.
-const MOST_GROWTH: f64 = 1.2;
+/// The least power of the number of elements with which seconds of set-ups grow.
+const LEAST_SETUP_GROWTH: f64 = 0.1;
+/// Upper bound on the cost ratio of a grid with four times the elements, until samples show it.
+pub const NEXT: f64 = 5.0;
 /// Largest growth of the number of products with a doubling.
 pub const MOST_MORE: f64 = 1.25;
 /// Least products of a sample that counts for seconds, relative to the last sample.
@@ -64,9 +64,9 @@ pub fn growth(from: f64, to: f64) -> f64 {
 pub fn seconds_on(samples: &[Cost], elements: f64) -> f64 {
     let seen = match samples {
         [.., before, last] => (last.setup / before.setup).ln() / (last.elements / before.elements).ln(),
-        _ => SETUP_GROWTH.1,
+        _ => GROWTH,
     };
-    let of_setup = if seen.is_finite() { seen.clamp(SETUP_GROWTH.0, SETUP_GROWTH.1) } else { SETUP_GROWTH.1 };
+    let of_setup = if seen.is_finite() { seen.clamp(LEAST_SETUP_GROWTH, GROWTH) } else { GROWTH };
     let least = samples.last().map_or(0.0, |last| SEES * last.products);
     let of_solve = grown(samples, least);
     let more = more_products(samples, elements);
@@ -107,7 +107,7 @@ fn more_products(samples: &[Cost], elements: f64) -> f64 {
 fn grown(samples: &[Cost], least: f64) -> f64 {
     let of = |pair: &[Cost]| (pair[1].seconds / pair[0].seconds).ln() / (pair[1].elements / pair[0].elements).ln();
     let seen = samples.windows(2).filter(|pair| pair[0].products >= least).map(of);
-    seen.reduce(f64::min).map_or(0.0, |seen| seen.clamp(0.0, MOST_GROWTH))
+    seen.reduce(f64::min).map_or(0.0, |seen| seen.clamp(0.0, POWERS.1))
 }
 
 /// The seconds of a product on m x m elements.

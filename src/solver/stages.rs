@@ -2,11 +2,9 @@
 
 use super::options::Method;
 use crate::contact::AdmissibleSet;
+use crate::progress::SHARE;
 
-/// The fraction of the remaining cycles that a method may use before the next one follows. It gets at least LEAST_SHARE cycles, or half of those
-/// that remain if that is less.
-/// AUTO of a plain scene has 400, 240, 144, and the rest of 1000 for NORM, which converges on every contact area.
-const SHARE: f64 = 0.4;
+/// A method gets at least so many cycles, or half of those that remain if that is less.
 const LEAST_SHARE: u64 = 60;
 /// Most cycles of PROJECTED_CG with limits. Most scenes with limits take fewer. After more, the method usually cycles, and the projected Newton
 /// method continues from its best iterate.

@@ -10,7 +10,7 @@ use crate::effects;
 use crate::error::{require, Error, Result};
 use crate::grid::Grid;
 use crate::scene::{scaled, Regridded, Scene};
-use crate::solver::machine::{seconds_on, Cost};
+use crate::solver::machine::{seconds_on, Cost, NEXT};
 use crate::solver::quantities::{Lack, OnGrid, Quantity, Sequence};
 use crate::solver::refinement::LEAST_TOLERANCE;
 use crate::solver::{Options, Outcome, ProgressCallback};
@@ -22,8 +22,6 @@ const EFFORT: f64 = 7e7;
 const PART: f64 = 0.05;
 /// The power of the elements with which the effort of a scene grows.
 const GROWTH: f64 = 1.1;
-/// Bound on the ratio of the effort of the next grid.
-const NEXT: f64 = 5.0;
 /// Least elements of the first grid in its longer direction.
 const FIRST: usize = 16;
 /// Elements that change sides at once: four with two planes of symmetry. Areas do not resolve smaller changes.

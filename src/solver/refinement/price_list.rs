@@ -15,7 +15,7 @@ use super::{check, Accuracy, SurfaceCallback};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::scene::{scaled, Scene};
-use crate::solver::machine;
+use crate::solver::machine::{self, NEXT};
 use crate::solver::quantities::Quantity;
 use crate::solver::{Options, Outcome, ProgressCallback};
 
@@ -24,9 +24,7 @@ const PART: f64 = 0.014;
 const SECONDS: f64 = 0.035;
 /// Elements of the first sample in a direction, about.
 const FIRST: usize = 32;
-/// Upper bound on the cost ratio of a grid with four times the elements, until samples show it.
-const NEXT: f64 = 5.0;
-/// Lower bound on that ratio.
+/// Lower bound on the cost ratio of a grid with four times the elements.
 const LEAST_NEXT: f64 = 2.0;
 
 /// Elements of a sample beyond which an unresolved contact is accepted. Up to there samples go on, however long they take.
