@@ -37,9 +37,8 @@ use crate::scene::{Friction, Load, Motion, Prescribed};
 const PART: f64 = 0.3;
 /// Elements across at which the outline's error equals the rest.
 const CHORD: f64 = 13.0;
-/// Factors in steady rolling: on the difference to the coarser grid, on the error of a shift, on the difference in the other direction.
+/// Factors in steady rolling: on the difference to the coarser grid and on the error of a shift, on the difference in the other direction.
 const ROLLING: f64 = 3.0;
-const ROLLING_SHIFT: f64 = 3.0;
 const ACROSS: f64 = 0.25;
 /// Factor for shifts of unlike bodies, measured up to 3.4 times the estimate: pressures displace sideways, so force and creepage do not
 /// vanish together.
@@ -100,7 +99,7 @@ pub fn estimate(solved: &Solved<'_>, found: &Report) -> Vector {
         Motion::Shift if coated => COATED,
         Motion::Shift if alike => 1.0,
         Motion::Shift => UNLIKE,
-        _ => ROLLING_SHIFT,
+        _ => ROLLING,
     };
     let ends = solved.ends(&parts, stuck);
     let more = solved.by_the_normal_force(&parts, found.carried) * (1.0 - stuck) + solved.jumps();
