@@ -1,6 +1,6 @@
 """Makes the constants of a copy of the source adjustable: `instrument.py COPY`, of a clone that is thrown away afterwards.
 
-Each `const NAME: f64 = ...;` (or u32, u64) of the solvers becomes a function that reads the environment once: CN_CONSTANT="solver/stages.rs:METHOD_SHARE=0.8" sets
+Each `const NAME: f64 = ...;` (or u32, u64) of the solvers becomes a function that reads the environment once: CN_CONSTANT="solver/stages.rs:LEAST_SHARE=30" sets
 one, and CN_CONSTANTS_READ names a file in which each constant that is used has a line. Constants in array lengths, patterns and traits stay.
 """
 

@@ -7,7 +7,7 @@
 //! The sum falls as dc grows, and its slope is known: Newton's method finds dc within a [`Corral`]. The predicted tractions then carry the
 //! forces. As long as these are less than mu N, not all elements slip one way, and the border of the linear systems is not singular.
 
-use super::corral::Corral;
+use super::corral::{Corral, PROGRESS};
 use super::forces::{sum_of_bounds, Forces};
 use super::plane::{add, onto_disc, plus, square, Vector};
 use super::problem::{Problem, State};
@@ -18,8 +18,6 @@ use crate::methods::fields;
 const FORCES_MET: f64 = 1e-13;
 /// Most trials: halvings from the largest creepage to round-off.
 const MOST_TRIALS: usize = 200;
-/// A trial with more than this part of the last missing force is followed by the centre of the corral.
-const PROGRESS: f64 = 0.5;
 
 /// The sum of the natural map's tractions, and its derivative by `-rho dc`: xx, xy, yy.
 fn response(problem: &Problem, state: &State, rho: f64, dc: Vector) -> (Vector, [Vector; 2]) {

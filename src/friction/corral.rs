@@ -5,6 +5,10 @@
 
 use super::plane::{dot, plus, Vector};
 
+/// A trial is good if its missing force is at most this part of the last or least one: halving, which the centre of the corral nearly does. The centre
+/// follows trials that are not good.
+pub const PROGRESS: f64 = 0.5;
+
 /// The polygon; with one unknown creepage a rectangle, whose cuts are parallel.
 pub struct Corral {
     corners: Vec<Vector>,

@@ -38,9 +38,8 @@ use crate::scene::{Friction, Load, Motion, Prescribed};
 const SHIFT_ERROR: f64 = 0.3;
 /// Elements across at which the outline's error equals the rest.
 const OUTLINE_CHORD: f64 = 13.0;
-/// Factors in steady rolling: on the difference to the coarser grid, on the error of a shift, on the difference in the other direction.
+/// Factors in steady rolling: on the difference to the coarser grid and on the error of a shift, on the difference in the other direction.
 const ROLLING_FACTOR: f64 = 3.0;
-const SHIFT_FACTOR: f64 = 3.0;
 const ACROSS_FACTOR: f64 = 0.25;
 /// Factor for shifts of unlike bodies, measured up to 3.4 times the estimate: pressures displace sideways, so force and creepage do not
 /// vanish together.
@@ -101,7 +100,7 @@ pub fn estimate(solved: &Solved<'_>, found: &Report) -> Vector {
         Motion::Shift if coated => COATED_FACTOR,
         Motion::Shift if alike => 1.0,
         Motion::Shift => UNLIKE_FACTOR,
-        _ => SHIFT_FACTOR,
+        _ => ROLLING_FACTOR,
     };
     let ends = solved.ends(&parts, stuck);
     let more = solved.by_the_normal_force(&parts, found.carried) * (1.0 - stuck) + solved.jumps();

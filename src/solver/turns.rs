@@ -131,7 +131,7 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
             let (distance, change) = turns.distance(&solver.state);
             // Without a change the normal problem stays solved.
             let Some(change) = change.or((solved == 0 && !is_met).then_some(0.0)) else { return Ok(so_far) };
-            extrapolation.turn(&solver.state.h, distance, change)?;
+            extrapolation.turn(&solver.state.h, distance)?;
             let holds = solver.holds_with((distance, change), (self.scene, options), self.monitor);
             if holds || so_far != Outcome::Converged {
                 return Ok(so_far);

@@ -20,8 +20,8 @@ fn given(n: usize) -> Given {
     let value = |i: usize, k: usize| ((i * i + 3 * i * k) as f64).sin() / (1 + k) as f64;
     let contact: Vec<bool> = (0..n).map(|i| i % 31 < 6 || i % 17 == 3 || i + 1 == n).collect();
     Given {
-        segments: (0..n.div_ceil(EIGHT))
-            .filter(|k| contact[EIGHT * k..].iter().take(EIGHT).any(|c| *c))
+        segments: (0..n.div_ceil(LANES))
+            .filter(|k| contact[LANES * k..].iter().take(LANES).any(|c| *c))
             .map(|k| k as u32)
             .collect(),
         contact,

@@ -23,7 +23,7 @@ fn segments_are_the_vectors_with_an_element_in_contact() {
         for contact in contact_areas(n) {
             let mut found = Vec::new();
             let count = find_segments(&contact, &mut found);
-            let vectors = contact.chunks(EIGHT).enumerate().filter(|(_, vector)| vector.contains(&true));
+            let vectors = contact.chunks(LANES).enumerate().filter(|(_, vector)| vector.contains(&true));
             assert_eq!(found, vectors.map(|(k, _)| k as u32).collect::<Vec<_>>(), "{contact:?}");
             assert_eq!(count, contact.iter().filter(|inside| **inside).count(), "{contact:?}");
         }

@@ -38,15 +38,9 @@ const INNER_LAGGED: f64 = 0.35;
 /// rho of the natural map in Newton steps, over the inverse of an element's influence on itself: more than the largest slope of a bound, so
 /// that each element has one state. 4 takes 15 to 24 products, 2 takes 15 to 36 (192 x 176 elements to 1e-6).
 const RHO: f64 = 4.0;
-/// At residuals above [`NEWTON_RESIDUAL`], rho a0 is at least RHO_PER_SLOPE times the largest downward slope of a
-/// bound, and at most RHO.
-const RHO_PER_SLOPE: f64 = 2.0;
 /// Steps without a residual below GAIN times the least, after which the iteration ends.
 const PATIENCE: u32 = 15;
 const GAIN: f64 = 0.9;
-/// Factor on the tolerance after a converged iteration whose certificate fails, and the most certificates.
-const TIGHTER: f64 = 0.1;
-const CERTIFICATES: u32 = 3;
 
 /// The progress of the steps.
 struct Course {
@@ -79,29 +73,18 @@ pub fn solve(
     } else {
         tangent.side.fill(Side::Stick);
     }
-    let Goal { tolerance, limit, certified, watch } = goal;
-    let made = problem.operators.products;
-    let (mut aim, mut ended) = (tolerance, Ended { outcome: Outcome::Stagnated, residual: f64::NAN });
-    for _ in 0..CERTIFICATES {
-        let limit = limit.saturating_sub(problem.operators.products - made);
-        let goal = Goal { tolerance: aim, limit, certified, watch: &mut *watch };
-        let outcome = iterate(problem, state, (tangent, fields), (march, &mut best, forces), goal)?;
-        if outcome != Outcome::Converged && best.take_up(problem, state) {
-            problem.refresh_unclipped(state);
-            lag(problem, state, tangent, march);
-            tangent.predict(problem, state, 1.0 / compliance(problem));
-            settle(problem, state, tangent, march);
-        }
-        let residual = freeze(problem, state, tangent, march);
-        let is_off = outcome == Outcome::Converged && !(residual < tolerance);
-        ended = Ended { outcome: if is_off { Outcome::Stagnated } else { outcome }, residual };
-        if !is_off {
-            break;
-        }
-        aim *= TIGHTER;
+    let tolerance = goal.tolerance;
+    let outcome = iterate(problem, state, (tangent, fields), (march, &mut best, forces), goal)?;
+    if outcome != Outcome::Converged && best.take_up(problem, state) {
+        problem.refresh_unclipped(state);
+        lag(problem, state, tangent, march);
+        tangent.predict(problem, state, 1.0 / compliance(problem));
+        settle(problem, state, tangent, march);
     }
     best.give(fields);
-    Ok(ended)
+    let residual = freeze(problem, state, tangent, march);
+    let is_off = outcome == Outcome::Converged && !(residual < tolerance);
+    Ok(Ended { outcome: if is_off { Outcome::Stagnated } else { outcome }, residual })
 }
 
 fn iterate(
@@ -145,7 +128,7 @@ fn iterate(
         let inner = enough(inner, tolerance, worst);
         let most = DIRECTIONS.min(left as usize);
         if is_newton {
-            let rho = rho_of_newton(problem, march, worst, rho);
+            let rho = if march.law.fall.is_none() { rho } else { RHO / problem.operators.self_influence };
             resolve(problem, state, tangent, march, rho);
             system::step(problem, state, (tangent, march, forces), (rho, inner, most), fields)?;
         } else {
@@ -161,17 +144,6 @@ fn iterate(
 /// Whether the creepages diverge because no creepage carries the force.
 fn is_far(problem: &Problem) -> bool {
     !(problem.rms_rigid() / problem.displaced_by_bounds() < LARGEST_RATIO)
-}
-
-/// rho of a Newton step, from that of a step with fixed bounds.
-fn rho_of_newton(problem: &Problem, march: &March, worst: f64, rho: f64) -> f64 {
-    let near = RHO / problem.operators.self_influence;
-    match march.law.fall {
-        None => rho,
-        Some(_) if worst < NEWTON_RESIDUAL => near,
-        // Far from a solution, slips times the rho of `near` would reverse tractions.
-        Some(_) => rho.max(RHO_PER_SLOPE * march.falls / problem.operators.self_influence).min(near),
-    }
 }
 
 impl Course {
