@@ -17,8 +17,6 @@ use crate::error::Result;
 use crate::memory::reserve;
 use crate::sums::in_blocks;
 
-/// Ratio of successive changes above which turns are slow.
-const SLOW_RATIO: f64 = 0.5;
 /// Number of kept changes from turn to turn. Unlike bodies at .9997 of mu N and a tolerance of 1e-9, 16 x 16 elements, take more than 50 turns with
 /// none, or with one as in Irons and Tuck, and 15 with five.
 const KEPT_CHANGES: usize = 5;
@@ -33,29 +31,17 @@ struct Pair {
     y: Vec<f64>,
 }
 
-/// The turns so far. Turns before the first slow one are not kept.
-#[derive(Debug)]
+/// The turns so far.
+#[derive(Debug, Default)]
 pub struct Extrapolation {
     last: Pair,
     /// The changes, oldest first.
     changes: Vec<Pair>,
-    /// The change of the last turn.
-    change: f64,
 }
 
 impl Extrapolation {
-    /// The state before the first turn.
-    pub fn new() -> Extrapolation {
-        Extrapolation { last: Pair::default(), changes: Vec::new(), change: f64::INFINITY }
-    }
-
-    /// Takes a turn from x to y that changed the distance by `change`.
-    pub fn turn(&mut self, x: &[f64], y: &[f64], change: f64) -> Result<()> {
-        let is_slow = change > SLOW_RATIO * self.change;
-        self.change = change;
-        if !is_slow && self.last.r.is_empty() {
-            return Ok(());
-        }
+    /// Takes a turn from x to y.
+    pub fn turn(&mut self, x: &[f64], y: &[f64]) -> Result<()> {
         let mut pair = if self.changes.len() < KEPT_CHANGES { Pair::default() } else { self.changes.remove(0) };
         // Elements without a surface do not change.
         let values = || x.iter().zip(y).map(|(x, y)| if x.is_finite() { [y - x, *y] } else { [0.0; 2] });

@@ -124,14 +124,14 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
     /// distances of the state.
     pub(super) fn turn_about(&mut self, options: &Options, (mut stop, is_met): (Outcome, bool)) -> Result<Outcome> {
         let again = Options { initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*options };
-        let mut extrapolation = Extrapolation::new();
+        let mut extrapolation = Extrapolation::default();
         for solved in 0..=MOST_TURNS {
             let InTurns { solver, turns, .. } = self;
             let so_far = turns.solve(true, stop, &solver.state, self.monitor)?;
             let (distance, change) = turns.distance(&solver.state);
             // Without a change the normal problem stays solved.
             let Some(change) = change.or((solved == 0 && !is_met).then_some(0.0)) else { return Ok(so_far) };
-            extrapolation.turn(&solver.state.h, distance, change)?;
+            extrapolation.turn(&solver.state.h, distance)?;
             let holds = solver.holds_with((distance, change), (self.scene, options), self.monitor);
             if holds || so_far != Outcome::Converged {
                 return Ok(so_far);
