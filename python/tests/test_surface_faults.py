@@ -23,7 +23,7 @@ def turned(n, dx, feed=0.1, nose=0.8):
 
 
 def spikes(z, period=None):
-    return np.argwhere(surface.faults(surface.heights(z, 1.0, 1.0, period=period)).spikes).tolist()
+    return np.argwhere(surface.faults(surface.heights(z, 1e3, 1e3, period=period)).spikes).tolist()
 
 
 class Lays(unittest.TestCase):
@@ -47,7 +47,7 @@ class Lays(unittest.TestCase):
         z = rough((128, 128))
         z[5, 5] += 50.0
         z[9:12, 9:12] += 50.0
-        measured, counts = surface.heights(z, 1.0, 1.0), []
+        measured, counts = surface.heights(z, 1e3, 1e3), []
         for _ in range(4):
             found = surface.faults(measured)
             counts.append(int(found.spikes.sum()))

@@ -138,7 +138,8 @@ def faults(heights: Heights, spike: float = 10.0) -> Faults:
         limit = spike * _noise(z, heights.period, away[known])
         spikes[known] = away[known] > limit
         # At a border, beside a hole or another spike, on a crest a slope moves the median: it is no spike. Nor are neighbours of one, which it misleads.
-        for asked in (lambda: z, lambda: np.where(spikes, np.nan, z)):
+        for is_again in (False, True):
             at = np.nonzero(spikes)
-            spikes[at] = ~(np.abs(z[at] - said_by_neighbours(asked(), heights.period, at, z[at])) <= limit)
+            said = said_by_neighbours(np.where(spikes & is_again, np.nan, z), heights.period, at, z[at])
+            spikes[at] = ~(np.abs(z[at] - said) <= limit)
     return Faults(heights, heights.holes, fills, tuple(values), spikes)
