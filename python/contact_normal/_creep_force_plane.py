@@ -104,6 +104,9 @@ def prepared(surface: Mapping[str, Any], tolerance: float) -> dict[str, dict[str
     fine = {**surface, "h": h, "coefficient": mu}
     coarse = {**fine, "h": halved(h), "dx": by_x * dx, "dy": by_y * dy, "spin_centre": centre,
               "coefficient": halved(mu) if mu.ndim else mu}
+    if by_y > by_x:
+        # The step of rolling is dx by default, which a column keeps.
+        coarse["rolling_distance"] = by_y * dx
     return {"fine": _pressed(fine, tolerance), "coarse": _pressed(coarse, tolerance)}
 
 
@@ -114,7 +117,7 @@ def _pressed(surface: Mapping[str, Any], tolerance: float) -> dict[str, Any]:
     result = solve(surface["h"], **given, **load, tolerance=min(tolerance, 1e-6))
     if result.status != OK:
         raise ValueError(f"the normal problem of the surface is not solved: {result.message}")
-    friction = {name: surface[name] for name in ("coefficient", *_MAY) if name in surface}
+    friction = {name: surface[name] for name in ("coefficient", *_MAY, "rolling_distance") if name in surface}
     return {"h": None, "pressure": result.pressure, **given, "friction": {**friction, "motion": _MOTION}}
 
 
