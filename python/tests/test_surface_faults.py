@@ -47,7 +47,7 @@ class Lays(unittest.TestCase):
             for period in (None, "x", "y", "xy"):
                 self.assertEqual(spikes(np.tile(profile, (64, 1)), period), [], (seed, period))
 
-    def test_dust_is_found_as_before(self):
+    def test_dust_is_found_ring_by_ring(self):
         z = rough((128, 128))
         z[5, 5] += 50.0
         z[9:12, 9:12] += 50.0
@@ -56,7 +56,13 @@ class Lays(unittest.TestCase):
             found = surface.faults(measured)
             counts.append(int(found.spikes.sum()))
             measured = found.removed
-        self.assertEqual(counts, [5, 4, 0, 0], "the spike and four corners, then four edges")
+        self.assertEqual(counts, [5, 4, 1, 0], "the spike and four corners, four edges, the middle")
+        # An element of the surface that is alone is none.
+        z = rough((64, 64))
+        for iy, ix in ((20, 30), (0, 0), (63, 12)):
+            around = np.maximum(*np.abs(np.mgrid[-iy : 64 - iy, -ix : 64 - ix])) == 1
+            z[around] = np.nan
+        self.assertEqual(spikes(z), [])
 
 
 class Lines(unittest.TestCase):

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 _OFTEN = 2
 # Of fewer distinct values none can be told from a step of the surface.
 _DISTINCT = 8
+# Curvatures between elements twice as far apart are so many times as large.
+_FAR = 4.0
 # Standard deviations of a normal distribution in a median of absolute values.
 _DEVIATIONS = 1.0 / 0.6744897501960817
 
@@ -142,4 +144,7 @@ def faults(heights: Heights, spike: float = 10.0) -> Faults:
             at = np.nonzero(spikes)
             said = said_by_neighbours(np.where(spikes & is_again, np.nan, z), heights.period, at, z[at])
             spikes[at] = ~(np.abs(z[at] - said) <= limit)
+        # Alone among holes, as the middle of dust whose rim was removed: those two elements away say the height, less closely.
+        at = np.nonzero(np.isfinite(z) & ~known)
+        spikes[at] = np.abs(z[at] - said_by_neighbours(z, heights.period, at, z[at], reach=2)) > _FAR * limit
     return Faults(heights, heights.holes, fills, tuple(values), spikes)

@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 _PAIRS = 3
 
 
-def _padded(z: Doubles, period: str | None) -> Doubles:
-    """With one more element on each side: NaN, or with a period those of the other side. An element alone in its direction is no neighbour of itself."""
-    padded = np.pad(z, 1, constant_values=np.nan)
-    if period in ("x", "xy") and z.shape[1] > 1:
-        padded[1:-1, 0], padded[1:-1, -1] = z[:, -1], z[:, 0]
-    if period in ("y", "xy") and z.shape[0] > 1:
-        padded[0], padded[-1] = padded[-2], padded[1]
+def _padded(z: Doubles, period: str | None, width: int = 1) -> Doubles:
+    """With more elements on each side: NaN, or with a period those of the other side. An element alone in its direction is no neighbour of itself."""
+    padded, inner = np.pad(z, width, constant_values=np.nan), slice(width, -width)
+    if period in ("x", "xy") and z.shape[1] > width:
+        padded[inner, :width], padded[inner, -width:] = z[:, -width:], z[:, :width]
+    if period in ("y", "xy") and z.shape[0] > width:
+        padded[:width], padded[-width:] = padded[-2 * width : -width], padded[width : 2 * width]
     return padded
 
 
@@ -33,11 +33,11 @@ def _nearest(said: Doubles, height: Doubles) -> Doubles:
     return np.asarray(np.take_along_axis(said, off.argmin(axis=0)[None], axis=0)[0])
 
 
-def _said_around(z: Doubles, period: str | None, at: Any) -> Doubles:
+def _said_around(z: Doubles, period: str | None, at: Any, reach: int) -> Doubles:
     """What pairs of opposite neighbours say of some elements, and planes through three neighbours where most pairs lack. NaN where an element lacks."""
-    padded = _padded(z, period)
+    padded = _padded(z, period, reach)
     rows, columns = at
-    around = np.stack([padded[rows + j, columns + i] for j in range(3) for i in range(3) if (j, i) != (1, 1)])
+    around = np.stack([padded[rows + reach * j, columns + reach * i] for j in range(3) for i in range(3) if (j, i) != (1, 1)])
     means = 0.5 * (around[:4] + around[:3:-1])
     # Two neighbours on the axes and the one between them, by their places among the eight.
     planes = np.stack([around[one] + around[other] - around[between] for one, other, between in ((1, 3, 0), (1, 4, 2), (6, 3, 5), (6, 4, 7))])
@@ -69,11 +69,11 @@ def _said_along(z: Doubles, is_period: bool, at: npt.NDArray[np.intp]) -> Double
     return np.stack([between, *np.where(np.isnan(between), ends, np.nan)])
 
 
-def said_by_neighbours(z: Doubles, period: str | None, at: Any, height: Doubles) -> Doubles:
+def said_by_neighbours(z: Doubles, period: str | None, at: Any, height: Doubles, reach: int = 1) -> Doubles:
     """Of what the neighbours of some elements say of their heights without the slope, the nearest to `height`: the pair along a crest or a step says the
-    height, no pair says that of a spike. NaN where no neighbours are."""
+    height, no pair says that of a spike. On a map neighbours are so many elements away. NaN where no neighbours are."""
     if 1 not in z.shape:
-        return _nearest(_said_around(z, period, at), height)
+        return _nearest(_said_around(z, period, at, reach), height)
     along = 1 if z.shape[0] == 1 else 0
     return _nearest(_said_along(z.ravel(), period is not None and "yx"[along] in period, at[along]), height)
 
