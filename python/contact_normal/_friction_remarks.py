@@ -64,5 +64,6 @@ class Remarks:
         if largest > _LARGE and not effect.law:
             found.append(f"a creepage of {largest:g} is this part of the rolling speed: 0.1 % is 1e-3")
         if by_spin > _LARGE:
-            found.append(f"a spin of {spin:g} makes a creepage of {by_spin:.2g} at the ends of the grid: it is in rad per length, and 0.16 per m is 1.6e-4 per mm")
+            found.append(f"a spin of {spin:g} makes a creepage of {by_spin:.2g} at the ends of the grid: it is in rad per length, "
+                         "and 0.16 per m is 1.6e-4 per mm")
         return "\n".join(found)

@@ -63,6 +63,16 @@ def _several(name: str, radii: Any) -> tuple[float, ...]:
     return found
 
 
+def _drops(drop: Any) -> list[Any]:
+    """The drops of the bodies that have one."""
+    drops = list(drop) if isinstance(drop, (list, tuple)) else [drop]
+    if not all(callable(one) for one in drops):
+        raise TypeError("drop has a number; it must be a function of places y, as rollers.crown(...) returns, or one for each body")
+    if len(drops) > 2:
+        raise ValueError(f"drop has {len(drops)} functions; two bodies have two at most")
+    return drops
+
+
 def _dropped(drop: Drop, y: Doubles) -> Doubles:
     """The drop at places y, checked: it may be a function of the caller."""
     found = np.asarray(drop(y), dtype=np.float64)
@@ -232,11 +242,7 @@ def gap(
         # Straight rollers have no curvature along their axes.
         if curvature < 0.0 or (curvature == 0.0 and name == "radii"):
             raise ValueError(f"{name} are {several}: their curvatures add up to {curvature}; the sum must be positive")
-    drops: list[Any] = list(drop) if isinstance(drop, (list, tuple)) else [drop]
-    if not all(callable(one) for one in drops):
-        raise TypeError("drop has a number; it must be a function of places y, as rollers.crown(...) returns, or one for each body")
-    if len(drops) > 2:
-        raise ValueError(f"drop has {len(drops)} functions; two bodies have two at most")
+    drops = _drops(drop)
     if drops and len(crown_radii):
         raise TypeError("give either drop or crown_radii")
     across = sum((circle(x, radius) for radius in radii), np.zeros(mx))

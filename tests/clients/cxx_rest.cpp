@@ -107,7 +107,8 @@ static void batches()
                warned.results[0].message == solver.solve(scenes[0], how).message && warned.results[1].message == solver.solve(scenes[1], how).message,
            "and each problem as it does alone");
     const std::array<double, 3> entry = {1e-4, 0.0, 0.0};
-    const cn::friction falling = cn::friction(0.3).motion(CONTACT_NORMAL_MOTION_STEADY_ROLLING).law(CONTACT_NORMAL_FRICTION_LAW_LINEAR, 0.1, 0.2, 1e-6, 1.0).memory(1e-9, 1e-9);
+    cn::friction falling(0.3);
+    falling.motion(CONTACT_NORMAL_MOTION_STEADY_ROLLING).law(CONTACT_NORMAL_FRICTION_LAW_LINEAR, 0.1, 0.2, 1e-6, 1.0).memory(1e-9, 1e-9);
     const cn::friction_table table = cn::friction_batch(cn::scene(scenes[2]).friction(falling), cn::view<std::array<double, 3>>(&entry, 1));
     expect(table.status == CONTACT_NORMAL_OK && table.report.warnings == CONTACT_NORMAL_WARNING_LAW && table.message.find("friction falls so steeply") == 0,
            "a table of friction that is OK warns");

@@ -204,9 +204,10 @@ class ContactPoint:
         friction : dict, optional
             As that of `contact_normal.solve`. Its spin is about the contact point.
         **scene
-            Elastic constants, effects and options of `contact_normal.solve`. `max_seconds` is the limit of all grids and solves together, but that the
-            first grid is made to its end; the solve of friction is the last one. No other one follows a solve that is cancelled, or ended by this limit: it is the result. Where no time is left for the next
-            solve, the one before is the result; its `status` is `ITERATION_LIMIT` then, and `message` tells what is missing.
+            Elastic constants, effects and options of `contact_normal.solve`. `max_seconds` is the limit of all grids and solves together, but
+            that the first grid is made to its end; the solve of friction is the last one. No other one follows a solve that is cancelled, or
+            ended by this limit: it is the result. Where no time is left for the next solve, the one before is the result; its `status` is
+            `ITERATION_LIMIT` then, and `message` tells what is missing.
         """
         may_shrink, limit = True, TimeLimit(scene)
         gap = self.gap(dx, dy, depth)

@@ -210,7 +210,8 @@ def _balanced(gap: Gap, tilt: Doubles, result: Result, centre: Doubles) -> Balan
 
 
 def _search(gap: Gap, aim: Doubles, tolerance: float, solved: Callable[[Doubles], tuple[Result, Doubles]], tilt: Doubles) -> tuple[Balanced, bool]:
-    """The tilt whose pressures have their centre at `aim`, from a first one; and whether it was found. `solved` returns the result of a tilt, and how far its centre is off."""
+    """The tilt whose pressures have their centre at `aim`, from a first one; and whether it was found. `solved` returns the result of a tilt, and how far
+    its centre is off."""
     sizes = np.array([gap.h.shape[1] * gap.dx, gap.h.shape[0] * gap.dy])
     result, off = solved(tilt)
     begun = _tilted(gap, tilt).h

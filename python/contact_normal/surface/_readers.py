@@ -193,7 +193,8 @@ def _of_lattice(path: str | os.PathLike[str], lattice: Lattice, said: tuple[str 
     if is_y_first:
         lattice = Lattice(np.ascontiguousarray(lattice.z.T), lattice.y, lattice.x)
     if given.get("axes", "yx") != "yx":
-        raise ValueError(f"{path} has x, y and z of points, and no indices: leave out axes; where the first column is y, exchange the columns, or name them in a header, # y x z")
+        raise ValueError(f"{path} has x, y and z of points, and no indices: leave out axes; where the first column is y, exchange the columns, "
+                         "or name them in a header, # y x z")
     return heights(lattice.z, x=lattice.x, y=lattice.y, **_with_unit(unit, given))
 
 
