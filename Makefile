@@ -101,13 +101,13 @@ test: tools
 
 # N random scenes over all effects, methods, guesses and handles, each certified by an oracle of the campaign's own; prints what
 # was run, what was excused, and every failure. SURFACES=measured: scenes of what people bring, measured maps with their faults, line
-# scans, strips, punches. SURFACES=adhesion: bodies that attract each other. One case again: cargo run --release -p campaign -- --seed S,
-# or -- --measured --seed S; of adhesion the one of seed S: -- --adhesion 1 S
+# scans, strips, punches. SURFACES=adhesion: bodies that attract each other; friction, laws, relaxing: friction alone, its laws, bodies that
+# relax. One case again: cargo run --release -p campaign -- --seed S, or -- --measured --seed S; of the others -- --adhesion 1 S
 N ?= 20000
 FIRST ?= 0
 SURFACES ?= ordinary
 campaign:
-	$(CARGO) run --release --locked -p campaign -- $(if $(filter measured adhesion,$(SURFACES)),--$(SURFACES)) $(N) $(FIRST)
+	$(CARGO) run --release --locked -p campaign -- $(if $(filter-out ordinary,$(SURFACES)),--$(SURFACES)) $(N) $(FIRST)
 
 # 10^5 solves of a rolling sequence: no drift, no growth, the same bits when repeated. Some minutes.
 SOAK ?= 100000

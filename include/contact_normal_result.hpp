@@ -7,6 +7,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -187,6 +190,41 @@ private:
         return wanted ? values.data() : nullptr;
     }
 };
+
+/// Gives each problem its lines of the message of a batch.
+inline void share_message(const std::string &message, std::vector<result> &results)
+{
+    const std::string head = "problem ";
+    result *of = nullptr;
+    for (std::size_t at = 0; at < message.size();) {
+        const std::size_t end = std::min(message.find('\n', at), message.size());
+        std::string line = message.substr(at, end - at);
+        if (line.compare(0, head.size(), head) == 0) {
+            const std::size_t k = std::strtoul(line.c_str() + head.size(), nullptr, 10), told = line.find(": ");
+            of = k < results.size() ? &results[k] : nullptr;
+            line.erase(0, told == std::string::npos ? 0 : told + 2);
+        }
+        if (of) of->message += (of->message.empty() ? "" : "\n") + line;
+        at = end + 1;
+    }
+}
+
+/// Gives each problem of a batch that is OK what it warns of: the message has the warnings of all problems, in the order of their bits.
+inline void share_warnings(const std::string &message, std::vector<result> &results)
+{
+    std::uint32_t all = 0;
+    for (const result &each : results) all |= static_cast<std::uint32_t>(each.report.warnings);
+    std::size_t at = 0;
+    for (std::uint32_t bit = 1; bit != 0 && bit <= all; bit <<= 1) {
+        if ((all & bit) == 0) continue;
+        const std::size_t end = (all >> 1) < bit ? message.size() : std::min(message.find("; ", at), message.size());
+        for (result &each : results) {
+            if ((static_cast<std::uint32_t>(each.report.warnings) & bit) == 0) continue;
+            each.message += (each.message.empty() ? "" : "; ") + message.substr(at, end - at);
+        }
+        at = std::min(end + 2, message.size());
+    }
+}
 
 } // namespace detail
 

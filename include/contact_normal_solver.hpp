@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdlib>
 #include <memory>
 #include <new>
 #include <string>
@@ -104,7 +103,7 @@ inline result pull_off(const scene &of, const options &how = {}, const progress 
 /// What a batch found: a result of each problem.
 struct batch {
     contact_normal_status status = CONTACT_NORMAL_OK; // of all; see `contact_normal_solver_solve_batch`
-    std::string message;                              // a line "problem 3: ..." for each problem that is not OK, counted from 0
+    std::string message; // a line "problem 3: ..." for each problem that is not OK, counted from 0; if all are, what they warn of
     std::vector<result> results;
 
     /// True if all problems are solved to the tolerance.
@@ -226,28 +225,6 @@ private:
     std::unique_ptr<contact_normal_solver, free> handle_;
 };
 
-namespace detail {
-
-/// Gives each problem its lines of the message of a batch.
-inline void share_message(const std::string &message, std::vector<result> &results)
-{
-    const std::string head = "problem ";
-    result *of = nullptr;
-    for (std::size_t at = 0; at < message.size();) {
-        const std::size_t end = std::min(message.find('\n', at), message.size());
-        std::string line = message.substr(at, end - at);
-        if (line.compare(0, head.size(), head) == 0) {
-            const std::size_t k = std::strtoul(line.c_str() + head.size(), nullptr, 10), told = line.find(": ");
-            of = k < results.size() ? &results[k] : nullptr;
-            line.erase(0, told == std::string::npos ? 0 : told + 2);
-        }
-        if (of) of->message += (of->message.empty() ? "" : "\n") + line;
-        at = end + 1;
-    }
-}
-
-} // namespace detail
-
 // Solves a batch; throws `error` if the call itself is refused.
 inline void solver::solve_all(const std::vector<scene> &scenes, batch &found, const options &how)
 {
@@ -267,13 +244,15 @@ inline void solver::solve_all(const std::vector<scene> &scenes, batch &found, co
     std::vector<contact_normal_status> statuses(count, detail::untouched);
     found.status = contact_normal_solver_solve_batch(handle_.get(), detail::narrow("problems", count), named.data(), &how, fields.data(),
                                                      reports.data(), statuses.data());
-    found.message = found.status == CONTACT_NORMAL_OK ? "" : contact_normal_last_error();
+    const bool warns = std::any_of(reports.begin(), reports.end(), [](const contact_normal_report &each) { return each.warnings != 0; });
+    found.message = found.status == CONTACT_NORMAL_OK && !warns ? "" : contact_normal_last_error();
     if (found.status < 0 && (count == 0 || statuses.front() == detail::untouched)) throw error(found.status, found.message);
     for (std::size_t i = 0; i < count; i++) {
         found.results[i].report = reports[i];
         to[i].end(found.results[i], statuses[i], "");
     }
-    detail::share_message(found.message, found.results);
+    const auto share = found.status == CONTACT_NORMAL_OK ? detail::share_warnings : detail::share_message;
+    share(found.message, found.results);
 }
 
 inline contact_normal_status solver::solve_batch_into(const std::vector<scene> &scenes, batch &found, const options &how)

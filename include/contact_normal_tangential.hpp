@@ -24,7 +24,7 @@ inline result solve_tangential(const scene &of, view<double> pressure, const opt
 /// What a table of tangential forces found: of each entry its numbers.
 struct friction_table {
     contact_normal_status status = CONTACT_NORMAL_OK;
-    std::string message; // a line for each entry that is not OK
+    std::string message; // a line for each entry that is not OK; if all are, what report.warnings mean
     std::vector<contact_normal_status> statuses;
     std::vector<std::array<double, 2>> force, creepage;
     std::vector<double> moment, residual, gap, products;
@@ -83,7 +83,7 @@ inline friction_table table_of(contact_normal_solver *handle, const scene &of, v
     const contact_normal_scene scene = of.get();
     const double *const first = n == 0 ? nullptr : entries.data()->data();
     found.status = contact_normal_solve_tangential(handle, &scene, p, options.get(), n, first, &results, &found.report);
-    found.message = found.status == CONTACT_NORMAL_OK ? "" : contact_normal_last_error();
+    found.message = found.status == CONTACT_NORMAL_OK && found.report.warnings == 0 ? "" : contact_normal_last_error();
     options.rethrow();
     const bool is_refused = n == 0 || found.statuses.front() == untouched;
     if (found.status < 0 && is_refused) throw error(found.status, found.message);

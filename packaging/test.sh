@@ -54,7 +54,7 @@ by_cmake() {
     } || { cat cmake.log >&2; return 1; }
     "cmake/$1"
 }
-for program in shared_c static_c shared_cxx static_cxx fortran; do
+for program in shared_c static_c shared_cxx static_cxx fortran host; do
     consumer "CMake, $program" by_cmake $program
 done
 

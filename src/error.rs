@@ -55,6 +55,16 @@ impl std::fmt::Display for Number {
     }
 }
 
+/// A number that was computed, in a message: to six digits.
+pub(crate) struct Rounded(pub f64);
+
+impl std::fmt::Display for Rounded {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let rounded = format!("{:.5e}", self.0).parse().unwrap_or(self.0);
+        write!(f, "{}", Number(rounded))
+    }
+}
+
 /// Refuses a `value` for which `rule` does not hold (`holds` false), NaN and infinities as `NotFinite`.
 pub(crate) fn require(holds: bool, name: &str, value: f64, rule: &str) -> Result<()> {
     let message = || format!("{name} is {}; {rule}", Number(value));

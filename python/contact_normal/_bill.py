@@ -11,6 +11,7 @@ from ._arguments import flag, relative
 from ._calls import called
 from ._given import SceneArguments, scene_and_options
 from ._library import check, initialised, library
+from ._numbered import name_of
 from ._quantities import LACKS, QUANTITIES, estimated, numbers
 from ._structs import EffectsRow
 
@@ -70,10 +71,10 @@ class BillRow(NamedTuple):
     @classmethod
     def of(cls, row: EffectsRow) -> BillRow:
         """The row of the library."""
-        omitted = tuple(OMISSIONS[number] for number in (row.omitted, row.also_omitted) if number)
+        omitted = tuple(name_of(OMISSIONS, number) for number in (row.omitted, row.also_omitted) if number)
         return cls(
-            omitted, _QUANTITY[row.quantity], VERDICTS[row.verdict], row.value, row.change, row.change_error, row.seconds,
-            row.seconds_without, row.bytes, row.bytes_without, LACKS[row.lack],
+            omitted, name_of(_QUANTITY, row.quantity), name_of(VERDICTS, row.verdict), row.value, row.change, row.change_error, row.seconds,
+            row.seconds_without, row.bytes, row.bytes_without, name_of(LACKS, row.lack),
         )
 
     @property

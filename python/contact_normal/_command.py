@@ -68,6 +68,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return READER_GONE
     except (ContactNormalError, ValueError, TypeError) as error:
         return _failed(error, REFUSED)
+    except (MemoryError, OverflowError) as error:
+        return _failed(f"out of memory: {error}" if isinstance(error, MemoryError) and str(error) else error or "out of memory", REFUSED)
     except (OSError, ImportError) as error:
         return _failed(error, NO_FILE)
     except KeyboardInterrupt:

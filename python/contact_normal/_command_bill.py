@@ -36,7 +36,7 @@ def run(given: argparse.Namespace) -> int:
         refuse_unless_writable(plot)
     surface = gap_of(given)
     bill = what_matters(surface.h, surface.dx, surface.dy, target=given.target, quantities=given.quantities, pairs=given.pairs,
-                        **effects_of(given), **scene_arguments(given))
+                        **effects_of(given, surface.period), **scene_arguments(given))
     print(bill)
     if not bill:
         return 0

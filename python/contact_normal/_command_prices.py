@@ -26,6 +26,6 @@ def run(given: argparse.Namespace) -> int:
     """Prints one line for each target."""
     surface = gap_of(given)
     rows = cost_of_accuracy(surface.h, surface.dx, surface.dy, targets=given.targets, quantity=given.quantity,
-                            **effects_of(given), **scene_arguments(given))
+                            **effects_of(given, surface.period), **scene_arguments(given))
     print(rows)
     return 0

@@ -48,7 +48,8 @@ def add_scene(command: argparse.ArgumentParser) -> None:
 def add_effects(command: argparse.ArgumentParser) -> None:
     """The options of effects."""
     effects = command.add_argument_group("effects")
-    effects.add_argument("--period", choices=("x", "y", "xy"), help="the grid is one period of a scene that repeats itself")
+    effects.add_argument("--period", choices=("x", "y", "xy", "none"),
+                         help="the grid is one period of a scene that repeats itself; by default what the file says, else none")
     effects.add_argument("--pressure-limit", type=float, metavar="P", help="no pressure is larger: hardness")
     effects.add_argument("--layer", type=float, metavar="C", help="compliance of a thin layer, a length per pressure")
     for body in (1, 2):
@@ -56,41 +57,46 @@ def add_effects(command: argparse.ArgumentParser) -> None:
                              help=f"a layer bonded to body {body}: thickness, shear modulus, Poisson ratio")
 
 
-def effects_of(given: argparse.Namespace) -> dict[str, Any]:
-    """Effects as the functions of the package take them."""
+def effects_of(given: argparse.Namespace, period: str | None) -> dict[str, Any]:
+    """Effects as the functions of the package take them, beside the period of a gap."""
     coating = tuple(tuple(layer) if layer else None for layer in (given.coating_1, given.coating_2))
-    return {"period": given.period, "pressure_limit": given.pressure_limit, "layer": given.layer, "coating": coating if any(coating) else None}
+    return {"period": period, "pressure_limit": given.pressure_limit, "layer": given.layer, "coating": coating if any(coating) else None}
 
 
 def gap_of(given: argparse.Namespace) -> Gap:
-    """The undeformed distance that the options name."""
+    """The undeformed distance that the options name, with the period that they or the file say."""
+    asked = None if given.period == "none" else given.period
     if given.gap and Gap.is_in(given.file):
         for name in ("dx", "dy", "axes", "top_first", "variable", "hole", "faults", "level"):
             if getattr(given, name) not in (None, False):
                 raise ValueError(f"{given.file} is a gap with the sizes of its elements, as Gap.write makes it: --{name.replace('_', '-')} does not go with it")
         found = Gap.read(given.file)
-        return dataclasses.replace(found, units=tuple(given.units) if given.units else None)
+        return dataclasses.replace(found, units=tuple(given.units) if given.units else None, period=asked)
     if not given.gap and Path(given.file).is_file() and Gap.is_in(given.file):
         raise ValueError(f"{given.file} holds a gap, and not heights: add --gap")
     heights = _heights_of(given)
+    period = asked or (heights.period if given.period is None else None)
+    if period != asked:
+        print(f"the surface repeats itself in {period}, as {given.file} says: --period none takes it as a piece alone", file=sys.stderr)
+    # A field that is one period of its surface is levelled first.
+    heights = dataclasses.replace(heights, period=None)
     if given.faults:
         found_faults = faults(heights)
         print(found_faults, file=sys.stderr)
         heights = found_faults.removed
     if given.level:
         heights = level(heights, given.level)
-    # A field that is one period of its surface is levelled first.
-    heights = dataclasses.replace(heights, period=getattr(given, "period", None))
+    heights = dataclasses.replace(heights, period=period)
     if heights.holes.all():
         raise ValueError(f"{given.file} has no element with a surface")
     if given.gap:
-        return Gap(np.where(heights.holes, np.inf, heights.z), heights.dx, heights.dy, units=heights.units)
+        return Gap(np.where(heights.holes, np.inf, heights.z), heights.dx, heights.dy, period=period, units=heights.units)
     return gap(heights)
 
 
 def _heights_of(given: argparse.Namespace) -> Heights:
-    """What the file holds, with what the options say of it, as a surface without a period."""
-    said: dict[str, Any] = {"period": None}
+    """What the file holds, with what the options say of it."""
+    said: dict[str, Any] = {}
     if given.hole is not None:
         said["fill"] = given.hole
     if given.dy is not None and given.dx is None:

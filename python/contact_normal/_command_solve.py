@@ -42,8 +42,8 @@ def run(given: argparse.Namespace) -> int:
     surface = gap_of(given)
     progress = sys.stderr.isatty() if given.progress is None else given.progress
     result = solve(surface.h, surface.dx, surface.dy, units=surface.units, progress=progress,
-                   **effects_of(given), **scene_arguments(given))
-    print("\n".join(f"{name:24}{text}" for name, text in [*told(result), *_hints(given, result)]))
+                   **effects_of(given, surface.period), **scene_arguments(given))
+    print("\n".join(f"{name:24}{text}" for name, text in [*told(result), *_hints(given, surface.period, result)]))
     for name in given.output:
         write_fields(name, result)
     if plot:
@@ -78,7 +78,7 @@ def told(result: Result) -> list[tuple[str, str]]:
     return [*lines, *[("message", text) for text in result.message.splitlines()]]
 
 
-def _hints(given: argparse.Namespace, result: Result) -> list[tuple[str, str]]:
+def _hints(given: argparse.Namespace, period: str | None, result: Result) -> list[tuple[str, str]]:
     """Options that may help where one element carries all, or where contact is at the border."""
     if given.gap:
         return []
@@ -86,5 +86,5 @@ def _hints(given: argparse.Namespace, result: Result) -> list[tuple[str, str]]:
     return [("hint", text) for text, helps in (
         ("--faults finds spikes and fill values, and makes them holes", few and not given.faults),
         ("--level plane removes a tilt", (few or "BORDER" in result.warnings) and not given.level),
-        ("--period xy for a piece of a larger surface", "BORDER" in result.warnings and not given.period),
+        ("--period xy for a piece of a larger surface", "BORDER" in result.warnings and not period),
     ) if helps]

@@ -69,11 +69,18 @@ def ellipse(elements: int, axis_ratio: float) -> tuple[Doubles, float, float]:
     return pressure / (pressure.sum() * dx * dy), dx, dy
 
 
+def _halves(h: Doubles) -> tuple[int, int]:
+    """By how much elements grow in y and x: a body of one row keeps its width."""
+    by_y, by_x = (2 if m > 1 else 1 for m in h.shape)
+    return by_y, by_x
+
+
 def halved(h: Doubles) -> Doubles:
-    """A surface on elements twice as large: the mean of those of its four that have a surface."""
-    padded = np.pad(h, [(0, m % 2) for m in h.shape], constant_values=np.inf)
+    """A surface on elements twice as large, in directions with several elements: the mean of those of its four that have a surface."""
+    by_y, by_x = _halves(h)
+    padded = np.pad(h, [(0, m % by) for m, by in zip(h.shape, (by_y, by_x))], constant_values=np.inf)
     my, mx = padded.shape
-    parts = padded.reshape(my // 2, 2, mx // 2, 2)
+    parts = padded.reshape(my // by_y, by_y, mx // by_x, by_x)
     finite = np.isfinite(parts)
     count = finite.sum(axis=(1, 3))
     sums = np.where(finite, parts, 0.0).sum(axis=(1, 3))
@@ -91,11 +98,15 @@ def prepared(surface: Mapping[str, Any], tolerance: float) -> dict[str, dict[str
     (my, mx), (x, y) = h.shape, surface.get("spin_centre", (0.0, 0.0))
     dx, dy = (number(f"surface['{name}']", surface[name]) for name in ("dx", "dy"))
     mu = real("surface['coefficient']", surface["coefficient"])
+    by_y, by_x = _halves(h)
     # Padding moves the middle of the grid.
-    centre = x - 0.5 * (mx % 2) * dx, y - 0.5 * (my % 2) * dy
+    centre = x - 0.5 * (mx % by_x) * dx, y - 0.5 * (my % by_y) * dy
     fine = {**surface, "h": h, "coefficient": mu}
-    coarse = {**fine, "h": halved(h), "dx": 2.0 * dx, "dy": 2.0 * dy, "spin_centre": centre,
+    coarse = {**fine, "h": halved(h), "dx": by_x * dx, "dy": by_y * dy, "spin_centre": centre,
               "coefficient": halved(mu) if mu.ndim else mu}
+    if by_y > by_x:
+        # The step of rolling is dx by default, which a column keeps.
+        coarse["rolling_distance"] = by_y * dx
     return {"fine": _pressed(fine, tolerance), "coarse": _pressed(coarse, tolerance)}
 
 
@@ -106,7 +117,7 @@ def _pressed(surface: Mapping[str, Any], tolerance: float) -> dict[str, Any]:
     result = solve(surface["h"], **given, **load, tolerance=min(tolerance, 1e-6))
     if result.status != OK:
         raise ValueError(f"the normal problem of the surface is not solved: {result.message}")
-    friction = {name: surface[name] for name in ("coefficient", *_MAY) if name in surface}
+    friction = {name: surface[name] for name in ("coefficient", *_MAY, "rolling_distance") if name in surface}
     return {"h": None, "pressure": result.pressure, **given, "friction": {**friction, "motion": _MOTION}}
 
 
@@ -146,7 +157,8 @@ def plane(plan: Plan, index: int) -> dict[str, Any]:
     grids = _grids(plan, int(ratio), int(nu))
     fine, coarse = (_solved(grid, entries.reshape(-1, 3), plan.tolerance) for grid in grids)
     force, radius = _scales(grids[0])
-    growth = grids[1]["dx"] / grids[0]["dx"] - 1.0
+    # One element alone is on both grids, and has no change.
+    growth = max(grids[1][d] / grids[0][d] for d in ("dx", "dy")) - 1.0 or 1.0
     changes = np.column_stack([fine.force - coarse.force, (fine.moment - coarse.moment) / radius])
     # Without friction there is no force that could be wrong.
     changes /= force * growth if force > 0.0 else 1.0

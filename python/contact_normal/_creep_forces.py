@@ -166,7 +166,7 @@ class CreepForceTable:
     def _between(self, name: str, values: Doubles, hold: bool) -> tuple[npt.NDArray[np.int64], Doubles]:
         """The entry of an axis before each value, and the part of the way to the next one."""
         axis = getattr(self, name)
-        if len(axis) == 1 and not self.of_surface and not hold and not np.allclose(values, axis[0], rtol=1e-12, atol=0.0):
+        if len(axis) == 1 and not hold and not np.allclose(values, axis[0], rtol=1e-12, atol=0.0):
             raise ValueError(f"{name} has values outside the table, which has {axis[0]} only")
         if len(axis) == 1:
             return np.zeros(values.shape, dtype=np.int64), np.zeros(values.shape)
@@ -189,7 +189,7 @@ class CreepForceTable:
         creepage, spin
             As they are: no units, and one over a length.
         semi_axes : (float, float)
-            In the direction of rolling, and across.
+            In the direction of rolling, and across; positive where there is a load.
         normal_force, coefficient, shear_modulus, poisson_ratio, hold
             Of the contact; bodies are alike. Without a load or friction all forces are 0.
 
@@ -199,12 +199,17 @@ class CreepForceTable:
         """
         if self.of_surface:
             raise TypeError("this is the table of a surface: use `forces`")
-        a, b = semi_axes
+        a, b = (real(f"semi_axes[{k}]", one) for k, one in enumerate(both("semi_axes", semi_axes)))
         load, mu = real("normal_force", normal_force), real("coefficient", coefficient)
         for name, value in (("normal_force", load), ("coefficient", mu)):
             if np.any(value < 0.0):
                 raise ValueError(f"{name} is {value}; it must not be negative")
-        c, bound = np.sqrt(a * b), np.asarray(mu * load)
+        bound = np.asarray(mu * load)
+        if np.any((bound > 0.0) & (_is_no_length(a) | _is_no_length(b))):
+            raise ValueError(f"semi_axes is {semi_axes}; they must be positive where there is a load")
+        # Where there is none, any lengths will do.
+        a, b = (np.where(_is_no_length(one), 1.0, one) for one in (a, b))
+        c = np.sqrt(a * b)
         if not bound.any():
             shape = np.broadcast_shapes(bound.shape, *(np.shape(one) for one in (*both("creepage", creepage), spin, a, b)))
             return np.zeros(shape), np.zeros(shape), np.zeros(shape)
@@ -212,10 +217,15 @@ class CreepForceTable:
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             unit = shear_modulus * c * c / np.where(bound > 0.0, bound, np.inf)
             empty = (bound == 0.0) | np.isinf(unit)
-            unit, ratio, bound = np.where(empty, 0.0, unit), np.where(empty, 1.0, np.divide(a, b)), np.where(empty, 0.0, bound)
+            unit, ratio, bound = np.where(empty, 0.0, unit), np.where(empty, 1.0, a / b), np.where(empty, 0.0, bound)
         along, across = (unit * real(f"creepage[{k}]", one) for k, one in enumerate(both("creepage", creepage)))
         x, y, moment, _ = self.forces(along, across, unit * c * real("spin", spin), axis_ratio=ratio, poisson_ratio=poisson_ratio, hold=hold)
         return bound * x, bound * y, bound * c * moment
+
+
+def _is_no_length(values: Doubles) -> npt.NDArray[np.bool_]:
+    """Where a semi-axis is none: NaN, of which forces are NaN, is not judged."""
+    return np.asarray((values <= 0.0) | np.isinf(values))
 
 
 def _interpolated(values: Doubles, corners: Sequence[tuple[Any, Any]]) -> Doubles:

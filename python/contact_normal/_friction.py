@@ -10,6 +10,7 @@ import numpy as np
 
 from ._arguments import both, constant, doubles, flag, number, pointer, two
 from ._constants import MOTION_SHIFT, PRESCRIBED_TANGENTIAL_FORCE
+from ._friction_remarks import Remarks
 from ._library import initialised
 
 if TYPE_CHECKING:
@@ -24,14 +25,9 @@ _OF_LAW = ("kinetic", "speed", "time_step", "memory_distance", "memory_speed")
 _PAIRS_OF_LAW = ("falling", "half_speed")
 _OF_LAYER = ("yield_limit", "hardening")
 _KNOWN = ("coefficient", "motion", "force", "compliance", *_PAIRS, *_FLAGS, "influence", "influence_cross", "row_tables", *_NUMBERS, *_FIELDS, "law", "layer", "branch", *_PARTICLES)
-# Parts of the rolling speed that are more than wheels slip in most cases.
-_LARGE = 0.05
-# Nor are coefficients so large.
-_STICKY = 5.0
-_IS_LENGTH = "the motion of friction is not given: it is a SHIFT, whose creepage is a length, and whose spin an angle"
 
 
-def friction(value: Any, shape: tuple[int, int], length: float = 0.0) -> tuple[Any, list[Any], str]:
+def friction(value: Any, shape: tuple[int, int], length: float = 0.0) -> tuple[Any, list[Any], Remarks]:
     """A `contact_normal_friction`, the arrays that it points to, and what the caller should know of it; `length` is half of the longer side of the grid."""
     if not isinstance(value, Mapping):
         raise TypeError(f"friction is {value!r}; it must be a mapping of {', '.join(_KNOWN)}")
@@ -39,8 +35,11 @@ def friction(value: Any, shape: tuple[int, int], length: float = 0.0) -> tuple[A
     if unknown:
         raise ValueError(f"friction has {', '.join(sorted(unknown))}; it may have {', '.join(_KNOWN)}")
     given = {name: one for name, one in value.items() if one is not None}
+    if not any(name in given for name in ("coefficient", "layer", "influence", "row_tables")):
+        raise ValueError("friction has no coefficient; without friction leave it out, or give a coefficient of 0")
     effect = initialised("friction")
     kept = _one_or_each(effect, "coefficient", given.get("coefficient", 0.0), shape)
+    largest = max((float(one.max()) for one in kept), default=effect.coefficient)
     kept += _one_or_each(effect, "compliance", given.get("compliance", 0.0), shape)
     motion = given.get("motion", MOTION_SHIFT)
     effect.motion = constant("friction['motion']", "motion", motion)
@@ -74,23 +73,7 @@ def friction(value: Any, shape: tuple[int, int], length: float = 0.0) -> tuple[A
     _layer(effect, given.get("layer"))
     kept += _influence(effect, given)
     kept += _row_tables(effect, given)
-    return effect, kept, "\n".join(_remarks(effect, "motion" in given, length))
-
-
-def _remarks(effect: Any, has_motion: bool, length: float) -> list[str]:
-    """What numbers may be meant otherwise."""
-    found = []
-    if effect.coefficient > _STICKY:
-        found.append(f"a coefficient of {effect.coefficient:g} is a ratio of forces: 30 % is 0.3")
-    if effect.motion == MOTION_SHIFT:
-        return found + ([_IS_LENGTH] if not has_motion and (any(effect.creepage) or effect.spin != 0.0) else [])
-    largest, by_spin = max(map(abs, effect.creepage)), abs(effect.spin) * length
-    # Laws are for creepages of which friction falls.
-    if largest > _LARGE and not effect.law:
-        found.append(f"a creepage of {largest:g} is this part of the rolling speed: 0.1 % is 1e-3")
-    if by_spin > _LARGE:
-        found.append(f"a spin of {effect.spin:g} makes a creepage of {by_spin:.2g} at the ends of the grid: it is in rad per length, and 0.16 per m is 1.6e-4 per mm")
-    return found
+    return effect, kept, Remarks(effect, "motion" in given, largest, length)
 
 
 def _without_unknown(creepage: tuple[Any, Any], forces: tuple[Any, Any]) -> tuple[Any, Any]:

@@ -35,7 +35,7 @@ class FrictionBatch(WithUnits):
     status : ndarray of int, (n,)
         Of each entry: 0 solved; > 0 stopped early, or `CANCELLED`: not solved; < 0 refused. What was not solved has NaN.
     message : str
-        A line "entry 3: ..." for each entry that is not solved.
+        A line "entry 3: ..." for each entry that is not solved; then what warnings mean, and what numbers may be meant otherwise.
     force, creepage : ndarray, (n, 2)
         The tangential forces on body 1, and the creepages, given or found.
     moment : ndarray, (n,)
@@ -204,7 +204,8 @@ def table_of(
     )
     if not len(table) or untouched in found.status:
         check(status, message)
-    found.message = message
+    remark = scene.remarks.of_entries(table) if scene.remarks else ""
+    found.message = "\n".join(text for text in (message, remark) if text)
     found.units = units
     found.report = reported(report)
     return found

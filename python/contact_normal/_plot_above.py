@@ -95,7 +95,8 @@ def _arrows(result: Solved, axes: Axes) -> None:
     scale = largest / (1.3 * step * min(result.dx, result.dy))
     arrows = axes.quiver(result.x[ix], result.y[iy], qx, qy, angles="xy", scale_units="xy", scale=scale, pivot="mid", width=0.004)
     unit = 10.0 ** np.floor(np.log10(largest))
-    shown = unit * max(step for step in (1.0, 2.0, 5.0) if step * unit <= largest)
+    # Just below a power of ten the logarithm may be rounded up to it.
+    shown = unit * max((part for part in (1.0, 2.0, 5.0) if part * unit <= largest), default=1.0)
     axes.quiverkey(arrows, 0.98, 0.04, shown, title(f"{shown:g}", "pressure", result.units), labelpos="W", coordinates="axes",
                    color=axes.xaxis.label.get_color())
 

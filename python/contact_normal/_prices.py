@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ._arguments import AccuracyOptions, Both, doubles, options, relative
 from ._calls import called
 from ._library import check, initialised, library
+from ._numbered import name_of
 from ._quantities import QUANTITIES, estimated
 from ._refined import limits, on_any_grid
 from ._structs import Price as PriceStruct
@@ -64,7 +65,7 @@ class Price(NamedTuple):
         """The row of the library."""
         return cls(
             row.target, (row.my, row.mx), row.tolerance, row.error, row.seconds, row.seconds_one_thread, row.bytes,
-            OBSTACLES[row.obstacle], row.time_error, row.work_units,
+            name_of(OBSTACLES, row.obstacle), row.time_error, row.work_units,
         )
 
 

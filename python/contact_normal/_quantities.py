@@ -12,6 +12,7 @@ from ._calls import called
 from ._constants import OK, PRESCRIBED_APPROACH
 from ._given import SceneArguments, scene_and_options
 from ._library import ContactNormalError, check, initialised, library
+from ._numbered import name_of
 from ._structs import QuantityRow
 
 if TYPE_CHECKING:
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from ._scene import Scene
 
 _PREFIX = "QUANTITY_"
+# So many coarser grids the library takes.
+_MOST_COARSER = 12
 # The numbers of the library, by name.
 QUANTITIES: dict[str, int] = {
     name[len(_PREFIX):].lower(): value for name, value in vars(_constants).items() if name.startswith(_PREFIX)
@@ -77,7 +80,7 @@ class Quantity(NamedTuple):
     def of(cls, row: QuantityRow) -> Quantity:
         """The row of the library."""
         return cls(
-            _NAMES[row.quantity], (row.my, row.mx), row.value, row.error, row.seconds, row.work_units, LACKS[row.lack],
+            name_of(_NAMES, row.quantity), (row.my, row.mx), row.value, row.error, row.seconds, row.work_units, name_of(LACKS, row.lack),
         )
 
 
@@ -168,7 +171,7 @@ def quantities(
     scene, struct = scene_and_options(h, dx, dy, given)
     wanted, grids = numbers("names", names), integer("coarser", coarser)
     scene.bodies.know_all(names)
-    room = max(1, len(wanted) * (max(0, grids) + 1))
+    room = max(1, len(wanted) * (max(0, min(grids, _MOST_COARSER)) + 1))
     rows, written = (QuantityRow * room)(initialised("quantity_row")), ctypes.c_int32(0)
     status, message = called(
         library.contact_normal_quantities, ctypes.byref(scene.struct), ctypes.byref(struct), len(wanted), wanted, grids, rows,

@@ -156,8 +156,13 @@ class Result(Solved):
 
     @property
     def neglected(self) -> tuple[str, ...]:
-        """The effects that `neglect_below` left out; `report["neglected_error"]` says how wrong that may be."""
+        """The effects that `neglect_below` left out; `neglected_error` says how wrong that may be."""
         return omissions(int(self.report["neglected"]))
+
+    @property
+    def neglected_error(self) -> float:
+        """The largest relative change of a quantity by leaving out `neglected`, its error included; 0 where nothing is left out."""
+        return float(self.report["neglected_error"])
 
     @property
     def approach(self) -> float:

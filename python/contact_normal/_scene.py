@@ -19,6 +19,7 @@ from ._visco import visco
 
 if TYPE_CHECKING:
     from ._arguments import Doubles, Integers
+    from ._friction_remarks import Remarks
 
 
 class Scene:
@@ -44,7 +45,8 @@ class Scene:
     ) -> None:
         self.h = shaped("h", distances("h", h))
         self.struct = initialised("scene")
-        self.bodies, self.remark = bodies(shear_modulus, poisson_ratio, young_modulus, e_star), ""
+        self.bodies = bodies(shear_modulus, poisson_ratio, young_modulus, e_star)
+        self.remarks: Remarks | None = None
         self._kept: list[Any] = []
         self._effects = effects
         self._own = [name for name in ("influence", "row_tables") if effects.get(name) is not None]
@@ -88,6 +90,11 @@ class Scene:
         """Refuses stresses of bodies with own coefficients."""
         for name in self._own:
             raise ContactNormalError(UNSUPPORTED, f"{name} is given; subsurface stresses are those of a half-space")
+
+    @property
+    def remark(self) -> str:
+        """What the caller should know of what is given, a line each."""
+        return self.remarks.of_one() if self.remarks else ""
 
     @property
     def has_particles(self) -> bool:
@@ -142,7 +149,7 @@ class Scene:
         arrays: Any
         if name == "friction":
             half = 0.5 * max(self.struct.mx * self.struct.dx, self.struct.my * self.struct.dy)
-            effect, arrays, self.remark = friction(value, self.shape, half)
+            effect, arrays, self.remarks = friction(value, self.shape, half)
         elif name == "adhesion":
             effect, arrays = adhesion(value, self.shape)
         elif name == "visco":

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import os
-import re
 from collections.abc import Callable, Mapping, Sequence
 from ctypes import c_int32
 from functools import partial
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._arguments import Both, SolveOptions, distances, doubles, integer, options, pointer, shaped
+from ._batch_messages import Warned, messages_of
 from ._bodies import loads_of_each
 from ._callbacks import Progress, Watched
 from ._calls import called, is_short, parts
@@ -238,11 +238,11 @@ class Solver:
         statuses = (c_int32 * count)(*[untouched] * count)
         status, message = called(
             library.contact_normal_solver_solve_batch, count, scenes, ctypes.byref(struct), fields, reports, statuses,
-            handle=self._handle, keep=problems, options=struct,
+            handle=self._handle, keep=problems, options=struct, report=Warned(reports),
         )
         if untouched in statuses:
             check(status, message)
-        messages = _messages(statuses, message)
+        messages = messages_of(statuses, message, [report.warnings for report in reports])
         return [Result(statuses[i], messages[i], problems[i][1], reports[i], problems[i][0], self._units) for i in range(count)]
 
     def solve_tangential(
@@ -359,11 +359,3 @@ class Solver:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         self.close()
-
-
-def _messages(statuses: Any, told: str) -> list[str]:
-    """The message of each problem, of the lines "problem 3: ..." that the library has for those that are not OK."""
-    parts = re.split(r"^problem (\d+): ", told, flags=re.MULTILINE)
-    lines = {int(number): text.rstrip("\n") for number, text in zip(parts[1::2], parts[2::2])}
-    texts = (library.contact_normal_status_text(status).decode() for status in statuses)
-    return ["" if status == OK else lines.get(i, text) for i, (status, text) in enumerate(zip(statuses, texts))]

@@ -62,7 +62,7 @@ def subsurface(
     )
     check(status, message)
     for name, member in (("von_mises", "largest_von_mises"), ("maximum_shear", "largest_shear")):
-        if name in wanted:
+        if name in wanted and levels.size:
             values: dict[str, Any] = {key: getattr(largest[name], key) for key in ("value", "x", "y", "z", "ix", "iy", "depth")}
             setattr(found, member, values)
     return found

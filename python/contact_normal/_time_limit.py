@@ -50,6 +50,10 @@ class TimeLimit:
         told = {"progress": self._tell} if callable(self._progress) else {}
         return {**told, "max_seconds": left} if (left := self._clock.left) else told
 
+    def is_over(self) -> bool:
+        """Whether no time is left."""
+        return self._clock.is_over
+
     def _tell(self, progress: Any) -> bool:
         # The status of the solve may tell of something else.
         if is_cancelled := bool(self._progress(progress)):

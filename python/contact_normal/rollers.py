@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -55,9 +56,21 @@ def _several(name: str, radii: Any) -> tuple[float, ...]:
     if np.ndim(radii) != 1:
         raise TypeError(f"{name} is {radii!r}; it must have one radius for each body: inf for a flat one")
     found = tuple(number(name, radius) for radius in radii)
+    if len(found) > 2:
+        raise ValueError(f"{name} are {found}: two bodies have two radii at most")
     if not all(found) or any(map(np.isnan, found)):
         raise ValueError(f"{name} are {found}; none may be 0 or nan: inf is a flat body")
     return found
+
+
+def _drops(drop: Any) -> list[Any]:
+    """The drops of the bodies that have one."""
+    drops = list(drop) if isinstance(drop, (list, tuple)) else [drop]
+    if not all(callable(one) for one in drops):
+        raise TypeError("drop has a number; it must be a function of places y, as rollers.crown(...) returns, or one for each body")
+    if len(drops) > 2:
+        raise ValueError(f"drop has {len(drops)} functions; two bodies have two at most")
+    return drops
 
 
 def _dropped(drop: Drop, y: Doubles) -> Doubles:
@@ -66,6 +79,8 @@ def _dropped(drop: Drop, y: Doubles) -> Doubles:
     if found.shape not in ((), y.shape) or np.isnan(found).any():
         what = f"nan at y = {y[np.isnan(found)][0]:g}" if found.shape == y.shape else f"the shape {found.shape}"
         raise ValueError(f"drop has {what}; it must be a number for each of {len(y)} places y, and inf where there is no surface")
+    if np.isneginf(found).any():
+        raise ValueError("drop is -inf; it is positive where the roller is thinner, and inf where there is no surface")
     return found
 
 
@@ -85,10 +100,35 @@ def circle(x: Any, radius: float) -> Doubles:
     return np.where(inside, np.copysign(left, radius), np.inf)
 
 
+@dataclass(frozen=True)
+class _OfRoller:
+    """A drop along a roller, which knows half of its length, and can be pickled."""
+
+    half: float
+    shape: Callable[..., Doubles]
+    sizes: tuple[float, ...] = ()
+
+    def __call__(self, y: Any) -> Doubles:
+        return self.shape(y, self.half, *self.sizes)
+
+
+def _sharp(y: Any, half: float) -> Doubles:
+    return np.where(np.abs(y) <= half, 0.0, np.inf)
+
+
+def _crowned(y: Any, half: float, half_straight: float, radius: float) -> Doubles:
+    return np.where(np.abs(y) <= half, circle(np.maximum(np.abs(y) - half_straight, 0.0), radius), np.inf)
+
+
+def _logarithm(y: Any, half: float, relief: float) -> Doubles:
+    inside = np.abs(y) < half
+    return np.where(inside, -relief * np.log1p(-((np.where(inside, y, 0.0) / half) ** 2)), np.inf)
+
+
 def no_drop(length: float) -> Drop:
     """A cylinder with sharp ends. Pressures at its ends have no bound: finer grids find larger ones."""
     half = 0.5 * _positive("length", length)
-    return _of_length(half, lambda y: np.where(np.abs(y) <= half, 0.0, np.inf))
+    return _OfRoller(half, _sharp)
 
 
 def crown(length: float, radius: float, straight: float = 0.0) -> Drop:
@@ -109,21 +149,7 @@ def crown(length: float, radius: float, straight: float = 0.0) -> Drop:
     if r < (half - 0.5 * flat) * (1.0 - 1e-9):
         warnings.warn(f"radius is {r:g}, and the crowned part is {half - 0.5 * flat:g} long on each side: its surface ends before the roller does. Radius and length must be "
                       "in one unit", stacklevel=2)
-    return _of_length(half, lambda y: np.where(np.abs(y) <= half, circle(np.maximum(np.abs(y) - 0.5 * flat, 0.0), r), np.inf))
-
-
-def _of_length(half: float, drop: Drop) -> Drop:
-    """The same drop, which knows half of the length of its roller."""
-    drop.half = half  # type: ignore[attr-defined]
-    return drop
-
-
-def _logarithm(half: float, relief: float) -> Drop:
-    def drop(y: Doubles) -> Doubles:
-        inside = np.abs(y) < half
-        return np.where(inside, -relief * np.log1p(-((np.where(inside, y, 0.0) / half) ** 2)), np.inf)
-
-    return _of_length(half, drop)
+    return _OfRoller(half, _crowned, (0.5 * flat, r))
 
 
 def logarithmic(length: float, force: float, e_star: float) -> Drop:
@@ -145,7 +171,7 @@ def logarithmic(length: float, force: float, e_star: float) -> Drop:
     if not _FLAT * whole <= relief <= _DEEP * whole:
         warnings.warn(f"the drop is {relief:.2g} ln(1/(1 - (2 y/length)^2)), and the length {whole:g}: force, length and e_star must be in one system of units, as N, mm "
                       "and N/mm2", stacklevel=2)
-    return _logarithm(0.5 * whole, relief)
+    return _OfRoller(0.5 * whole, _logarithm, (relief,))
 
 
 def iso_16281(length: float, diameter: float) -> Drop:
@@ -156,7 +182,7 @@ def iso_16281(length: float, diameter: float) -> Drop:
     whole, thick = _positive("length", length), _positive("diameter", diameter)
     if whole > 2.5 * thick:
         raise ValueError(f"length is {whole}; this profile is for lengths of up to 2.5 times the diameter, {2.5 * thick}")
-    return _logarithm(0.5 * whole, _ISO * thick)
+    return _OfRoller(0.5 * whole, _logarithm, (_ISO * thick,))
 
 
 def _warn_of_ends(along: Doubles, cut: float | None, half: float, across: Doubles) -> None:
@@ -165,7 +191,8 @@ def _warn_of_ends(along: Doubles, cut: float | None, half: float, across: Double
     if cut is not None and min(along[0], along[-1]) - middle < _TOUCHED * across.max():
         warnings.warn(f"the grid is {2.0 * cut:g} long in y, and the roller {2.0 * half:g}: nothing touches beyond the grid, whose ends are those of a shorter roller with sharp ends. "
                       "size, length and radii must be in one unit", stacklevel=3)
-    if max(along[0], along[-1]) < middle:
+    # A groove for a retainer has no surface in the middle.
+    if np.isfinite(middle) and max(along[0], along[-1]) < middle:
         warnings.warn(f"the drop at the ends is {max(along[0], along[-1]) - middle:.3g} beside the middle: it is positive where the roller is thinner", stacklevel=3)
 
 
@@ -215,9 +242,7 @@ def gap(
         # Straight rollers have no curvature along their axes.
         if curvature < 0.0 or (curvature == 0.0 and name == "radii"):
             raise ValueError(f"{name} are {several}: their curvatures add up to {curvature}; the sum must be positive")
-    drops: list[Any] = list(drop) if isinstance(drop, (list, tuple)) else [drop]
-    if not all(callable(one) for one in drops):
-        raise TypeError("drop has a number; it must be a function of places y, as rollers.crown(...) returns, or one for each body")
+    drops = _drops(drop)
     if drops and len(crown_radii):
         raise TypeError("give either drop or crown_radii")
     across = sum((circle(x, radius) for radius in radii), np.zeros(mx))
@@ -227,4 +252,6 @@ def gap(
     half = min((getattr(one, "half", np.inf) for one in drops), default=np.inf)
     _warn_of_ends(along, 0.5 * ly if half > 0.501 * ly and np.isfinite(half) else None, half, across)
     h = across[None, :] + (along + tilt * y)[:, None]
+    if not np.isfinite(h).any():
+        raise ValueError("no element has a surface: the drop is inf, or the grid beyond a radius, everywhere")
     return Gap(np.ascontiguousarray(h), dx, dy, units=checked(units))

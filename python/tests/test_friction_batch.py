@@ -12,7 +12,7 @@ STEEL = {"shear_modulus": 82000.0, "poisson_ratio": 0.28}
 M, D = 24, 0.1
 X = (np.arange(M) - 0.5 * (M - 1)) * D
 H = (X[None, :] ** 2 + X[:, None] ** 2) / (2 * 50.0)
-FRICTION = {"coefficient": 0.3}
+FRICTION = {"coefficient": 0.3, "motion": "SHIFT"}
 ENTRIES = [(1e-3 * x, 2e-4, 1e-4) for x in np.linspace(-2.0, 2.0, 20)]
 
 

@@ -1,6 +1,7 @@
 """Names of the library on each platform, and true tags of wheels."""
 
 import contextlib
+import fnmatch
 import os
 import re
 import shutil
@@ -42,6 +43,14 @@ class Places(unittest.TestCase):
         build = (Path(__file__).resolve().parents[2] / "build.rs").read_text()
         for platform in ("linux", "darwin"):
             self.assertIn(f'"{names(platform).installed}"', build)
+
+    def test_cargo_cinstall_has_all_headers(self):
+        root = Path(__file__).resolve().parents[2]
+        section = (root / "Cargo.toml").read_text().split("[package.metadata.capi.install.include]")[1].split("\n[")[0]
+        patterns = re.findall(r'from = "([^"]+)"', section)
+        headers = [f"include/{path.name}" for path in (root / "include").iterdir() if path.suffix in (".h", ".hpp", ".f90", ".inc")]
+        self.assertGreater(len(headers), 20)
+        self.assertEqual([name for name in headers if not any(fnmatch.fnmatch(name, pattern) for pattern in patterns)], [])
 
     def test_installations(self):
         for platform, expected in (("linux", ["lib/libcontact_normal.so.2"]), ("darwin", ["lib/libcontact_normal.2.dylib"]),

@@ -1,5 +1,6 @@
 """Pictures show things where they are, the right way up, with the units that were told."""
 
+import copy
 import unittest
 
 import matplotlib
@@ -71,6 +72,10 @@ class Plots(unittest.TestCase):
         self.assertEqual((plain.get_xlabel(), plain.get_ylabel(), plain.figure.axes[1].get_ylabel()), ("x", "y", "pressure"))
 
     def test_tractions(self):
+        for largest in (99.99999999999999, 0.09999999999999999, 1e23):
+            scaled = copy.copy(self.found)
+            scaled.traction = self.found.traction * (largest / np.hypot(*self.found.traction).max())
+            scaled.plot_traction()
         axes = self.found.plot_traction()
         for place in self.mirrored:
             np.testing.assert_allclose(colour_at(axes, *place), [240] * 3, atol=1)

@@ -293,7 +293,8 @@ class Bars(unittest.TestCase):
             found, filled = self.drawn(call)
             self.assertEqual((found.status, filled), (cn.OK, 30))
         entries = np.zeros((40, 3)) + 1e-5
-        batch, filled = self.drawn(lambda: cn.friction_batch(H, DX, DY, entries, force=100.0, friction={"coefficient": 0.3}, progress=True, **STEEL))
+        shift = {"coefficient": 0.3, "motion": "SHIFT"}
+        batch, filled = self.drawn(lambda: cn.friction_batch(H, DX, DY, entries, force=100.0, friction=shift, progress=True, **STEEL))
         self.assertEqual((batch.message, filled), ("", 30))
         _, filled = self.drawn(lambda: cn.creep_force_table(xi=[0.0, 0.5], eta=[0.0], phi=[0.0, 0.5], elements=9, progress=True))
         self.assertEqual(filled, 30)

@@ -1,5 +1,6 @@
 """Rollers: their gaps in closed form, and the pressures that their profiles are made for."""
 
+import pickle
 import unittest
 import warnings
 
@@ -56,6 +57,11 @@ class Gaps(unittest.TestCase):
             (lambda: rollers.gap((1, 1), (4, 4), (6.0,), drop=lambda y: np.zeros(3)), r"drop has the shape \(3,\); it must be a number for each of 4 places"),
             (lambda: rollers.gap((1, 1), (4, 4), (6.0,), drop=lambda y: np.where(y > 0.2, np.nan, 0.0)), "drop has nan at y = 0.375"),
             (lambda: rollers.gap((1, 1), (4, 0), (6.0,)), "elements are 4 and 0"),
+            (lambda: rollers.gap((1, 1), (4, 4), (6.0, 25.0, 3.0)), r"radii are \(6.0, 25.0, 3.0\): two bodies have two radii at most"),
+            (lambda: rollers.gap((1, 1), (4, 4), (6.0,), crown_radii=(5.0, 5.0, 5.0)), "crown_radii are .*: two bodies have two radii at most"),
+            (lambda: rollers.gap((1, 1), (4, 4), (6.0,), drop=[rollers.no_drop(1.0)] * 3), "drop has 3 functions; two bodies have two at most"),
+            (lambda: rollers.gap((1, 1), (4, 4), (6.0,), drop=lambda y: np.full(len(y), -np.inf)), "drop is -inf; it is positive where the roller is thinner"),
+            (lambda: rollers.gap((1, 1), (4, 4), (6.0,), drop=lambda y: np.full(len(y), np.inf)), "no element has a surface"),
             (lambda: rollers.gap((0, 1), (4, 4), (6.0,)), r"size\[0\] is 0.0; it must be positive"),
             (lambda: rollers.iso_16281(40.0, 12.0), "lengths of up to 2.5 times the diameter, 30.0"),
             (lambda: rollers.crown(14.0, 500.0, 14.0), "straight is 14.0"),
@@ -68,6 +74,19 @@ class Gaps(unittest.TestCase):
         for drop in (0.1, [0.1]):
             with self.assertRaisesRegex(TypeError, "drop has a number; it must be a function of places y"):
                 rollers.gap((1, 1), (4, 4), (6.0,), drop=drop)
+
+    def test_a_groove_is_no_bump(self):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            gap = rollers.gap((1.0, 10.0), (4, 20), (6.0,), drop=lambda y: np.where(np.abs(y) < 1.0, np.inf, 0.0))
+        self.assertEqual(np.isinf(gap.h).sum(), 4 * 4)
+
+    def test_drops_go_to_other_processes(self):
+        y = np.linspace(-8.0, 8.0, 33)
+        for drop in (rollers.no_drop(LENGTH), rollers.crown(LENGTH, 500.0, 4.0), rollers.logarithmic(LENGTH, 9000.0, E_STAR), rollers.iso_16281(LENGTH, 12.0)):
+            again = pickle.loads(pickle.dumps(drop))
+            np.testing.assert_array_equal(again(y), drop(y))
+            self.assertEqual(again.half, 0.5 * LENGTH)
 
     def test_units_are_a_pair_of_names(self):
         for units, kind, text in (("mm", TypeError, "units is 'mm'; it must be a pair"), (("N", "mm"), ValueError, "the first is that of lengths")):

@@ -66,6 +66,17 @@ class Lists(unittest.TestCase):
             path.write_text("# x y z of 2020\n" + rows)
             self.assertIsNone(surface.read(path).units)
 
+    def test_a_header_says_which_column_is_y(self):
+        x, y, z = self.columns
+        for end in (".txt", ".xyz", ".csv"):
+            path = self.path.with_suffix(end)
+            for head, columns, unit in (("y [mm] x [mm] z [mm]", (y, x, z), "mm"), ("y x z", (y, x, z), None), ("Y, X, Z", (y, x, z), None),
+                                        ("z/mm y/mm x/mm", (z, y, x), "mm"), ("x y z", (x, y, z), None), ("z x y", (z, x, y), None)):
+                np.savetxt(path, np.stack(columns, axis=1), header=head, delimiter="," if end == ".csv" else " ")
+                with self.subTest(head, end=end):
+                    self.assert_grid(found := surface.read(path))
+                    self.assertEqual(found.units, (unit, "N") if unit else None)
+
     def test_lists_of_numpy_are_lists_too(self):
         path = self.path.with_suffix(".npy")
         np.save(path, np.stack(self.columns, axis=1))

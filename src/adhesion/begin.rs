@@ -9,7 +9,7 @@ use super::request::Start;
 use super::solver::{pulls, Solver};
 use super::unknowns::Unknowns;
 use super::way::Walker;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, Rounded};
 use crate::progress::Monitor;
 
 /// Without a state of less force, bodies are first pressed together by this part of the whole attraction.
@@ -53,14 +53,15 @@ impl Solver {
             Walk::Found => Ok(Descent::By(End::Solved)),
             Walk::Least { sum, approach } => {
                 let area = self.levels[0].problem.grid.element_area();
-                let force = goal.wanted.unwrap_or(0.0) * area;
+                let force = Rounded(goal.wanted.unwrap_or(0.0) * area);
                 let found = if sum < 0.0 {
-                    format!("holds a pull of {:e} (the pull-off force), at an approach of {approach:e}", sum * area)
+                    let [pull, approach] = [Rounded(sum * area), Rounded(approach)];
+                    format!("holds a pull of {pull} (the pull-off force), at an approach of {approach}")
                 } else {
                     "does not pull: nothing holds the bodies without a pressing force".into()
                 };
                 Err(Error::Infeasible(format!(
-                    "force is {force:e}; the strongest state that was found, on the ways down from no load and from bodies pressed together, \
+                    "force is {force}; the strongest state that was found, on the ways down from no load and from bodies pressed together, \
                      {found}"
                 )))
             }
@@ -292,9 +293,9 @@ impl Solver {
         let most = self.most_attraction();
         let wanted = goal.wanted.filter(|wanted| -wanted > most)?;
         Some(Error::Infeasible(format!(
-            "force is {:e}; all of the attraction, at a distance of 0 everywhere, holds a pull of {:e}",
-            wanted * area,
-            -most * area
+            "force is {}; all of the attraction, at a distance of 0 everywhere, holds a pull of {}",
+            Rounded(wanted * area),
+            Rounded(-most * area)
         )))
     }
 }

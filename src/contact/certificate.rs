@@ -81,10 +81,8 @@ impl Survey {
     fn add_limited(&mut self, state: &State) -> f64 {
         let mut touching = 0.0;
         for i in (0..state.p.len()).filter(|&i| state.at_limit[i]) {
-            let (p, e) = (state.p[i], state.deformed_distance(i));
             self.contact_count += 1;
-            self.violation = self.violation.max(e);
-            self.work.0 += p * (e.max(0.0) - e.abs());
+            self.violation = self.violation.max(state.deformed_distance(i));
             touching += (state.h[i] - state.approach).powi(2);
         }
         touching

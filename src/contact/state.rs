@@ -32,7 +32,7 @@ pub struct State {
     pub contact: Vec<bool>,
     /// Elements at their limit, which are not in C. Empty if the scene has no limits.
     pub at_limit: Vec<bool>,
-    /// Whether an element has reached its limit in this solve. If not, results are bitwise those without limits.
+    /// Whether an element has reached its limit in this solve.
     pub reached_limit: bool,
     /// The approach: given, or the current estimate when the force is prescribed.
     pub approach: f64,

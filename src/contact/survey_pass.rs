@@ -94,7 +94,7 @@ fn signs(state: &State, elements: Range<usize>) -> (bool, bool) {
 /// Adds at most [`CHUNK`] elements. Returns the number in contact.
 #[inline(always)]
 fn add(state: &State, elements: Range<usize>, sums: &mut Parts) -> u64 {
-    let (approach, n) = (state.approach, elements.len());
+    let (approach, limited, n) = (state.approach, !state.at_limit.is_empty(), elements.len());
     let (h, u) = (&state.h[elements.clone()][..n], &state.u[elements.clone()][..n]);
     let (p, contact) = (&state.p[elements.clone()][..n], &state.contact[elements][..n]);
     let [rr, hh, pressures, squares, gaps, energy] = sums.each_mut().map(|sums| &mut sums[..n]);
@@ -107,7 +107,9 @@ fn add(state: &State, elements: Range<usize>, sums: &mut Parts) -> u64 {
         hh[i] += f64::from_bits((distance * distance).to_bits() & inside);
         pressures[i] += p[i];
         squares[i] += p[i] * p[i];
-        gaps[i] += f64::from_bits((p[i] * e.abs()).to_bits() & presses);
+        // Of elements at their limit, which press and are not in C, a gap counts and a penetration does not. The comparison is false for NaN.
+        let gap = if limited && !contact[i] && e < 0.0 { 0.0 } else { e.abs() };
+        gaps[i] += f64::from_bits((p[i] * gap).to_bits() & presses);
         energy[i] += f64::from_bits((p[i] * u[i].abs()).to_bits() & presses);
     }
     contact.iter().map(|inside| u64::from(*inside)).sum()

@@ -5,7 +5,7 @@
 use super::effect::{Effect, Value};
 use super::properties::{Properties, Stresses};
 use crate::adhesion::{Law, Start};
-use crate::error::{invalid, require, Error, Number, Result};
+use crate::error::{require, Error, Number, Result};
 use crate::grid::{check_values, Grid};
 use crate::powers::LARGEST;
 use crate::scene::{Load, Plain};
@@ -77,14 +77,9 @@ impl Effect for Adhesion<'_> {
     }
 
     fn check(&self, grid: &Grid) -> Result<()> {
-        let require_work = |name: &str, work: f64| match work {
-            work if !work.is_finite() => Err(Error::NotFinite(format!("{name} is {work}; it must be finite"))),
-            work if work < 0.0 => invalid(format!("{name} is {work}; a work of adhesion must not be negative")),
-            work if work != 0.0 && !(RANGE.0..RANGE.1).contains(&work) => invalid(format!(
-                "{name} is {work}; it must be 0 or lie in {:e}..{:e}: choose other units",
-                RANGE.0, RANGE.1
-            )),
-            _ => Ok(()),
+        let require_work = |name: &str, work: f64| {
+            let is_work = work == 0.0 || (RANGE.0..RANGE.1).contains(&work);
+            require(is_work, name, work, "it must be 0 or lie in 1e-70..1e70: choose other units")
         };
         match self.work {
             Work::Uniform(work) => require_work("adhesion->work_of_adhesion", work)?,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::properties::{Properties, Stresses, HALF_SPACE_ALONE};
 use super::{Effect, Value};
-use crate::error::{invalid, positive, require, Error, Result};
+use crate::error::{invalid, positive, require, Error, Number, Result};
 use crate::grid::Grid;
 use crate::influence::{radial, Coat, Coated, CoatedBody, CoatedPeriodic, Kernel};
 use crate::scene::{Bodies, Plain};
@@ -129,7 +129,7 @@ impl Coating {
             ("poisson_ratio[0]", "poisson_ratio[1]", nu),
         ];
         let differ = pairs.into_iter().find(|(_, _, [one, two])| one != two);
-        differ.map(|(first, second, [one, two])| format!("{first} is {one} and {second} {two}"))
+        differ.map(|(first, second, [one, two])| format!("{first} is {} and {second} {}", Number(one), Number(two)))
     }
 
     /// The materials at the surfaces: a body's own, or its layer's.

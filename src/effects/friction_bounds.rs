@@ -1,7 +1,7 @@
 //! Bounds of tractions with a law or a layer, and the checks of these.
 
 use super::friction::{Friction, Motion, Prescribed};
-use super::friction_law::{Branch, PlasticLayer};
+use super::friction_law::Branch;
 use crate::error::{not_negative, positive, require, Error, Result};
 use crate::grid::{check_values, Grid};
 use crate::scene::Bodies;
@@ -30,18 +30,9 @@ impl Friction<'_> {
         }
     }
 
-    /// The bound of element i at a pressure, if independent of the slip; with a law mu p.
-    pub fn bound_at(&self, i: usize, pressure: f64) -> f64 {
-        let bound = self.coefficient.at(i) * pressure.max(0.0);
-        match self.layer {
-            Some(layer) if !self.has_law() => bound.min(self.yield_limit_before(layer, i)),
-            _ => bound,
-        }
-    }
-
-    /// The yield limit of element i before the step.
-    pub fn yield_limit_before(&self, layer: PlasticLayer, i: usize) -> f64 {
-        self.yield_limits.map_or(layer.yield_limit, |limits| limits[i])
+    /// Whether a layer bounds the tractions by limits that do not depend on the slip.
+    pub fn has_ideal_layer(&self) -> bool {
+        self.layer.is_some() && !self.has_law()
     }
 
     /// The coefficients of particles before the step; none are read without a law or a layer that changes.

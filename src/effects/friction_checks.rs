@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::friction::{Coefficient, Friction, Motion, Prescribed, Previous};
-use crate::error::{finite, invalid, require, Error, Result};
+use crate::error::{finite, require, Error, Result};
 use crate::grid::{check_values, Grid};
 use crate::powers::LARGEST;
 
@@ -38,11 +38,10 @@ impl Friction<'_> {
 
     /// Refuses slips and tractions that are no numbers, or whose squares leave the range of double precision.
     pub(super) fn check_range(&self, grid: &Grid) -> Result<()> {
-        let small = |name: &str, value: f64| match value.is_finite() {
-            true => require(value.abs() < LARGEST, name, value, OTHER_UNITS),
-            false => Err(Error::NotFinite(format!("{name} is {value}; it must be finite"))),
+        let small = |name: &str, value: f64| {
+            finite(name, value)?;
+            require(value.abs() < LARGEST, name, value, OTHER_UNITS)
         };
-        let finite = |name: &str, value: f64| if value.is_finite() { Ok(()) } else { small(name, value) };
         // Slips by creepages and spin are largest in a corner.
         let corners = [0, grid.mx - 1, grid.len() - grid.mx, grid.len() - 1];
         for slip in
@@ -77,11 +76,9 @@ impl Friction<'_> {
 
     /// Refuses invalid coefficients and compliances.
     pub(super) fn check_coefficients(&self, grid: &Grid) -> Result<()> {
-        let coefficient = |name: &str, mu: f64| match mu {
-            mu if !mu.is_finite() => Err(Error::NotFinite(format!("{name} is {mu}; it must be finite"))),
-            mu if mu >= LARGEST => invalid(format!("{name} is {mu}; it must be below {LARGEST:e}")),
-            mu if mu < 0.0 => invalid(format!("{name} is {mu}; a coefficient of friction must not be negative")),
-            _ => Ok(()),
+        let coefficient = |name: &str, mu: f64| {
+            let rule = "a coefficient of friction must be 0 or more, and below 1e140";
+            require((0.0..LARGEST).contains(&mu), name, mu, rule)
         };
         match self.coefficient {
             Coefficient::Uniform(mu) => coefficient("friction->coefficient", mu)?,

@@ -2,7 +2,7 @@
 
 use super::effect::{Effect, Value};
 use super::properties::{Properties, Stresses};
-use crate::error::{invalid, Error, Result};
+use crate::error::{not_negative, Result};
 use crate::grid::{check_values, Grid};
 use crate::influence::{self, Coefficients};
 use crate::scene::Plain;
@@ -46,14 +46,9 @@ impl Effect for Layer<'_> {
     }
 
     fn check(&self, grid: &Grid) -> Result<()> {
-        let require = |name: &str, c: f64| match c {
-            c if !c.is_finite() => Err(Error::NotFinite(format!("{name} is {c}; it must be finite"))),
-            c if c < 0.0 => invalid(format!("{name} is {c}; a compliance must not be negative")),
-            _ => Ok(()),
-        };
         match self {
-            Layer::Uniform(c) => require("layer->compliance", *c),
-            Layer::PerElement(c) => check_values("layer->compliances", c, grid, require),
+            Layer::Uniform(c) => not_negative("layer->compliance", *c),
+            Layer::PerElement(c) => check_values("layer->compliances", c, grid, not_negative),
         }
     }
 

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use super::effect::{Effect, Value};
 use super::together::{effects, list, refuse_together, replace_bodies, COUNT};
-use crate::error::{invalid, Error, Result};
+use crate::error::{self, invalid, Error, Result};
 use crate::memory::Held;
 use crate::scene::{Bodies, Scene};
 
@@ -124,9 +124,11 @@ impl Named {
         let kept = self.values.iter().find(|(known, _)| *known == name).map(|(_, kept)| kept);
         match (kept, value) {
             (Some(kept), value) if kept.is(value) => Ok(()),
-            (Some(Kept::Number(kept)), Value::Number(number)) => {
-                invalid(format!("{name} is {number}; this solver was set up with {kept}"))
-            }
+            (Some(Kept::Number(kept)), Value::Number(number)) => invalid(format!(
+                "{name} is {}; this solver was set up with {}",
+                error::Number(number),
+                error::Number(*kept)
+            )),
             // Even tables are kept in a smaller array.
             (Some(Kept::Shared(kept)), Value::Shared(values)) if kept.len() == values.len() => {
                 let other = kept.iter().zip(values.iter()).find(|(kept, now)| kept != now);

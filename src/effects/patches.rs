@@ -2,7 +2,7 @@
 
 use super::effect::{Effect, Value};
 use super::properties::{Properties, Stresses};
-use crate::error::{invalid, require, Result};
+use crate::error::{invalid, require, Number, Result};
 use crate::grid::Grid;
 use crate::influence::{self, Coefficients};
 use crate::memory::collected;
@@ -81,11 +81,15 @@ impl Effect for Patches<'_> {
             let name = format!("patches->factors of ({a}, {b})");
             require((0.0..=1.0).contains(&factor), &name, factor, "a factor must lie in [0, 1]")?;
             if a == b && factor != 1.0 {
-                return invalid(format!("{name} is {factor}; within a patch it must be 1"));
+                return invalid(format!("{name} is {}; within a patch it must be 1", Number(factor)));
             }
             let turned = self.factors[b * count + a];
             if b < a && factor != turned {
-                return invalid(format!("{name} is {factor}, of ({b}, {a}) {turned}; factors must be symmetric"));
+                return invalid(format!(
+                    "{name} is {}, of ({b}, {a}) {}; factors must be symmetric",
+                    Number(factor),
+                    Number(turned)
+                ));
             }
         }
         Ok(())

@@ -43,7 +43,7 @@ impl Effect for PressureLimit<'_> {
         let require = |name: &str, limit: f64| match limit {
             limit if limit.is_nan() => Err(Error::NotFinite(format!("{name} is {limit}; it must be a number"))),
             limit if limit <= 0.0 => {
-                invalid(format!("{name} is {limit}; a pressure limit must be positive; +infinity: none"))
+                invalid(format!("{name} is {}; a pressure limit must be positive; +infinity: none", Number(limit)))
             }
             _ => Ok(()),
         };

@@ -1,6 +1,6 @@
 //! The caller's tangential influence coefficients, beside [`Friction`](super::Friction), and their checks.
 
-use crate::error::{invalid, require, Error, Result};
+use crate::error::{invalid, require, Error, Number, Result};
 use crate::grid::Grid;
 use crate::memory::collected;
 
@@ -157,10 +157,11 @@ impl TangentialInfluence<'_> {
     ) -> Result<()> {
         if let Some(((x, y), at)) = all.iter().find(|(_, at)| !(self.scale * at).is_finite()) {
             let finite = "coefficients must be finite";
-            return Err(Error::NotFinite(format!("{name} at offset ({x}, {y}) is {at}; {finite}")));
+            return Err(Error::NotFinite(format!("{name} at offset ({x}, {y}) is {}; {finite}", Number(*at))));
         }
         let rule = if in_x_too { rule } else { IN_STEADY_ROLLING };
         let (((x0, y0), value), ((x, y), at)) = (one, other);
+        let [value, at] = [value, at].map(Number);
         Err(Error::Unsupported(format!("{name} is {value} at offset ({x0}, {y0}) and {at} at ({x}, {y}); {rule}")))
     }
 }

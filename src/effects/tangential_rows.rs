@@ -8,7 +8,7 @@
 //! ```
 
 use super::tangential_influence::{TangentialInfluence, SCALE, SYMMETRY};
-use crate::error::{invalid, require, Error, Result};
+use crate::error::{invalid, require, Error, Number, Result};
 use crate::grid::Grid;
 
 /// Names of the components xx, yy, xy in messages.
@@ -57,13 +57,17 @@ impl TangentialInfluence<'_> {
                 // Column -cx is never read.
                 if let Some(kx) = (1..width).find(|&kx| !(self.scale * row[kx]).is_finite()) {
                     let rule = "coefficients must be finite";
-                    return Err(Error::NotFinite(format!("{} is {}; {rule}", place(kx), self.scale * row[kx])));
+                    return Err(Error::NotFinite(format!("{} is {}; {rule}", place(kx), Number(self.scale * row[kx]))));
                 }
                 if component < 2 && jy == iy {
                     let own = self.scale * row[self.cx];
                     if !(own > 0.0) {
                         let rule = "a traction must displace its own element along";
-                        return Err(Error::NotPositiveDefinite(format!("{} is {own}; {rule}", place(self.cx))));
+                        return Err(Error::NotPositiveDefinite(format!(
+                            "{} is {}; {rule}",
+                            place(self.cx),
+                            Number(own)
+                        )));
                     }
                     largest = largest.max(own);
                 }
@@ -78,7 +82,7 @@ impl TangentialInfluence<'_> {
             let (one, other) = (self.of_rows(jy, iy, kx), self.of_rows(iy, jy, -kx));
             let is_off = |component: &usize| !((one[*component] - other[*component]).abs() <= SYMMETRY * largest);
             if let Some(component) = (0..2).find(is_off) {
-                let (a, b) = (one[component], other[component]);
+                let (a, b) = (Number(one[component]), Number(other[component]));
                 let places =
                     format!("of rows (jy {jy}, iy {iy}) at offset {kx} and {b} of rows (jy {iy}, iy {jy}) at {}", -kx);
                 let rule = "the operator must be symmetric";

@@ -5,7 +5,7 @@ use super::effect::{Effect, Value};
 use super::memory::Memory;
 use super::properties::{Continues, Properties, Stresses};
 use super::visco_step::{Body, Step};
-use crate::error::{invalid, not_negative, positive, require, Error, Result};
+use crate::error::{invalid, not_negative, positive, require, Error, Number, Result};
 use crate::grid::Grid;
 use crate::scene::{Bodies, Load, Plain};
 use crate::visco::{Form, Series, MOST_BRANCHES};
@@ -64,8 +64,10 @@ impl Visco<'_> {
                 || {
                     let sum: f64 = modulus.iter().sum();
                     invalid(format!(
-                        "{} adds up to {sum}; it must be at most the modulus of the body at once, which is {g}",
-                        NAMES[b][1]
+                        "{} adds up to {}; it must be at most the modulus of the body at once, which is {}",
+                        NAMES[b][1],
+                        Number(sum),
+                        Number(g)
                     ))
                 },
                 Ok,
@@ -100,7 +102,7 @@ impl Visco<'_> {
                     "visco is given, and body {} below its coating has the modulus {}; the layer relaxes, and the body does not: this version \
                      solves that on rigid bodies alone (+infinity)",
                     b + 1,
-                    scene.bodies.shear_modulus[b]
+                    Number(scene.bodies.shear_modulus[b])
                 )));
             }
         }
@@ -204,7 +206,7 @@ impl Effect for Visco<'_> {
         if !(step.compliance().is_normal() && (1.0 / step.compliance()).is_normal()) {
             return invalid(format!(
                 "visco->time_step is {}, in which bodies that have no modulus in the end give way by {:e} times what they do at once",
-                self.time_step,
+                Number(self.time_step),
                 step.compliance()
             ));
         }

@@ -12,8 +12,9 @@ use super::scene::{contact_normal_scene, Named};
 use super::status::{contact_normal_status, Refusal};
 use super::warnings::advice_on_law;
 use super::watcher::{told_to, watched, why, Watcher};
-use crate::contact::State;
+use crate::contact::{Certificate, State};
 use crate::effects;
+use crate::error::Rounded;
 use crate::scene::{Load, Scene};
 use crate::solver::{ActiveSet, InitialGuess, Method, Neglected, Options, Outcome, ProgressCallback, Report, Solver};
 
@@ -177,6 +178,10 @@ pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Opt
         _ => String::new(),
     };
     let mut message = format!("{} after {cycles} cycles{products}; the residual is {residual:e}", why(stop));
+    if residual <= report.tolerance && report.friction.is_none() {
+        let Certificate { violation, complementarity, .. } = report.measures.certificate;
+        message += &format!(", the violation {violation:e} and the complementarity {complementarity:e}");
+    }
     message += tangential.as_deref().unwrap_or_default();
     if let Some(missing) = report.friction.map(|found| found.missing).filter(|missing| *missing > report.tolerance) {
         message += &format!("; the tangential force is off by {missing:e} of mu N");
@@ -193,19 +198,20 @@ pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Opt
 /// By how much the force of a result is not the one that is given, where that is more than the tolerance: bodies that pull too little.
 fn lack_of_force(load: Load, report: &Report) -> String {
     let Load::Force(given) = load else { return String::new() };
-    let (force, approach) = (report.measures.force, report.measures.approach);
-    let lack = (force / given - 1.0).abs();
+    let lack = (report.measures.force / given - 1.0).abs();
     if !(lack > report.tolerance && lack.is_finite()) {
         return String::new();
     }
     let found = match report.adhesion.is_some_and(|found| found.is_short) {
         true => format!(
-            "; no way down has led to the force that is given until then, and the strongest state on them holds a pull of {force:e}, at an \
-             approach of {approach:e}"
+            "; no way down has led to the force that is given until then, and the strongest state on them holds a pull of {}, at an approach \
+             of {}",
+            Rounded(report.measures.force),
+            Rounded(report.measures.approach)
         ),
         false => String::new(),
     };
-    format!("{found}; the force is off by {lack:e} of the one that is given")
+    format!("{found}; the force is off by {} of the one that is given", Rounded(lack))
 }
 
 /// The point that a solve without further progress has reached, as far as its result proves it.

@@ -104,13 +104,10 @@ pub unsafe extern "C" fn contact_normal_influence_half_space(
             return Err(Refusal::null("coefficients"));
         }
         let half_space = HalfSpace::new(dx, dy, compliance);
+        // The largest and the smallest one.
         for value in [half_space.at(0, 0), half_space.at(cx as i64, cy as i64)] {
-            require(
-                value > 0.0 && value.is_normal(),
-                "a coefficient",
-                value,
-                "element sizes and moduli take it out of the range of numbers",
-            )?;
+            let rule = "element sizes and moduli take it out of the range of numbers";
+            require(value > 0.0 && value.is_normal(), "a coefficient", value, rule)?;
         }
         let mut half_row = zeros(grid.mx + 1, "a row of coefficients")?;
         for row in 0..2 * grid.my {

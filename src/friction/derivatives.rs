@@ -63,6 +63,7 @@ impl Solver {
     /// The change of the tractions of the last result with its pressures, by `dp`, and with the slip from other causes. `change` holds dw on entry
     /// and dq on return. All arrays are on the whole grid.
     pub fn change(&mut self, friction: &Friction<'_>, dp: &[f64], change: &mut [Vector]) -> Result<()> {
+        let limits = self.last_limits(friction)?;
         let (Some(window), Some(level)) = (&self.window, self.levels.first_mut()) else {
             change.fill([0.0; 2]);
             return Ok(());
@@ -73,9 +74,8 @@ impl Solver {
         let (mut slip, mut along, mut displaced) = (fields.take(n)?, fields.take(n)?, fields.take(n)?);
         for (k, i) in window.elements(&self.grid) {
             // Where the layer yields, tractions do not depend on pressures.
-            let yields = friction.layer.is_some_and(|layer| {
-                self.scales.own_traction([problem.bound[k], 0.0])[0] >= friction.yield_limit_before(layer, i)
-            });
+            let bound = || self.scales.own_traction([problem.bound[k], 0.0])[0];
+            let yields = limits.get(i).is_some_and(|limit| bound() >= *limit);
             let g = match tangent.side[k] {
                 Side::Slip if !yields => friction.coefficient.at(i) * dp[i],
                 _ => 0.0,

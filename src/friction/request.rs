@@ -22,18 +22,30 @@ pub struct Request<'a> {
     pub is_cancelled: bool,
     /// Whether errors are estimated.
     pub estimates: bool,
+    /// The yield limits of an ideal layer; empty without one.
+    pub limits: &'a [f64],
 }
 
 impl<'a> Request<'a> {
-    /// The traction bound of an element: mu p, or less where a layer yields.
+    /// The traction bound of an element: mu p, or less where an ideal layer yields.
     pub fn bound(&self, i: usize) -> f64 {
-        self.friction.bound_at(i, self.pressure[i])
+        let bound = self.friction.coefficient.at(i) * self.pressure[i].max(0.0);
+        self.limits.get(i).map_or(bound, |limit| bound.min(*limit))
     }
 
     /// A request from the tractions before the step, for like bodies, with at most 1000 iterations and no estimates.
     pub fn new(pressure: &'a [f64], friction: &'a Friction<'a>, tolerance: f64) -> Request<'a> {
-        let (limit, start) = (1000, Start::Before);
-        Request { pressure, friction, tolerance, limit, sideways: None, start, is_cancelled: false, estimates: false }
+        Request {
+            pressure,
+            friction,
+            tolerance,
+            limit: 1000,
+            sideways: None,
+            start: Start::Before,
+            is_cancelled: false,
+            estimates: false,
+            limits: &[],
+        }
     }
 }
 

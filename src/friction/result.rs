@@ -1,16 +1,20 @@
 //! The result of a solve, on the whole grid.
 
 use super::certificate::is_on_circle;
+use super::forces::Forces;
 use super::levels::Level;
 use super::plane::{against, length, Vector};
+use super::request::Request;
 use super::solution::{resultant, Report, Solution, EXTERIOR, SLIP, STICK};
 use super::solver::Solver;
 use crate::effects::{Friction, Prescribed};
+use crate::error::Result;
 use crate::sums::in_blocks;
 
 impl Solver {
     /// Writes the result on the whole grid, and the report.
-    pub(super) fn write(&mut self, friction: &Friction<'_>, pressure: &[f64], report: &mut Report) {
+    pub(super) fn write(&mut self, request: &Request<'_>, report: &mut Report) {
+        let Request { pressure, friction, .. } = *request;
         let Solution { traction, slip, stick_slip, .. } = &mut self.solution;
         let (grid, scales, threads) = (self.grid, self.scales, self.threads.suited_to(self.grid.len()));
         let distance = friction.distance(&grid);
@@ -28,8 +32,7 @@ impl Solver {
                     traction[ix] = if problem.bound[k] > 0.0 {
                         scales.own_traction(state.q[k])
                     } else {
-                        let i = iy * grid.mx + ix;
-                        against(slip[ix], friction.bound_at(i, pressure[i]))
+                        against(slip[ix], request.bound(iy * grid.mx + ix))
                     };
                 }
             });
@@ -83,5 +86,12 @@ impl Solver {
             Prescribed::Force(force) => carried(k) - force,
             Prescribed::Creepage(_) => 0.0,
         })
+    }
+
+    /// The largest part of a request's forces that its pressures carry; above 1 if they carry the forces with room to spare.
+    pub fn part_in_reach(&self, request: &Request<'_>) -> Result<f64> {
+        let limits = self.limits_before(request)?;
+        let request = Request { limits: &limits, ..*request };
+        Forces::part(request.friction, &self.grid, |i| request.bound(i))
     }
 }

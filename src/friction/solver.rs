@@ -137,6 +137,8 @@ impl Solver {
     ) -> Result<(Outcome, Report)> {
         let began = std::time::Instant::now();
         let Request { pressure, friction, .. } = *request;
+        let limits = self.limits_before(request)?;
+        let request = &Request { limits: &limits, ..*request };
         let bound = |i: usize| request.bound(i);
         let keeps = friction.previous == Previous::Kept;
         if keeps && !self.has_solution {
@@ -181,17 +183,12 @@ impl Solver {
             report.products += self.take_products();
         }
         let march = self.march(friction, pressure)?;
-        self.write(friction, pressure, &mut report);
+        self.write(request, &mut report);
         self.write_particles(march);
         report.missing = self.missing(friction, &report);
         self.has_solution = true;
         report.seconds = began.elapsed().as_secs_f64();
         Ok((end, report))
-    }
-
-    /// The largest part of a request's forces that its pressures carry; above 1 if they carry the forces with room to spare.
-    pub fn part_in_reach(&self, request: &Request<'_>) -> Result<f64> {
-        Forces::part(request.friction, &self.grid, |i| request.bound(i))
     }
 
     /// Solves in a window, in the solver's units. Writes the certificate and the products to the report.

@@ -1,6 +1,7 @@
 //! A [law](super::law) or a yielding layer in the units of the iterations, and the state of particles from step to step.
 
 use super::law::{Law, March, Particle, Place};
+use super::request::Request;
 use super::solution::{PLASTIC, SLIP};
 use super::solver::Solver;
 use super::sweep::{Rolling, Sweep};
@@ -73,13 +74,37 @@ impl Solver {
     }
 
     pub(super) fn had<'a>(&'a self, friction: &'a Friction<'a>) -> Had<'a> {
+        self.had_of(friction, &self.particles_before)
+    }
+
+    /// The state before a step that `continues` from these particles.
+    fn had_of<'a>(&self, friction: &'a Friction<'a>, particles: &'a [Particle]) -> Had<'a> {
         let grid = self.grid;
         let sweep = (friction.motion == Motion::TransientRolling).then(|| {
             let by = friction.elements_rolled(&grid);
             Sweep::new(&Rolling { distance: friction.distance(&grid), by })
         });
-        let kept = if friction.previous == Previous::Kept { &self.particles_before[..] } else { &[] };
+        let kept = if friction.previous == Previous::Kept { particles } else { &[] };
         Had { friction, kept, grid, sweep }
+    }
+
+    /// The yield limits of an ideal layer before the step of a request, whose state is not kept yet; none without such a layer.
+    pub(super) fn limits_before(&self, request: &Request<'_>) -> Result<Vec<f64>> {
+        let is_kept = request.start.is_again();
+        self.limits(request.friction, if is_kept { &self.particles_before } else { &self.solution.particles })
+    }
+
+    /// The yield limits of an ideal layer before the last step.
+    pub(super) fn last_limits(&self, friction: &Friction<'_>) -> Result<Vec<f64>> {
+        self.limits(friction, &self.particles_before)
+    }
+
+    fn limits(&self, friction: &Friction<'_>, particles: &[Particle]) -> Result<Vec<f64>> {
+        if !friction.has_ideal_layer() {
+            return Ok(Vec::new());
+        }
+        let had = self.had_of(friction, particles);
+        Ok(collected((0..self.grid.len()).map(|i| had.at(i).yield_limit), "the yield limits")?)
     }
 
     /// A particle's state in the units of the iterations.

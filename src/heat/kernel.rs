@@ -15,7 +15,8 @@
 //!
 //! g has a logarithmic singularity at x = 0, and behind a fast source one of `x^(-1/2)`. The substitution `x = L s^4` makes both smooth. g changes
 //! on the scales of half the width of the element and of 1/P. L is the smaller scale, or the end of the element. Beyond L panels follow, each longer
-//! by the factor [`PANEL_RATIO`]. Without motion the integral is Love's.
+//! by the factor [`PANEL_RATIO`]. Without motion the integral is Love's. On far elements, over which T changes little, a rule of [`FAR_NODES`] a side
+//! integrates it directly.
 
 use std::f64::consts::PI;
 
@@ -26,16 +27,30 @@ const PANEL: f64 = 2.0;
 /// Ratio of the ends of panels in x.
 const PANEL_RATIO: f64 = 4.0;
 /// Least length of the first panel in x, as a part of an element.
-const SHORTEST_PANEL: f64 = 1e-6;
+const SHORTEST_PANEL: f64 = 1e-12;
+
+/// Distance of far elements, over their longer side: 1/r changes by the factor 1.1, and its rule is right to 24^-12.
+const FAR: f64 = 12.0;
+/// Largest change of the exponent over a far element: a rule of 6 nodes integrates the wake of a fast source to 1e-10 of the value.
+const FAR_EXPONENT: f64 = 1.0;
+/// Nodes of the rule on far elements, in each direction.
+pub const FAR_NODES: usize = 6;
 
 /// Nodes and weights on [0, 1].
 pub type Rule = [(f64, f64)];
 
 /// The temperature rise at `(x, y)`, downstream of and beside the centre of an element `dx` by `dy`, by a unit flux into a half-space of unit
-/// conductivity: a length.
-pub fn of_element((x, y): (f64, f64), (dx, dy): (f64, f64), wave: f64, rule: &Rule) -> f64 {
+/// conductivity: a length. `rule`: for near elements, and of [`FAR_NODES`] for far ones.
+pub fn of_element((x, y): (f64, f64), (dx, dy): (f64, f64), wave: f64, (rule, far): (&Rule, &Rule)) -> f64 {
     if wave == 0.0 {
         return love((x, y), (dx, dy)) / (2.0 * PI);
+    }
+    // At the farther edge, where the exponent changes most.
+    let edge = y.abs() + 0.5 * dy;
+    let r = x.hypot(edge);
+    let change = wave * (dx * lag(x, edge, r) + dy * edge) / r;
+    if r >= FAR * dx.max(dy) && change <= FAR_EXPONENT {
+        return of_far_element((x, y), (dx, dy), wave, far);
     }
     let edges = (y.abs() - 0.5 * dy, y.abs() + 0.5 * dy);
     let (from, to) = (x - 0.5 * dx, x + 0.5 * dx);
@@ -52,6 +67,26 @@ pub fn of_element((x, y): (f64, f64), (dx, dy): (f64, f64), wave: f64, rule: &Ru
         (false, _) => behind(from, to),
         (true, false) => ahead(-to, -from),
     }
+}
+
+/// r - x, without cancellation.
+fn lag(x: f64, y: f64, r: f64) -> f64 {
+    if x > 0.0 {
+        y * (y / (r + x))
+    } else {
+        r - x
+    }
+}
+
+/// The integral of T over a far element, by a rule in each direction.
+fn of_far_element((x, y): (f64, f64), (dx, dy): (f64, f64), wave: f64, rule: &Rule) -> f64 {
+    let at = |x: f64, y: f64| {
+        let r = x.hypot(y);
+        (-wave * lag(x, y, r)).exp() / r
+    };
+    let along = |y: f64| rule.iter().map(|(s, weight)| weight * at(x + (s - 0.5) * dx, y)).sum::<f64>();
+    let sum: f64 = rule.iter().map(|(s, weight)| weight * along(y + (s - 0.5) * dy)).sum();
+    sum * dx * dy / (2.0 * PI)
 }
 
 /// Love's integral of 1/r over an element.

@@ -78,7 +78,7 @@ impl Heat<'_> {
         let Grid { mx, my, dx, dy } = self.grid;
         let (speed, diffusivity) = (self.speed[b], self.diffusivity[b]);
         let reason = || format!("speed[{b}] is {speed:e} with diffusivity[{b}] of {diffusivity:e}");
-        let (wave, rule) = (speed.abs() / (2.0 * diffusivity), gauss_legendre(NODES));
+        let (wave, [near, far]) = (speed.abs() / (2.0 * diffusivity), [NODES, kernel::FAR_NODES].map(gauss_legendre));
         require_range(wave.is_finite(), reason)?;
         // x downstream.
         let sign = if self.speed[b] < 0.0 { -1.0 } else { 1.0 };
@@ -86,7 +86,7 @@ impl Heat<'_> {
         threads.for_each_plain_row(&mut values[2 * mx * my..], 2 * mx, |ky, row| {
             for (column, value) in row.iter_mut().enumerate() {
                 let x = sign * (column as f64 - mx as f64) * dx;
-                *value = kernel::of_element((x, ky as f64 * dy), (dx, dy), wave, &rule);
+                *value = kernel::of_element((x, ky as f64 * dy), (dx, dy), wave, (&near, &far));
             }
         });
         // Even in y; row -my is never read.

@@ -24,6 +24,7 @@ use super::gauss::gauss;
 use super::kernel::Kernel;
 use crate::error::Result;
 use crate::grid::Grid;
+use crate::powers::{apart, times_power};
 
 /// Most terms of the multipole series (degree `2 * 8 = 16`).
 const MOST_TERMS: usize = 8;
@@ -57,7 +58,7 @@ pub struct HalfSpace {
 /// an element, relative to its length in x.
 #[derive(Debug)]
 struct Shape {
-    /// The sides of the element of the computation.
+    /// The sides of the element, with a length in x near 1.
     dx: f64,
     dy: f64,
     /// `q_k(t) = sum_j series[k][j] t^j`.
@@ -83,6 +84,8 @@ thread_local! {
 impl Shape {
     /// The shape of an element, computed once.
     fn of(dx: f64, dy: f64) -> Arc<Shape> {
+        let (dx, unit) = apart(dx);
+        let dy = times_power(dy, -unit);
         LAST.with_borrow_mut(|last| match last {
             Some(last) if last.element == (dx, dy) => last.shape.clone(),
             _ => last.insert(Computed { element: (dx, dy), shape: Arc::new(Shape::new(dx, dy)) }).shape.clone(),

@@ -35,8 +35,8 @@ impl Best {
     }
 
     /// Sets the state to the best iterate, with admissible pressures, the prescribed force and a fresh u = A p. With a prescribed
-    /// approach the result is never worse than p = 0.
-    pub fn restore<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<()> {
+    /// approach the result is never worse than p = 0. Returns the survey of the result.
+    pub fn restore<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<Survey> {
         // The measures of the state are no longer valid.
         task.monitor.survey = None;
         let (state, set) = (&mut *task.state, task.set);
@@ -77,7 +77,8 @@ impl Best {
                 state.start(task.problem.self_influence());
             }
         }
+        let survey = Survey::of(state);
         task.count_products();
-        Ok(())
+        Ok(survey)
     }
 }

@@ -32,7 +32,7 @@ struct Pair {
 }
 
 /// The turns so far.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Extrapolation {
     last: Pair,
     /// The changes, oldest first.
@@ -40,11 +40,6 @@ pub struct Extrapolation {
 }
 
 impl Extrapolation {
-    /// The state before the first turn.
-    pub fn new() -> Extrapolation {
-        Extrapolation { last: Pair::default(), changes: Vec::new() }
-    }
-
     /// Takes a turn from x to y.
     pub fn turn(&mut self, x: &[f64], y: &[f64]) -> Result<()> {
         let mut pair = if self.changes.len() < KEPT_CHANGES { Pair::default() } else { self.changes.remove(0) };

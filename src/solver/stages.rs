@@ -24,7 +24,8 @@ pub enum Stage {
 /// The cycle count at which a method ends, from the cycles done: a fraction of the rest, so that cycles remain for every method of the list.
 pub fn share<S: AdmissibleSet>(stage: Stage, done: u64, most: u64) -> u64 {
     let left = most.saturating_sub(done);
-    let share = LEAST_SHARE.min(left / 2).max((METHOD_SHARE * left as f64) as u64);
+    // The first method has the only cycle: it starts best.
+    let share = LEAST_SHARE.min(left.div_ceil(2)).max((METHOD_SHARE * left as f64) as u64);
     done + if S::LIMITED && stage == Stage::ProjectedCg { share.min(LIMITED_SHARE) } else { share }
 }
 

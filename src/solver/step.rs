@@ -16,7 +16,8 @@ impl Solver {
     pub(super) fn check_continues(&self, scene: &Scene<'_>) -> Result<()> {
         for (k, name, Continues { from, .. }) in effects::continuing(scene) {
             let has_step = match name {
-                Friction::NAME => self.friction().is_some(),
+                // Tractions of `solve_tangential` have no normal problem.
+                Friction::NAME => self.friction.as_ref().is_some_and(|tangent| tangent.solution().is_some()),
                 _ => {
                     let history = &self.beside.histories[k];
                     (self.has_result || history.is_given) && history.has_step()

@@ -146,6 +146,7 @@ impl Tangent {
             start,
             is_cancelled: monitor.is_cancelled(),
             estimates: turn.options.estimates,
+            limits: &[],
         };
         self.solver.solve(&request, &mut |grid, residual| monitor.uncounted_done(grid, residual))
     }
@@ -163,7 +164,7 @@ impl Tangent {
     ) -> Result<(Outcome, Report, Option<Error>)> {
         match self.solve_from(start, turn, pressure, monitor) {
             Err(refusal @ Error::Infeasible(_)) if stop != Outcome::Converged || self.unlike.is_some() => {
-                let request = Request::new(pressure, turn.friction, turn.options.tolerance);
+                let request = Request { start, ..Request::new(pressure, turn.friction, turn.options.tolerance) };
                 let part = IN_REACH * self.solver.part_in_reach(&request)?;
                 let in_reach = |prescribed: Prescribed| match prescribed {
                     Prescribed::Force(force) => Prescribed::Force(part * force),

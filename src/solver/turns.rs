@@ -124,7 +124,7 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
     /// distances of the state.
     pub(super) fn turn_about(&mut self, options: &Options, (mut stop, is_met): (Outcome, bool)) -> Result<Outcome> {
         let again = Options { initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*options };
-        let mut extrapolation = Extrapolation::new();
+        let mut extrapolation = Extrapolation::default();
         for solved in 0..=MOST_TURNS {
             let InTurns { solver, turns, .. } = self;
             let so_far = turns.solve(true, stop, &solver.state, self.monitor)?;

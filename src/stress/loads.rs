@@ -1,11 +1,14 @@
 //! The loads on the surface of a body.
 
 use super::body::Loaded;
-use crate::effects::Effect;
-use crate::error::{finite, invalid, Result};
+use crate::effects::{Effect, NO_PATCH};
+use crate::error::{finite, invalid, require, Result};
 use crate::grid::{check_values, Grid};
 use crate::memory::collected;
 use crate::scene::Patches;
+
+/// Loads below this have stresses in the range of numbers: of a load of 1 they are below the 2^11 of the logarithms at edges.
+const LARGEST: f64 = 1e304;
 
 /// Pressures and tractions, `[my][mx]`, each optional. Tractions act on the body considered, in the directions of x and y.
 #[derive(Clone, Copy, Debug, Default)]
@@ -16,14 +19,15 @@ pub struct Loads<'a> {
     pub traction_x: Option<&'a [f64]>,
     /// qy.
     pub traction_y: Option<&'a [f64]>,
-    /// Contact patches: below an element of one patch, the loads of another count times the factor between both.
+    /// Contact patches: below an element of one patch, the loads of another count times the factor between both. Elements of no patch are stressed
+    /// by all loads in full.
     pub patches: Option<Patches<'a>>,
 }
 
-/// Elements stressed by the same loads: those of a patch, or all.
+/// Elements stressed by the same loads: those of a patch; all, or those of no patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// All elements, with unscaled loads.
+    /// Elements with unscaled loads.
     All,
     /// The elements of a patch.
     Patch(usize),
@@ -47,8 +51,28 @@ impl<'a> Loads<'a> {
     /// The parts of the grid with separate loads.
     pub(super) fn parts(&self) -> Vec<Part> {
         let Some(patches) = self.coupled() else { return vec![Part::All] };
-        let has = |patch: &usize| (0..patches.patch.len()).any(|i| patches.of(i) == *patch);
-        (0..patches.count).filter(has).map(Part::Patch).collect()
+        let of_patches = (0..patches.count).map(Part::Patch);
+        [Part::All]
+            .into_iter()
+            .chain(of_patches)
+            .filter(|part| (0..patches.patch.len()).any(|i| self.part(i) == *part))
+            .collect()
+    }
+
+    /// The part of an element.
+    pub(super) fn part(&self, i: usize) -> Part {
+        match self.coupled() {
+            Some(patches) if patches.patch[i] != NO_PATCH => Part::Patch(patches.of(i)),
+            _ => Part::All,
+        }
+    }
+
+    /// The factor of the loads on element j below a part.
+    pub(super) fn factor(&self, part: Part, j: usize) -> f64 {
+        match (self.coupled(), part) {
+            (Some(patches), Part::Patch(patch)) if patches.patch[j] != NO_PATCH => patches.factor(patch, j),
+            _ => 1.0,
+        }
     }
 
     /// The patches, unless all factors are 1.
@@ -58,17 +82,17 @@ impl<'a> Loads<'a> {
 
     /// The loads on a part: each load times the factor of its patch.
     pub(super) fn on(&self, part: Part, load: &[f64]) -> Result<Vec<f64>> {
-        let factor = |i: usize| match (self.coupled(), part) {
-            (Some(patches), Part::Patch(patch)) => patches.factor(patch, i),
-            _ => 1.0,
-        };
-        Ok(collected(load.iter().enumerate().map(|(i, load)| factor(i) * load), "the loads of a patch")?)
+        let loads = load.iter().enumerate().map(|(i, load)| self.factor(part, i) * load);
+        Ok(collected(loads, "the loads of a patch")?)
     }
 
     pub(super) fn check(&self, grid: &Grid) -> Result<()> {
         for (name, load) in ["pressure", "traction_x", "traction_y"].into_iter().zip(self.list()) {
             let Some(load) = load else { continue };
-            check_values(name, load, grid, finite)?;
+            check_values(name, load, grid, |name, value| {
+                finite(name, value)?;
+                require(value.abs() < LARGEST, name, value, "loads must lie below 1e304: choose other units")
+            })?;
         }
         if let Some(patches) = &self.patches {
             Effect::check(patches, grid)?;

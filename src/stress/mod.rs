@@ -93,7 +93,8 @@ pub fn subsurface_stress(
             done += 1;
             if let Some(told) = &mut progress {
                 let seconds = began.elapsed().as_secs_f64();
-                if told(&Progress::of_part(&body.grid, done as u64, seconds)) {
+                // A stop that comes with the last depth leaves nothing out.
+                if told(&Progress::of_part(&body.grid, done as u64, seconds)) && done < depths.len() {
                     return Ok(false);
                 }
             }

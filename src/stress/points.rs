@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::body::Body;
 use super::kernels;
-use super::loads::Loads;
+use super::loads::{Loads, Part};
 use super::tensor::Tensor;
 use crate::error::{invalid, require, Error, Result};
 use crate::grid::Grid;
@@ -40,12 +40,13 @@ pub fn stress_at_points(
     loads.check(&body.grid)?;
     points.iter().enumerate().try_for_each(|(i, point)| check(body, loads, i, *point))?;
     let at_once = threads.count() * (AT_ONCE / body.grid.len()).max(1);
-    let mut done = 0;
+    let (mut done, all) = (0, points.len());
     for (out, points) in out.chunks_mut(at_once).zip(points.chunks(at_once)) {
         threads.for_each_plain_row(out, 1, |i, out| out[0] = at_point(body, loads, points[i]));
         done += points.len();
         let told = Progress::of_part(&body.grid, done as u64, began.elapsed().as_secs_f64());
-        if progress.as_mut().is_some_and(|progress| progress(&told)) {
+        // A stop that comes with the last points leaves nothing out.
+        if progress.as_mut().is_some_and(|progress| progress(&told)) && done < all {
             return Ok(false);
         }
     }
@@ -108,15 +109,14 @@ fn at_point(body: &Body, loads: &Loads<'_>, point: [f64; 3]) -> Tensor {
     let scale = loads.scale();
     // On a common edge, the patch of the next element.
     let above = |x: f64, d: f64, m: usize| ((x / d) as usize).min(m - 1);
-    let patches = loads.coupled().map(|patches| {
-        let i = grid.index(above(x, grid.dx, grid.mx), above(y, grid.dy, grid.my));
-        (patches, patches.of(i))
-    });
+    let part = match loads.coupled() {
+        Some(_) => loads.part(grid.index(above(x, grid.dx, grid.mx), above(y, grid.dy, grid.my))),
+        None => Part::All,
+    };
     let [x, y, z] = [x, y, z].map(|length| body.in_units(length));
     let mut sum = [0.0; 6];
     for j in 0..grid.len() {
-        let factor = patches.map_or(1.0, |(patches, patch)| patches.factor(patch, j));
-        let values = list.map(|load| load.map_or(0.0, |load| factor * (load[j] / scale)));
+        let values = list.map(|load| load.map_or(0.0, |load| loads.factor(part, j) * (load[j] / scale)));
         if values == [0.0; 3] {
             continue;
         }

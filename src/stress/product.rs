@@ -106,7 +106,7 @@ impl<'a> Product<'a> {
             memory: self.transforms.memory(offsets.1)?,
             spectrum: zeros(tables * nb * half, STRESS)?,
             stress: zeros(self.body.grid.my * nb, STRESS)?,
-            field: zeros(if self.parts[0].0 == Part::All { 0 } else { self.body.grid.len() }, STRESS)?,
+            field: zeros(if self.has_patches() { self.body.grid.len() } else { 0 }, STRESS)?,
         })
     }
 
@@ -126,6 +126,10 @@ impl<'a> Product<'a> {
         }
     }
 
+    fn has_patches(&self) -> bool {
+        self.parts.iter().any(|(part, _)| *part != Part::All)
+    }
+
     /// Component c at the entered depth.
     pub fn component(&self, c: usize, workspace: &mut Workspace, out: &mut [f64]) {
         for load in (0..3).filter(|&load| self.loaded()[load]) {
@@ -137,8 +141,8 @@ impl<'a> Product<'a> {
             let to = if *part == Part::All { &mut *out } else { &mut field[..] };
             self.transforms.back(stress, left.0, self.scale, memory, to, self.body.grid.mx);
             if let (Part::Patch(patch), Some(patches)) = (part, &self.patches) {
-                for (i, (out, value)) in out.iter_mut().zip(&*field).enumerate() {
-                    *out = if patches.of(i) == *patch { *value } else { *out };
+                for ((out, value), of) in out.iter_mut().zip(&*field).zip(patches.patch) {
+                    *out = if *of == *patch as i32 { *value } else { *out };
                 }
             }
         }

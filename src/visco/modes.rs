@@ -45,8 +45,9 @@ fn root(series: &Series, i: usize) -> (f64, Vec<f64>) {
         let term = |(r, t): (&f64, &f64)| r * t * rate / (1.0 - t * rate);
         fractions.iter().zip(times).map(term).sum::<f64>() - rest
     };
-    // lambda = (1 - d)/t_o.
-    let from = |o: usize, d: f64| -> Vec<f64> { times.iter().map(|t| ((times[o] - t) + t * d) / times[o]).collect() };
+    // lambda = (1 - d)/t_o. Only ratios of times, so that they may have any unit.
+    let from =
+        |o: usize, d: f64| -> Vec<f64> { times.iter().map(|t| (times[o] - t) / times[o] + t / times[o] * d).collect() };
     if i == 0 {
         let middle = 0.5 / times[0];
         if *rest == 0.0 {

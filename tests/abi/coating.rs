@@ -82,6 +82,10 @@ fn the_compliance_of_a_wave_is_that_of_one_material_where_the_layer_is() {
     close(ask(&coating(1.0, 1e3, 0.3), 1e-15), 0.75 / (500.0 * 1e-15));
     assert_eq!(ask(&coating(1.0, 1e3, 0.3), 0.0).0, CONTACT_NORMAL_INVALID_ARGUMENT);
     assert_eq!(ask(&coating(1.0, 1e3, 0.3), f64::NAN).0, CONTACT_NORMAL_NOT_FINITE);
+    // The layer is deep beside a wave that is beyond the root of the range.
+    for k in [1e150, 1e155, 1e200] {
+        close(ask(&coating(1.0, 1.0, 0.3), k), 0.7 / k);
+    }
     // It overflows.
     assert_eq!(ask(&coating(1.0, 1e-300, 0.3), 1e-300).0, CONTACT_NORMAL_NOT_FINITE);
     // SAFETY: NULL is allowed, and refused.

@@ -119,6 +119,23 @@ fn apart(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).fold(0.0f64, |most, (a, b)| most.max((a - b).abs())) / largest
 }
 
+/// Tractions of `contact_normal_solve_tangential` are tractions of the handle, for a solve that continues, too.
+#[test]
+fn a_solve_continues_from_tractions_without_a_normal_problem() {
+    let mut call = Call::new();
+    let handle = Handle::of(&call);
+    assert_eq!(call.run(handle.0), OK);
+    let h: Vec<f64> =
+        (0..N).map(|i| 1e-3 * ((i % M) as f64 - 7.5).powi(2) + 1e-3 * ((i / M) as f64 - 7.5).powi(2)).collect();
+    call.friction.continues = 1;
+    let inner = &mut *call;
+    (inner.scene.load, inner.scene.approach) = (CONTACT_NORMAL_PRESCRIBED_APPROACH, 0.05);
+    inner.scene.undeformed_distance = h.as_ptr();
+    // SAFETY: a handle, structs with their arrays.
+    let status = unsafe { contact_normal_solver_solve(handle.0, &inner.scene, &inner.options, null_mut(), null_mut()) };
+    assert_eq!(status, CONTACT_NORMAL_OK);
+}
+
 #[test]
 fn a_handle_has_the_bits_of_single_calls() {
     for motion in

@@ -95,6 +95,23 @@ static void batches()
                !second.results[2].holds(cn::fields::pressure),
            "and says why");
     expect(second.results[4] && second.results[4].message.empty() && second.results[4].pressure == found.results[4].pressure, "the others are solved");
+    // One contact reaches the border, one is a single element, one is neither.
+    std::vector<double> alone(h.size(), 1.0);
+    alone[static_cast<std::size_t>(std::min_element(h.begin(), h.end()) - h.begin())] = 0.0;
+    scenes = {cn::scene(GRID, STEEL).undeformed_distance(h).force(1e6), cn::scene(GRID, STEEL).undeformed_distance(alone).force(1e-3),
+              cn::scene(GRID, STEEL).undeformed_distance(h).force(100.0)};
+    const cn::batch warned = solver.solve_batch(scenes, how);
+    const std::string border = "contact reaches the border", single = "one element is in contact";
+    expect(static_cast<bool>(warned) && warned.message.find(border) == 0 && warned.message.find(single) != std::string::npos, "a batch that is OK warns");
+    expect(warned.results[0].message.find(border) == 0 && warned.results[1].message.find(single) == 0 && warned.results[2].message.empty() &&
+               warned.results[0].message == solver.solve(scenes[0], how).message && warned.results[1].message == solver.solve(scenes[1], how).message,
+           "and each problem as it does alone");
+    const std::array<double, 3> entry = {1e-4, 0.0, 0.0};
+    cn::friction falling(0.3);
+    falling.motion(CONTACT_NORMAL_MOTION_STEADY_ROLLING).law(CONTACT_NORMAL_FRICTION_LAW_LINEAR, 0.1, 0.2, 1e-6, 1.0).memory(1e-9, 1e-9);
+    const cn::friction_table table = cn::friction_batch(cn::scene(scenes[2]).friction(falling), cn::view<std::array<double, 3>>(&entry, 1));
+    expect(table.status == CONTACT_NORMAL_OK && table.report.warnings == CONTACT_NORMAL_WARNING_LAW && table.message.find("friction falls so steeply") == 0,
+           "a table of friction that is OK warns");
     how.progress = [](const contact_normal_progress *, void *) -> std::int32_t { return 0; };
     expect(thrown_by([&] { solver.solve_batch(scenes, how); }, "progress") == CONTACT_NORMAL_UNSUPPORTED, "a batch that is refused as a whole");
 }

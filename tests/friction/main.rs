@@ -14,6 +14,7 @@ mod estimates;
 mod forces;
 #[allow(dead_code)] // what docs/reliability_friction.md has
 mod hard;
+mod ideal_layer;
 mod law_slopes;
 mod laws;
 mod laws_by_force;

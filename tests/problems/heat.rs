@@ -67,34 +67,39 @@ fn own(grid: &Grid, wave: f64) -> f64 {
     (0..steps).map(of).sum::<f64>() / steps as f64
 }
 
-/// The same at an offset, by midpoints of small squares: nothing is singular there.
+/// The same at an offset, by Simpson's rule: nothing is singular there.
 fn offset(grid: &Grid, (kx, ky): (f64, f64), wave: f64) -> f64 {
     let steps = 400;
-    let part = |k: usize, d: f64| ((k as f64 + 0.5) / steps as f64 - 0.5) * d;
+    let part = |k: usize, d: f64| (k as f64 / steps as f64 - 0.5) * d;
+    let weight = |k: usize| if k == 0 || k == steps { 1.0 } else { (2 + 2 * (k % 2)) as f64 };
     let mut sum = 0.0;
-    for i in 0..steps * steps {
-        let (x, y) = (kx * grid.dx - part(i % steps, grid.dx), ky * grid.dy - part(i / steps, grid.dy));
+    for (i, j) in (0..=steps).flat_map(|i| (0..=steps).map(move |j| (i, j))) {
+        let (x, y) = (kx * grid.dx - part(i, grid.dx), ky * grid.dy - part(j, grid.dy));
         let r = x.hypot(y);
-        sum += (-wave * (r - x)).exp() / r;
+        // r - x without cancellation.
+        let lag = if x > 0.0 { y * y / (r + x) } else { r - x };
+        sum += weight(i) * weight(j) * (-wave * lag).exp() / r;
     }
-    sum * grid.element_area() / (2.0 * PI * (steps * steps) as f64)
+    sum * grid.element_area() / (2.0 * PI * (9 * steps * steps) as f64)
 }
 
 #[test]
 fn one_element_heats_as_the_integral_of_jaegers_source() {
-    let grid = Grid::new(9, 7, 2e-4, 3e-4).expect("a grid");
-    let mut flux = vec![0.0; 63];
-    flux[3 * 9 + 4] = 1.0;
+    let grid = Grid::new(49, 31, 2e-4, 3e-4).expect("a grid");
+    let mut flux = vec![0.0; 49 * 31];
+    flux[15 * 49 + 24] = 1.0;
     for speed in [1e-3, 0.1, 1.0, 30.0] {
         let wave = speed / (2.0 * 1.4e-5);
         let found = found(grid, &flux, [speed, 0.0], Some(1.0));
         let scale = found.largest[0] * 50.0;
-        let at = |kx: i64, ky: i64| 50.0 * found.rise[0][((3 + ky) * 9 + 4 + kx) as usize];
+        let at = |kx: i64, ky: i64| 50.0 * found.rise[0][((15 + ky) * 49 + 24 + kx) as usize];
         assert!((at(0, 0) - own(&grid, wave)).abs() < 1e-6 * scale, "{speed}: {} {}", at(0, 0), own(&grid, wave));
-        for (kx, ky) in [(1, 0), (4, 0), (-1, 0), (-4, 1), (0, 1), (2, 2), (1, -3)] {
+        let near = [(1_i64, 0_i64), (4, 0), (-1, 0), (-4, 1), (0, 1), (2, 2), (1, -3)];
+        for (kx, ky) in near.into_iter().chain([(19, 0), (24, 3), (-20, 0), (20, -8), (0, 14), (-9, 13)]) {
             let exact = offset(&grid, (kx as f64, ky as f64), wave);
-            // Midpoints of 1/400 of an element.
-            assert!((at(kx, ky) - exact).abs() < 2e-5 * scale, "{speed} {kx} {ky}: {} {exact}", at(kx, ky));
+            // Simpson's rule on parts of 1/400 of an element, on near ones of a fast source across the thin layer at its edge.
+            let allowed = if kx.abs() + ky.abs() < 13 || speed > 1.0 { 2e-5 } else { 1e-10 };
+            assert!((at(kx, ky) - exact).abs() < allowed * scale, "{speed} {kx} {ky}: {} {exact}", at(kx, ky));
         }
     }
 }

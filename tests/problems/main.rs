@@ -34,6 +34,7 @@ mod coefficients;
 mod counted_costs;
 mod dashpots;
 mod effects;
+mod ends_of_range;
 mod estimates;
 mod estimates_at_edges;
 mod estimates_of_kinds;

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -19,8 +20,11 @@ if TYPE_CHECKING:
     from .._arguments import Doubles
     from .._result import Result
 
-# Newton's steps for a distance along the normal. Each doubles the digits; the start is off by the curvature of the wheel only.
-_STEPS = 8
+# Newton's steps for a distance along the normal. Each doubles the digits; the start is off by the curvature of the wheel only. Two or three suffice in most
+# cases: a step of less than this part of the radius is the last one.
+_STEPS, _TIGHT = 8, 1e-13
+# Places that are worked on at a time: some megabytes.
+_BLOCK = 1 << 16
 # A grid is made for the approach times the second number, and made anew if it was made for more than the first one.
 _LOOSE, _RESERVE = 1.5, 1.1
 # Of the rolling radius: nothing approaches by more, unless units are mixed.
@@ -28,6 +32,10 @@ _DEEPEST = 0.05
 # The grid of a patch has at most this many elements on each side of the contact point; the first one that is tried.
 _FARTHEST = 1024
 _LEAST = 8
+
+
+class _Late(Exception):
+    """No time is left."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,17 +116,30 @@ class ContactPoint:
         -------
         ndarray, (my, mx)
         """
-        x, y = np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64)
-        pair, (ex, ey, normal) = self._pair, self._axes()
+        return self._distance(np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64), lambda: False)
+
+    def _distance(self, x: Doubles, y: Doubles, is_over: Callable[[], bool]) -> Doubles:
+        """The same; raises _Late between two blocks of rows once no time is left."""
+        pair, (_, ey, normal) = self._pair, self._axes()
         origin = np.array([self._x, *(float(value) for value in pair.rail.at(self._on_rail)[:2])])
         # The rail is the same all along x.
         along = (ey[1], ey[2])
         on_rail = pair.rail.where(y + along[0] * origin[1] + along[1] * origin[2], along, self._on_rail)
         rail_y, rail_z, _, _ = pair.rail.at(np.where(np.isnan(on_rail), 0.0, on_rail))
         rail = (rail_y - origin[1]) * normal[1] + (rail_z - origin[2]) * normal[2]
-        # The wheel: the n at which origin + x ex + y ey + n normal lies on its surface, whose distance from the axle is the radius there.
+        found, count = np.empty((len(y), len(x))), max(1, _BLOCK // max(len(x), 1))
+        for rows in (slice(first, first + count) for first in range(0, len(y), count)):
+            if is_over():
+                raise _Late
+            found[rows] = self._to_wheel(origin - pair.axle(), x, y[rows]) - rail[rows, None]
+        found[np.isnan(on_rail), :] = np.inf
+        return found
+
+    def _to_wheel(self, origin: Doubles, x: Doubles, y: Doubles) -> Doubles:
+        """The n at which origin + x ex + y ey + n normal lies on the wheel's surface, whose distance from the axle is the radius there."""
+        pair, (ex, ey, normal) = self._pair, self._axes()
         turned = pair.position.rotation()
-        base = (origin - pair.axle() + x[None, :, None] * ex + y[:, None, None] * ey) @ turned
+        base = (origin + x[None, :, None] * ex + y[:, None, None] * ey) @ turned
         step = normal @ turned
         n = np.zeros(base.shape[:2])
         for _ in range(_STEPS):
@@ -127,10 +148,12 @@ class ContactPoint:
             _, radius, dy, dz = pair.tread.at(np.where(np.isnan(on_wheel), self._on_wheel, on_wheel))
             from_axle = np.hypot(at[:, :, 0], at[:, :, 2])
             slope = (at[:, :, 0] * step[0] + at[:, :, 2] * step[2]) / from_axle - dz / dy * step[1]
-            n -= (from_axle - radius) / slope
+            change = (from_axle - radius) / slope
+            n -= change
+            if not (np.abs(change) > _TIGHT * pair.radius).any(where=~np.isnan(on_wheel)):
+                break
         n[np.isnan(on_wheel)] = np.inf
-        n[np.isnan(on_rail), :] = np.inf
-        return np.asarray(n - rail[:, None])
+        return n
 
     def gap(self, dx: float, dy: float, depth: float) -> Gap:
         """The undeformed distance on a grid of elements of dx by dy, in mm, as large as a contact with an approach of `depth` can need.
@@ -138,6 +161,10 @@ class ContactPoint:
         Pressures >= 0 displace by u >= 0, so h - approach + u = 0 needs h <= approach: an element whose distance exceeds the least one by more than
         `depth` cannot touch. The grid has one row and one column of such elements on each side. The contact point is the centre of an element.
         """
+        return self._gap(dx, dy, depth, lambda: False)
+
+    def _gap(self, dx: float, dy: float, depth: float, is_over: Callable[[], bool]) -> Gap:
+        """The same; raises _Late once no time is left."""
         dx, dy, depth = number("dx", dx), number("dy", dy), number("depth", depth)
         for name, value in (("dx", dx), ("dy", dy), ("depth", depth)):
             if not 0.0 < value < np.inf:
@@ -148,9 +175,9 @@ class ContactPoint:
                 raise ValueError(f"depth is {depth}: the grid would need more than {2 * _FARTHEST} elements of {dx} x {dy} in a direction")
             k = np.arange(-reach, reach + 1)
             # Both axes first: they tell of most grids that are too small.
-            ahead, aside = self.distance(k * dx, [0.0])[0], self.distance([0.0], k * dy)[:, 0]
+            ahead, aside = self._distance(k * dx, np.zeros(1), is_over)[0], self._distance(np.zeros(1), k * dy, is_over)[:, 0]
             if min(ahead[0], ahead[-1], aside[0], aside[-1]) >= min(ahead.min(), aside.min()) + depth:
-                h = self.distance(k * dx, k * dy)
+                h = self._distance(k * dx, k * dy, is_over)
                 is_near = h < h.min() + depth
                 if not (is_near[[0, -1]].any() or is_near[:, [0, -1]].any()):
                     break
@@ -177,9 +204,10 @@ class ContactPoint:
         friction : dict, optional
             As that of `contact_normal.solve`. Its spin is about the contact point.
         **scene
-            Elastic constants, effects and options of `contact_normal.solve`. `max_seconds` is the limit of all solves together, of which that of friction
-            is the last one. No other one follows a solve that is cancelled, or ended by this limit: it is the result. Where no time is left for the next
-            solve, the one before is the result; its `status` is `ITERATION_LIMIT` then, and `message` tells what is missing.
+            Elastic constants, effects and options of `contact_normal.solve`. `max_seconds` is the limit of all grids and solves together, but
+            that the first grid is made to its end; the solve of friction is the last one. No other one follows a solve that is cancelled, or
+            ended by this limit: it is the result. Where no time is left for the next solve, the one before is the result; its `status` is
+            `ITERATION_LIMIT` then, and `message` tells what is missing.
         """
         may_shrink, limit = True, TimeLimit(scene)
         gap = self.gap(dx, dy, depth)
@@ -197,7 +225,10 @@ class ContactPoint:
                     break
                 may_shrink = False
             # A grid that is too small finds a larger approach than there is.
-            anew = self.gap(dx, dy, _RESERVE * approach)
+            try:
+                anew = self._gap(dx, dy, _RESERVE * approach, limit.is_over)
+            except _Late:
+                anew = gap
             if limit.leaves_none(result, f"on a grid for an approach of {depth:.3g} mm; the approach is {approach:.3g} mm"):
                 return gap, result
             gap, depth = anew, _RESERVE * approach

@@ -10,7 +10,8 @@ import numpy as np
 
 from .._arguments import number
 from .._short import Short
-from ._heights import Heights, blocks, refuse_others
+from ._heights import Heights, refuse_others
+from ._neighbours import all_but_single, neighbours_median, said_by_neighbours
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
 _OFTEN = 2
 # Of fewer distinct values none can be told from a step of the surface.
 _DISTINCT = 8
-# Of the four pairs of opposite neighbours so many can do without planes.
-_PAIRS = 3
+# Curvatures between elements twice as far apart are so many times as large.
+_FAR = 4.0
 # Standard deviations of a normal distribution in a median of absolute values.
 _DEVIATIONS = 1.0 / 0.6744897501960817
 
@@ -99,45 +100,15 @@ def warn_of_fill_values(heights: Heights, stacklevel: int) -> None:
                       stacklevel=stacklevel + 1)
 
 
-def _padded(z: Doubles, period: str | None) -> Doubles:
-    """With one more element on each side: NaN, or with a period those of the other side."""
-    padded = np.pad(z, 1, constant_values=np.nan)
-    if period in ("x", "xy"):
-        padded[1:-1, 0], padded[1:-1, -1] = z[:, -1], z[:, 0]
-    if period in ("y", "xy"):
-        padded[0], padded[-1] = padded[-2], padded[1]
-    return padded
-
-
-def _between_neighbours(z: Doubles, period: str | None, at: Any) -> Doubles:
-    """Of some elements the height that their neighbours say without the slope: the median of the means of opposite neighbours, and of the planes
-    through three neighbours where most opposite ones lack. NaN where neither is."""
-    padded = _padded(z, period)
-    rows, columns = at
-    around = np.stack([padded[rows + j, columns + i] for j in range(3) for i in range(3) if (j, i) != (1, 1)])
-    means = 0.5 * (around[:4] + around[:3:-1])
-    # Two neighbours on the axes and the one between them, by their places among the eight.
-    planes = np.stack([around[one] + around[other] - around[between] for one, other, between in ((1, 3, 0), (1, 4, 2), (6, 3, 5), (6, 4, 7))])
-    said = np.concatenate([means, np.where(np.isfinite(means).sum(axis=0) < _PAIRS, planes, np.nan)])
-    heights = np.full(len(rows), np.nan)
-    known = np.isfinite(said).any(axis=0)
-    heights[known] = np.nanmedian(said[:, known], axis=0)
-    return heights
-
-
-def neighbours_median(z: Doubles, period: str | None) -> Doubles:
-    """The median of the up to eight neighbours of each element; NaN where there are none."""
-    padded = _padded(z, period)
-    median = np.empty(z.shape)
-    for rows in blocks(z.shape):
-        around = padded[rows.start : rows.stop + 2]
-        shifted = [around[j : j + rows.stop - rows.start, i : i + z.shape[1]] for j in range(3) for i in range(3) if (j, i) != (1, 1)]
-        stacked = np.sort(np.stack(shifted), axis=0)  # NaN comes last
-        count = np.isfinite(stacked).sum(axis=0)
-        low, high = np.maximum((count - 1) // 2, 0), np.minimum(count // 2, 7)
-        pick = [np.take_along_axis(stacked, k[None], axis=0)[0] for k in (low, high)]
-        median[rows] = np.where(count > 0, 0.5 * (pick[0] + pick[1]), np.nan)
-    return median
+def _noise(z: Doubles, period: str | None, away: Doubles) -> float:
+    """The standard deviation of the differences `away` from the neighbours, by their median."""
+    deviation = _DEVIATIONS * float(np.median(away))
+    others = away[away > 0.0]
+    if deviation > 0.0 or not len(others) or all_but_single(z, period):
+        return deviation
+    # More than half of them are 0, on quantised heights or a plateau: the steps of the heights or the other differences are the noise.
+    step, other = float(np.median(np.diff(np.unique(z[np.isfinite(z)])))), float(np.median(others))
+    return step if other <= step else _DEVIATIONS * other
 
 
 def faults(heights: Heights, spike: float = 10.0) -> Faults:
@@ -145,8 +116,9 @@ def faults(heights: Heights, spike: float = 10.0) -> Faults:
 
     A fill value is the smallest or the largest value, occurs at least twice, and is further from the next one than all between the extremes are
     from each other. A spike differs from the median of its neighbours by more than `spike` standard deviations of these differences, and as
-    much from what opposite neighbours say without the slope. Where more than half of quantised heights equal their neighbours, the steps of the heights stand for the deviation. The edges of a surface with steps may
-    count as spikes: look at them (`Faults.plot`).
+    much from the mean of each pair of opposite neighbours: crests along a lay are none. Where more than half of the heights equal their neighbours, as of
+    quantised or clipped heights, the steps of the heights or the other differences stand for the deviation. The corners of a surface with steps, and the
+    edges of a line with steps, may count as spikes: look at them (`Faults.plot`).
 
     Parameters
     ----------
@@ -165,13 +137,14 @@ def faults(heights: Heights, spike: float = 10.0) -> Faults:
     known = np.isfinite(away)
     spikes = np.zeros(z.shape, dtype=bool)
     if known.any():
-        deviation = _DEVIATIONS * float(np.median(away[known]))
-        steps = np.diff(np.unique(z[np.isfinite(z)]))
-        # Of quantised heights more than half of the differences may be 0: then the steps are the noise.
-        quantum = float(np.median(steps)) if deviation == 0.0 and len(steps) else 0.0
-        limit = spike * max(deviation, quantum)
+        limit = spike * _noise(z, heights.period, away[known])
         spikes[known] = away[known] > limit
-        # At a border, beside a hole or another spike a slope moves the median: it is no spike.
-        at = np.nonzero(spikes)
-        spikes[at] = ~(np.abs(z[at] - _between_neighbours(z, heights.period, at)) <= limit)
+        # At a border, beside a hole or another spike, on a crest a slope moves the median: it is no spike. Nor are neighbours of one, which it misleads.
+        for is_again in (False, True):
+            at = np.nonzero(spikes)
+            said = said_by_neighbours(np.where(spikes & is_again, np.nan, z), heights.period, at, z[at])
+            spikes[at] = ~(np.abs(z[at] - said) <= limit)
+        # Alone among holes, as the middle of dust whose rim was removed: those two elements away say the height, less closely.
+        at = np.nonzero(np.isfinite(z) & ~known)
+        spikes[at] = np.abs(z[at] - said_by_neighbours(z, heights.period, at, z[at], reach=2)) > _FAR * limit
     return Faults(heights, heights.holes, fills, tuple(values), spikes)

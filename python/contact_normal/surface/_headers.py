@@ -27,16 +27,21 @@ def _head(path: str | os.PathLike[str]) -> str:
         return decoded(file.read(_WITHIN), cut=True).replace("\r", "")
 
 
-def unit_of_columns(path: str | os.PathLike[str]) -> str | None:
-    """The unit that a line as `# x [mm] y [mm] z [mm]` names for a list of points; None without one. Units that differ are refused."""
-    for line in _head(path).split("\n"):
-        found = {name.lower(): "".join(units) for name, *units in _COLUMN.findall(line)} if line.startswith("#") else {}
+def columns_of(path: str | os.PathLike[str]) -> tuple[str | None, bool]:
+    """What a line as `# x [mm] y [mm] z [mm]` or `# x y z` says of a list of points: the unit, None without one, and whether y stands before x. Units
+    that differ are refused."""
+    for line in (line for line in _head(path).split("\n") if line.startswith("#")):
+        names = re.split(r"[\s,;]+", line[1:].strip().lower())
+        if sorted(names) == ["x", "y", "z"]:
+            return None, names.index("y") < names.index("x")
+        found = {name.lower(): "".join(units) for name, *units in _COLUMN.findall(line)}
         if len(found) < 3:
             continue
         if not all(same_length(found["x"], other) for other in found.values()):
             raise ValueError(f"{path} has {', '.join(f'{name} in {unit}' for name, unit in found.items())}: convert them to one unit")
-        return found["x"] if in_metres(found["x"]) else None
-    return None
+        order = list(found)
+        return found["x"] if in_metres(found["x"]) else None, order.index("y") < order.index("x")
+    return None, False
 
 
 def header_of(path: str | os.PathLike[str], is_given: bool = False) -> dict[str, Any]:

@@ -15,13 +15,14 @@ from .._time_limit import TimeLimit
 from .._units import same_length
 from ._faults import warn_of_fill_values
 from ._heights import Heights, refuse_others
+from ._rest import resting
 
 if TYPE_CHECKING:
     from .._arguments import Both, Doubles
     from .._result import Result
 
-# Solves that `balance` may take.
-_SOLVES = 60
+# Newton steps of a search; each takes one solve, or some where it must be shortened.
+_STEPS = 60
 # A first change of the tilt lifts one side by this part of the approach.
 _TRIAL = 0.1
 # The shortest part of a step that is tried.
@@ -122,12 +123,29 @@ def _centre(gap: Gap, result: Result) -> Doubles:
     return np.array([weights.sum(axis=0) @ gap.x, weights.sum(axis=1) @ gap.y])
 
 
+def _checked(gap: Gap, force: float, at: tuple[float, float], tolerance: float, scene: dict[str, Any]) -> Doubles:
+    """Where the force acts; refuses what cannot be balanced."""
+    if not isinstance(gap, Gap):
+        raise TypeError(f"gap is a {type(gap).__name__}; it must be a Gap: surface.gap(heights)")
+    if period := scene.get("period", gap.period):
+        raise ValueError(f"the gap repeats itself in {period}: a body with a period cannot tilt")
+    if number("force", force) == 0.0:
+        raise ValueError("force is 0; a body that nothing presses takes no tilt")
+    aim = np.array(two("at", at))
+    if not np.isfinite(aim).all():
+        raise ValueError(f"at is {at}; it must be finite")
+    if not number("tolerance", tolerance) > 0.0:
+        raise ValueError(f"tolerance is {tolerance}; it must be positive")
+    return aim
+
+
 def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolerance: float = 1e-4, **scene: Any) -> Balanced:
     """The tilt that a body takes which is pressed on by a force at a point and free to tilt: the moments of the pressures about this point are 0.
 
     Unlike a least-squares plane it depends on the load: a body rests on its summits. The tilt minimises a convex energy, so it is the only one. It is
-    found by Newton's method with Broyden's updates, in four to ten solves. In a direction in which the elements with a surface do not extend, as those of one
-    row, nothing is tilted.
+    found by Newton's method with Broyden's updates: in four to ten solves for smooth bodies, up to some hundred where few elements of a rough body carry
+    the force. The search begins anew from the tilt on which a rigid body rests if that of the surface leads nowhere. In a direction in which the elements
+    with a surface do not extend, as those of one row, nothing is tilted.
 
     Parameters
     ----------
@@ -152,17 +170,7 @@ def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolera
     ValueError
         If no tilt balances the force, because `at` is not between elements that can carry it.
     """
-    if not isinstance(gap, Gap):
-        raise TypeError(f"gap is a {type(gap).__name__}; it must be a Gap: surface.gap(heights)")
-    if period := scene.get("period", gap.period):
-        raise ValueError(f"the gap repeats itself in {period}: a body with a period cannot tilt")
-    if number("force", force) == 0.0:
-        raise ValueError("force is 0; a body that nothing presses takes no tilt")
-    aim = np.array(two("at", at))
-    if not np.isfinite(aim).all():
-        raise ValueError(f"at is {at}; it must be finite")
-    if not number("tolerance", tolerance) > 0.0:
-        raise ValueError(f"tolerance is {tolerance}; it must be positive")
+    aim = _checked(gap, force, at, tolerance, scene)
     limit, last = TimeLimit(scene), list[Balanced]()
 
     def solved(tilt: Doubles) -> tuple[Result, Doubles]:
@@ -176,9 +184,16 @@ def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolera
         return result, off
 
     try:
-        return _search(gap, aim, tolerance, solved)
+        found, is_balanced = _search(gap, aim, tolerance, solved, _start(gap))
+        if not is_balanced and (tilt := resting(gap, aim)) is not None:
+            found, is_balanced = _search(gap, aim, tolerance, solved, tilt)
     except _Ended as ended:
         return ended.so_far
+    if not is_balanced:
+        off = tuple((np.array(found.centre) - aim).tolist())
+        raise ValueError(f"no tilt was found that brings the centre of the pressures to {tuple(aim.tolist())}: it stays {off} away; "
+                         "are there elements all around it?")
+    return found
 
 
 class _Ended(Exception):
@@ -194,10 +209,10 @@ def _balanced(gap: Gap, tilt: Doubles, result: Result, centre: Doubles) -> Balan
     return Balanced(_tilted(gap, tilt), (along_x, along_y), result, (x, y))
 
 
-def _search(gap: Gap, aim: Doubles, tolerance: float, solved: Callable[[Doubles], tuple[Result, Doubles]]) -> Balanced:
-    """The tilt whose pressures have their centre at `aim`. `solved` returns the result of a tilt, and how far its centre is off."""
+def _search(gap: Gap, aim: Doubles, tolerance: float, solved: Callable[[Doubles], tuple[Result, Doubles]], tilt: Doubles) -> tuple[Balanced, bool]:
+    """The tilt whose pressures have their centre at `aim`, from a first one; and whether it was found. `solved` returns the result of a tilt, and how far
+    its centre is off."""
     sizes = np.array([gap.h.shape[1] * gap.dx, gap.h.shape[0] * gap.dy])
-    tilt = _start(gap)
     result, off = solved(tilt)
     begun = _tilted(gap, tilt).h
     trial = _TRIAL * max(result.approach, 1e-3 * float(np.ptp(begun[np.isfinite(begun)]))) / sizes
@@ -206,9 +221,9 @@ def _search(gap: Gap, aim: Doubles, tolerance: float, solved: Callable[[Doubles]
     for k in (k for k in range(2) if np.count_nonzero(known.any(axis=k)) > 1):
         step = np.where(np.arange(2) == k, trial * -np.sign(off + 1e-300), 0.0)
         slopes[:, k] = (solved(tilt + step)[1] - off) / step[k]
-    for _ in range(_SOLVES):
+    for _ in range(_STEPS):
         if np.abs(off / sizes).max() <= tolerance:
-            return _balanced(gap, tilt, result, off + aim)
+            return _balanced(gap, tilt, result, off + aim), True
         try:
             step = -np.linalg.solve(slopes, off)
         except np.linalg.LinAlgError:
@@ -222,5 +237,4 @@ def _search(gap: Gap, aim: Doubles, tolerance: float, solved: Callable[[Doubles]
         step = part * step
         slopes += np.outer(there - off - slopes @ step, step) / (step @ step)
         tilt, result, off = tilt + step, moved, there
-    raise ValueError(f"no tilt was found that brings the centre of the pressures to {tuple(aim.tolist())}: it stays {tuple(off.tolist())} away; "
-                     "are there elements all around it?")
+    return _balanced(gap, tilt, result, off + aim), False

@@ -12,7 +12,7 @@ import numpy as np
 
 from .._texts import is_text
 from .._units import same_length
-from ._headers import header_of, unit_of_columns
+from ._headers import columns_of, header_of
 from ._heights import Heights, heights
 from ._lattice import Lattice, lattice_of
 from ._instruments import chosen, of_instrument
@@ -139,7 +139,7 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     if end == ".xyz" and not _SIZES & set(given):
         lattice = _of_points(path)
         if lattice is not None:
-            return _of_lattice(path, lattice, unit_of_columns(path), given)
+            return _of_lattice(path, lattice, columns_of(path), given)
     topography = of_instrument(path, end, variable, bool(_SIZES & set(given)))
     if end == ".mat":
         given = {"axes": "yx", **given}
@@ -174,8 +174,8 @@ def _of_numbers(path: str | os.PathLike[str], values: Any, given: dict[str, Any]
     """Heights from numbers that may be a list of points."""
     sizes = sorted(_SIZES & set(given))
     if not sizes and (lattice := lattice_of(values)) is not None:
-        unit = None if Path(path).suffix.lower() in (".npy", ".npz") else unit_of_columns(path)
-        return _of_lattice(path, lattice, unit, given)
+        said = (None, False) if Path(path).suffix.lower() in (".npy", ".npz") else columns_of(path)
+        return _of_lattice(path, lattice, said, given)
     if reason := why_no_map(values):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -187,10 +187,14 @@ def _of_numbers(path: str | os.PathLike[str], values: Any, given: dict[str, Any]
     return heights(values, **given)
 
 
-def _of_lattice(path: str | os.PathLike[str], lattice: Lattice, unit: str | None, given: dict[str, Any]) -> Heights:
-    """Heights of a list of points, whose columns say what x and y are."""
+def _of_lattice(path: str | os.PathLike[str], lattice: Lattice, said: tuple[str | None, bool], given: dict[str, Any]) -> Heights:
+    """Heights of a list of points, whose columns say what x and y are. A header may say the unit, and that y stands before x."""
+    unit, is_y_first = said
+    if is_y_first:
+        lattice = Lattice(np.ascontiguousarray(lattice.z.T), lattice.y, lattice.x)
     if given.get("axes", "yx") != "yx":
-        raise ValueError(f"{path} has x, y and z of points, and no indices: leave out axes; where the first column is y, exchange the columns")
+        raise ValueError(f"{path} has x, y and z of points, and no indices: leave out axes; where the first column is y, exchange the columns, "
+                         "or name them in a header, # y x z")
     return heights(lattice.z, x=lattice.x, y=lattice.y, **_with_unit(unit, given))
 
 

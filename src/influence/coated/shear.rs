@@ -20,7 +20,7 @@
 //! compressible or not.
 
 use super::response::{quotient, Response, TERMS};
-use super::transfer::{term, Fade, Transfer, NEGLIGIBLE_EXPONENTIALS};
+use super::transfer::{term, Fade, Transfer, NEGLIGIBLE_EXPONENTIALS, ZERO_EXPONENTIALS};
 
 /// L of one layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,6 +33,9 @@ impl Along {
     }
 
     fn less_one_plain(&self, s: f64) -> f64 {
+        if s > ZERO_EXPONENTIALS {
+            return 0.0;
+        }
         let Transfer { lambda, kappa, .. } = self.0;
         let fade = Fade::new(s);
         let grows = (1.0 - 2.0 * s).powi(2);

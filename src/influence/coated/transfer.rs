@@ -22,6 +22,8 @@ use super::response::{quotient, Response, TERMS};
 
 /// Beyond this s, exponentials are below exp(-40) = 4e-18, so that nothing cancels.
 pub(super) const NEGLIGIBLE_EXPONENTIALS: f64 = 20.0;
+/// s above which exp(-2 s) is 0 in double precision.
+pub(super) const ZERO_EXPONENTIALS: f64 = 373.0;
 
 /// B of one layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +60,9 @@ impl Transfer {
     }
 
     fn less_one_plain(&self, s: f64) -> f64 {
+        if s > ZERO_EXPONENTIALS {
+            return 0.0;
+        }
         let Transfer { lambda, kappa, .. } = *self;
         let fade = Fade::new(s);
         let grows = (1.0 + 2.0 * s).powi(2);

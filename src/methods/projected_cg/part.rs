@@ -17,6 +17,7 @@ pub(super) fn enter<S: AdmissibleSet>(
     threads: &Threads,
 ) -> Result<()> {
     let (whole, n) = (state.grid, part.grid.len());
+    part.reached_limit = S::LIMITED && state.reached_limit;
     if S::LIMITED {
         reserve(&mut part.at_limit, n, "elements at the limit")?;
         part.at_limit.clear();
@@ -24,7 +25,6 @@ pub(super) fn enter<S: AdmissibleSet>(
         if state.reached_limit {
             window.extract(&whole, &state.at_limit, &mut part.at_limit, threads);
         }
-        part.reached_limit = state.reached_limit;
     } else {
         part.at_limit.clear();
     }

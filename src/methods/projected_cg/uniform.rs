@@ -39,7 +39,7 @@ impl<T: Real> Iteration<T> {
     pub(super) fn deflate<S: AdmissibleSet>(&mut self, state: &State, is_mean_free: bool) -> u64 {
         let by_approach = matches!(state.load, Load::Approach(_));
         let is_known = self.deflation.is_there() && !self.deflation.is_uniform;
-        if is_known || !by_approach || S::FIXED || state.reached_limit {
+        if is_known || !by_approach || S::FIXED || S::LIMITED && state.reached_limit {
             return 0;
         }
         let is_nearly_full = is_mean_free && 2 * self.segments.count() > state.p.len();

@@ -44,10 +44,11 @@ pub(super) fn snap<S: AdmissibleSet>(state: &mut State, set: S) {
     }
     let least = ROUND_OFF * in_blocks(state.p.iter().copied()) / state.p.len() as f64;
     for (i, p) in state.p.iter_mut().enumerate() {
-        if *p <= least {
-            *p = 0.0;
-        } else if *p >= (1.0 - ROUND_OFF) * set.limit(i) {
+        // Limits may be as small as round-off.
+        if *p >= (1.0 - ROUND_OFF) * set.limit(i) {
             *p = set.limit(i);
+        } else if *p <= least {
+            *p = 0.0;
         }
     }
 }

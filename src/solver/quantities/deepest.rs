@@ -1,6 +1,7 @@
 //! The largest stresses below the surface, over all depths.
 //!
-//! The first values are those at the surface and at depths that grow by a ratio, from a quarter of an element to the length of the loaded part.
+//! The first values are those at the surface and at depths that grow by a ratio, from a quarter of the shorter side of an element to the length of
+//! the loaded part.
 //! Then a parabola through the best depth and its two neighbours gives the next depth (successive parabolic interpolation; Brent 1973, chapter 5).
 
 use crate::contact::presses;
@@ -15,12 +16,12 @@ use crate::threads::Threads;
 
 /// The ratio of successive depths.
 const DEPTH_RATIO: f64 = 1.6;
-/// The first depth, in longer sides of an element.
+/// The first depth, in sides of an element.
 const FIRST_DEPTH: f64 = 0.25;
 /// Most parabolas, and the relative change of depth at which they end.
 const PARABOLAS: usize = 8;
 const DEPTH_CHANGE: f64 = 1e-3;
-/// The depths next to the surface, in longer sides of an element: the first of those searched.
+/// Depths next to the surface, in [sides](Surface::side) of an element.
 pub const CLOSE: [f64; 7] = [
     0.0,
     FIRST_DEPTH,
@@ -36,7 +37,7 @@ pub const CLOSE: [f64; 7] = [
 pub struct Peak {
     pub value: f64,
     pub depth: f64,
-    /// The depth in longer sides of an element.
+    /// The depth in [sides](Surface::side) of an element.
     pub elements: f64,
     /// The largest value at each depth of [`CLOSE`]; 0: not known.
     pub close: [f64; CLOSE.len()],
@@ -80,6 +81,8 @@ impl Stress {
 /// The loads on a surface: pressures, and tractions in x and in y, on body 1.
 pub struct Surface<'a> {
     grid: Grid,
+    /// The longer side of an element, or that across a single line of them: pressures change from element to element over this length.
+    side: f64,
     periodic: bool,
     pressure: Vec<f64>,
     tractions: Option<[Vec<f64>; 2]>,
@@ -108,7 +111,13 @@ impl<'a> Surface<'a> {
             Some(q) => Some([cut(&|i| q[i][0])?, cut(&|i| q[i][1])?]),
             None => None,
         };
-        Ok(Some(Surface { grid: part.grid(&grid), periodic, pressure: cut(&|i| pressure[i])?, tractions, patches }))
+        let side = match (grid.mx, grid.my) {
+            (_, 1) if grid.mx > 1 => grid.dx,
+            (1, _) if grid.my > 1 => grid.dy,
+            _ => grid.dx.max(grid.dy),
+        };
+        let (grid, pressure) = (part.grid(&grid), cut(&|i| pressure[i])?);
+        Ok(Some(Surface { grid, side, periodic, pressure, tractions, patches }))
     }
 
     /// The loads on body 2: opposite tractions.
@@ -127,15 +136,24 @@ impl<'a> Surface<'a> {
         let (short, long) = (self.grid.dx.min(self.grid.dy), self.grid.dx.max(self.grid.dy));
         // For very slender elements of periodic bodies, stresses near the surface are not computed.
         let slender = self.periodic && long > MOST_SLENDER * short;
-        let first = if slender { long } else { FIRST_DEPTH * long };
+        let first = if slender { long } else { FIRST_DEPTH * self.side };
         let extent = (self.grid.mx as f64 * self.grid.dx).max(self.grid.my as f64 * self.grid.dy);
         let mut depths: Vec<f64> = if slender { vec![] } else { vec![0.0] };
+        // Between the shorter side and that of `CLOSE`.
+        let shallow = std::iter::successors(Some(first / DEPTH_RATIO), |z| Some(z / DEPTH_RATIO))
+            .take_while(|z| !slender && *z > FIRST_DEPTH * short);
+        depths.extend(shallow);
+        let between = depths.len().saturating_sub(1);
+        depths[usize::from(!slender)..].reverse();
         depths.extend(
             std::iter::successors(Some(first), |z| Some(z * DEPTH_RATIO)).take_while(|z| *z < DEPTH_RATIO * extent),
         );
         let of = |depths: &[f64]| self.largest(stress, poisson_ratio, depths, threads);
         let mut known = of(&depths)?;
-        let at = |k: usize| known.get(k).or(known.last()).map_or(0.0, |peak| peak.value);
+        let at = |k: usize| {
+            let k = if k == 0 { 0 } else { between + k };
+            known.get(k).or(known.last()).map_or(0.0, |peak| peak.value)
+        };
         let close = if slender { [0.0; CLOSE.len()] } else { std::array::from_fn(at) };
         for _ in 0..PARABOLAS {
             let best = (0..known.len()).max_by(|a, b| known[*a].value.total_cmp(&known[*b].value)).unwrap_or(0);
@@ -150,7 +168,7 @@ impl<'a> Surface<'a> {
             known.insert(at, of(&[z])?[0]);
         }
         let largest = known.iter().copied().fold(Peak::default(), Peak::or);
-        Ok(Peak { elements: largest.depth / long, close, ..largest })
+        Ok(Peak { elements: largest.depth / self.side, close, ..largest })
     }
 
     fn largest(&self, stress: Stress, poisson_ratio: f64, depths: &[f64], threads: &Threads) -> Result<Vec<Peak>> {

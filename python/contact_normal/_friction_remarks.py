@@ -1,0 +1,69 @@
+"""What numbers of friction may be meant otherwise."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._constants import MOTION_SHIFT, PRESCRIBED_TANGENTIAL_FORCE
+
+if TYPE_CHECKING:
+    from ._arguments import Doubles
+
+# Parts of the rolling speed that are more than wheels slip in most cases.
+_LARGE = 0.05
+# Nor are coefficients so large.
+_STICKY = 5.0
+_IS_LENGTH = "the motion of friction is not given: it is a SHIFT, whose creepage is a length, and whose spin an angle"
+
+
+@dataclass(frozen=True)
+class Remarks:
+    """What the caller of an effect of friction should know of it.
+
+    Attributes
+    ----------
+    effect : Friction
+        The struct.
+    has_motion : bool
+        Whether the motion is given.
+    coefficient : float
+        The largest coefficient.
+    length : float
+        Half of the longer side of the grid.
+    """
+
+    effect: Any
+    has_motion: bool
+    coefficient: float
+    length: float
+
+    def of_one(self) -> str:
+        """Lines about the motion that the effect has."""
+        return self._lines([abs(one) for one in self.effect.creepage], abs(self.effect.spin))
+
+    def of_entries(self, entries: Doubles) -> str:
+        """Lines about a table of motions, which stand in the place of that of the effect."""
+        if not len(entries):
+            return self._lines([0.0, 0.0], 0.0)
+        *given, spin = np.abs(np.where(np.isfinite(entries), entries, 0.0)).max(axis=0).tolist()
+        are_forces = [one == PRESCRIBED_TANGENTIAL_FORCE for one in self.effect.prescribed]
+        return self._lines([0.0 if is_force else one for one, is_force in zip(given, are_forces)], spin)
+
+    def _lines(self, creepage: Sequence[float], spin: float) -> str:
+        found, effect = [], self.effect
+        if self.coefficient > _STICKY:
+            found.append(f"a coefficient of {self.coefficient:g} is a ratio of forces: 30 % is 0.3")
+        largest, by_spin = max(creepage), spin * self.length
+        if effect.motion == MOTION_SHIFT:
+            return "\n".join(found + ([_IS_LENGTH] if not self.has_motion and (largest > 0.0 or spin > 0.0) else []))
+        # Laws are for creepages of which friction falls.
+        if largest > _LARGE and not effect.law:
+            found.append(f"a creepage of {largest:g} is this part of the rolling speed: 0.1 % is 1e-3")
+        if by_spin > _LARGE:
+            found.append(f"a spin of {spin:g} makes a creepage of {by_spin:.2g} at the ends of the grid: it is in rad per length, "
+                         "and 0.16 per m is 1.6e-4 per mm")
+        return "\n".join(found)

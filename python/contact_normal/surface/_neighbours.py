@@ -1,0 +1,103 @@
+"""What the neighbours of an element say of its height."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ._heights import blocks
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from .._arguments import Doubles
+
+# Of the four pairs of opposite neighbours so many can do without planes.
+_PAIRS = 3
+
+
+def _padded(z: Doubles, period: str | None, width: int = 1) -> Doubles:
+    """With more elements on each side: NaN, or with a period those of the other side. An element alone in its direction is no neighbour of itself."""
+    padded, inner = np.pad(z, width, constant_values=np.nan), slice(width, -width)
+    if period in ("x", "xy") and z.shape[1] > width:
+        padded[inner, :width], padded[inner, -width:] = z[:, -width:], z[:, :width]
+    if period in ("y", "xy") and z.shape[0] > width:
+        padded[:width], padded[-width:] = padded[-2 * width : -width], padded[width : 2 * width]
+    return padded
+
+
+def _nearest(said: Doubles, height: Doubles) -> Doubles:
+    """Of each column the value that is nearest to a height; NaN where none is."""
+    off = np.where(np.isnan(said), np.inf, np.abs(said - height))
+    return np.asarray(np.take_along_axis(said, off.argmin(axis=0)[None], axis=0)[0])
+
+
+def _said_around(z: Doubles, period: str | None, at: Any, reach: int) -> Doubles:
+    """What pairs of opposite neighbours say of some elements, and planes through three neighbours where most pairs lack. NaN where an element lacks."""
+    padded = _padded(z, period, reach)
+    rows, columns = at
+    around = np.stack([padded[rows + reach * j, columns + reach * i] for j in range(3) for i in range(3) if (j, i) != (1, 1)])
+    means = 0.5 * (around[:4] + around[:3:-1])
+    # Two neighbours on the axes and the one between them, by their places among the eight.
+    planes = np.stack([around[one] + around[other] - around[between] for one, other, between in ((1, 3, 0), (1, 4, 2), (6, 3, 5), (6, 4, 7))])
+    return np.concatenate([means, np.where(np.isfinite(means).sum(axis=0) < _PAIRS, planes, np.nan)])
+
+
+def _said_along(z: Doubles, is_period: bool, at: npt.NDArray[np.intp]) -> Doubles:
+    """What a line says of some of its elements: the next ones on both sides; where one side has none, the next one and a line through the next two."""
+    count = len(z)
+    places = np.flatnonzero(np.isfinite(z))
+    if is_period:
+        places = np.concatenate([places - count, places, places + count])
+    if not len(places):
+        return np.full((1, len(at)), np.nan)
+    heights = z[places % count]
+
+    def one(k: npt.NDArray[np.intp]) -> tuple[Any, Any]:
+        inside = (k >= 0) & (k < len(places))
+        k = np.clip(k, 0, len(places) - 1)
+        return places[k].astype(float), np.where(inside, heights[k], np.nan)
+
+    def line(first: tuple[Any, Any], second: tuple[Any, Any]) -> Any:
+        apart = second[0] - first[0]
+        return first[1] + (second[1] - first[1]) * (at - first[0]) / np.where(apart == 0.0, np.nan, apart)
+
+    left, right = np.searchsorted(places, at, "left") - 1, np.searchsorted(places, at, "right")
+    between = line(one(left), one(right))
+    ends = np.stack([one(left)[1], line(one(left), one(left - 1)), one(right)[1], line(one(right), one(right + 1))])
+    return np.stack([between, *np.where(np.isnan(between), ends, np.nan)])
+
+
+def said_by_neighbours(z: Doubles, period: str | None, at: Any, height: Doubles, reach: int = 1) -> Doubles:
+    """Of what the neighbours of some elements say of their heights without the slope, the nearest to `height`: the pair along a crest or a step says the
+    height, no pair says that of a spike. On a map neighbours are so many elements away. NaN where no neighbours are."""
+    if 1 not in z.shape:
+        return _nearest(_said_around(z, period, at, reach), height)
+    along = 1 if z.shape[0] == 1 else 0
+    return _nearest(_said_along(z.ravel(), period is not None and "yx"[along] in period, at[along]), height)
+
+
+def neighbours_median(z: Doubles, period: str | None) -> Doubles:
+    """The median of the up to eight neighbours of each element; NaN where there are none."""
+    padded = _padded(z, period)
+    median = np.empty(z.shape)
+    for rows in blocks(z.shape):
+        around = padded[rows.start : rows.stop + 2]
+        shifted = [around[j : j + rows.stop - rows.start, i : i + z.shape[1]] for j in range(3) for i in range(3) if (j, i) != (1, 1)]
+        stacked = np.sort(np.stack(shifted), axis=0)  # NaN comes last
+        count = np.isfinite(stacked).sum(axis=0)
+        low, high = np.maximum((count - 1) // 2, 0), np.minimum(count // 2, 7)
+        pick = [np.take_along_axis(stacked, k[None], axis=0)[0] for k in (low, high)]
+        median[rows] = np.where(count > 0, 0.5 * (pick[0] + pick[1]), np.nan)
+    return median
+
+
+def all_but_single(z: Doubles, period: str | None) -> bool:
+    """Whether all heights are equal but those of single elements, of which no two are neighbours or alike."""
+    known = np.isfinite(z)
+    others = known & (z != np.median(z[known]))
+    padded = _padded(others.astype(float), period) == 1.0
+    rows, columns = np.nonzero(others)
+    beside = sum(padded[rows + j, columns + i] for j in range(3) for i in range(3) if (j, i) != (1, 1))
+    return not np.any(beside) and len(np.unique(z[others])) == len(rows)

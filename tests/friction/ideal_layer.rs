@@ -1,0 +1,83 @@
+//! An ideal plastic layer, hardening 0, has the limits of its particles: those of a layer that hardens by next to nothing, which another method solves.
+
+use contact_normal::friction::{Request, Solution};
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Friction, Motion, PlasticLayer, Prescribed, Previous};
+
+use super::laws::{pressures, solver};
+use super::support::run;
+
+const TOLERANCE: f64 = 1e-9;
+const FORCE: f64 = 1e4;
+
+/// A ball on 24 x 24 elements, and its pressures.
+fn ball() -> (Grid, Vec<f64>) {
+    let grid = Grid::new(24, 24, 0.2, 0.2).unwrap();
+    let at = |k: usize| (k as f64 - 11.5) * 0.2;
+    let h: Vec<f64> = (0..grid.len()).map(|i| (at(i % 24).powi(2) + at(i / 24).powi(2)) / 600.0).collect();
+    (grid, pressures(grid, &h, FORCE))
+}
+
+/// The tractions with both, of a step after `first` steps of a layer that hardens.
+fn both(pressure: &[f64], grid: &Grid, friction: &Friction<'_>, hardened: bool) -> [Solution; 2] {
+    [0.0, 1e-6].map(|hardening| {
+        let mut solver = solver(grid);
+        let layer = |hardening| Some(PlasticLayer { yield_limit: 40.0, hardening });
+        if hardened {
+            let previous = Previous::None;
+            run(&mut solver, pressure, &Friction { layer: layer(1e5), previous, ..*friction }, TOLERANCE);
+        }
+        run(&mut solver, pressure, &Friction { layer: layer(hardening), ..*friction }, TOLERANCE).1
+    })
+}
+
+fn assert_same([ideal, hardly]: [Solution; 2], what: &str) {
+    let largest = hardly.traction.iter().flatten().fold(0.0f64, |most, q| most.max(q.abs()));
+    for (i, (a, b)) in ideal.traction.iter().zip(&hardly.traction).enumerate() {
+        // The tolerance of 1e-9 of the rms slip, which one of 576 elements may have, and 1e-6 mm of slip at most by 1e-6 MPa/mm.
+        assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-6 * largest, "{what}, element {i}: {a:?} {b:?}");
+        let limit = ideal.particles[i].yield_limit;
+        assert!(a[0].hypot(a[1]) <= limit * (1.0 + 1e-12), "{what}, element {i}: {a:?} of {limit}");
+    }
+}
+
+#[test]
+fn a_step_that_continues_has_the_limits_of_the_step_before() {
+    let (grid, pressure) = ball();
+    let prescribed = [Prescribed::Creepage(-0.02), Prescribed::Creepage(0.004)];
+    let friction = Friction { prescribed, previous: Previous::Kept, ..Friction::new(0.3) };
+    let [fresh, _] = both(&pressure, &grid, &Friction { previous: Previous::None, ..friction }, false);
+    let after = both(&pressure, &grid, &friction, true);
+    let most = |of: &Solution| of.traction.iter().fold(0.0f64, |most, q| most.max(q[0].hypot(q[1])));
+    assert!(most(&fresh) <= 40.0 * (1.0 + 1e-12) && most(&after[0]) > 50.0, "{} {}", most(&fresh), most(&after[0]));
+    assert_same(after, "continues");
+}
+
+#[test]
+fn limits_move_with_the_particles_in_rolling() {
+    let (grid, pressure) = ball();
+    let limits: Vec<f64> = (0..grid.len()).map(|i| if i % 24 == 12 { 5.0 } else { 40.0 }).collect();
+    let prescribed = [Prescribed::Creepage(-0.01), Prescribed::Creepage(0.0)];
+    for motion in [Motion::TransientRolling, Motion::SteadyRolling] {
+        let friction = Friction { motion, prescribed, yield_limits: Some(&limits), ..Friction::new(0.3) };
+        let found = both(&pressure, &grid, &friction, false);
+        let low = found[0].particles.iter().filter(|particle| particle.yield_limit < 39.0).count();
+        // A step of an element: the column has moved by one, and in steady rolling all particles come in fresh.
+        assert_eq!(low, if motion == Motion::SteadyRolling { 0 } else { 24 }, "{motion:?}");
+        assert_same(found, &format!("{motion:?}"));
+    }
+}
+
+#[test]
+fn a_force_beyond_the_limits_of_the_particles_is_refused() {
+    let (grid, pressure) = ball();
+    let reach = 40.0 * pressure.iter().filter(|p| **p > 0.0).count() as f64 * grid.element_area();
+    let prescribed = [Prescribed::Force(1.05 * reach), Prescribed::Creepage(0.0)];
+    let layer = Some(PlasticLayer { yield_limit: 40.0, hardening: 0.0 });
+    let friction = Friction { prescribed, layer, ..Friction::new(0.3) };
+    let refused = solver(&grid).solve(&Request::new(&pressure, &friction, TOLERANCE), &mut |_, _| true);
+    assert!(refused.is_err());
+    // Particles that have hardened carry it.
+    let limits = vec![80.0; grid.len()];
+    run(&mut solver(&grid), &pressure, &Friction { yield_limits: Some(&limits), ..friction }, TOLERANCE);
+}
