@@ -50,7 +50,8 @@ class Adhesion(unittest.TestCase):
             said = re.search(r"the force is off by (\S+) of the one that is given", found.message)
             self.assertEqual(said is not None, lack > 1e-6, (found.message, lack))
             if said:
-                self.assertAlmostEqual(float(said[1]) / lack, 1.0, places=6)
+                # Messages have six digits.
+                self.assertLess(abs(float(said[1]) / lack - 1.0), 5.1e-6)
                 told += 1
         self.assertGreater(told, 0)
 

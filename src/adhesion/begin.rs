@@ -54,8 +54,8 @@ impl Solver {
             Walk::Least { sum, approach } => {
                 let area = self.levels[0].problem.grid.element_area();
                 let force = Rounded(goal.wanted.unwrap_or(0.0) * area);
+                let [pull, approach] = [Rounded(sum * area), Rounded(approach)];
                 let found = if sum < 0.0 {
-                    let [pull, approach] = [Rounded(sum * area), Rounded(approach)];
                     format!("holds a pull of {pull} (the pull-off force), at an approach of {approach}")
                 } else {
                     "does not pull: nothing holds the bodies without a pressing force".into()

@@ -45,13 +45,15 @@ const LARGE_GRID: usize = 1 << 16;
 const FIRST_DIRECTIONS: usize = 6;
 /// The part of the slope in a cautious step.
 const CAUTIOUS_SLOPE: f64 = 0.7;
-/// Rise of the residual at which a full step counts as failed: steps between both edges of a smeared law may recur for ever. Without it 900 random
-/// scenes take 1.07 times the products.
+/// Rise of the residual at which a full step counts as failed: steps between both edges of a smeared law may recur for ever.
 const FAILED_RISE: f64 = 2.0;
 /// The next full step is tried below this part of the residual of the failed one.
 const FULL_STEP_AGAIN: f64 = 0.1;
-/// Most firm steps.
+/// Most cautious steps below [`CLOSE_RESIDUAL`]: next to a fold of the branch they converge slowly.
+const MOST_CAUTIOUS: u64 = 30;
+/// Most firm steps, and the relative tolerances of their linear systems far from the solution and near it.
 const MOST_FIRM: u64 = 60;
+const FIRM_TOLERANCES: [f64; 2] = [0.1, 0.03];
 /// Largest s a0, which is stored in single precision.
 const LARGEST_STIFFNESS: f64 = 1e30;
 /// Steps have failed if the residual is not below this.
@@ -75,7 +77,7 @@ pub enum Pace {
     Bold,
     /// With a part of it, until the contact area is constant.
     Cautious,
-    /// As bold ones, but there are more of them.
+    /// As bold ones, but their linear systems are solved firmly, and there are more of them.
     Firm,
 }
 
@@ -104,12 +106,12 @@ impl Goal {
 /// Iterates from the level's state. `keeps`: the first step keeps its contact area.
 pub fn newton(level: &mut Level, goal: Goal, keeps: bool, monitor: &mut Monitor<'_>) -> Result<(End, Measured)> {
     let mut measured = Measured::default();
+    let (mut last, mut whole_below) = (f64::INFINITY, f64::INFINITY);
     let (mut directions, most) = match level.now.u.len() {
         n if is_small(n) => (MOST_DIRECTIONS, MOST_DIRECTIONS),
         n if n <= LARGE_GRID => (IN_MEMORY, IN_MEMORY),
         _ => (FIRST_DIRECTIONS, IN_MEMORY),
     };
-    let (mut last, mut whole_below) = (f64::INFINITY, f64::INFINITY);
     for step in 0..=MOST_FIRM {
         measured = level.measure(keeps && step == 0, goal.wanted);
         if measured.opening > 0.0 {
@@ -132,7 +134,11 @@ pub fn newton(level: &mut Level, goal: Goal, keeps: bool, monitor: &mut Monitor<
             return Ok((End::Interrupted, measured));
         }
         let residual = measured.residual();
-        let most_steps = if goal.pace == Pace::Firm { MOST_FIRM } else { MOST_STEPS };
+        let most_steps = match goal.pace {
+            Pace::Firm => MOST_FIRM,
+            Pace::Cautious if residual < CLOSE_RESIDUAL => MOST_CAUTIOUS,
+            _ => MOST_STEPS,
+        };
         if !(worst < LOST_RESIDUAL) || step >= most_steps {
             break;
         }
@@ -163,7 +169,8 @@ fn take_step(level: &mut Level, Goal { wanted, pace, .. }: Goal, is_far: bool, m
     let weight = if wanted.is_some() { 1.0 / f64::max(count, 1.0) } else { 0.0 };
     let r = Bordered { field: right, border };
     let norm = (fields::dot(&threads, &r.field, &r.field) + weight * border[0] * border[0]).sqrt();
-    let until = Until { target: norm * if is_far { FAR_TOLERANCE } else { CLOSE_TOLERANCE }, most };
+    let [far, near] = if pace == Pace::Firm { FIRM_TOLERANCES } else { [FAR_TOLERANCE, CLOSE_TOLERANCE] };
+    let until = Until { target: norm * if is_far { far } else { near }, most };
     let mut system = Linearised::new(level, &stiffness, wanted.is_some(), &mut fields)?;
     let found = system.solve(r, (until, weight), &threads, &mut fields)?;
     let is_enough = found.count < most;

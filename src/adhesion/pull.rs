@@ -101,7 +101,7 @@ impl Walker<'_, '_, '_> {
         if !(step > 0.0) {
             return Ok(self.lost());
         }
-        let way = Way::from(self.level, sum, step)?;
+        let way = Way::from(self.level, sum, step, false)?;
         let least = match self.down(way, met)? {
             Ok(least) => least,
             Err(walk) => {
@@ -158,7 +158,7 @@ impl Walker<'_, '_, '_> {
         let Least { at: mut best, above, last, step, nearly, .. } = least;
         let (to, small) = (last - step, step / f64::from(PARTS_OF_STEP));
         self.level.now.copy_from(&above.at)?;
-        let mut way = Way::from(self.level, above.sum, step)?;
+        let mut way = Way::from(self.level, above.sum, step, true)?;
         way.step = small;
         for _ in 0..MOST_STEPS {
             let target = way.here.approach() - way.step;

@@ -52,7 +52,7 @@ fn is_saddle(level: &mut Level, goal: Goal, is_long: bool, monitor: &mut Monitor
     Ok(goal.wanted.is_none() && is_asked && !is_stable(level, false, monitor)?)
 }
 
-/// The steps of Newton's method in each round. If bold steps cycle, cautious ones may not, and conversely. Firm ones are more. They finish most
+/// The steps of Newton's method in each round. If bold steps cycle, cautious ones may not, and conversely. Firm steps cost more. They finish most
 /// avalanches, in which the edge of the contact moves from element to element.
 fn pace_of(round: u32, first: Pace) -> Pace {
     match round {

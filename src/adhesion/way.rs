@@ -11,14 +11,21 @@ use super::robust;
 use crate::error::Result;
 use crate::progress::Monitor;
 
-/// The tolerance of each measure of the states on a way.
+/// The tolerance of each measure of the states on a way, and of states in small steps.
 const WAY_TOLERANCE: f64 = 1e-3;
+const SMALL_STEP_TOLERANCE: f64 = 1e-4;
 /// The most Newton steps for one state.
 const MOST_NEWTON_STEPS: u64 = 14;
-/// The most halvings of a step.
+/// The most halvings of a step, and doublings of a step over a snap.
 const HALVINGS: u32 = 2;
-/// The ratio of successive steps along a branch.
-pub const GROWTH: f64 = 1.5;
+const SNAP_DOUBLINGS: u32 = 2;
+/// A snap may take this many times the cycles of a state on the way.
+const SNAP_CYCLES: u64 = 4;
+/// If a state took at most EASY_STEPS Newton steps, the next step along the branch is GROWTH times as long.
+const EASY_STEPS: u64 = 6;
+const GROWTH: f64 = 1.5;
+/// The first step after a snap is this fraction of the longest step.
+const AFTER_SNAP: f64 = 0.25;
 /// The contact has snapped if its number of elements changes by more than this fraction plus this number.
 const SNAPPED: (f64, f64) = (0.5, 8.0);
 
@@ -40,6 +47,8 @@ pub struct Way {
     has_before: bool,
     /// Elements in contact in the current state.
     count: usize,
+    /// Whether steps are small.
+    is_close: bool,
     /// The next step, and the longest one.
     pub step: f64,
     pub longest: f64,
@@ -47,9 +56,9 @@ pub struct Way {
 
 impl Way {
     /// Starts from the state of a level.
-    pub fn from(level: &Level, sum: f64, longest: f64) -> Result<Way> {
+    pub fn from(level: &Level, sum: f64, longest: f64, is_close: bool) -> Result<Way> {
         let (here, before) = (Place::of(level, sum)?, Place::of(level, sum)?);
-        Ok(Way { here, before, has_before: false, count: count_contact(level), step: longest, longest })
+        Ok(Way { here, before, has_before: false, count: count_contact(level), is_close, step: longest, longest })
     }
 
     /// Distance in approach from a state with this sum and approach to the wanted sum, on the line from here: 0 if it is reached, and infinite
@@ -69,7 +78,7 @@ impl Way {
         // There is no extrapolation over a snap.
         self.has_before = !self.is_snap(count);
         if !self.has_before {
-            self.step = self.longest;
+            self.step = AFTER_SNAP * self.longest;
         }
         self.count = count;
         std::mem::swap(&mut self.here, &mut self.before);
@@ -119,14 +128,16 @@ impl Walker<'_, '_, '_> {
         let mut by = approach - way.here.approach();
         for halving in 0..=HALVINGS {
             let approach = if halving == 0 { approach } else { way.here.approach() + by };
+            let cycles = self.monitor.count.cycles;
             let found = self.advance(way, approach)?;
             if self.goal.is_interrupted(self.monitor) {
                 return Ok(None);
             }
             if found.is_some() {
+                let is_easy = self.monitor.count.cycles - cycles <= EASY_STEPS;
                 let wide = if halving == 0 { way.step } else { 0.0 };
                 log::debug!("adhesion: {found:?} at an approach of {approach:e}, {} in contact", way.count);
-                way.step = wide.max(GROWTH * by.abs()).min(way.longest);
+                way.step = if is_easy { wide.max(GROWTH * by.abs()).min(way.longest) } else { by.abs() };
                 return Ok(found);
             }
             way.has_before = false;
@@ -149,6 +160,7 @@ impl Walker<'_, '_, '_> {
         let enough = match self.goal.wanted {
             // Forces are compared with the prescribed force.
             Some(_) => 0.0,
+            None if way.is_close => SMALL_STEP_TOLERANCE,
             None => WAY_TOLERANCE,
         };
         let tolerance = self.goal.tolerance.max(enough);
@@ -158,11 +170,31 @@ impl Walker<'_, '_, '_> {
         Ok(is_found.then_some(measured.pressures))
     }
 
-    /// Crosses the end of a branch, by the longest step.
+    /// Crosses the end of a branch. That may take more cycles than a state on the branch.
     fn snap(&mut self, way: &Way) -> Result<Option<f64>> {
-        self.level.now.copy_from(&way.here.at)?;
-        let found = self.solve_at(way.here.approach() - way.longest)?;
-        log::debug!("adhesion: after a snap {found:?}, beyond an approach of {:e}", way.here.approach());
-        Ok(found.filter(|_| !self.goal.is_interrupted(self.monitor)))
+        let each = self.each;
+        self.each = each.saturating_mul(SNAP_CYCLES);
+        let found = self.leap(way);
+        self.each = each;
+        found
+    }
+
+    /// Finds a state beyond the end, by longer and longer steps.
+    fn leap(&mut self, way: &Way) -> Result<Option<f64>> {
+        let mut by = way.longest;
+        for leap in 0..=SNAP_DOUBLINGS {
+            self.level.now.copy_from(&way.here.at)?;
+            let found = self.solve_at(way.here.approach() - by)?;
+            log::debug!("adhesion: after a snap {found:?}, {by:e} beyond an approach of {:e}", way.here.approach());
+            if self.goal.is_interrupted(self.monitor) {
+                return Ok(None);
+            }
+            // Bodies that are apart after a leap of more than one step may still touch after a shorter one.
+            if found.is_some() && (leap == 0 || self.level.now.contact.contains(&true)) {
+                return Ok(found);
+            }
+            by *= 2.0;
+        }
+        Ok(None)
     }
 }

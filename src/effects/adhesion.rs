@@ -5,7 +5,7 @@
 use super::effect::{Effect, Value};
 use super::properties::{Properties, Stresses};
 use crate::adhesion::{Law, Start};
-use crate::error::{require, Error, Number, Result};
+use crate::error::{not_negative, require, Error, Number, Result};
 use crate::grid::{check_values, Grid};
 use crate::powers::LARGEST;
 use crate::scene::{Load, Plain};
@@ -78,6 +78,7 @@ impl Effect for Adhesion<'_> {
 
     fn check(&self, grid: &Grid) -> Result<()> {
         let require_work = |name: &str, work: f64| {
+            not_negative(name, work)?;
             let is_work = work == 0.0 || (RANGE.0..RANGE.1).contains(&work);
             require(is_work, name, work, "it must be 0 or lie in 1e-70..1e70: choose other units")
         };

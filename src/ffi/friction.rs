@@ -275,10 +275,9 @@ impl contact_normal_friction {
         match self.prescribed[k] {
             CONTACT_NORMAL_PRESCRIBED_CREEPAGE => Ok(Prescribed::Creepage(self.creepage[k])),
             CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE => Ok(Prescribed::Force(self.force[k])),
-            other => {
-                let rule = "it must be PRESCRIBED_CREEPAGE 0 or PRESCRIBED_TANGENTIAL_FORCE 1";
-                Err(Refusal::invalid(format!("friction->prescribed[{k}] is {other}; {rule}")))
-            }
+            other => Err(Refusal::invalid(format!(
+                "friction->prescribed[{k}] is {other}; it must be PRESCRIBED_CREEPAGE 0 or PRESCRIBED_TANGENTIAL_FORCE 1"
+            ))),
         }
     }
 }

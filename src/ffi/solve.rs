@@ -178,7 +178,7 @@ pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Opt
         _ => String::new(),
     };
     let mut message = format!("{} after {cycles} cycles{products}; the residual is {residual:e}", why(stop));
-    if residual <= report.tolerance && report.friction.is_none() {
+    if stop != Outcome::Cancelled && residual <= report.tolerance && report.friction.is_none() {
         let Certificate { violation, complementarity, .. } = report.measures.certificate;
         message += &format!(", the violation {violation:e} and the complementarity {complementarity:e}");
     }

@@ -163,8 +163,8 @@ fn run(
     let threads = Threads::new(options.options.threads)?;
     let (mut mises, mut shear) = (None, None);
     let all = stress::subsurface_stress(body, loads, depths, &outputs.wanted(), &threads, progress, |k, depth| {
-        Maximum::join(&mut mises, &depth.von_mises, k, &body.grid);
-        Maximum::join(&mut shear, &depth.maximum_shear, k, &body.grid);
+        Maximum::join(&mut mises, &depth.von_mises, k, (&body.grid, loads));
+        Maximum::join(&mut shear, &depth.maximum_shear, k, (&body.grid, loads));
         // SAFETY: the caller's arrays, which were checked.
         unsafe { outputs.write(k, depth) };
     })?;

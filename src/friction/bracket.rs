@@ -1,7 +1,8 @@
 //! Given forces for which Newton's method stalls: solves with given creepages, between creepages known to carry too much and too little.
 //!
 //! Such a solve has one solution, and its forces cut off a part of the [`Corral`]. The next creepages are those at which the natural map
-//! carries the forces ([`balanced`]). If two of these in a row do not halve the missing force, the centre of the corral follows. So the method ends.
+//! carries the forces ([`balanced`]), best if nearly all of C slips, or those of the linear system, best if much sticks. If neither halves
+//! the missing force, the centre of the corral follows. So the method ends.
 
 use super::balance::balanced;
 use super::best::Best;
@@ -9,10 +10,12 @@ use super::certificate::Certificate;
 use super::corral::{Corral, PROGRESS};
 use super::forces::{sum_of, sum_of_bounds, Forces};
 use super::newton::{self, Manner};
-use super::plane::{square, Vector};
+use super::plane::{dot, plus, square, Vector};
 use super::problem::{Problem, State};
+use super::sensitivity;
 use super::shift::{self, Goal, Memory};
 use super::step::compliance;
+use super::system::inverse;
 use crate::error::Result;
 use crate::methods::fields;
 use crate::progress::Outcome;
@@ -21,14 +24,18 @@ use crate::progress::Outcome;
 /// FINISHING_PRODUCTS products.
 const CLOSE_RATIO: f64 = 0.1;
 const FINISHING_PRODUCTS: u64 = 30;
-/// Residual of solves from creepages at which no other ones are left.
+/// Factor on the residual of solves if other creepages leave the forces unchanged, and its least value.
+const TIGHTER: f64 = 0.03;
 const LEAST_INNER: f64 = 1e-14;
+/// Relative accuracy of the derivatives of forces.
+const DERIVATIVE_ACCURACY: f64 = 1e-2;
 /// Most trials.
 const MOST_TRIALS: u32 = 400;
 
 /// The choice of trials.
 struct Trials {
     corral: Corral,
+    by_map: bool,
     /// Trials in a row that were not good.
     bad: u32,
     /// The least missing force of all trials. A trial is not compared with the last one: of two trials that lead to each other, every second one
@@ -51,7 +58,7 @@ pub fn solve(
     problem.refresh(state);
     let bounds = sum_of_bounds(problem);
     let mut trials = Trials::new(problem, forces, bounds);
-    let (mut tried, mut inner, mut is_exact) = (1.0, tolerance, false);
+    let (mut tried, mut inner, mut before, mut is_exact) = (1.0, tolerance, [f64::NAN; 2], false);
     for _ in 0..MOST_TRIALS {
         let left = limit.saturating_sub(problem.operators.products - made);
         if left == 0 {
@@ -78,7 +85,13 @@ pub fn solve(
                 return Ok(end);
             }
         }
-        let next = trials.next(problem, state, (forces, excess, missing));
+        // The forces are those of the trial before: the residual of the solve hides their change.
+        if excess == before && inner > LEAST_INNER {
+            inner *= TIGHTER;
+            continue;
+        }
+        before = excess;
+        let next = trials.next(problem, state, memory, (forces, excess, missing))?;
         if next != problem.offset {
             problem.offset = next;
         } else if is_exact {
@@ -158,21 +171,58 @@ impl Trials {
         });
         let part = square(forces.only_given(forces.sum)).sqrt() / bounds;
         let half = problem.farthest_creepage() * 4.0 * (rigid + displaced) / (1.0 - part).max(f64::EPSILON);
-        Trials { corral: Corral::new(half, forces.given), bad: 0, least: None }
+        Trials { corral: Corral::new(half, forces.given), by_map: true, bad: 0, least: None }
     }
 
     /// The creepages to try next; the present ones if there are no others.
-    fn next(&mut self, problem: &Problem, state: &State, (forces, excess, missing): (Forces, Vector, f64)) -> Vector {
+    fn next(
+        &mut self,
+        problem: &mut Problem,
+        state: &State,
+        memory: &mut Memory,
+        (forces, excess, missing): (Forces, Vector, f64),
+    ) -> Result<Vector> {
         let at = problem.offset;
         self.corral.cut(at, excess);
-        let is_bad = self.least.is_some_and(|least| missing > PROGRESS * least);
-        self.bad = if is_bad { self.bad + 1 } else { 0 };
-        self.least = Some(self.least.map_or(missing, |least| least.min(missing)));
-        let trial = balanced(problem, state, 1.0 / compliance(problem), forces);
-        if self.bad % 3 != 2 && trial != at && self.corral.holds(trial) {
-            trial
-        } else {
-            self.corral.centre()
+        let rho = 1.0 / compliance(problem);
+        memory.tangent.predict(problem, state, rho);
+        match self.least {
+            Some(least) if missing > PROGRESS * least => (self.by_map, self.bad) = (!self.by_map, self.bad + 1),
+            Some(_) => self.bad = 0,
+            // The natural map is tried first if nearly all of C slips.
+            None => self.by_map = problem.places.is_mostly_slip(memory.tangent.slip_count),
         }
+        self.least = Some(self.least.map_or(missing, |least| least.min(missing)));
+        if self.bad % 3 == 2 {
+            return Ok(self.corral.centre());
+        }
+        for by_map in [self.by_map, !self.by_map] {
+            let trial = if by_map {
+                balanced(problem, state, rho, forces)
+            } else {
+                let slope = slope(problem, memory, forces)?;
+                plus(at, 1.0, forces.only_given(slope.map(|row| dot(row, excess))))
+            };
+            if trial != at && self.corral.holds(trial) {
+                return Ok(trial);
+            }
+        }
+        Ok(self.corral.centre())
     }
+}
+
+/// The change of creepages per excess of force: the inverse of minus the derivatives of the forces at fixed slip area.
+fn slope(problem: &mut Problem, memory: &mut Memory, forces: Forces) -> Result<[Vector; 2]> {
+    let Memory { tangent, fields, .. } = memory;
+    let mut falls = [[0.0; 2]; 2];
+    for k in (0..2).filter(|&k| forces.given[k]) {
+        let mut change = fields.take(problem.grid.len())?;
+        let unit = [[1.0, 0.0], [0.0, 1.0]][k];
+        fields::fill(problem.threads(), &mut change, |i| problem.weighted(i, unit));
+        sensitivity::solve(problem, tangent, (fields, &mut change), DERIVATIVE_ACCURACY, &mut |_| true)?;
+        let by = forces.only_given(sum_of(problem, &change));
+        (falls[0][k], falls[1][k]) = (-by[0], -by[1]);
+        fields.give(change);
+    }
+    Ok(inverse(falls))
 }

@@ -2,8 +2,7 @@
 //!
 //! ```text
 //! g of a coarse element: the mean of its children's, 0 without children in C; w: the mean of those in C,
-//!                                                                              in steady rolling times 2: a step is 2 dq long,
-//!                                                                              and w a third of the difference ahead
+//!                                                                              in steady rolling times 2: a step is 2 dq long
 //! ```
 //!
 //! Grids are coarsened by two until the shorter side has fewer than 24 elements, a single row along itself only.

@@ -28,6 +28,8 @@ const COARSE_SHARE: f64 = 0.5;
 /// Products of Newton's method with balanced creepages, which comes first near full slip: half of 3800 random scenes then take less than half of the
 /// products. If a single element sticks, the method cycles.
 const BALANCED_PRODUCTS: u64 = 8;
+/// Products of plain Newton steps, which come next and may cycle as well.
+const PLAIN_PRODUCTS: u64 = 60;
 /// Products reserved for the certificates at the end of an unfinished solve.
 pub const KEPT_BACK: u64 = 5;
 
@@ -100,13 +102,19 @@ pub fn solve(
 fn ways(forces: Forces, newton_first: bool, (is_rolling, certified): (bool, bool), slips: bool) -> Vec<(Way, u64)> {
     use Way::{Gradients, Newton};
     let as_many = |ways: &[Way]| ways.iter().map(|way| (*way, u64::MAX)).collect();
-    if forces.any() && !certified || is_rolling && !forces.any() {
+    if forces.any() && !certified {
         // On a coarser grid these need not converge: the next grid starts from their last state.
-        as_many(&[Newton(Manner::Plain)])
+        as_many(&[Newton(Manner::Plain), Newton(Manner::Balanced)])
     } else if slips {
-        vec![(Newton(Manner::Balanced), BALANCED_PRODUCTS), (Way::Bracket, u64::MAX)]
+        vec![
+            (Newton(Manner::Balanced), BALANCED_PRODUCTS),
+            (Newton(Manner::Plain), PLAIN_PRODUCTS),
+            (Way::Bracket, u64::MAX),
+        ]
     } else if forces.any() {
-        as_many(&[Newton(Manner::Plain), Newton(Manner::Balanced), Way::Bracket])
+        as_many(&[Newton(Manner::Plain), Newton(Manner::Balanced), Newton(Manner::InTurns), Way::Bracket])
+    } else if is_rolling {
+        as_many(&[Newton(Manner::Plain), Newton(Manner::Balanced), Newton(Manner::Plain)])
     } else {
         as_many(&[if newton_first { Newton(Manner::Plain) } else { Gradients }, Newton(Manner::Plain), Way::Downhill])
     }
@@ -156,8 +164,12 @@ fn one(
     let slips = forces.any() && certified && mostly_slips(level, forces)?;
     let ways = ways(forces, newton_first, (level.problem.operators.rolling.is_some(), certified), slips);
     for (k, &(way, most)) in ways.iter().enumerate() {
-        let Level { problem, state, .. } = &mut *level;
+        let Level { problem, state, memory, .. } = &mut *level;
         let left = ((all - work.products) / part).max(0.0);
+        // Newton's method in turns serves near full slip only.
+        if way == Way::Newton(Manner::InTurns) && !problem.places.is_mostly_slip(memory.tangent.slip_count) {
+            continue;
+        }
         let another = k + 1 < ways.len();
         let limit = (if another { METHOD_SHARE * left } else { left }.ceil() as u64).min(most);
         if limit == 0 {

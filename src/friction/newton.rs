@@ -17,6 +17,7 @@
 use super::balance::balanced;
 use super::best::Best;
 use super::forces::Forces;
+use super::plane::square;
 use super::problem::{Problem, State};
 use super::shift::Goal;
 use super::step::{compliance, enough, polish, step, Effort, DIRECTIONS};
@@ -47,10 +48,14 @@ const TIMES_WORSE: u32 = 2;
 /// Steps without progress before a cut; progress is a residual below PROGRESS times the least.
 const PATIENCE: u32 = 4;
 const PROGRESS: f64 = 0.7;
+/// Coarser grids may leave q above its bounds by this times the tolerance: the next finer grid projects q.
+const COARSE_EXCESS: f64 = 10.0;
 /// Most steps on a grid without certificate.
 const MOST_STEPS: u64 = 60;
 /// Cuts without progress after which the steps end.
 const MOST_CUTS: u32 = 6;
+/// Creepages above this times the displacement by g plus the given slip run away: nothing in the system holds them.
+const RUNAWAY: f64 = 1e4;
 
 /// How the slipping elements are predicted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,6 +65,8 @@ pub enum Manner {
     /// By the natural map whose rho is the inverse compliance: elements of large slip are predicted to slip, whatever their bounds. With the creepages
     /// at which it carries given forces.
     Balanced,
+    /// `Balanced` in turns: the creepages that carry the forces at fixed displacements, then a step with these creepages given.
+    InTurns,
 }
 
 /// The progress of the steps, and the kind of the next one.
@@ -72,15 +79,24 @@ struct StepControl {
     least: f64,
     since: u32,
     cuts: u32,
+    /// The last residual, and the steps that did not change it.
+    last: f64,
+    still: u32,
 }
 
 impl StepControl {
     fn new(inner: f64) -> StepControl {
-        StepControl { factor: 1.0, inner, least: f64::INFINITY, since: 0, cuts: 0 }
+        StepControl { factor: 1.0, inner, least: f64::INFINITY, since: 0, cuts: 0, last: f64::INFINITY, still: 0 }
     }
 
     /// Records the worst measure of an iterate. Returns whether to go on.
-    fn goes_on(&mut self, worst: f64) -> bool {
+    fn goes_on(&mut self, worst: f64, by_force: bool) -> bool {
+        // If the measure stays constant, nothing holds the creepages, whatever rho is.
+        self.still = if worst == self.last { self.still + 1 } else { 0 };
+        self.last = worst;
+        if by_force && self.still > PATIENCE {
+            return false;
+        }
         self.since += 1;
         if worst < PROGRESS * self.least {
             (self.least, self.since, self.cuts) = (worst, 0, 0);
@@ -143,7 +159,10 @@ pub fn solve(
     tangent.fit(problem.grid.len())?;
     problem.continue_residuals()?;
     let cap = 1.0 / compliance(problem);
+    let saturating = problem.rms_bound() / cap;
+    let spinning = problem.rms(|i| problem.rigid[i]).max(problem.rms(|i| problem.slip[i]));
     let made = problem.operators.products;
+    let of_step = if manner == Manner::InTurns { Forces::NONE } else { forces };
     let mut control = StepControl::new(if problem.operators.rolling.is_some() { INNER_ROLLING } else { INNER });
     let (mut iterations, mut certificates) = (0, Certificates::default());
     loop {
@@ -154,7 +173,8 @@ pub fn solve(
         }
         let measures = tangent.predict(problem, state, rho);
         let missing = forces.missing(problem, &state.q);
-        let worst = largest([measures.residual, measures.excess, missing]);
+        let excess = if certified { measures.excess } else { measures.excess / COARSE_EXCESS };
+        let worst = largest([measures.residual, excess, missing]);
         if !worst.is_finite() {
             return Ok(unloaded(problem, state));
         }
@@ -165,10 +185,11 @@ pub fn solve(
         certificates.compare(measures.residual);
         if certified && !state.is_exact && certificates.is_near(measures, missing, tolerance.max(ROUND_OFF)) {
             certificates.before = Some(measures.residual);
-            polish(problem, state, (tangent, certificates.is_by_step()), forces, fields)?;
+            polish(problem, state, (tangent, certificates.is_by_step()), of_step, fields)?;
             continue;
         }
-        if !control.goes_on(worst) {
+        let runs_away = manner == Manner::Plain && square(problem.offset).sqrt() > RUNAWAY * (saturating + spinning);
+        if runs_away || !control.goes_on(worst, forces.any()) {
             return Ok(Outcome::Stagnated);
         }
         let left = limit.saturating_sub(problem.operators.products - made);
@@ -179,7 +200,7 @@ pub fn solve(
         let inner = enough(control.inner, tolerance, worst);
         let most = if control.factor < 1.0 { all_directions(problem) } else { DIRECTIONS }.min(left as usize);
         let effort = Effort { inner, most, left: measures.residual, length: control.length() };
-        step(problem, state, tangent, (forces, effort), fields)?;
+        step(problem, state, tangent, (of_step, effort), fields)?;
         if !watch(worst) {
             return Ok(Outcome::Cancelled);
         }

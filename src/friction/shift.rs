@@ -29,6 +29,9 @@ const PROGRESS: f64 = 0.9;
 /// Rms of deferred corrections over that of the step above which they are multiplied at once.
 const MOST_DEFERRED: f64 = 0.2;
 
+/// Least forecast length: on rough surfaces steps are short.
+const LEAST_FORECAST: f64 = 0.2;
+
 /// Memory of the iterations.
 #[derive(Default)]
 pub struct Memory {
@@ -132,10 +135,7 @@ fn step<T: Real>(problem: &mut Problem, discs: &mut Discs<T>, steps: &mut Steps)
     let beta = if steps.energy > 0.0 { (-along_last / steps.energy).max(0.0) } else { 0.0 };
     discs.choose_direction(problem, (beta, steps.forecast));
     let [energy, gain] = discs.multiply(problem);
-    let length = gain / energy;
-    // Without a positive length the forecast is gone, and the direction is forgotten.
-    let (length, energy) = if length > 0.0 { (length, energy) } else { (steps.forecast, 0.0) };
-    steps.energy = energy;
+    let (length, next) = choose_length(gain / energy, energy, steps);
     let threads = problem.threads().clone();
     let mut sums = discs.go(&problem.places, &threads, length, steps.forecast);
     problem.update = discs.own_traction(problem.rms_of(sums.moved));
@@ -143,6 +143,25 @@ fn step<T: Real>(problem: &mut Problem, discs: &mut Discs<T>, steps: &mut Steps)
         discs.correct(problem);
         sums = discs.predict(&problem.places, &threads);
     }
-    steps.forecast = length.min(1.0);
+    steps.forecast = next.clamp(LEAST_FORECAST, 1.0);
     sums
+}
+
+/// The step along the chord, and the next forecast.
+fn choose_length(length: f64, energy: f64, steps: &mut Steps) -> (f64, f64) {
+    let f = steps.forecast;
+    steps.energy = energy;
+    if length >= 0.25 * f && length <= 4.0 * f {
+        return (length, length);
+    }
+    steps.energy = 0.0;
+    if length > 4.0 * f {
+        // Otherwise steps would never lengthen.
+        (f, 4.0 * f)
+    } else if length > 0.0 {
+        let length = length.max(0.1 * f);
+        (length, length)
+    } else {
+        (f, f)
+    }
 }

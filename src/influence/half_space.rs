@@ -58,7 +58,7 @@ pub struct HalfSpace {
 /// an element, relative to its length in x.
 #[derive(Debug)]
 struct Shape {
-    /// The sides of the element, with a length in x near 1.
+    /// The sides of the element, with a longer side near 1.
     dx: f64,
     dy: f64,
     /// `q_k(t) = sum_j series[k][j] t^j`.
@@ -84,8 +84,8 @@ thread_local! {
 impl Shape {
     /// The shape of an element, computed once.
     fn of(dx: f64, dy: f64) -> Arc<Shape> {
-        let (dx, unit) = apart(dx);
-        let dy = times_power(dy, -unit);
+        let (_, unit) = apart(dx.max(dy));
+        let [dx, dy] = [dx, dy].map(|side| times_power(side, -unit));
         LAST.with_borrow_mut(|last| match last {
             Some(last) if last.element == (dx, dy) => last.shape.clone(),
             _ => last.insert(Computed { element: (dx, dy), shape: Arc::new(Shape::new(dx, dy)) }).shape.clone(),
@@ -100,7 +100,7 @@ impl Shape {
         let few = near_x.saturating_mul(near_y) <= MOST_KEPT;
         let (near_x, near_y) = if few { (near_x, near_y) } else { (0, 0) };
         let offsets = (0..near_y).flat_map(|ky| (0..near_x).map(move |kx| (kx as f64, ky as f64)));
-        let near = offsets.map(|(kx, ky)| near_integral(kx, ky, dx, dy) / dx).collect();
+        let near = offsets.map(|(kx, ky)| integral_at((kx, ky), (dx, dy)) / dx).collect();
         Shape { dx, dy, series: multipole_series(dx, dy), near, near_x, quadrants: Default::default() }
     }
 
@@ -157,7 +157,7 @@ impl Shape {
     /// The coefficient at an offset nearer than the series.
     fn near(&self, kx: usize, ky: usize) -> f64 {
         let kept = if kx < self.near_x { self.near.get(ky * self.near_x + kx) } else { None };
-        kept.copied().unwrap_or_else(|| near_integral(kx as f64, ky as f64, self.dx, self.dy) / self.dx)
+        kept.copied().unwrap_or_else(|| integral_at((kx as f64, ky as f64), (self.dx, self.dy)) / self.dx)
     }
 }
 
@@ -241,11 +241,6 @@ impl Kernel for HalfSpace {
 
 /// The integral of 1/rho over an element at offset `(kx, ky) >= 0` in elements, which need not be integers.
 pub(crate) fn integral_at((kx, ky): (f64, f64), (dx, dy): (f64, f64)) -> f64 {
-    near_integral(kx, ky, dx, dy)
-}
-
-/// The integral of 1/rho over an element at offset `(kx, ky) >= 0`.
-fn near_integral(kx: f64, ky: f64, dx: f64, dy: f64) -> f64 {
     if ky >= 2.0 {
         gauss(ky * dy, dy, |y| line(kx, dx, y))
     } else if kx >= 2.0 {

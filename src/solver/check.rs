@@ -163,12 +163,9 @@ pub fn range(
     }
     let in_range = |value: f64| (1.0 / LARGEST..LARGEST).contains(&value);
     let loaded = pressure != 0.0 || displacement != 0.0;
-    // A single element with two periods displaces nothing.
-    if problem.grid.len() == 1 && problem.coefficients.is_mean_free() && in_range(pressure) {
-        return Ok(());
-    }
+    let displaces_nothing = problem.grid.len() == 1 && problem.coefficients.is_mean_free() && in_range(pressure);
     let coefficients = in_range(influence) && in_range(largest) && in_range(largest * pressure);
-    if loaded && !(in_range(pressure) && in_range(displacement) && coefficients) {
+    if loaded && !displaces_nothing && !(in_range(pressure) && in_range(displacement) && coefficients) {
         return invalid(format!(
                 "the scene has pressures of order {pressure:e}, displacements of order {displacement:e} and influence \
                  coefficients of order {influence:e} to {largest:e}; all must lie between 1e-140 and 1e140: choose other units"

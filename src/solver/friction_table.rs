@@ -94,7 +94,10 @@ impl<'a> Table<'a> {
         entries: &'a [Entry],
         options: &'a Options,
     ) -> Table<'a> {
-        let bounds = pressure.iter().enumerate().map(|(i, p)| friction.coefficient.at(i) * p.max(0.0));
+        // Of fresh particles, which is enough for a distance.
+        let layer =
+            friction.layer.filter(|_| friction.has_ideal_layer()).map_or(f64::INFINITY, |layer| layer.yield_limit);
+        let bounds = pressure.iter().enumerate().map(|(i, p)| (friction.coefficient.at(i) * p.max(0.0)).min(layer));
         let near_force = NEAR_FORCE * in_blocks(bounds) * scene.grid.element_area();
         let contact = pressure.iter().filter(|p| **p > 0.0).count() as f64 * scene.grid.element_area();
         let radius = (contact / std::f64::consts::PI).sqrt();

@@ -1,5 +1,6 @@
 //! The results at one depth.
 
+use super::loads::Loads;
 use super::product::{Product, Workspace};
 use super::tensor::{principal, von_mises, Tensor};
 use crate::error::Result;
@@ -64,9 +65,9 @@ pub struct Maximum {
 }
 
 impl Maximum {
-    /// Takes the largest of `values` at a depth, if it is larger than any before.
-    pub fn join(known: &mut Option<Maximum>, values: &[f64], depth: usize, grid: &Grid) {
-        for (i, &value) in values.iter().enumerate() {
+    /// Takes the largest of `values` at a depth, if it is larger than any before. With patches those below their elements count.
+    pub fn join(known: &mut Option<Maximum>, values: &[f64], depth: usize, (grid, loads): (&Grid, &Loads<'_>)) {
+        for (i, &value) in values.iter().enumerate().filter(|(i, _)| loads.counts(*i)) {
             if !known.is_some_and(|known| known.value >= value) {
                 *known = Some(Maximum { value, depth, ix: i % grid.mx, iy: i / grid.mx });
             }

@@ -67,6 +67,11 @@ impl<'a> Loads<'a> {
         }
     }
 
+    /// Whether the stresses below element i count for the largest ones: with patches, below their elements.
+    pub fn counts(&self, i: usize) -> bool {
+        self.coupled().is_none() || self.part(i) != Part::All
+    }
+
     /// The factor of the loads on element j below a part.
     pub(super) fn factor(&self, part: Part, j: usize) -> f64 {
         match (self.coupled(), part) {

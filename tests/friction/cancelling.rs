@@ -32,7 +32,9 @@ fn cancelled_once(what: &str, mut run: impl FnMut(ProgressCallback<'_>) -> Outco
             calls += 1;
             calls == at
         });
-        assert_eq!((stop, calls), (Outcome::Cancelled, at), "{what}: cancelled at call {at} of {all}");
+        // The last call for stresses comes with all depths done.
+        let expected = if what == "stresses" && at == all { Outcome::Converged } else { Outcome::Cancelled };
+        assert_eq!((stop, calls), (expected, at), "{what}: cancelled at call {at} of {all}");
     }
     all
 }

@@ -34,6 +34,17 @@ fn areas_and_forces_beyond_the_range_of_numbers_are_refused() {
     }
 }
 
+/// A single element with two periods displaces nothing, but has an area.
+#[test]
+fn the_area_of_a_single_element_with_two_periods_is_in_range() {
+    for (side, is_refused) in [(1e-160, true), (1.0, false), (1e150, true)] {
+        let grid = Grid::new(1, 1, side, side).expect("a grid");
+        let (period, limit) = (Some(Period { x: true, y: true }), Some(PressureLimit::Uniform(1e-3)));
+        let scene = Scene { period, pressure_limit: limit, ..Scene::new(grid, &[0.0], BODIES, Load::Approach(0.3)) };
+        assert_eq!(solve(&scene, &Options::default()).is_err(), is_refused, "{side}");
+    }
+}
+
 /// A load that takes stresses out of the range of numbers had stresses that are infinite or no numbers, with status OK.
 #[test]
 fn loads_whose_stresses_overflow_are_refused() {

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Kernel, Table};
 use contact_normal::operator::{dense, Operator};
-use contact_normal::scene::{Bodies, Load, Scene};
-use contact_normal::solver::{quantities, solve, Options, Outcome, Quantity};
+use contact_normal::scene::{Bodies, Load, Period, Scene};
+use contact_normal::solver::{quantities, solve, Lack, Options, Outcome, Quantity};
 use contact_normal::threads::Threads;
 
 fn grid(mx: usize, my: usize) -> Grid {
@@ -100,4 +100,23 @@ fn largest_stresses_of_a_roller_lie_below_its_surface() {
             }
         }
     }
+}
+
+/// A line with two periods is uniform along itself: its largest stresses do not depend on the length of its elements. A grid of such elements has none.
+#[test]
+fn largest_stresses_of_a_line_with_two_periods_do_not_depend_on_its_length() {
+    let of = |mx: usize, my: usize, long: f64| {
+        let grid = Grid::new(mx, my, 0.05, long).unwrap();
+        let h: Vec<f64> = (0..grid.len()).map(|i| (((i % mx) as f64 - 31.5) * 0.05).powi(2) / 100.0).collect();
+        let load = Load::Force(500.0 * long * my as f64);
+        let period = Some(Period { x: true, y: true });
+        let scene = Scene { period, ..Scene::new(grid, &h, Bodies::same(82_000.0, 0.3), load) };
+        quantities(&scene, &Options::default(), &[Quantity::MaxVonMises], 0, None).unwrap().1[0]
+    };
+    let short = of(64, 1, 0.05).value.unwrap();
+    for long in [1.0, 10.0, 100.0] {
+        // To the tolerance of the solve.
+        assert!((of(64, 1, long).value.unwrap() / short - 1.0).abs() < 1e-5, "{long}");
+    }
+    assert_eq!((of(64, 4, 10.0).value, of(64, 4, 10.0).lack), (None, Some(Lack::Effect)));
 }

@@ -229,8 +229,9 @@ fn the_largest_shear_under_a_ball_is_at_its_depth() {
     let depths: Vec<f64> = (0..81).map(|k| 0.44 + 0.001 * k as f64).collect();
     let wanted = Wanted { maximum_shear: true, ..Wanted::default() };
     let mut maximum = None;
-    for (k, depth) in all_depths(&body, &Loads::pressure(&pressure), &depths, &wanted, 2).iter().enumerate() {
-        Maximum::join(&mut maximum, &depth.maximum_shear, k, &body.grid);
+    let loads = Loads::pressure(&pressure);
+    for (k, depth) in all_depths(&body, &loads, &depths, &wanted, 2).iter().enumerate() {
+        Maximum::join(&mut maximum, &depth.maximum_shear, k, (&body.grid, &loads));
     }
     let Maximum { value, depth, ix, iy } = maximum.unwrap();
     println!("{value} at {}", depths[depth]);
@@ -253,7 +254,7 @@ fn a_sliding_ball_yields_first_where_it_should() {
     let loads = Loads { pressure: Some(&pressure), traction_x: Some(&traction), traction_y: None, ..Loads::default() };
     let mut maximum = None;
     for (k, depth) in all_depths(&body, &loads, &depths, &wanted, 2).iter().enumerate() {
-        Maximum::join(&mut maximum, &depth.von_mises, k, &body.grid);
+        Maximum::join(&mut maximum, &depth.von_mises, k, (&body.grid, &loads));
     }
     let Maximum { value, depth, ix, iy } = maximum.unwrap();
     let (x, z) = ((ix as f64 - n as f64) / n as f64, depths[depth]);

@@ -11,7 +11,7 @@ use crate::grid::Grid;
 use crate::memory::collected;
 use crate::rectangle::Rectangle;
 use crate::scene::Patches;
-use crate::stress::{subsurface_stress, Body, Depth, Loads, Wanted, MOST_SLENDER};
+use crate::stress::{subsurface_stress, Body, Depth, Loads, Wanted};
 use crate::threads::Threads;
 
 /// The ratio of successive depths.
@@ -72,9 +72,10 @@ impl Stress {
         }
     }
 
-    fn largest(self, depth: &Depth) -> f64 {
+    fn largest(self, depth: &Depth, loads: &Loads<'_>) -> f64 {
         let values = if self == Stress::VonMises { &depth.von_mises } else { &depth.maximum_shear };
-        values.iter().fold(0.0, |largest: f64, value| largest.max(*value))
+        let counted = values.iter().enumerate().filter(|(i, _)| loads.counts(*i));
+        counted.fold(0.0, |largest: f64, (_, value)| largest.max(*value))
     }
 }
 
@@ -116,7 +117,11 @@ impl<'a> Surface<'a> {
             (1, _) if grid.my > 1 => grid.dy,
             _ => grid.dx.max(grid.dy),
         };
-        let (grid, pressure) = (part.grid(&grid), cut(&|i| pressure[i])?);
+        let (mut grid, pressure) = (part.grid(&grid), cut(&|i| pressure[i])?);
+        // Loads on a line with two periods are uniform along it, however long its elements are: plane strain.
+        if periodic && (grid.mx == 1 || grid.my == 1) {
+            (grid.dx, grid.dy) = (side, side);
+        }
         Ok(Some(Surface { grid, side, periodic, pressure, tractions, patches }))
     }
 
@@ -133,18 +138,15 @@ impl<'a> Surface<'a> {
 
     /// The largest stress over all depths, and its depth, in a body of this Poisson ratio.
     pub fn peak(&self, stress: Stress, poisson_ratio: f64, threads: &Threads) -> Result<Peak> {
-        let (short, long) = (self.grid.dx.min(self.grid.dy), self.grid.dx.max(self.grid.dy));
-        // For very slender elements of periodic bodies, stresses near the surface are not computed.
-        let slender = self.periodic && long > MOST_SLENDER * short;
-        let first = if slender { long } else { FIRST_DEPTH * self.side };
+        let (short, first) = (self.grid.dx.min(self.grid.dy), FIRST_DEPTH * self.side);
         let extent = (self.grid.mx as f64 * self.grid.dx).max(self.grid.my as f64 * self.grid.dy);
-        let mut depths: Vec<f64> = if slender { vec![] } else { vec![0.0] };
         // Between the shorter side and that of `CLOSE`.
-        let shallow = std::iter::successors(Some(first / DEPTH_RATIO), |z| Some(z / DEPTH_RATIO))
-            .take_while(|z| !slender && *z > FIRST_DEPTH * short);
-        depths.extend(shallow);
-        let between = depths.len().saturating_sub(1);
-        depths[usize::from(!slender)..].reverse();
+        let mut depths: Vec<f64> = std::iter::successors(Some(first / DEPTH_RATIO), |z| Some(z / DEPTH_RATIO))
+            .take_while(|z| *z > FIRST_DEPTH * short)
+            .collect();
+        let between = depths.len();
+        depths.push(0.0);
+        depths.reverse();
         depths.extend(
             std::iter::successors(Some(first), |z| Some(z * DEPTH_RATIO)).take_while(|z| *z < DEPTH_RATIO * extent),
         );
@@ -154,7 +156,7 @@ impl<'a> Surface<'a> {
             let k = if k == 0 { 0 } else { between + k };
             known.get(k).or(known.last()).map_or(0.0, |peak| peak.value)
         };
-        let close = if slender { [0.0; CLOSE.len()] } else { std::array::from_fn(at) };
+        let close = std::array::from_fn(at);
         for _ in 0..PARABOLAS {
             let best = (0..known.len()).max_by(|a, b| known[*a].value.total_cmp(&known[*b].value)).unwrap_or(0);
             if best == 0 || best + 1 == known.len() {
@@ -180,7 +182,7 @@ impl<'a> Surface<'a> {
         let loads = Loads { pressure: Some(&self.pressure), traction_x: x, traction_y: y, patches: self.patches };
         let mut peaks = Vec::new();
         let each = |k: usize, depth: &Depth| {
-            peaks.push(Peak { value: stress.largest(depth), depth: depths[k], ..Peak::default() });
+            peaks.push(Peak { value: stress.largest(depth, &loads), depth: depths[k], ..Peak::default() });
         };
         subsurface_stress(&body, &loads, depths, &stress.wanted(), threads, None, each)?;
         Ok(peaks)

@@ -5,9 +5,10 @@ use super::{Quantity, Value};
 use crate::contact::Outline;
 use crate::error::{invalid, Error, Result};
 use crate::friction::STICK;
+use crate::grid::Grid;
 use crate::scene::{Prescribed, Scene};
 use crate::solver::{Outcome, Report, Solver};
-use crate::stress::of_scene;
+use crate::stress::{of_scene, MOST_SLENDER};
 use crate::sums::in_blocks;
 
 /// Why a quantity has no value, or its value no error.
@@ -43,7 +44,8 @@ impl Quantity {
                 Err(Error::Unsupported(format!("{name} is asked for; it is that of bodies without adhesion")))
             }
             Some(_) => Err(Error::Unsupported(format!(
-                "{name} is asked for; stresses are those of half-spaces, without coating, own coefficients or a period in one direction"
+                "{name} is asked for; stresses are those of half-spaces, without coating, own coefficients, \
+                 a period in one direction, or elements more slender than 1:64 with two periods"
             ))),
         }
     }
@@ -67,13 +69,20 @@ impl Quantity {
             }
             MaxVonMises | VonMisesDepth | MaxShear => {
                 let solved = [1, 2].iter().all(|body| of_scene(scene, *body, [None; 3]).is_ok());
-                (!solved).then_some(Lack::Effect)
+                (!solved || is_too_slender(scene)).then_some(Lack::Effect)
             }
             // A stiffness at fixed attraction would not be that of the bodies.
             Quantity::Stiffness => scene.attraction().map(|_| Lack::Effect),
             _ => None,
         }
     }
+}
+
+/// Whether stresses near the surface are not computed: with two periods and very slender elements, other than those of a line.
+fn is_too_slender(scene: &Scene<'_>) -> bool {
+    let (Grid { mx, my, dx, dy }, period) = (scene.grid, scene.period);
+    let is_line = mx == 1 || my == 1;
+    period.is_some_and(|period| period.x && period.y) && !is_line && dx.max(dy) > MOST_SLENDER * dx.min(dy)
 }
 
 /// The values of `wanted` after a solve of `scene`. Stiffness and stresses are computed here, which may cost more than the solve.
