@@ -184,9 +184,9 @@ def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolera
         return result, off
 
     try:
-        found, is_balanced = _search(gap, aim, tolerance, solved, _start(gap))
+        found, is_balanced = _search(gap, aim, tolerance, solved, _start(gap), False)
         if not is_balanced and (tilt := resting(gap, aim)) is not None:
-            found, is_balanced = _search(gap, aim, tolerance, solved, tilt)
+            found, is_balanced = _search(gap, aim, tolerance, solved, tilt, True)
     except _Ended as ended:
         return ended.so_far
     if not is_balanced:
@@ -209,13 +209,13 @@ def _balanced(gap: Gap, tilt: Doubles, result: Result, centre: Doubles) -> Balan
     return Balanced(_tilted(gap, tilt), (along_x, along_y), result, (x, y))
 
 
-def _search(gap: Gap, aim: Doubles, tolerance: float, solved: Callable[[Doubles], tuple[Result, Doubles]], tilt: Doubles) -> tuple[Balanced, bool]:
+def _search(gap: Gap, aim: Doubles, tolerance: float, solved: Callable[[Doubles], tuple[Result, Doubles]], tilt: Doubles, rests: bool) -> tuple[Balanced, bool]:
     """The tilt whose pressures have their centre at `aim`, from a first one; and whether it was found. `solved` returns the result of a tilt, and how far
     its centre is off."""
     sizes = np.array([gap.h.shape[1] * gap.dx, gap.h.shape[0] * gap.dy])
     result, off = solved(tilt)
     begun = _tilted(gap, tilt).h
-    trial = _TRIAL * max(result.approach, 1e-3 * float(np.ptp(begun[np.isfinite(begun)]))) / sizes
+    trial = _TRIAL * (result.approach if rests and result.approach > 0.0 else max(result.approach, 1e-3 * float(np.ptp(begun[np.isfinite(begun)])))) / sizes
     slopes, known = np.eye(2), np.isfinite(gap.h)
     # Of elements in one line across a direction the centre stays in it.
     for k in (k for k in range(2) if np.count_nonzero(known.any(axis=k)) > 1):
