@@ -40,7 +40,8 @@ def _around(z: Doubles, period: str | None, at: Any, reach: int) -> Doubles:
 
 
 def _said_around(z: Doubles, period: str | None, at: Any, reach: int, only_between: bool) -> Doubles:
-    """What pairs of opposite neighbours say of some elements, and, where most pairs lack, lines along the axes from one side and planes through three neighbours."""
+    """What pairs of opposite neighbours say of some elements, and, where most pairs lack, lines along the axes from one side and planes through three
+    neighbours."""
     around = _around(z, period, at, reach)
     means = 0.5 * (around[:4] + around[:3:-1])
     if only_between:
