@@ -206,7 +206,7 @@ class CreepForceTable:
                 raise ValueError(f"{name} is {value}; it must not be negative")
         bound = np.asarray(mu * load)
         if np.any((bound > 0.0) & (_is_no_length(a) | _is_no_length(b))):
-            raise ValueError(f"semi_axes is {semi_axes}; they must be positive where there is a load")
+            raise ValueError(f"semi_axes is {semi_axes}; they must be positive and finite where there is a load")
         # Where there is none, any lengths will do.
         a, b = (np.where(_is_no_length(one), 1.0, one) for one in (a, b))
         c = np.sqrt(a * b)

@@ -65,7 +65,8 @@ class Remarks(unittest.TestCase):
         self.assertIn("a coefficient of 30 is a ratio", cn.solve_tangential(self.PRESSURE, 0.1, 0.1, friction=friction, **ELASTIC).message)
 
     def test_friction_without_a_coefficient_is_refused(self):
-        for friction in ({"creepage": (1e-3, 0.0)}, {}, {"coefficient": None, "spin": 0.1}):
+        for friction in ({"creepage": (1e-3, 0.0)}, {}, {"coefficient": None, "spin": 0.1}, {"layer": {"yield_limit": 0.05}, "creepage": (1e-3, 0.0)},
+                         {"row_tables": (np.zeros((M * M, M * M)),) * 3, "creepage": (1e-3, 0.0)}):
             with self.assertRaisesRegex(ValueError, "friction has no coefficient; without friction leave it out, or give a coefficient of 0"):
                 cn.solve(BALL, 0.1, 0.1, force=0.01, friction=friction, **ELASTIC)
         none = cn.solve(BALL, 0.1, 0.1, force=0.01, friction={"coefficient": 0.0, "creepage": (1e-3, 0.0), "motion": "SHIFT"}, **ELASTIC)

@@ -28,7 +28,7 @@ class Reads(unittest.TestCase):
         table = cn.creep_force_table(xi=[0.0, 0.3], eta=[0.0], phi=[0.0], axis_ratio=[1.0, 2.0], elements=9)
         given = {"coefficient": 0.3, "shear_modulus": 82000.0, "hold": True}
         for axes in ((0.0, 4.5), (-1.0, 4.5), (-6.0, -4.0), (6.0, np.inf), (6.0, [4.0, 0.0])):
-            with self.assertRaisesRegex(ValueError, "semi_axes is .* they must be positive where there is a load"):
+            with self.assertRaisesRegex(ValueError, "semi_axes is .* they must be positive and finite where there is a load"):
                 table.wheel_rail((1e-3, 0.0), 0.0, semi_axes=axes, normal_force=82e3, **given)
         with self.assertRaisesRegex(TypeError, "semi_axes is 6.0; it must be a pair"):
             table.wheel_rail((1e-3, 0.0), 0.0, semi_axes=6.0, normal_force=82e3, **given)

@@ -65,6 +65,16 @@ class Lays(unittest.TestCase):
         self.assertEqual(spikes(z), [])
 
 
+    def test_pairs_at_borders_and_beside_holes_are_found(self):
+        z = rough((96, 96), seed=4)
+        z[40:50, 40:50] = np.nan
+        for places in ([[0, 5], [0, 6]], [[0, 0], [0, 1]], [[0, 0], [1, 0]], [[30, 95], [31, 95]], [[39, 44], [39, 45], [49, 50], [50, 50]], [[0, 0], [0, 95]]):
+            measured = z.copy()
+            measured[tuple(np.transpose(places))] += 50.0
+            for period in (None, "x", "y", "xy"):
+                self.assertEqual(spikes(measured, period), places, period)
+
+
 class Lines(unittest.TestCase):
     def test_a_spike_takes_no_neighbours_with_it(self):
         for seed in range(4):
@@ -93,6 +103,20 @@ class Lines(unittest.TestCase):
         z[40] += 30.0
         self.assertEqual(spikes(z[None]), [[0, 40]])
 
+    def test_steps_cusps_and_wide_dust_take_nothing_else(self):
+        noise = 1e-3 * np.random.default_rng(5).standard_normal(400)
+        step, cusps = np.where(np.arange(400) > 200, 3.0, 0.0), 30.0 * turned(400, 2.6e-3, nose=0.1)
+        for line in (step + noise, cusps + noise):
+            self.assertEqual(spikes(line[None]), [])
+        for wide, rest in ((2, []), (3, [[0, 101]])):
+            z = step + noise
+            z[100 : 100 + wide] += 5.0
+            measured, found = surface.heights(z[None], 1.0, 1.0), []
+            for _ in range(3):
+                found.append(np.argwhere(surface.faults(measured).spikes).tolist())
+                measured = surface.faults(measured).removed
+            self.assertEqual(found, [[[0, 100], [0, 99 + wide]], rest, []])
+
 
 class Plateaus(unittest.TestCase):
     def test_what_is_not_clipped_is_no_spike(self):
@@ -102,6 +126,12 @@ class Plateaus(unittest.TestCase):
             self.assertEqual(spikes(clipped), [], dtype)
             clipped[50, 10] += 30.0
             self.assertEqual(spikes(clipped), [[50, 10]], dtype)
+
+    def test_spikes_on_a_coarsely_quantised_flat(self):
+        z = np.round(0.3 * np.random.default_rng(1).standard_normal((96, 96)))
+        self.assertEqual(spikes(z), [])
+        z[40, 40], z[60, 60:62], z[20, 20] = 50.0, 60.0, -70.0
+        self.assertEqual(spikes(z), [[20, 20], [40, 40], [60, 60], [60, 61]])
 
     def test_spikes_on_an_exact_plane(self):
         z = np.zeros((32, 32))

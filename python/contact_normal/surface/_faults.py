@@ -108,7 +108,8 @@ def _noise(z: Doubles, period: str | None, away: Doubles) -> float:
         return deviation
     # More than half of them are 0, on quantised heights or a plateau: the steps of the heights or the other differences are the noise.
     step, other = float(np.median(np.diff(np.unique(z[np.isfinite(z)])))), float(np.median(others))
-    return step if other <= step else _DEVIATIONS * other
+    # Few steps of a flat are those of its spikes.
+    return min(step, _DEVIATIONS * other) if other <= step else _DEVIATIONS * other
 
 
 def faults(heights: Heights, spike: float = 10.0) -> Faults:
@@ -117,8 +118,8 @@ def faults(heights: Heights, spike: float = 10.0) -> Faults:
     A fill value is the smallest or the largest value, occurs at least twice, and is further from the next one than all between the extremes are
     from each other. A spike differs from the median of its neighbours by more than `spike` standard deviations of these differences, and as
     much from the mean of each pair of opposite neighbours: crests along a lay are none. Where more than half of the heights equal their neighbours, as of
-    quantised or clipped heights, the steps of the heights or the other differences stand for the deviation. The corners of a surface with steps, and the
-    edges of a line with steps, may count as spikes: look at them (`Faults.plot`).
+    quantised or clipped heights, the steps of the heights or the other differences stand for the deviation. The corners of a surface with steps,
+    and crests and edges of grooves askew to the grid, may count as spikes: look at them (`Faults.plot`).
 
     Parameters
     ----------
@@ -142,7 +143,7 @@ def faults(heights: Heights, spike: float = 10.0) -> Faults:
         # At a border, beside a hole or another spike, on a crest a slope moves the median: it is no spike. Nor are neighbours of one, which it misleads.
         for is_again in (False, True):
             at = np.nonzero(spikes)
-            said = said_by_neighbours(np.where(spikes & is_again, np.nan, z), heights.period, at, z[at])
+            said = said_by_neighbours(np.where(spikes & is_again, np.nan, z), heights.period, at, z[at], only_between=not is_again)
             spikes[at] = ~(np.abs(z[at] - said) <= limit)
         # Alone among holes, as the middle of dust whose rim was removed: those two elements away say the height, less closely.
         at = np.nonzero(np.isfinite(z) & ~known)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from .._arguments import Doubles
 
-# Of the four pairs of opposite neighbours so many can do without planes.
+# Of the four pairs of opposite neighbours so many can do without lines and planes.
 _PAIRS = 3
 
 
@@ -33,19 +33,28 @@ def _nearest(said: Doubles, height: Doubles) -> Doubles:
     return np.asarray(np.take_along_axis(said, off.argmin(axis=0)[None], axis=0)[0])
 
 
-def _said_around(z: Doubles, period: str | None, at: Any, reach: int) -> Doubles:
-    """What pairs of opposite neighbours say of some elements, and planes through three neighbours where most pairs lack. NaN where an element lacks."""
-    padded = _padded(z, period, reach)
-    rows, columns = at
-    around = np.stack([padded[rows + reach * j, columns + reach * i] for j in range(3) for i in range(3) if (j, i) != (1, 1)])
+def _around(z: Doubles, period: str | None, at: Any, reach: int) -> Doubles:
+    """The eight neighbours of some elements, or what is in these directions farther away; NaN where an element lacks."""
+    padded, (rows, columns) = _padded(z, period, reach), at
+    return np.stack([padded[rows + reach * j, columns + reach * i] for j in range(3) for i in range(3) if (j, i) != (1, 1)])
+
+
+def _said_around(z: Doubles, period: str | None, at: Any, reach: int, only_between: bool) -> Doubles:
+    """What pairs of opposite neighbours say of some elements, and, where most pairs lack, lines along the axes from one side and planes through three
+    neighbours."""
+    around = _around(z, period, at, reach)
     means = 0.5 * (around[:4] + around[:3:-1])
+    if only_between:
+        return means
+    on_axes = [1, 3, 4, 6]
+    lines = 2.0 * around[on_axes] - _around(z, period, at, 2 * reach)[on_axes]
     # Two neighbours on the axes and the one between them, by their places among the eight.
     planes = np.stack([around[one] + around[other] - around[between] for one, other, between in ((1, 3, 0), (1, 4, 2), (6, 3, 5), (6, 4, 7))])
-    return np.concatenate([means, np.where(np.isfinite(means).sum(axis=0) < _PAIRS, planes, np.nan)])
+    return np.concatenate([means, np.where(np.isfinite(means).sum(axis=0) < _PAIRS, np.concatenate([planes, lines]), np.nan)])
 
 
-def _said_along(z: Doubles, is_period: bool, at: npt.NDArray[np.intp]) -> Doubles:
-    """What a line says of some of its elements: the next ones on both sides; where one side has none, the next one and a line through the next two."""
+def _said_along(z: Doubles, is_period: bool, at: npt.NDArray[np.intp], only_between: bool) -> Doubles:
+    """What a line says of some of its elements: the next ones on both sides, and each side by its next two; where one side has none, the next one, too."""
     count = len(z)
     places = np.flatnonzero(np.isfinite(z))
     if is_period:
@@ -65,17 +74,21 @@ def _said_along(z: Doubles, is_period: bool, at: npt.NDArray[np.intp]) -> Double
 
     left, right = np.searchsorted(places, at, "left") - 1, np.searchsorted(places, at, "right")
     between = line(one(left), one(right))
-    ends = np.stack([one(left)[1], line(one(left), one(left - 1)), one(right)[1], line(one(right), one(right + 1))])
-    return np.stack([between, *np.where(np.isnan(between), ends, np.nan)])
+    if only_between:
+        return between[None]
+    sides = np.stack([line(one(left), one(left - 1)), line(one(right), one(right + 1))])
+    ends = np.where(np.isnan(between), np.stack([one(left)[1], one(right)[1]]), np.nan)
+    return np.concatenate([between[None], sides, ends])
 
 
-def said_by_neighbours(z: Doubles, period: str | None, at: Any, height: Doubles, reach: int = 1) -> Doubles:
+def said_by_neighbours(z: Doubles, period: str | None, at: Any, height: Doubles, reach: int = 1, only_between: bool = False) -> Doubles:
     """Of what the neighbours of some elements say of their heights without the slope, the nearest to `height`: the pair along a crest or a step says the
-    height, no pair says that of a spike. On a map neighbours are so many elements away. NaN where no neighbours are."""
+    height, no pair says that of a spike. On a map neighbours are so many elements away. NaN where no neighbours are. With `only_between` but elements on
+    both sides say something: a plane or a line from one side through another spike may say the height of a spike."""
     if 1 not in z.shape:
-        return _nearest(_said_around(z, period, at, reach), height)
+        return _nearest(_said_around(z, period, at, reach, only_between), height)
     along = 1 if z.shape[0] == 1 else 0
-    return _nearest(_said_along(z.ravel(), period is not None and "yx"[along] in period, at[along]), height)
+    return _nearest(_said_along(z.ravel(), period is not None and "yx"[along] in period, at[along], only_between), height)
 
 
 def neighbours_median(z: Doubles, period: str | None) -> Doubles:

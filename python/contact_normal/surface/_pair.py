@@ -143,8 +143,8 @@ def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolera
     """The tilt that a body takes which is pressed on by a force at a point and free to tilt: the moments of the pressures about this point are 0.
 
     Unlike a least-squares plane it depends on the load: a body rests on its summits. The tilt minimises a convex energy, so it is the only one. It is
-    found by Newton's method with Broyden's updates: in four to ten solves for smooth bodies, up to some hundred where few elements of a rough body carry
-    the force. The search begins anew from the tilt on which a rigid body rests if that of the surface leads nowhere. In a direction in which the elements
+    found by Newton's method with Broyden's updates: in four to ten solves for smooth bodies, some tens where few elements of a rough body carry the force.
+    The search begins anew from the tilt on which a rigid body rests once that of the surface leads nowhere. In a direction in which the elements
     with a surface do not extend, as those of one row, nothing is tilted.
 
     Parameters
@@ -184,9 +184,9 @@ def balance(gap: Gap, force: float, at: tuple[float, float] = (0.0, 0.0), tolera
         return result, off
 
     try:
-        found, is_balanced = _search(gap, aim, tolerance, solved, _start(gap))
+        found, is_balanced = _search(gap, aim, tolerance, solved, _start(gap), False)
         if not is_balanced and (tilt := resting(gap, aim)) is not None:
-            found, is_balanced = _search(gap, aim, tolerance, solved, tilt)
+            found, is_balanced = _search(gap, aim, tolerance, solved, tilt, True)
     except _Ended as ended:
         return ended.so_far
     if not is_balanced:
@@ -209,13 +209,14 @@ def _balanced(gap: Gap, tilt: Doubles, result: Result, centre: Doubles) -> Balan
     return Balanced(_tilted(gap, tilt), (along_x, along_y), result, (x, y))
 
 
-def _search(gap: Gap, aim: Doubles, tolerance: float, solved: Callable[[Doubles], tuple[Result, Doubles]], tilt: Doubles) -> tuple[Balanced, bool]:
+def _search(gap: Gap, aim: Doubles, tolerance: float, solved: Callable[[Doubles], tuple[Result, Doubles]], tilt: Doubles, rests: bool) -> tuple[Balanced, bool]:
     """The tilt whose pressures have their centre at `aim`, from a first one; and whether it was found. `solved` returns the result of a tilt, and how far
-    its centre is off."""
+    its centre is off. Where a rigid body `rests` on the first one, the approach is what a change of it is measured by, however small."""
     sizes = np.array([gap.h.shape[1] * gap.dx, gap.h.shape[0] * gap.dy])
     result, off = solved(tilt)
     begun = _tilted(gap, tilt).h
-    trial = _TRIAL * max(result.approach, 1e-3 * float(np.ptp(begun[np.isfinite(begun)]))) / sizes
+    least = 0.0 if rests and result.approach > 0.0 else 1e-3 * float(np.ptp(begun[np.isfinite(begun)]))
+    trial = _TRIAL * max(result.approach, least) / sizes
     slopes, known = np.eye(2), np.isfinite(gap.h)
     # Of elements in one line across a direction the centre stays in it.
     for k in (k for k in range(2) if np.count_nonzero(known.any(axis=k)) > 1):
@@ -234,6 +235,9 @@ def _search(gap: Gap, aim: Doubles, tolerance: float, solved: Callable[[Doubles]
             if np.abs(there / sizes).max() < np.abs(off / sizes).max() or part < _SHORTEST:
                 break
             part *= 0.5
+        # From where a body rests there is no other search.
+        if part < _SHORTEST and not rests:
+            break
         step = part * step
         slopes += np.outer(there - off - slopes @ step, step) / (step @ step)
         tilt, result, off = tilt + step, moved, there
