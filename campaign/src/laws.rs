@@ -89,7 +89,9 @@ impl Run {
         });
         let before = Before { q: first.q.clone(), p: first.p.clone() };
         self.check(&case, &kept, (&before, &particles));
-        // The same by what the caller hands on: from rest it starts elsewhere, and where there are several solutions it may find another one.
+        // The same by what the caller hands on: from rest it starts elsewhere, and where there are several solutions it may find another one. Limits
+        // that differ from particle to particle are limits of an ideal layer, too.
+        let particles = self.varied(particles);
         let mut handed = case.clone();
         handed.slide.previous = Some([0, 1].map(|k: usize| first.q.iter().map(|q| q[k]).collect()));
         let found = call_changed(None, (&handed.place, &handed.slide, From::Slide), &case.stop, |friction| {
@@ -102,6 +104,15 @@ impl Run {
         let found =
             call_changed(None, (&case.place, &case.slide, From::Slide), &short, |friction| law.put(friction, None));
         self.bounded(&found);
+    }
+
+    /// Half of the time: yield limits that differ from particle to particle.
+    fn varied(&mut self, mut particles: Particles) -> Particles {
+        let mut random = self.heat.beside(0x11a7);
+        if self.law.yield_limit > 0.0 && random.chance(0.5) {
+            particles.limit.iter_mut().for_each(|limit| *limit *= random.between(0.4, 1.6));
+        }
+        particles
     }
 
     /// Whatever the status: no traction is longer than mu p, and what touches sticks or slips.

@@ -1,4 +1,4 @@
-//! Extrapolation of slowly converging turns (Anderson 1965).
+//! Extrapolation of turns (Anderson 1965).
 //!
 //! ```text
 //! x: the distance of the normal problem,   y: the distance after the turn,   r = y - x

@@ -38,13 +38,14 @@ const RESIDUAL_PER_DISTANCE: f64 = 0.3;
 const LARGEST_FORCE_RATIO: f64 = 2.0;
 /// Largest extrapolation of p, relative to its last change.
 const LARGEST_EXTRAPOLATION: f64 = 4.0;
-/// A force is near if m has to change by at most this many times its last change.
-const NEAR_FORCE: f64 = 0.3;
+/// A force is near if m has to change by at most the first number times its last change, and by less than the second.
+const NEAR_FORCE: (f64, f64) = (0.3, 0.5);
 /// Allowed error of the approach, relative to the tolerance.
 const APPROACH_ERROR: f64 = 0.5;
-/// Most forces, and most iterations along the change of p.
+/// Most forces, and most iterations along the change of p. More follow if these reduced the residual to this part.
 const MOST_FORCES: usize = 20;
 const MOST_ALONG: u64 = 40;
+const ALONG_GAIN: f64 = 0.1;
 /// Round-off of u in single precision, in the residual and in the approach.
 const ROUNDING: f64 = 1e-6;
 /// The part of the elements in C above which a uniform pressure is added.
@@ -124,6 +125,7 @@ impl FindForce {
             if end == End::Met && self.goes_along(&found) {
                 let along = Goal { max_cycles: most.min(MOST_ALONG), ..*goal };
                 let end = self.run_along(task, &along)?;
+                self.is_near |= end == End::Limit && task.monitor.count.residual < ALONG_GAIN * residual;
                 self.has_failed = !self.is_near;
                 if !matches!(end, End::Stagnated | End::Breakdown) {
                     return Ok(end);
@@ -131,6 +133,8 @@ impl FindForce {
             }
             if is_enough {
                 self.tolerance = Some(goal.tolerance);
+            } else if end == End::Met && residual > goal.tolerance && found.may_be_loose() {
+                self.tolerance = Some(FIRST_RESIDUAL * residual);
             } else {
                 self.tolerance = Some(residual.min(RESIDUAL_PER_DISTANCE * found.off()).max(ROUNDING));
                 if !self.change(task.state, &found)? {
@@ -168,7 +172,8 @@ impl FindForce {
     fn goes_along(&self, found: &Found) -> bool {
         let Known { p, approach, .. } = &self.before;
         let (m, missing) = (found.m(found.approach), found.m(found.wanted) - found.m(found.approach));
-        let is_near = missing.abs() <= NEAR_FORCE * (m - found.m(*approach)).abs();
+        let is_near = missing.abs() <= NEAR_FORCE.0 * (m - found.m(*approach)).abs();
+        let is_near = is_near && (found.mean.is_none() || missing.abs() < NEAR_FORCE.1);
         !p.is_empty() && !self.has_failed && !found.is_full() && is_near && self.clearness(found) > 1.0
     }
 

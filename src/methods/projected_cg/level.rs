@@ -165,6 +165,12 @@ impl Level {
         }
     }
 
+    /// Whether contact fills less than half of a window that is not the whole grid: elements outside may enter.
+    pub fn is_scattered(&self, state: &State) -> bool {
+        let window = self.window(state);
+        !window.is_full(&self.grid) && 2 * state.contact_count() < window.count()
+    }
+
     fn choose_window(&mut self, state: &State, whole: Option<&Operator<f64>>) -> Result<&mut Windowed> {
         let window = self.window(state);
         self.current = Some(window.clone());

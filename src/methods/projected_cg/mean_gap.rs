@@ -33,6 +33,11 @@ impl Found {
         self.mean.is_some_and(|mean| mean - self.approach <= LEAST_GAP * (mean - self.wanted))
     }
 
+    /// Whether the residual exceeds the wanted gap, so that full contact may be due to it.
+    pub(super) fn may_be_loose(&self) -> bool {
+        self.is_full() && self.mean.is_some_and(|mean| self.residual * self.size > mean - self.wanted)
+    }
+
     /// The relative error of the approach.
     pub(super) fn off(&self) -> f64 {
         (self.wanted - self.approach).abs() / self.size

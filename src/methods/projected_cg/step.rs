@@ -37,6 +37,9 @@ const NOISE: f64 = 25.0;
 const MOST_ITERATIONS: u64 = 60;
 /// An iteration that stagnates above this residual does so by the contact area, which a fresh u does not change; below, by round-off.
 const STALLED: f64 = 0.1;
+/// Residual at which the first iteration on the finest grid ends if contact is scattered: elements that enter from outside the window raise the
+/// residual to about this, so that smaller residuals are wasted.
+const SCATTERED_RESIDUAL: f64 = 1e-2;
 /// Largest ratio of the residual by a fresh product to the recursive one for a valid last update.
 const VALID_UPDATE_RATIO: f64 = 2.0;
 
@@ -50,6 +53,8 @@ pub struct ProjectedCg {
     before: Vec<f64>,
     /// Whether the solve began with a prediction.
     predicted: bool,
+    /// Whether the solve begins on the finest grid from the coarser ones.
+    is_new: bool,
     precision: Precision,
     find_force: FindForce,
     /// The relative recursive residual at the end of the last step.
@@ -65,6 +70,7 @@ impl ProjectedCg {
             predictor: Predictor::default(),
             before: Vec::new(),
             predicted: false,
+            is_new: false,
             precision,
             find_force: FindForce::default(),
             recursive: 0.0,
@@ -121,6 +127,7 @@ impl ProjectedCg {
         task.state.u_is = coarse.start(task)?;
         let single = self.precision != Precision::Double;
         let near = task.state.u_is == Freshness::Near && !task.monitor.is_cancelled();
+        self.is_new = near;
         let noisy = near && single && coarse.noise(task.problem) > NOISE * task.goal.tolerance;
         if rests(task.state.p.len()) {
             self.coarse = None;
@@ -138,7 +145,7 @@ impl ProjectedCg {
 
     /// Begins another solve.
     pub fn begin_anew(&mut self) {
-        self.predicted = false;
+        (self.predicted, self.is_new) = (false, false);
         self.find_force.begin();
     }
 
@@ -220,6 +227,8 @@ impl<S: AdmissibleSet> Step<S> for ProjectedCg {
         let aim = if goal.tolerance < f64::from(f32::EPSILON) { FINE_AIM } else { AIM };
         let tolerance = if goal.by_update() { goal.tolerance } else { aim * goal.tolerance };
         let max_cycles = goal.max_cycles.saturating_sub(monitor.count.cycles).min(MOST_ITERATIONS);
+        let looks = std::mem::take(&mut self.is_new) && !goal.by_update() && self.finest.is_scattered(state);
+        let tolerance = if looks { tolerance.max(SCATTERED_RESIDUAL) } else { tolerance };
         let inner = Goal { tolerance, max_cycles, ..*goal };
         let by_approach = self.predicted && matches!(state.load, Load::Approach(_));
         let whole = self.whole_operator(problem, state)?;
