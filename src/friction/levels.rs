@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! g of a coarse element: the mean of its children's, 0 without children in C; w: the mean of those in C,
-//!                                                                              in steady rolling times 2: a step is 2 dq long
+//!                                                                              in steady rolling times 2: a step is 2 dq long,
+//!                                                                              and w a third of the difference ahead
 //! ```
 //!
 //! Grids are coarsened by two until the shorter side has fewer than 24 elements, a single row along itself only.
@@ -12,7 +13,7 @@ use std::iter::successors;
 use super::excess::Excess;
 use super::interpolation::{children, step_ratio};
 use super::operators::Operators;
-use super::plane::{add, Vector};
+use super::plane::{add, plus, Vector};
 use super::problem::{Problem, State};
 use super::quadrant::Quadrant;
 use super::shift::Memory;
@@ -26,6 +27,8 @@ use crate::threads::Threads;
 
 /// A side with fewer elements is not coarsened.
 const COARSEST: usize = 24;
+/// The slip by spin of a coarse element is taken ahead of its centre by this share of the difference of both steps.
+const SPIN_SHIFT: f64 = 1.0 / 3.0;
 
 /// One grid: its problem, its unknowns, the memory of its iteration.
 pub struct Level {
@@ -115,6 +118,7 @@ pub fn restrict(fine: &Problem, coarse: &mut Level) -> Result<()> {
     let (from, to) = (fine.grid, problem.grid);
     let longer = step_ratio(problem, fine);
     let all = children(&from, &to);
+    let turned = fine.ahead.map(|w| SPIN_SHIFT * longer * (longer - 1.0) * w);
     let element = |i: usize| {
         let (mut bound, mut slip, mut rigid, mut count) = (0.0, [0.0; 2], [0.0; 2], 0);
         for child in to.children(&from, i).filter(|&child| fine.bound[child] > 0.0) {
@@ -124,7 +128,8 @@ pub fn restrict(fine: &Problem, coarse: &mut Level) -> Result<()> {
             count += 1;
         }
         let share = longer / f64::from(count.max(1));
-        let of_all = |w: Vector| w.map(|w| share * w);
+        let of_spin = f64::from(count.min(1));
+        let of_all = |w: Vector| plus(w.map(|w| share * w), of_spin, turned);
         (bound / all as f64, of_all(slip), of_all(rigid))
     };
     let rows = problem.bound.chunks_mut(to.mx).zip(problem.slip.chunks_mut(to.mx)).zip(problem.rigid.chunks_mut(to.mx));
@@ -149,6 +154,7 @@ pub fn restrict(fine: &Problem, coarse: &mut Level) -> Result<()> {
         _ => collected((0..to.len()).map(|i| mean(&|child| fine.weights[child], i)), "the weights of creepages")?,
     };
     (problem.offset, problem.scale) = (fine.offset.map(|w| longer * w), fine.scale);
+    problem.ahead = fine.ahead.map(|w| longer * longer * w);
     problem.bound_changed();
     state.unload(problem.threads());
     Ok(())

@@ -68,6 +68,8 @@ pub struct Problem {
     pub offset: Vector,
     /// The weights of the creepages at each element; empty: 1.
     pub weights: Vec<Vector>,
+    /// In steady rolling: the change of the slip by spin over a step.
+    pub ahead: Vector,
     /// The scale of residuals.
     pub scale: Scale,
     /// A.
@@ -137,6 +139,7 @@ impl Problem {
             slip: blank(n, [f64::NAN; 2], FIELDS)?,
             offset: [0.0; 2],
             weights: Vec::new(),
+            ahead: [0.0; 2],
             scale: Scale::SlipOrDisplacement,
             extension: None,
             operators,

@@ -3,10 +3,11 @@
 //! It starts with the step onto the circles and a part of the preconditioned residual, so that given forces are met:
 //!
 //! ```text
-//! x0 = g n - q on slip,   z1 = theta M P(-s),   less Y dc so that sum(q + x0 + z1) = F/(dx dy)
+//! x0 = g n - q on slip,   z1 = theta M P(-s),   theta = 1 - 1/5/(1 + D/(10 a0)),   less Y dc so that sum(q + x0 + z1) = F/(dx dy)
 //! ```
 //!
-//! One product serves x0 and z1; flexible GMRES does the rest. If x0 is short, the step starts from 0, and all products are GMRES'.
+//! If the curvature D dominates, M is near the inverse of the system, and theta near 1. One product serves x0 and z1; flexible GMRES does the rest.
+//! If x0 is short, the step starts from 0, and all products are GMRES'.
 
 use super::certificate::{is_on_circle, scale};
 use super::forces::{sum_of, sum_of_both, sum_of_bounds, Forces};
@@ -17,19 +18,21 @@ use super::tangent::{Side, Tangent};
 use crate::error::Result;
 use crate::methods::fgmres::{self, Bordered, Until};
 use crate::methods::fields::{self, Fields};
+use crate::threads::Threads;
 
 /// Most directions of a linear solve.
 pub const DIRECTIONS: usize = 40;
 /// The last linear solve stops at ENOUGH times the tolerance, and none at more than the relative residual LEAST_GAIN.
-const ENOUGH: f64 = 0.5;
+const ENOUGH: f64 = 0.9;
 const LEAST_GAIN: f64 = 0.5;
-/// theta. With 1, 2500 random scenes take 1.4 times the products.
-const THETA: f64 = 0.8;
+/// theta on stick, and the weight of D in its growth to 1.
+const LEAST_THETA: f64 = 0.8;
+const THETA_GROWTH: f64 = 0.1;
 
 /// The step onto the circles is short if three ratios are at most this: its displacement over the residual at which the
 /// linear solve ends, its size relative to the bounds over the relative residual, and the slips of elements inside
 /// their circles over the projected slips. (If slips are 1e10 times the displacements by tractions, the projected slips
-/// are round-off, and a step of 1e-6 of the bounds is the residual.) Without it 9 of 94 random scenes with laws stagnate.
+/// are round-off, and a step of 1e-6 of the bounds is the residual.)
 const SHORT_STEP: f64 = 0.1;
 
 /// The kind of a step.
@@ -89,12 +92,22 @@ fn way_to_the_circles(problem: &Problem, tangent: &Tangent, state: &State) -> [f
 }
 
 impl Start {
+    fn nothing(n: usize, threads: &Threads, fields: &mut Fields) -> Result<Start> {
+        let (mut gained, mut along) = (fields.take(n)?, fields.take(n)?);
+        fields::fill(threads, &mut gained, |_| [0.0; 2]);
+        fields::fill(threads, &mut along, |_| [0.0; 2]);
+        Ok(Start { gained, along, by: [0.0; 2] })
+    }
+
     fn new(system: &mut TangentSystem<'_>, state: &State, forces: Forces, fields: &mut Fields) -> Result<Start> {
         let (n, threads, tangent) = (state.q.len(), system.problem.threads().clone(), system.tangent);
         let mut along = fields.take(n)?;
         system.precondition_field(&tangent.projected, &mut along);
-        fields::scale(&threads, &mut along, THETA);
-        let bound = &system.problem.bound;
+        let (a0, bound) = (system.problem.operators.self_influence, &system.problem.bound);
+        fields::map(&threads, &mut along, |i, z| {
+            let theta = 1.0 - (1.0 - LEAST_THETA) / (1.0 + THETA_GROWTH * tangent.curvature[i] / a0);
+            z.map(|z| theta * z)
+        });
         let mut gained = fields.take(n)?;
         fields::fill(&threads, &mut gained, |i| add(to_the_circle(tangent, bound, state, i), along[i]));
         let missing = forces.less(|| sum_of_both(system.problem, &state.q, &gained));
@@ -113,18 +126,24 @@ pub fn polish(
     forces: Forces,
     fields: &mut Fields,
 ) -> Result<()> {
-    let way = if by_step {
-        let mut system = TangentSystem::new(problem, tangent, forces, fields)?;
-        let Start { gained, along, by } = Start::new(&mut system, state, forces, fields)?;
-        system.give(fields);
-        fields.give(along);
-        problem.offset = add(problem.offset, by);
-        gained
-    } else {
-        let mut way = fields.take(state.q.len())?;
-        fields::fill(problem.threads(), &mut way, |i| to_the_circle(tangent, &problem.bound, state, i));
-        way
-    };
+    if !by_step {
+        return settle(problem, state, tangent, fields);
+    }
+    let mut system = TangentSystem::new(problem, tangent, forces, fields)?;
+    let Start { gained, along, by } = Start::new(&mut system, state, forces, fields)?;
+    system.give(fields);
+    problem.update = problem.rms_of(fields::dot(problem.threads(), &gained, &gained));
+    fields::add_all(problem.threads(), &mut state.q, &[(1.0, &gained)]);
+    problem.offset = add(problem.offset, by);
+    [gained, along].into_iter().for_each(|field| fields.give(field));
+    problem.refresh(state);
+    Ok(())
+}
+
+/// [`polish`] by the step onto the circles alone.
+fn settle(problem: &mut Problem, state: &mut State, tangent: &Tangent, fields: &mut Fields) -> Result<()> {
+    let mut way = fields.take(state.q.len())?;
+    fields::fill(problem.threads(), &mut way, |i| to_the_circle(tangent, &problem.bound, state, i));
     problem.update = problem.rms_of(fields::dot(problem.threads(), &way, &way));
     fields::add_all(problem.threads(), &mut state.q, &[(1.0, &way)]);
     fields.give(way);
@@ -164,8 +183,8 @@ pub fn step(
         && way <= SHORT_STEP * all
         && inside <= SHORT_STEP * projected.sqrt();
     let Start { gained, along, by } = if is_short {
-        product.fill([0.0; 2]);
-        Start { gained: fields.zeros(n, &threads)?, along: fields.zeros(n, &threads)?, by: [0.0; 2] }
+        fields::fill(&threads, &mut product, |_| [0.0; 2]);
+        Start::nothing(n, &threads, fields)?
     } else {
         let start = Start::new(&mut system, state, forces, fields)?;
         system.multiply(&start.gained, &mut product);

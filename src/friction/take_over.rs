@@ -100,7 +100,7 @@ impl Solver {
                     .for_each(|(q, i)| *q = in_range(before(friction, kept, i), &scales));
             });
         }
-        take_step(problem, friction, (&scales, self.offset));
+        take_step(problem, friction, grid, (&scales, self.offset));
         let found = |k: usize| matches!(friction.prescribed[k], Prescribed::Force(_));
         (problem.given, problem.update) = (0.0, 0.0);
         problem.bound_changed();
@@ -199,8 +199,9 @@ impl Solver {
     }
 }
 
-/// Sets the start of unknown creepages, and the scale of residuals; `last`: the last creepages found.
-fn take_step(problem: &mut Problem, friction: &Friction<'_>, (scales, last): (&Scales, Vector)) {
+/// Sets the start of unknown creepages, the scale of residuals, and the change of the slip by spin over a step; `last`:
+/// the last creepages found.
+fn take_step(problem: &mut Problem, friction: &Friction<'_>, grid: &Grid, (scales, last): (&Scales, Vector)) {
     // A warm start of steady rolling includes the last creepages.
     let is_warm = friction.motion == Motion::SteadyRolling && friction.previous == Previous::Kept;
     let found = |k: usize| matches!(friction.prescribed[k], Prescribed::Force(_));
@@ -210,6 +211,7 @@ fn take_step(problem: &mut Problem, friction: &Friction<'_>, (scales, last): (&S
         Motion::SteadyRolling if found(0) || found(1) => Scale::SlipOrDisplacement,
         _ => Scale::Slip,
     };
+    problem.ahead = scales.displacement(spin_ahead(friction, grid));
 }
 
 /// Sets the weights of creepages, and the compliance of a layer beyond its least, on the elements of a window.
@@ -259,4 +261,13 @@ fn creepage_of(problem: &Problem, state: &State, k: usize) -> f64 {
 /// Tractions in the units of the iterations, clamped to their range: in steady rolling they only start the iteration.
 fn in_range(q: Vector, scales: &Scales) -> Vector {
     q.map(|q| scales.traction(q).clamp(-LARGEST, LARGEST))
+}
+
+/// The change of the slip by spin over one step of steady rolling.
+fn spin_ahead(friction: &Friction<'_>, grid: &Grid) -> Vector {
+    let (distance, (sine, cosine)) = (friction.distance(grid), friction.rolling_direction.sin_cos());
+    match friction.motion {
+        Motion::SteadyRolling => [-sine, cosine].map(|part| friction.spin * distance * distance * part),
+        _ => [0.0; 2],
+    }
 }
