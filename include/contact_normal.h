@@ -3071,10 +3071,10 @@ contact_normal_status contact_normal_influence_rolling_tangential(int32_t cx,
  Stresses in the half-space that is `body` 1 or 2 of a scene, at n depths below the centres of its elements: from pressures and tractions
  `[my][mx]`, constant on each element. NULL: none; one of them at least must be given. Tractions are those that act on this body, in +x
  and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, a `period` in both directions,
- and `patches` matter: below an element of a patch the loads on another one count times the factor between both. With a `coating` on this
- body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options (NULL: the defaults) `threads`, `progress`,
- `max_seconds` and `stop` matter; a cycle is a depth. CANCELLED, or ITERATION_LIMIT by `max_seconds`: the depths done so far are written, others
- are left alone. Since 0.2.
+ and `patches` matter: below an element of a patch the loads on another one count times the factor between both, and below one of no patch
+ all loads in full. With a `coating` on this body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options (NULL:
+ the defaults) `threads`, `progress`, `max_seconds` and `stop` matter; a cycle is a depth. CANCELLED, or ITERATION_LIMIT by `max_seconds`: the
+ depths done so far are written, others are left alone. Loads must lie below 1e304. Without a depth the largest stresses are left alone. Since 0.2.
  */
 contact_normal_status contact_normal_subsurface_stress(const struct contact_normal_scene *scene,
                                                        int32_t body,
