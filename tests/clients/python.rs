@@ -177,15 +177,15 @@ fn makes_the_gap(name: &str, gap: &str, pictures: &[&str]) {
         let drawn = std::fs::metadata(&picture).unwrap_or_else(|e| panic!("{}: {e}", picture.display()));
         assert!(drawn.len() > 10_000, "{}: {} bytes", picture.display(), drawn.len());
     }
-    // The examples in C and Fortran read this gap from data/gaps. Another NumPy may round otherwise: the place of a least distance is known to the
-    // root of round-off, 1.5e-8 of lengths of some mm, and slopes there are less than 1.
+    // The examples in C and Fortran read this gap from data/gaps. Another NumPy, or another machine, may round otherwise: the place of a least
+    // distance is known to the root of round-off, 1.5e-8 of lengths of up to 30 mm, and slopes there are less than 1. Measured: 2.4e-7.
     let distances = |path: &Path| -> Vec<f64> {
         let text = std::fs::read_to_string(path).expect("a gap");
         text.lines().skip(2).flat_map(str::split_whitespace).map(number).collect()
     };
     let (made, kept) = (distances(&folder.join("gap.txt")), distances(&root().join("data/gaps").join(gap)));
     assert_eq!(made.len(), kept.len());
-    assert!(made.iter().zip(&kept).all(|(a, b)| a == b || (a - b).abs() < 1e-7), "{gap} is not what {name} makes");
+    assert!(made.iter().zip(&kept).all(|(a, b)| a == b || (a - b).abs() < 5e-7), "{gap} is not what {name} makes");
 }
 
 #[test]
