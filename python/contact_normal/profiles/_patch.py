@@ -174,10 +174,11 @@ class ContactPoint:
             if reach > _FARTHEST:
                 raise ValueError(f"depth is {depth}: the grid would need more than {2 * _FARTHEST} elements of {dx} x {dy} in a direction")
             k = np.arange(-reach, reach + 1)
+            x, y = np.asarray(k * dx, dtype=np.float64), np.asarray(k * dy, dtype=np.float64)
             # Both axes first: they tell of most grids that are too small.
-            ahead, aside = self._distance(k * dx, np.zeros(1), is_over)[0], self._distance(np.zeros(1), k * dy, is_over)[:, 0]
+            ahead, aside = self._distance(x, np.zeros(1), is_over)[0], self._distance(np.zeros(1), y, is_over)[:, 0]
             if min(ahead[0], ahead[-1], aside[0], aside[-1]) >= min(ahead.min(), aside.min()) + depth:
-                h = self._distance(k * dx, k * dy, is_over)
+                h = self._distance(x, y, is_over)
                 is_near = h < h.min() + depth
                 if not (is_near[[0, -1]].any() or is_near[:, [0, -1]].any()):
                     break

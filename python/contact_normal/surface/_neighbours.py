@@ -75,7 +75,7 @@ def _said_along(z: Doubles, is_period: bool, at: npt.NDArray[np.intp], only_betw
     left, right = np.searchsorted(places, at, "left") - 1, np.searchsorted(places, at, "right")
     between = line(one(left), one(right))
     if only_between:
-        return between[None]
+        return np.asarray(between[None], dtype=np.float64)
     sides = np.stack([line(one(left), one(left - 1)), line(one(right), one(right + 1))])
     ends = np.where(np.isnan(between), np.stack([one(left)[1], one(right)[1]]), np.nan)
     return np.concatenate([between[None], sides, ends])
