@@ -8,9 +8,9 @@ use std::ops::Range;
 use crate::grid::Grid;
 use crate::threads::Threads;
 
-/// Most blocks of a pass over a grid, and elements of a block, the least of a pass in blocks of rows: each block has a fixed cost, and both fields of
-/// 1024 vectors stay in the nearest cache.
+/// Most blocks of a pass over a grid: each has a fixed cost.
 pub const BLOCKS: usize = 64;
+/// Elements of a block: two fields of 1024 vectors stay in the nearest cache. Blocks of whole rows have at least as many.
 pub const BLOCK: usize = 1024;
 /// Lanes of a pass, as many as in the longest vector: the compiler vectorises loops over them, and no bit of their sums depends on the machine.
 /// Flags of as many elements are the bytes of a word.

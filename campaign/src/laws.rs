@@ -89,8 +89,8 @@ impl Run {
         });
         let before = Before { q: first.q.clone(), p: first.p.clone() };
         self.check(&case, &kept, (&before, &particles));
-        // The same by what the caller hands on: from rest it starts elsewhere, and where there are several solutions it may find another one. Limits
-        // that differ from particle to particle are limits of an ideal layer, too.
+        // The same by what the caller hands on: from rest it starts elsewhere, and where there are several solutions it may find another one. The
+        // yield limits may differ from particle to particle.
         let particles = self.varied(particles);
         let mut handed = case.clone();
         handed.slide.previous = Some([0, 1].map(|k: usize| first.q.iter().map(|q| q[k]).collect()));

@@ -37,4 +37,6 @@ def _part_of(told: str, all_of: int, warnings: int) -> str:
     """Of the text of several warnings, which stand in the order of their bits, that of some."""
     bits = [1 << k for k in range(all_of.bit_length()) if all_of >> k & 1]
     texts = told.split("; ", len(bits) - 1) if bits else []
-    return "; ".join(text for bit, text in zip(bits, texts) if warnings & bit) if len(texts) == len(bits) else told if warnings else ""
+    if len(texts) != len(bits):
+        return told if warnings else ""
+    return "; ".join(text for bit, text in zip(bits, texts) if warnings & bit)

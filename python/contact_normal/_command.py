@@ -66,10 +66,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # The reader, as `head`, has enough. Python would say so once more at its end.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return READER_GONE
-    except (ContactNormalError, ValueError, TypeError) as error:
+    except (ContactNormalError, ValueError, TypeError, OverflowError) as error:
         return _failed(error, REFUSED)
-    except (MemoryError, OverflowError) as error:
-        return _failed(f"out of memory: {error}" if isinstance(error, MemoryError) and str(error) else error or "out of memory", REFUSED)
+    except MemoryError as error:
+        return _failed(": ".join(text for text in ("out of memory", str(error)) if text), REFUSED)
     except (OSError, ImportError) as error:
         return _failed(error, NO_FILE)
     except KeyboardInterrupt:

@@ -259,10 +259,8 @@ impl Solver {
             return Ok(without);
         };
         self.levels[0].now.copy_from(&least.at)?;
-        Ok(match without {
-            Walk::Interrupted => without,
-            _ => Walk::Least { sum: least.sum, approach: least.approach() },
-        })
+        let found = Walk::Least { sum: least.sum, approach: least.approach() };
+        Ok(if without == Walk::Interrupted { without } else { found })
     }
 
     /// The first pressing force, by the state of the least force if one is known.

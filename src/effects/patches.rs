@@ -12,7 +12,7 @@ use crate::scene::Plain;
 const MOST: usize = 64;
 
 /// Marks an element without a patch, which has no surface.
-pub const NONE: i32 = -1;
+pub const NO_PATCH: i32 = -1;
 
 /// The patch of each element, and the factors between patches.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,7 +69,7 @@ impl Effect for Patches<'_> {
                 grid.len()
             ));
         }
-        if let Some(i) = self.patch.iter().position(|patch| !(NONE..count as i32).contains(patch)) {
+        if let Some(i) = self.patch.iter().position(|patch| !(NO_PATCH..count as i32).contains(patch)) {
             let (element, patch) = (grid.element(i), self.patch[i]);
             return invalid(format!(
                 "patches->patch of {element} is {patch}; it must lie in 0..{}, or be -1 for none",
@@ -117,10 +117,10 @@ impl Effect for Patches<'_> {
 
     // Elements without a patch have no surface.
     fn surface(&self, h: &[f64]) -> Result<Option<Vec<f64>>> {
-        if !self.patch.contains(&NONE) {
+        if !self.patch.contains(&NO_PATCH) {
             return Ok(None);
         }
-        let of = |(h, patch): (&f64, &i32)| if *patch == NONE { f64::INFINITY } else { *h };
+        let of = |(h, patch): (&f64, &i32)| if *patch == NO_PATCH { f64::INFINITY } else { *h };
         Ok(Some(collected(h.iter().zip(self.patch).map(of), "the undeformed distance of patches")?))
     }
 }

@@ -63,7 +63,7 @@ impl Solver {
     /// The change of the tractions of the last result with its pressures, by `dp`, and with the slip from other causes. `change` holds dw on entry
     /// and dq on return. All arrays are on the whole grid.
     pub fn change(&mut self, friction: &Friction<'_>, dp: &[f64], change: &mut [Vector]) -> Result<()> {
-        let limits = self.last_limits(friction)?;
+        let limits = self.limits(friction, &self.particles_before)?;
         let (Some(window), Some(level)) = (&self.window, self.levels.first_mut()) else {
             change.fill([0.0; 2]);
             return Ok(());

@@ -62,7 +62,7 @@ impl Solver {
                 return Ok(end);
             }
         }
-        let (law, had, scales) = (self.law(friction), self.had(friction), self.scales);
+        let (law, had, scales) = (self.law(friction), self.had(friction, &self.particles_before), self.scales);
         let problem = &self.levels[0].problem;
         let width = problem.grid.mx;
         let element = |k: usize| window.row(&self.grid, k / width).start + k % width;

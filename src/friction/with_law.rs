@@ -73,12 +73,8 @@ impl Solver {
         Law { fall: friction.law, layer, rate: displacement / duration, duration }
     }
 
-    pub(super) fn had<'a>(&'a self, friction: &'a Friction<'a>) -> Had<'a> {
-        self.had_of(friction, &self.particles_before)
-    }
-
-    /// The state before a step that `continues` from these particles.
-    fn had_of<'a>(&self, friction: &'a Friction<'a>, particles: &'a [Particle]) -> Had<'a> {
+    /// The state before a step; `particles`: those from which it `continues`.
+    pub(super) fn had<'a>(&self, friction: &'a Friction<'a>, particles: &'a [Particle]) -> Had<'a> {
         let grid = self.grid;
         let sweep = (friction.motion == Motion::TransientRolling).then(|| {
             let by = friction.elements_rolled(&grid);
@@ -88,22 +84,18 @@ impl Solver {
         Had { friction, kept, grid, sweep }
     }
 
-    /// The yield limits of an ideal layer before the step of a request, whose state is not kept yet; none without such a layer.
+    /// The yield limits before the step of a request, whose state is not kept yet.
     pub(super) fn limits_before(&self, request: &Request<'_>) -> Result<Vec<f64>> {
         let is_kept = request.start.is_again();
         self.limits(request.friction, if is_kept { &self.particles_before } else { &self.solution.particles })
     }
 
-    /// The yield limits of an ideal layer before the last step.
-    pub(super) fn last_limits(&self, friction: &Friction<'_>) -> Result<Vec<f64>> {
-        self.limits(friction, &self.particles_before)
-    }
-
-    fn limits(&self, friction: &Friction<'_>, particles: &[Particle]) -> Result<Vec<f64>> {
+    /// The yield limits of an ideal layer before a step, as [`had`](Self::had) has it; none without such a layer.
+    pub(super) fn limits(&self, friction: &Friction<'_>, particles: &[Particle]) -> Result<Vec<f64>> {
         if !friction.has_ideal_layer() {
             return Ok(Vec::new());
         }
-        let had = self.had_of(friction, particles);
+        let had = self.had(friction, particles);
         Ok(collected((0..self.grid.len()).map(|i| had.at(i).yield_limit), "the yield limits")?)
     }
 
@@ -117,7 +109,7 @@ impl Solver {
         if friction.law.is_none() && friction.layer.is_none() {
             return Ok(None);
         }
-        let (law, scales, had) = (self.law(friction), self.scales, self.had(friction));
+        let (law, scales, had) = (self.law(friction), self.scales, self.had(friction, &self.particles_before));
         let place = |i: usize| Place {
             pressure: scales.traction(pressure[i].max(0.0)),
             coefficient: friction.coefficient.at(i),

@@ -51,7 +51,8 @@ impl Best {
         if left > 0 || state.u_is != Freshness::Exact {
             task.problem.refresh(state, set)?;
         }
-        let now = Survey::of(state).violation(set);
+        let mut survey = Survey::of(state);
+        let now = survey.violation(set);
         let by_approach = matches!(state.load, Load::Approach(_));
         if self.violation < now || !(now <= f64::MAX) {
             if self.violation.is_finite() {
@@ -61,14 +62,15 @@ impl Best {
                 state.at_limit.fill(false);
             }
             task.problem.refresh(state, set)?;
+            survey = Survey::of(state);
         }
-        let mut found = Survey::of(state).violation(set);
-        if !by_approach && !found.is_finite() {
+        if !by_approach && !survey.violation(set).is_finite() {
             // A uniform pressure on C.
             state.p.fill(0.0);
             task.problem.refresh(state, set)?;
-            found = Survey::of(state).violation(set);
+            survey = Survey::of(state);
         }
+        let found = survey.violation(set);
         if by_approach && !(found <= 1.0) || !found.is_finite() {
             state.p.fill(0.0);
             state.u.fill(0.0);
@@ -76,8 +78,8 @@ impl Best {
                 state.unload();
                 state.start(task.problem.self_influence());
             }
+            survey = Survey::of(state);
         }
-        let survey = Survey::of(state);
         task.count_products();
         Ok(survey)
     }

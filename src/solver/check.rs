@@ -171,14 +171,18 @@ pub fn range(
                  coefficients of order {influence:e} to {largest:e}; all must lie between 1e-140 and 1e140: choose other units"
             ));
     }
-    // Coefficients that are given do not bound the sizes of elements.
+    areas(scene, pressure, loaded)
+}
+
+/// Rejects units in which areas of elements and forces leave the range of double precision: coefficients that are given do not bound the sizes of elements.
+fn areas(scene: &Scene<'_>, pressure: f64, loaded: bool) -> Result<()> {
     let area = scene.grid.element_area();
     let force = match scene.load {
         Load::Force(force) => force.abs(),
         Load::Approach(_) => area * pressure,
     };
-    let is_number = |value: f64| (1e-290..1e290).contains(&value);
-    if (loaded || force != 0.0) && !(is_number(area) && is_number(force)) {
+    let in_range = |value: f64| (1e-290..1e290).contains(&value);
+    if (loaded || force != 0.0) && !(in_range(area) && in_range(force)) {
         return invalid(format!(
             "elements have an area of order {area:e}, and the force is of order {force:e}; both must lie between 1e-290 and 1e290: choose other units"
         ));

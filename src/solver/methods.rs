@@ -95,13 +95,13 @@ impl Methods {
             let indefinite =
                 stop == Outcome::Stagnated && task.problem.given && has_negative_energy(task.problem, task.state)?;
             let survey = self.best.restore(task)?;
-            if stop != Outcome::Cancelled && !indefinite && !task.goal.by_update() && is_solved(task, survey) {
-                return Ok(Outcome::Converged);
-            }
             if indefinite {
                 return Err(Error::NotPositiveDefinite(
                     "influence coefficients: p'Ap is negative for some pressures p; it must be positive".into(),
                 ));
+            }
+            if stop != Outcome::Cancelled && !task.goal.by_update() && is_solved(task, survey) {
+                return Ok(Outcome::Converged);
             }
         }
         Ok(stop)

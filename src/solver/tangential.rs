@@ -138,15 +138,12 @@ impl Tangent {
             unlike.displace_sideways(&turn.scene.grid, turn.friction, pressure, turn.threads)?;
         }
         let request = Request {
-            pressure,
-            friction: turn.friction,
-            tolerance: turn.options.tolerance,
             limit: turn.options.max_cycles as u64,
             sideways: self.unlike.as_ref().map(UnlikeBodies::sideways),
             start,
             is_cancelled: monitor.is_cancelled(),
             estimates: turn.options.estimates,
-            limits: &[],
+            ..Request::new(pressure, turn.friction, turn.options.tolerance)
         };
         self.solver.solve(&request, &mut |grid, residual| monitor.uncounted_done(grid, residual))
     }

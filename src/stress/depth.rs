@@ -67,7 +67,8 @@ pub struct Maximum {
 impl Maximum {
     /// Takes the largest of `values` at a depth, if it is larger than any before. With patches those below their elements count.
     pub fn join(known: &mut Option<Maximum>, values: &[f64], depth: usize, (grid, loads): (&Grid, &Loads<'_>)) {
-        for (i, &value) in values.iter().enumerate().filter(|(i, _)| loads.counts(*i)) {
+        let counts = loads.counted();
+        for (i, &value) in values.iter().enumerate().filter(|(i, _)| counts(*i)) {
             if !known.is_some_and(|known| known.value >= value) {
                 *known = Some(Maximum { value, depth, ix: i % grid.mx, iy: i / grid.mx });
             }

@@ -33,6 +33,16 @@ pub enum Part {
     Patch(usize),
 }
 
+impl Part {
+    /// The part of an element.
+    pub(super) fn of(patches: &Patches<'_>, i: usize) -> Part {
+        match patches.patch[i] {
+            NO_PATCH => Part::All,
+            _ => Part::Patch(patches.of(i)),
+        }
+    }
+}
+
 impl<'a> Loads<'a> {
     /// Pressures alone.
     pub fn pressure(pressure: &'a [f64]) -> Loads<'a> {
@@ -51,30 +61,20 @@ impl<'a> Loads<'a> {
     /// The parts of the grid with separate loads.
     pub(super) fn parts(&self) -> Vec<Part> {
         let Some(patches) = self.coupled() else { return vec![Part::All] };
-        let of_patches = (0..patches.count).map(Part::Patch);
-        [Part::All]
-            .into_iter()
-            .chain(of_patches)
-            .filter(|part| (0..patches.patch.len()).any(|i| self.part(i) == *part))
-            .collect()
+        let has = |part: &Part| (0..patches.patch.len()).any(|i| Part::of(patches, i) == *part);
+        [Part::All].into_iter().chain((0..patches.count).map(Part::Patch)).filter(has).collect()
     }
 
-    /// The part of an element.
-    pub(super) fn part(&self, i: usize) -> Part {
-        match self.coupled() {
-            Some(patches) if patches.patch[i] != NO_PATCH => Part::Patch(patches.of(i)),
-            _ => Part::All,
-        }
+    /// Whether the stresses below an element count for the largest ones: with patches, below their elements.
+    pub fn counted(&self) -> impl Fn(usize) -> bool + '_ {
+        let patches = self.coupled();
+        move |i| patches.is_none_or(|patches| Part::of(patches, i) != Part::All)
     }
 
-    /// Whether the stresses below element i count for the largest ones: with patches, below their elements.
-    pub fn counts(&self, i: usize) -> bool {
-        self.coupled().is_none() || self.part(i) != Part::All
-    }
-
-    /// The factor of the loads on element j below a part.
-    pub(super) fn factor(&self, part: Part, j: usize) -> f64 {
-        match (self.coupled(), part) {
+    /// The factors of the loads on elements below a part.
+    pub(super) fn factors(&self, part: Part) -> impl Fn(usize) -> f64 + '_ {
+        let patches = self.coupled();
+        move |j| match (patches, part) {
             (Some(patches), Part::Patch(patch)) if patches.patch[j] != NO_PATCH => patches.factor(patch, j),
             _ => 1.0,
         }
@@ -87,8 +87,8 @@ impl<'a> Loads<'a> {
 
     /// The loads on a part: each load times the factor of its patch.
     pub(super) fn on(&self, part: Part, load: &[f64]) -> Result<Vec<f64>> {
-        let loads = load.iter().enumerate().map(|(i, load)| self.factor(part, i) * load);
-        Ok(collected(loads, "the loads of a patch")?)
+        let factor = self.factors(part);
+        Ok(collected(load.iter().enumerate().map(|(i, load)| factor(i) * load), "the loads of a patch")?)
     }
 
     pub(super) fn check(&self, grid: &Grid) -> Result<()> {

@@ -109,14 +109,15 @@ fn at_point(body: &Body, loads: &Loads<'_>, point: [f64; 3]) -> Tensor {
     let scale = loads.scale();
     // On a common edge, the patch of the next element.
     let above = |x: f64, d: f64, m: usize| ((x / d) as usize).min(m - 1);
-    let part = match loads.coupled() {
-        Some(_) => loads.part(grid.index(above(x, grid.dx, grid.mx), above(y, grid.dy, grid.my))),
-        None => Part::All,
-    };
+    let part = loads.coupled().map_or(Part::All, |patches| {
+        Part::of(patches, grid.index(above(x, grid.dx, grid.mx), above(y, grid.dy, grid.my)))
+    });
+    let factors = loads.factors(part);
     let [x, y, z] = [x, y, z].map(|length| body.in_units(length));
     let mut sum = [0.0; 6];
     for j in 0..grid.len() {
-        let values = list.map(|load| load.map_or(0.0, |load| loads.factor(part, j) * (load[j] / scale)));
+        let factor = factors(j);
+        let values = list.map(|load| load.map_or(0.0, |load| factor * (load[j] / scale)));
         if values == [0.0; 3] {
             continue;
         }

@@ -20,7 +20,7 @@
 //! compressible or not.
 
 use super::response::{quotient, Response, TERMS};
-use super::transfer::{term, Fade, Transfer, NEGLIGIBLE_EXPONENTIALS, ZERO_EXPONENTIALS};
+use super::transfer::{term, Fade, Transfer, NEGLIGIBLE_EXPONENTIALS};
 
 /// L of one layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,22 +31,12 @@ impl Along {
     pub fn new(mu: f64, nu: [f64; 2]) -> Along {
         Along(Transfer::new(mu, nu))
     }
-
-    fn less_one_plain(&self, s: f64) -> f64 {
-        if s > ZERO_EXPONENTIALS {
-            return 0.0;
-        }
-        let Transfer { lambda, kappa, .. } = self.0;
-        let fade = Fade::new(s);
-        let grows = (1.0 - 2.0 * s).powi(2);
-        fade.th * (lambda + kappa * grows - 2.0 * lambda * kappa * fade.th) / self.0.denominator(s, fade)
-    }
 }
 
 impl Response for Along {
     fn at(&self, s: f64) -> f64 {
         if s > NEGLIGIBLE_EXPONENTIALS {
-            return 1.0 + self.less_one_plain(s);
+            return 1.0 + self.0.less_one_plain(s, 1.0 - 2.0 * s);
         }
         let Transfer { lambda, kappa, less_lambda, less_both, .. } = self.0;
         let fade = Fade::new(s);
@@ -64,7 +54,7 @@ impl Response for Along {
 
     fn less_one(&self, s: f64) -> f64 {
         if s >= 1.0 {
-            self.less_one_plain(s)
+            self.0.less_one_plain(s, 1.0 - 2.0 * s)
         } else {
             self.at(s) - 1.0
         }

@@ -23,7 +23,7 @@ use super::response::{quotient, Response, TERMS};
 /// Beyond this s, exponentials are below exp(-40) = 4e-18, so that nothing cancels.
 pub(super) const NEGLIGIBLE_EXPONENTIALS: f64 = 20.0;
 /// s above which exp(-2 s) is 0 in double precision.
-pub(super) const ZERO_EXPONENTIALS: f64 = 373.0;
+const ZERO_EXPONENTIALS: f64 = 373.0;
 
 /// B of one layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,14 +59,14 @@ impl Transfer {
         }
     }
 
-    fn less_one_plain(&self, s: f64) -> f64 {
+    /// The response less 1 beyond [`NEGLIGIBLE_EXPONENTIALS`]; `grows`: 1 + 2 s, or 1 - 2 s for tractions.
+    pub(super) fn less_one_plain(&self, s: f64, grows: f64) -> f64 {
         if s > ZERO_EXPONENTIALS {
             return 0.0;
         }
         let Transfer { lambda, kappa, .. } = *self;
         let fade = Fade::new(s);
-        let grows = (1.0 + 2.0 * s).powi(2);
-        fade.th * (lambda + kappa * grows - 2.0 * lambda * kappa * fade.th) / self.denominator(s, fade)
+        fade.th * (lambda + kappa * grows.powi(2) - 2.0 * lambda * kappa * fade.th) / self.denominator(s, fade)
     }
 
     /// D, which is the same for all loads.
@@ -105,7 +105,7 @@ impl Transfer {
 impl Response for Transfer {
     fn at(&self, s: f64) -> f64 {
         if s > NEGLIGIBLE_EXPONENTIALS {
-            return 1.0 + self.less_one_plain(s);
+            return 1.0 + self.less_one_plain(s, 1.0 + 2.0 * s);
         }
         let Transfer { lambda, kappa, .. } = *self;
         let fade = Fade::new(s);
@@ -121,7 +121,7 @@ impl Response for Transfer {
 
     fn less_one(&self, s: f64) -> f64 {
         if s >= 1.0 {
-            self.less_one_plain(s)
+            self.less_one_plain(s, 1.0 + 2.0 * s)
         } else {
             self.at(s) - 1.0
         }

@@ -121,11 +121,11 @@ impl<T: Real> Iteration<T> {
                 let (p, t) = (&state.p[elements.clone()], &mut t[local]);
                 if set.any_beyond(elements.start, p.iter().zip(&*t).map(|(p, t)| p + forecast * t.to_double())) {
                     for ((p, t), i) in p.iter().zip(t).zip(elements).filter(|(_, i)| state.contact[*i]) {
-                        let clipped = (set.limit(i) - p) / forecast;
-                        // A limit whose square is below the range of T is met by the whole step.
-                        let is_in_range = clipped == 0.0 || T::of(clipped * clipped).to_double() > 0.0;
-                        if p + forecast * t.to_double() > set.limit(i) && is_in_range {
-                            *t = T::of(clipped);
+                        if p + forecast * t.to_double() > set.limit(i) {
+                            let clipped = (set.limit(i) - p) / forecast;
+                            // A limit whose square is below the range of T is met by the whole step.
+                            let is_in_range = clipped == 0.0 || T::of(clipped * clipped).to_double() > 0.0;
+                            *t = if is_in_range { T::of(clipped) } else { *t };
                         }
                     }
                 }

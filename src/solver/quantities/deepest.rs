@@ -74,7 +74,8 @@ impl Stress {
 
     fn largest(self, depth: &Depth, loads: &Loads<'_>) -> f64 {
         let values = if self == Stress::VonMises { &depth.von_mises } else { &depth.maximum_shear };
-        let counted = values.iter().enumerate().filter(|(i, _)| loads.counts(*i));
+        let counts = loads.counted();
+        let counted = values.iter().enumerate().filter(|(i, _)| counts(*i));
         counted.fold(0.0, |largest: f64, (_, value)| largest.max(*value))
     }
 }
