@@ -107,7 +107,7 @@ end module contact_normal
 
 ! norm_solve for programs that do not use the module, Fortran 77 included: the same arguments, INTEGER and
 ! DOUBLE PRECISION (not with -fdefault-integer-8). Since 0.1.
-subroutine norm_solve(mx, my, dx, dy, cx, cy, cf, hs, norm, pen, fn, igs, ps, eps, maxit, itcg, err, ierror)
+recursive subroutine norm_solve(mx, my, dx, dy, cx, cy, cf, hs, norm, pen, fn, igs, ps, eps, maxit, itcg, err, ierror)
   use, intrinsic :: iso_c_binding, only: c_int32_t, c_double
   use contact_normal, only: solve => norm_solve
   implicit none
@@ -120,7 +120,7 @@ subroutine norm_solve(mx, my, dx, dy, cx, cy, cf, hs, norm, pen, fn, igs, ps, ep
 end subroutine norm_solve
 
 ! tang_solve for such programs: the same arguments. Since 0.2.
-subroutine tang_solve(mx, my, dx, dy, gg, poiss, ps, mus, motion, force, cksi, ceta, cphi, fx, fy, dq, chi, px, py, igs, &
+recursive subroutine tang_solve(mx, my, dx, dy, gg, poiss, ps, mus, motion, force, cksi, ceta, cphi, fx, fy, dq, chi, px, py, igs, &
     ssx, ssy, eps, maxit, err, ierror)
   use, intrinsic :: iso_c_binding, only: c_int32_t, c_double
   use contact_normal, only: solve => tang_solve

@@ -204,6 +204,9 @@ class CreepForceTable:
         for name, value in (("normal_force", load), ("coefficient", mu)):
             if np.any(value < 0.0):
                 raise ValueError(f"{name} is {value}; it must not be negative")
+        modulus = real("shear_modulus", shear_modulus)
+        if not np.all(modulus > 0.0):
+            raise ValueError(f"shear_modulus is {shear_modulus}; it must be positive")
         bound = np.asarray(mu * load)
         if np.any((bound > 0.0) & (_is_no_length(a) | _is_no_length(b))):
             raise ValueError(f"semi_axes is {semi_axes}; they must be positive and finite where there is a load")
@@ -215,7 +218,7 @@ class CreepForceTable:
             return np.zeros(shape), np.zeros(shape), np.zeros(shape)
         # Where there is no load, creepages of 0 and a circle stand for any.
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            unit = shear_modulus * c * c / np.where(bound > 0.0, bound, np.inf)
+            unit = modulus * c * c / np.where(bound > 0.0, bound, np.inf)
             empty = (bound == 0.0) | np.isinf(unit)
             unit, ratio, bound = np.where(empty, 0.0, unit), np.where(empty, 1.0, a / b), np.where(empty, 0.0, bound)
         along, across = (unit * real(f"creepage[{k}]", one) for k, one in enumerate(both("creepage", creepage)))

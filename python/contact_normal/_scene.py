@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Mapping
 from ctypes import c_int32
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -48,7 +49,7 @@ class Scene:
         self.bodies = bodies(shear_modulus, poisson_ratio, young_modulus, e_star)
         self.remarks: Remarks | None = None
         self._kept: list[Any] = []
-        self._effects = effects
+        self._effects = effects = {**effects, "patches": owned(effects.get("patches"))}
         self._own = [name for name in ("influence", "row_tables") if effects.get(name) is not None]
         self._constants = {"shear_modulus": shear_modulus, "poisson_ratio": poisson_ratio, "young_modulus": young_modulus, "e_star": e_star}
         self.struct.my, self.struct.mx = (integer(name, m) for name, m in zip(("my", "mx"), self.h.shape))
@@ -71,6 +72,11 @@ class Scene:
     def _of_stresses(self) -> dict[str, Any]:
         """The effects that stresses below the surface need."""
         return {name: self._effects.get(name) for name in _OF_STRESSES}
+
+    @cached_property
+    def without_load(self) -> Scene:
+        """What stresses below the surface need: nothing that the caller may have changed since."""
+        return _without_load(self.shape, self.struct.dx, self.struct.dy, self._constants, self._of_stresses, self._own)
 
     def on_grid(self, shape: tuple[int, int], dx: float, dy: float) -> Scene:
         """What stresses below the surface need, on another grid: without load."""
@@ -173,6 +179,13 @@ class Scene:
 
 
 _OF_STRESSES = ("period", "patches", "coating")
+
+
+def owned(value: Any) -> Any:
+    """The same with copies of its arrays, which callers may change."""
+    if isinstance(value, np.ndarray):
+        return value.copy()
+    return tuple(owned(one) for one in value) if isinstance(value, tuple) else value
 
 
 def _without_load(

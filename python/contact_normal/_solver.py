@@ -24,7 +24,7 @@ from ._outputs import Outputs
 from ._friction import friction as friction_of
 from ._friction_batch import FrictionBatch, table_of
 from ._result import Result, TangentialResult
-from ._scene import Scene, influence as influence_of
+from ._scene import Scene, influence as influence_of, owned
 from ._structs import Fields, Report
 from ._structs import Scene as SceneStruct
 from ._tangential import of_pressures
@@ -96,7 +96,7 @@ class Solver:
         self._size = dx, dy
         self._bodies = {"shear_modulus": shear_modulus, "poisson_ratio": poisson_ratio, "young_modulus": young_modulus, "e_star": e_star}
         self._units = checked(units)
-        self._effects = {"layer": layer, "period": period, "patches": patches, "coating": coating}
+        self._effects = {"layer": owned(layer), "period": period, "patches": owned(patches), "coating": coating}
         self._given = given
         self._visco = visco
         self._own = [name for name, table in (("influence", influence), ("row_tables", row_tables)) if table is not None]

@@ -57,7 +57,7 @@ def subsurface(
     struct = options({"threads": threads})
     watched = Watched(None, struct, None)
     status, message = watched.call(
-        library.contact_normal_subsurface_stress, ctypes.byref(scene.struct), integer("body", body), *given, pointer(levels),
+        library.contact_normal_subsurface_stress, ctypes.byref(scene.without_load.struct), integer("body", body), *given, pointer(levels),
         levels.size, ctypes.byref(struct), ctypes.byref(outputs), keep=(scene, given, levels, found, largest),
     )
     check(status, message)
@@ -83,7 +83,7 @@ def at_points(
     stress = np.zeros((len(moved), 6))
     for part in parts(len(moved), 100):
         check(*called(
-            library.contact_normal_stress_at_points, ctypes.byref(scene.struct), integer("body", body), *given, pointer(moved[part]),
+            library.contact_normal_stress_at_points, ctypes.byref(scene.without_load.struct), integer("body", body), *given, pointer(moved[part]),
             len(moved[part]), ctypes.byref(struct), pointer(stress[part]), keep=(scene, given, moved, stress),
         ))
     return stress

@@ -256,6 +256,17 @@ class Loaded(unittest.TestCase):
             self.assertEqual(point.press(10e3, 0.3, 0.3, depth=1.2 * approach, max_seconds=0.005, **STEEL)[1].status, cn.OK)
         self.assertIn("max_seconds was reached", point.press(10e3, 0.3, 0.3, max_seconds=1e-9, **STEEL)[1].message)
 
+    def test_the_grid_of_a_press_with_a_pressure_limit_is_large_enough(self):
+        point = profiles.contact_points(TRACK, WHEELSET)[0]
+        free = point.press(3e4, 0.5, 0.5, **STEEL)[1]
+        limit = 0.6 * float(free.pressure.max())
+        _, first = point.press(3e4, 0.5, 0.5, depth=1e-3, pressure_limit=limit, **STEEL)
+        _, wide = point.press(3e4, 0.5, 0.5, depth=0.2, pressure_limit=limit, **STEEL)
+        self.assertEqual((first.status, wide.status), (0, 0))
+        self.assertLess(abs(first.approach / wide.approach - 1.0), 0.01)
+        with self.assertRaises(cn.ContactNormalError):
+            point.press(3e4, 2.0, 2.0, pressure_limit=1e-3, **STEEL)
+
     def test_a_grid_that_cannot_be_large_enough_is_refused(self):
         point = profiles.contact_points(self.TRACK, self.WHEELSET)[0]
         with self.assertRaisesRegex(ValueError, "the grid would need more than 2048 elements"):

@@ -79,6 +79,17 @@ class Subsurface(unittest.TestCase):
         self.assertGreater(len(balls.x), 16)
         np.testing.assert_allclose(found[..., :half], alone[..., :half], atol=1e-12 * balls.max_pressure)
 
+    def test_a_result_is_its_own_when_the_callers_arrays_change(self):
+        patch, factors, layer = (X > 0.0).astype(np.int32) + np.zeros((M, 1), np.int32), np.array([[1.0, 0.5], [0.5, 1.0]]), np.full((M, M), 1e-7)
+        layered = cn.solve(H, D, D, force=1000.0, layer=layer, pressure_limit=(limit := np.full((M, M), 900.0)), **STEEL)
+        patched = cn.solve(H, D, D, force=1000.0, patches=(patch, factors), **STEEL)
+        solver = cn.Solver(M, M, D, D, layer=layer, patches=(patch, factors), **STEEL)
+        of_solver = solver.solve(H, force=1000.0)
+        before = [result.subsurface([0.3]).von_mises for result in (layered, patched, of_solver)]
+        patch[:], factors[:], layer[:], limit[:] = 0, 1.0, -1.0, -1.0
+        for result, expected in zip((layered, patched, of_solver, solver.solve(H, force=1000.0)), (*before, before[-1])):
+            np.testing.assert_array_equal(result.subsurface([0.3]).von_mises, expected)
+
     def test_a_solver_knows_that_its_coefficients_are_no_half_space(self):
         h, bodies = H[::2, ::2], {"shear_modulus": 1.0, "poisson_ratio": 0.3}
         m = len(h)

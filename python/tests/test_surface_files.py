@@ -108,15 +108,30 @@ class Files(unittest.TestCase):
         with self.assertWarnsRegex(UserWarning, "says that the field is 5e-06 m long in x, and 1e-05 is given"):
             surface.read(self.folder / "a.txt", axes="xy", size=(10e-6, 5e-6))
 
+    def test_an_empty_cell_between_tabs_is_a_hole(self):
+        z = rough(16)[:5]
+        for holes in (z * 0.0 == 1.0, np.arange(16) == 6 + 0 * z, np.arange(16)[None] == np.arange(5)[:, None], np.arange(16) == 15 + np.arange(5)[:, None] % 2):
+            for end in ("", "\t"):
+                rows = ["\t".join("" if hole else f"{value:.17g}" for value, hole in zip(*row)) + end for row in zip(z, holes)]
+                (self.folder / "a.txt").write_text("\n".join(rows))
+                made = surface.read(self.folder / "a.txt", size=(16.0, 5.0))
+                np.testing.assert_array_equal(made.z, np.where(holes, np.nan, z))
+        # Columns that tabs and blanks line up have no empty cells.
+        (self.folder / "a.txt").write_text("\n".join("\t\t".join(f" {value:.17g}" for value in row) for row in z))
+        np.testing.assert_array_equal(surface.read(self.folder / "a.txt", dx=1.0, dy=1.0).z, z)
+
     def test_attributes_of_surface_topographys_files(self):
         z = rough(4)
         for periodic, given, period in (((1, 1), {}, "xy"), ((0, 1), {}, "y"), ((0, 0), {}, None), ((1, 1), {"period": None}, None), ((1, 1), {"dx": 1.0, "dy": 1.0}, "xy")):
             array = DataArray(z.T, ("x", "y"), None, None)
             for name, one in zip(array.dims, periodic):
-                array.coords[name].attrs = {"length": 4e-3, "periodic": one, "length_unit": "mm"}
+                array.coords[name].attrs = {"length": 4e-3, "periodic": one, "unit": "mm"}
+            array.attrs = {"unit": "mm"}
             made = surface.from_xarray(array, **given)
             np.testing.assert_array_equal(made.z, z)
-            self.assertEqual((made.period, made.units), (period, None if "dx" in given else ("mm", "N")))
+            self.assertEqual((made.period, made.units), (period, ("mm", "N")))
+            with self.assertRaisesRegex(ValueError, "lengths are in mm in the file"):
+                surface.from_xarray(array, **given, units=("um", "N"))
 
     def test_arrays_of_numpy_and_text(self):
         z = rough(16)[:5]
@@ -379,6 +394,18 @@ class Files(unittest.TestCase):
                 self.assertEqual(surface.read(self.folder / "a.nc", variable=variable).z.shape, (4, 4))
         with mock.patch("contact_normal._netcdf.read", return_value=dataset), self.assertRaisesRegex(ValueError, "has z, mask; give variable"):
             surface.read(self.folder / "a.nc")
+
+    def test_the_mask_of_surface_topographys_files_says_where_holes_are(self):
+        holes = DataArray(np.eye(4), ("y", "x"), "mm", "mm")
+        holes.values[holes.values > 0.0] = np.nan
+        z, mask = mock.MagicMock(ndim=2, shape=(4, 4)), mock.MagicMock(ndim=2, shape=(4, 4))
+        mask.__eq__ = mock.Mock(return_value="measured")
+        z.where.side_effect = {"measured": holes}.get
+        arrays = {"heights": z, "mask": mask}
+        dataset = mock.MagicMock(data_vars=arrays, __getitem__=lambda _, name: arrays[name])
+        for variable in (None, "heights"):
+            with mock.patch("contact_normal._netcdf.read", return_value=dataset):
+                self.assertEqual(int(surface.read(self.folder / "a.nc", variable=variable).holes.sum()), 4)
 
 
 class Pictures(unittest.TestCase):

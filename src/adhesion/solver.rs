@@ -206,12 +206,12 @@ impl Solver {
         let is_state = measured.is_state(request.tolerance);
         report.is_short = end == Descent::By(End::Interrupted) && pulls(goal) && is_state && measured.pressures < 0.0;
         let is_solved = end == Descent::By(End::Solved);
-        if request.stiffness && is_solved {
+        if request.stiffness && is_solved && !monitor.is_cancelled() {
             let area = level.problem.grid.element_area();
             report.stiffness = Some(area * stiffness_of_contact(level, monitor)?);
         }
-        if request.stability && is_solved {
-            report.stability = Some(stability(level, monitor)?);
+        if request.stability && is_solved && !monitor.is_cancelled() {
+            report.stability = stability(level, monitor)?;
         }
         close_grid(level, &measured, monitor);
         if let Some(advice) = report.advice() {

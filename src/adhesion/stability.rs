@@ -27,27 +27,32 @@ const INNER: Effort = Effort { part: 1e-3, most: 60, at_once: 8 };
 const HALVINGS: u32 = 60;
 
 /// `1 - lambda` of the present state.
-pub fn stability(level: &mut Level, monitor: &mut Monitor<'_>) -> Result<f64> {
+pub fn stability(level: &mut Level, monitor: &mut Monitor<'_>) -> Result<Option<f64>> {
     let (n, threads) = (level.now.u.len(), level.problem.threads.clone());
     level.clear_fields(0);
     let mut fields = std::mem::take(&mut level.fields);
     let mut roots = fields.take_of(n)?;
     stiffnesses(level, |_, e| e.max(0.0), &mut roots);
     fields::map(&threads, &mut roots, |_, s: Short| s.map(f32::sqrt));
-    let lambda = largest_eigenvalue(level, &roots, &threads, &mut fields)?;
+    let lambda = largest_eigenvalue((level, monitor), &roots, &threads, &mut fields)?;
     fields.give_of(roots);
     level.fields = fields;
     level.clear_fields(0);
     level.count_products(monitor);
-    Ok(1.0 - lambda)
+    Ok(lambda.map(|lambda| 1.0 - lambda))
 }
 
-/// Lanczos' iteration. `roots`: those of s a0.
-fn largest_eigenvalue(level: &mut Level, roots: &[Short], threads: &Threads, fields: &mut Fields<1>) -> Result<f64> {
+/// Lanczos' iteration. `roots`: those of s a0. None: the caller cancelled.
+fn largest_eigenvalue(
+    (level, monitor): (&mut Level, &mut Monitor<'_>),
+    roots: &[Short],
+    threads: &Threads,
+    fields: &mut Fields<1>,
+) -> Result<Option<f64>> {
     let n = roots.len();
     let norm = fields::dot(threads, roots, roots).sqrt();
     if !(norm > 0.0) {
-        return Ok(0.0);
+        return Ok(Some(0.0));
     }
     let (mut v, mut before) = (fields.take(n)?, fields.take(n)?);
     fields::fill(threads, &mut v, |i| [f64::from(roots[i][0]) / norm]);
@@ -66,14 +71,14 @@ fn largest_eigenvalue(level: &mut Level, roots: &[Short], threads: &Threads, fie
         std::mem::swap(&mut before, &mut v);
         std::mem::swap(&mut v, &mut w);
         fields.give(w);
-        if is_last {
+        if is_last || !monitor.uncounted_done(&level.problem.grid, last) {
             break;
         }
         beside.push(last);
         fields::scale(threads, &mut v, 1.0 / last);
     }
     [v, before].into_iter().for_each(|field| fields.give(field));
-    Ok(lambda)
+    Ok(Some(lambda).filter(|_| !monitor.is_cancelled()))
 }
 
 /// `sqrt(s) A~ sqrt(s) v`.

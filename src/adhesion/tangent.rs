@@ -136,5 +136,5 @@ pub fn is_stable(level: &mut Level, by_force: bool, monitor: &mut Monitor<'_>) -
     if by_force && !(found.stiffness > 0.0) {
         return Ok(false);
     }
-    Ok(found.closing > CLOSING_BOUND || stability(level, monitor)? > 0.0)
+    Ok(found.closing > CLOSING_BOUND || stability(level, monitor)?.is_none_or(|found| found > 0.0))
 }

@@ -13,7 +13,7 @@
 
 use std::f64::consts::PI;
 
-use crate::error::{invalid, positive, Result};
+use crate::error::{invalid, positive, Error, Number, Result};
 
 /// The exact solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,7 +63,11 @@ pub fn hertz(curvature_x: f64, curvature_y: f64, approach: f64, compliance: f64)
 /// The same for a prescribed force. `F` is proportional to the approach to the power 3/2.
 pub fn hertz_by_force(curvature_x: f64, curvature_y: f64, force: f64, compliance: f64) -> Result<Hertz> {
     positive("force", force)?;
-    let unit = hertz(curvature_x, curvature_y, 1.0, compliance)?;
+    let of_force = |error| match error {
+        Error::InvalidArgument(why) => Error::InvalidArgument(format!("{why} (for a force of {})", Number(force))),
+        other => other,
+    };
+    let unit = hertz(curvature_x, curvature_y, 1.0, compliance).map_err(of_force)?;
     hertz(curvature_x, curvature_y, (force / unit.force).powf(2.0 / 3.0), compliance)
 }
 

@@ -40,7 +40,7 @@ fn replay(dump: Dump) -> Result<bool, String> {
     }
     let Replayed { status: now, report } = dump.replay()?;
     println!("again: {}", told(now, &last_error()));
-    if now >= 0 {
+    if let Some(report) = report.filter(|_| now >= 0) {
         print_report(&report);
     }
     println!("{}", if now == status { "reproduced" } else { "not reproduced" });

@@ -43,12 +43,38 @@ enum Beside {
 /// Sum over the sides at which the surface ends within the contact: `t (pi d/(2 E*) + c) p` times the area of an element, with the
 /// weights `w(i)` of the elements. A direction of one element has no ends here.
 pub fn at_ends<const N: usize>(problem: &Problem, state: &State, weights: impl Fn(usize) -> [f64; N]) -> [f64; N] {
-    let grid = &state.grid;
-    let directions = Direction::both(grid, problem.coefficients.repeats(grid));
-    let sizes = [grid.dx, grid.dy];
+    let sizes = [state.grid.dx, state.grid.dy];
     let flexibility = PI / (2.0 * problem.modulus());
     let mut sums = [0.0; N];
-    for i in state.rows_with_contact().flatten().filter(|&i| state.contact[i]) {
+    each_end(problem, state, |i, k, elements| {
+        let part = elements * (flexibility * sizes[k] + problem.layer(i)) * state.p[i] * state.grid.element_area();
+        let weights = weights(i);
+        (0..N).for_each(|n| sums[n] += part * weights[n]);
+    });
+    sums
+}
+
+/// The force on the strips of t elements that the surface may have beyond its last elements, with the pressures of these, over the whole force. None
+/// has its end on edges of elements.
+pub fn beyond_ends(problem: &Problem, state: &State) -> f64 {
+    let mut sum = 0.0;
+    each_end(problem, state, |i, _, elements| {
+        if elements != EXACT_EDGE {
+            sum += elements * state.p[i] * state.grid.element_area();
+        }
+    });
+    if sum > 0.0 {
+        sum / state.force()
+    } else {
+        0.0
+    }
+}
+
+/// Calls `each(i, k, t)` for each side in the direction k = 0, 1 at which the surface ends beside element i of the contact, with t in elements.
+fn each_end(problem: &Problem, state: &State, mut each: impl FnMut(usize, usize, f64)) {
+    let grid = &state.grid;
+    let directions = Direction::both(grid, problem.coefficients.repeats(grid));
+    for i in (0..grid.len()).filter(|&i| state.touches(i)) {
         let place = [i % grid.mx, i / grid.mx];
         for k in (0..2).filter(|&k| directions[k].m > 1) {
             let (across, along) = (directions[k], directions[1 - k]);
@@ -62,13 +88,10 @@ pub fn at_ends<const N: usize>(problem: &Problem, state: &State, weights: impl F
                     }
                     Beside::Hole => STEPPED_EDGE,
                 };
-                let part = elements * (flexibility * sizes[k] + problem.layer(i)) * state.p[i] * grid.element_area();
-                let weights = weights(i);
-                (0..N).for_each(|n| sums[n] += part * weights[n]);
+                each(i, k, elements);
             }
         }
     }
-    sums
 }
 
 /// The neighbour of element `i` at `place` of its line in this direction: the one before (side 0), or behind.
@@ -90,7 +113,7 @@ fn is_straight(
 ) -> bool {
     let same = |n: usize| {
         let at = i + n * along.step - place * along.step;
-        state.contact[at] && beside(across, state, (at, place_across), side) == Beside::Hole
+        state.touches(at) && beside(across, state, (at, place_across), side) == Beside::Hole
     };
     let before = (0..place).rev().take(STRAIGHT).take_while(|&n| same(n)).count();
     let behind = (place + 1..along.m).take(STRAIGHT).take_while(|&n| same(n)).count();

@@ -22,7 +22,7 @@ mod values;
 pub use admissible::{AdmissibleSet, Fixed, NonNegative};
 pub use certificate::{norm_of_distance, relative, residual_norm, Certificate, Survey, ROUND_OFF};
 pub use curvature::Curvature;
-pub use ends::at_ends;
+pub use ends::{at_ends, beyond_ends};
 pub use exchange::{admit, all_stay, enter, leave, truncate};
 pub use guard::ExchangeGuard;
 pub use jumps::{at_jumps, each_jump, Jump};

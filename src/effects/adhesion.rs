@@ -12,6 +12,8 @@ use crate::scene::{Load, Plain};
 
 /// Limits on work and range: their squares, and quotients of these, are finite.
 const RANGE: (f64, f64) = (1e-70, 1e70);
+/// Least part of the range over which the edge of a law is smeared: no grid resolves less.
+const LEAST_SMEAR: f64 = 1e-6;
 
 /// w, a force per length (an energy per area): the same everywhere or one per element, `[my][mx]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,8 +99,8 @@ impl Effect for Adhesion<'_> {
         let rule = "a shear strength must be 0 or more, and below 1e140";
         require((0.0..LARGEST).contains(&strength), "adhesion->shear_strength", strength, rule)?;
         if let Law::Dugdale(smear) = self.law {
-            let rule = "the part of the range over which the edge is smeared must lie in (0, 1]";
-            require(smear > 0.0 && smear <= 1.0, "adhesion->smear", smear, rule)?;
+            let rule = "the part of the range over which the edge is smeared must lie in [1e-6, 1]";
+            require((LEAST_SMEAR..=1.0).contains(&smear), "adhesion->smear", smear, rule)?;
         }
         Ok(())
     }

@@ -1,9 +1,10 @@
 //! Bounds of tractions with a law or a layer, and the checks of these.
 
 use super::friction::{Friction, Motion, Prescribed};
-use super::friction_law::Branch;
-use crate::error::{not_negative, positive, require, Error, Result};
+use super::friction_law::{ordinary, zero_or_ordinary, Branch};
+use crate::error::{require, Error, Result};
 use crate::grid::{check_values, Grid};
+use crate::powers::LARGEST;
 use crate::scene::Bodies;
 
 const NO_FORCES: &str = "with a branch creepages must be prescribed in both directions";
@@ -51,13 +52,14 @@ impl Friction<'_> {
             law.check(self.motion == Motion::Shift)?;
         }
         if let Some(layer) = &self.layer {
-            positive("friction->yield_limit", layer.yield_limit)?;
-            require(layer.hardening.is_finite(), "friction->hardening", layer.hardening, "it must be finite")?;
+            ordinary("friction->yield_limit", layer.yield_limit)?;
+            let rule = "it must be below 1e140: choose other units";
+            require(layer.hardening.abs() < LARGEST, "friction->hardening", layer.hardening, rule)?;
         }
         self.coefficients_read()
-            .map_or(Ok(()), |values| check_values("friction->previous_coefficient", values, grid, not_negative))?;
+            .map_or(Ok(()), |values| check_values("friction->previous_coefficient", values, grid, zero_or_ordinary))?;
         self.yield_limits_read()
-            .map_or(Ok(()), |values| check_values("friction->previous_yield_limit", values, grid, positive))?;
+            .map_or(Ok(()), |values| check_values("friction->previous_yield_limit", values, grid, ordinary))?;
         if !self.has_law() {
             return Ok(());
         }

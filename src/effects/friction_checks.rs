@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::friction::{Coefficient, Friction, Motion, Prescribed, Previous};
-use crate::error::{finite, require, Error, Result};
+use crate::error::{finite, require, Error, Result, Rounded};
 use crate::grid::{check_values, Grid};
 use crate::powers::LARGEST;
 
@@ -125,14 +125,15 @@ impl Friction<'_> {
         if self.motion != Motion::Shift {
             let (distance, (sine, cosine)) = (self.distance(grid), self.rolling_direction.sin_cos());
             let (x, y) = (distance * cosine / grid.dx, distance * sine / grid.dy);
+            let far = format!("({}, {}) elements far", Rounded(x), Rounded(y));
             if influence.by_row && y.abs() > WHOLE_STEP {
                 return Err(Error::Unsupported(format!(
-                    "friction->row_tables are given, and a step of rolling goes ({x}, {y}) elements far; it must go along x"
+                    "friction->row_tables are given, and a step of rolling goes {far}; it must go along x"
                 )));
             }
             if (x - x.round()).abs().max((y - y.round()).abs()) > WHOLE_STEP {
                 return Err(Error::Unsupported(format!(
-                    "{} is given, and a step of rolling goes ({x}, {y}) elements far; it must be whole elements",
+                    "{} is given, and a step of rolling goes {far}; it must be whole elements",
                     influence.name()
                 )));
             }

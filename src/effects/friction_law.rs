@@ -1,7 +1,8 @@
 //! Friction beyond a constant coefficient: a law by which the coefficient falls with the slip velocity, and a yielding layer
 //! between the bodies. See [`friction::law`](crate::friction::law) for the problem.
 
-use crate::error::{not_negative, positive, Result};
+use crate::error::{not_negative, positive, require, Result};
+use crate::powers::LARGEST;
 
 /// How a coefficient of friction falls with the slip velocity v, each of two parts with its own half speed h.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,15 +112,27 @@ impl FrictionLaw {
         for k in 0..2 {
             not_negative(["friction->falling[0]", "friction->falling[1]"][k], self.falling[k])?;
             if self.falling[k] > 0.0 {
-                positive(["friction->half_speed[0]", "friction->half_speed[1]"][k], self.half_speed[k])?;
+                ordinary(["friction->half_speed[0]", "friction->half_speed[1]"][k], self.half_speed[k])?;
             }
         }
         positive("friction->kinetic + falling", self.kinetic + self.falling[0] + self.falling[1])?;
         match is_shift {
-            true => positive("friction->time_step", self.time_step)?,
-            false => positive("friction->speed", self.speed)?,
+            true => ordinary("friction->time_step", self.time_step)?,
+            false => ordinary("friction->speed", self.speed)?,
         }
-        not_negative("friction->memory_distance", self.memory_distance)?;
-        not_negative("friction->memory_speed", self.memory_speed)
+        zero_or_ordinary("friction->memory_distance", self.memory_distance)?;
+        zero_or_ordinary("friction->memory_speed", self.memory_speed)
     }
+}
+
+/// Refuses a number whose products with a few others may be infinite or 0.
+pub(super) fn ordinary(name: &str, value: f64) -> Result<()> {
+    let rule = "it must be positive, from 1e-140 to 1e140: choose other units";
+    require((1.0 / LARGEST..=LARGEST).contains(&value), name, value, rule)
+}
+
+/// The same for a number that may be 0.
+pub(super) fn zero_or_ordinary(name: &str, value: f64) -> Result<()> {
+    let rule = "it must be 0, or from 1e-140 to 1e140: choose other units";
+    require(value == 0.0 || (1.0 / LARGEST..=LARGEST).contains(&value), name, value, rule)
 }

@@ -203,12 +203,18 @@ impl Effect for Visco<'_> {
         let other = if form == Form::Relaxation { Form::Creep } else { Form::Relaxation };
         let [bodies, compared] = [self.bodies(&at_surface, form)?, self.bodies(&at_surface, other)?];
         let step = Step { time_step: self.time_step, bodies, compared, continues: self.continues };
-        if !(step.compliance().is_normal() && (1.0 / step.compliance()).is_normal()) {
-            return invalid(format!(
-                "visco->time_step is {}, in which bodies that have no modulus in the end give way by {:e} times what they do at once",
-                Number(self.time_step),
-                step.compliance()
-            ));
+        for compliance in [step.compliance(), Step::compliance_of(&step.compared)] {
+            if compliance.is_nan() {
+                let why = "the times of the branches are too far apart to be solved together";
+                return invalid(format!("visco->time_step is {}; {why}", Number(self.time_step)));
+            }
+            if !(compliance.is_normal() && (1.0 / compliance).is_normal()) {
+                return invalid(format!(
+                    "visco->time_step is {}, in which bodies that have no modulus in the end give way by {compliance:e} times what they do \
+                     at once",
+                    Number(self.time_step),
+                ));
+            }
         }
         history.fields(step.fields(), &scene.grid)?;
         Ok(Some(Box::new(step)))

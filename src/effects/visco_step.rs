@@ -7,6 +7,9 @@ use super::memory::Memory;
 use crate::contact::State;
 use crate::visco::{Form, Map, Report, Series, MOST_BRANCHES};
 
+/// With this factor squares of all lengths up to 1e300 are finite.
+const SMALL: f64 = 1e-150;
+
 /// A body: its share of the instantaneous compliance, and its step.
 pub struct Body {
     share: f64,
@@ -48,20 +51,32 @@ impl Step {
         sum
     }
 
-    fn compliance_of(bodies: &[Body]) -> f64 {
+    /// What bodies in a form give way by in the step, over what they do at once.
+    pub fn compliance_of(bodies: &[Body]) -> f64 {
         bodies.iter().map(|body| body.share * body.map.compliance()).sum()
     }
 
     /// The difference of both forms, and h - approach: rms over the elements in contact.
     fn error(&self, fields: &[Vec<f64>], state: &State) -> (f64, f64) {
+        let found = self.error_by(1.0, fields, state);
+        // In very long steps bodies that flow give way by lengths whose squares overflow.
+        if found.0.is_finite() && found.1.is_finite() {
+            return found;
+        }
+        let (off, distance) = self.error_by(SMALL, fields, state);
+        (off / SMALL, distance / SMALL)
+    }
+
+    /// The same times a `factor`.
+    fn error_by(&self, factor: f64, fields: &[Vec<f64>], state: &State) -> (f64, f64) {
         let (s, other) = (Step::compliance_of(&self.bodies), Step::compliance_of(&self.compared));
         let (mut differences, mut distances, mut count) = (0.0, 0.0, 0usize);
         for i in (0..state.p.len()).filter(|&i| state.touches(i)) {
             let history = if self.continues { Step::history(&self.bodies, fields, i) } else { 0.0 };
             let compared = if self.continues { Step::history(&self.compared, fields, i) } else { 0.0 };
-            differences += ((other - s) * state.u[i] + compared - history).powi(2);
+            differences += (((other - s) * state.u[i] + compared - history) * factor).powi(2);
             // The distances of the problem solved contain the history, and are s times shorter.
-            distances += (s * (state.h[i] - state.approach) - history).powi(2);
+            distances += ((s * (state.h[i] - state.approach) - history) * factor).powi(2);
             count += 1;
         }
         let rms = |squares: f64| (squares / count.max(1) as f64).sqrt();

@@ -44,7 +44,7 @@ pub struct contact_normal_adhesion {
     pub works_of_adhesion: *const f64,
     /// rho, a length; default 0: the shortest that the elements carry. `report->adhesion.range` says which was used.
     pub range: f64,
-    /// DUGDALE: the part of the range over which its edge is smeared, in (0, 1]; default 0.3.
+    /// DUGDALE: the part of the range over which its edge is smeared, in [1e-6, 1]; default 0.3.
     pub smear: f64,
     /// 1: dF/dapproach, in `report->adhesion.stiffness`; default 0.
     pub stiffness: i32,
@@ -118,9 +118,9 @@ pub struct contact_normal_report_adhesion {
     pub resolution: f64,
     /// The part of the attraction that acts on the border of the grid: the grid does not contain it where that is more than 0.001.
     pub border_share: f64,
-    /// dF/dapproach if `adhesion->stiffness` is 1, else 0. Infinite where all elements of two periods are in contact.
+    /// dF/dapproach if `adhesion->stiffness` is 1 and the status is OK, else 0. Infinite where all elements of two periods are in contact.
     pub stiffness: f64,
-    /// 1 - lambda if `adhesion->stability` is 1, else 0; lambda is the largest eigenvalue of how a change of the attraction outside the
+    /// 1 - lambda if `adhesion->stability` is 1 and the status is OK, else 0; lambda is the largest eigenvalue of how a change of the attraction outside the
     /// contact comes back to itself. Positive in a stable state (of a given approach), near 0 where a small step may snap.
     pub stability: f64,
     /// 1: the bodies have snapped: the state before (initial_guess PREVIOUS or GIVEN) could not be followed, and the elements in contact

@@ -126,6 +126,7 @@ impl Regions {
 
     /// `count` values that are only read; none at NULL.
     pub fn input<T: Plain>(&mut self, name: &'static str, start: *const T, count: usize) -> Result<(), Refusal> {
+        aligned(name, start)?;
         self.add(name, start as usize, count.saturating_mul(size_of::<T>()), false)?;
         self.read_too(start);
         Ok(())
@@ -155,6 +156,7 @@ impl Regions {
 
     /// `count` values that are written.
     pub fn output<T>(&mut self, name: &'static str, start: *const T, count: usize) -> Result<(), Refusal> {
+        aligned(name, start)?;
         self.add(name, start as usize, count.saturating_mul(size_of::<T>()), true)
     }
 
@@ -217,6 +219,15 @@ impl Regions {
         }
         Ok(())
     }
+}
+
+/// Refuses arrays that do not begin at a multiple of what an element needs: elements of packed structs, or of a record in a file in memory.
+fn aligned<T>(name: &str, start: *const T) -> Result<(), Refusal> {
+    if start.is_aligned() {
+        return Ok(());
+    }
+    let rule = format!("it must begin at a multiple of {} bytes", align_of::<T>());
+    Err(Refusal::invalid(format!("{name} begins at {:#x}; {rule}", start as usize)))
 }
 
 fn overlap(one: &Region, other: &Region) -> Refusal {

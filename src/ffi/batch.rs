@@ -8,6 +8,7 @@ use super::conclusion::Conclusion;
 use super::dump::{Given, Recording};
 use super::fields::contact_normal_fields;
 use super::guard::guard;
+use super::log::quietly;
 use super::options::{self, contact_normal_options, Translated};
 use super::outputs::{Buffers, Outputs};
 use super::report::contact_normal_report;
@@ -75,7 +76,7 @@ pub unsafe extern "C" fn contact_normal_solver_solve_batch(
         let (not_ok, n) = (Mutex::new(NotOk::default()), solver.grid().len());
         solver.distribute(count, |i, worker| {
             // SAFETY: each problem is solved by one thread.
-            let outcome = unsafe { batch.solve(i, worker, (&options, n)) };
+            let outcome = quietly(|| unsafe { batch.solve(i, worker, (&options, n)) });
             not_ok.lock().unwrap_or_else(PoisonError::into_inner).note(i, outcome);
         })?;
         not_ok.into_inner().unwrap_or_else(PoisonError::into_inner).outcome("problem").conclude()

@@ -1,7 +1,7 @@
 //! Log messages to a callback of the caller's.
 
+use std::cell::Cell;
 use std::ffi::CString;
-use std::sync::{Mutex, PoisonError};
 
 use libc::{c_char, c_void};
 use log::{LevelFilter, Log, Metadata, Record};
@@ -9,6 +9,7 @@ use log::{LevelFilter, Log, Metadata, Record};
 use super::floating_point::in_host_environment;
 use super::guard::guard;
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_UNSUPPORTED};
+use crate::threads::{made_once, Shared};
 
 /// Log level: nothing.
 pub const CONTACT_NORMAL_LOG_OFF: i32 = 0;
@@ -31,7 +32,20 @@ struct Target {
 // SAFETY: the pointer is the caller's, who promises that the callback may be called from any thread that calls the library.
 unsafe impl Send for Target {}
 
-static TARGET: Mutex<Target> = Mutex::new(Target { callback: None, user: std::ptr::null_mut() });
+static TARGET: Shared<Target> = Shared::new(Target { callback: None, user: std::ptr::null_mut() });
+
+thread_local! {
+    /// Whether this thread solves problems of a batch.
+    static QUIET: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Runs `work` without log messages.
+pub(super) fn quietly<R>(work: impl FnOnce() -> R) -> R {
+    let outer = QUIET.replace(true);
+    let result = work();
+    QUIET.set(outer);
+    result
+}
 
 struct Forward;
 
@@ -41,12 +55,14 @@ impl Log for Forward {
     }
 
     fn log(&self, record: &Record<'_>) {
-        // Callbacks are called on the thread that called us, never from a thread of ours.
-        if std::thread::current().name().is_some_and(|name| name.starts_with(crate::threads::THREAD_NAME)) {
+        // Callbacks are called on the thread that called us, never from a thread of ours, and not for a part of the problems of a batch.
+        if QUIET.get()
+            || std::thread::current().name().is_some_and(|name| name.starts_with(crate::threads::THREAD_NAME))
+        {
             return;
         }
         // A copy, so that the lock is not held during the call.
-        let target = *TARGET.lock().unwrap_or_else(PoisonError::into_inner);
+        let Some(target) = TARGET.lock().map(|target| *target) else { return };
         let level =
             if record.level() <= log::Level::Warn { CONTACT_NORMAL_LOG_WARNING } else { CONTACT_NORMAL_LOG_INFO };
         if let (Some(callback), Ok(message)) = (target.callback, CString::new(record.args().to_string())) {
@@ -74,11 +90,13 @@ pub unsafe extern "C" fn contact_normal_set_log(
             CONTACT_NORMAL_LOG_INFO => LevelFilter::Info,
             other => return Err(Refusal::invalid(format!("level is {other}; it must be OFF 0, WARNING 1 or INFO 2"))),
         };
-        if !OURS.get_or_init(|| log::set_logger(&Forward).is_ok()) {
+        if !made_once(&OURS, || log::set_logger(&Forward).is_ok()) {
             let message = "a logger is set already; it receives the messages".into();
             return Err(Refusal::new(CONTACT_NORMAL_UNSUPPORTED, message));
         }
-        *TARGET.lock().unwrap_or_else(PoisonError::into_inner) = Target { callback, user };
+        if let Some(mut target) = TARGET.lock() {
+            *target = Target { callback, user };
+        }
         log::set_max_level(if callback.is_some() { filter } else { LevelFilter::Off });
         Ok(CONTACT_NORMAL_OK)
     })

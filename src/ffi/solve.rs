@@ -182,6 +182,9 @@ pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Opt
         let Certificate { violation, complementarity, .. } = report.measures.certificate;
         message += &format!(", the violation {violation:e} and the complementarity {complementarity:e}");
     }
+    if let Some(law) = report.adhesion.map(|found| found.law_residual).filter(|law| !(*law <= report.tolerance)) {
+        message += &format!("; that of the law of adhesion is {law:e}");
+    }
     message += tangential.as_deref().unwrap_or_default();
     if let Some(missing) = report.friction.map(|found| found.missing).filter(|missing| *missing > report.tolerance) {
         message += &format!("; the tangential force is off by {missing:e} of mu N");

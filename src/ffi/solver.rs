@@ -195,7 +195,9 @@ pub unsafe extern "C" fn contact_normal_solver_fields(
         outputs.add_to(&mut buffers.regions, solver.grid().len())?;
         buffers.regions.check()?;
         if !solver.has_solved() {
-            return Err(Refusal::invalid("solver has no result: no solve with it had a status >= 0".into()));
+            return Err(Refusal::invalid(
+                "solver has no result: there was no solve, or the last one found none".into(),
+            ));
         }
         outputs.write_fields(solver, false);
         Ok(CONTACT_NORMAL_OK)

@@ -9,6 +9,7 @@ use crate::effects;
 use crate::friction::law::STEEP;
 use crate::scene::Scene;
 use crate::solver::{ActiveSet, Options, Report};
+use crate::threads::made_once;
 
 /// `warnings`: contact reaches the border of the grid, in a direction without a period: the potential contact area may be too small.
 pub const CONTACT_NORMAL_WARNING_BORDER: i32 = 1;
@@ -53,7 +54,7 @@ pub(super) fn text(warnings: i32) -> &'static CStr {
             TEXTS.iter().filter(|(bit, _)| warnings as i32 & bit != 0).map(|(_, text)| *text).collect();
         CString::new(said.join("; ")).unwrap_or_default()
     };
-    &ALL.get_or_init(|| std::array::from_fn(said))[warnings as usize % (1 << TEXTS.len())]
+    &made_once(&ALL, || std::array::from_fn(said))[warnings as usize % (1 << TEXTS.len())]
 }
 
 /// The warnings of a result.

@@ -10,6 +10,7 @@ use crate::memory::{blank, collected, keep};
 pub struct Last {
     solution: Solution,
     offset: Vector,
+    is_last: bool,
 }
 
 impl Drop for Last {
@@ -23,7 +24,10 @@ impl Drop for Last {
 impl Solver {
     /// A copy of the last result, if there is one.
     pub fn last(&self) -> Result<Option<Last>> {
-        let Some(Solution { traction, slip, stick_slip, particles }) = self.solution() else { return Ok(None) };
+        if !self.has_solution {
+            return Ok(None);
+        }
+        let Solution { traction, slip, stick_slip, particles } = &self.solution;
         let copy = |field: &[Vector]| -> Result<Vec<Vector>> {
             let mut copy = blank(field.len(), [f64::NAN; 2], "the tractions before")?;
             copy.copy_from_slice(field);
@@ -33,14 +37,14 @@ impl Solver {
         sides.copy_from_slice(stick_slip);
         let particles = collected(particles.iter().copied(), "the tractions before")?;
         let solution = Solution { traction: copy(traction)?, slip: copy(slip)?, stick_slip: sides, particles };
-        Ok(Some(Last { solution, offset: self.offset }))
+        Ok(Some(Last { solution, offset: self.offset, is_last: self.is_last }))
     }
 
     /// Takes the last result of another solver on the same grid.
     pub fn take_last_of(&mut self, other: &mut Solver) {
         std::mem::swap(&mut self.solution, &mut other.solution);
         std::mem::swap(&mut self.sums, &mut other.sums);
-        (self.offset, self.has_solution) = (other.offset, other.has_solution);
+        (self.offset, self.has_solution, self.is_last) = (other.offset, other.has_solution, other.is_last);
     }
 
     /// Restores the copy.
@@ -48,7 +52,7 @@ impl Solver {
         self.has_solution = last.is_some();
         if let Some(mut last) = last {
             std::mem::swap(&mut self.solution, &mut last.solution);
-            self.offset = last.offset;
+            (self.offset, self.is_last) = (last.offset, last.is_last);
         }
     }
 }

@@ -46,6 +46,8 @@ pub struct Solver {
     /// The creepages found, times the length rolled.
     pub(super) offset: Vector,
     pub(super) has_solution: bool,
+    /// Whether the last solve had friction.
+    pub(super) is_last: bool,
     /// The box of the last solve.
     pub(super) window: Option<Rectangle>,
     /// Scratch: the sums of each row of a result.
@@ -86,6 +88,7 @@ impl Solver {
             particles_before: Vec::new(),
             offset: [0.0; 2],
             has_solution: false,
+            is_last: true,
             window: None,
             sums: Vec::new(),
         }
@@ -96,9 +99,14 @@ impl Solver {
         &self.tangential
     }
 
-    /// The last result.
+    /// The last result; none if the last solve had no friction.
     pub fn solution(&self) -> Option<&Solution> {
-        self.has_solution.then_some(&self.solution)
+        (self.has_solution && self.is_last).then_some(&self.solution)
+    }
+
+    /// Whether there is a step from which another one may continue.
+    pub fn has_step(&self) -> bool {
+        self.has_solution
     }
 
     /// The last result, or an empty one.
@@ -115,9 +123,9 @@ impl Solver {
         self.offset
     }
 
-    /// Forgets the last result.
-    pub fn forget(&mut self) {
-        self.has_solution = false;
+    /// Notes a solve without friction: its result has no tractions. Those of the last step stay, for one that continues.
+    pub fn pass_over(&mut self) {
+        self.is_last = false;
     }
 
     /// Bytes held.
@@ -186,7 +194,7 @@ impl Solver {
         self.write(request, &mut report);
         self.write_particles(march);
         report.missing = self.missing(friction, &report);
-        self.has_solution = true;
+        (self.has_solution, self.is_last) = (true, true);
         report.seconds = began.elapsed().as_secs_f64();
         Ok((end, report))
     }

@@ -49,7 +49,12 @@ impl Had<'_> {
     }
 
     fn before(&self, i: usize) -> Particle {
-        let kept = self.kept.get(i).copied().unwrap_or(self.fresh(i));
+        let fresh = self.fresh(i);
+        let mut kept = self.kept.get(i).copied().unwrap_or(fresh);
+        // A step without a layer leaves no limits.
+        if kept.yield_limit == 0.0 {
+            kept.yield_limit = fresh.yield_limit;
+        }
         Particle {
             coefficient: self.friction.coefficients_read().map_or(kept.coefficient, |of| of[i]),
             yield_limit: self.friction.yield_limits_read().map_or(kept.yield_limit, |of| of[i]),

@@ -25,6 +25,7 @@ use super::kernel::Kernel;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::powers::{apart, times_power};
+use crate::threads::made_once;
 
 /// Most terms of the multipole series (degree `2 * 8 = 16`).
 const MOST_TERMS: usize = 8;
@@ -112,7 +113,7 @@ impl Shape {
             // A large quadrant costs more than it saves if only a part of it is needed: on a long grid, or for one coefficient.
             let worthwhile = |size: usize| size <= SMALL_QUADRANT || end.min(ky + 1) >= size / 4;
             let (size, quadrant) = large_enough().next().filter(|(size, _)| worthwhile(**size))?;
-            Some((size, quadrant.get_or_init(|| self.quadrant(*size))))
+            Some((size, made_once(quadrant, || self.quadrant(*size))))
         })?;
         quadrant.get(ky * size..)?.get(..end)
     }

@@ -15,16 +15,25 @@ use faer::prelude::ReborrowMut;
 use faer::{MatMut, Par};
 
 use crate::contact::{AdmissibleSet, Freshness, State};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::memory::blank;
+use crate::memory::{blank, reserve};
 use crate::methods::{Change, Policy, Step, Task};
 use crate::scene::Load;
 
 /// The most elements in contact, and in the grid, for which this is faster. Measured: `cargo bench -- dense`.
 const MOST_IN_CONTACT: usize = 64;
 const LARGEST_GRID: usize = 32 * 32;
+
+/// In messages.
+const METHOD: &str = "the matrix of a direct solution";
+
+fn room<A: Copy + Send + 'static>(n: usize) -> Result<Vec<A>> {
+    let mut values = Vec::new();
+    reserve(&mut values, n, METHOD)?;
+    Ok(values)
+}
 
 /// Coefficients, and memory for the most elements in contact.
 pub struct Direct {
@@ -55,11 +64,11 @@ impl Direct {
             influence: influence.clone(),
             table: blank(grid.my * (2 * grid.mx - 1), f64::NAN, "influence coefficients")?,
             is_filled: false,
-            elements: Vec::with_capacity(MOST_IN_CONTACT + 1),
-            runs: Vec::with_capacity(MOST_IN_CONTACT + 1),
-            matrix: Vec::with_capacity(MOST_IN_CONTACT * MOST_IN_CONTACT),
-            right: Vec::with_capacity(2 * MOST_IN_CONTACT),
-            scratch: MemBuffer::new(scratch),
+            elements: room(MOST_IN_CONTACT + 1)?,
+            runs: room(MOST_IN_CONTACT + 1)?,
+            matrix: room(MOST_IN_CONTACT * MOST_IN_CONTACT)?,
+            right: room(2 * MOST_IN_CONTACT)?,
+            scratch: MemBuffer::try_new(scratch).map_err(|_| Error::OutOfMemory(format!("no memory for {METHOD}")))?,
         }))
     }
 

@@ -76,8 +76,7 @@ impl Solver {
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, Option<Report>)> {
         let Some(friction) = &scene.friction else {
-            // There is no previous step any more.
-            self.friction.iter_mut().for_each(|before| before.forget());
+            self.friction.iter_mut().for_each(|before| before.pass_over());
             return Ok((stop, None));
         };
         let of_element = |i: usize| split.at(&self.state, i).0;

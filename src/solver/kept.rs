@@ -1,5 +1,5 @@
-//! A copy of the last complete result, to restore it: a further problem may be refused
-//! after the normal problem is solved.
+//! A copy of the last complete result, to restore it: a further problem may be refused after the normal problem is solved, and a pulling force may have no
+//! equilibrium. Coefficients that turn out to be those of no elastic body leave no result: a copy for each solve would allocate.
 
 use super::Solver;
 use crate::contact::State;
@@ -18,9 +18,10 @@ pub struct Kept {
 }
 
 impl Solver {
-    /// A copy of the last result, for scenes with a further problem.
+    /// A copy of the last result, for scenes that may be refused when they are being solved.
     pub(super) fn kept(&self, scene: &Scene<'_>) -> Result<Option<Kept>> {
-        if effects::beside(scene).next().is_none() || !self.has_result {
+        let may_be_refused = effects::beside(scene).next().is_some() || scene.attraction().is_some();
+        if !may_be_refused || !self.has_result {
             return Ok(None);
         }
         let state = self.state.copy(&self.problem.threads)?;

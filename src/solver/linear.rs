@@ -49,7 +49,7 @@ impl Solver {
     /// why a value could not be computed. The last result stays valid. The first call sets up another solver of one thread and keeps it.
     pub fn stiffness(&mut self) -> Result<(Outcome, Stiffness)> {
         if !self.has_result {
-            return invalid("solver has no result: no solve with it had a status >= 0".into());
+            return invalid("solver has no result: there was no solve, or the last one found none".into());
         }
         self.set_up.check_table()?;
         if self.split.is_some() {

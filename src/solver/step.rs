@@ -17,7 +17,7 @@ impl Solver {
         for (k, name, Continues { from, .. }) in effects::continuing(scene) {
             let has_step = match name {
                 // Tractions of `solve_tangential` have no normal problem.
-                Friction::NAME => self.friction.as_ref().is_some_and(|tangent| tangent.solution().is_some()),
+                Friction::NAME => self.friction.as_ref().is_some_and(|tangent| tangent.has_step()),
                 _ => {
                     let history = &self.beside.histories[k];
                     (self.has_result || history.is_given) && history.has_step()
@@ -53,7 +53,7 @@ impl Solver {
         self.beside = beside;
         match (tangent, &outcome) {
             (Some(tangent), _) => self.friction = Some(tangent),
-            (None, Ok(_)) => self.friction.iter_mut().for_each(|before| before.forget()),
+            (None, Ok(_)) => self.friction.iter_mut().for_each(|before| before.pass_over()),
             (None, Err(_)) => {}
         }
         outcome

@@ -106,9 +106,14 @@ impl Tangent {
         self.solver.tangential().is_coated()
     }
 
-    /// Forgets the last result.
-    pub fn forget(&mut self) {
-        self.solver.forget();
+    /// Notes a solve without friction.
+    pub fn pass_over(&mut self) {
+        self.solver.pass_over();
+    }
+
+    /// Whether there is a step from which another one may continue.
+    pub fn has_step(&self) -> bool {
+        self.solver.has_step()
     }
 
     /// Bytes held.

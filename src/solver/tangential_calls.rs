@@ -88,7 +88,7 @@ fn alone(
 ) -> Result<(Outcome, Report)> {
     let mut monitor = Monitor::new(progress, Vec::new(), false);
     let start = match turn.options.initial_guess {
-        InitialGuess::Previous if tangent.solution().is_some() => Start::Last,
+        InitialGuess::Previous if tangent.has_step() => Start::Last,
         _ => turn.start(),
     };
     let (stop, found) = bounded(turn.scene, turn.friction, pressure, |friction, pressing| {

@@ -27,6 +27,17 @@ impl Body {
         require(nu > -1.0 && nu <= 0.5, "poisson_ratio", nu, "it must lie in (-1, 0.5]")
     }
 
+    /// A periodic line with square elements: its loads are uniform along them, however long they are (plane strain).
+    pub(super) fn of_square_elements(mut self) -> Body {
+        let Grid { mx, my, dx, dy } = &mut self.grid;
+        match (self.periodic, *mx, *my) {
+            (true, _, 1) => *dy = *dx,
+            (true, 1, _) => *dx = *dy,
+            _ => {}
+        }
+        self
+    }
+
     /// The unit of lengths inside: the longer side of an element. Kernels depend on ratios of lengths only.
     pub(super) fn unit(&self) -> f64 {
         self.grid.dx.max(self.grid.dy)

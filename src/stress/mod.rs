@@ -67,6 +67,7 @@ pub fn subsurface_stress(
     let began = Instant::now();
     body.check()?;
     loads.check(&body.grid)?;
+    let body = &body.of_square_elements();
     if body.periodic && loads.patches.is_some() {
         return Err(Error::Unsupported(
             "patches and a period are both given; stresses are not computed for both".into(),

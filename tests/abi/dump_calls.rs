@@ -64,7 +64,7 @@ fn set_ups_and_tangential_problems_are_made_again() {
             let force = report.tangential.force;
             assert_eq!(contact_normal_solver_free(handle), CONTACT_NORMAL_OK);
             let replayed = Dump::read(&std::fs::read(&path).unwrap()).unwrap().replay().unwrap();
-            assert_eq!((replayed.status, replayed.report.tangential.force), (again, force));
+            assert_eq!((replayed.status, replayed.report.expect("a report").tangential.force), (again, force));
         }
     }
 }

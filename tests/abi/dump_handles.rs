@@ -86,10 +86,12 @@ fn a_step_in_time_goes_on_from_the_history_in_the_file() {
         let again = dump.replay().expect("a call");
         assert_eq!(again.status, status, "{}", last_error());
         // The step from rest to 0.4, of 0.3, and of 0.2.
-        assert!((report.visco.time - 0.9).abs() <= 1e-15 && again.report.visco.time == report.visco.time);
-        assert_eq!(again.report.visco.compliance, report.visco.compliance);
+        assert!(
+            (report.visco.time - 0.9).abs() <= 1e-15 && again.report.expect("a report").visco.time == report.visco.time
+        );
+        assert_eq!(again.report.expect("a report").visco.compliance, report.visco.compliance);
         // One iteration of each.
-        let (force, other) = (report.normal.force, again.report.normal.force);
+        let (force, other) = (report.normal.force, again.report.expect("a report").normal.force);
         assert!((other / force - 1.0).abs() <= 1e-12, "{force} {other}");
         // One branch less than its history has.
         let mut changed = std::fs::read(&path).expect("a dump");

@@ -14,7 +14,7 @@ fn falling(friction: &mut contact_normal_friction) {
 #[test]
 fn what_is_no_law_or_not_solved_is_refused_by_name() {
     type Spoil = fn(&mut contact_normal_friction);
-    let cases: [(Spoil, i32, &str); 14] = [
+    let cases: [(Spoil, i32, &str); 17] = [
         (|f| f.law = 4, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->law is 4"),
         (|f| f.reserved_for_law = 1, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->reserved_for_law"),
         (|f| f.kinetic = -1.0, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->kinetic is -1"),
@@ -32,6 +32,14 @@ fn what_is_no_law_or_not_solved_is_refused_by_name() {
             "friction->law is given: with a branch creepages",
         ),
         (|f| f.branch = 3, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->branch is 3"),
+        // Their products with others were infinite, or 0.
+        (|f| f.half_speed[0] = 1e-158, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->half_speed[0] is 1e-158"),
+        (|f| f.yield_limit = 1e-160, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->yield_limit is 1e-160"),
+        (
+            |f| (f.yield_limit, f.hardening) = (1.0, 1e303),
+            CONTACT_NORMAL_INVALID_ARGUMENT,
+            "friction->hardening is 1e303",
+        ),
         (|f| f.reserved_for_branch = 1, CONTACT_NORMAL_INVALID_ARGUMENT, "friction->reserved_for_branch is 1"),
         (|f| f.sensitivities = 1, CONTACT_NORMAL_UNSUPPORTED, "friction->law is given: friction->sensitivities"),
         (

@@ -37,6 +37,25 @@ fn codes_of_a_fixed_area_stay() {
     unsafe { contact_normal_solver_free(handle) };
 }
 
+/// Arrays in packed structs may begin anywhere.
+#[test]
+fn an_array_between_two_doubles_is_refused_by_name() {
+    let mut call = Call::new();
+    let n = call.pressure.len();
+    let mut bytes = vec![0u8; 8 * n + 16];
+    let (start, pressure) = (bytes.as_mut_ptr(), call.fields.known.pressure);
+    let shift = start.align_offset(8) + 4;
+    call.fields.known.pressure = start.wrapping_add(shift).cast();
+    let (status, message) = call.run(Through::Solve, null_mut());
+    assert_eq!(status, CONTACT_NORMAL_INVALID_ARGUMENT);
+    assert!(message.starts_with("pressure begins at 0x") && message.ends_with("multiple of 8 bytes"), "{message}");
+    call.fields.known.pressure = pressure;
+    call.scene.known.undeformed_distance = start.wrapping_add(shift).cast();
+    let (status, message) = call.run(Through::Solve, null_mut());
+    assert_eq!(status, CONTACT_NORMAL_INVALID_ARGUMENT);
+    assert!(message.starts_with("undeformed_distance begins at 0x"), "{message}");
+}
+
 /// Which tractions a worker of a batch has is not known, so nothing goes on from them; on the handle itself it does.
 #[test]
 fn a_batch_refuses_friction_that_continues() {

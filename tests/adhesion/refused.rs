@@ -3,7 +3,7 @@
 use contact_normal::error::Error;
 use contact_normal::influence::Table;
 use contact_normal::scene::{Adhesion, Bodies, Coating, Friction, Load, Period, Prescribed, Scene, Work};
-use contact_normal::solver::{Options, Outcome, Solver};
+use contact_normal::solver::{InitialGuess, Options, Outcome, Solver};
 
 use super::support::Sphere;
 
@@ -102,4 +102,31 @@ fn the_stiffness_of_a_result_of_adhesion_comes_with_it() {
     solver.solve(&scene, &Options::default(), None, None).expect("a solve");
     let Err(Error::Unsupported(message)) = solver.stiffness().map(|_| ()) else { panic!("not refused") };
     assert!(message.contains("adhesion->stiffness"), "{message}");
+}
+
+/// A way back with hysteresis, step by step: a pull that nothing holds is refused, and the next step is on the same branch.
+#[test]
+fn a_pull_that_is_refused_leaves_the_state_from_which_steps_go_on() {
+    let sphere = Sphere::by_tabor(1.0, 24, 3.0);
+    let ways = [false, true].map(|is_refused| {
+        let mut solver = Solver::new(&sphere.scene(Load::Approach(0.2)), &Options::default()).expect("a solver");
+        let mut way = Vec::new();
+        for (k, approach) in [0.2, 0.1, 0.0, -0.1, -0.2, -0.3].into_iter().enumerate() {
+            if is_refused && k > 0 {
+                let before = (split(&solver), solver.state().p.clone(), solver.state().approach);
+                refused(&mut solver, &sphere.scene(Load::Force(-1e6)));
+                assert!(
+                    solver.has_solved()
+                        && (split(&solver), solver.state().p.clone(), solver.state().approach) == before
+                );
+            }
+            let initial_guess = if k == 0 { InitialGuess::None } else { InitialGuess::Previous };
+            let options = Options { initial_guess, ..Options::default() };
+            let scene = sphere.scene(Load::Approach(approach));
+            assert_eq!(solver.solve(&scene, &options, None, None).expect("a step").0, Outcome::Converged);
+            way.push((solver.state().p.clone(), solver.state().contact.clone()));
+        }
+        way
+    });
+    assert!(ways[0] == ways[1]);
 }

@@ -69,7 +69,7 @@ fn fortran_inits(described: &Description) -> String {
         write!(
             text,
             "\n  ! Fills a {name} with its defaults. Since {since}.\n  \
-             subroutine {name}_init({short})\n    \
+             recursive subroutine {name}_init({short})\n    \
              type({name}), intent(out), target :: {short}\n    \
              call c_init(CONTACT_NORMAL_{}, c_loc({short}), int(c_sizeof({short}), c_int64_t))\n  \
              end subroutine\n",

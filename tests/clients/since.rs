@@ -51,6 +51,7 @@ fn of_fortran() -> BTreeMap<String, String> {
                 comment += line;
                 continue;
             }
+            let line = line.strip_prefix("recursive ").unwrap_or(line);
             let code = line.strip_prefix("subroutine ").or_else(|| line.strip_prefix("function "));
             if let Some((name, _)) = code.and_then(|code| code.split_once('(')) {
                 let is_public = name.starts_with("contact_normal_") || ["norm_solve", "tang_solve"].contains(&name);

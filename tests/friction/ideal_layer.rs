@@ -2,9 +2,9 @@
 
 use contact_normal::friction::{Request, Solution};
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Friction, Motion, PlasticLayer, Prescribed, Previous};
+use contact_normal::scene::{Friction, FrictionLaw, Motion, PlasticLayer, Prescribed, Previous};
 
-use super::laws::{pressures, solver};
+use super::laws::{pressures, solver, RUNNING};
 use super::support::run;
 
 const TOLERANCE: f64 = 1e-9;
@@ -80,4 +80,37 @@ fn a_force_beyond_the_limits_of_the_particles_is_refused() {
     // Particles that have hardened carry it.
     let limits = vec![80.0; grid.len()];
     run(&mut solver(&grid), &pressure, &Friction { yield_limits: Some(&limits), ..friction }, TOLERANCE);
+}
+
+/// A step with a law and no layer leaves no limits: the layer of the next one is fresh, as beside the same tractions that the caller gives.
+#[test]
+fn a_layer_that_begins_after_a_law_is_fresh() {
+    let (grid, pressure) = ball();
+    let prescribed = [Prescribed::Creepage(-0.02), Prescribed::Creepage(0.004)];
+    let law = Some(FrictionLaw { memory_distance: 0.0, time_step: 1e-4, ..RUNNING });
+    let coulomb = Friction { prescribed, ..Friction::new(0.33) };
+    for (hardening, with_law) in [(0.0, None), (0.0, law), (1e4, law)] {
+        let layer = Some(PlasticLayer { yield_limit: 40.0, hardening });
+        let [kept, given] = [true, false].map(|is_kept| {
+            let mut of = solver(&grid);
+            let (_, first) = run(&mut of, &pressure, &Friction { law, ..coulomb }, TOLERANCE);
+            let second = |previous| Friction { layer, law: with_law, previous, ..coulomb };
+            if is_kept {
+                run(&mut of, &pressure, &second(Previous::Kept), TOLERANCE).1
+            } else {
+                let [x, y] = [0, 1].map(|k| first.traction.iter().map(|q| q[k]).collect::<Vec<f64>>());
+                run(&mut solver(&grid), &pressure, &second(Previous::Given([&x, &y])), TOLERANCE).1
+            }
+        });
+        let most = |of: &Solution| of.traction.iter().fold(0.0f64, |most, q| most.max(q[0].hypot(q[1])));
+        assert!(
+            most(&given) > 39.0 && (most(&kept) - most(&given)).abs() < 1e-6 * most(&given),
+            "{hardening}: {} {}",
+            most(&kept),
+            most(&given)
+        );
+        for (a, b) in kept.particles.iter().zip(&given.particles) {
+            assert!((a.yield_limit - b.yield_limit).abs() < 1e-6 * b.yield_limit, "{hardening}: {a:?} {b:?}");
+        }
+    }
 }

@@ -24,6 +24,7 @@ mod layer;
 mod linear_theory;
 mod long_elements;
 mod near_full_slip;
+mod norm_and_tang;
 mod onset_of_rolling;
 mod own_law;
 mod plastic;

@@ -70,7 +70,7 @@ fn refused(first_has_tractions: bool) -> Vec<(&'static str, Friction<'static>)> 
 
 #[test]
 fn a_handle_keeps_its_result_and_its_way_on() {
-    let (grid, h) = ball(80, 0.03);
+    let (grid, h) = ball(40, 0.06);
     let higher: Vec<f64> = h.iter().map(|h| 1.3 * h).collect();
     for bodies in [LIKE, UNLIKE] {
         for load in [Load::Force(0.03), Load::Approach(0.01)] {
@@ -140,7 +140,10 @@ fn without_a_result_there_is_none_after_a_refusal() {
             assert!(!solver.has_solved() && solver.friction().is_none(), "{what}");
             let (stop, _) = solver.solve(&good, &Options::default(), None, None).unwrap();
             assert_eq!(stop, Outcome::Converged, "{what}");
-            // A scene without friction leaves no tractions.
+            // The result of a scene without friction has no tractions, though a step may continue from those before.
+            if friction.previous == Previous::Kept {
+                continue;
+            }
             solver.solve(&Scene { friction: None, ..good.clone() }, &Options::default(), None, None).unwrap();
             let before = shown(&solver);
             assert!(solver.solve(&scene, &Options::default(), None, None).is_err(), "{what}");

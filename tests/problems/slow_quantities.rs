@@ -140,3 +140,41 @@ fn a_stick_area_of_zero_is_not_known_to_be_exact() {
     let found = solve_to_accuracy(&scene, &Options::default(), &accuracy, None, None).expect("a solvable scene");
     assert_ne!(found.stop, Outcome::Converged, "{}", found.reason);
 }
+
+/// A roller that ends at |y| = 0.38, anywhere between the elements, with its pressures at their limit beside the ends.
+fn ends_at_38(x: f64, y: f64) -> f64 {
+    if y.abs() < 0.38 {
+        0.5 * x * x
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// Grids may agree by chance on where the roller ends. On 100 x 100 elements it ends on edges of elements.
+#[test]
+fn a_limit_beside_ends_between_elements() {
+    let scene = scene(Bodies::same(1.0, 0.3), Load::Approach(0.04));
+    let scene = Scene { pressure_limit: Some(PressureLimit::Uniform(0.06)), ..scene };
+    let truth = last(&scene, 200, ends_at_38, (Quantity::Force, 0)).value.expect("a force");
+    let mut met = 0;
+    for start in [8, 12, 16, 20, 28] {
+        for target in [0.02, 0.01] {
+            let (grid, h) = on(start, ends_at_38);
+            let scene = Scene { grid, undeformed_distance: &h, ..scene.clone() };
+            let mut surface = |grid: &Grid, h: &mut [f64]| {
+                h.copy_from_slice(&on(grid.mx, ends_at_38).1);
+                false
+            };
+            let accuracy = Accuracy { max_elements: 40_000, ..Accuracy::new(target) };
+            let outcome = solve_to_accuracy(&scene, &Options::default(), &accuracy, Some(&mut surface), None)
+                .expect("a solvable scene");
+            let off = (outcome.report.measures.force / truth - 1.0).abs();
+            println!("{start} {target}: {:?} {off:.4} {:?} {}", outcome.stop, outcome.reached, outcome.reason);
+            if outcome.stop == Outcome::Converged {
+                met += 1;
+                assert!(off <= target, "{start}: {off} for {target}");
+            }
+        }
+    }
+    assert!(met >= 5, "{met}");
+}

@@ -481,3 +481,36 @@ fn periodic_stresses_are_those_of_finer_elements() {
         }
     }
 }
+
+/// Loads on a line with two periods are uniform along its elements, however long these are: plane strain.
+#[test]
+fn a_periodic_line_has_the_stresses_of_plane_strain() {
+    let (m, d, load) = (24, 0.3, noise(7, 24));
+    let stresses = |body: &Body| {
+        let loads = Loads { pressure: Some(&load), traction_x: None, traction_y: None, patches: None };
+        let depths = all_depths(body, &loads, &[0.0, 0.1, 2.0], &Wanted { von_mises: true, ..Wanted::default() }, 1);
+        depths.into_iter().flat_map(|depth| depth.von_mises).collect::<Vec<f64>>()
+    };
+    for (mx, my) in [(m, 1), (1, m)] {
+        let on = |long: f64| {
+            let (dx, dy) = if my == 1 { (d, long) } else { (long, d) };
+            stresses(&Body { periodic: true, ..body(mx, my, dx, dy, 0.3) })
+        };
+        let square = on(d);
+        // Three rows are one.
+        let rows: Vec<f64> = (0..3 * m).map(|i| load[if my == 1 { i % m } else { i / 3 }]).collect();
+        let (wide, high) = if my == 1 { (m, 3) } else { (3, m) };
+        let three = Body { periodic: true, ..body(wide, high, d, d, 0.3) };
+        let loads = Loads { pressure: Some(&rows), traction_x: None, traction_y: None, patches: None };
+        let wanted = Wanted { von_mises: true, ..Wanted::default() };
+        let expected: Vec<f64> = all_depths(&three, &loads, &[0.0, 0.1, 2.0], &wanted, 1)
+            .into_iter()
+            .flat_map(|depth| (0..m).map(|i| depth.von_mises[if my == 1 { i } else { 3 * i }]).collect::<Vec<f64>>())
+            .collect();
+        // Kernels have 1e-12 (tests above); so do sums of 24 of them.
+        assert!(square.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-10 * largest(&expected)), "{mx} x {my}");
+        for long in [1e-4, 1e4] {
+            assert!(on(long) == square, "{mx} x {my}, elements {long} long");
+        }
+    }
+}

@@ -18,7 +18,7 @@ fn course(quantity: Quantity, peaks: &[(f64, f64, f64)]) -> Course {
         let elements = if depth == 0.0 { 0.0 } else { 10.0 };
         let peak = Peak { value, depth, elements, close };
         let value = if quantity == Quantity::VonMisesDepth { depth } else { value };
-        course.add(k as i32, Value { value, peak: Some(peak), counted: 0.0 }, 0.0);
+        course.add(k as i32, Value { value, peak: Some(peak), least: 0.0 }, 0.0);
     }
     course
 }
@@ -65,7 +65,7 @@ fn a_stress_some_elements_below_the_surface_is_followed_too() {
             // Of limit 1.2.
             close[5] = 1.2 - grows * 0.5f64.powi(k).sqrt();
             let peak = Peak { value: 1.0, depth: 1.0, elements: elements * 2f64.powi(k), close };
-            course.add(k, Value { value: 1.0, peak: Some(peak), counted: 0.0 }, 0.0);
+            course.add(k, Value { value: 1.0, peak: Some(peak), least: 0.0 }, 0.0);
         }
         course.falling(false).expect("an error").now()
     };
@@ -114,7 +114,7 @@ fn a_stress_below_a_pressure_that_is_not_resolved_is_not_believed() {
     let is_believed = |elements: f64, is_known: bool| {
         let mut course = Course::of(Quantity::MaxVonMises, &scene);
         let peak = Peak { value: 1.0, depth: 1.0, elements, close: [0.0; CLOSE.len()] };
-        course.add(0, Value { value: 1.0, peak: Some(peak), counted: 0.0 }, 0.0);
+        course.add(0, Value { value: 1.0, peak: Some(peak), least: 0.0 }, 0.0);
         course.below_known_pressure(is_known);
         course.is_believed()
     };
@@ -148,7 +148,8 @@ fn an_area_is_no_better_than_its_outline() {
     let scene = Scene::new(grid, &[], Bodies::same(1.0, 0.3), Load::Approach(1.0));
     let mut course = Course::of(Quantity::StickArea, &scene);
     for (k, counted) in [114.0, 457.0, 1828.0].into_iter().enumerate() {
-        course.add(k as i32, Value { value: 1.828, peak: None, counted }, 0.0);
+        let least = 0.3 / f64::sqrt(counted);
+        course.add(k as i32, Value { value: 1.828, peak: None, least }, 0.0);
     }
     let falling = course.falling(false).expect("an error");
     assert!((falling.now() - 0.3 * 1.828 / 1828f64.sqrt()).abs() < 1e-12, "{falling:?}");

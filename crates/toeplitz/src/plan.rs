@@ -5,9 +5,10 @@
 
 use std::any::{Any, TypeId};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
-use par::{threads, Result};
+use par::threads::Shared;
+use par::Result;
 
 /// The name of this memory in messages.
 pub(crate) const PLAN: &str = "the plans of transforms";
@@ -32,7 +33,7 @@ struct Known {
 }
 
 /// The kept plans, least recently used first.
-static KNOWN: Mutex<Vec<Known>> = Mutex::new(Vec::new());
+static KNOWN: Shared<Vec<Known>> = Shared::new(Vec::new());
 
 /// The plan of a length, made at the first call.
 pub(crate) fn shared<P: Plan>(length: usize, make: impl FnOnce() -> Result<P>) -> Result<Arc<P>> {
@@ -42,7 +43,7 @@ pub(crate) fn shared<P: Plan>(length: usize, make: impl FnOnce() -> Result<P>) -
     // Made without the lock, so that other threads do not wait. Two threads may make the same plan.
     let plan = Arc::new(make()?);
     let bytes = plan.bytes();
-    if let Some(mut known) = threads::lock(&KNOWN) {
+    if let Some(mut known) = KNOWN.lock() {
         known.push(Known { kind: TypeId::of::<P>(), length, bytes, plan: plan.clone() });
         shrink(&mut known);
     }
@@ -63,14 +64,14 @@ fn shrink(known: &mut Vec<Known>) {
 /// Sets the bound on the bytes of kept plans.
 pub fn keep_at_most(bytes: usize) {
     ALLOWED.store(bytes, Ordering::Relaxed);
-    if let Some(mut known) = threads::lock(&KNOWN) {
+    if let Some(mut known) = KNOWN.lock() {
         shrink(&mut known);
     }
 }
 
 /// The kept plan of a length, if any.
 pub(crate) fn find<P: Plan>(length: usize) -> Option<Arc<P>> {
-    let mut known = threads::lock(&KNOWN)?;
+    let mut known = KNOWN.lock()?;
     let i = known.iter().position(|known| known.length == length && known.kind == TypeId::of::<P>())?;
     known[i..].rotate_left(1);
     known.last()?.plan.clone().downcast().ok()
@@ -78,14 +79,14 @@ pub(crate) fn find<P: Plan>(length: usize) -> Option<Arc<P>> {
 
 /// Drops all plans. Plans in use live until their last user drops them.
 pub fn release() {
-    if let Some(mut known) = threads::lock(&KNOWN) {
+    if let Some(mut known) = KNOWN.lock() {
         *known = Vec::new();
     }
 }
 
 /// Bytes of the kept plans.
 pub fn kept() -> usize {
-    threads::lock(&KNOWN).map_or(0, |known| known.iter().map(|known| known.bytes).sum())
+    KNOWN.lock().map_or(0, |known| known.iter().map(|known| known.bytes).sum())
 }
 
 #[cfg(test)]

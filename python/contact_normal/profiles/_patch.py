@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._arguments import number
+from .._constants import INFEASIBLE
 from .._gap import Gap
+from .._library import ContactNormalError
 from .._time_limit import TimeLimit
 from . import _sampling
 from ._bodies import Position
@@ -29,6 +31,8 @@ _BLOCK = 1 << 16
 _LOOSE, _RESERVE = 1.5, 1.1
 # Of the rolling radius: nothing approaches by more, unless units are mixed.
 _DEEPEST = 0.05
+# A grid on which no force can be carried is made anew for an approach of so many times.
+_DEEPER = 4.0
 # The grid of a patch has at most this many elements on each side of the contact point; the first one that is tried.
 _FARTHEST = 1024
 _LEAST = 8
@@ -213,7 +217,18 @@ class ContactPoint:
         may_shrink, limit = True, TimeLimit(scene)
         gap = self.gap(dx, dy, depth)
         while True:
-            result = gap.solve(force=force, **{**scene, **limit.left})
+            try:
+                result = gap.solve(force=force, **{**scene, **limit.left})
+            except ContactNormalError as error:
+                # With a pressure_limit the elements of a grid that is too small cannot carry the force.
+                deeper = _DEEPER * depth
+                if error.status != INFEASIBLE or "pressure_limit" not in scene or deeper > _DEEPEST * self.rolling_radius:
+                    raise
+                try:
+                    gap, depth = self._gap(dx, dy, deeper, limit.is_over), deeper
+                except _Late:
+                    raise error from None
+                continue
             if limit.ended(result):
                 return gap, result
             approach = result.approach - float(gap.h.min())

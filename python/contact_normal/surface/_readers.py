@@ -25,8 +25,8 @@ def from_xarray(array: Any, **given: Any) -> Heights:
     """Heights of an `xarray.DataArray` with two dimensions that have coordinates, in any order.
 
     The dimension of x is the one whose name begins with "x", or else the second one, or with axes="xy" the first one. Units of lengths are those of the attribute "units", if x, y and
-    the heights have it; units that differ are refused. With dx, size, span, or x and y the coordinates are not read. The attributes "length_unit" and "periodic" of
-    coordinates are those of SurfaceTopography's files: the unit of all lengths, and a direction in which the surface repeats itself.
+    the heights have it; units that differ are refused. With dx, size, span, or x and y the coordinates are not read. The attributes "unit" and "periodic"
+    are those of SurfaceTopography's files: the unit, and a direction in which the surface repeats itself.
     """
     if len(array.dims) != 2:
         kept = [name for name in array.dims if array.sizes[name] > 1]
@@ -47,13 +47,11 @@ def from_xarray(array: Any, **given: Any) -> Heights:
     if period := "".join(axis for axis, one in zip("xy", of_axes) if one.get("periodic")):
         given = {"period": period, **given}
     if _SIZES & set(given):
-        return heights(ordered.values, **_with_unit(array.attrs.get("units"), given))
+        return heights(ordered.values, **_with_unit(_unit(array.attrs), given))
     for name in (x, y):
         if name not in array.coords:
             raise ValueError(f"the dimension {name} has no coordinates: give dx and dy")
-    said = [one.get("units") or one.get("length_unit") for one in (array.attrs, *of_axes)]
-    if not said[0] and all("length_unit" in one for one in of_axes):
-        said[0] = said[1]
+    said = [_unit(one) for one in (array.attrs, *of_axes)]
     for name, unit in ((x, said[1]), (y, said[2])):
         if said[0] and unit and not same_length(str(said[0]), str(unit)):
             raise ValueError(f"the heights are in {said[0]}, and {name} in {unit}: convert one of them")
@@ -64,6 +62,11 @@ def from_xarray(array: Any, **given: Any) -> Heights:
         warnings.warn(f"the file has {names}: all of them are taken to be in one unit", stacklevel=2)
     unit = said[0] if all(said) else None
     return heights(ordered.values, x=ordered[x].values, y=ordered[y].values, **_with_unit(unit, given))
+
+
+def _unit(attributes: Any) -> Any:
+    """What the attributes say is the unit, by the conventions of NetCDF or by SurfaceTopography."""
+    return attributes.get("units") or attributes.get("unit")
 
 
 def _with_unit(unit: Any, given: dict[str, Any]) -> dict[str, Any]:
@@ -134,6 +137,8 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         dataset = netcdf(path)
         # Others, as that of a map projection, are no heights.
         maps = [name for name, array in dataset.data_vars.items() if array.ndim == 2 or sum(size > 1 for size in array.shape) == 2]
+        if _MAP_AND_HOLES.issubset(maps) and variable in (None, "heights"):
+            return from_xarray(dataset["heights"].where(dataset["mask"] == 0), **given)
         names = maps if maps and variable is None else list(dataset.data_vars)
         return from_xarray(dataset[chosen(variable, names, path)], **given)
     if end == ".xyz" and not _SIZES & set(given):
@@ -149,6 +154,10 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         if reason := why_no_map(values.T) or why_no_map(values):
             raise ValueError(f"{path} {reason}")
     return from_topography(topography, **given)
+
+
+# The variables of a map with holes by SurfaceTopography.
+_MAP_AND_HOLES = {"heights", "mask"}
 
 
 def _with_header(told: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:

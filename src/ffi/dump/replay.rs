@@ -15,8 +15,8 @@ use crate::ffi::*;
 pub struct Replayed {
     /// Its status.
     pub status: i32,
-    /// Its report, where the file has one: all 0 where none was written.
-    pub report: contact_normal_report,
+    /// Its report, if the call was given one: all 0 where none was written.
+    pub report: Option<contact_normal_report>,
 }
 
 impl Dump {
@@ -38,7 +38,7 @@ impl Dump {
         unsafe { contact_normal_solver_free(handle) };
         let report = self.pointer::<contact_normal_report>("report")?;
         // SAFETY: NULL or a struct of ours.
-        Ok(Replayed { status: status?, report: unsafe { report.as_ref() }.copied().unwrap_or_default() })
+        Ok(Replayed { status: status?, report: unsafe { report.as_ref() }.copied() })
     }
 
     unsafe fn call_again(&self, handle: *mut *mut contact_normal_solver) -> Result<i32, String> {

@@ -1,6 +1,8 @@
 //! A cache of tables. Scenes with the same materials share them.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
+
+use crate::threads::Shared;
 
 /// A layer's materials: G1/G2 and both Poisson ratios.
 type Materials = [f64; 3];
@@ -9,26 +11,29 @@ type Materials = [f64; 3];
 const MOST: usize = 16;
 
 /// Tables with their materials, the latest last.
-pub struct Known<T>(Mutex<Vec<(Materials, Arc<T>)>>);
+pub struct Known<T>(Shared<Vec<(Materials, Arc<T>)>>);
 
 impl<T> Known<T> {
     /// An empty cache.
     pub const fn new() -> Known<T> {
-        Known(Mutex::new(Vec::new()))
+        Known(Shared::new(Vec::new()))
     }
 
     /// The table of some materials, computed if the cache does not have it.
     pub fn get(&self, materials: Materials, make: impl FnOnce() -> T) -> Arc<T> {
-        let known = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, table)) = known().iter().find(|(of, _)| *of == materials) {
-            return table.clone();
+        let find = |known: &Vec<(Materials, Arc<T>)>| {
+            known.iter().find(|(of, _)| *of == materials).map(|(_, table)| table.clone())
+        };
+        if let Some(table) = self.0.lock().and_then(|known| find(&known)) {
+            return table;
         }
         let table = Arc::new(make());
-        let mut known = known();
-        if known.len() == MOST {
-            known.remove(0);
+        if let Some(mut known) = self.0.lock() {
+            if known.len() == MOST {
+                known.remove(0);
+            }
+            known.push((materials, table.clone()));
         }
-        known.push((materials, table.clone()));
         table
     }
 }

@@ -3,6 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::OnceLock;
 
+use crate::threads::made_once;
+
 /// Nodes and weights of the n-point Gauss-Legendre rule on [0, 1], by Newton's method on the Legendre polynomial.
 pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
     let node = |k: usize| {
@@ -38,11 +40,12 @@ const RULES: usize = 8;
 pub fn hankel_rule(scale: f64) -> &'static [(f64, f64)] {
     static KNOWN: [OnceLock<Vec<(f64, f64)>>; RULES] = [const { OnceLock::new() }; RULES];
     let rule = (0.3 / scale).log2().ceil().clamp(0.0, RULES as f64 - 1.0) as usize;
-    KNOWN[rule].get_or_init(|| {
+    made_once(&KNOWN[rule], || {
         let mesh = MESH / (1u32 << rule) as f64;
         let zeros = (1..).map(zero_of_j0).take_while(|zero| zero * mesh / PI < LAST_ARGUMENT);
         zeros.map(|zero| rule_at(zero, mesh)).filter(|(_, w)| w.abs() > 1e-19).collect()
     })
+    .as_slice()
 }
 
 fn rule_at(zero: f64, mesh: f64) -> (f64, f64) {

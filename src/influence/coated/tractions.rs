@@ -31,6 +31,7 @@ use super::quadrature::gauss_legendre;
 use super::radial::{Base, Radial};
 use super::response::Response;
 use super::tensor::Tensor;
+use crate::threads::made_once;
 
 /// Shear modulus of the layer over that of the substrate from which the layer spreads loads as a membrane.
 const MEMBRANE: f64 = 30.0;
@@ -179,11 +180,11 @@ fn along_ray<R: Response>((radial, base): (&Radial<R>, Base), from: f64, to: f64
 
 fn line() -> &'static [(f64, f64)] {
     static KNOWN: OnceLock<Vec<(f64, f64)>> = OnceLock::new();
-    KNOWN.get_or_init(|| gauss_legendre(LINE_POINTS))
+    made_once(&KNOWN, || gauss_legendre(LINE_POINTS)).as_slice()
 }
 
 /// The rules of tensor Gauss.
 fn rule_of(k: usize) -> &'static [(f64, f64)] {
     static KNOWN: [OnceLock<Vec<(f64, f64)>>; POINTS.len()] = [const { OnceLock::new() }; POINTS.len()];
-    KNOWN[k].get_or_init(|| gauss_legendre(POINTS[k].1))
+    made_once(&KNOWN[k], || gauss_legendre(POINTS[k].1)).as_slice()
 }

@@ -53,7 +53,8 @@ impl<T: Real> Iteration<T> {
             return;
         }
         self.segments.find(&state.contact);
-        debug_assert!(sums.is_none_or(|sums| near(sums, self.work_and_energy(state, update))), "the sums after a step");
+        let mut found = || (self.work_and_energy(state, update), size_of_terms(state));
+        debug_assert!(sums.is_none_or(|sums| near(sums, found())), "the sums after a step");
         let (work, energy) = sums.unwrap_or_else(|| self.work_and_energy(state, update));
         let factor = work / energy;
         if factor.is_finite() && factor > 0.0 {
@@ -93,8 +94,13 @@ impl<T: Real> Iteration<T> {
     }
 }
 
-/// Whether predicted sums equal those of a pass to 1e-6 of the larger sum: some round-off of single precision. The first sum may nearly cancel.
-fn near((a, b): (f64, f64), (c, d): (f64, f64)) -> bool {
-    let size = c.abs().max(d.abs());
+/// The size of the terms of both sums.
+fn size_of_terms(state: &State) -> f64 {
+    let of_element = |i: usize| state.p[i].abs() * ((state.approach - state.h[i]).abs() + state.u[i].abs());
+    (0..state.p.len()).filter(|&i| state.contact[i]).map(of_element).sum()
+}
+
+/// Whether predicted sums equal those of a pass to 1e-6 of the size of their terms: some round-off of single precision. Both sums may nearly cancel.
+fn near((a, b): (f64, f64), ((c, d), size): ((f64, f64), f64)) -> bool {
     !((a - c).abs() > 1e-6 * size || (b - d).abs() > 1e-6 * size)
 }

@@ -23,24 +23,19 @@ const SURFACE_RATIO: f64 = 0.75;
 /// From this depth in elements on a stress is a mean of many pressures. Measured where a roller's rounded ends begin: stresses at 0.6 to 1.8 elements
 /// had errors of 2 to 10 % with changes of 1 % from grid to grid. From 2.8 elements on the errors were below 2 %.
 const DEEP: f64 = 4.0;
-/// The least error of an area in elements, over the root of their number. The outline of a circle of n elements has
-/// `3.5 sqrt(n)` elements. Two grids may agree on them by chance. Stiffnesses that agreed on two grids by chance had
-/// errors of up to 0.25 of their value over this root.
-const OUTLINE: f64 = 0.3;
-
 /// The value of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Value {
     pub value: f64,
     /// The peak, for a largest stress or its depth.
     pub peak: Option<Peak>,
-    /// The number of elements of an area, or of the contact for the stiffness.
-    pub counted: f64,
+    /// The least relative error of a sum: several grids may agree by chance on the elements of an area, or where the surface ends.
+    pub least: f64,
 }
 
 impl From<f64> for Value {
     fn from(value: f64) -> Value {
-        Value { value, peak: None, counted: 0.0 }
+        Value { value, peak: None, least: 0.0 }
     }
 }
 
@@ -61,7 +56,7 @@ pub struct Course {
     stress: Sequence,
     close: [Sequence; CLOSE.len()],
     last: Option<Peak>,
-    /// The uncertainty of an area or a stiffness from counting elements.
+    /// The least error of a sum.
     least: f64,
 }
 
@@ -99,7 +94,7 @@ impl Course {
     pub fn add(&mut self, doublings: i32, found: Value, residual: f64) {
         self.values.add(doublings, found.value, residual * found.value.abs());
         self.last = found.peak;
-        self.least = if found.counted > 0.0 { OUTLINE * found.value.abs() / found.counted.sqrt() } else { 0.0 };
+        self.least = found.least * found.value.abs();
         if let Some(peak) = found.peak {
             self.stress.add(doublings, peak.value, residual * peak.value);
             for (course, value) in self.close.iter_mut().zip(peak.close) {

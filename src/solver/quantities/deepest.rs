@@ -158,12 +158,18 @@ impl<'a> Surface<'a> {
             known.get(k).or(known.last()).map_or(0.0, |peak| peak.value)
         };
         let close = std::array::from_fn(at);
+        let mut is_close = false;
         for _ in 0..PARABOLAS {
             let best = (0..known.len()).max_by(|a, b| known[*a].value.total_cmp(&known[*b].value)).unwrap_or(0);
-            if best == 0 || best + 1 == known.len() {
+            if best + 1 == known.len() || best == 0 && is_close {
                 break;
             }
-            let z = vertex([known[best - 1], known[best], known[best + 1]]);
+            let z = match best {
+                // A peak may lie between the surface and the first depth.
+                0 => 0.5 * known[1].depth,
+                best => vertex([known[best - 1], known[best], known[best + 1]]),
+            };
+            is_close = best == 0;
             if (z - known[best].depth).abs() <= DEPTH_CHANGE * known[best].depth {
                 break;
             }

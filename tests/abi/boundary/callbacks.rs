@@ -159,11 +159,18 @@ fn so_do_the_surface_and_the_log() {
     }
     let mut call = Call::new();
     let after = downward(|| solved(&mut call));
-    // SAFETY: no callback.
-    unsafe { contact_normal_set_log(None, CONTACT_NORMAL_LOG_OFF, null_mut()) };
+    let (pressure, handle) = (call.pressure.clone(), call.new_handle());
+    let messages = watch.modes.len();
+    assert_eq!(call.run(Through::SolverSolveBatch, handle).0, CONTACT_NORMAL_OK);
+    assert_eq!(watch.modes.len(), messages, "a batch sends no messages");
+    // SAFETY: a handle, not used any more, and no callback.
+    unsafe {
+        contact_normal_solver_free(handle);
+        contact_normal_set_log(None, CONTACT_NORMAL_LOG_OFF, null_mut());
+    }
     WATCHED.set(false);
     assert_eq!((watch.modes.first(), after), (Some(&DOWNWARD), UPWARD));
-    assert_eq!(call.pressure, undisturbed.pressure);
+    assert_eq!(pressure, undisturbed.pressure);
 }
 
 /// Tries to use the handle that is solving.

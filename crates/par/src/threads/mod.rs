@@ -11,11 +11,13 @@ mod crew;
 mod pool;
 #[allow(unsafe_code)] // lifetimes of work that workers share
 mod region;
+mod shared;
 
-use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
+use std::sync::{Mutex, PoisonError};
 
 pub use crew::THREAD_NAME;
 use pool::Pool;
+pub use shared::{made_once, Shared};
 
 use crate::error::Result;
 
@@ -32,9 +34,6 @@ pub enum Threads {
 /// From this number of elements on a solve is faster if several threads share its products. A single product is faster from 64 x 64 on, but
 /// with that limit two threads took 1.11 times as long as one for a solve on 64 x 64 (docs/notes/2026-11-performance-targets.md).
 const WORTH_WAKING: usize = 110 * 110;
-
-/// Attempts to take a lock before it counts as held for long.
-const LOCK_ATTEMPTS: usize = 1000;
 
 /// Pieces of work per thread. If one thread is delayed, the others take over its pieces. With 6 to 16 pieces measured times differ by noise.
 const PIECES_PER_THREAD: usize = 8;
@@ -247,17 +246,4 @@ pub fn release() {
 /// The number of kept threads, without the callers' threads.
 pub fn kept() -> usize {
     Pool::kept()
-}
-
-/// Takes the lock of data that the process shares. None if another thread holds it for long: a process that was forked while another thread
-/// held the lock would wait for ever.
-pub fn lock<A>(shared: &Mutex<A>) -> Option<MutexGuard<'_, A>> {
-    for _ in 0..LOCK_ATTEMPTS {
-        match shared.try_lock() {
-            Ok(held) => return Some(held),
-            Err(TryLockError::Poisoned(held)) => return Some(held.into_inner()),
-            Err(TryLockError::WouldBlock) => std::thread::yield_now(),
-        }
-    }
-    None
 }

@@ -1,6 +1,6 @@
 //! Plans are shared, and the least recently used go. The tests share one list: each uses a type of its own, and one runs at a time.
 
-use std::sync::{MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::*;
 

@@ -1012,7 +1012,8 @@ typedef struct contact_normal_friction {
    */
   int32_t motion;
   /*
-   1: the tractions before are those that this handle found last (not in a batch); 0 (default): `previous_traction`.
+   1: the tractions before are those that this handle found last (not in a batch), also where solves without friction followed;
+   0 (default): `previous_traction`.
    */
   int32_t continues;
   /*
@@ -1207,7 +1208,7 @@ typedef struct contact_normal_adhesion {
    */
   double range;
   /*
-   DUGDALE: the part of the range over which its edge is smeared, in (0, 1]; default 0.3.
+   DUGDALE: the part of the range over which its edge is smeared, in [1e-6, 1]; default 0.3.
    */
   double smear;
   /*
@@ -1933,11 +1934,11 @@ typedef struct contact_normal_report_adhesion {
    */
   double border_share;
   /*
-   dF/dapproach if `adhesion->stiffness` is 1, else 0. Infinite where all elements of two periods are in contact.
+   dF/dapproach if `adhesion->stiffness` is 1 and the status is OK, else 0. Infinite where all elements of two periods are in contact.
    */
   double stiffness;
   /*
-   1 - lambda if `adhesion->stability` is 1, else 0; lambda is the largest eigenvalue of how a change of the attraction outside the
+   1 - lambda if `adhesion->stability` is 1 and the status is OK, else 0; lambda is the largest eigenvalue of how a change of the attraction outside the
    contact comes back to itself. Positive in a stable state (of a given approach), near 0 where a small step may snap.
    */
   double stability;

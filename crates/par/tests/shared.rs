@@ -1,0 +1,52 @@
+//! Data that a process shares: nobody waits for a thread that may not exist, as in a process forked meanwhile.
+
+use std::sync::mpsc::channel;
+use std::sync::OnceLock;
+use std::thread::{scope, yield_now};
+
+use par::threads::{made_once, Shared};
+
+/// Another thread makes the value, and does not come to its end before this one has it.
+#[test]
+fn a_value_that_another_thread_makes_is_not_waited_for() {
+    static PLACE: OnceLock<i32> = OnceLock::new();
+    let (begun, has_begun) = channel();
+    let (go_on, may_go_on) = channel::<()>();
+    scope(|scope| {
+        let other = scope.spawn(move || {
+            *made_once(&PLACE, || {
+                begun.send(()).expect("a receiver");
+                may_go_on.recv().expect("a sender");
+                2
+            })
+        });
+        has_begun.recv().expect("a sender");
+        assert_eq!(*made_once(&PLACE, || 1), 1);
+        go_on.send(()).expect("a receiver");
+        assert_eq!(other.join().expect("a value"), 1, "the first value stays");
+    });
+}
+
+#[test]
+fn a_lock_that_is_held_for_long_is_given_up_and_taken_later() {
+    let shared = Shared::new(5);
+    let held = shared.lock().expect("a free lock");
+    for _ in 0..2 {
+        assert!(shared.lock().is_none());
+    }
+    drop(held);
+    assert_eq!(shared.lock().map(|held| *held), Some(5));
+    // Held for a moment only, it is waited for again.
+    let (begun, has_begun) = channel();
+    scope(|scope| {
+        let shared = &shared;
+        scope.spawn(move || {
+            let held = shared.lock().expect("a free lock");
+            begun.send(()).expect("a receiver");
+            yield_now();
+            drop(held);
+        });
+        has_begun.recv().expect("a sender");
+        assert!((0..1000).any(|_| shared.lock().is_some()));
+    });
+}
