@@ -17,6 +17,8 @@ use crate::verdict::Verdict;
 struct Sequence<'a> {
     random: &'a mut Random,
     handle: Handle,
+    /// The last step with friction, from which one continues whatever solves without friction followed.
+    last: Option<Before>,
     is_measured: bool,
     case: Case,
     /// In words: for whoever reads a failure.
@@ -42,7 +44,7 @@ pub fn run(random: &mut Random, is_measured: bool) -> (Case, Vec<i32>, Verdict) 
         }
     };
     let (history, statuses, verdict) = (String::new(), Vec::new(), Verdict::default());
-    let mut sequence = Sequence { random, handle, is_measured, case, history, statuses, verdict };
+    let mut sequence = Sequence { random, handle, last: None, is_measured, case, history, statuses, verdict };
     for _ in 0..sequence.random.integer(3, 7) {
         sequence.step();
     }
@@ -84,6 +86,13 @@ impl Sequence<'_> {
         self.statuses.push(found.status);
     }
 
+    /// Remembers a step with friction that has a result.
+    fn remember(&mut self, found: &Found) {
+        if found.status >= 0 {
+            self.last = Some(Before { q: found.q.clone(), p: found.p.clone() });
+        }
+    }
+
     fn fail_unless(&mut self, kept: bool, promise: &'static str) {
         let details = format!("{}: {}", self.case.describe(), self.history);
         self.verdict.unless(kept, promise, || details);
@@ -105,28 +114,31 @@ impl Sequence<'_> {
         let found = self.handle.solve(place, Some((slide, From::Slide)), stop);
         let fresh = call(place, slide, stop);
         self.note("from rest", &found);
+        self.remember(&found);
         self.add(check(&self.case, &found, &self.case.before(&found.p)));
         self.fail_unless(found.bits() == fresh.bits(), "a start from nothing has the bits of a new handle");
     }
 
-    /// From what the handle holds, if that has tractions; otherwise a refusal.
+    /// From the last step with friction; without one a refusal.
     fn continued(&mut self) {
         let held = self.handle.fields(self.case.place.grid.len());
         let Case { place, slide, stop, .. } = &self.case;
         let found = self.handle.solve(place, Some((slide, From::Handle)), stop);
         self.note("continued", &found);
         if found.status == CONTACT_NORMAL_INVALID_ARGUMENT {
-            // Nothing to continue from: no call with friction was the last one. Or steady rolling by less than a tenth of an element.
-            let nothing = held.status < 0 || held.q.iter().all(|q| *q == [0.0; 2]);
+            // Nothing to continue from, or steady rolling by less than a tenth of an element.
             let is_short = self.case.step_is_too_short();
-            self.fail_unless(nothing || is_short, "a step continues from what the handle holds");
+            self.fail_unless(self.last.is_none() || is_short, "a step continues from the last one with friction");
             self.keeps(&held);
-        } else if held.status >= 0 {
-            let before = Before { q: held.q.clone(), p: held.p.clone() };
-            self.add(check(&self.case, &found, &before));
+        } else if let Some(before) = &self.last {
+            let verdict = check(&self.case, &found, before);
+            self.add(verdict);
             if found.status < 0 {
                 self.keeps(&held);
             }
+            self.remember(&found);
+        } else {
+            self.fail_unless(found.status < 0, "a step continues from nothing");
         }
     }
 
@@ -202,6 +214,7 @@ impl Sequence<'_> {
         let Case { place, slide, carried, .. } = self.case.clone();
         let found = self.handle.solve(&place, Some((&slide, From::Slide)), &stop);
         self.note("cancelled", &found);
+        self.remember(&found);
         let case = Case { place, slide, stop, carried };
         self.add(check(&case, &found, &case.before(&found.p)));
     }

@@ -60,7 +60,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         with warnings.catch_warnings():
             warnings.showwarning = lambda message, *place, **more: print(f"contact-normal: {message}", file=sys.stderr)
             code = int(given.run(given))
-        sys.stdout.flush()
+        if sys.stdout is not None:
+            sys.stdout.flush()
         return code
     except BrokenPipeError:
         # The reader, as `head`, has enough. Python would say so once more at its end.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,8 @@ import numpy as np
 from ._constants import OK
 from ._creep_force_plane import AXES
 from ._creep_force_table import creep_force_table
+from ._field_files import refuse_unless_writable
+from ._library import ContactNormalError, library
 
 _DEFAULTS = {"xi": "0:1:5", "eta": "0", "phi": "0", "axis_ratio": "1", "poisson_ratio": "0.28"}
 _MEANINGS = {
@@ -49,6 +52,10 @@ def run(given: argparse.Namespace) -> int:
     axes: dict[str, Any] = {name: axis(name, getattr(given, name)) for name in _DEFAULTS}
     if given.workers < 0:
         raise ValueError(f"--workers is {given.workers}; it must be 0, for one process a core, or more")
+    if given.file is not None:
+        if Path(given.file).suffix != ".nc":
+            raise ValueError(f"{given.file} must end in .nc")
+        refuse_unless_writable(given.file)
     progress = sys.stderr.isatty() if given.progress is None else given.progress
     table = creep_force_table(given.file, **axes, elements=given.elements, tolerance=given.tolerance, workers=given.workers,
                               progress=progress)
@@ -61,4 +68,8 @@ def run(given: argparse.Namespace) -> int:
             print(" ".join(f"{value:13.6g}" for value in values))
     else:
         print(f"{given.file}: {' x '.join(map(str, table.error.shape))} entries, largest estimated error {np.nanmax(table.error):.2g}")
+    if (refused := int((table.status < 0).sum())) > 0:
+        status = int(table.status.min())
+        text = library.contact_normal_status_text(status).decode()
+        raise ContactNormalError(status, f"{refused} of {table.status.size} entries were refused ({text})")
     return 0 if (table.status == OK).all() else 1

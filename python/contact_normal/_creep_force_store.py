@@ -44,7 +44,8 @@ class Journal:
         self._folder = self._path.with_name(self._path.name + ".parts")
         self._folder.mkdir(parents=True, exist_ok=True)
         told = self._folder / "plan"
-        if not told.exists():
+        # Parts of a table that was refused have no planes.
+        if not told.exists() or not any(self._folder.glob("[0-9]*.npz")):
             _replace(told, self._key.encode())
         elif told.read_text() != self._key:
             raise ValueError(f"{self._folder} has the parts of another table; choose another path, or remove the folder")

@@ -205,7 +205,7 @@ class CreepForceTable:
             if np.any(value < 0.0):
                 raise ValueError(f"{name} is {value}; it must not be negative")
         modulus = real("shear_modulus", shear_modulus)
-        if not np.all(modulus > 0.0):
+        if np.any(modulus <= 0.0):
             raise ValueError(f"shear_modulus is {shear_modulus}; it must be positive")
         bound = np.asarray(mu * load)
         if np.any((bound > 0.0) & (_is_no_length(a) | _is_no_length(b))):

@@ -128,7 +128,7 @@ def plot_bill(bill: Bill, axes: Axes | None) -> Axes:
     singles = list(dict.fromkeys(row.omitted for row in bill if len(row.omitted) == 1))
     axes = axes or new_axes((SIZE[0], 1.4 + 0.62 * max(1, len(singles))))
     quantities = list(dict.fromkeys(row.quantity for row in bill))
-    height = 0.8 / max(1, len(quantities))
+    height, named = 0.8 / max(1, len(quantities)), set()
     for q, quantity in enumerate(quantities):
         for k, omitted in enumerate(singles):
             row = next(row for row in bill if row.omitted == omitted and row.quantity == quantity)
@@ -136,8 +136,9 @@ def plot_bill(bill: Bill, axes: Axes | None) -> Axes:
                 continue
             place, size = k + (q - 0.5 * (len(quantities) - 1)) * height, max(abs(row.relative), 1e-12)
             error = row.error / abs(row.value) if row.error >= 0 else 0.0
-            axes.barh(place, size, height * 0.9, color=_COLOURS[q % len(_COLOURS)], label=_called(bill, quantity) if k == 0 else None,
+            axes.barh(place, size, height * 0.9, color=_COLOURS[q % len(_COLOURS)], label=None if quantity in named else _called(bill, quantity),
                       xerr=[[min(error, 0.99 * size)], [error]], error_kw={"elinewidth": 1, "ecolor": "0.5"})
+            named.add(quantity)
     axes.axvline(bill.target, color="0.5", linestyle="--", linewidth=1)
     axes.annotate("target", (bill.target, 0.0), xycoords=("data", "axes fraction"), xytext=(3, 3), textcoords="offset points", fontsize=8)
     # Changes far below the target are all the same.
@@ -147,7 +148,7 @@ def plot_bill(bill: Bill, axes: Axes | None) -> Axes:
     axes.grid(True, axis="x", color="0.5", alpha=0.2, linewidth=0.8)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
-    if singles:
+    if named:
         axes.legend(frameon=False, fontsize=9, loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return axes
 

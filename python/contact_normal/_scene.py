@@ -49,9 +49,11 @@ class Scene:
         self.bodies = bodies(shear_modulus, poisson_ratio, young_modulus, e_star)
         self.remarks: Remarks | None = None
         self._kept: list[Any] = []
-        self._effects = effects = {**effects, "patches": owned(effects.get("patches"))}
+        self._effects = effects = {**effects, **{name: owned(effects.get(name)) for name in _OF_STRESSES}}
         self._own = [name for name in ("influence", "row_tables") if effects.get(name) is not None]
-        self._constants = {"shear_modulus": shear_modulus, "poisson_ratio": poisson_ratio, "young_modulus": young_modulus, "e_star": e_star}
+        self._constants = {
+            "shear_modulus": owned(shear_modulus), "poisson_ratio": owned(poisson_ratio), "young_modulus": owned(young_modulus), "e_star": owned(e_star),
+        }
         self.struct.my, self.struct.mx = (integer(name, m) for name, m in zip(("my", "mx"), self.h.shape))
         self.struct.dx, self.struct.dy = number("dx", dx), number("dy", dy)
         self.struct.undeformed_distance = pointer(self.h)
@@ -182,10 +184,10 @@ _OF_STRESSES = ("period", "patches", "coating")
 
 
 def owned(value: Any) -> Any:
-    """The same with copies of its arrays, which callers may change."""
+    """A copy of numbers, lists and arrays, which callers may change."""
     if isinstance(value, np.ndarray):
         return value.copy()
-    return tuple(owned(one) for one in value) if isinstance(value, tuple) else value
+    return type(value)(owned(one) for one in value) if type(value) in (list, tuple) else value
 
 
 def _without_load(

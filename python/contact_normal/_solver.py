@@ -94,9 +94,10 @@ class Solver:
     ) -> None:
         self._shape = integer("my", my), integer("mx", mx)
         self._size = dx, dy
-        self._bodies = {"shear_modulus": shear_modulus, "poisson_ratio": poisson_ratio, "young_modulus": young_modulus, "e_star": e_star}
+        bodies = {"shear_modulus": shear_modulus, "poisson_ratio": poisson_ratio, "young_modulus": young_modulus, "e_star": e_star}
+        self._bodies = {name: owned(value) for name, value in bodies.items()}
         self._units = checked(units)
-        self._effects = {"layer": owned(layer), "period": period, "patches": owned(patches), "coating": coating}
+        self._effects = {"layer": owned(layer), "period": period, "patches": owned(patches), "coating": owned(coating)}
         self._given = given
         self._visco = visco
         self._own = [name for name, table in (("influence", influence), ("row_tables", row_tables)) if table is not None]

@@ -206,6 +206,9 @@ class Commands(unittest.TestCase):
             (3, ("solve", self.npy, *BALL, "--plot", "p.gif"), "p.gif must end in one of .png, .svg, .pdf"),
             (3, ("solve", self.npy, *BALL[:6], "--e-star", "1", "--poisson-ratio", "1", "2", "3"), "--poisson-ratio has 3 values"),
             (3, ("creep-table", "--xi", "0:1"), "--xi is 0:1; it must be numbers as 0,0.5,1 or first:last:count"),
+            (3, ("creep-table", "--xi", "0.1,1e300", "--elements", "9"), "1 of 2 entries were refused"),
+            (3, ("creep-table", "t.txt"), "t.txt must end in .nc"),
+            (4, ("creep-table", "nowhere/t.nc"), "there is no folder nowhere"),
             (4, ("solve", self.folder / "none.npy", *BALL), "No such file or directory"),
             (4, ("solve", self.npy, *BALL, "-o", self.folder / "no" / "p.npz"), "there is no folder"),
         ):

@@ -83,11 +83,16 @@ class Subsurface(unittest.TestCase):
         patch, factors, layer = (X > 0.0).astype(np.int32) + np.zeros((M, 1), np.int32), np.array([[1.0, 0.5], [0.5, 1.0]]), np.full((M, M), 1e-7)
         layered = cn.solve(H, D, D, force=1000.0, layer=layer, pressure_limit=(limit := np.full((M, M), 900.0)), **STEEL)
         patched = cn.solve(H, D, D, force=1000.0, patches=(patch, factors), **STEEL)
-        solver = cn.Solver(M, M, D, D, layer=layer, patches=(patch, factors), **STEEL)
+        nu = [0.3, 0.3]
+        solver = cn.Solver(M, M, D, D, layer=layer, patches=[patch, factors.tolist()], shear_modulus=82000.0, poisson_ratio=nu)
+        listed = cn.solve(H, D, D, force=1000.0, patches=(lists := [patch.tolist(), factors.tolist()]), shear_modulus=82000.0, poisson_ratio=nu)
         of_solver = solver.solve(H, force=1000.0)
-        before = [result.subsurface([0.3]).von_mises for result in (layered, patched, of_solver)]
+        before = [result.subsurface([0.3]).von_mises for result in (layered, patched, listed, of_solver)]
+        # Stresses are first asked for after the change.
+        unasked = cn.solve(H, D, D, force=1000.0, patches=(patch, factors), **STEEL)
         patch[:], factors[:], layer[:], limit[:] = 0, 1.0, -1.0, -1.0
-        for result, expected in zip((layered, patched, of_solver, solver.solve(H, force=1000.0)), (*before, before[-1])):
+        lists[1][0][1], nu[:] = 0.0, (0.0, 0.0)
+        for result, expected in zip((unasked, layered, patched, listed, of_solver, solver.solve(H, force=1000.0)), (before[1], *before, before[-1])):
             np.testing.assert_array_equal(result.subsurface([0.3]).von_mises, expected)
 
     def test_a_solver_knows_that_its_coefficients_are_no_half_space(self):

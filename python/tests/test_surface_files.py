@@ -116,9 +116,18 @@ class Files(unittest.TestCase):
                 (self.folder / "a.txt").write_text("\n".join(rows))
                 made = surface.read(self.folder / "a.txt", size=(16.0, 5.0))
                 np.testing.assert_array_equal(made.z, np.where(holes, np.nan, z))
-        # Columns that tabs and blanks line up have no empty cells.
-        (self.folder / "a.txt").write_text("\n".join("\t\t".join(f" {value:.17g}" for value in row) for row in z))
-        np.testing.assert_array_equal(surface.read(self.folder / "a.txt", dx=1.0, dy=1.0).z, z)
+        # Rows without any, a line with one tab more, and files that SurfaceTopography would read with other columns.
+        holes = (np.arange(16) == 6) | (np.arange(5)[:, None] == 2)
+        rows = ["\t".join("" if hole else f"{value:.17g}" for value, hole in zip(*row)) for row in zip(z, holes)]
+        rows[3] += "\t"
+        for name in ("a.txt", "a.tsv", "a.asc"):
+            (self.folder / name).write_text("\r\n".join(rows))
+            made = surface.read(self.folder / name, size=(16.0, 5.0))
+            np.testing.assert_array_equal(made.z, np.where(holes, np.nan, z))
+        # Tabs that line up columns, or begin all lines, are no empty cells.
+        for begin, between in (("", "\t\t"), ("\t", "\t"), ("\t", " \t\t ")):
+            (self.folder / "a.txt").write_text("\n".join(begin + between.join(f"{value:.17g}" for value in row) for row in z))
+            np.testing.assert_array_equal(surface.read(self.folder / "a.txt", dx=1.0, dy=1.0).z, z)
 
     def test_attributes_of_surface_topographys_files(self):
         z = rough(4)
@@ -395,17 +404,20 @@ class Files(unittest.TestCase):
         with mock.patch("contact_normal._netcdf.read", return_value=dataset), self.assertRaisesRegex(ValueError, "has z, mask; give variable"):
             surface.read(self.folder / "a.nc")
 
-    def test_the_mask_of_surface_topographys_files_says_where_holes_are(self):
-        holes = DataArray(np.eye(4), ("y", "x"), "mm", "mm")
-        holes.values[holes.values > 0.0] = np.nan
-        z, mask = mock.MagicMock(ndim=2, shape=(4, 4)), mock.MagicMock(ndim=2, shape=(4, 4))
-        mask.__eq__ = mock.Mock(return_value="measured")
-        z.where.side_effect = {"measured": holes}.get
-        arrays = {"heights": z, "mask": mask}
-        dataset = mock.MagicMock(data_vars=arrays, __getitem__=lambda _, name: arrays[name])
-        for variable in (None, "heights"):
+    def test_a_mask_by_surface_topography_is_no_map(self):
+        z = DataArray(np.eye(4), ("y", "x"), "mm", "mm")
+        z.ndim, z.shape = 2, (4, 4)
+        for attributes, names in (({"maskandscale": 0}, "heights"), ({}, "heights, mask")):
+            mask = SimpleNamespace(ndim=2, shape=(4, 4), attrs=attributes)
+            arrays = {"heights": z, "mask": mask}
+            dataset = mock.MagicMock(data_vars=arrays, __getitem__=lambda _, name, arrays=arrays: arrays[name])
             with mock.patch("contact_normal._netcdf.read", return_value=dataset):
-                self.assertEqual(int(surface.read(self.folder / "a.nc", variable=variable).holes.sum()), 4)
+                if names == "heights":
+                    self.assertEqual(surface.read(self.folder / "a.nc").z.shape, (4, 4))
+                else:
+                    with self.assertRaisesRegex(ValueError, f"has {names}; give variable"):
+                        surface.read(self.folder / "a.nc")
+                self.assertEqual(surface.read(self.folder / "a.nc", variable="heights").z.shape, (4, 4))
 
 
 class Pictures(unittest.TestCase):

@@ -71,7 +71,7 @@ fn largest_eigenvalue(
         std::mem::swap(&mut before, &mut v);
         std::mem::swap(&mut v, &mut w);
         fields.give(w);
-        if is_last || !monitor.uncounted_done(&level.problem.grid, last) {
+        if is_last || !monitor.uncounted_done(&level.problem.grid, monitor.count.residual) {
             break;
         }
         beside.push(last);

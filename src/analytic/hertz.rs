@@ -13,7 +13,7 @@
 
 use std::f64::consts::PI;
 
-use crate::error::{invalid, positive, Error, Number, Result};
+use crate::error::{invalid, positive, Number, Result};
 
 /// The exact solution.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,11 +34,32 @@ pub struct Hertz {
 
 /// Hertz contact for `h = curvature_x x^2 + curvature_y y^2 - approach`; `compliance` is `1/E*`.
 pub fn hertz(curvature_x: f64, curvature_y: f64, approach: f64, compliance: f64) -> Result<Hertz> {
-    let named =
-        [("curvature_x", curvature_x), ("curvature_y", curvature_y), ("approach", approach), ("1/E*", compliance)];
-    for (name, value) in named {
-        positive(name, value)?;
-    }
+    check(curvature_x, curvature_y, ("approach", approach), compliance)?;
+    let found = ellipse(curvature_x, curvature_y, approach, compliance);
+    found.map_or_else(|| out_of_range(curvature_x, curvature_y, ("approach", approach)), Ok)
+}
+
+/// The same for a prescribed force. `F` is proportional to the approach to the power 3/2.
+pub fn hertz_by_force(curvature_x: f64, curvature_y: f64, force: f64, compliance: f64) -> Result<Hertz> {
+    check(curvature_x, curvature_y, ("force", force), compliance)?;
+    let unit = ellipse(curvature_x, curvature_y, 1.0, compliance);
+    let by_force = |unit: Hertz| (force / unit.force).powf(2.0 / 3.0);
+    let found = unit.and_then(|unit| ellipse(curvature_x, curvature_y, by_force(unit), compliance));
+    found.map_or_else(|| out_of_range(curvature_x, curvature_y, ("force", force)), Ok)
+}
+
+fn check(curvature_x: f64, curvature_y: f64, load: (&str, f64), compliance: f64) -> Result<()> {
+    let named = [("curvature_x", curvature_x), ("curvature_y", curvature_y), load, ("1/E*", compliance)];
+    named.into_iter().try_for_each(|(name, value)| positive(name, value))
+}
+
+fn out_of_range(curvature_x: f64, curvature_y: f64, (name, load): (&str, f64)) -> Result<Hertz> {
+    let [x, y, load] = [curvature_x, curvature_y, load].map(Number);
+    invalid(format!("curvature_x {x}, curvature_y {y} and {name} {load} give a contact out of range"))
+}
+
+/// The ellipse; none if it is out of range.
+fn ellipse(curvature_x: f64, curvature_y: f64, approach: f64, compliance: f64) -> Option<Hertz> {
     // The long axis lies along the smaller curvature.
     let (small, large) = (curvature_x.min(curvature_y), curvature_x.max(curvature_y));
     let shape = Shape::of(large / small);
@@ -50,25 +71,7 @@ pub fn hertz(curvature_x: f64, curvature_y: f64, approach: f64, compliance: f64)
     let exact =
         Hertz { semi_axis_x, semi_axis_y, max_pressure, approach, force: 2.0 / 3.0 * area * max_pressure, area };
     let found = [long, short, area, max_pressure, exact.force];
-    if !found.iter().all(|value| *value > 0.0 && value.is_finite()) {
-        return invalid(format!(
-            "curvature_x {curvature_x:e}, curvature_y {curvature_y:e} and approach {approach:e} give a contact out of range: semi-axes \
-             {semi_axis_x:e} and {semi_axis_y:e}, largest pressure {max_pressure:e}, force {:e}",
-            exact.force
-        ));
-    }
-    Ok(exact)
-}
-
-/// The same for a prescribed force. `F` is proportional to the approach to the power 3/2.
-pub fn hertz_by_force(curvature_x: f64, curvature_y: f64, force: f64, compliance: f64) -> Result<Hertz> {
-    positive("force", force)?;
-    let of_force = |error| match error {
-        Error::InvalidArgument(why) => Error::InvalidArgument(format!("{why} (for a force of {})", Number(force))),
-        other => other,
-    };
-    let unit = hertz(curvature_x, curvature_y, 1.0, compliance).map_err(of_force)?;
-    hertz(curvature_x, curvature_y, (force / unit.force).powf(2.0 / 3.0), compliance)
+    found.iter().all(|value| *value > 0.0 && value.is_finite()).then_some(exact)
 }
 
 /// The ellipse of a ratio of curvatures.

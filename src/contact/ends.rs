@@ -23,11 +23,14 @@ use std::f64::consts::PI;
 use super::direction::Direction;
 use super::outline::STRAIGHT;
 use super::{Problem, State};
+use crate::sums::in_blocks;
 
 /// t in elements: at a straight edge, at an edge with steps, and where the edge lies on edges of elements.
 const STRAIGHT_EDGE: f64 = 0.55;
 const STEPPED_EDGE: f64 = 0.12;
 const EXACT_EDGE: f64 = 0.2;
+/// Change of a sum over that of the energy: 1 for a flat punch, and up to 1.22 for x^6 (tests/problems/slow_quantities.rs).
+const ENERGY_FACTOR: f64 = 1.3;
 
 /// The neighbour of an element.
 #[derive(Clone, Copy, PartialEq)]
@@ -54,20 +57,25 @@ pub fn at_ends<const N: usize>(problem: &Problem, state: &State, weights: impl F
     sums
 }
 
-/// The force on the strips of t elements that the surface may have beyond its last elements, with the pressures of these, over the whole force. None
-/// has its end on edges of elements.
+/// The relative change of a sum if the surface ends farther out by t: the energy released over the whole one, `(p, u)`, and where pressures are
+/// at their limit their force on the strip over the whole one. Ends on edges of elements change nothing.
 pub fn beyond_ends(problem: &Problem, state: &State) -> f64 {
-    let mut sum = 0.0;
-    each_end(problem, state, |i, _, elements| {
-        if elements != EXACT_EDGE {
-            sum += elements * state.p[i] * state.grid.element_area();
+    let sizes = [state.grid.dx, state.grid.dy];
+    let flexibility = PI / (2.0 * problem.modulus());
+    let (mut strips, mut released) = (0.0, 0.0);
+    each_end(problem, state, |i, k, elements| {
+        let force = elements * state.p[i].abs();
+        match (elements == EXACT_EDGE, state.contact[i]) {
+            (true, _) => {}
+            (false, true) => released += force * (flexibility * sizes[k] + problem.layer(i)) * state.p[i].abs(),
+            (false, false) => strips += force,
         }
     });
-    if sum > 0.0 {
-        sum / state.force()
-    } else {
-        0.0
-    }
+    let over = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
+    let there = || (0..state.p.len()).filter(|&i| state.touches(i));
+    let force = in_blocks(there().map(|i| state.p[i].abs()));
+    let energy = in_blocks(there().map(|i| state.p[i] * state.u[i]));
+    over(strips, force) + ENERGY_FACTOR * over(released, energy)
 }
 
 /// Calls `each(i, k, t)` for each side in the direction k = 0, 1 at which the surface ends beside element i of the contact, with t in elements.

@@ -59,7 +59,7 @@ impl Friction<'_> {
         self.coefficients_read()
             .map_or(Ok(()), |values| check_values("friction->previous_coefficient", values, grid, zero_or_ordinary))?;
         self.yield_limits_read()
-            .map_or(Ok(()), |values| check_values("friction->previous_yield_limit", values, grid, ordinary))?;
+            .map_or(Ok(()), |values| check_values("friction->previous_yield_limit", values, grid, kept_limit))?;
         if !self.has_law() {
             return Ok(());
         }
@@ -91,4 +91,10 @@ impl Friction<'_> {
         }
         Ok(())
     }
+}
+
+/// A limit may have fallen to a thousandth of what it was.
+fn kept_limit(name: &str, limit: f64) -> Result<()> {
+    let rule = "it must be positive, from 1e-143 to 1e140: choose other units";
+    require((1e-3 / LARGEST..=LARGEST).contains(&limit), name, limit, rule)
 }

@@ -119,6 +119,15 @@ impl Friction<'_> {
         require(direction.abs() <= 2.0 * PI, "friction->rolling_direction", direction, turns)
     }
 
+    /// Refuses tables that suit no motion on the grid: each solve refuses those that do not suit its own.
+    pub fn check_tables(&self, grid: &Grid) -> Result<()> {
+        match &self.influence {
+            Some(influence) if influence.by_row => influence.check_rows(grid),
+            Some(influence) => influence.check(grid, true),
+            None => Ok(()),
+        }
+    }
+
     /// Refuses tables that do not suit the grid or the step: they have no coefficients between whole offsets.
     pub(super) fn check_influence(&self, grid: &Grid) -> Result<()> {
         let Some(influence) = &self.influence else { return Ok(()) };

@@ -16,7 +16,8 @@ use super::status::{contact_normal_status, Refusal};
 use super::structs::{self, versioned};
 use super::watcher::{watched, Watcher};
 use crate::grid::Grid;
-use crate::solver::{solve_to_accuracy, Accuracy, Solver, SurfaceCallback};
+use crate::scene::Scene;
+use crate::solver::{solve_to_accuracy, Accuracy, Options, Solver, SurfaceCallback};
 
 /// Writes the undeformed distance of an mx x my grid of dx x dy elements over the rectangle of the scene into
 /// `undeformed_distance`, `[my][mx]`, x fastest, every value; non-zero cancels. On the calling thread,
@@ -141,7 +142,11 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
             let found = outcome.solver.as_ref();
             given.set_grid(found.map(Solver::grid));
             (given.reached, given.seconds) = (outcome.reached.unwrap_or(-1.0), outcome.seconds);
-            let warned = |found: &Solver| outputs.warnings(&scene, &translated.options, &outcome.report, found.state());
+            let options = Options { estimates: true, ..translated.options };
+            let warned = |found: &Solver| {
+                let on_its_grid = Scene { grid: *found.grid(), ..scene.clone() };
+                outputs.warnings(&on_its_grid, &options, &outcome.report, found.state())
+            };
             let warnings = found.map_or(0, warned);
             outputs.write_report(&outcome.report, found.map_or(&[], |found| found.ledger()), warnings)?;
             // SAFETY: a struct that declares its size; NULL or room for a pointer.

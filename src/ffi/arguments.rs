@@ -37,6 +37,7 @@ pub(super) unsafe fn optional<'a, T>(values: *const T, n: usize) -> Option<&'a [
 
 /// The caller's array of n values.
 pub(super) unsafe fn required<'a, T>(name: &str, values: *const T, n: usize) -> Result<&'a [T], Refusal> {
+    aligned(name, values, n)?;
     // SAFETY: by the caller.
     unsafe { optional(values, n) }.ok_or_else(|| Refusal::null(name))
 }
@@ -126,7 +127,7 @@ impl Regions {
 
     /// `count` values that are only read; none at NULL.
     pub fn input<T: Plain>(&mut self, name: &'static str, start: *const T, count: usize) -> Result<(), Refusal> {
-        aligned(name, start)?;
+        aligned(name, start, count)?;
         self.add(name, start as usize, count.saturating_mul(size_of::<T>()), false)?;
         self.read_too(start);
         Ok(())
@@ -156,7 +157,7 @@ impl Regions {
 
     /// `count` values that are written.
     pub fn output<T>(&mut self, name: &'static str, start: *const T, count: usize) -> Result<(), Refusal> {
-        aligned(name, start)?;
+        aligned(name, start, count)?;
         self.add(name, start as usize, count.saturating_mul(size_of::<T>()), true)
     }
 
@@ -222,8 +223,8 @@ impl Regions {
 }
 
 /// Refuses arrays that do not begin at a multiple of what an element needs: elements of packed structs, or of a record in a file in memory.
-fn aligned<T>(name: &str, start: *const T) -> Result<(), Refusal> {
-    if start.is_aligned() {
+fn aligned<T>(name: &str, start: *const T, count: usize) -> Result<(), Refusal> {
+    if count == 0 || start.is_aligned() {
         return Ok(());
     }
     let rule = format!("it must begin at a multiple of {} bytes", align_of::<T>());

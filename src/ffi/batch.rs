@@ -67,7 +67,7 @@ pub unsafe extern "C" fn contact_normal_solver_solve_batch(
             return Err(Refusal::null("scenes"));
         }
         // SAFETY: NULL or arrays of `count` structs, by the conventions of the ABI.
-        let batch = unsafe { Batch::new(count, scenes, fields, reports, statuses)? };
+        let mut batch = unsafe { Batch::new(count, scenes, fields, reports, statuses)? };
         let regions = &mut buffers.regions;
         regions.clear();
         options.add_to(regions, options_at)?;
@@ -144,29 +144,28 @@ impl Batch {
     }
 
     /// Adds all that is read and written: several threads do so at a time. A problem that is refused for itself does neither.
-    fn add_to(&self, regions: &mut Regions, n: usize) -> Result<(), Refusal> {
+    fn add_to(&mut self, regions: &mut Regions, n: usize) -> Result<(), Refusal> {
         regions.output("statuses", self.statuses, self.outputs.len())?;
         for i in 0..self.outputs.len() {
             regions.enter_problem(i);
-            if !self.add_problem(i, regions, n)? {
-                regions.leave_out_problem();
+            match self.add_problem(i, regions, n) {
+                Ok(()) => {}
+                Err(refusal) if refusal.status == CONTACT_NORMAL_OUT_OF_MEMORY => return Err(refusal),
+                Err(refusal) => {
+                    regions.leave_out_problem();
+                    self.outputs[i] = Err(refusal);
+                }
             }
         }
         Ok(())
     }
 
-    /// Adds what problem `i` reads and writes; false: it is refused for itself.
-    fn add_problem(&self, i: usize, regions: &mut Regions, n: usize) -> Result<bool, Refusal> {
-        if let Ok(outputs) = &self.outputs[i] {
-            outputs.add_to(regions, n)?;
-        }
+    /// Adds what problem `i` reads and writes.
+    fn add_problem(&self, i: usize, regions: &mut Regions, n: usize) -> Result<(), Refusal> {
+        self.outputs[i].as_ref().map_err(Refusal::clone)?.add_to(regions, n)?;
         // SAFETY: a scene that declares its size, by the conventions of the ABI.
-        let named = unsafe { self.scenes.at(i, "scene").and_then(|at| Ok((Named::read(at)?, at))) };
-        match named.and_then(|(named, at)| named.add_to(regions, at)) {
-            Ok(()) => Ok(true),
-            Err(refusal) if refusal.status == CONTACT_NORMAL_OUT_OF_MEMORY => Err(refusal),
-            Err(_) => Ok(false),
-        }
+        let (named, at) = unsafe { self.scenes.at(i, "scene").and_then(|at| Ok((Named::read(at)?, at)))? };
+        named.add_to(regions, at)
     }
 
     /// Solves problem `i` and writes its outputs and its status. No two threads may do so for the same `i`.

@@ -69,8 +69,7 @@ pub struct contact_normal_friction {
     pub coefficients: *const f64,
     /// CONTACT_NORMAL_MOTION_...; default SHIFT.
     pub motion: i32,
-    /// 1: the tractions before are those that this handle found last (not in a batch), also where solves without friction followed;
-    /// 0 (default): `previous_traction`.
+    /// 1: from the tractions that this handle found last, solves without friction aside (not in a batch); 0 (default): `previous_traction`.
     pub continues: i32,
     /// Of x and y: CONTACT_NORMAL_PRESCRIBED_CREEPAGE or _TANGENTIAL_FORCE; default CREEPAGE.
     pub prescribed: [i32; 2],

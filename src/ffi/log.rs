@@ -9,7 +9,7 @@ use log::{LevelFilter, Log, Metadata, Record};
 use super::floating_point::in_host_environment;
 use super::guard::guard;
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_UNSUPPORTED};
-use crate::threads::{made_once, Shared};
+use crate::threads::Shared;
 
 /// Log level: nothing.
 pub const CONTACT_NORMAL_LOG_OFF: i32 = 0;
@@ -90,13 +90,17 @@ pub unsafe extern "C" fn contact_normal_set_log(
             CONTACT_NORMAL_LOG_INFO => LevelFilter::Info,
             other => return Err(Refusal::invalid(format!("level is {other}; it must be OFF 0, WARNING 1 or INFO 2"))),
         };
-        if !made_once(&OURS, || log::set_logger(&Forward).is_ok()) {
+        if !OURS.get_or_init(|| log::set_logger(&Forward).is_ok()) {
             let message = "a logger is set already; it receives the messages".into();
             return Err(Refusal::new(CONTACT_NORMAL_UNSUPPORTED, message));
         }
-        if let Some(mut target) = TARGET.lock() {
-            *target = Target { callback, user };
-        }
+        let Some(mut target) = TARGET.lock() else {
+            let message =
+                "this process was forked while another thread set the callback; its child cannot set one".into();
+            return Err(Refusal::new(CONTACT_NORMAL_UNSUPPORTED, message));
+        };
+        *target = Target { callback, user };
+        drop(target);
         log::set_max_level(if callback.is_some() { filter } else { LevelFilter::Off });
         Ok(CONTACT_NORMAL_OK)
     })

@@ -1,4 +1,4 @@
-//! A copy of the last result, to restore it if a step of several solves fails.
+//! The last step, and a copy of it, to restore it if a step of several solves fails.
 
 use super::plane::Vector;
 use super::solution::Solution;
@@ -22,12 +22,19 @@ impl Drop for Last {
 }
 
 impl Solver {
+    /// The last step, from which another one may continue.
+    pub fn last_step(&self) -> Option<&Solution> {
+        self.has_solution.then_some(&self.solution)
+    }
+
+    /// Notes a solve without friction: its result has no tractions. Those of the last step stay, for one that continues.
+    pub fn pass_over(&mut self) {
+        self.is_last = false;
+    }
+
     /// A copy of the last result, if there is one.
     pub fn last(&self) -> Result<Option<Last>> {
-        if !self.has_solution {
-            return Ok(None);
-        }
-        let Solution { traction, slip, stick_slip, particles } = &self.solution;
+        let Some(Solution { traction, slip, stick_slip, particles }) = self.last_step() else { return Ok(None) };
         let copy = |field: &[Vector]| -> Result<Vec<Vector>> {
             let mut copy = blank(field.len(), [f64::NAN; 2], "the tractions before")?;
             copy.copy_from_slice(field);

@@ -104,11 +104,6 @@ impl Solver {
         (self.has_solution && self.is_last).then_some(&self.solution)
     }
 
-    /// Whether there is a step from which another one may continue.
-    pub fn has_step(&self) -> bool {
-        self.has_solution
-    }
-
     /// The last result, or an empty one.
     pub fn into_solution(mut self) -> Solution {
         if self.has_solution {
@@ -121,11 +116,6 @@ impl Solver {
     /// The creepages of the last result where its forces were given, times the length rolled.
     pub fn offset(&self) -> Vector {
         self.offset
-    }
-
-    /// Notes a solve without friction: its result has no tractions. Those of the last step stay, for one that continues.
-    pub fn pass_over(&mut self) {
-        self.is_last = false;
     }
 
     /// Bytes held.
@@ -153,6 +143,10 @@ impl Solver {
             return invalid("friction continues, but this solver holds no tractions yet".into());
         }
         self.make_room()?;
+        if !request.start.is_again() {
+            // Those of a step that was refused.
+            self.take_products();
+        }
         self.set_layer(friction);
         let forces = match request.start {
             Start::Held(_) => Forces::NONE,
@@ -188,8 +182,8 @@ impl Solver {
         if friction.sensitivities && end != Outcome::Cancelled {
             report.sensitivities = self.sensitivities(friction, watch)?;
             end = if report.sensitivities.is_some() { end } else { Outcome::Cancelled };
-            report.products += self.take_products();
         }
+        report.products += self.take_products();
         let march = self.march(friction, pressure)?;
         self.write(request, &mut report);
         self.write_particles(march);

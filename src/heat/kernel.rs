@@ -24,6 +24,8 @@ use std::f64::consts::PI;
 const FADED: f64 = 40.0;
 /// Longest panel in t, on which the rule integrates exp(-a cosh t) to 1e-10.
 const PANEL: f64 = 2.0;
+/// Largest t: beyond it sinh(t) is infinite, as quotients are by wakes next to nothing.
+const LONGEST: f64 = 700.0;
 /// Ratio of the ends of panels in x.
 const PANEL_RATIO: f64 = 4.0;
 /// Least length of the first panel in x, as a part of an element.
@@ -117,7 +119,7 @@ fn along((from, to): (f64, f64), near: f64, rule: &Rule, f: impl Fn(f64) -> f64)
 fn strip(distance: f64, (low, high): (f64, f64), (wave, behind): (f64, bool), rule: &Rule) -> f64 {
     let a = 2.0 * wave * distance;
     // -P (|x| cosh t - x) = -a sinh^2(t/2) behind, -a cosh^2(t/2) ahead.
-    let most = 2.0 * (FADED / a).sqrt().asinh();
+    let most = (2.0 * (FADED / a).sqrt().asinh()).min(LONGEST);
     let end = (high / distance).asinh().min(most);
     let of = |from: f64| if from < end { panels(from, end, a, rule) } else { 0.0 };
     let begin = (low / distance).asinh();

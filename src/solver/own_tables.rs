@@ -50,7 +50,7 @@ impl Solver {
         if self.own_tables.as_ref().is_none_or(|own| own.view().by_row != given.by_row) {
             return invalid(format!("{} is given, but this solver was set up without", given.name()));
         }
-        Effect::check(friction, &self.problem.grid)
+        friction.check_tables(&self.problem.grid)
     }
 
     /// Sets the tables of all later solves with friction. The last result stays.

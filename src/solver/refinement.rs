@@ -225,6 +225,8 @@ fn solve_on(
     let (stop, report) = solver.solve_checked((scene, lowest), options, None, Some(&mut watch))?;
     let outlook = Outlook::of(&solver, &report, scene.load);
     let of = if stop == Outcome::Cancelled { vec![] } else { values(&mut solver, scene, &report, wanted)? };
+    // Later scenes of this solver may have other surfaces.
+    solver.problem.exact_edges = false;
     let values = Values { of, residual: report.residual(), lack_estimates: solver.lacks_estimates() };
     let solved = Solved { solver, report, outlook, values };
     Ok(match stop {

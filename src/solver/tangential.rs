@@ -111,9 +111,9 @@ impl Tangent {
         self.solver.pass_over();
     }
 
-    /// Whether there is a step from which another one may continue.
-    pub fn has_step(&self) -> bool {
-        self.solver.has_step()
+    /// The last step, from which another one may continue.
+    pub fn last_step(&self) -> Option<&Solution> {
+        self.solver.last_step()
     }
 
     /// Bytes held.

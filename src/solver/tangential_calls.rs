@@ -54,9 +54,9 @@ impl Solver {
         Ok(friction)
     }
 
-    /// The last tractions, slip and stick area, with pressures of the normal problem or with given ones.
+    /// Tractions, slip and stick area of the last step with friction, with pressures of the normal problem or with given ones.
     pub fn tractions(&self) -> Option<&Solution> {
-        self.friction.as_deref().and_then(Tangent::solution)
+        self.friction.as_deref().and_then(Tangent::last_step)
     }
 }
 
@@ -88,7 +88,7 @@ fn alone(
 ) -> Result<(Outcome, Report)> {
     let mut monitor = Monitor::new(progress, Vec::new(), false);
     let start = match turn.options.initial_guess {
-        InitialGuess::Previous if tangent.has_step() => Start::Last,
+        InitialGuess::Previous if tangent.last_step().is_some() => Start::Last,
         _ => turn.start(),
     };
     let (stop, found) = bounded(turn.scene, turn.friction, pressure, |friction, pressing| {

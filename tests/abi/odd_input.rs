@@ -2,7 +2,7 @@
 
 use std::ptr::{null, null_mut};
 
-use crate::call::{initialised, Call, Through, CX, CY};
+use crate::call::{initialised, last_error, Call, Through, CX, CY};
 use crate::rows::*;
 use contact_normal::ffi::*;
 
@@ -54,6 +54,15 @@ fn an_array_between_two_doubles_is_refused_by_name() {
     let (status, message) = call.run(Through::Solve, null_mut());
     assert_eq!(status, CONTACT_NORMAL_INVALID_ARGUMENT);
     assert!(message.starts_with("undeformed_distance begins at 0x"), "{message}");
+    // Those that are read before anything else, and of calls without a scene.
+    let mut solution = contact_normal_hertz_solution::default();
+    let (odd, bodies) = (start.wrapping_add(shift).cast::<f64>(), [0.3; 2]);
+    // SAFETY: arrays of two values, one of them at an odd place, which is not read.
+    let status = unsafe {
+        contact_normal_hertz(0.1, 0.1, odd, bodies.as_ptr(), CONTACT_NORMAL_PRESCRIBED_APPROACH, 1.0, &mut solution)
+    };
+    assert_eq!(status, CONTACT_NORMAL_INVALID_ARGUMENT);
+    assert!(last_error().starts_with("shear_modulus begins at 0x"), "{}", last_error());
 }
 
 /// Which tractions a worker of a batch has is not known, so nothing goes on from them; on the handle itself it does.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::support::{
-    assert_certified, finished, recompute, root, run, run_linked, run_under_valgrind, scratch, Recomputed,
+    assert_certified, finished, recompute, root, run, run_linked, run_under_valgrind, scratch, smaller, Recomputed,
     EXAMPLES_OF_EFFECTS,
 };
 use contact_normal::grid::Grid;
@@ -152,13 +152,6 @@ fn the_examples_under_valgrind() {
     let folder = scratch("c_valgrind");
     let data = root().join("data/wheel_rail/y4_82kN.txt").to_string_lossy().into_owned();
     let ground = gap_file("ground");
-    let small = |text: String| {
-        text.replace("COUNT = 200", "COUNT = 5")
-            .replace("N = 32, M = 2 * N + 1, DEPTHS = 101", "N = 8, M = 2 * N + 1, DEPTHS = 3")
-            .replace("STEPS = 100", "STEPS = 4")
-            .replace("MX = 48, MY = 36, CREEPAGES = 7", "MX = 16, MY = 12, CREEPAGES = 7")
-            .replace("MX = 48, MY = 48", "MX = 16, MY = 16")
-    };
     std::fs::copy(root().join("c_examples/example.h"), folder.join("example.h")).expect("a header");
     let mut count = 0;
     for file in std::fs::read_dir(root().join("c_examples")).expect("the examples") {
@@ -168,7 +161,8 @@ fn the_examples_under_valgrind() {
         }
         let name = file.file_stem().expect("a name").to_string_lossy().into_owned();
         let source = folder.join(format!("{name}.c"));
-        std::fs::write(&source, small(std::fs::read_to_string(&file).expect("a source"))).expect("a smaller source");
+        std::fs::write(&source, smaller(&name, &std::fs::read_to_string(&file).expect("a source")))
+            .expect("a smaller source");
         let program = compile(compiler("cc", "c99"), source.to_str().expect("a path in UTF-8"), &folder);
         let arguments = match name.as_str() {
             "hertz" | "ledger" => vec!["24"],

@@ -78,7 +78,7 @@ contains
     type(contact_normal_progress), intent(in) :: progress
     type(c_ptr), value :: user
     integer(c_int32_t) :: cancel
-    cancel = 0
+    cancel = merge(1_c_int32_t, 0_c_int32_t, progress%mx < 0 .or. c_associated(user))
     calls = calls + 1
     if (calls == 1) call roll(other, inner)
   end function
@@ -87,7 +87,7 @@ contains
     type(contact_normal_progress), intent(in) :: progress
     type(c_ptr), value :: user
     integer(c_int32_t) :: cancel
-    cancel = 0
+    cancel = merge(1_c_int32_t, 0_c_int32_t, progress%mx < 0 .or. c_associated(user))
     calls = calls + 1
     if (calls == 1) inner = contact_normal_solver_solve(other, scene)
   end function
@@ -96,7 +96,7 @@ contains
     type(contact_normal_progress), intent(in) :: progress
     type(c_ptr), value :: user
     integer(c_int32_t) :: cancel
-    cancel = 0
+    cancel = merge(1_c_int32_t, 0_c_int32_t, progress%mx < 0 .or. c_associated(user))
     calls = calls + 1
     if (calls == 1) call roll(handle, inner)
   end function

@@ -101,6 +101,34 @@ pub fn run_linked(program: &Path, arguments: &[&str], folder: &Path) -> String {
     run(Command::new(program).args(arguments).env("LD_LIBRARY_PATH", folder).current_dir(folder))
 }
 
+/// Sizes in the examples in C and in Fortran, and smaller ones.
+const SIZES: [(&str, &str); 18] = [
+    ("COUNT = 200", "COUNT = 5"),
+    ("N = 32, M = 2 * N + 1, DEPTHS = 101", "N = 8, M = 2 * N + 1, DEPTHS = 3"),
+    ("N = 32, M = 2*N + 1, DEPTHS = 101", "N = 8, M = 2*N + 1, DEPTHS = 3"),
+    ("STEPS = 100", "STEPS = 4"),
+    ("M = 64, STEPS = 8", "M = 16, STEPS = 3"),
+    ("m = 64, steps = 8", "m = 16, steps = 3"),
+    ("M = 48, N = 32, STEPS = 12", "M = 24, N = 16, STEPS = 3"),
+    ("m = 48, n = 32, steps = 12", "m = 24, n = 16, steps = 3"),
+    ("MX = 48, MY = 36, CREEPAGES = 7", "MX = 16, MY = 12, CREEPAGES = 7"),
+    ("MX = 48, MY = 44", "MX = 24, MY = 22"),
+    ("MX = 48, MY = 48", "MX = 16, MY = 16"),
+    ("MX = 40, MY = 40", "MX = 12, MY = 12"),
+    ("{ M = 64", "{ M = 16"),
+    (":: M = 64", ":: M = 16"),
+    (" m = 64", " m = 16"),
+    ("M = 96", "M = 24"),
+    (" M = 80", " M = 20"),
+    (" m = 80", " m = 20"),
+];
+
+/// An example with smaller sizes, which valgrind runs some 50 times slower. Forces and limits of `pressure_limit` need its grid.
+pub fn smaller(name: &str, source: &str) -> String {
+    let sizes = if name == "pressure_limit" { &[][..] } else { &SIZES[..] };
+    sizes.iter().fold(source.to_owned(), |text, (of, by)| text.replace(of, by))
+}
+
 /// Runs a program that was linked with the library in `folder` under valgrind: no error, and nothing definitely lost. What is still
 /// reachable, or possibly lost, the run-time library of Fortran keeps for its units, and the library's threads for their transforms.
 /// Returns what it printed.

@@ -344,3 +344,35 @@ fn only_steady_rolling_takes_them_and_y_must_be_even() {
         assert!(error.to_string().contains(words), "{error}");
     }
 }
+
+/// Tables of bodies that relax suit steady rolling alone: a handle takes those of another speed, and refuses a shift with them.
+#[test]
+fn a_handle_takes_the_tables_of_another_speed() {
+    let (grid, reach) = (Grid::new(12, 8, 1.0, 1.0).unwrap(), (14, 9));
+    let h: Vec<f64> =
+        (0..grid.len()).map(|i| 0.01 * (((i % 12) as f64 - 5.5).powi(2) + ((i / 12) as f64 - 3.5).powi(2))).collect();
+    let tangential = Tangential::new(1.0, 1.0, Compliance { shear: 1.0, poisson: 0.3, unlike: 0.0 });
+    let [slow, fast] = [1.0, 4.0].map(|length| tables(&tangential, reach, length));
+    let prescribed = [Prescribed::Creepage(-0.01), Prescribed::Creepage(0.002)];
+    let scene = |of, motion| {
+        let friction = Friction { motion, prescribed, influence: of, ..Friction::new(0.3) };
+        Scene { friction: Some(friction), ..Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(0.1)) }
+    };
+    let rolling = |of| scene(Some(influence(of, reach)), Motion::SteadyRolling);
+    let traction = |handle: &mut contact_normal::solver::Solver, scene: &Scene<'_>| {
+        assert_eq!(handle.solve(scene, &Options::default(), None, None).unwrap().0, Outcome::Converged);
+        handle.friction().unwrap().traction.clone()
+    };
+    let new = |of| contact_normal::solver::Solver::new(&rolling(of), &Options::default()).unwrap();
+    let mut handle = new(&slow);
+    let first = traction(&mut handle, &rolling(&slow));
+    for of in [&fast, &slow] {
+        let given = Friction { influence: Some(influence(of, reach)), ..Friction::new(0.0) };
+        handle.set_tangential_influence(&given).expect("tables of relaxing bodies");
+        let found = traction(&mut handle, &scene(None, Motion::SteadyRolling));
+        assert!(found == traction(&mut new(of), &rolling(of)));
+        assert_eq!(found == first, std::ptr::eq(of, &slow));
+    }
+    let refused = handle.solve(&scene(None, Motion::Shift), &Options::default(), None, None).err();
+    assert!(refused.as_ref().is_some_and(|error| error.to_string().contains("must be even in x")), "{refused:?}");
+}

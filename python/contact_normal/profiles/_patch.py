@@ -226,7 +226,7 @@ class ContactPoint:
                     raise
                 try:
                     gap, depth = self._gap(dx, dy, deeper, limit.is_over), deeper
-                except _Late:
+                except (_Late, ValueError):
                     raise error from None
                 continue
             if limit.ended(result):

@@ -54,6 +54,8 @@ def chosen(name: str | None, names: list[Any], path: str | os.PathLike[str]) -> 
     """The name of an array, which must be given if there are several."""
     if name is None and len(names) == 1:
         return names[0]
+    if not names:
+        raise ValueError(f"{path} has no arrays")
     if name not in names:
         raise ValueError(f"{path} has {', '.join(map(str, names))}; give variable, one of them")
     return name

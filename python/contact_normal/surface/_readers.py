@@ -18,7 +18,7 @@ from ._lattice import Lattice, lattice_of
 from ._instruments import chosen, of_instrument
 from ._not_a_map import doubt
 from ._not_a_map import why as why_no_map
-from ._texts import of_text
+from ._texts import has_empty_cells, of_text
 
 
 def from_xarray(array: Any, **given: Any) -> Heights:
@@ -123,7 +123,9 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         is_plain = values.ndim == 2 and values.dtype.kind in "iuf"
         return _of_numbers(path, values, given) if is_plain else heights(values, **given)
     # Some instruments write binary files of these ends.
-    if end in (".txt", ".dat", ".csv") and is_text(path):
+    of_numbers = end in (".txt", ".dat", ".csv") and is_text(path)
+    # SurfaceTopography would move the columns behind an empty cell.
+    if of_numbers or end in (".tsv", ".asc") and Path(path).exists() and is_text(path) and has_empty_cells(path):
         told = header_of(path, bool(_SIZES & set(given)))
         if given.get("axes") == "xy" and told.get("size"):
             # Width is that of the columns of the file, which are y then.
@@ -137,8 +139,8 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         dataset = netcdf(path)
         # Others, as that of a map projection, are no heights.
         maps = [name for name, array in dataset.data_vars.items() if array.ndim == 2 or sum(size > 1 for size in array.shape) == 2]
-        if _MAP_AND_HOLES.issubset(maps) and variable in (None, "heights"):
-            return from_xarray(dataset["heights"].where(dataset["mask"] == 0), **given)
+        # SurfaceTopography's mask says where the heights are NaN.
+        maps = [name for name in maps if not (name == "mask" and "maskandscale" in dataset[name].attrs)]
         names = maps if maps and variable is None else list(dataset.data_vars)
         return from_xarray(dataset[chosen(variable, names, path)], **given)
     if end == ".xyz" and not _SIZES & set(given):
@@ -154,10 +156,6 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         if reason := why_no_map(values.T) or why_no_map(values):
             raise ValueError(f"{path} {reason}")
     return from_topography(topography, **given)
-
-
-# The variables of a map with holes by SurfaceTopography.
-_MAP_AND_HOLES = {"heights", "mask"}
 
 
 def _with_header(told: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:

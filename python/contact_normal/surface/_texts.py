@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import warnings
 from typing import Any
 
 import numpy as np
@@ -20,16 +21,16 @@ def of_text(path: str | os.PathLike[str], end: str) -> Any:
     """Columns of numbers: those of a line are separated by spaces, in .csv by commas, or by semicolons where there are any: commas are
     then decimal points. Cells of such files may be quoted, and those without a number are NaN, as are empty cells between tabs."""
     lines = [line.split("#")[0] for line in text_of(path).splitlines()]
-    lines = [line for line in lines if line.strip()]
+    tabs, lines = _between_tabs(lines), [line for line in lines if line.strip()]
     if not lines:
         raise ValueError(f"{path} has no numbers")
-    delimiter = ";" if ";" in lines[0] else "," if end == ".csv" and "," in lines[0] else "\t" if _has_empty_cells(lines) else None
-    cells = lines
+    delimiter = ";" if ";" in lines[0] else "," if end == ".csv" and "," in lines[0] else "\t" if tabs else None
+    cells = tabs if tabs and delimiter == "\t" else lines
     if delimiter == ";":
         cells = [line.replace(",", ".") for line in cells]
     if delimiter and any(delimiter in quoted for line in cells for quoted in _QUOTED.findall(line)):
         raise ValueError(f"{path} has {_BETWEEN[delimiter]} within quoted cells: decimal commas need semicolons between the numbers")
-    if delimiter:
+    if delimiter and delimiter != "\t":
         cells = _filled([line.replace('"', "") for line in cells], delimiter)
     try:
         values = np.loadtxt([_FORTRAN.sub("e", line) for line in cells], delimiter=delimiter, ndmin=2)
@@ -49,25 +50,48 @@ _QUOTED = re.compile(r'"[^"]*"')
 _FORTRAN = re.compile(r"(?<=[\d.])[dD](?=[-+\d])")
 
 
-def _has_empty_cells(lines: list[str]) -> bool:
-    """Whether single tabs part the numbers of all lines, and some cells are empty."""
-    if not any("\t\t" in line or "\t" in (line[0], line.rstrip(" \r")[-1]) for line in lines):
-        return False
-    rows = [[cell.strip() for cell in line.split("\t")] for line in lines]
-    if any(len(row) != len(rows[0]) or " " in cell for row in rows for cell in row):
-        return False
-    # Two tabs between all numbers, and one at the end of all lines, stand for nothing.
-    if not any(cell for row in rows for cell in row[1::2]):
-        return False
-    last = None if any(row[-1] for row in rows) else -1
-    return any(not cell for row in rows for cell in row[:last])
+def has_empty_cells(path: str | os.PathLike[str]) -> bool:
+    """Whether single tabs part the numbers of all lines of a file, and some cells are empty."""
+    return _between_tabs([line.split("#")[0] for line in text_of(path).splitlines()]) is not None
+
+
+def _between_tabs(lines: list[str]) -> list[str] | None:
+    """Lines of cells between tabs whose empty cells are NaN; None without empty cells, or if single tabs do not part all numbers."""
+    lines = [line.replace('"', "").strip(" \r") for line in lines]
+    most = max((line.count("\t") for line in lines), default=0)
+    # Of lines without a number those with as many cells as others are rows of holes.
+    lines = [line for line in lines if line.strip() or line and line.count("\t") >= max(1, most - 1)]
+    if not any("\t\t" in line or "\t" in (line[0], line[-1]) for line in lines):
+        return None
+    rows = _without_ends([[cell.strip() for cell in line.split("\t")] for line in lines])
+    if any(" " in cell for row in rows for cell in row):
+        return None
+    if any(len(row) != len(rows[0]) for row in rows):
+        if len({sum(map(bool, row)) for row in rows}) == 1:
+            warnings.warn("some numbers are parted by several tabs, and lines differ in their cells: tabs in a row are one; write nan for holes", stacklevel=4)
+        return None
+    # Two tabs between all numbers stand for one.
+    if not any(cell for row in rows for cell in row[1::2]) or all(cell for row in rows for cell in row):
+        return None
+    if empty := [k for k in range(len(rows[0])) if not any(row[k] for row in rows)]:
+        warnings.warn(f"column {empty[0]}, counted from 0, has no number: a column of holes", stacklevel=4)
+    return ["\t".join(cell or "nan" for cell in row) for row in rows]
+
+
+def _without_ends(rows: list[list[str]]) -> list[list[str]]:
+    """Without the tabs at the beginning of all lines, and at the end of all, or of those that are longer by one."""
+    if all(len(row) > 1 and not row[0] for row in rows):
+        rows = [row[1:] for row in rows]
+    shortest = min(len(row) for row in rows)
+    if all(len(row) == shortest and not row[-1] for row in rows):
+        return [row[:-1] for row in rows]
+    return [row[:-1] if len(row) == shortest + 1 and not row[-1] else row for row in rows]
 
 
 def _filled(lines: list[str], delimiter: str) -> list[str]:
     """Lines whose empty cells are NaN. A delimiter at the end of every line stands for nothing."""
-    blank = r"[^\S\t]" if delimiter == "\t" else r"\s"
-    lines = [re.sub(rf"^{blank}+|{blank}+$", "", line) for line in lines]
+    lines = [line.strip() for line in lines]
     if all(line.endswith(delimiter) for line in lines):
         lines = [line[:-1] for line in lines]
-    empty = re.compile(rf"(?:^|(?<={delimiter})){blank}*(?={delimiter}|$)")
+    empty = re.compile(rf"(?:^|(?<={delimiter}))\s*(?={delimiter}|$)")
     return [empty.sub("nan", line) for line in lines]

@@ -98,9 +98,7 @@ pub fn values(
     wanted: &[Quantity],
 ) -> Result<Vec<std::result::Result<Value, Lack>>> {
     let (mut stresses, mut values) = ([None, None], Vec::new());
-    // Estimates from one grid count the ends themselves.
-    let is_limited = solver.state().has_limited();
-    let at_ends = if is_limited { beyond_ends(&solver.problem, solver.state()) } else { 0.0 };
+    let at_ends = beyond_ends(&solver.problem, solver.state());
     for quantity in wanted {
         if let Some(lack) = quantity.lack(scene) {
             values.push(Err(lack));
