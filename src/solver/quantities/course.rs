@@ -84,9 +84,9 @@ impl Course {
         self.quantity
     }
 
-    /// Whether the last value is 0, of an area or of the stiffness: finer grids may have a few elements of it.
+    /// Whether the last value is an area of 0: finer grids may have a few elements of it.
     pub fn is_empty(&self) -> bool {
-        (self.quantity.is_area() || self.quantity == Quantity::Stiffness) && self.values.value() == Some(0.0)
+        self.quantity.is_area() && self.values.value() == Some(0.0)
     }
 
     /// Adds the value on a grid. `doublings`: those from the first grid. `residual`: the relative uncertainty of the
@@ -132,7 +132,7 @@ impl Course {
     /// The error on the last grid from the sequence, if a single grid gives no estimate. Forces, pressures and areas have one only if nothing is
     /// estimated at all (`lacks_estimates`), because a single peak without an estimate is singular or not resolved. It then takes at least three
     /// grids, because only the changes reveal an infinite value.
-    /// An [empty](Course::is_empty) one has none.
+    /// An [empty](Course::is_empty) area has none.
     pub fn falling(&self, lacks_estimates: bool) -> Option<Falling> {
         match (self.quantity, self.last) {
             _ if self.is_empty() => None,
