@@ -2810,8 +2810,8 @@ contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *
 /*
  Gives a solver other coefficients, and their scale, for all later solves. `influence`: those of the normal problem; `friction`: its
  `influence` and `influence_cross`, or its `row_tables`; nothing else of it is used. NULL: the old ones stay; one of the two must be given.
- The solver must have been set up with coefficients of the same kinds: `scene->influence`; `friction->influence` or `row_tables`. Its plans
- and its memory are kept, and so is its last result, from which PREVIOUS and `continues` may start.
+ The solver must have been set up with coefficients of the same kinds: `scene->influence`; `friction->influence` or `row_tables`, and
+ `influence_cross` or none. Its plans and its memory are kept, and so is its last result, from which PREVIOUS and `continues` may start.
  A call that is refused changes nothing; after OUT_OF_MEMORY set both again. Since 0.1.
  */
 contact_normal_status contact_normal_solver_set_influence(struct contact_normal_solver *solver,

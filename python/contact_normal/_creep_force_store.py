@@ -44,14 +44,18 @@ class Journal:
         self._folder = self._path.with_name(self._path.name + ".parts")
         self._folder.mkdir(parents=True, exist_ok=True)
         told = self._folder / "plan"
-        # Parts of a table that was refused have no planes.
-        if not told.exists() or not any(self._folder.glob("[0-9]*.npz")):
+        if not told.exists():
             _replace(told, self._key.encode())
         elif told.read_text() != self._key:
             raise ValueError(f"{self._folder} has the parts of another table; choose another path, or remove the folder")
 
     def _file(self, index: int) -> Path:
         return self._folder / f"{index:06d}.npz"
+
+    def leave(self) -> None:
+        """Removes the folder of a table that was refused, if it has no plane."""
+        if not any(self._folder.glob("[0-9]*.npz")):
+            shutil.rmtree(self._folder, ignore_errors=True)
 
     def done(self) -> dict[int, dict[str, Any]]:
         """The planes that are there."""

@@ -21,6 +21,7 @@ from ._bar import Bar
 from ._calls import made
 from ._creep_force_plane import AXES, Plan, plane, prepared
 from ._creep_forces import CreepForceTable
+from ._library import ContactNormalError
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -113,7 +114,12 @@ def creep_force_table(
                 raise ValueError(f"{path} has another table; choose another path, or remove it")
             return table
         journal = store.Journal(path, plan)
-    planes = _planes(plan, journal, integer("workers", workers), client, progress)
+    try:
+        planes = _planes(plan, journal, integer("workers", workers), client, progress)
+    except ContactNormalError:
+        if journal is not None:
+            journal.leave()
+        raise
     table = _assembled(plan, planes)
     if path is not None and journal is not None:
         table.write(path)

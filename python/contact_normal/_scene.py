@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import ctypes
 from collections.abc import Mapping
 from ctypes import c_int32
@@ -184,10 +185,12 @@ _OF_STRESSES = ("period", "patches", "coating")
 
 
 def owned(value: Any) -> Any:
-    """A copy of numbers, lists and arrays, which callers may change."""
-    if isinstance(value, np.ndarray):
-        return value.copy()
-    return type(value)(owned(one) for one in value) if type(value) in (list, tuple) else value
+    """A copy, for callers may change their lists and arrays."""
+    if isinstance(value, memoryview) or hasattr(value, "__array__"):
+        return np.array(value)
+    if type(value) in (list, tuple):
+        return type(value)(owned(one) for one in value)
+    return value if value is None or isinstance(value, (int, float, str)) else copy.deepcopy(value)
 
 
 def _without_load(

@@ -99,7 +99,7 @@ class Solver:
         self._units = checked(units)
         self._effects = {"layer": owned(layer), "period": period, "patches": owned(patches), "coating": owned(coating)}
         self._given = given
-        self._visco = visco
+        self._visco = owned(visco)
         self._own = [name for name, table in (("influence", influence), ("row_tables", row_tables)) if table is not None]
         # The set-up reads neither the undeformed distance nor the load, but checks them. Counts that are no counts are left to the
         # library, whose message says so.

@@ -35,7 +35,7 @@ def subsurface(
     """See `Solved.subsurface`."""
     scene.needs_half_space()
     scene.bodies.needs_poisson("a stress")
-    levels = shaped("depths", np.atleast_1d(real("depths", depths)), dimensions="n")
+    levels = shaped("depths", np.atleast_1d(real("depths", depths)), dimensions="n").copy()
     wanted = _wanted(components)
     found = SubsurfaceStress(levels, scene, wanted, flag("principal", principal))
     outputs = initialised("stress_outputs")

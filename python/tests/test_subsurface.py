@@ -84,7 +84,7 @@ class Subsurface(unittest.TestCase):
         layered = cn.solve(H, D, D, force=1000.0, layer=layer, pressure_limit=(limit := np.full((M, M), 900.0)), **STEEL)
         patched = cn.solve(H, D, D, force=1000.0, patches=(patch, factors), **STEEL)
         nu = [0.3, 0.3]
-        solver = cn.Solver(M, M, D, D, layer=layer, patches=[patch, factors.tolist()], shear_modulus=82000.0, poisson_ratio=nu)
+        solver = cn.Solver(M, M, D, D, layer=layer, patches=[memoryview(patch), factors.tolist()], shear_modulus=82000.0, poisson_ratio=nu)
         listed = cn.solve(H, D, D, force=1000.0, patches=(lists := [patch.tolist(), factors.tolist()]), shear_modulus=82000.0, poisson_ratio=nu)
         of_solver = solver.solve(H, force=1000.0)
         before = [result.subsurface([0.3]).von_mises for result in (layered, patched, listed, of_solver)]

@@ -124,6 +124,13 @@ class Files(unittest.TestCase):
             (self.folder / name).write_text("\r\n".join(rows))
             made = surface.read(self.folder / name, size=(16.0, 5.0))
             np.testing.assert_array_equal(made.z, np.where(holes, np.nan, z))
+        # A cell of blanks is empty; beside other holes so is the first one of all lines.
+        for holes, cell in ((np.arange(16) == 6 + 0 * z, " "), ((np.arange(16) == 0) | (np.arange(16)[None] == 3 + np.arange(5)[:, None]), "")):
+            rows = ["\t".join(cell if hole else f"{value:.17g}" for value, hole in zip(*row)) for row in zip(z, holes)]
+            (self.folder / "a.txt").write_text("\n".join(rows))
+            with self.assertWarnsRegex(UserWarning, "has no number: a column of holes"):
+                made = surface.read(self.folder / "a.txt", size=(16.0, 5.0))
+            np.testing.assert_array_equal(made.z, np.where(holes, np.nan, z))
         # Tabs that line up columns, or begin all lines, are no empty cells.
         for begin, between in (("", "\t\t"), ("\t", "\t"), ("\t", " \t\t ")):
             (self.folder / "a.txt").write_text("\n".join(begin + between.join(f"{value:.17g}" for value in row) for row in z))

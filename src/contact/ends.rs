@@ -29,8 +29,8 @@ use crate::sums::in_blocks;
 const STRAIGHT_EDGE: f64 = 0.55;
 const STEPPED_EDGE: f64 = 0.12;
 const EXACT_EDGE: f64 = 0.2;
-/// Change of a sum over that of the energy: 1 for a flat punch, and up to 1.22 for x^6 (tests/problems/slow_quantities.rs).
-const ENERGY_FACTOR: f64 = 1.3;
+/// Change of a sum over the parts of force and energy: 1 for a flat punch, and up to 1.22 for x^6.
+const SUM_FACTOR: f64 = 1.3;
 
 /// The neighbour of an element.
 #[derive(Clone, Copy, PartialEq)]
@@ -75,7 +75,7 @@ pub fn beyond_ends(problem: &Problem, state: &State) -> f64 {
     let there = || (0..state.p.len()).filter(|&i| state.touches(i));
     let force = in_blocks(there().map(|i| state.p[i].abs()));
     let energy = in_blocks(there().map(|i| state.p[i] * state.u[i]));
-    over(strips, force) + ENERGY_FACTOR * over(released, energy)
+    SUM_FACTOR * (over(strips, force) + over(released, energy))
 }
 
 /// Calls `each(i, k, t)` for each side in the direction k = 0, 1 at which the surface ends beside element i of the contact, with t in elements.

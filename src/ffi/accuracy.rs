@@ -142,7 +142,7 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
             let found = outcome.solver.as_ref();
             given.set_grid(found.map(Solver::grid));
             (given.reached, given.seconds) = (outcome.reached.unwrap_or(-1.0), outcome.seconds);
-            let options = Options { estimates: true, ..translated.options };
+            let options = Options { estimates: outcome.reached.is_none(), ..translated.options };
             let warned = |found: &Solver| {
                 let on_its_grid = Scene { grid: *found.grid(), ..scene.clone() };
                 outputs.warnings(&on_its_grid, &options, &outcome.report, found.state())

@@ -50,6 +50,10 @@ impl Solver {
         if self.own_tables.as_ref().is_none_or(|own| own.view().by_row != given.by_row) {
             return invalid(format!("{} is given, but this solver was set up without", given.name()));
         }
+        if self.own_tables.as_ref().is_some_and(|own| own.view().cross.is_some() != given.cross.is_some()) {
+            let (now, before) = if given.cross.is_some() { ("given", "without") } else { ("not given", "with it") };
+            return invalid(format!("friction->influence_cross is {now}, but this solver was set up {before}"));
+        }
         friction.check_tables(&self.problem.grid)
     }
 

@@ -65,6 +65,28 @@ fn an_array_between_two_doubles_is_refused_by_name() {
     assert!(last_error().starts_with("shear_modulus begins at 0x"), "{}", last_error());
 }
 
+/// Of a batch that problem alone is refused.
+#[test]
+fn a_problem_with_such_an_array_is_refused_by_its_number() {
+    let mut call = Call::new();
+    let handle = call.new_handle();
+    let good = call.scene.known;
+    let (mut bad, mut statuses) = (good, [9; 3]);
+    let bytes = vec![0u8; 8 * call.h.len() + 16];
+    bad.undeformed_distance = bytes.as_ptr().wrapping_add(bytes.as_ptr().align_offset(8) + 4).cast();
+    let scenes = [good, bad, good];
+    // SAFETY: three structs of one size with their arrays; the one at an odd place is not read.
+    let status = unsafe {
+        let (options, none) = (null(), null_mut());
+        contact_normal_solver_solve_batch(handle, 3, scenes.as_ptr(), options, none, null_mut(), statuses.as_mut_ptr())
+    };
+    let bad = CONTACT_NORMAL_INVALID_ARGUMENT;
+    assert_eq!((status, statuses), (bad, [CONTACT_NORMAL_OK, bad, CONTACT_NORMAL_OK]));
+    assert!(last_error().starts_with("problem 1: undeformed_distance begins at 0x"), "{}", last_error());
+    // SAFETY: a handle, not used any more.
+    unsafe { contact_normal_solver_free(handle) };
+}
+
 /// Which tractions a worker of a batch has is not known, so nothing goes on from them; on the handle itself it does.
 #[test]
 fn a_batch_refuses_friction_that_continues() {

@@ -178,3 +178,33 @@ fn elements_at_their_limit_reach_the_border() {
     assert_ne!(report.warnings & CONTACT_NORMAL_WARNING_BORDER, 0, "{message}");
     assert_eq!(report.normal.contact_count, M as i64);
 }
+
+/// A search that begins on few elements: the warnings are those of its last grid. With a limit the error is that of several grids, and known.
+#[test]
+fn a_search_warns_of_its_last_grid() {
+    let h: Vec<f64> = (0..64)
+        .map(|i| 0.02 * 0.16 * ((i % 8) as f64 - 3.5).powi(2) + 0.02 * 0.16 * ((i / 8) as f64 - 3.5).powi(2))
+        .collect();
+    let limit = contact_normal_pressure_limit { limit: 900.0, ..Default::default() };
+    for limit in [null(), &raw const limit] {
+        let mut scene = contact_normal_scene {
+            undeformed_distance: h.as_ptr(),
+            load: CONTACT_NORMAL_PRESCRIBED_FORCE,
+            force: 50.0,
+            pressure_limit: limit,
+            ..Default::default()
+        };
+        (scene.mx, scene.my, scene.dx, scene.dy) = (8, 8, 0.4, 0.4);
+        (scene.shear_modulus, scene.poisson_ratio) = ([82000.0; 2], [0.28; 2]);
+        let mut accuracy = contact_normal_accuracy { target: 0.02, ..Default::default() };
+        let mut report = contact_normal_report::default();
+        // SAFETY: structs with their arrays.
+        let status = unsafe {
+            let no_solver = std::ptr::null_mut();
+            contact_normal_solve_to_accuracy(&scene, null(), &mut accuracy, no_solver, &mut report)
+        };
+        assert_eq!(status, CONTACT_NORMAL_OK, "{}", last_error());
+        assert!(accuracy.mx > 32 && report.normal.contact_count > 50);
+        assert_eq!(report.warnings, 0, "{}", limit.is_null());
+    }
+}

@@ -119,7 +119,7 @@ fn a_host_with_its_own_floating_point_environment_gets_the_same() {
     }
 }
 
-/// All of them, as the folder has them.
+/// All of them, on smaller grids.
 #[test]
 fn the_examples_under_valgrind() {
     let folder = scratch("fortran_valgrind");

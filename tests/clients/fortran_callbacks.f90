@@ -1,5 +1,5 @@
 ! A progress callback that solves with another handle, and one that calls with the handle in use: the first is served, the second refused.
-program fortran_callbacks
+module of_host
   use, intrinsic :: iso_c_binding
   use contact_normal
   implicit none
@@ -11,52 +11,6 @@ program fortran_callbacks
   real(c_double), target :: h(M, M)
   real(c_double) :: ps(M, M), mus(M, M), fx
   integer(c_int32_t) :: inner, outer, calls
-  integer :: ix, iy
-  integer(c_intptr_t) :: in_use
-
-  do iy = 1, M
-    do ix = 1, M
-      h(ix, iy) = 1e-3_c_double*((ix - 8.5_c_double)**2 + (iy - 8.5_c_double)**2)
-      ps(ix, iy) = 900*sqrt(max(0.0_c_double, 1 - ((ix - 8.5_c_double)**2 + (iy - 8.5_c_double)**2)/30))
-    end do
-  end do
-  mus = 0.3_c_double
-  call contact_normal_scene_init(scene)
-  scene%mx = M
-  scene%my = M
-  scene%dx = 1
-  scene%dy = 1
-  scene%shear_modulus = 1
-  scene%poisson_ratio = 0.3_c_double
-  scene%approach = 0.02_c_double
-  call contact_normal_set_undeformed_distance(scene, h)
-
-  ! Another handle: a step of TANG within a step of TANG.
-  call contact_normal_options_init(options)
-  call contact_normal_set_progress(options, with_another)
-  calls = 0
-  call roll(handle, outer, options)
-  call check(calls > 0 .and. outer == CONTACT_NORMAL_OK .and. inner == CONTACT_NORMAL_OK, 'another handle')
-  call contact_normal_solver_free(other)
-
-  ! The normal problem of another handle.
-  call contact_normal_set_progress(options, with_a_normal_problem)
-  calls = 0
-  call check(contact_normal_solver_new(scene, solver=other) == CONTACT_NORMAL_OK, 'a handle')
-  call roll(handle, outer, options)
-  call check(calls > 0 .and. outer == CONTACT_NORMAL_OK .and. inner == CONTACT_NORMAL_OK, 'a normal problem')
-
-  ! The handle in use: it is refused, and stays.
-  call contact_normal_set_progress(options, with_the_same)
-  calls = 0
-  in_use = transfer(handle, in_use)
-  call roll(handle, outer, options)
-  call check(calls > 0 .and. outer == CONTACT_NORMAL_OK, 'the outer call')
-  call check(inner == CONTACT_NORMAL_INVALID_ARGUMENT, 'a handle in use is refused')
-  call check(transfer(handle, in_use) == in_use, 'the handle stays')
-  call contact_normal_solver_free(handle)
-  call contact_normal_solver_free(other)
-  print '(a)', 'all hold'
 
 contains
 
@@ -108,4 +62,55 @@ contains
     print '(2a)', 'fails: ', what
     error stop
   end subroutine
+end module
+
+program fortran_callbacks
+  use of_host
+  implicit none
+  integer :: ix, iy
+  integer(c_intptr_t) :: in_use
+
+  do iy = 1, M
+    do ix = 1, M
+      h(ix, iy) = 1e-3_c_double*((ix - 8.5_c_double)**2 + (iy - 8.5_c_double)**2)
+      ps(ix, iy) = 900*sqrt(max(0.0_c_double, 1 - ((ix - 8.5_c_double)**2 + (iy - 8.5_c_double)**2)/30))
+    end do
+  end do
+  mus = 0.3_c_double
+  call contact_normal_scene_init(scene)
+  scene%mx = M
+  scene%my = M
+  scene%dx = 1
+  scene%dy = 1
+  scene%shear_modulus = 1
+  scene%poisson_ratio = 0.3_c_double
+  scene%approach = 0.02_c_double
+  call contact_normal_set_undeformed_distance(scene, h)
+
+  ! Another handle: a step of TANG within a step of TANG.
+  call contact_normal_options_init(options)
+  call contact_normal_set_progress(options, with_another)
+  calls = 0
+  call roll(handle, outer, options)
+  call check(calls > 0 .and. outer == CONTACT_NORMAL_OK .and. inner == CONTACT_NORMAL_OK, 'another handle')
+  call contact_normal_solver_free(other)
+
+  ! The normal problem of another handle.
+  call contact_normal_set_progress(options, with_a_normal_problem)
+  calls = 0
+  call check(contact_normal_solver_new(scene, solver=other) == CONTACT_NORMAL_OK, 'a handle')
+  call roll(handle, outer, options)
+  call check(calls > 0 .and. outer == CONTACT_NORMAL_OK .and. inner == CONTACT_NORMAL_OK, 'a normal problem')
+
+  ! The handle in use: it is refused, and stays.
+  call contact_normal_set_progress(options, with_the_same)
+  calls = 0
+  in_use = transfer(handle, in_use)
+  call roll(handle, outer, options)
+  call check(calls > 0 .and. outer == CONTACT_NORMAL_OK, 'the outer call')
+  call check(inner == CONTACT_NORMAL_INVALID_ARGUMENT, 'a handle in use is refused')
+  call check(transfer(handle, in_use) == in_use, 'the handle stays')
+  call contact_normal_solver_free(handle)
+  call contact_normal_solver_free(other)
+  print '(a)', 'all hold'
 end program

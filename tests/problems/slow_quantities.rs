@@ -2,7 +2,9 @@
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, PressureLimit, Scene};
-use contact_normal::solver::{quantities, solve_to_accuracy, Accuracy, Lack, Options, Outcome, Quantity, QuantityRow};
+use contact_normal::solver::{
+    quantities, solve, solve_to_accuracy, Accuracy, Lack, Options, Outcome, Quantity, QuantityRow,
+};
 
 type Surface = fn(f64, f64) -> f64;
 
@@ -139,6 +141,24 @@ fn a_stick_area_of_zero_is_not_known_to_be_exact() {
     let accuracy = Accuracy { max_elements: 128 * 128, ..Accuracy::new(0.1).with(Quantity::StickArea, 0.1) };
     let found = solve_to_accuracy(&scene, &Options::default(), &accuracy, None, None).expect("a solvable scene");
     assert_ne!(found.stop, Outcome::Converged, "{}", found.reason);
+}
+
+/// The solver that a search returns is one as any other: a surface that jumps between its elements has the errors of a new solve.
+#[test]
+fn the_solver_of_a_search_has_the_errors_of_a_new_one() {
+    let (grid, h) = on(32, ellipse);
+    let scene = Scene { grid, undeformed_distance: &h, ..scene(Bodies::same(0.5, 0.3), Load::Approach(0.03)) };
+    let found =
+        solve_to_accuracy(&scene, &Options::default(), &Accuracy::new(0.1), None, None).expect("a solvable scene");
+    let mut solver = found.solver.expect("a result");
+    let grid = *solver.grid();
+    let steps: Vec<f64> =
+        on(grid.mx, ellipse).1.iter().enumerate().map(|(i, h)| h + 2e-3 * ((i % grid.mx) / 5 % 2) as f64).collect();
+    let stepped = Scene { grid, undeformed_distance: &steps, ..scene.clone() };
+    let options = Options { estimates: true, ..Options::default() };
+    let (_, again) = solver.solve(&stepped, &options, None, None).expect("a scene");
+    let (_, _, new) = solve(&stepped, &options).expect("a scene");
+    assert!(new.error.force > 0.0 && again.error.force == new.error.force, "{:?} {:?}", again.error, new.error);
 }
 
 /// A roller that ends at |y| = 0.38, anywhere between the elements, with its pressures at their limit beside the ends.

@@ -2,7 +2,7 @@
 
 use std::sync::mpsc::channel;
 use std::sync::OnceLock;
-use std::thread::{scope, yield_now};
+use std::thread::scope;
 
 use par::threads::{made_once, Shared};
 
@@ -36,19 +36,4 @@ fn a_lock_that_is_held_for_long_is_given_up_and_taken_later() {
     }
     drop(held);
     assert_eq!(shared.lock().map(|held| *held), Some(5));
-    // Held for a moment only, it is waited for again.
-    let (begun, has_begun) = channel();
-    scope(|scope| {
-        let shared = &shared;
-        scope.spawn(move || {
-            let held = shared.lock().expect("a free lock");
-            begun.send(()).expect("a receiver");
-            yield_now();
-            drop(held);
-        });
-        has_begun.recv().expect("a sender");
-        while shared.lock().is_none() {
-            yield_now();
-        }
-    });
 }

@@ -61,9 +61,11 @@ def _between_tabs(lines: list[str]) -> list[str] | None:
     most = max((line.count("\t") for line in lines), default=0)
     # Of lines without a number those with as many cells as others are rows of holes.
     lines = [line for line in lines if line.strip() or line and line.count("\t") >= max(1, most - 1)]
-    if not any("\t\t" in line or "\t" in (line[0], line[-1]) for line in lines):
+    if not any(re.search(r"^\t|\t[^\S\t]*\t|\t$", line) for line in lines):
         return None
-    rows = _without_ends([[cell.strip() for cell in line.split("\t")] for line in lines])
+    rows = _without_end([[cell.strip() for cell in line.split("\t")] for line in lines])
+    if all(len(row) > 1 and not row[0] for row in rows) and all(cell for row in rows for cell in row[1:]):
+        rows = [row[1:] for row in rows]
     if any(" " in cell for row in rows for cell in row):
         return None
     if any(len(row) != len(rows[0]) for row in rows):
@@ -71,17 +73,15 @@ def _between_tabs(lines: list[str]) -> list[str] | None:
             warnings.warn("some numbers are parted by several tabs, and lines differ in their cells: tabs in a row are one; write nan for holes", stacklevel=4)
         return None
     # Two tabs between all numbers stand for one.
-    if not any(cell for row in rows for cell in row[1::2]) or all(cell for row in rows for cell in row):
+    if not all(any(cell for row in rows for cell in row[first::2]) for first in (0, 1)) or all(cell for row in rows for cell in row):
         return None
     if empty := [k for k in range(len(rows[0])) if not any(row[k] for row in rows)]:
         warnings.warn(f"column {empty[0]}, counted from 0, has no number: a column of holes", stacklevel=4)
     return ["\t".join(cell or "nan" for cell in row) for row in rows]
 
 
-def _without_ends(rows: list[list[str]]) -> list[list[str]]:
-    """Without the tabs at the beginning of all lines, and at the end of all, or of those that are longer by one."""
-    if all(len(row) > 1 and not row[0] for row in rows):
-        rows = [row[1:] for row in rows]
+def _without_end(rows: list[list[str]]) -> list[list[str]]:
+    """Without the tabs at the end of all lines, or of those that are longer by one."""
     shortest = min(len(row) for row in rows)
     if all(len(row) == shortest and not row[-1] for row in rows):
         return [row[:-1] for row in rows]
