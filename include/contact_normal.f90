@@ -3,8 +3,7 @@
 !
 ! Compile this file with your program and link the library:
 !   gfortran contact_normal.f90 my_program.f90 -lcontact_normal
-! The files contact_normal_....inc, which it includes, stand beside it. With gfortran's -fno-automatic all texts that the module returns
-! are empty; compile this file without it, whatever the rest of the program has.
+! The files contact_normal_....inc, which it includes, stand beside it.
 !
 ! It mirrors contact_normal.h, which says what each member and each call does; what differs in Fortran is said here.
 !   * Arrays are a(mx, my), x first. A call returns a status: 0 OK; > 0 stopped early, outputs hold the best iterate;

@@ -218,7 +218,7 @@ fn the_module_works_with_other_default_kinds() {
 /// Callbacks may call the library with other handles. `-fno-automatic` is usual with Fortran 77.
 #[test]
 fn callbacks_call_the_library() {
-    for (i, flags) in [&["-g", "-O1", "-fcheck=all"][..], &["-g", "-fno-automatic"]].into_iter().enumerate() {
+    for (i, flags) in [&["-g", "-O1", "-fcheck=all"][..], &["-O2", "-fno-automatic"]].into_iter().enumerate() {
         let folder = scratch(&format!("fortran_callbacks_{i}"));
         let program = compile("tests/clients/fortran_callbacks.f90", flags, &folder);
         assert_eq!(run_linked(&program, &[], &folder), "all hold\n", "{flags:?}");
