@@ -48,6 +48,9 @@ const TEXTS: [(i32, &str); 7] = [
 
 /// The warnings in words; none: nothing. Made once, because later solves with a handle allocate nothing.
 pub(super) fn text(warnings: i32) -> &'static CStr {
+    if warnings == 0 {
+        return c"";
+    }
     static ALL: OnceLock<[CString; 1 << TEXTS.len()]> = OnceLock::new();
     let said = |warnings: usize| {
         let said: Vec<&str> =

@@ -18,7 +18,7 @@ use crate::contact::{AdmissibleSet, Freshness, State};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::influence::Coefficients;
-use crate::memory::{blank, reserve};
+use crate::memory::blank;
 use crate::methods::{Change, Policy, Step, Task};
 use crate::scene::Load;
 
@@ -29,10 +29,14 @@ const LARGEST_GRID: usize = 32 * 32;
 /// In messages.
 const METHOD: &str = "the matrix of a direct solution";
 
-fn room<A: Copy + Send + 'static>(n: usize) -> Result<Vec<A>> {
+fn room<A>(n: usize) -> Result<Vec<A>> {
     let mut values = Vec::new();
-    reserve(&mut values, n, METHOD)?;
+    values.try_reserve_exact(n).map_err(|_| no_memory())?;
     Ok(values)
+}
+
+fn no_memory() -> Error {
+    Error::OutOfMemory(format!("no memory for {METHOD}"))
 }
 
 /// Coefficients, and memory for the most elements in contact.
@@ -68,7 +72,7 @@ impl Direct {
             runs: room(MOST_IN_CONTACT + 1)?,
             matrix: room(MOST_IN_CONTACT * MOST_IN_CONTACT)?,
             right: room(2 * MOST_IN_CONTACT)?,
-            scratch: MemBuffer::try_new(scratch).map_err(|_| Error::OutOfMemory(format!("no memory for {METHOD}")))?,
+            scratch: MemBuffer::try_new(scratch).map_err(|_| no_memory())?,
         }))
     }
 
