@@ -25,7 +25,7 @@ def pages(module: str, examples: Examples) -> dict[str, str]:
 
 def procedures(module: str) -> dict[str, tuple[str, str]]:
     """The comment and the code of each public procedure."""
-    found = re.findall(r"((?:^ *!.*\n)+)^ *((?:pure |elemental )*(?:subroutine|function) .*?\))((?: bind| result).*?)?$", module, re.MULTILINE)
+    found = re.findall(r"((?:^ *!.*\n)+)^ *(?:recursive )?((?:pure |elemental )*(?:subroutine|function) .*?\))((?: bind| result).*?)?$", module, re.MULTILINE)
     named: dict[str, tuple[str, str]] = {}
     for comment, code, _rest in found:
         name = re.search(r"(?:subroutine|function) (\w+)", code).group(1)
