@@ -46,11 +46,9 @@ enum Beside {
 /// Sum over the sides at which the surface ends within the contact: `t (pi d/(2 E*) + c) p` times the area of an element, with the
 /// weights `w(i)` of the elements. A direction of one element has no ends here.
 pub fn at_ends<const N: usize>(problem: &Problem, state: &State, weights: impl Fn(usize) -> [f64; N]) -> [f64; N] {
-    let sizes = [state.grid.dx, state.grid.dy];
-    let flexibility = PI / (2.0 * problem.modulus());
     let mut sums = [0.0; N];
-    each_end(problem, state, |i, k, elements| {
-        let part = elements * (flexibility * sizes[k] + problem.layer(i)) * state.p[i] * state.grid.element_area();
+    each_end(problem, state, |i, elements, compliance| {
+        let part = elements * compliance * state.p[i] * state.grid.element_area();
         let weights = weights(i);
         (0..N).for_each(|n| sums[n] += part * weights[n]);
     });
@@ -60,17 +58,18 @@ pub fn at_ends<const N: usize>(problem: &Problem, state: &State, weights: impl F
 /// The relative change of a sum if the surface ends farther out by t: the energy released over the whole one, `(p, u)`, and where pressures are
 /// at their limit their force on the strip over the whole one. Ends on edges of elements change nothing.
 pub fn beyond_ends(problem: &Problem, state: &State) -> f64 {
-    let sizes = [state.grid.dx, state.grid.dy];
-    let flexibility = PI / (2.0 * problem.modulus());
     let (mut strips, mut released) = (0.0, 0.0);
-    each_end(problem, state, |i, k, elements| {
+    each_end(problem, state, |i, elements, compliance| {
         let force = elements * state.p[i].abs();
         match (elements == EXACT_EDGE, state.contact[i]) {
             (true, _) => {}
-            (false, true) => released += force * (flexibility * sizes[k] + problem.layer(i)) * state.p[i].abs(),
+            (false, true) => released += force * compliance * state.p[i].abs(),
             (false, false) => strips += force,
         }
     });
+    if strips == 0.0 && released == 0.0 {
+        return 0.0;
+    }
     let over = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
     let there = || (0..state.p.len()).filter(|&i| state.touches(i));
     let force = in_blocks(there().map(|i| state.p[i].abs()));
@@ -78,10 +77,13 @@ pub fn beyond_ends(problem: &Problem, state: &State) -> f64 {
     SUM_FACTOR * (over(strips, force) + over(released, energy))
 }
 
-/// Calls `each(i, k, t)` for each side in the direction k = 0, 1 at which the surface ends beside element i of the contact, with t in elements.
-fn each_end(problem: &Problem, state: &State, mut each: impl FnMut(usize, usize, f64)) {
+/// Calls `each(i, t, compliance)` for each side at which the surface ends beside element i of the contact, with t in elements and the
+/// compliance `pi d/(2 E*) + c`.
+fn each_end(problem: &Problem, state: &State, mut each: impl FnMut(usize, f64, f64)) {
     let grid = &state.grid;
     let directions = Direction::both(grid, problem.coefficients.repeats(grid));
+    let sizes = [grid.dx, grid.dy];
+    let flexibility = PI / (2.0 * problem.modulus());
     for i in (0..grid.len()).filter(|&i| state.touches(i)) {
         let place = [i % grid.mx, i / grid.mx];
         for k in (0..2).filter(|&k| directions[k].m > 1) {
@@ -96,7 +98,7 @@ fn each_end(problem: &Problem, state: &State, mut each: impl FnMut(usize, usize,
                     }
                     Beside::Hole => STEPPED_EDGE,
                 };
-                each(i, k, elements);
+                each(i, elements, flexibility * sizes[k] + problem.layer(i));
             }
         }
     }

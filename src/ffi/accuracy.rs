@@ -17,7 +17,7 @@ use super::structs::{self, versioned};
 use super::watcher::{watched, Watcher};
 use crate::grid::Grid;
 use crate::scene::Scene;
-use crate::solver::{solve_to_accuracy, Accuracy, Options, Solver, SurfaceCallback};
+use crate::solver::{solve_to_accuracy, Accuracy, Options, Refinement, Solver, SurfaceCallback};
 
 /// Writes the undeformed distance of an mx x my grid of dx x dy elements over the rectangle of the scene into
 /// `undeformed_distance`, `[my][mx]`, x fastest, every value; non-zero cancels. On the calling thread,
@@ -142,12 +142,7 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
             let found = outcome.solver.as_ref();
             given.set_grid(found.map(Solver::grid));
             (given.reached, given.seconds) = (outcome.reached.unwrap_or(-1.0), outcome.seconds);
-            let options = Options { estimates: outcome.reached.is_none(), ..translated.options };
-            let warned = |found: &Solver| {
-                let on_its_grid = Scene { grid: *found.grid(), ..scene.clone() };
-                outputs.warnings(&on_its_grid, &options, &outcome.report, found.state())
-            };
-            let warnings = found.map_or(0, warned);
+            let warnings = warnings(&outputs, &outcome, (&scene, &translated.options));
             outputs.write_report(&outcome.report, found.map_or(&[], |found| found.ledger()), warnings)?;
             // SAFETY: a struct that declares its size; NULL or room for a pointer.
             unsafe {
@@ -162,6 +157,14 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
     };
     // SAFETY: as above.
     guard(|| unsafe { recorded("contact_normal_solve_to_accuracy", options, arguments, solve) })
+}
+
+/// The warnings of a search: those of its last grid. The error is known where a target has one.
+fn warnings(outputs: &Outputs, outcome: &Refinement, (scene, options): (&Scene<'_>, &Options)) -> i32 {
+    let Some(found) = &outcome.solver else { return 0 };
+    let on_its_grid = Scene { grid: *found.grid(), ..scene.clone() };
+    let options = Options { estimates: outcome.reached.is_none(), ..*options };
+    outputs.warnings(&on_its_grid, &options, &outcome.report, found.state())
 }
 
 impl contact_normal_accuracy {

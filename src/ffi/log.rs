@@ -41,10 +41,15 @@ thread_local! {
 
 /// Runs `work` without log messages.
 pub(super) fn quietly<R>(work: impl FnOnce() -> R) -> R {
-    let outer = QUIET.replace(true);
-    let result = work();
-    QUIET.set(outer);
-    result
+    struct Restored(bool);
+    impl Drop for Restored {
+        fn drop(&mut self) {
+            QUIET.set(self.0);
+        }
+    }
+    // After a panic, too.
+    let _restored = Restored(QUIET.replace(true));
+    work()
 }
 
 struct Forward;

@@ -137,32 +137,28 @@ impl Solver {
         let Request { pressure, friction, .. } = *request;
         let limits = self.limits_before(request)?;
         let request = &Request { limits: &limits, ..*request };
-        let bound = |i: usize| request.bound(i);
-        let keeps = friction.previous == Previous::Kept;
+        let (bound, keeps) = (|i: usize| request.bound(i), friction.previous == Previous::Kept);
         if keeps && !self.has_solution {
             return invalid("friction continues, but this solver holds no tractions yet".into());
         }
         self.make_room()?;
-        if !request.start.is_again() {
-            // Those of a step that was refused.
-            self.take_products();
-        }
         self.set_layer(friction);
         let forces = match request.start {
             Start::Held(_) => Forces::NONE,
             _ => Forces::of(friction, &self.grid, bound)?,
         };
-        if keeps && !request.start.is_again() {
-            self.keep_tractions()?;
-            self.keep_particles();
+        if !request.start.is_again() {
+            // Those of a step that was refused.
+            self.take_products();
+            if keeps {
+                self.keep_tractions()?;
+                self.keep_particles();
+            }
         }
         let kept = &self.before;
         let from_rest =
             friction.previous == Previous::None || (0..self.grid.len()).all(|i| before(friction, kept, i) == [0.0; 2]);
-        let rolling = (friction.motion == Motion::SteadyRolling).then(|| Rolling {
-            distance: self.scales.length(friction.distance(&self.grid)),
-            by: friction.elements_rolled(&self.grid),
-        });
+        let rolling = self.steady_rolling(friction);
         let counts = |i: usize| pressure[i] > 0.0 || rolling.is_none() && before(friction, kept, i) != [0.0; 2];
         let window = Rectangle::around(&self.grid, &self.threads, |mut elements| elements.any(counts));
         let mut end = Outcome::Converged;
@@ -191,6 +187,14 @@ impl Solver {
         (self.has_solution, self.is_last) = (true, true);
         report.seconds = began.elapsed().as_secs_f64();
         Ok((end, report))
+    }
+
+    /// The step of steady rolling, in the solver's units.
+    fn steady_rolling(&self, friction: &Friction<'_>) -> Option<Rolling> {
+        (friction.motion == Motion::SteadyRolling).then(|| Rolling {
+            distance: self.scales.length(friction.distance(&self.grid)),
+            by: friction.elements_rolled(&self.grid),
+        })
     }
 
     /// Solves in a window, in the solver's units. Writes the certificate and the products to the report.

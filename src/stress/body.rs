@@ -9,6 +9,15 @@ pub const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "xz", "yz"];
 /// Which loads act: pressure, traction in x, traction in y.
 pub type Loaded = [bool; 3];
 
+/// The longer side of an element, or that across a single line of them: pressures change from element to element over this length.
+pub fn side(grid: &Grid) -> f64 {
+    match (grid.mx, grid.my) {
+        (2.., 1) => grid.dx,
+        (1, 2..) => grid.dy,
+        _ => grid.dx.max(grid.dy),
+    }
+}
+
 /// A half-space with loads on the elements of a grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
@@ -28,12 +37,11 @@ impl Body {
     }
 
     /// A periodic line with square elements: its loads are uniform along them, however long they are (plane strain).
-    pub(super) fn of_square_elements(mut self) -> Body {
-        let Grid { mx, my, dx, dy } = &mut self.grid;
-        match (self.periodic, *mx, *my) {
-            (true, _, 1) => *dy = *dx,
-            (true, 1, _) => *dx = *dy,
-            _ => {}
+    pub fn of_square_elements(mut self) -> Body {
+        let Grid { mx, my, .. } = self.grid;
+        if self.periodic && (mx == 1 || my == 1) {
+            let side = side(&self.grid);
+            (self.grid.dx, self.grid.dy) = (side, side);
         }
         self
     }

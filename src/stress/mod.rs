@@ -32,7 +32,7 @@ mod product;
 mod tensor;
 mod waves;
 
-pub use body::{Body, COMPONENTS};
+pub use body::{side, Body, COMPONENTS};
 pub use depth::{Depth, Maximum, Wanted};
 pub use loads::{Loads, Part};
 pub use of_scene::of_scene;

@@ -178,10 +178,15 @@ fn the_optional_arguments_of_norm_solve_do_what_they_say() {
 
 #[test]
 fn tang_solve_without_the_module_is_that_of_the_module() {
-    for (i, flags) in [&["-g", "-O1", "-fcheck=all"][..], &["-O3", "-ffast-math"]].into_iter().enumerate() {
-        let folder = scratch(&format!("fortran_tang_solve_{i}"));
-        let program = compile("tests/clients/tang_solve_external.f90", flags, &folder);
-        assert_eq!(run_linked(&program, &[], &folder), "the same bits\n", "{flags:?}");
+    prints("tang_solve_external", [&["-g", "-O1", "-fcheck=all"], &["-O3", "-ffast-math"]], "the same bits\n");
+}
+
+/// A program of this folder prints this, compiled with either flags.
+fn prints(name: &str, both: [&[&str]; 2], expected: &str) {
+    for (i, flags) in both.into_iter().enumerate() {
+        let folder = scratch(&format!("fortran_{name}_{i}"));
+        let program = compile(&format!("tests/clients/{name}.f90"), flags, &folder);
+        assert_eq!(run_linked(&program, &[], &folder), expected, "{flags:?}");
     }
 }
 
@@ -218,11 +223,7 @@ fn the_module_works_with_other_default_kinds() {
 /// Callbacks may call the library with other handles. `-fno-automatic` is usual with Fortran 77.
 #[test]
 fn callbacks_call_the_library() {
-    for (i, flags) in [&["-g", "-O1", "-fcheck=all"][..], &["-O2", "-fno-automatic"]].into_iter().enumerate() {
-        let folder = scratch(&format!("fortran_callbacks_{i}"));
-        let program = compile("tests/clients/fortran_callbacks.f90", flags, &folder);
-        assert_eq!(run_linked(&program, &[], &folder), "all hold\n", "{flags:?}");
-    }
+    prints("fortran_callbacks", [&["-g", "-O1", "-fcheck=all"], &["-O2", "-fno-automatic"]], "all hold\n");
 }
 
 /// A program that checks itself, under valgrind and with wider default integers, too.

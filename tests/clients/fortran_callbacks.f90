@@ -11,6 +11,8 @@ module of_host
   real(c_double), target :: h(M, M)
   real(c_double) :: ps(M, M), mus(M, M), fx
   integer(c_int32_t) :: inner, outer, calls
+  integer, parameter :: ANOTHER = 1, A_NORMAL_PROBLEM = 2, THE_SAME = 3
+  integer :: within
 
 contains
 
@@ -28,32 +30,32 @@ contains
                     0.0_c_double, px, py, igs, sx, sy, 1e-6_c_double, 1000_c_int32_t, err, status, solver=solver, options=how)
   end subroutine
 
-  function with_another(progress, user) bind(C) result(cancel)
+  ! The first time a call within the call.
+  function calls_within(progress, user) bind(C) result(cancel)
     type(contact_normal_progress), intent(in) :: progress
     type(c_ptr), value :: user
     integer(c_int32_t) :: cancel
     cancel = merge(1_c_int32_t, 0_c_int32_t, progress%mx < 0 .or. c_associated(user))
     calls = calls + 1
-    if (calls == 1) call roll(other, inner)
+    if (calls > 1) return
+    select case (within)
+    case (ANOTHER)
+      call roll(other, inner)
+    case (A_NORMAL_PROBLEM)
+      inner = contact_normal_solver_solve(other, scene)
+    case (THE_SAME)
+      call roll(handle, inner)
+    end select
   end function
 
-  function with_a_normal_problem(progress, user) bind(C) result(cancel)
-    type(contact_normal_progress), intent(in) :: progress
-    type(c_ptr), value :: user
-    integer(c_int32_t) :: cancel
-    cancel = merge(1_c_int32_t, 0_c_int32_t, progress%mx < 0 .or. c_associated(user))
-    calls = calls + 1
-    if (calls == 1) inner = contact_normal_solver_solve(other, scene)
-  end function
-
-  function with_the_same(progress, user) bind(C) result(cancel)
-    type(contact_normal_progress), intent(in) :: progress
-    type(c_ptr), value :: user
-    integer(c_int32_t) :: cancel
-    cancel = merge(1_c_int32_t, 0_c_int32_t, progress%mx < 0 .or. c_associated(user))
-    calls = calls + 1
-    if (calls == 1) call roll(handle, inner)
-  end function
+  ! A step whose callback makes a call.
+  subroutine roll_with(what)
+    integer, intent(in) :: what
+    within = what
+    calls = 0
+    call roll(handle, outer, options)
+    call check(calls > 0 .and. outer == CONTACT_NORMAL_OK, 'the outer call')
+  end subroutine
 
   subroutine check(condition, what)
     logical, intent(in) :: condition
@@ -87,27 +89,22 @@ program fortran_callbacks
   scene%approach = 0.02_c_double
   call contact_normal_set_undeformed_distance(scene, h)
 
-  ! Another handle: a step of TANG within a step of TANG.
   call contact_normal_options_init(options)
-  call contact_normal_set_progress(options, with_another)
-  calls = 0
-  call roll(handle, outer, options)
-  call check(calls > 0 .and. outer == CONTACT_NORMAL_OK .and. inner == CONTACT_NORMAL_OK, 'another handle')
+  call contact_normal_set_progress(options, calls_within)
+
+  ! Another handle: a step of TANG within a step of TANG.
+  call roll_with(ANOTHER)
+  call check(inner == CONTACT_NORMAL_OK, 'another handle')
   call contact_normal_solver_free(other)
 
   ! The normal problem of another handle.
-  call contact_normal_set_progress(options, with_a_normal_problem)
-  calls = 0
   call check(contact_normal_solver_new(scene, solver=other) == CONTACT_NORMAL_OK, 'a handle')
-  call roll(handle, outer, options)
-  call check(calls > 0 .and. outer == CONTACT_NORMAL_OK .and. inner == CONTACT_NORMAL_OK, 'a normal problem')
+  call roll_with(A_NORMAL_PROBLEM)
+  call check(inner == CONTACT_NORMAL_OK, 'a normal problem')
 
   ! The handle in use: it is refused, and stays.
-  call contact_normal_set_progress(options, with_the_same)
-  calls = 0
   in_use = transfer(handle, in_use)
-  call roll(handle, outer, options)
-  call check(calls > 0 .and. outer == CONTACT_NORMAL_OK, 'the outer call')
+  call roll_with(THE_SAME)
   call check(inner == CONTACT_NORMAL_INVALID_ARGUMENT, 'a handle in use is refused')
   call check(transfer(handle, in_use) == in_use, 'the handle stays')
   call contact_normal_solver_free(handle)

@@ -11,7 +11,7 @@ use crate::grid::Grid;
 use crate::memory::collected;
 use crate::rectangle::Rectangle;
 use crate::scene::Patches;
-use crate::stress::{subsurface_stress, Body, Depth, Loads, Wanted};
+use crate::stress::{side, subsurface_stress, Body, Depth, Loads, Wanted};
 use crate::threads::Threads;
 
 /// The ratio of successive depths.
@@ -113,16 +113,8 @@ impl<'a> Surface<'a> {
             Some(q) => Some([cut(&|i| q[i][0])?, cut(&|i| q[i][1])?]),
             None => None,
         };
-        let side = match (grid.mx, grid.my) {
-            (_, 1) if grid.mx > 1 => grid.dx,
-            (1, _) if grid.my > 1 => grid.dy,
-            _ => grid.dx.max(grid.dy),
-        };
-        let (mut grid, pressure) = (part.grid(&grid), cut(&|i| pressure[i])?);
-        // Loads on a line with two periods are uniform along it, however long its elements are: plane strain.
-        if periodic && (grid.mx == 1 || grid.my == 1) {
-            (grid.dx, grid.dy) = (side, side);
-        }
+        let (side, pressure) = (side(&grid), cut(&|i| pressure[i])?);
+        let Body { grid, .. } = Body { grid: part.grid(&grid), poisson_ratio: 0.0, periodic }.of_square_elements();
         Ok(Some(Surface { grid, side, periodic, pressure, tractions, patches }))
     }
 
