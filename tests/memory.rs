@@ -61,7 +61,7 @@ fn solve_with(scene: &contact_normal_scene, options: &contact_normal_options, al
 fn a_failed_allocation_is_out_of_memory_whichever_it_is() {
     let _alone = alone();
     // An array of one byte an element is large then, and no array of a row or a transform is.
-    let m = 520;
+    let m = 256;
     let mut h = Vec::new();
     let scene = scene(m, &mut h);
     let mut table = vec![0.0; 4 * m * m];
@@ -76,7 +76,7 @@ fn a_failed_allocation_is_out_of_memory_whichever_it_is() {
     (influence.cx, influence.cy, influence.coefficients) = (m as i32, m as i32, table.as_ptr());
     let with_table = contact_normal_scene { influence: &influence, ..scene };
     // Few rows: else the tables would be gigabytes. But not so few that the plans of rows are large: the FFT crate cannot refuse.
-    let my = 32;
+    let my = 64;
     let mx = m * m / my;
     let mut values = vec![0.0; my * my * 2 * mx];
     for (k, row) in values.chunks_exact_mut(2 * mx).enumerate() {
@@ -121,8 +121,8 @@ fn a_failed_allocation_is_out_of_memory_whichever_it_is() {
 #[test]
 fn an_absurd_size_is_out_of_memory() {
     let _alone = alone();
-    // 3.2 GB of zeros that no page stands behind: the operator would be larger still.
-    let m = 20_000;
+    // Zeros that no page stands behind: the operator would be larger still.
+    let m = 8_000;
     let bytes = m * m * size_of::<f64>();
     let flags = libc::MAP_PRIVATE | libc::MAP_ANONYMOUS | libc::MAP_NORESERVE;
     // SAFETY: a new mapping, unmapped below.

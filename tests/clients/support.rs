@@ -5,7 +5,7 @@
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-use std::sync::mpsc;
+use std::sync::{mpsc, OnceLock};
 use std::time::Duration;
 
 use contact_normal::grid::Grid;
@@ -139,7 +139,20 @@ pub fn run_under_valgrind(program: &Path, arguments: &[&str], folder: &Path) -> 
     let mut valgrind = Command::new("valgrind");
     valgrind.args(["--error-exitcode=9", "-q", "--leak-check=full"]);
     valgrind.args(["--show-leak-kinds=definite", "--errors-for-leak-kinds=definite"]);
-    run(valgrind.arg(program).args(arguments).env("LD_LIBRARY_PATH", folder).current_dir(folder))
+    run(valgrind.arg(program).args(arguments).env("LD_LIBRARY_PATH", without_lines()).current_dir(folder))
+}
+
+/// The library without the lines of its source, which valgrind reads for seconds at each start. The names of functions are still there.
+fn without_lines() -> &'static Path {
+    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+    FOLDER.get_or_init(|| {
+        let folder = scratch("without_lines");
+        let library = folder.join("libcontact_normal.so.2");
+        let whole = std::fs::canonicalize(&library).expect("the library");
+        std::fs::remove_file(&library).expect("a link");
+        run(Command::new("strip").args(["--strip-debug", "-o"]).args([&library, &whole]));
+        folder
+    })
 }
 
 /// The measures of a solution, recomputed from its arrays.

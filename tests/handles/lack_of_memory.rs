@@ -7,7 +7,7 @@ use super::{alone, limited_memory, Handle};
 use contact_normal::ffi::*;
 
 /// Elements in each direction: an array of single precision is large then, and none of a row is.
-const M: usize = 128;
+const M: usize = 64;
 const N: usize = M * M;
 /// Of two patches.
 static FACTORS: [f64; 4] = [1.0, 0.5, 0.5, 1.0];

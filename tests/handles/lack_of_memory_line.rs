@@ -8,12 +8,17 @@ use super::{alone, limited_memory};
 use contact_normal::ffi::*;
 
 /// Elements of a line.
-const N: usize = 6000;
-/// Allocations that count: half a number an element. The lists of coarser grids are smaller.
+const N: usize = 5600;
+/// Bytes of allocations that count: half a number an element. The lists of coarser grids are smaller.
 const LARGE: usize = 8 * N / 2;
 
 /// Elastic cylinders, along x or along y; the tangential problem with pressures that are given, or both problems.
-fn solve((mx, my): (usize, usize), modulus: f64, motion: i32, pressures: Option<&[f64]>) -> i32 {
+fn solve(sides: (usize, usize), modulus: f64, motion: i32, pressures: Option<&[f64]>) -> i32 {
+    solve_by(CONTACT_NORMAL_METHOD_AUTO, sides, modulus, motion, pressures)
+}
+
+/// And without friction by the other methods.
+fn solve_by(method: i32, (mx, my): (usize, usize), modulus: f64, motion: i32, pressures: Option<&[f64]>) -> i32 {
     let mut scene = initialised(contact_normal_scene_init);
     let mut friction = initialised(contact_normal_friction_init);
     let h: Vec<f64> = (0..N).map(|i| ((i as f64 + 0.5) / N as f64 - 0.5).powi(2)).collect();
@@ -25,9 +30,9 @@ fn solve((mx, my): (usize, usize), modulus: f64, motion: i32, pressures: Option<
     (friction.motion, friction.creepage, friction.sensitivities) = (motion, [-0.001, 1e-4], 1);
     friction.rolling_direction = if mx > 1 { 0.0 } else { std::f64::consts::FRAC_PI_2 };
     friction.rolling_distance = 1.0 / N as f64;
-    scene.friction = &friction;
+    scene.friction = if method == CONTACT_NORMAL_METHOD_AUTO { &friction } else { null() };
     let mut options = initialised(contact_normal_options_init);
-    (options.tolerance, options.threads) = (1e-3, 1);
+    (options.method, options.tolerance, options.threads) = (method, 1e-3, 1);
     // SAFETY (both): structs with their arrays.
     match pressures {
         Some(p) => unsafe {
@@ -83,6 +88,18 @@ fn a_line_that_rolls_without_memory_is_refused() {
             let what = format!("{sides:?}, modulus {modulus}, motion {motion}");
             let lacks = with_more_and_more(&what, || solve(sides, modulus, motion, None));
             assert!(lacks > 20, "{what}: {lacks}");
+        }
+    }
+}
+
+#[test]
+fn a_line_without_memory_is_refused_by_each_method() {
+    let _alone = alone();
+    for sides in [(N, 1), (1, N)] {
+        for method in CONTACT_NORMAL_METHOD_NORM..=CONTACT_NORMAL_METHOD_PROJECTED_CG {
+            let what = format!("{sides:?}, method {method}");
+            let lacks = with_more_and_more(&what, || solve_by(method, sides, 1.0, 0, None));
+            assert!(lacks > 10, "{what}: {lacks}");
         }
     }
 }

@@ -8,7 +8,7 @@ use super::{alone, limited_memory};
 use contact_normal::ffi::*;
 
 /// Elements in each direction.
-const M: usize = 96;
+const M: usize = 48;
 const N: usize = M * M;
 /// The second is near the surface: with periods images are summed there, too.
 const DEPTHS: [f64; 2] = [2.0, 0.25];

@@ -60,7 +60,7 @@ impl GaussSeidel {
         let px = good_length(2 * mx - 1);
         let rows = RowTransform::new(px)?;
         let nb = rows.bins();
-        let mut row = vec![0.0; px];
+        let mut row = zeros(px, "the smoother")?;
         let mut scratch = rows.scratch()?;
 
         // Transform of the coefficients between rows d apart, for every d.
@@ -91,7 +91,7 @@ impl GaussSeidel {
         }
         kernels.truncate(STRIP * nb);
         let longest = halves.last().map_or(0, |half| half.transform.length());
-        let mut within_row = vec![0.0; mx];
+        let mut within_row = zeros(mx, "the smoother")?;
         influence.fill_row(0, 0, &mut within_row);
         Ok(GaussSeidel {
             mx,
@@ -102,8 +102,8 @@ impl GaussSeidel {
             halves,
             changes: zeros(my * nb, "the smoother")?,
             gathered: zeros(my * nb, "the smoother")?,
-            bins: vec![Complex::default(); nb],
-            columns: vec![Complex::default(); COLUMNS * longest],
+            bins: zeros(nb, "the smoother")?,
+            columns: zeros(COLUMNS * longest, "the smoother")?,
             row,
             scratch,
             rows,
