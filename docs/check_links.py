@@ -1,5 +1,6 @@
 """Checks every relative link and picture of the pages and of README.md: the file exists, and so does the heading behind a #. No page is
-longer than LONGEST lines, and troubleshooting.md has each status and each warning of the header. What registries show has no relative link."""
+longer than LONGEST lines, and troubleshooting.md has each status and each warning of the header. The pages of ALONE
+have no relative link."""
 
 import re
 import sys
@@ -9,7 +10,7 @@ root = Path(__file__).resolve().parent.parent
 
 
 LONGEST = 250
-# What registries of packages show, where no other file of the project is.
+# Pages that registries of packages show without the other files of the project.
 ALONE = ("python/README.md", "packaging/crate.md")
 
 

@@ -1,4 +1,5 @@
-"""Computes tables of creep forces: here, in processes, or on a cluster; what was begun goes on where it was ended."""
+"""Computes tables of creep forces in this process, in several processes or on a cluster. Interrupted tables are
+continued."""
 
 from __future__ import annotations
 
@@ -54,13 +55,14 @@ def creep_force_table(
     so that nothing else matters than a/b and the Poisson ratio, and Kalker's linear theory reads force_x = -C11 xi,
     force_y = -C22 eta - C23 phi, moment = C23 eta - C33 phi. Of a surface creepages, spin, forces and moments are as they are.
 
-    Only what differs is computed. For ellipses xi and phi are >= 0: (-xi, eta, phi) has (-force_x, force_y, moment), and (xi, -eta, -phi)
-    has (force_x, -force_y, -moment). For a surface of like bodies phi >= 0 is enough: with the signs of all three those of
-    forces and moment change.
+    Symmetry gives the other entries. For ellipses xi and phi are >= 0: (-xi, eta, phi) has (-force_x, force_y, moment),
+    and (xi, -eta, -phi) has (force_x, -force_y, -moment). For a surface of like bodies phi >= 0 is enough: (-xi, -eta,
+    -phi) has (-force_x, -force_y, -moment).
 
-    `error` is the sum of three parts, relative to mu N. The first is by how much the entry would change on infinitely fine elements,
-    from a grid with twice as large elements, for forces converge with first order. The second is 1/8 of the largest such change among all entries
-    of the same ellipse, for where the first passes through 0 the next order remains. The third is the residual.
+    `error` is the sum of three parts, relative to mu N. The first is the change of the entry to infinitely fine
+    elements. It is extrapolated from a grid of elements twice as large, because forces converge with first order. The
+    second is 1/8 of the largest such change of the same ellipse. It covers the next order, where the first part passes
+    through 0. The third is the residual.
 
     Parameters
     ----------
@@ -194,7 +196,7 @@ def _computed(plan: Plan, missing: list[int], workers: int, client: Any) -> Iter
             yield jobs[job], job.result()
         stop = None
     finally:
-        # What was given up here need not be computed to its end.
+        # The jobs that are not done are not needed any more.
         if stop is not None:
             stop.set()
         else:
@@ -204,7 +206,7 @@ def _computed(plan: Plan, missing: list[int], workers: int, client: Any) -> Iter
 
 
 def _leave_with_parent(stop: Any) -> None:
-    """Ends this process soon after its parent was killed, for it would wait for work for ever, or has set `stop`.
+    """Ends this process soon after its parent was killed or has set `stop`. Otherwise it would wait for work for ever.
 
     Signals of the terminal are the parent's: it stops its processes.
     """
@@ -215,7 +217,7 @@ def _leave_with_parent(stop: Any) -> None:
             pass
         os._exit(1)
 
-    # That of a fork server is not the one who asks for the work, but it ends with it.
+    # With a fork server, the parent is the server. It ends with the process that asks for the work.
     threading.Thread(target=watch, args=(os.getppid(),), daemon=True).start()
 
 
@@ -234,6 +236,6 @@ def _assembled(plan: Plan, planes: Mapping[int, Mapping[str, Any]]) -> CreepForc
 
 
 def _are_alike(grid: Mapping[str, Any]) -> bool:
-    """Whether the bodies are: pressures then displace nothing sideways."""
+    """Whether the bodies are alike. Then pressures cause no sideways displacement."""
     shear, poisson = (np.broadcast_to(np.asarray(grid[name], dtype=float), (2,)) for name in ("shear_modulus", "poisson_ratio"))
     return bool((1.0 - 2.0 * poisson[0]) / shear[0] == (1.0 - 2.0 * poisson[1]) / shear[1])

@@ -1,4 +1,4 @@
-"""What numbers of friction may be meant otherwise."""
+"""Remarks on numbers of friction that are probably in the wrong unit."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from ._constants import MOTION_SHIFT, PRESCRIBED_TANGENTIAL_FORCE
 if TYPE_CHECKING:
     from ._arguments import Doubles
 
-# Parts of the rolling speed that are more than wheels slip in most cases.
+# Most wheels have smaller creepages.
 _LARGE = 0.05
-# Nor are coefficients so large.
+# Surfaces have smaller coefficients of friction.
 _STICKY = 5.0
 _IS_LENGTH = "the motion of friction is not given: it is a SHIFT, whose creepage is a length, and whose spin an angle"
 
 
 @dataclass(frozen=True)
 class Remarks:
-    """What the caller of an effect of friction should know of it.
+    """Remarks for the caller on the friction of a scene.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class Remarks:
         return self._lines([abs(one) for one in self.effect.creepage], abs(self.effect.spin))
 
     def of_entries(self, entries: Doubles) -> str:
-        """Lines about a table of motions, which stand in the place of that of the effect."""
+        """Remarks on the motions of a table. They replace the motion of the effect."""
         if not len(entries):
             return self._lines([0.0, 0.0], 0.0)
         *given, spin = np.abs(np.where(np.isfinite(entries), entries, 0.0)).max(axis=0).tolist()
@@ -60,7 +60,7 @@ class Remarks:
         largest, by_spin = max(creepage), spin * self.length
         if effect.motion == MOTION_SHIFT:
             return "\n".join(found + ([_IS_LENGTH] if not self.has_motion and (largest > 0.0 or spin > 0.0) else []))
-        # Laws are for creepages of which friction falls.
+        # With a law of friction large creepages are usual.
         if largest > _LARGE and not effect.law:
             found.append(f"a creepage of {largest:g} is this part of the rolling speed: 0.1 % is 1e-3")
         if by_spin > _LARGE:

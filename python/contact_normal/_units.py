@@ -1,4 +1,4 @@
-"""The units of lengths and forces that a caller names, and those of all else that follow from them."""
+"""Names of the units of lengths and forces, and the units that follow from them for pressures, areas and moments."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def checked(units: Any) -> Units:
 
 
 def same_length(one: str, other: str) -> bool:
-    """Whether two names are of one unit of length: symbols, or words as NetCDF's conventions have them."""
+    """Whether two names mean the same unit of length. They may be symbols, or words as in the conventions of NetCDF."""
     return _symbol(one) == _symbol(other)
 
 
@@ -54,7 +54,7 @@ def in_pascal(units: Units) -> float | None:
 
 
 class WithUnits:
-    """What is told in units that may be named."""
+    """An object whose units may have names."""
 
     _units: Units = None
 
@@ -69,7 +69,7 @@ class WithUnits:
 
 
 def _symbol(name: str) -> str:
-    """The symbol of a unit of length that is named by a word, in British or American English, one or several."""
+    """The symbol of a unit of length. The name may be a word: British or American, singular or plural."""
     word = re.fullmatch(r"(nano|micro|milli|centi|)met(?:er|re)s?|(micron)s?", name.strip().lower())
     return {"nano": "nm", "micro": "um", "milli": "mm", "centi": "cm", "": "m", None: "um"}[word[1]] if word else _latin(name.strip())
 
@@ -80,7 +80,7 @@ def _latin(name: str) -> str:
 
 
 def unit(kind: str, units: Units) -> str:
-    """That of a "length", "force", "pressure", "area" or "moment"; "" where none are known."""
+    """The unit of a "length", "force", "pressure", "area" or "moment"; "" without `units`."""
     if units is None:
         return ""
     if kind == "pressure" and (known := _PRESSURES.get((_latin(units[0]), _latin(units[1])))):
@@ -95,7 +95,7 @@ def with_unit(value: str, kind: str, units: Units) -> str:
 
 
 def label(name: str, kind: str, units: Units) -> str:
-    """What stands at an axis, with raised exponents."""
+    """The label of an axis: a name and its unit, with raised exponents."""
     return f"{name} [{_raised(unit(kind, units))}]" if units else name
 
 

@@ -26,7 +26,8 @@ class Profiles(unittest.TestCase):
         inclined = profiles.Track(rail(), inclination=CONE).placed().curve()
         y, z, _, _ = inclined.at(inclined.between(20))
         self.assertAlmostEqual(z.min(), 0.0, delta=1e-6)
-        # The head was symmetric: an arc whose top is now CONE HEAD further to the field side in it than before, from gauge face to gauge face.
+        # The head is a symmetric arc. The inclination moves its top by CONE HEAD to the field side, relative to the
+        # middle of the gauge faces.
         inner, outer = np.interp(10.0, z[: z.argmin()][::-1], y[: z.argmin()][::-1]), np.interp(10.0, z[z.argmin() :], y[z.argmin() :])
         self.assertAlmostEqual(y[z.argmin()] - 0.5 * (inner + outer), np.arctan(CONE) * HEAD, delta=1.0)
 
@@ -47,7 +48,8 @@ class Profiles(unittest.TestCase):
         np.testing.assert_allclose(np.diff(curve.t), np.hypot(np.diff(y), np.diff(z)), rtol=1e-13)
         for points, values, slopes in ((y, 0, 2), (z, 1, 3)):
             np.testing.assert_allclose(curve.at(curve.t)[values], points, atol=1e-13)
-            # It is a cubic between points, so differences of its derivative, a parabola, are exact second derivatives at the middle of two places.
+            # Between points the spline is cubic and its derivative a parabola, so central differences of the derivative
+            # are exact.
             step = 1e-3
             before, after = curve.at(curve.t[1:-1] - 1e-9)[slopes], curve.at(curve.t[1:-1] + 1e-9)[slopes]
             np.testing.assert_allclose(before, after, atol=1e-7)
@@ -57,7 +59,8 @@ class Profiles(unittest.TestCase):
 
             left = 2 * second(curve.t[1:-1] - step) - second(curve.t[1:-1] - 2 * step)
             right = 2 * second(curve.t[1:-1] + step) - second(curve.t[1:-1] + 2 * step)
-            # Second derivatives are linear: from both sides to one value, and to 0 at the ends.
+            # Second derivatives are linear between points. Extrapolated from both sides they agree, and they are 0 at
+            # the ends.
             np.testing.assert_allclose(left, right, atol=1e-8)
             for end, inwards in ((curve.t[0], step), (curve.t[-1], -step)):
                 self.assertAlmostEqual(2 * second(end + inwards) - second(end + 2 * inwards), 0.0, delta=1e-8)

@@ -1,4 +1,4 @@
-"""What counts as a spike: nothing of a surface that is as it should be, and no neighbour of a spike."""
+"""Spikes are found. Elements of a sound surface and neighbours of a spike do not count as spikes."""
 
 import unittest
 import warnings
@@ -57,7 +57,7 @@ class Lays(unittest.TestCase):
             counts.append(int(found.spikes.sum()))
             measured = found.removed
         self.assertEqual(counts, [5, 4, 1, 0], "the spike and four corners, four edges, the middle")
-        # An element of the surface that is alone is none.
+        # A measured element among holes is no spike.
         z = rough((64, 64))
         for iy, ix in ((20, 30), (0, 0), (63, 12)):
             around = np.maximum(*np.abs(np.mgrid[-iy : 64 - iy, -ix : 64 - ix])) == 1

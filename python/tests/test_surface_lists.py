@@ -1,4 +1,5 @@
-"""Lists of points: on their grid where they are one, refused with advice elsewhere; and tilts that are large beside the roughness."""
+"""Lists of points are read if they form a grid, and refused with advice otherwise. Large tilts of rough surfaces are
+balanced."""
 
 import tempfile
 import unittest
@@ -37,7 +38,7 @@ class Lists(unittest.TestCase):
             warnings.simplefilter("error")
             for columns in ((x, y, z), (x[order], y[order], z[order]), (z[order], x[order], y[order]), (np.arange(63.0), x, y, z)):
                 self.assert_grid(self.read(*columns))
-            # A plane over x and y has even levels, too.
+            # The heights of a plane are evenly spaced, too, but are no coordinates.
             np.testing.assert_allclose(self.read(x, y, 0.1 * x).z, np.tile(0.1 * self.x, (7, 1)))
         self.path = self.path.with_suffix(".xyz")
         self.assert_grid(self.read(*(one[order] for one in (x, y, z))))
@@ -139,10 +140,10 @@ class Units(unittest.TestCase):
         nanometres = 5.0 * np.random.default_rng(1).normal(size=(64, 64))
         with self.assertWarnsRegex(UserWarning, "half of the slopes in x are steeper than 6[12]: heights and sizes of elements must be in one unit"):
             surface.heights(nanometres, size=(5.0, 5.0))
-        # A ground face of .02 um in um, beside elements of 20 um in mm.
+        # A ground face of .02 um: heights in um, element sizes (20 um) in mm.
         with self.assertWarnsRegex(UserWarning, "half of the slopes in x are steeper than 0.9"):
             surface.heights(0.004 * nanometres, size=(1.28, 1.28))
-        # An AFM's heights in m beside um.
+        # An AFM: heights in m, element sizes in um.
         with self.assertWarnsRegex(UserWarning, "nine of ten slopes in x are below 1.5e-07: heights and sizes of elements must be in one unit"):
             surface.heights(1e-9 * nanometres, size=(5.0, 5.0))
         with warnings.catch_warnings():
@@ -162,7 +163,8 @@ class Tilts(unittest.TestCase):
         level = surface.balance(surface.gap(surface.heights(rough, 0.03, 0.03)), 10.0, young_modulus=210e3, poisson_ratio=0.3)
         tilted = surface.gap(surface.heights(rough + 0.2 * u[None, :] - 0.1 * u[:, None], 0.03, 0.03))
         found = surface.balance(tilted, 10.0, young_modulus=210e3, poisson_ratio=0.3)
-        # The same body: the tilts differ by what was added, to the tolerance of the centre of the pressures, 1e-4 of the grid.
+        # The body is the same, so the tilts differ by the added tilt. The tolerance follows from that of the centre of
+        # the pressures, 1e-4 of the grid.
         slope = u[1] - u[0]
         np.testing.assert_allclose(np.subtract(found.tilt, level.tilt), (-0.2 * slope / 0.03, 0.1 * slope / 0.03), atol=1e-5)
 

@@ -45,6 +45,11 @@ pub trait Effect {
     /// The stresses below the surface of body 1 (`b` is 0) or 2 with it.
     fn stresses(&self, b: usize, scene: &Plain<'_>) -> Stresses<'_>;
 
+    /// The reason in the refusal of another effect that it excludes.
+    fn why_excluded(&self, _other: &str) -> &'static str {
+        "this version does not solve them together"
+    }
+
     /// Whether the effect is in effect in a scene.
     fn is_one(&self, _scene: &Plain<'_>) -> bool {
         true

@@ -247,6 +247,14 @@ impl Effect for Friction<'_> {
         }
     }
 
+    fn why_excluded(&self, other: &str) -> &'static str {
+        match other {
+            "influence" if self.influence.is_none() => "they are solved together with friction->influence",
+            "row_tables" if self.influence.is_none() => "they are solved together with friction->row_tables",
+            _ => "this version does not solve them together",
+        }
+    }
+
     fn check(&self, grid: &Grid) -> Result<()> {
         self.check_numbers()?;
         self.check_coefficients(grid)?;

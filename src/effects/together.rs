@@ -65,7 +65,7 @@ pub(super) fn refuse_together(
     say: impl Fn(&str) -> String,
 ) -> Result<()> {
     match effect.properties().excludes.iter().find(|other| is_there(other)) {
-        Some(other) => Err(Error::Unsupported(format!("{}; this version does not solve them together", say(other)))),
+        Some(other) => Err(Error::Unsupported(format!("{}; {}", say(other), effect.why_excluded(other)))),
         None => Ok(()),
     }
 }

@@ -25,9 +25,10 @@ pub struct contact_normal_coating {
 
 versioned! { contact_normal_coating, contact_normal_coating_init, 32 }
 
-/// The displacement of a coated body with this `shear_modulus` (+infinity: rigid) and `poisson_ratio` below, by a pressure wave: the amplitude of the
-/// displacement over that of the pressure, for `wave_number` (2 pi over the wave's length) > 0. To compare a coating with a formula of
-/// one's own: `(1 - nu)/(G k)` for a body of one material. Since 0.2.
+/// Writes the `compliance` of a coated body under a pressure wave: the amplitude of the displacement over that of the
+/// pressure. `shear_modulus` (+infinity: rigid) and `poisson_ratio` are those of the body below the coating.
+/// `wave_number` is 2 pi over the wavelength, > 0. Compare it with a formula of your own; a body of one material has
+/// `(1 - nu)/(G k)`. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_coating_compliance(
     coating: *const contact_normal_coating,

@@ -13,7 +13,7 @@ use super::structs::{self, Versioned};
 
 /// Sets the option of this `name` to the `value` of a text: "tolerance" to "1e-8", "method" to "PROJECTED_CG" (or "METHOD_PROJECTED_CG", or
 /// "4"). Upper and lower case are the same, blanks around do not matter, and numbers may be written as in Fortran, "1d-8". For hosts that
-/// read options from a file. INVALID_ARGUMENT: there is no such option, or the text is no value of it; the message lists those that exist.
+/// read options from a file. INVALID_ARGUMENT: there is no such option, or the text is no value of it; the message has similar names, or all.
 /// The call that uses a number checks its range. Callbacks, `cycle`, `stop` and `dump` are set by the program. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_set_option(

@@ -177,7 +177,8 @@ pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Opt
         }
         _ => String::new(),
     };
-    let mut message = format!("{} after {cycles} cycles{products}; the residual is {residual:e}", why(stop));
+    let s = if cycles == 1 { "" } else { "s" };
+    let mut message = format!("{} after {cycles} cycle{s}{products}; the residual is {residual:e}", why(stop));
     if stop != Outcome::Cancelled && residual <= report.tolerance && report.friction.is_none() {
         let Certificate { violation, complementarity, .. } = report.measures.certificate;
         message += &format!(", the violation {violation:e} and the complementarity {complementarity:e}");

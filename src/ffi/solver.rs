@@ -106,8 +106,8 @@ pub unsafe extern "C" fn contact_normal_solver_new(
     guard(|| unsafe { recorded("contact_normal_solver_new", options, arguments, set_up) })
 }
 
-/// Solves for the undeformed distance, the load and the pressure limit of `scene`. Grid, bodies, layer, period and patches must be those
-/// of the set-up; what differs is refused by name. `scene->influence` and `scene->row_tables` may be NULL: those of the solver. If they
+/// Solves for the undeformed distance, the load and the pressure limit of `scene`. Grid, bodies and their branches, layer, coatings, period
+/// and patches must be those of the set-up; what differs is refused by name. `scene->influence` and `scene->row_tables` may be NULL: those of the solver. If they
 /// are not NULL, each solve reads and compares them. Other coefficients need `contact_normal_solver_set_influence`. `fields`, `report`
 /// NULL: not wanted. After a first solve, further ones of the same kind allocate nothing, with one thread and without coefficients to
 /// compare (docs/conventions.md, "Many solves"). Since 0.1.

@@ -21,7 +21,7 @@ use crate::threads::Threads;
 /// and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, a `period` in both directions,
 /// and `patches` matter: below an element of a patch the loads on another one count times the factor between both, and below one of no patch
 /// all loads in full. With a `coating` on this body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options (NULL:
-/// the defaults) `threads`, `progress`, `max_seconds` and `stop` matter; a cycle is a depth. CANCELLED, or ITERATION_LIMIT by `max_seconds`: the
+/// the defaults) `threads`, `progress`, `max_seconds`, `stop` and `dump` matter; a cycle is a depth. CANCELLED, or ITERATION_LIMIT by `max_seconds`: the
 /// depths done so far are written, others are left alone. Loads must lie below 1e304. Without a depth the largest stresses are left alone. Since 0.2.
 #[no_mangle]
 pub unsafe extern "C" fn contact_normal_subsurface_stress(

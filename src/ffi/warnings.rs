@@ -31,19 +31,19 @@ const TEXTS: [(i32, &str); 7] = [
     (CONTACT_NORMAL_WARNING_BORDER, "contact reaches the border of the grid: a larger grid may carry more"),
     (
         CONTACT_NORMAL_WARNING_ONE_ELEMENT,
-        "one element is in contact: smaller elements, or the units of lengths and pressures",
+        "one element is in contact: take smaller elements, or check the units of lengths and pressures",
     ),
     (
         CONTACT_NORMAL_WARNING_SPIKE,
-        "one element carries more than half of the force: smaller elements, or a wrong value of h",
+        "one element carries more than half of the force: take smaller elements, or look for a wrong value of h",
     ),
     (CONTACT_NORMAL_WARNING_ERROR_UNKNOWN, "the error is not known"),
     (
         CONTACT_NORMAL_WARNING_RANGE,
-        "elements snap alone, for they are too large for the range of the attraction: smaller elements, or a longer range",
+        "elements snap alone, for they are too large for the range of the attraction: take smaller elements, or a longer range",
     ),
-    (CONTACT_NORMAL_WARNING_ATTRACTION, "the attraction reaches the border of the grid: a larger grid"),
-    (CONTACT_NORMAL_WARNING_LAW, "friction falls so steeply that there may be several solutions; this is the one that friction.branch asks for: a larger memory distance, or a stiffer layer"),
+    (CONTACT_NORMAL_WARNING_ATTRACTION, "the attraction reaches the border of the grid: take a larger grid"),
+    (CONTACT_NORMAL_WARNING_LAW, "friction falls so steeply that there may be several solutions; this is the one that friction.branch asks for: take a larger memory distance, or a stiffer layer"),
 ];
 
 /// The warnings in words; none: nothing. Made once, because later solves with a handle allocate nothing.

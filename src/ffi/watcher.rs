@@ -1,4 +1,5 @@
-//! The questions after each cycle: the caller's progress callback, a limit of time, and a stop from another thread.
+//! Ends a solve early. After each cycle it asks the progress callback, the limit of time and the stop of another
+//! thread.
 
 use std::sync::atomic::{AtomicI32, Ordering};
 use std::time::{Duration, Instant};
@@ -45,7 +46,7 @@ impl Watcher {
         watches.then_some(Watcher { given, end, reason: None })
     }
 
-    /// Whether to cancel; once it did, for good.
+    /// Whether to cancel. After one yes all later answers are yes.
     fn told(&mut self, progress: &Progress) -> bool {
         if self.reason.is_some() {
             return true;
@@ -91,7 +92,7 @@ impl Watcher {
     }
 }
 
-/// The reason in messages of a solve that was cancelled, where nothing else did it.
+/// The reason in the message of a cancelled solve, unless `stop` or the limit of time cancelled it.
 const CANCELLED: &str = "the progress callback cancelled";
 
 /// Why a loop ended, in words.

@@ -31,7 +31,8 @@ pub struct Operators {
     pub rolling: Option<(Rolling, Sweep)>,
     /// A layer between the bodies, if it is not uniform.
     pub excess: Option<Excess>,
-    /// The displacement of an element by a unit traction on itself, in steady rolling its change in a step; the larger of both directions.
+    /// The displacement of an element by a unit traction on itself, the larger of both directions. In steady rolling:
+    /// the change of this displacement in a step.
     pub self_influence: f64,
     /// The self-influence without rolling.
     a0: f64,
@@ -43,8 +44,8 @@ pub struct Operators {
 }
 
 impl Operators {
-    /// The operators on a grid, with coefficients that reach far enough: products in double precision, or only in single precision if `single`.
-    /// Iterations need further operators, see [`Operators::prepare`].
+    /// Sets up the products on a grid: in single precision if `single`, otherwise in double precision. The coefficients
+    /// must reach far enough. Iterations need further operators: see [`Operators::prepare`].
     pub fn new(
         quadrant: &Quadrant,
         grid: &Grid,
@@ -102,7 +103,7 @@ impl Operators {
         self.a0
     }
 
-    /// The influence of element k on itself, including its whole layer; in steady rolling, over a step.
+    /// The influence of element k on itself, with the compliance of its layer. In steady rolling: its change in a step.
     pub fn own_influence(&self, k: usize) -> f64 {
         let stays = self.rolling.as_ref().map_or(0.0, |(_, sweep)| sweep.own());
         self.self_influence + self.excess.as_ref().map_or(0.0, |excess| (1.0 - stays) * excess.at(k))

@@ -56,7 +56,8 @@ pub enum Start<'a> {
     Before,
     /// From the last result: the same step once more with other pressures. The state before the step is kept.
     Again,
-    /// As `Again`, with creepages, times the length rolled, in place of given forces, which are found.
+    /// As `Again`, but with given creepages, times the length rolled. The forces, which the friction prescribes, are
+    /// found.
     Held(Vector),
     /// From the last result.
     Last,

@@ -1,4 +1,4 @@
-//! The loop: all promises about a result are kept here, for all methods.
+//! The iteration loop of all methods. It alone checks the conditions that a result must satisfy.
 //!
 //! ```text
 //! repeat
@@ -37,7 +37,7 @@ pub fn iterate<S: AdmissibleSet>(
         // 2. p = 0 in E. 3. A step of the method on C.
         let products = task.monitor.count.matrix_products;
         let change = step(method, task)?;
-        // Only a product certifies: u may be a combination of earlier solutions.
+        // Only a fresh product certifies: without one, u may be a linear combination of earlier displacements.
         let is_certain = task.state.u_is == Freshness::Exact && task.monitor.count.matrix_products > products;
         if change.gives_up && !is_certain {
             return Ok(Outcome::Stagnated);
@@ -58,7 +58,8 @@ pub fn iterate<S: AdmissibleSet>(
         // 5. Go on if C has changed. 6. Go on if the accuracy is not reached.
         if task.state.u_is == Freshness::Exact && goal.holds(&survey, change.update, set) && task.carries() {
             chatter += u32::from(changes > 0);
-            // If bodies fit up to round-off, round-off makes elements enter. After some steps the certificate decides although C changes.
+            // Where the bodies fit up to round-off, round-off makes elements enter C. So after some steps the
+            // certificate alone decides, even if C still changes.
             let fits = survey.residual == 0.0 && survey.violation == 0.0 && all_stay(task.state, set);
             if changes == 0 || fits || policy.exchanged_by_loop && chatter > policy.chatter {
                 task.monitor.survey = Some(last);
@@ -79,8 +80,8 @@ pub fn iterate<S: AdmissibleSet>(
     Ok(task.monitor.interrupted())
 }
 
-/// A step and its products. Coefficients of an elastic body are positive definite, so only round-off violates this, and
-/// the method gives up. A caller's table is refused.
+/// Does a step and counts its products. The operator of an elastic body is positive definite. If a step finds that it
+/// is not, round-off is the cause, and the method gives up. A caller's table is refused in this case.
 fn step<S: AdmissibleSet>(method: &mut dyn Step<S>, task: &mut Task<'_, '_, S>) -> Result<Change> {
     let change = match method.step(task) {
         Err(Error::NotPositiveDefinite(message)) if !task.problem.given => {
@@ -112,7 +113,7 @@ fn certify<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, change: &Change, left: 
     Ok(survey)
 }
 
-/// (4.2): lets elements enter C. Returns their number, and the survey with them.
+/// (4.2): moves elements that penetrate into C. Returns their number, and the survey of the new C.
 fn let_enter<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, survey: Survey) -> (usize, Survey) {
     let penetrates = !S::FIXED && survey.violation > 0.0;
     match if penetrates { admit(task.state, task.set) } else { 0 } {

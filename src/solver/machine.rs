@@ -3,7 +3,7 @@
 //! A product of n elements takes `n log n` operations, but its arrays exceed one cache after the other, at sizes that
 //! depend on the machine. So products of half-spaces of 32 x 32 to 256 x 256 elements are timed when a process first
 //! predicts seconds. Each is timed a few times, and the least time counts. All takes a few milliseconds on one thread.
-//! Threads that predict at the same time each measure. Between two of these sizes seconds grow with a power of the
+//! Threads that predict at the same time measure separately. Between two of these sizes seconds grow with a power of the
 //! number of elements, beyond the last with the power between the last two. Bounds on the powers limit the error on a
 //! busy machine. No solve depends on these times.
 
@@ -20,7 +20,8 @@ use crate::scene::{Bodies, Load, Scene};
 const SIZES: [usize; 4] = [32, 64, 128, 256];
 /// Products on each grid; the first ones are slow.
 const PRODUCTS_PER_GRID: usize = 4;
-/// Least and largest power of the number of elements with which seconds of a product, and at most of a solve, grow.
+/// Least and largest exponent of the growth of seconds with the number of elements, of a product. The largest holds for
+/// a solve, too.
 const POWERS: (f64, f64) = (1.0, 1.2);
 /// The power without timings (docs/performance.md).
 const GROWTH: f64 = 1.08;
@@ -30,7 +31,7 @@ const LEAST_SETUP_GROWTH: f64 = 0.1;
 pub const NEXT_GRID_RATIO: f64 = 5.0;
 /// Largest growth of the number of products with a doubling.
 pub const MOST_PRODUCTS_RATIO: f64 = 1.25;
-/// Least products of a sample that counts for seconds, relative to the last sample.
+/// A sample counts for seconds if it has at least this part of the products of the last sample.
 const LEAST_PRODUCTS: f64 = 0.5;
 
 /// The cost of a solve.

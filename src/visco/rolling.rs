@@ -10,10 +10,10 @@
 //!
 //! a is smooth except at the edges of the element. Intervals end there, and panels get shorter towards them: in the
 //! element's own row down to a fraction of its shorter side, in other rows down to the distance from the edge. That
-//! distance is short if elements are long in x. Lengths are in elements, and times in passages of one element. To all
-//! digits, W is a for a time below [`SHORTEST_TIME`], and 0 for a time above [`LONGEST_TIME`]. So such times are set to
-//! these bounds. Element sizes and compliances are split into a number near 1 and a power of two. The table is
-//! multiplied by that power at the end.
+//! distance is short if elements are long in x. Lengths are in elements, and times in passages of one element. In
+//! double precision W equals a for times below [`SHORTEST_TIME`], and 0 for times above [`LONGEST_TIME`]. So these two
+//! are the bounds of all times. Element sizes and compliances are split into a number near 1 and a power of two. The
+//! table is multiplied by that power at the end.
 
 use super::modes::Mode;
 use super::series::Series;
@@ -28,7 +28,8 @@ const NODES: usize = 12;
 /// The longest panel, and the distance after which `exp(-s/L)` is negligible (4e-18), in L.
 const LONGEST_PANEL: f64 = 2.0;
 const DECAYED: f64 = 40.0;
-/// Panels next to an edge: each ends at this fraction of the distance at which it begins, so that 12 nodes give 14 digits.
+/// For panels near an edge: the distance of the near end from the edge over that of the far end. With this ratio 12
+/// nodes give 14 digits.
 const PANEL_RATIO: f64 = 0.35;
 /// The last panel at an edge is this fraction of the shorter side of the element. The slope of `a` grows there as a logarithm. The rule integrates it
 /// with an error of 5e-5 of the square of the panel's length.

@@ -24,31 +24,33 @@ if TYPE_CHECKING:
 # Steeper faces are cut: z is needed as a function of y. Flanges are at most 75 degrees.
 STEEPEST = np.deg2rad(85.0)
 
-# No profile is so large, in mm: what is further from the median stands for "not measured".
+# No profile is this large, in mm. A point further than this from the median is a fill value.
 _FAR = 500.0
 
 # Curvatures of wheels and rails are up to 0.1 per mm. 1 um of noise on points 0.1 mm apart changes them by 0.3 from point to point.
 _ROUGH = 0.1
 
-# A flange is higher than that above the tread, in mm, and lower than the second number.
+# Least and largest height of a flange above the tread, in mm.
 _FLANGE, _HIGHEST = 12.0, 45.0
 
-# From a point to the next one no profile goes back by this part of its width.
+# From one point to the next, y never decreases by more than this part of the width of a profile.
 _BACKWARDS = 0.3
 
-# Treads are lower on the side of the flange, unless they are level to this, in mm.
+# A tread is lower on the side of the flange, or it is level within this length, in mm.
 _LEVEL = 0.05
 
 # Points closer than this, in mm, count as one: their directions are round-off of a file of eight digits.
 CLOSEST = 1e-3
 
-# Behind a face the next points lie up or down. Where one of so many lies mainly beside it, the profile goes on: the points are out of order.
+# Beyond a steep face the next points lie above or below it. If one of this many points lies mainly beside it, the
+# profile continues there, and the points are out of order.
 _BEHIND = 5
 
-# Without one point that is far off the profile goes on in its direction, to this cosine from point to point.
+# If an outlier is left out, the profile continues smoothly: the cosine of each change of direction exceeds this.
 _AHEAD = 0.9
 
-# A spike leaves the line through its neighbours by this length, in mm, and by so many times as much as most of so many points around it.
+# The distance of a spike from the line through its neighbours exceeds this length, in mm, and this multiple of the
+# median distance of this many points around it.
 _SPIKE, _TIMES, _AROUND = 0.03, 10.0, 12
 
 
@@ -73,7 +75,7 @@ class Profile(Short):
     z: Doubles
     kind: str
     name: str = ""
-    # How far off it may lie along its normal, if it was smoothed: what `left_open` returns.
+    # Possible errors of the points along the normal, if the profile was smoothed: the result of `left_open`.
     _open: Doubles | None = dataclasses.field(default=None, init=False)
 
     def __post_init__(self) -> None:
@@ -135,16 +137,18 @@ class Profile(Short):
         return self._with(c * self.y + s * self.z, c * self.z - s * self.y, self._open)
 
     def _with(self, y: Doubles, z: Doubles, is_open: Doubles | None) -> Profile:
-        """This profile with other points, whose places along the normal are open by `is_open`."""
+        """This profile with other points. `is_open` has their possible errors along the normal."""
         made = dataclasses.replace(self, y=y, z=z)
         object.__setattr__(made, "_open", is_open)
         return made
 
     def smoothed(self, wave_length: float) -> Profile:
-        """Without waves shorter than a length in mm, for measured profiles, whose noise would become contact.
+        """Removes waves shorter than a length, in mm. Use it for measured profiles, where noise would change the
+        contact.
 
-        y and z over the length of the polygon become the smoothing splines of Reinsch (1967): a wave of length L keeps 1/(1 + (wave_length/L)^4) of its
-        height. Steep faces, which `curve` cuts, are not smoothed.
+        y and z, as functions of the length along the polygon, become smoothing splines (Reinsch 1967). They multiply
+        the height of a wave of length L by 1/(1 + (wave_length/L)^4). Steep faces, which `curve` cuts off, are not
+        smoothed.
         """
         length = number("wave_length", wave_length)
         if not length > 0.0:
@@ -160,10 +164,11 @@ class Profile(Short):
         return self._with(points[0], points[1], is_open)
 
     def thinned(self, step: float) -> Profile:
-        """With fewer points: the mean of each `step` in mm along the profile, for scans whose points are closer to each other than their noise.
+        """Averages the points of each `step`, in mm, along the profile. Use it for scans whose noise exceeds the
+        distance of their points.
 
-        The points are taken in their order. A step ends before the first point that is further than `step` from the one it began with; it should be some
-        times the noise, and at most a tenth of the contact. Both end points stay.
+        A step contains the points, in their order, within `step` of its first point. Choose a `step` of several times
+        the noise, and of at most a tenth of the width of the contact. Both end points are kept.
         """
         length = number("step", step)
         if not length > 0.0:
@@ -172,7 +177,7 @@ class Profile(Short):
         for k, point in enumerate(points[1:-1], 1):
             if math.dist(point, points[begins[-1]]) > length:
                 begins.append(k)
-        # The last step is as long as the others or longer: its mean does not come close to the end.
+        # The last step is joined to the one before, so that its mean is not too close to the end point.
         begins = [*(begins[:-1] if len(begins) > 2 else begins), len(points) - 1]
         counts = np.diff([*begins, len(points)])
         y, z = (np.add.reduceat(values, begins) / counts for values in (self.y, self.z))
@@ -202,12 +207,13 @@ class Profile(Short):
         return np.array(apart[first : last + 1])
 
     def _check_face(self, y: Doubles, z: Doubles, end: int, way: int) -> None:
-        """Refuses an end at which there is no steep face: behind it, that way (1 or -1) along the points, the profile goes on."""
+        """Refuses an end without a steep face. `way` is the direction along the points (1 or -1) in which the profile
+        continues."""
         beyond = end + way * np.arange(1, _BEHIND + 1)
         beyond = beyond[(beyond >= 0) & (beyond < len(y))]
         if (way * (y[beyond] - y[end]) > np.abs(z[beyond] - z[end])).any():
             self._refuse_point(y, z, beyond[0], end)
-        # On a flange, which is steep itself, a point that is far off looks like a face.
+        # A flange is steep itself, so an outlier on it looks like a steep face.
         for off, beside in ((end + way, end), (end, end + way)):
             k = off + way * np.array([-2, -1, *range(1, _BEHIND + 1)])
             if k.min() < 0 or k.max() >= len(y):
@@ -215,7 +221,8 @@ class Profile(Short):
             steps = np.stack([way * np.diff(y[k]), np.diff(z[k])])
             lengths = np.hypot(*steps)
             steps /= lengths
-            # How far the point is from the line through its neighbours, and how far the next ones are from their directions: noise.
+            # The distance of the point from the line through its neighbours, and the noise: the median distance of the
+            # next points from the direction of the step before.
             far = abs(steps[0, 1] * (z[off] - z[k[1]]) - way * steps[1, 1] * (y[off] - y[k[1]]))
             noise = np.median(np.abs(steps[0, 1:] * steps[1, :-1] - steps[1, 1:] * steps[0, :-1]) * lengths[1:])
             goes_on = (steps[0] > np.abs(steps[1]) / np.tan(STEEPEST)).all() and ((steps[:, 1:] * steps[:, :-1]).sum(axis=0) > _AHEAD).all()
@@ -230,8 +237,9 @@ class Profile(Short):
                          "each step in mm")
 
     def spikes(self) -> Any:
-        """Indices of points that stand out by themselves, as dust or a fault of a measurement does: from the line through its neighbours such a point
-        is further than .03 mm, and than ten times the median of the points around, and both neighbours lean to the other side."""
+        """Indices of spikes: single points that stand out, such as dust or faults of the measurement. The distance of a
+        spike from the line through its neighbours exceeds .03 mm, and ten times the median distance of the points
+        around it. Both neighbours deviate to the other side."""
         return self._spikes(self._usable())
 
     def _spikes(self, chosen: Any) -> Any:
@@ -242,7 +250,8 @@ class Profile(Short):
         weight = (y[1:-1] - y[:-2]) / (y[2:] - y[:-2])
         off = z[1:-1] - (1.0 - weight) * z[:-2] - weight * z[2:]
         found = []
-        # Few points are so far off: medians are taken of these alone, since curves are made again in each step of a search.
+        # Few points deviate so far. Medians are computed for these points only, because each step of a search makes the
+        # curves again.
         for k in np.flatnonzero(np.abs(off[1:-1]) > _SPIKE) + 1:
             around = np.abs(off[max(0, k - _AROUND // 2) : k + _AROUND // 2 + 1])
             stands_out = abs(off[k]) > _TIMES * float(np.median(around))
@@ -266,7 +275,8 @@ class Profile(Short):
         return Curve(self.y[chosen], self.z[chosen], None if self._open is None else self._open[:, chosen])
 
     def _roughness(self, chosen: Any) -> float:
-        """The median change of the curvature from point to point: that of noise, since a profile's own changes over many points."""
+        """The median change of the curvature from point to point. It measures noise: without noise the curvature
+        changes slowly."""
         y, z = self.y[chosen], self.z[chosen]
         d = np.diff(y)
         if len(y) < _AROUND or not (d > 0.0).all():

@@ -10,7 +10,8 @@ import numpy as np
 
 from ._columns import NUMBER, columns_of, to_number
 
-# What the header says of the points, and what it is where the header does not say it. Bounds count where the lower one is below the upper one.
+# Entries of the header that change the points, with their defaults. A pair of bounds counts only if the lower bound is
+# less than the upper one.
 _SAID = {
     "shift.y": 0.0, "shift.z": 0.0, "rotate": 0.0, "bound.y.min": 1.0, "bound.y.max": 0.0, "bound.z.min": 1.0, "bound.z.max": 0.0,
     "mirror.y": 0.0, "mirror.z": 0.0, "inversion": 0.0, "units.len.f": 1000.0, "units.ang.f": 1.0, "approx.smooth": 0.0, "point.dist.min": 0.0,
@@ -19,7 +20,8 @@ _KINDS = {0.0: "rail", 1.0: "wheel"}
 
 
 def points_of(text: str, kind: str, path: str | os.PathLike[str]) -> tuple[np.ndarray, float]:
-    """The points, moved, rotated, cut, mirrored and reversed as the header says, and the mm in their unit."""
+    """The points after the shift, rotation, bounds, mirrors and inversion of the header, and the length of their unit
+    in mm."""
     text = "\n".join(line.split("!")[0] for line in text.splitlines())
     found = re.search(r"point\.begin(.*?)point\.end", text, re.DOTALL | re.IGNORECASE)
     if not found:
@@ -48,7 +50,8 @@ def points_of(text: str, kind: str, path: str | os.PathLike[str]) -> tuple[np.nd
 
 
 def _header(text: str, path: str | os.PathLike[str]) -> dict[str, float]:
-    """The numbers of the header. Names are read in any case; a value that is no number is refused, since it would change the profile."""
+    """The numbers of the header. Names may be in upper or lower case. Values that are no numbers are refused, because
+    they would change the profile."""
     said = dict(_SAID)
     for name, value in re.findall(r"^\s*([\w.]+)\s*=\s*(.*?)\s*$", text, re.MULTILINE):
         key = name.lower()
@@ -69,7 +72,7 @@ def _header(text: str, path: str | os.PathLike[str]) -> dict[str, float]:
 
 
 def _check_kind(text: str, kind: str, path: str | os.PathLike[str]) -> None:
-    """Refuses a wheel that is read as a rail, and the other way round, where the header tells."""
+    """Refuses a wheel that is read as a rail, or a rail that is read as a wheel, if the header has a type."""
     header = re.search(r"header\.begin(.*?)header\.end", text, re.DOTALL | re.IGNORECASE)
     said = re.search(rf"^\s*type\s*=\s*({NUMBER})\s*$", header[1], re.MULTILINE | re.IGNORECASE) if header else None
     is_kind = _KINDS.get(to_number(said[1])) if said else None

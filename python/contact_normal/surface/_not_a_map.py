@@ -68,7 +68,8 @@ def has_cut_decimals(lines: list[str]) -> bool:
 
 def rises_evenly(values: Any) -> bool:
     """Whether steps are all the same, and not 0."""
-    steps = np.diff(values)
+    with np.errstate(invalid="ignore"):
+        steps = np.diff(values)
     mean = steps.mean() if len(steps) > 2 else 0.0
     return bool(mean != 0.0 and (np.abs(steps - mean) <= EVEN * abs(mean)).all())
 

@@ -10,17 +10,19 @@ if TYPE_CHECKING:
     from .._arguments import Doubles
     from .._gap import Gap
 
-# A point that is no element is so many ranges of the heights above all elements, so that no body rests on it if it can rest on elements.
+# The height of the first corners, which are no elements, in ranges of the heights above all elements. A body that can
+# rest on elements does not rest on points so high.
 _HIGH = 1e6
-# Elements that the plane is turned to, one after another; some tens of them suffice for maps of a million elements.
+# Most steps of the simplex method. Maps of a million elements need some tens of steps.
 _TURNS = 200
 # Round-off of a height above the plane, and of a weight, relative to the range of the heights and to 1.
 _ROUND_OFF, _NO_WEIGHT = 1e-12, 1e-14
 
 
 def resting(gap: Gap, aim: Doubles) -> Doubles | None:
-    """Slopes of the plane below the undeformed distance that is highest at `aim`: a rigid body rests on it, on three elements around this place, or on two
-    of one line. None where no elements are around it."""
+    """Slopes of the plane on which a rigid body rests under a force at `aim`. Among the planes below the undeformed
+    distance it is the highest at `aim`. It touches three elements around `aim`, or two elements of a line. None if no
+    elements surround `aim`."""
     iy, ix = np.nonzero(np.isfinite(gap.h))
     sizes = np.array([gap.h.shape[1] * gap.dx, gap.h.shape[0] * gap.dy])
     places = (np.stack([gap.x[ix], gap.y[iy]], axis=1) - aim) / sizes
@@ -38,7 +40,7 @@ def resting(gap: Gap, aim: Doubles) -> Doubles | None:
         lowest = int(np.argmin(above))
         if above[lowest] >= -_ROUND_OFF:
             break
-        # The corner whose weight ends first as that of the lowest element grows makes room for it.
+        # The weight of the lowest element grows until the weight of a corner is 0. The element replaces this corner.
         weights, changes = np.linalg.solve(corners.T, np.column_stack([np.eye(count)[-1], points[lowest]])).T
         ratios = np.full(count, np.inf)
         np.divide(weights, changes, out=ratios, where=changes > _NO_WEIGHT)

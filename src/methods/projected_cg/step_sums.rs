@@ -1,6 +1,6 @@
 //! Sums over C of a step, and the update of u.
 
-/// The new u: factor (u + alpha q + gamma w + A d), w of the deflation direction.
+/// The update of u: factor (u + alpha q + gamma w + A d). w is the product of the deflation direction.
 #[derive(Clone, Copy)]
 pub(super) struct Update {
     pub(super) alpha: f64,
@@ -29,8 +29,8 @@ pub(super) struct Step {
 }
 
 impl Step {
-    /// A bound on the 2-norm of the change of p: the sum of the changes by the step along t, by that along d, whose length is given, and by the
-    /// scaling.
+    /// An upper bound on the 2-norm of the change of p. It is the sum of three changes: by the step along t, by the
+    /// step along d (`along_d`), and by the scaling.
     pub(super) fn change(&self, alpha: f64, along_d: f64, factor: f64) -> f64 {
         alpha.abs() * self.tt.sqrt() + along_d + (factor - 1.0).abs() * self.pp.sqrt()
     }

@@ -1,6 +1,6 @@
 //! Values of several columns or rows in the lanes of SIMD vectors, and complex numbers of such vectors.
 //!
-//! Products and sums are not fused. So each lane has the bits that its value would have if it were computed alone.
+//! Multiplications and additions are not fused, so each lane has the bits of a scalar computation.
 
 use std::marker::PhantomData;
 

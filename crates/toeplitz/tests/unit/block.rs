@@ -1,4 +1,4 @@
-//! Blocks of columns: what no block has is not touched, and no value belongs to two.
+//! Blocks of columns do not overlap, and columns outside of all blocks do not change.
 
 use super::*;
 

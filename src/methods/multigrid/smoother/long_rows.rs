@@ -1,7 +1,8 @@
 //! The sequential part of Gauss-Seidel in rows of many elements.
 //!
-//! An element displaces later ones of its row by a triangular Toeplitz product. Within [`STRIP`] elements it is summed directly, between halves of
-//! larger blocks it is a product by FFT. So a row of m elements takes O(m log^2 m) instead of m^2.
+//! The changes of earlier elements displace the later elements of a row. This is a product by a triangular Toeplitz
+//! matrix. Within strips of [`STRIP`] elements it is a direct sum. In larger blocks the influence of the first half on
+//! the second is a product by FFT. So a row of m elements takes O(m log^2 m) operations instead of m^2.
 
 use crate::error::Result;
 use crate::operator::fft::Complex;
@@ -10,7 +11,7 @@ use crate::operator::zeros;
 
 /// Elements in a block whose mutual influence is summed directly.
 const STRIP: usize = 512;
-/// Most elements of rows that are summed directly.
+/// Longest row whose influence is summed directly.
 pub const SHORT: usize = 4096;
 
 /// The sequential part of rows of one length.
