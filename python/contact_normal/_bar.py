@@ -6,6 +6,8 @@ import importlib
 import math
 import sys
 import time
+from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any, TextIO
 
 if TYPE_CHECKING:
@@ -18,31 +20,36 @@ class Bar:
     WIDTH = 30
 
     def __init__(self, file: TextIO | None = None) -> None:
+        # None where there is no terminal, as in windowed programs and services: nothing is drawn then.
         self._file, self._began = file or sys.stderr, time.monotonic()
         try:
             self._tqdm: Any = importlib.import_module("tqdm").tqdm(
                 total=100, file=self._file, bar_format="{l_bar}{bar}| {elapsed}<{remaining}{postfix}"
-            )
+            ) if self._file else None
         except ImportError:
             self._tqdm = None
 
     def draw(self, part: float, text: str) -> None:
-        """Draws how much is done, 0 to 1, and what is said of it."""
+        """Draws the part that is done, 0 to 1, and a text."""
         if self._tqdm is not None:
             self._tqdm.n = round(100 * part)
-            self._tqdm.set_postfix_str(text)
+            self._written(partial(self._tqdm.set_postfix_str, text))
             return
         filled = round(self.WIDTH * part)
         seconds = time.monotonic() - self._began
-        self._file.write(f"\r[{'#' * filled}{'.' * (self.WIDTH - filled)}] {seconds:.1f} s, {text}   ")
-        self._file.flush()
+        self._written(partial(print, f"\r[{'#' * filled}{'.' * (self.WIDTH - filled)}] {seconds:.1f} s, {text}   ", end="", file=self._file, flush=True))
 
     def close(self) -> None:
         """Leaves the bar as it is and goes to the next line."""
-        if self._tqdm is not None:
-            self._tqdm.close()
-        else:
-            self._file.write("\n")
+        self._written(self._tqdm.close if self._tqdm is not None else partial(print, file=self._file))
+
+    def _written(self, write: Callable[[], Any]) -> None:
+        """Calls `write`. A file that takes no more, as a closed pipe or a full disk, ends the bar and not the solve."""
+        if self._file is not None:
+            try:
+                write()
+            except (OSError, ValueError):
+                self._file = None
 
 
 class SolveBar:

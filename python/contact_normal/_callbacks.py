@@ -12,8 +12,9 @@ import numpy as np
 
 from ._arguments import distances, integer
 from ._bar import SolveBar
-from ._calls import asked, called, given_up, is_short, on_main_thread
+from ._calls import asked, called, given_up, is_short, on_main_thread, raise_of
 from ._constants import LOG_INFO, OK
+from ._daemons import logged
 from ._library import check, library
 from ._structs import LogCallback, ProgressCallback, SurfaceCallback
 
@@ -72,7 +73,8 @@ class Watched:
         self._error: BaseException | None = None
         self._bar = SolveBar(scene.h.size if scene else None, options.tolerance, entries) if progress is True else None
         self._told: Any = self._bar.tell if self._bar else progress
-        self._is_short = not self._told and not _log and scene is not None and self._ends_soon(scene, options, entries)
+        self._asks = bool(self._told) or scene is None
+        self._is_short = not self._told and not logged and scene is not None and self._ends_soon(scene, options, entries)
         if self._told or not self._is_short and on_main_thread():
             self._callback = ProgressCallback(self._call)
             options.progress = self._callback
@@ -100,12 +102,11 @@ class Watched:
         """As `called`. Raises what the callable raised, and closes the bar."""
         status = -1
         try:
-            status, message = called(function, *arguments, handle=handle, keep=(self, keep), short=self._is_short, report=report)
+            status, message = called(function, *arguments, handle=handle, keep=(self, keep), short=self._is_short, report=report, asks=self._asks)
         finally:
             if self._bar:
                 self._bar.close(status == OK)
-        if self._error is not None:
-            raise self._error
+        raise_of(self)
         return status, message
 
 
@@ -135,8 +136,7 @@ class Surface:
 
     def finish(self) -> None:
         """Raises what the callable raised."""
-        if self._error is not None:
-            raise self._error
+        raise_of(self)
 
 
 def set_log(callback: Callable[[int, str], Any] | None, level: int = LOG_INFO) -> None:
@@ -157,12 +157,12 @@ def set_log(callback: Callable[[int, str], Any] | None, level: int = LOG_INFO) -
     if callback is not None and not callable(callback):
         raise TypeError(f"callback is {callback!r}; it must be a callable, or None")
     check(library.contact_normal_set_log(LogCallback() if callback is None else _LOGGED, integer("level", level), None))
-    _log[:] = [] if callback is None else [callback]
+    logged[:] = [] if callback is None else [callback]
 
 
 def _logged(level: int, message: bytes, _user: Any) -> None:
     # A thread may be on its way to here while another replaces the callable.
-    callbacks = list(_log)
+    callbacks = list(logged)
     try:
         if callbacks and not given_up():
             asked(lambda: callbacks[0](level, message.decode()))
@@ -171,7 +171,5 @@ def _logged(level: int, message: bytes, _user: Any) -> None:
             raise
 
 
-# The callable that gets messages, if any.
-_log: list[Callable[[int, str], Any]] = []
 # The library may call it at any time: it is never freed.
 _LOGGED = LogCallback(_logged)

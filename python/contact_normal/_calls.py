@@ -13,12 +13,13 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import nullcontext
 from ctypes import c_int32, pointer
 from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from . import _daemons
 from ._library import last_error
 
 if TYPE_CHECKING:
@@ -30,8 +31,6 @@ T = TypeVar("T")
 _PATIENCE = 0.1
 # Signals are heard once in so many seconds at least.
 _LISTEN = 0.05
-# Seconds that one part of many pieces of work takes.
-_PART = 0.2
 # Elements times cycles at most of a solve that the main thread makes itself: the worst, which do not converge, take .15 s on a busy machine.
 # A worker costs some 50 us a solve, with its callbacks; the usual solve of so many elements takes 200.
 _SHORT = 1_050_000
@@ -56,7 +55,7 @@ class Call(Generic[T]):
         self._question: Callable[[], Any] | None = None
         self._answer: Any = None
         self._raised: Exception | None = None
-        self._is_over = False
+        self._is_over = self._is_orphan = False
         self._news, self._answered, self._ended = (threading.Lock() for _ in range(3))
         for lock in (self._news, self._answered, self._ended):
             lock.acquire()
@@ -101,12 +100,14 @@ class Call(Generic[T]):
 
     def result(self, worker: _Worker) -> T:
         """On the thread that waits: answers what is asked until the worker has the result. What else ends the wait gives the call up."""
+        _waiting.add(self)
         try:
             worker.give(self)
             while True:
                 # A signal that the system gives to another thread does not wake this one.
                 while not self._news.acquire(timeout=_LISTEN):
-                    pass
+                    if self._is_orphan:
+                        raise RuntimeError("a process that is forked within a callback must not return from it: its call goes on in the other process")
                 question, self._question = self._question, None
                 if question is None:
                     break
@@ -116,12 +117,17 @@ class Call(Generic[T]):
                     self._raised = error
                 self._answered.release()
         except BaseException:
-            self._give_up()
+            if not self._is_orphan:
+                self._give_up()
             raise
-        failure, self._error = self._error, None
-        if failure is not None:
-            raise failure
+        finally:
+            _waiting.discard(self)
+        raise_of(self)
         return self._found.pop()
+
+    def orphan(self) -> None:
+        """In a forked process: it has no worker that ends the call."""
+        self._is_orphan = True
 
     def _give_up(self) -> None:
         self.given_up, self.stop.value = True, 1
@@ -186,8 +192,19 @@ def _resting() -> _Worker | None:
 
 
 _idle: list[_Worker] = []
+_waiting: set[Call[Any]] = set()
 _given_up: set[Call[Any]] = set()
 _here = threading.local()
+
+
+def raise_of(owner: Any) -> None:
+    """Raises what a callback of the `owner` raised, and forgets it: its traceback would keep all that the call had."""
+    error, owner._error = owner._error, None
+    if error is not None:
+        try:
+            raise error
+        finally:
+            del error
 
 
 def here() -> Call[Any] | None:
@@ -205,7 +222,7 @@ def asked(question: Callable[[], T]) -> T:
 def given_up() -> bool:
     """Whether nobody waits for the call that this thread makes."""
     call = here()
-    return call is not None and call.given_up
+    return _daemons.is_to_end() if call is None else call.given_up
 
 
 def on_main_thread() -> bool:
@@ -220,58 +237,45 @@ def is_short(elements: int, cycles: int) -> bool:
 
 def made(work: Callable[[], T], short: bool = False) -> T:
     """What `work()` returns, which calls the library. A signal ends it on the main thread, unless it is short."""
-    if short or not on_main_thread():
+    # No thread begins or goes on where the interpreter ends.
+    if short or not on_main_thread() or sys.is_finalizing():
         return work()
     try:
         while (worker := _resting()) is None:
             _Worker()
-    except RuntimeError:  # no thread is to be had: the interpreter ends, or the system has no more
+    except RuntimeError:  # the system has no more threads
         return work()
     return Call(work).result(worker)
 
 
 def called(
     function: Callable[..., int], *arguments: Any, handle: Handle | None = None, keep: Any = None, short: bool = False, report: Any = None,
-    options: Any = None,
+    options: Any = None, asks: bool = False,
 ) -> tuple[int, str]:
     """The status of a function of the library, and its message: "" after OK, unless the call writes a `report` and warns there.
 
     With a handle, its address is the first argument. `keep` lives at least until the function returns. A call without callbacks names its
-    `options`, whose `stop` ends it when it is given up.
+    `options`, whose `stop` ends it when it is given up; one with callbacks `asks`.
     """
     if handle is not None:
         handle.wait()
-    return made(partial(_told, function, arguments, handle, (keep, report, options)), short)
+    return made(partial(_told, function, arguments, handle, (keep, report, options), asks), short)
 
 
 _NO_HANDLE = nullcontext(())
 
 
-def _told(function: Callable[..., int], arguments: tuple[Any, ...], handle: Handle | None, kept: tuple[Any, Any, Any]) -> tuple[int, str]:
+def _told(
+    function: Callable[..., int], arguments: tuple[Any, ...], handle: Handle | None, kept: tuple[Any, Any, Any], asks: bool
+) -> tuple[int, str]:
     _, report, options = kept
     if options is not None and (call := here()) is not None:
         options.stop = pointer(call.stop)
-    with _NO_HANDLE if handle is None else handle as first:
+    with _daemons.within(asks), _NO_HANDLE if handle is None else handle as first:
         status = int(function(*first, *arguments))
         # The message belongs to the thread that calls; after OK it may be one of an earlier call.
         has_message = status or report is not None and report.warnings
         return status, last_error() if has_message else ""
-
-
-def parts(count: int, first: int) -> Iterator[slice]:
-    """So many pieces of work in parts between which a signal is heard: each takes some tenths of a second, by the time of the one before.
-
-    There is one part at least, which may be empty.
-    """
-    begin, size = 0, first
-    while True:
-        began = time.perf_counter()
-        yield slice(begin, min(begin + size, count))
-        begin += size
-        if begin >= count:
-            return
-        seconds = time.perf_counter() - began
-        size = max(first, min(4 * size, int(size * _PART / max(seconds, 1e-6))))
 
 
 def _end_workers() -> None:
@@ -284,8 +288,11 @@ def _end_workers() -> None:
 def _forget_workers() -> None:
     """In a forked process: it has none of the threads, and the one that forked makes no call there."""
     _here.call = None
+    _daemons.forget()
     for call in list(_given_up):
         call.end()
+    for call in list(_waiting):
+        call.orphan()
 
 
 def _wait_for_given_up() -> None:

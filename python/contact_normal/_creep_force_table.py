@@ -8,6 +8,7 @@ import multiprocessing
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
@@ -178,7 +179,8 @@ def _computed(plan: Plan, missing: list[int], workers: int, client: Any) -> Iter
     if client is None and workers == 1:
         yield from ((index, plane(plan, index)) for index in missing)
         return
-    stop = multiprocessing.Event() if client is None else None
+    # No lock stands before it: a process that was killed may have held that.
+    stop = multiprocessing.RawValue("b", 0) if client is None else None
     if client is not None:
         executor = client.get_executor()
     else:
@@ -198,7 +200,7 @@ def _computed(plan: Plan, missing: list[int], workers: int, client: Any) -> Iter
     finally:
         # The jobs that are not done are not needed any more.
         if stop is not None:
-            stop.set()
+            stop.value = 1
         else:
             for job in list(jobs):
                 job.cancel()
@@ -213,8 +215,8 @@ def _leave_with_parent(stop: Any) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def watch(started_by: int) -> None:
-        while os.getppid() == started_by and not stop.wait(0.05):
-            pass
+        while os.getppid() == started_by and not stop.value:
+            time.sleep(0.05)
         os._exit(1)
 
     # With a fork server, the parent is the server. It ends with the process that asks for the work.

@@ -220,7 +220,8 @@ class ContactNormalError(Exception):
 def last_error() -> str:
     """The message of the last call on this thread that did not return OK, or warned."""
     # The library counts x first; arrays of Python have x last.
-    return _ELEMENT.sub(r"element [\2, \1]", library.contact_normal_last_error().decode())
+    # A text with groups would import a module, which fails where the interpreter ends.
+    return _ELEMENT.sub(lambda found: f"element [{found[2]}, {found[1]}]", library.contact_normal_last_error().decode())
 
 
 def check(status: int, message: str | None = None) -> int:

@@ -201,7 +201,7 @@ def cost_of_accuracy(
     wanted, rows = (ctypes.c_double * n)(*(relative(f"targets[{k}]", error) for k, error in enumerate(errors))), (PriceStruct * n)(*[initialised("price")][:n])
     status, message = called(
         library.contact_normal_cost_of_accuracy, ctypes.byref(scene.struct), ctypes.byref(struct), ctypes.byref(accuracy),
-        QUANTITIES[quantity], n, wanted, rows, keep=(scene, surface), options=struct,
+        QUANTITIES[quantity], n, wanted, rows, keep=(scene, surface), options=struct, asks=surface is not None,
     )
     if surface:
         surface.finish()

@@ -16,11 +16,12 @@ from ._arguments import Both, SolveOptions, distances, doubles, integer, options
 from ._batch_messages import Warned, messages_of
 from ._bodies import loads_of_each
 from ._callbacks import Progress, Watched
-from ._calls import called, is_short, parts
+from ._calls import called, is_short
 from ._constants import OK
 from ._handle import Handle
 from ._library import ContactNormalError, check, library
 from ._outputs import Outputs
+from ._parts import parts
 from ._friction import friction as friction_of
 from ._friction_batch import FrictionBatch, table_of
 from ._result import Result, TangentialResult

@@ -10,8 +10,9 @@ import numpy as np
 
 from ._arguments import both, doubles, flag, integer, options, pointer, real, shaped
 from ._callbacks import Watched
-from ._calls import called, parts
+from ._calls import called
 from ._library import check, initialised, library
+from ._parts import parts
 from ._scene import Scene
 from ._stress import COMPONENTS, TENSOR, SubsurfaceStress
 from ._units import checked

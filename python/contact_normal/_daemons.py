@@ -1,0 +1,57 @@
+"""Calls with callbacks on daemon threads, at the end of the process.
+
+The interpreter ends a daemon as soon as it asks for the interpreter, with an exception that passes all frames. In a callback these are frames
+of the library, which does not let it pass: the process would abort. So at the end such calls are cancelled and waited for.
+"""
+
+from __future__ import annotations
+
+import atexit
+import threading
+import time
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from typing import Any
+
+# Seconds that the end of the process waits: a cycle of the largest grids takes less.
+_LAST_CYCLE = 10.0
+
+# The callable that gets the library's messages, if any.
+logged: list[Callable[[int, str], Any]] = []
+_calls: set[object] = set()
+_ending = threading.Event()
+_NOTHING = nullcontext()
+
+
+class _Call:
+    def __enter__(self) -> None:
+        _calls.add(self)
+
+    def __exit__(self, *_: object) -> None:
+        _calls.discard(self)
+
+
+def within(has_callbacks: bool) -> AbstractContextManager[None]:
+    """Marks a call of the library on this thread, if it has to be waited for."""
+    return _Call() if (has_callbacks or logged) and threading.current_thread().daemon else _NOTHING
+
+
+def is_to_end() -> bool:
+    """Whether this thread is a daemon of a process that ends."""
+    return _ending.is_set() and threading.current_thread().daemon
+
+
+def forget() -> None:
+    """In a forked process, which has none of these threads."""
+    _calls.clear()
+
+
+def end() -> None:
+    """Cancels the calls at their next callback, and waits for them."""
+    _ending.set()
+    last = time.monotonic() + _LAST_CYCLE
+    while _calls and time.monotonic() < last:
+        time.sleep(0.01)
+
+
+atexit.register(end)
