@@ -17,6 +17,11 @@
 //! discretisation error of the singularity. Along an edge with steps most of t cancels. At the border of the grid, and
 //! if the caller's elements are the surface, the edge lies exactly on edges of elements. (Measured, in elements:
 //! straight -0.46 to 0.2, in steps -0.15 to 0.05, on edges of elements -0.15.)
+//!
+//! *Jumps of the coefficients.* Where two patches touch that displace each other less than themselves, and beside an
+//! element whose layer is much softer, pressures are singular, too. The edge lies on an edge of elements. A part of the
+//! release counts: 1 less the factor between the patches, and the part that the jump of the compliance has of it and
+//! the compliance of some elements.
 
 use std::f64::consts::PI;
 
@@ -29,26 +34,38 @@ use crate::sums::in_blocks;
 const STRAIGHT_EDGE: f64 = 0.55;
 const STEPPED_EDGE: f64 = 0.12;
 const EXACT_EDGE: f64 = 0.2;
+/// At a jump of the layer: the compliance of a side of the element that counts beside the jump. Jumps of less hardly bend the pressures.
+const BESIDE_JUMP: f64 = 4.0;
 /// Change of a sum over the parts of force and energy: 1 for a flat punch, and up to 1.22 for x^6.
 const SUM_FACTOR: f64 = 1.3;
 
 /// The neighbour of an element.
 #[derive(Clone, Copy, PartialEq)]
 enum Beside {
-    /// The neighbour has a surface.
-    Surface,
+    /// The neighbour with this index has a surface.
+    Surface(usize),
     /// The neighbour has no surface.
     Hole,
     /// The grid ends.
     Border,
 }
 
+/// A side of an element at which pressures end within the contact.
+struct End {
+    /// t in elements.
+    elements: f64,
+    /// Whether the end lies on an edge of elements.
+    is_exact: bool,
+    /// The compliance `pi d/(2 E*) + c`.
+    compliance: f64,
+}
+
 /// Sum over the sides at which the surface ends within the contact: `t (pi d/(2 E*) + c) p` times the area of an element, with the
 /// weights `w(i)` of the elements. A direction of one element has no ends here.
 pub fn at_ends<const N: usize>(problem: &Problem, state: &State, weights: impl Fn(usize) -> [f64; N]) -> [f64; N] {
     let mut sums = [0.0; N];
-    each_end(problem, state, |i, elements, compliance| {
-        let part = elements * compliance * state.p[i] * state.grid.element_area();
+    each_end(problem, state, |i, end| {
+        let part = end.elements * end.compliance * state.p[i] * state.grid.element_area();
         let weights = weights(i);
         (0..N).for_each(|n| sums[n] += part * weights[n]);
     });
@@ -59,11 +76,11 @@ pub fn at_ends<const N: usize>(problem: &Problem, state: &State, weights: impl F
 /// at their limit their force on the strip over the whole one. Ends on edges of elements change nothing.
 pub fn beyond_ends(problem: &Problem, state: &State) -> f64 {
     let (mut strips, mut released) = (0.0, 0.0);
-    each_end(problem, state, |i, elements, compliance| {
-        let force = elements * state.p[i].abs();
-        match (elements == EXACT_EDGE, state.contact[i]) {
+    each_end(problem, state, |i, end| {
+        let force = end.elements * state.p[i].abs();
+        match (end.is_exact, state.contact[i]) {
             (true, _) => {}
-            (false, true) => released += force * compliance * state.p[i].abs(),
+            (false, true) => released += force * end.compliance * state.p[i].abs(),
             (false, false) => strips += force,
         }
     });
@@ -77,9 +94,8 @@ pub fn beyond_ends(problem: &Problem, state: &State) -> f64 {
     SUM_FACTOR * (over(strips, force) + over(released, energy))
 }
 
-/// Calls `each(i, t, compliance)` for each side at which the surface ends beside element i of the contact, with t in elements and the
-/// compliance `pi d/(2 E*) + c`.
-fn each_end(problem: &Problem, state: &State, mut each: impl FnMut(usize, f64, f64)) {
+/// Calls `each(i, end)` for each side at which the surface ends or coefficients jump beside element i of the contact.
+fn each_end(problem: &Problem, state: &State, mut each: impl FnMut(usize, End)) {
     let grid = &state.grid;
     let directions = Direction::both(grid, problem.coefficients.repeats(grid));
     let sizes = [grid.dx, grid.dy];
@@ -89,19 +105,34 @@ fn each_end(problem: &Problem, state: &State, mut each: impl FnMut(usize, f64, f
         for k in (0..2).filter(|&k| directions[k].m > 1) {
             let (across, along) = (directions[k], directions[1 - k]);
             for side in [0, 1] {
-                let elements = match beside(across, state, (i, place[k]), side) {
-                    Beside::Surface => continue,
-                    Beside::Border => EXACT_EDGE,
-                    Beside::Hole if problem.exact_edges => EXACT_EDGE,
+                let compliance = flexibility * sizes[k];
+                let (elements, is_exact) = match beside(across, state, (i, place[k]), side) {
+                    Beside::Surface(j) => match jump(problem, state, (i, j), compliance) {
+                        0.0 => continue,
+                        part => (EXACT_EDGE * part, true),
+                    },
+                    Beside::Border => (EXACT_EDGE, true),
+                    Beside::Hole if problem.exact_edges => (EXACT_EDGE, true),
                     Beside::Hole if is_straight(along, state, (i, place[1 - k]), (across, place[k], side)) => {
-                        STRAIGHT_EDGE
+                        (STRAIGHT_EDGE, false)
                     }
-                    Beside::Hole => STEPPED_EDGE,
+                    Beside::Hole => (STEPPED_EDGE, false),
                 };
-                each(i, elements, flexibility * sizes[k] + problem.layer(i));
+                each(i, End { elements, is_exact, compliance: compliance + problem.layer(i) });
             }
         }
     }
+}
+
+/// The part of an end that the jump of the coefficients from element i to element j is, from 0 to 1. `compliance` is that of a side of i.
+fn jump(problem: &Problem, state: &State, (i, j): (usize, usize), compliance: f64) -> f64 {
+    if !problem.coefficients.may_jump() || !state.touches(j) {
+        return 0.0;
+    }
+    let softer = problem.layer(j) - problem.layer(i);
+    let of_layer = if softer > 0.0 { softer / (softer + BESIDE_JUMP * compliance) } else { 0.0 };
+    let factor = problem.coefficients.patches().map_or(1.0, |patches| patches.between(i, j));
+    of_layer.max(1.0 - factor)
 }
 
 /// The neighbour of element `i` at `place` of its line in this direction: the one before (side 0), or behind.
@@ -109,8 +140,10 @@ fn beside(direction: Direction, state: &State, (i, place): (usize, usize), side:
     let next = if side == 0 { place as isize - 1 } else { place as isize + 1 };
     match direction.at(next) {
         None => Beside::Border,
-        Some(next) if state.h[i + next - place * direction.step].is_finite() => Beside::Surface,
-        Some(_) => Beside::Hole,
+        Some(next) => match i + next - place * direction.step {
+            j if state.h[j].is_finite() => Beside::Surface(j),
+            _ => Beside::Hole,
+        },
     }
 }
 

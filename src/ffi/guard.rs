@@ -3,7 +3,7 @@
 use std::any::Any;
 use std::cell::Cell;
 use std::panic::{catch_unwind, AssertUnwindSafe};
-use std::sync::Once;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::floating_point::DefaultEnvironment;
 use super::status::{contact_normal_status, set_last_error, Refusal, CONTACT_NORMAL_INTERNAL};
@@ -57,19 +57,18 @@ pub(super) fn refusal_of_panic(panic: Box<dyn Any + Send>) -> Refusal {
 /// The library prints nothing, so a panic that the guard will catch must not be announced on stderr. Panics elsewhere in the
 /// process go to whatever hook was there.
 fn silence_our_panics() {
-    static ONCE: Once = Once::new();
+    // Nobody waits for the thread that does it: a process that is forked meanwhile does not have that thread.
+    static IS_DONE: AtomicBool = AtomicBool::new(false);
     // The hook cannot be changed while this thread unwinds; the next call changes it.
-    if std::thread::panicking() {
+    if std::thread::panicking() || IS_DONE.load(Ordering::Relaxed) || IS_DONE.swap(true, Ordering::Relaxed) {
         return;
     }
-    ONCE.call_once(|| {
-        let previous = std::panic::take_hook();
-        std::panic::set_hook(Box::new(move |info| {
-            let thread = std::thread::current();
-            let ours = thread.name().is_some_and(|name| name.starts_with(crate::threads::THREAD_NAME));
-            if !INSIDE.get() && !ours {
-                previous(info);
-            }
-        }));
-    });
+    let previous = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        let thread = std::thread::current();
+        let ours = thread.name().is_some_and(|name| name.starts_with(crate::threads::THREAD_NAME));
+        if !INSIDE.get() && !ours {
+            previous(info);
+        }
+    }));
 }

@@ -1,7 +1,6 @@
 //! Statuses, their texts, the last error message, versions.
 
-use std::borrow::Cow;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, CString};
 
 use libc::c_char;
@@ -108,29 +107,42 @@ impl From<Outcome> for i32 {
     }
 }
 
+/// The text of the last message, if it needs memory.
+struct Owned(RefCell<Option<CString>>);
+
+impl Drop for Owned {
+    fn drop(&mut self) {
+        LAST_ERROR.set(c"".as_ptr());
+    }
+}
+
 thread_local! {
-    static LAST_ERROR: RefCell<Cow<'static, CStr>> = const { RefCell::new(Cow::Borrowed(c"")) };
+    /// The last message. It has no destructor: calls by destructors of a thread that ends have messages, too.
+    static LAST_ERROR: Cell<*const c_char> = const { Cell::new(c"".as_ptr()) };
+    static OWNED: Owned = const { Owned(RefCell::new(None)) };
 }
 
 pub(super) fn set_last_error(message: &str) {
     let text: Vec<u8> = message.bytes().filter(|&b| b != 0).collect();
     let message = CString::new(text).unwrap_or_default();
-    keep_message(Cow::Owned(message));
+    let text = message.as_ptr();
+    let mut message = Some(message);
+    if OWNED.try_with(|owned| owned.0.replace(message.take())).is_err() {
+        // This thread ends, and has lost the place of the text: it stays until the process ends.
+        message.map(CString::into_raw);
+    }
+    LAST_ERROR.set(text);
 }
 
 /// The same with a text that needs no memory.
 pub(super) fn set_last_text(message: &'static CStr) {
-    keep_message(Cow::Borrowed(message));
-}
-
-fn keep_message(message: Cow<'static, CStr>) {
-    // A thread that ends may have lost its thread-local memory: then there is no message.
-    let _ = LAST_ERROR.try_with(|last| last.replace(message));
+    LAST_ERROR.set(message.as_ptr());
 }
 
 /// The message of the last call on this thread.
 pub(super) fn last_error_text() -> String {
-    LAST_ERROR.try_with(|last| last.borrow().to_string_lossy().into_owned()).unwrap_or_default()
+    // SAFETY: a text of the library, or the one that OWNED has.
+    unsafe { CStr::from_ptr(LAST_ERROR.get()) }.to_string_lossy().into_owned()
 }
 
 fn text_of(status: contact_normal_status) -> &'static CStr {
@@ -163,7 +175,7 @@ pub extern "C" fn contact_normal_status_text(status: contact_normal_status) -> *
 /// Never NULL; valid until the next call of this library on this thread. Since 0.1.
 #[no_mangle]
 pub extern "C" fn contact_normal_last_error() -> *const c_char {
-    LAST_ERROR.try_with(|last| last.borrow().as_ptr()).unwrap_or(c"".as_ptr())
+    LAST_ERROR.get()
 }
 
 /// The version of the library, as "0.2.0"; static storage. Since 0.1.

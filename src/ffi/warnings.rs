@@ -17,7 +17,8 @@ pub const CONTACT_NORMAL_WARNING_BORDER: i32 = 1;
 pub const CONTACT_NORMAL_WARNING_ONE_ELEMENT: i32 = 2;
 /// `warnings`: one element of several carries more than half of the force: the grid is too coarse there, or a value of h is wrong.
 pub const CONTACT_NORMAL_WARNING_SPIKE: i32 = 4;
-/// `warnings`: an error of the force (or the approach) was to be estimated, and cannot be: see `accuracy.untrusted`.
+/// `warnings`: an error of the force (or the approach) was to be estimated, and cannot be: see `accuracy.untrusted`. If that is 0, one grid does
+/// not tell the error: pressures are at their limit, or bodies attract each other.
 pub const CONTACT_NORMAL_WARNING_ERROR_UNKNOWN: i32 = 8;
 /// `warnings`: an element alone is unstable under the attraction: the elements are too coarse for its range (`adhesion.resolution` above 1).
 pub const CONTACT_NORMAL_WARNING_RANGE: i32 = 16;

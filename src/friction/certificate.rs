@@ -32,6 +32,9 @@ pub struct Certificate {
     pub slip_count: usize,
 }
 
+/// A rigid slip less than this part of the scale of residuals is none.
+const NO_SLIP: f64 = 1e-8;
+
 /// The scale of residuals.
 pub fn scale(problem: &Problem, state: &State) -> f64 {
     problem.compared(problem.rms_rigid(), problem.rms(|i| state.u[i]))
@@ -51,7 +54,7 @@ impl Certificate {
     pub fn of(problem: &Problem, state: &State) -> Certificate {
         let blocks = (0..problem.bound.len()).step_by(BLOCK);
         let sums = fields::over(problem.threads(), blocks, |start, _| {
-            let [mut squares, mut gap, mut work, mut slips] = [0.0; 4];
+            let [mut squares, mut gap, mut work, mut bounds, mut slips] = [0.0; 5];
             for i in start..(start + BLOCK).min(problem.bound.len()) {
                 let g = problem.bound[i];
                 if !(g > 0.0) {
@@ -62,14 +65,18 @@ impl Certificate {
                 squares += rest(s, q, g);
                 gap += dot(s, q) + g * square(s).sqrt();
                 work += g * square(add(problem.rigid[i], problem.weighted(i, problem.offset))).sqrt();
+                bounds += g;
             }
-            [squares, gap, work, slips]
+            [squares, gap, work, bounds, slips]
         });
-        let [squares, gap, work, slips] = sums;
+        let [squares, gap, work, bounds, slips] = sums;
         let rms = (squares / problem.count().max(1) as f64).sqrt();
+        let scale = scale(problem, state);
+        let least = bounds * scale;
         Certificate {
-            residual: relative(rms, scale(problem, state)),
-            gap: relative(gap.max(0.0), work),
+            residual: relative(rms, scale),
+            // Without a rigid slip, or with one that found creepages cancel.
+            gap: relative(gap.max(0.0), if work > NO_SLIP * least { work } else { least }),
             stick_count: problem.count() - slips as usize,
             slip_count: slips as usize,
         }

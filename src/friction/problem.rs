@@ -80,6 +80,8 @@ pub struct Problem {
     pub places: Places,
     /// With given forces: rms over C of the rigid slip without the found creepages, the scale of its round-off.
     pub given: f64,
+    /// rms over C of u', the displacement before the step, the scale of its round-off.
+    pub left: f64,
     /// rms over C of the last change of q.
     pub update: f64,
     /// rms over C of g.
@@ -145,6 +147,7 @@ impl Problem {
             operators,
             places: Places::new(&grid)?,
             given: 0.0,
+            left: 0.0,
             update: 0.0,
             rms_bound: 0.0,
         })
@@ -231,7 +234,7 @@ impl Problem {
 
     /// The scale of residuals, from the rms of the rigid slip and of the displacements.
     pub fn compared(&self, rigid: f64, displacement: f64) -> f64 {
-        self.scale.of(rigid, displacement).max(ROUND_OFF * self.given)
+        self.scale.of(rigid, displacement).max(ROUND_OFF * self.given.max(self.left))
     }
 
     /// rms over C of a field.

@@ -102,7 +102,7 @@ impl Solver {
         }
         take_step(problem, friction, grid, (&scales, self.offset));
         let found = |k: usize| matches!(friction.prescribed[k], Prescribed::Force(_));
-        (problem.given, problem.update) = (0.0, 0.0);
+        (problem.given, problem.left, problem.update) = (0.0, 0.0, 0.0);
         problem.bound_changed();
         threads.for_each_row_pair((&mut problem.slip, width), (&mut problem.rigid, width), |_, slip, rigid| {
             slip.copy_from_slice(rigid);
@@ -164,6 +164,7 @@ impl Solver {
         for (w, u) in problem.slip.iter_mut().zip(&state.u) {
             *w = [w[0] - u[0], w[1] - u[1]];
         }
+        problem.left = problem.rms(|i| state.u[i]);
         Ok(())
     }
 
@@ -179,11 +180,12 @@ impl Solver {
         let (slip, displaced) = (problem.rms_rigid(), problem.displaced_by_bounds());
         let is_far = |slip: f64| !(slip / displaced < LARGEST_RATIO);
         // The squares of small slips underflow.
-        let moves = problem.rigid.iter().any(|w| *w != [0.0; 2]);
+        let moves = problem.contact().any(|i| problem.rigid[i] != [0.0; 2]);
         if displaced > 0.0 && (is_far(slip) || is_far(problem.rms_slip()) || moves && !(slip / displaced > LEAST_RATIO))
         {
             // The mean of tiny slips is 0.
-            let largest = problem.rigid.iter().flatten().fold(0.0, |most: f64, w| most.max(w.abs()));
+            let components = problem.contact().flat_map(|i| problem.rigid[i]);
+            let largest = components.fold(0.0, |most: f64, w| most.max(w.abs()));
             let slip = if slip > 0.0 { slip } else { largest }.max(problem.rms_slip());
             let motion = if slip > displaced { "a smaller motion" } else { "a larger motion or none" };
             let rule = format!("choose {motion}, coefficients of friction or shear moduli of another order");

@@ -52,6 +52,11 @@ impl Coefficients {
         self.diagonal.is_some()
     }
 
+    /// Whether coefficients of neighbours may differ: a layer with a compliance per element, or patches.
+    pub fn may_jump(&self) -> bool {
+        self.diagonal().is_some() || self.patches().is_some()
+    }
+
     /// The compliance that the layer adds to the coefficient at offset (0, 0) everywhere.
     fn least(&self) -> f64 {
         self.diagonal.as_ref().map_or(0.0, |layer| layer.least)

@@ -87,10 +87,12 @@ impl Shape {
     fn of(dx: f64, dy: f64) -> Arc<Shape> {
         let (_, unit) = apart(dx.max(dy));
         let [dx, dy] = [dx, dy].map(|side| times_power(side, -unit));
-        LAST.with_borrow_mut(|last| match last {
+        let kept = LAST.try_with(|last| match &mut *last.borrow_mut() {
             Some(last) if last.element == (dx, dy) => last.shape.clone(),
-            _ => last.insert(Computed { element: (dx, dy), shape: Arc::new(Shape::new(dx, dy)) }).shape.clone(),
-        })
+            last => last.insert(Computed { element: (dx, dy), shape: Arc::new(Shape::new(dx, dy)) }).shape.clone(),
+        });
+        // A thread that ends has lost its thread-local memory.
+        kept.unwrap_or_else(|_| Arc::new(Shape::new(dx, dy)))
     }
 
     fn new(dx: f64, dy: f64) -> Shape {

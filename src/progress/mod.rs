@@ -77,6 +77,8 @@ pub struct Monitor<'a> {
     cancelled: bool,
     /// The counters so far.
     pub count: Counters,
+    /// Seconds in which coefficients of coarser grids were set up.
+    pub coarse_seconds: f64,
     /// The measures of each grid.
     pub ledger: Ledger,
     /// The last survey of the grid to be closed next, if it still holds.
@@ -88,7 +90,15 @@ impl<'a> Monitor<'a> {
     pub fn new(callback: Option<ProgressCallback<'a>>, mut rows: Vec<LedgerRow>, estimates: bool) -> Monitor<'a> {
         rows.clear();
         let ledger = Ledger { rows, estimates, ..Ledger::default() };
-        Monitor { began: Instant::now(), callback, cancelled: false, count: Counters::default(), ledger, survey: None }
+        Monitor {
+            began: Instant::now(),
+            callback,
+            cancelled: false,
+            count: Counters::default(),
+            coarse_seconds: 0.0,
+            ledger,
+            survey: None,
+        }
     }
 
     /// A monitor without a callback.

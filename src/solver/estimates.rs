@@ -136,9 +136,9 @@ impl Parts {
     }
 }
 
-/// The error of the approach by ends of the surface, and the largest pressure at an end.
+/// The error of the approach by ends of the surface and jumps of the coefficients, and the largest pressure there.
 fn ends(problem: &Problem, state: &State, outline: &Outline) -> (f64, f64) {
-    if outline.ends(problem.coefficients.repeats(&state.grid)) == 0 {
+    if outline.ends(problem.coefficients.repeats(&state.grid)) == 0 && !problem.coefficients.may_jump() {
         return (0.0, 0.0);
     }
     let highest = Cell::new(0.0_f64);
@@ -217,6 +217,9 @@ pub fn estimate(
     let carried = parts.filter(|parts| parts.of_bend() > 0.0);
     let carried = carried.map_or(0.0, |parts| parts.of_bend() / parts.by * parts.stiffness / measures.force);
     let lines = lines * finest.grid.element_area() + carried * measures.contact_area;
+    // Before pressures carry a force, `carried` is infinite.
+    let whole = finest.grid.len() as f64 * finest.grid.element_area();
+    let area = |error: f64| if error.is_finite() { error.min(whole) } else { -1.0 };
     let count = ledger.len();
     for (i, row) in ledger.iter_mut().enumerate() {
         let is_last = i + 1 == count;
@@ -236,8 +239,8 @@ pub fn estimate(
         row.error = DiscretisationError {
             force: force.map_or(-1.0, |error| error + hidden(found)),
             max_pressure: highest.map_or(-1.0, |error| error + hidden(measures.max_pressure)),
-            contact_area: off + lines * size,
-            corrected_area: CORRECTION_OFF * correction + lines * size,
+            contact_area: area(off + lines * size),
+            corrected_area: area(CORRECTION_OFF * correction + lines * size),
             pressure: pressure.map_or(-1.0, |error| error * size + residual),
             untrusted,
         };

@@ -277,7 +277,7 @@ impl Solver {
             if let Some(measures) = self.compress(scene.load, &mut monitor) {
                 report.measures = measures;
             }
-            report.solve_seconds = monitor.seconds();
+            (report.solve_seconds, report.coarse_seconds) = (monitor.seconds(), monitor.coarse_seconds);
             Ok((stop, report))
         });
         self.ledger = monitor.ledger.rows;

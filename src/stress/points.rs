@@ -6,7 +6,7 @@ use super::body::Body;
 use super::kernels;
 use super::loads::{Loads, Part};
 use super::tensor::Tensor;
-use crate::error::{invalid, require, Error, Result};
+use crate::error::{invalid, require, Error, Number, Result};
 use crate::grid::Grid;
 use crate::progress::{Progress, ProgressCallback};
 use crate::threads::Threads;
@@ -64,13 +64,19 @@ fn check(body: &Body, loads: &Loads<'_>, i: usize, [x, y, z]: [f64; 3]) -> Resul
     let is_at_surface = body.in_units(z) == 0.0 || z <= in_x.rounding.min(in_y.rounding);
     if is_at_surface && in_x.is_inside && in_y.is_inside && (in_x.is_on_edge || in_y.is_on_edge) {
         return invalid(format!(
-            "point {i} is ({x}, {y}, {z}), on the edge of an element at the surface, to within rounding; stresses jump there or are infinite: \
-             take a place within an element, or below"
+            "point {i} is ({}, {}, {}), on the edge of an element at the surface, to within rounding; stresses jump there or are infinite: \
+             take a place within an element, or below",
+            Number(x),
+            Number(y),
+            Number(z)
         ));
     }
     if loads.coupled().is_some() && !(in_x.is_inside && in_y.is_inside) {
         return invalid(format!(
-            "point {i} is ({x}, {y}, {z}), and patches are given; a point takes the factors of the patch above it, so it must lie below the grid"
+            "point {i} is ({}, {}, {}), and patches are given; a point takes the factors of the patch above it, so it must lie below the grid",
+            Number(x),
+            Number(y),
+            Number(z)
         ));
     }
     Ok(())

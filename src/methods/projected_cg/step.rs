@@ -123,7 +123,9 @@ impl ProjectedCg {
 
     /// A start without a guess: from the coarser grids.
     pub fn start<S: AdmissibleSet>(&mut self, task: &mut Task<'_, '_, S>) -> Result<()> {
+        let began = task.monitor.seconds();
         let coarse = coarse_grids(&mut self.coarse, task.problem, self.precision)?;
+        task.monitor.coarse_seconds += task.monitor.seconds() - began;
         task.state.u_is = coarse.start(task)?;
         let single = self.precision != Precision::Double;
         let near = task.state.u_is == Freshness::Near && !task.monitor.is_cancelled();

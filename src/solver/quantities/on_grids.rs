@@ -78,7 +78,7 @@ impl OnGrid {
             lacks_estimates: solver.lacks_estimates(),
             residual: report.residual(),
             seconds,
-            setup_seconds: report.setup_seconds,
+            setup_seconds: report.setup_seconds + report.coarse_seconds,
             work_units: report.count.work_units + report.tangential_products(),
             tangential: report.tangential_products(),
             bytes: report.bytes,

@@ -122,7 +122,7 @@ impl Sample {
             cost: Cost {
                 elements: elements as f64,
                 seconds,
-                setup: report.setup_seconds,
+                setup: report.setup_seconds + report.coarse_seconds,
                 products: report.count.work_units + tangential,
             },
             solve: report.setup_seconds + report.solve_seconds,
