@@ -29,6 +29,20 @@ pub(super) fn reserved(name: &str, value: i32) -> Result<(), Refusal> {
     }
 }
 
+/// A member that is 0 or 1.
+pub(super) fn switch(name: &str, value: i32) -> Result<bool, Refusal> {
+    match value {
+        0 => Ok(false),
+        1 => Ok(true),
+        _ => unknown(name, value, "0 or 1"),
+    }
+}
+
+/// Refuses a value of an enumeration that is none of the known ones.
+pub(super) fn unknown<T>(name: &str, value: i32, known: &str) -> Result<T, Refusal> {
+    Err(Refusal::invalid(format!("{name} is {value}; it must be {known}")))
+}
+
 /// The caller's array of n values, or none.
 pub(super) unsafe fn optional<'a, T>(values: *const T, n: usize) -> Option<&'a [T]> {
     // SAFETY: not null: the caller promises n values, by the conventions of the ABI.
