@@ -56,6 +56,14 @@ pub(super) unsafe fn required<'a, T>(name: &str, values: *const T, n: usize) -> 
     unsafe { optional(values, n) }.ok_or_else(|| Refusal::null(name))
 }
 
+/// Copies values into part k of the caller's array, whose parts are as long as they. NULL: it is not wanted.
+pub(super) unsafe fn copy_to<A>(values: &[A], to: *mut f64, k: usize) {
+    if !to.is_null() {
+        // SAFETY: not null: room for the parts, by the conventions of the ABI, and nothing overlaps (`Regions`).
+        unsafe { std::ptr::copy_nonoverlapping(values.as_ptr(), to.cast::<A>().add(k * values.len()), values.len()) };
+    }
+}
+
 /// The contents of an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Element {
