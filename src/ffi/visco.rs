@@ -41,17 +41,12 @@ pub struct contact_normal_visco {
 
 versioned! { contact_normal_visco, contact_normal_visco_init, 64 }
 
-const NAMES: [[&str; 3]; 2] = [
-    ["visco->branches[0]", "visco->modulus[0]", "visco->time[0]"],
-    ["visco->branches[1]", "visco->modulus[1]", "visco->time[1]"],
-];
-
 impl contact_normal_visco {
     /// The caller's arrays must live as long as the result is used.
     pub(super) unsafe fn translate<'a>(&self) -> Result<Visco<'a>, Refusal> {
         let mut bodies = [Branches::default(); 2];
         for (b, body) in bodies.iter_mut().enumerate() {
-            let [name, modulus, time] = NAMES[b];
+            let [name, modulus, time] = Visco::MEMBERS[b];
             if self.branches[b] == 0 {
                 continue;
             }
@@ -83,7 +78,7 @@ impl contact_normal_visco {
 
 impl GivenEffect for contact_normal_visco {
     fn add_to(&self, regions: &mut Regions, _grid: &Grid) -> Result<(), Refusal> {
-        for (b, [_, modulus, time]) in NAMES.into_iter().enumerate() {
+        for (b, [_, modulus, time]) in Visco::MEMBERS.into_iter().enumerate() {
             regions.input(modulus, self.modulus[b], self.values(b))?;
             regions.input(time, self.time[b], self.values(b))?;
         }
