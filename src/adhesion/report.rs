@@ -5,7 +5,7 @@ use super::unknowns::{energies, largest, Measured, Unknowns};
 use crate::contact::Certificate;
 use crate::grid::Grid;
 use crate::methods::fields;
-use crate::progress::{DiscretisationError, LedgerRow, Measures, Monitor};
+use crate::progress::{DiscretisationError, Measures, Monitor};
 
 /// The results of a solve with adhesion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -152,15 +152,5 @@ fn edge_count(grid: &Grid, now: &Unknowns) -> usize {
 
 /// Writes the ledger row of a grid.
 pub fn close_grid(level: &Level, measured: &Measured, monitor: &mut Monitor<'_>) {
-    let (grid, count) = (level.problem.grid, monitor.count);
-    let row = LedgerRow {
-        mx: grid.mx,
-        my: grid.my,
-        cycles: count.cycles,
-        seconds: monitor.seconds(),
-        work_units: count.work_units,
-        measures: measures(level, measured),
-        error: DiscretisationError::default(),
-    };
-    monitor.ledger.rows.push(row);
+    monitor.add_row(&level.problem.grid, measures(level, measured));
 }

@@ -7,10 +7,6 @@ use crate::grid::{check_values, Grid};
 use crate::powers::LARGEST;
 use crate::scene::Bodies;
 
-const NO_FORCES: &str = "with a branch creepages must be prescribed in both directions";
-const LIKE_BODIES: &str = "bodies must be alike";
-const WHOLE_STEPS: &str = "with memory a step of steady rolling must be of whole elements along x or along y";
-
 impl Friction<'_> {
     /// Whether the bounds depend on the slip, so that [`law`](crate::friction::law) solves the tangential problem.
     pub fn has_law(&self) -> bool {
@@ -68,7 +64,7 @@ impl Friction<'_> {
             Err(Error::Unsupported(format!("{name} is given: {rule}")))
         };
         if self.branch != Branch::Near && self.prescribed.iter().any(|given| matches!(given, Prescribed::Force(_))) {
-            return refused(NO_FORCES);
+            return refused("with a branch creepages must be prescribed in both directions");
         }
         if self.sensitivities {
             return refused("friction->sensitivities must be 0");
@@ -76,7 +72,7 @@ impl Friction<'_> {
         let (x, y) = self.elements_rolled(grid);
         let is_whole = x.fract() == 0.0 && y.fract() == 0.0 && (x == 0.0 || y == 0.0);
         if self.motion == Motion::SteadyRolling && self.has_memory() && !is_whole {
-            return refused(WHOLE_STEPS);
+            return refused("with memory a step of steady rolling must be of whole elements along x or along y");
         }
         Ok(())
     }
@@ -87,7 +83,7 @@ impl Friction<'_> {
         let is_unlike = self.influence.is_none() && bodies.unlike() != 0.0;
         if self.has_law() && (has_cross || is_unlike) {
             let name = if self.law.is_some() { "friction->law" } else { "friction->hardening" };
-            return Err(Error::Unsupported(format!("{name} is given: {LIKE_BODIES}")));
+            return Err(Error::Unsupported(format!("{name} is given: bodies must be alike")));
         }
         Ok(())
     }

@@ -32,17 +32,18 @@ pub struct Visco<'a> {
     pub continues: bool,
 }
 
-/// The members of body 1 and 2: their counts, moduli and times.
-const NAMES: [[&str; 3]; 2] = [
-    ["visco->branches[0]", "visco->modulus[0]", "visco->time[0]"],
-    ["visco->branches[1]", "visco->modulus[1]", "visco->time[1]"],
-];
 const CONTINUES: Continues =
     Continues { member: "visco->continues", from: "step in time", instead: "begin each problem at rest" };
 
 impl Visco<'_> {
     /// The effect's name in a scene.
     pub const NAME: &'static str = "visco";
+
+    /// The members of body 1 and 2: their counts, moduli and times.
+    pub(crate) const MEMBERS: [[&'static str; 3]; 2] = [
+        ["visco->branches[0]", "visco->modulus[0]", "visco->time[0]"],
+        ["visco->branches[1]", "visco->modulus[1]", "visco->time[1]"],
+    ];
 
     /// Whether a body has branches.
     pub fn relaxes(&self) -> bool {
@@ -56,7 +57,7 @@ impl Visco<'_> {
             if g.is_infinite() && !modulus.is_empty() {
                 return invalid(format!(
                     "{} is {}, but shear_modulus[{b}] is {g}: a rigid body has no branches",
-                    NAMES[b][0],
+                    Visco::MEMBERS[b][0],
                     modulus.len()
                 ));
             }
@@ -65,7 +66,7 @@ impl Visco<'_> {
                     let sum: f64 = modulus.iter().sum();
                     invalid(format!(
                         "{} adds up to {}; it must be at most the modulus of the body at once, which is {}",
-                        NAMES[b][1],
+                        Visco::MEMBERS[b][1],
                         Number(sum),
                         Number(g)
                     ))
@@ -146,7 +147,7 @@ impl Effect for Visco<'_> {
     }
 
     fn check(&self, _grid: &Grid) -> Result<()> {
-        for (Branches { modulus, time }, [count, g, t]) in self.bodies.iter().zip(NAMES) {
+        for (Branches { modulus, time }, [count, g, t]) in self.bodies.iter().zip(Visco::MEMBERS) {
             if modulus.len() > MOST_BRANCHES || modulus.len() != time.len() {
                 let rule = format!("there are {MOST_BRANCHES} at most, each with a time");
                 return invalid(format!("{count} is {} and {}; {rule}", modulus.len(), time.len()));
@@ -174,7 +175,7 @@ impl Effect for Visco<'_> {
 
     // The step may differ in each solve.
     fn values(&self, tell: &mut dyn FnMut(&'static str, Value<'_>)) {
-        for (branches, [_, modulus, time]) in self.bodies.iter().zip(NAMES) {
+        for (branches, [_, modulus, time]) in self.bodies.iter().zip(Visco::MEMBERS) {
             tell(modulus, Value::Array(branches.modulus));
             tell(time, Value::Array(branches.time));
         }

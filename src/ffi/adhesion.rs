@@ -1,6 +1,6 @@
 //! `contact_normal_adhesion`.
 
-use super::arguments::{optional, GivenEffect, Regions};
+use super::arguments::{optional, switch, unknown, GivenEffect, Regions};
 use super::ledger::copy;
 use super::status::Refusal;
 use super::structs::versioned;
@@ -60,28 +60,21 @@ versioned! { contact_normal_adhesion, contact_normal_adhesion_init, 64, smear: 0
 impl contact_normal_adhesion {
     /// The caller's arrays must live as long as the result is used.
     pub(super) unsafe fn translate<'a>(&self, grid: &Grid) -> Result<Adhesion<'a>, Refusal> {
-        let refused = |name: &str, value: i32, rule: &str| {
-            Err(Refusal::invalid(format!("adhesion->{name} is {value}; it must be {rule}")))
-        };
         let law = match self.law {
             CONTACT_NORMAL_LAW_EXPONENTIAL => Law::Exponential,
             CONTACT_NORMAL_LAW_DUGDALE => Law::Dugdale(self.smear),
             CONTACT_NORMAL_LAW_CUBIC => Law::Cubic,
             CONTACT_NORMAL_LAW_VAN_DER_WAALS => Law::VanDerWaals,
-            other => return refused("law", other, "EXPONENTIAL 0, DUGDALE 1, CUBIC 2 or VAN_DER_WAALS 3"),
+            other => return unknown("adhesion->law", other, "EXPONENTIAL 0, DUGDALE 1, CUBIC 2 or VAN_DER_WAALS 3"),
         };
         let start = match self.start {
             CONTACT_NORMAL_START_AUTO => Start::Auto,
             CONTACT_NORMAL_START_FROM_CONTACT => Start::Contact,
             CONTACT_NORMAL_START_FROM_APART => Start::Apart,
-            other => return refused("start", other, "AUTO 0, FROM_CONTACT 1 or FROM_APART 2"),
+            other => return unknown("adhesion->start", other, "AUTO 0, FROM_CONTACT 1 or FROM_APART 2"),
         };
-        let switch = |name: &str, value: i32| match value {
-            0 => Ok(false),
-            1 => Ok(true),
-            other => Err(Refusal::invalid(format!("adhesion->{name} is {other}; it must be 0 or 1"))),
-        };
-        let (stiffness, stability) = (switch("stiffness", self.stiffness)?, switch("stability", self.stability)?);
+        let stiffness = switch("adhesion->stiffness", self.stiffness)?;
+        let stability = switch("adhesion->stability", self.stability)?;
         // SAFETY: NULL or one value per element, by the conventions of the ABI.
         let works = unsafe { optional(self.works_of_adhesion, grid.len()) };
         let work = works.map_or(Work::Uniform(self.work_of_adhesion), Work::PerElement);

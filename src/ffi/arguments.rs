@@ -29,6 +29,20 @@ pub(super) fn reserved(name: &str, value: i32) -> Result<(), Refusal> {
     }
 }
 
+/// A member that is 0 or 1.
+pub(super) fn switch(name: &str, value: i32) -> Result<bool, Refusal> {
+    match value {
+        0 => Ok(false),
+        1 => Ok(true),
+        _ => unknown(name, value, "0 or 1"),
+    }
+}
+
+/// Refuses a value of an enumeration that is none of the known ones.
+pub(super) fn unknown<T>(name: &str, value: i32, known: &str) -> Result<T, Refusal> {
+    Err(Refusal::invalid(format!("{name} is {value}; it must be {known}")))
+}
+
 /// The caller's array of n values, or none.
 pub(super) unsafe fn optional<'a, T>(values: *const T, n: usize) -> Option<&'a [T]> {
     // SAFETY: not null: the caller promises n values, by the conventions of the ABI.
@@ -40,6 +54,14 @@ pub(super) unsafe fn required<'a, T>(name: &str, values: *const T, n: usize) -> 
     aligned(name, values, n)?;
     // SAFETY: by the caller.
     unsafe { optional(values, n) }.ok_or_else(|| Refusal::null(name))
+}
+
+/// Copies values into part k of the caller's array, whose parts are as long as they. NULL: it is not wanted.
+pub(super) unsafe fn copy_to<A>(values: &[A], to: *mut f64, k: usize) {
+    if !to.is_null() {
+        // SAFETY: not null: room for the parts, by the conventions of the ABI, and nothing overlaps (`Regions`).
+        unsafe { std::ptr::copy_nonoverlapping(values.as_ptr(), to.cast::<A>().add(k * values.len()), values.len()) };
+    }
 }
 
 /// The contents of an array.

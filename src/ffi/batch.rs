@@ -18,7 +18,7 @@ use super::solver::{contact_normal_solver, Held, InUse};
 use super::status::{
     contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_OUT_OF_MEMORY, CONTACT_NORMAL_UNSUPPORTED,
 };
-use super::structs::{self, Versioned};
+use super::structs::Rows;
 use super::watcher::{watched, Watcher};
 use crate::memory::collected;
 use crate::solver::Solver;
@@ -83,35 +83,9 @@ pub unsafe extern "C" fn contact_normal_solver_solve_batch(
     })
 }
 
-/// An array of the caller's structs, of an older or newer version maybe. The size of the first one is the distance from each to the next.
-struct Array<T> {
-    first: *mut T,
-    stride: usize,
-}
-
-impl<T: Versioned> Array<T> {
-    unsafe fn new(first: *mut T, name: &str) -> Result<Array<T>, Refusal> {
-        // SAFETY: not null: a struct that declares its size.
-        Ok(Array { first, stride: unsafe { structs::declared_size(first.cast_const(), name)? } })
-    }
-
-    /// Element `i`, if it declares the same size.
-    unsafe fn at(&self, i: usize, name: &str) -> Result<*mut T, Refusal> {
-        // SAFETY: the caller's array has more than `i` elements.
-        let element = unsafe { self.first.byte_add(i * self.stride) };
-        // SAFETY: likewise; each begins with its size.
-        let declared = unsafe { element.cast::<i64>().read_unaligned() };
-        if declared != self.stride as i64 {
-            let rule = format!("it must be {}, as that of the first of the array: call {}_init", self.stride, T::NAME);
-            return Err(Refusal::struct_size(format!("{name}->struct_size is {declared}; {rule}")));
-        }
-        Ok(element)
-    }
-}
-
 /// The caller's arrays.
 struct Batch {
-    scenes: Array<contact_normal_scene>,
+    scenes: Rows<contact_normal_scene>,
     outputs: Vec<Result<Outputs, Refusal>>,
     statuses: *mut contact_normal_status,
 }
@@ -130,12 +104,12 @@ impl Batch {
     ) -> Result<Batch, Refusal> {
         // SAFETY (all): by the caller.
         unsafe {
-            let scenes = Array::new(scenes.cast_mut(), "scenes")?;
-            let fields = if fields.is_null() { None } else { Some(Array::new(fields, "fields")?) };
-            let reports = if reports.is_null() { None } else { Some(Array::new(reports, "reports")?) };
+            let scenes = Rows::of(scenes.cast_mut(), "scenes")?;
+            let fields = if fields.is_null() { None } else { Some(Rows::of(fields, "fields")?) };
+            let reports = if reports.is_null() { None } else { Some(Rows::of(reports, "reports")?) };
             let outputs_of = |i: usize| {
-                let report = reports.as_ref().map_or(Ok(null_mut()), |array| array.at(i, "report"))?;
-                let fields = fields.as_ref().map_or(Ok(null_mut()), |array| array.at(i, "fields"))?;
+                let report = reports.as_ref().map_or(Ok(null_mut()), |rows| rows.at(i, "report"))?;
+                let fields = fields.as_ref().map_or(Ok(null_mut()), |rows| rows.at(i, "fields"))?;
                 Outputs::of(fields, report)
             };
             let outputs = collected((0..count).map(outputs_of), "the outputs of a batch")?;

@@ -1,6 +1,6 @@
 //! The effects that a scene may name beside coefficients of its own (`influence`): one struct each, NULL in the scene: not simulated.
 
-use super::arguments::{count, optional, required, reserved, GivenEffect, Regions};
+use super::arguments::{count, optional, required, reserved, switch, GivenEffect, Regions};
 use super::status::Refusal;
 use super::structs::versioned;
 use crate::grid::Grid;
@@ -71,12 +71,7 @@ versioned! { contact_normal_patches, contact_normal_patches_init, 32 }
 
 impl contact_normal_period {
     pub(super) fn translate(&self) -> Result<Period, Refusal> {
-        let yes = |name: &str, value: i32| match value {
-            0 => Ok(false),
-            1 => Ok(true),
-            other => Err(Refusal::invalid(format!("{name} is {other}; it must be 0 or 1"))),
-        };
-        Ok(Period { x: yes("period->x", self.x)?, y: yes("period->y", self.y)? })
+        Ok(Period { x: switch("period->x", self.x)?, y: switch("period->y", self.y)? })
     }
 }
 

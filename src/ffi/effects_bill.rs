@@ -1,6 +1,6 @@
 //! `contact_normal_effects_bill`: which effects a scene calls for, and what they cost.
 
-use super::arguments::{count, not_negative, required, Regions};
+use super::arguments::{count, not_negative, required, switch, Regions};
 use super::conclusion::Conclusion;
 use super::guard::guard;
 use super::options::{self, contact_normal_options};
@@ -148,9 +148,7 @@ unsafe fn bill(
 ) -> Result<contact_normal_status, Refusal> {
     let n = count("n", n)?;
     let capacity = not_negative("capacity", capacity)?;
-    if !(0..=1).contains(&pairs) {
-        return Err(Refusal::invalid(format!("pairs is {pairs}; it must be 0 or 1")));
-    }
+    let pairs = switch("pairs", pairs)?;
     // SAFETY: each pointer is NULL or points to what it says, by the conventions of the ABI.
     let (translated, named, wanted) =
         unsafe { (options::translate(options)?, Named::read(scene)?, required("quantities", quantities, n)?) };
@@ -168,7 +166,7 @@ unsafe fn bill(
     let wanted = quantities_of(wanted)?;
     // SAFETY: as above.
     let scene = unsafe { named.translate()? };
-    let asked = BillOptions { target, max_seconds: translated.given.max_seconds, pairs: pairs == 1 };
+    let asked = BillOptions { target, max_seconds: translated.given.max_seconds, pairs };
     let write_count = |found: usize| {
         if !number.is_null() {
             // SAFETY: not NULL: an integer of the caller's.

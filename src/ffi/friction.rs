@@ -1,6 +1,6 @@
 //! `contact_normal_friction`.
 
-use super::arguments::{optional, reserved, GivenEffect, Regions};
+use super::arguments::{optional, reserved, switch, unknown, GivenEffect, Regions};
 use super::influence::{contact_normal_influence, contact_normal_row_tables};
 use super::status::Refusal;
 use super::structs::versioned;
@@ -177,24 +177,17 @@ impl contact_normal_friction {
             }
         };
         let given = pair("previous_traction", self.previous_traction)?;
-        let previous = match (self.continues, given) {
-            (0, Some(given)) => Previous::Given(given),
-            (0, None) => Previous::None,
-            (1, None) => Previous::Kept,
-            (1, Some(_)) => {
+        let previous = match (switch("friction->continues", self.continues)?, given) {
+            (false, Some(given)) => Previous::Given(given),
+            (false, None) => Previous::None,
+            (true, None) => Previous::Kept,
+            (true, Some(_)) => {
                 let message = "friction->continues is 1, and previous_traction is given; only one of them can be";
                 return Err(Refusal::invalid(message.into()));
             }
-            (other, _) => return Err(Refusal::invalid(format!("friction->continues is {other}; it must be 0 or 1"))),
         };
         reserved("friction->reserved", self.reserved)?;
-        let sensitivities = match self.sensitivities {
-            0 => false,
-            1 => true,
-            other => {
-                return Err(Refusal::invalid(format!("friction->sensitivities is {other}; it must be 0 or 1")));
-            }
-        };
+        let sensitivities = switch("friction->sensitivities", self.sensitivities)?;
         reserved("friction->reserved_for_law", self.reserved_for_law)?;
         let n = grid.len();
         // SAFETY (all): as above.
@@ -231,10 +224,7 @@ impl contact_normal_friction {
             CONTACT_NORMAL_MOTION_SHIFT => Ok(Motion::Shift),
             CONTACT_NORMAL_MOTION_TRANSIENT_ROLLING => Ok(Motion::TransientRolling),
             CONTACT_NORMAL_MOTION_STEADY_ROLLING => Ok(Motion::SteadyRolling),
-            other => {
-                let rule = "it must be SHIFT 0, TRANSIENT_ROLLING 1 or STEADY_ROLLING 2";
-                Err(Refusal::invalid(format!("friction->motion is {other}; {rule}")))
-            }
+            other => unknown("friction->motion", other, "SHIFT 0, TRANSIENT_ROLLING 1 or STEADY_ROLLING 2"),
         }
     }
 
@@ -245,8 +235,8 @@ impl contact_normal_friction {
             CONTACT_NORMAL_FRICTION_LAW_RATIONAL => Fall::Rational,
             CONTACT_NORMAL_FRICTION_LAW_EXPONENTIAL => Fall::Exponential,
             other => {
-                let rule = "it must be FRICTION_LAW_COULOMB 0, LINEAR 1, RATIONAL 2 or EXPONENTIAL 3";
-                return Err(Refusal::invalid(format!("friction->law is {other}; {rule}")));
+                let known = "FRICTION_LAW_COULOMB 0, LINEAR 1, RATIONAL 2 or EXPONENTIAL 3";
+                return unknown("friction->law", other, known);
             }
         };
         let Self { kinetic, falling, half_speed, speed, time_step, memory_distance, memory_speed, .. } = *self;
@@ -259,10 +249,7 @@ impl contact_normal_friction {
             CONTACT_NORMAL_FRICTION_BRANCH_NEAR => Ok(Branch::Near),
             CONTACT_NORMAL_FRICTION_BRANCH_LOW => Ok(Branch::Low),
             CONTACT_NORMAL_FRICTION_BRANCH_HIGH => Ok(Branch::High),
-            other => {
-                let rule = "it must be FRICTION_BRANCH_NEAR 0, LOW 1 or HIGH 2";
-                Err(Refusal::invalid(format!("friction->branch is {other}; {rule}")))
-            }
+            other => unknown("friction->branch", other, "FRICTION_BRANCH_NEAR 0, LOW 1 or HIGH 2"),
         }
     }
 
@@ -275,9 +262,10 @@ impl contact_normal_friction {
         match self.prescribed[k] {
             CONTACT_NORMAL_PRESCRIBED_CREEPAGE => Ok(Prescribed::Creepage(self.creepage[k])),
             CONTACT_NORMAL_PRESCRIBED_TANGENTIAL_FORCE => Ok(Prescribed::Force(self.force[k])),
-            other => Err(Refusal::invalid(format!(
-                "friction->prescribed[{k}] is {other}; it must be PRESCRIBED_CREEPAGE 0 or PRESCRIBED_TANGENTIAL_FORCE 1"
-            ))),
+            other => {
+                let known = "PRESCRIBED_CREEPAGE 0 or PRESCRIBED_TANGENTIAL_FORCE 1";
+                unknown(&format!("friction->prescribed[{k}]"), other, known)
+            }
         }
     }
 }

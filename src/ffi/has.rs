@@ -4,13 +4,13 @@ use std::ffi::CStr;
 
 use libc::c_char;
 
-/// Effects of a scene, members of the options and the fields, and what functions do.
-const NAMES: [&str; 46] = [
+use crate::effects;
+
+/// Beside the effects of a scene: members of the options and the fields, and what functions do.
+const NAMES: [&str; 36] = [
     "accuracy",
-    "adhesion",
     "batch",
     "branch",
-    "coating",
     "coating_compliance",
     "compliance",
     "constant",
@@ -20,27 +20,20 @@ const NAMES: [&str; 46] = [
     "effects_bill",
     "error_ratio",
     "flash_temperature",
-    "friction",
     "frictional_wear",
-    "influence",
     "influence_rolling",
     "influence_rolling_tangential",
     "initial_traction",
     "keep",
     "law",
-    "layer",
     "max_seconds",
     "neglect_below",
-    "patches",
-    "period",
-    "pressure_limit",
     "previous_coefficient",
     "price_list",
     "product",
     "pull_off",
     "quantities",
     "release",
-    "row_tables",
     "sensitivities",
     "set_option",
     "solve_tangential",
@@ -49,7 +42,6 @@ const NAMES: [&str; 46] = [
     "stop",
     "stress",
     "tangential_row_tables",
-    "visco",
     "warnings",
     "yield_limit",
 ];
@@ -66,6 +58,6 @@ pub unsafe extern "C" fn contact_normal_has(name: *const c_char) -> i32 {
         return 0;
     }
     // SAFETY: not NULL: a text that ends with 0, by the conventions of the ABI.
-    let name = unsafe { CStr::from_ptr(name) };
-    i32::from(NAMES.iter().any(|known| known.as_bytes() == name.to_bytes()))
+    let name = unsafe { CStr::from_ptr(name) }.to_str().unwrap_or_default();
+    i32::from(NAMES.contains(&name) || effects::place(name).is_some())
 }

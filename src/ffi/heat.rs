@@ -1,6 +1,6 @@
 //! `contact_normal_flash_temperature`.
 
-use super::arguments::{count, not_negative, reserved, Regions};
+use super::arguments::{copy_to, count, not_negative, reserved, Regions};
 use super::guard::guard;
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{self, versioned};
@@ -80,7 +80,7 @@ pub unsafe extern "C" fn contact_normal_flash_temperature(
             let (mx, my) = (count("heat->mx", given.mx)?, count("heat->my", given.my)?);
             reserved("heat->reserved", given.reserved)?;
             let grid = Grid::new(mx, my, given.dx, given.dy)?;
-            let written = if flash.is_null() { None } else { Some(structs::read(flash.cast_const(), "flash")?) };
+            let written = structs::read_optional(flash.cast_const(), "flash")?;
             let mut regions = Regions::default();
             regions.input_struct(heat, &given)?;
             if let Some(written) = &written {
@@ -96,11 +96,7 @@ pub unsafe extern "C" fn contact_normal_flash_temperature(
             check_threads("heat->threads", threads)?;
             let threads = Threads::new(threads)?;
             let found = flash_temperature(&Heat { grid, flux, conductivity, diffusivity, speed, share }, &threads)?;
-            if !temperature.is_null() {
-                for (b, rise) in found.rise.iter().enumerate() {
-                    std::ptr::copy_nonoverlapping(rise.as_ptr(), temperature.add(b * rise.len()), rise.len());
-                }
-            }
+            found.rise.iter().enumerate().for_each(|(b, rise)| copy_to(rise, temperature, b));
             if let Some(mut value) = written {
                 (value.share, value.largest) = (found.share, found.largest);
                 for (b, i) in found.at.into_iter().enumerate() {

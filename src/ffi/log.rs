@@ -6,6 +6,7 @@ use std::ffi::CString;
 use libc::{c_char, c_void};
 use log::{LevelFilter, Log, Metadata, Record};
 
+use super::arguments::unknown;
 use super::floating_point::in_host_environment;
 use super::guard::guard;
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_UNSUPPORTED};
@@ -93,7 +94,7 @@ pub unsafe extern "C" fn contact_normal_set_log(
             CONTACT_NORMAL_LOG_OFF => LevelFilter::Off,
             CONTACT_NORMAL_LOG_WARNING => LevelFilter::Warn,
             CONTACT_NORMAL_LOG_INFO => LevelFilter::Info,
-            other => return Err(Refusal::invalid(format!("level is {other}; it must be OFF 0, WARNING 1 or INFO 2"))),
+            other => return unknown("level", other, "OFF 0, WARNING 1 or INFO 2"),
         };
         if !OURS.get_or_init(|| log::set_logger(&Forward).is_ok()) {
             let message = "a logger is set already; it receives the messages".into();

@@ -8,7 +8,6 @@ mod accuracy;
 mod adhesion;
 mod arguments;
 mod batch;
-mod by_name;
 mod coating;
 mod conclusion;
 pub mod dump;

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use libc::{c_char, c_void};
 
-use super::arguments::{count, not_negative, reserved, Regions};
+use super::arguments::{count, not_negative, reserved, unknown, Regions};
 use super::progress::contact_normal_progress;
 use super::status::Refusal;
 use super::structs::{self, versioned, Versioned};
@@ -285,8 +285,4 @@ fn smoother(value: i32) -> Result<SmootherKind, Refusal> {
         CONTACT_NORMAL_SMOOTHER_FFT => SmootherKind::Fft,
         other => return unknown("smoother", other, "AUTO 0, GAUSS_SEIDEL 1, RED_BLACK 2, JACOBI 3 or FFT 4"),
     })
-}
-
-fn unknown<T>(name: &str, value: i32, known: &str) -> Result<T, Refusal> {
-    Err(Refusal::invalid(format!("{name} is {value}; it must be {known}")))
 }

@@ -3,7 +3,7 @@
 use std::mem::MaybeUninit;
 use std::slice::from_raw_parts_mut;
 
-use super::arguments::Regions;
+use super::arguments::{copy_to, Regions};
 use super::fields::contact_normal_fields;
 use super::ledger::contact_normal_ledger_row;
 use super::report::contact_normal_report;
@@ -167,12 +167,8 @@ impl Outputs {
         let fields = &self.fields;
         // SAFETY (all four): not null: room for n values, by the conventions of the ABI; no two overlap (`Regions`).
         unsafe {
-            if !fields.pressure.is_null() {
-                std::ptr::copy_nonoverlapping(state.p.as_ptr(), fields.pressure, n);
-            }
-            if !fields.displacement.is_null() {
-                std::ptr::copy_nonoverlapping(state.u.as_ptr(), fields.displacement, n);
-            }
+            copy_to(&state.p, fields.pressure, 0);
+            copy_to(&state.u, fields.displacement, 0);
             if !fields.deformed_distance.is_null() {
                 (0..n).for_each(|i| fields.deformed_distance.add(i).write(state.deformed_distance(i)));
             }

@@ -80,10 +80,7 @@ pub(super) fn load_of(load: i32, approach: f64, force: f64) -> Result<Load, Refu
     match load {
         CONTACT_NORMAL_PRESCRIBED_APPROACH => Ok(Load::Approach(approach)),
         CONTACT_NORMAL_PRESCRIBED_FORCE => Ok(Load::Force(force)),
-        other => {
-            let rule = "it must be PRESCRIBED_APPROACH (1) or PRESCRIBED_FORCE (2)";
-            Err(Refusal::invalid(format!("load is {other}; {rule}")))
-        }
+        other => arguments::unknown("load", other, "PRESCRIBED_APPROACH (1) or PRESCRIBED_FORCE (2)"),
     }
 }
 

@@ -4,9 +4,9 @@ use std::ffi::CStr;
 
 use libc::c_char;
 
-use super::by_name::{structure, Kind, Member};
 use super::guard::guard;
-use super::members::CONSTANTS;
+use super::member::{Kind, Place};
+use super::members::{structure, CONSTANTS};
 use super::options::{contact_normal_cycle, contact_normal_options};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{self, Versioned};
@@ -73,9 +73,9 @@ fn without_prefix(name: &str) -> &str {
 }
 
 /// Members that a text can set.
-fn can_be_set(member: &Member) -> bool {
+fn can_be_set(member: &Place) -> bool {
     let is_number = matches!(member.kind, Kind::Int32 | Kind::Int64 | Kind::Double);
-    is_number && !["struct_size", "reserved"].contains(&member.name)
+    is_number && !["struct_size", "reserved"].contains(&&*member.name)
 }
 
 unsafe fn set<T: Versioned>(
@@ -87,9 +87,9 @@ unsafe fn set<T: Versioned>(
     // SAFETY (all): by the caller.
     let (size, name, value) =
         unsafe { (structs::declared_size(to.cast_const(), called)?, text("name", name)?, text("value", value)?) };
-    let members = structure(T::NAME).map_or(&[][..], |known| known.members);
+    let members: Vec<Place> = structure(T::NAME).into_iter().flat_map(|known| known.places()).collect();
     let found = members.iter().find(|member| member.name.eq_ignore_ascii_case(&name));
-    let names = || members.iter().filter(|member| can_be_set(member)).map(|member| member.name);
+    let names = || members.iter().filter(|member| can_be_set(member)).map(|member| &*member.name);
     let member = match found {
         Some(member) if can_be_set(member) => member,
         Some(member) => {
@@ -97,16 +97,16 @@ unsafe fn set<T: Versioned>(
         }
         None => return Err(Refusal::invalid(format!("there is no option {name}: {}", said(&name, names())))),
     };
-    if member.at + member.bytes() > size {
+    if member.end() > size {
         return Err(Refusal::invalid(format!("{name} is an option that the header of this program does not have")));
     }
     // SAFETY: the caller's struct has this member, of this kind; any bytes are a value.
     unsafe {
         let at = to.cast::<u8>().add(member.at);
         match member.kind {
-            Kind::Double => at.cast::<f64>().write_unaligned(double(member.name, &value)?),
-            Kind::Int64 => at.cast::<i64>().write_unaligned(integer(member.name, &value)?.into()),
-            _ => at.cast::<i32>().write_unaligned(integer(member.name, &value)?),
+            Kind::Double => at.cast::<f64>().write_unaligned(double(&member.name, &value)?),
+            Kind::Int64 => at.cast::<i64>().write_unaligned(integer(&member.name, &value)?.into()),
+            _ => at.cast::<i32>().write_unaligned(integer(&member.name, &value)?),
         }
     }
     Ok(CONTACT_NORMAL_OK)

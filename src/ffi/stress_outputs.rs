@@ -1,6 +1,6 @@
 //! Where stresses below the surface are written, and the place of the largest.
 
-use super::arguments::Regions;
+use super::arguments::{copy_to, Regions};
 use super::status::Refusal;
 use super::structs::{self, versioned};
 use crate::grid::Grid;
@@ -115,24 +115,16 @@ impl contact_normal_stress_outputs {
 
     /// Writes the wanted stresses of depth k.
     pub(super) unsafe fn write(&self, k: usize, depth: &Depth) {
-        unsafe fn copy<A>(values: &[A], to: *mut f64, k: usize) {
-            if !to.is_null() {
-                // SAFETY: room for n depths, by the conventions of the ABI, and nothing overlaps (`Regions`).
-                unsafe {
-                    std::ptr::copy_nonoverlapping(values.as_ptr(), to.cast::<A>().add(k * values.len()), values.len())
-                };
-            }
-        }
         // SAFETY (all): by the caller.
         unsafe {
             for c in 0..6 {
-                copy(&depth.stress[c], self.stress[c], k);
+                copy_to(&depth.stress[c], self.stress[c], k);
             }
-            copy(&depth.von_mises, self.von_mises, k);
-            copy(&depth.maximum_shear, self.maximum_shear, k);
+            copy_to(&depth.von_mises, self.von_mises, k);
+            copy_to(&depth.maximum_shear, self.maximum_shear, k);
             for i in 0..3 {
-                copy(&depth.principal[i], self.principal[i], k);
-                copy(&depth.directions[i], self.directions[i], k);
+                copy_to(&depth.principal[i], self.principal[i], k);
+                copy_to(&depth.directions[i], self.directions[i], k);
             }
         }
     }

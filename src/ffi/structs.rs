@@ -134,8 +134,7 @@ pub unsafe fn write<T: Versioned>(to: *mut T, value: &T) -> Result<(), Refusal> 
     Ok(())
 }
 
-/// An array of the caller's structs, which are written. The size of the first one is the distance from each to the next. The others need no
-/// `_init`.
+/// An array of the caller's structs, of an older or newer version maybe. The size of the first one is the distance from each to the next.
 pub struct Rows<T> {
     first: *mut T,
     stride: usize,
@@ -153,7 +152,20 @@ impl<T: Versioned> Rows<T> {
         self.stride.saturating_mul(count)
     }
 
-    /// Writes all of row `i`, with 0 into members that are unknown here.
+    /// Row `i`, if it declares the same size.
+    pub unsafe fn at(&self, i: usize, name: &str) -> Result<*mut T, Refusal> {
+        // SAFETY: the caller's array has more than `i` rows.
+        let row = unsafe { self.first.byte_add(i * self.stride) };
+        // SAFETY: likewise; each begins with its size.
+        let declared = unsafe { row.cast::<i64>().read_unaligned() };
+        if declared != self.stride as i64 {
+            let rule = format!("it must be {}, as that of the first of the array: call {}_init", self.stride, T::NAME);
+            return Err(Refusal::struct_size(format!("{name}->struct_size is {declared}; {rule}")));
+        }
+        Ok(row)
+    }
+
+    /// Writes all of row `i`, which needs no `_init`, with 0 into members that are unknown here.
     pub unsafe fn write(&self, i: usize, value: &T) {
         let (stride, known) = (self.stride, self.stride.min(size_of::<T>()));
         // SAFETY (all): the caller's array has more than `i` rows of `stride` bytes, and a Versioned is bytes.

@@ -1,6 +1,6 @@
 //! `contact_normal_visco`.
 
-use super::arguments::{count, required, GivenEffect, Regions};
+use super::arguments::{count, required, switch, unknown, GivenEffect, Regions};
 use super::status::Refusal;
 use super::structs::versioned;
 use crate::grid::Grid;
@@ -41,20 +41,12 @@ pub struct contact_normal_visco {
 
 versioned! { contact_normal_visco, contact_normal_visco_init, 64 }
 
-const NAMES: [[&str; 3]; 2] = [
-    ["visco->branches[0]", "visco->modulus[0]", "visco->time[0]"],
-    ["visco->branches[1]", "visco->modulus[1]", "visco->time[1]"],
-];
-
 impl contact_normal_visco {
     /// The caller's arrays must live as long as the result is used.
     pub(super) unsafe fn translate<'a>(&self) -> Result<Visco<'a>, Refusal> {
-        let refused = |name: &str, value: i32, rule: &str| {
-            Err(Refusal::invalid(format!("visco->{name} is {value}; it must be {rule}")))
-        };
         let mut bodies = [Branches::default(); 2];
         for (b, body) in bodies.iter_mut().enumerate() {
-            let [name, modulus, time] = NAMES[b];
+            let [name, modulus, time] = Visco::MEMBERS[b];
             if self.branches[b] == 0 {
                 continue;
             }
@@ -72,13 +64,9 @@ impl contact_normal_visco {
             CONTACT_NORMAL_FORM_RELAXATION => Some(Form::Relaxation),
             CONTACT_NORMAL_FORM_CREEP => Some(Form::Creep),
             CONTACT_NORMAL_FORM_BACKWARD_EULER => Some(Form::BackwardEuler),
-            other => return refused("form", other, "AUTO 0, RELAXATION 1, CREEP 2 or BACKWARD_EULER 3"),
+            other => return unknown("visco->form", other, "AUTO 0, RELAXATION 1, CREEP 2 or BACKWARD_EULER 3"),
         };
-        let continues = match self.continues {
-            0 => false,
-            1 => true,
-            other => return refused("continues", other, "0 or 1"),
-        };
+        let continues = switch("visco->continues", self.continues)?;
         Ok(Visco { bodies, time_step: self.time_step, form, continues })
     }
 
@@ -90,7 +78,7 @@ impl contact_normal_visco {
 
 impl GivenEffect for contact_normal_visco {
     fn add_to(&self, regions: &mut Regions, _grid: &Grid) -> Result<(), Refusal> {
-        for (b, [_, modulus, time]) in NAMES.into_iter().enumerate() {
+        for (b, [_, modulus, time]) in Visco::MEMBERS.into_iter().enumerate() {
             regions.input(modulus, self.modulus[b], self.values(b))?;
             regions.input(time, self.time[b], self.values(b))?;
         }

@@ -1,6 +1,6 @@
 //! `contact_normal_frictional_wear`.
 
-use super::arguments::{count, optional, required, Regions};
+use super::arguments::{copy_to, count, optional, required, Regions};
 use super::guard::guard;
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{self, versioned};
@@ -93,10 +93,8 @@ impl Wanted {
 
     unsafe fn write(&self, worn: &Worn) {
         for (from, to) in [(&worn.work, self.work), (&worn.depth, self.depth), (&worn.passage, self.passage)] {
-            if !to.is_null() {
-                // SAFETY: one value per element, or per row, by the conventions of the ABI.
-                unsafe { std::ptr::copy_nonoverlapping(from.as_ptr(), to, from.len()) };
-            }
+            // SAFETY: NULL, or one value per element, or per row, by the conventions of the ABI.
+            unsafe { copy_to(from, to, 0) };
         }
     }
 }

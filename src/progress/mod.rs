@@ -12,7 +12,7 @@ use crate::contact::{Outline, State, Survey};
 use crate::grid::Grid;
 
 /// The measures that a progress callback gets after each cycle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Progress {
     /// Elements in x of the grid that the cycle was on.
     pub mx: usize,
@@ -35,16 +35,7 @@ pub struct Progress {
 impl Progress {
     /// The progress of work without cycles: a depth of subsurface stresses or an entry of a table counts as a cycle.
     pub fn of_part(grid: &Grid, cycles: u64, seconds: f64) -> Progress {
-        Progress {
-            mx: grid.mx,
-            my: grid.my,
-            cycles,
-            active_set_changes: 0,
-            seconds,
-            work_units: 0.0,
-            update: 0.0,
-            residual: 0.0,
-        }
+        Progress { mx: grid.mx, my: grid.my, cycles, seconds, ..Progress::default() }
     }
 }
 
@@ -180,9 +171,14 @@ impl<'a> Monitor<'a> {
             self.ledger.outline = Outline::of(state);
             measures.corrected_area = self.ledger.outline.corrected_area(state, measures.contact_count);
         }
+        self.add_row(&state.grid, measures);
+    }
+
+    /// Writes the ledger row of the current grid from its measures.
+    pub fn add_row(&mut self, grid: &Grid, measures: Measures) {
         self.ledger.rows.push(LedgerRow {
-            mx: state.grid.mx,
-            my: state.grid.my,
+            mx: grid.mx,
+            my: grid.my,
             cycles: self.count.cycles,
             seconds: self.seconds(),
             work_units: self.count.work_units,

@@ -29,6 +29,7 @@ mod machine;
 mod methods;
 mod nested;
 mod normal;
+mod numbered;
 mod options;
 mod own_tables;
 mod quantities;

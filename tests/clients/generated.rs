@@ -4,7 +4,7 @@
 
 use std::fmt::Write;
 
-use crate::description::{Callback, Description, Kind, Struct};
+use crate::description::{Callback, Description, Kind, Member, Struct};
 use crate::support::root;
 
 /// The functions `_init` of C and C++, which stand at the end of the header: each tells the library the size that its struct has there.
@@ -181,26 +181,34 @@ pub fn layout() -> Vec<(&'static str, usize)> {
     text + "    ]\n}\n"
 }
 
-/// A member of a struct, or a value of an array: its name ("normal.force", "coating[0]"), its place, the bytes to add to that place, and its type.
-type Leaf = (String, String, usize, Kind);
-
-/// The members of a struct, those of structs within it, and the values of its arrays.
-fn leaves(described: &Description, each: &Struct) -> Vec<Leaf> {
-    let mut found = Vec::new();
-    for member in &each.members {
-        if let Kind::Struct(name) = &member.kind {
+/// The members of a struct, and those of structs within it: "normal.force".
+fn members(described: &Description, each: &Struct) -> Vec<String> {
+    let of = |member: &Member| match &member.kind {
+        Kind::Struct(name) => {
             let inner = described.structs.iter().find(|inner| inner.name == *name).expect("a struct of the header");
-            for (leaf, place, more, kind) in leaves(described, inner) {
-                found.push((format!("{}.{leaf}", member.name), format!("{}.{place}", member.name), more, kind));
-            }
-            continue;
+            members(described, inner).into_iter().map(|of_inner| format!("{}.{of_inner}", member.name)).collect()
         }
-        let size = if member.kind == Kind::Int32 { 4 } else { 8 };
-        for k in 0..member.count.unwrap_or(1) {
-            let number = member.count.map_or_else(String::new, |_| format!("[{k}]"));
-            found.push((format!("{}{number}", member.name), member.name.clone(), k * size, member.kind.clone()));
+        _ => vec![member.name.clone()],
+    };
+    each.members.iter().flat_map(of).collect()
+}
+
+/// The structs of calls that `options->dump` writes; a dump holds these, and those that they point to.
+const DUMPED: [&str; 8] =
+    ["scene", "options", "fields", "report", "accuracy", "price", "friction_results", "stress_outputs"];
+
+/// The structs that a dump may hold, in their order in the header.
+fn dumped(described: &Description) -> Vec<&Struct> {
+    // A struct that points to another stands behind it.
+    let mut found: Vec<&Struct> = Vec::new();
+    for each in described.structs.iter().rev() {
+        let pointer = Kind::Pointer(Some(Box::new(Kind::Struct(each.name.clone()))));
+        let points_to_it = |member: &Member| member.kind == pointer;
+        if DUMPED.contains(&each.short_name()) || found.iter().any(|other| other.members.iter().any(points_to_it)) {
+            found.push(each);
         }
     }
+    found.reverse();
     found
 }
 
@@ -224,41 +232,29 @@ fn rust_members(described: &Description) -> String {
     let mut text = "\
 //! The constants, the structs and their members by name. Made from include/contact_normal.h; do not edit.
 
-use super::member::{members, Kind::*, Member, Struct};
+use super::member::{constants, structs, Member, Struct};
 use super::*;
 
-/// Without CONTACT_NORMAL_.
+/// Each with its name without CONTACT_NORMAL_.
 #[rustfmt::skip]
-pub(super) const CONSTANTS: &[(&str, i32)] = &[
+pub(super) const CONSTANTS: &[(&str, i32)] = constants! {
 "
     .to_owned();
-    fill(
-        &mut text,
-        "    ",
-        described.constants.iter().map(|each| format!("(\"{0}\", CONTACT_NORMAL_{0}),", each.name)),
-    );
-    text += "];\n\n#[rustfmt::skip]\npub(super) const STRUCTS: &[Struct] = &[\n";
-    for each in &described.structs {
-        let name = &each.name;
-        writeln!(text, "    Struct {{ name: \"{name}\", members: members!({name}:").expect("text");
-        let item = |(leaf, place, more, kind): Leaf| {
-            let kind = match kind {
-                Kind::Int32 => "Int32".into(),
-                Kind::Int64 => "Int64".into(),
-                Kind::Double => "Double".into(),
-                Kind::Callback(_) | Kind::Pointer(None) => "OfTheHost".into(),
-                Kind::Pointer(Some(to)) => match *to {
-                    Kind::Struct(name) => format!("Structs(\"{name}\")"),
-                    _ => "Array".into(),
-                },
-                Kind::Struct(_) => unreachable!("its members are told"),
-            };
-            format!("(\"{leaf}\", {place}, {more}, {kind})")
-        };
-        fill(&mut text, "        ", leaves(described, each).into_iter().map(item));
-        text += "    ) },\n";
+    fill(&mut text, "    ", described.constants.iter().map(|each| format!("CONTACT_NORMAL_{}", each.name)));
+    text += "};\n\n/// Those that a dump may hold.\n#[rustfmt::skip]\nconst STRUCTS: &[Struct] = structs! {\n";
+    for each in dumped(described) {
+        writeln!(text, "    {} {{", each.name).expect("text");
+        fill(&mut text, "        ", members(described, each).into_iter());
+        text += "    }\n";
     }
-    text + "];\n"
+    text + "\
+};
+
+/// The struct of this name.
+pub(super) fn structure(name: &str) -> Option<&'static Struct> {
+    STRUCTS.iter().find(|each| each.name == name)
+}
+"
 }
 
 /// The header of this clone.

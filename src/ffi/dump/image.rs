@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use super::argument::Argument;
 use crate::ffi::arguments::{Element, Region, Regions};
-use crate::ffi::by_name::{structure, Kind, Member};
+use crate::ffi::member::{Kind, Place};
+use crate::ffi::members::structure;
 use crate::ffi::structs::LARGEST;
 
 /// The text for a pointer to something that is not in the file.
@@ -134,18 +135,18 @@ impl Image {
         // The call writes all structs of an array, not only the first.
         let room = regions.at(at).map_or(0, Region::bytes).max(declared);
         self.line(&format!("struct {number} {kind} {room}"));
-        for member in known.members.iter().filter(|member| member.at + member.bytes() <= declared) {
+        for place in known.places().filter(|place| place.end() <= declared) {
             // SAFETY: within the caller's struct.
-            unsafe { self.write_member(at, member, regions) };
+            unsafe { self.write_value(at, &place, regions) };
         }
     }
 
-    unsafe fn write_member(&mut self, at: usize, member: &Member, regions: &Regions) {
-        let (from, name) = ((at + member.at) as *const u8, member.name);
+    unsafe fn write_value(&mut self, at: usize, place: &Place, regions: &Regions) {
+        let (from, name) = ((at + place.at) as *const u8, &place.name);
         // SAFETY (all): within the caller's struct, any bytes of which are a value.
         unsafe {
             let pointer = || from.cast::<usize>().read_unaligned();
-            let line = match member.kind {
+            let line = match place.kind {
                 Kind::Int32 => format!("int32 {name} {}", from.cast::<i32>().read_unaligned()),
                 Kind::Int64 => format!("int64 {name} {}", from.cast::<i64>().read_unaligned()),
                 Kind::Double => {

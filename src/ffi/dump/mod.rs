@@ -23,7 +23,7 @@ use super::options::{contact_normal_cycle, contact_normal_options};
 use super::status::{
     contact_normal_status, last_error_text, set_last_error, Refusal, CONTACT_NORMAL_CANCELLED, CONTACT_NORMAL_OK,
 };
-use super::structs;
+use super::structs::{self, Versioned};
 use crate::contact::State;
 use crate::effects::TangentialInfluence;
 use crate::solver::Solver;
@@ -151,52 +151,30 @@ impl<'a> Recording<'a> {
 }
 
 impl Image {
-    /// The tangential coefficients of a handle, one table per loaded row.
-    fn add_row_tables(&mut self, tables: &TangentialInfluence<'_>) {
-        let structs = tables.coefficients.map(|values| contact_normal_row_tables {
-            cx: tables.cx as i32,
-            rows: tables.cy as i32,
-            coefficients: values.as_ptr(),
-            scale: tables.scale,
-            ..Default::default()
-        });
-        let mut regions = Regions::default();
-        for (table, values) in structs.iter().zip(tables.coefficients) {
-            let name = "the tangential coefficients of the handle";
-            self.lacks_memory |= regions.input(name, table.coefficients, values.len()).is_err();
-        }
-        let named = [0, 1, 2].map(|k| (TANGENTIAL_ROW_TABLES[k], (&raw const structs[k]).given()));
-        // SAFETY: structs of this function, and arrays of their sizes.
-        unsafe { self.add(&named, &regions) };
-    }
-
     /// The tangential coefficients of a handle.
     fn add_tables(&mut self, tables: &TangentialInfluence<'_>) {
+        let (cx, cy, scale) = (tables.cx as i32, tables.cy as i32, tables.scale);
+        let values: Vec<_> = tables.coefficients.into_iter().chain(tables.cross.into_iter().flatten()).collect();
         if tables.by_row {
-            return self.add_row_tables(tables);
+            let of =
+                |coefficients| contact_normal_row_tables { cx, rows: cy, coefficients, scale, ..Default::default() };
+            self.add_structs(&TANGENTIAL_ROW_TABLES, &values, of);
+        } else {
+            let of = |coefficients| contact_normal_influence { cx, cy, coefficients, scale, ..Default::default() };
+            self.add_structs(&TANGENTIAL_TABLES, &values, of);
         }
-        let values = tables.coefficients.into_iter().chain(tables.cross.into_iter().flatten());
-        let structs: Vec<_> = values
-            .map(|values| contact_normal_influence {
-                cx: tables.cx as i32,
-                cy: tables.cy as i32,
-                coefficients: values.as_ptr(),
-                scale: tables.scale,
-                ..Default::default()
-            })
-            .collect();
+    }
+
+    /// Adds a struct for each table, which points to it.
+    fn add_structs<S: Versioned>(&mut self, names: &[&str], tables: &[&[f64]], of: impl Fn(*const f64) -> S) {
+        let structs: Vec<S> = tables.iter().map(|values| of(values.as_ptr())).collect();
         let mut regions = Regions::default();
-        for table in &structs {
-            let count = 4 * tables.cx * tables.cy;
-            if regions.input("the tangential coefficients of the handle", table.coefficients, count).is_err() {
-                self.lacks_memory = true;
-            }
+        for values in tables {
+            let name = "the tangential coefficients of the handle";
+            self.lacks_memory |= regions.input(name, values.as_ptr(), values.len()).is_err();
         }
-        let named: Vec<_> = TANGENTIAL_TABLES
-            .into_iter()
-            .zip(&structs)
-            .map(|(name, table)| (name, (&raw const *table).given()))
-            .collect();
+        let pointers = structs.iter().map(|each| (&raw const *each).given());
+        let named: Vec<_> = names.iter().copied().zip(pointers).collect();
         // SAFETY: structs of this function, and arrays of their sizes.
         unsafe { self.add(&named, &regions) };
     }

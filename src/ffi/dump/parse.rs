@@ -2,7 +2,8 @@
 
 use super::image::UNREAD;
 use super::FIRST_LINE;
-use crate::ffi::by_name::{structure, Kind, Member, Struct};
+use crate::ffi::member::{Kind, Place, Struct};
+use crate::ffi::members::structure;
 
 /// The target of a pointer of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +32,7 @@ pub(super) enum Item {
     Struct {
         kind: &'static Struct,
         room: usize,
-        members: Vec<(&'static Member, Value)>,
+        members: Vec<(Place, Value)>,
     },
     /// So many values of so many bytes, which begin at this byte of the data.
     Array {
@@ -153,9 +154,9 @@ impl Parsed {
         let Some(Item::Struct { kind, members, .. }) = self.items.last_mut() else {
             return Err(format!("what is \"{first}\"?"));
         };
-        let known = kind.members.iter().find(|member| member.name == name);
-        let member = known.ok_or_else(|| format!("this library knows no member {name} of {}", kind.name))?;
-        let value = match (first, member.kind) {
+        let known = kind.places().find(|place| place.name == name);
+        let place = known.ok_or_else(|| format!("this library knows no member {name} of {}", kind.name))?;
+        let value = match (first, place.kind) {
             ("int32", Kind::Int32) => Value::Int32(word(said, 1)?),
             ("int64", Kind::Int64) => Value::Int64(word(said, 1)?),
             ("double", Kind::Double) => {
@@ -167,7 +168,7 @@ impl Parsed {
             ("pointer", Kind::Array | Kind::Structs(_)) => Value::Pointer(target(said, 1)?),
             (first, kind) => return Err(format!("{name} is no {first} but {kind:?}")),
         };
-        members.push((member, value));
+        members.push((place, value));
         Ok(())
     }
 }

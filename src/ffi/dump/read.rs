@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use super::parse::{parse, Item, Parsed, Target, Value};
-use crate::ffi::by_name::Kind;
 use crate::ffi::fields::contact_normal_fields;
+use crate::ffi::member::Kind;
 use crate::ffi::options::contact_normal_options;
 use crate::ffi::scene::contact_normal_scene;
 use crate::ffi::structs::{Versioned, LARGEST};
@@ -157,18 +157,18 @@ impl Dump {
         });
         let missing = structs.flat_map(|(kind, members)| {
             let unread = members.iter().filter(|(_, value)| matches!(value, Value::Pointer(Target::Unread)));
-            unread.map(move |(member, _)| format!("{}->{}", &kind.name["contact_normal_".len()..], member.name))
+            unread.map(move |(place, _)| format!("{}->{}", &kind.name["contact_normal_".len()..], place.name))
         });
         missing.collect()
     }
 
     /// Members that the host had set, and which are NULL here.
-    pub fn of_the_host(&self) -> Vec<&'static str> {
+    pub fn of_the_host(&self) -> Vec<&str> {
         let members = self.parsed.items.iter().flat_map(|item| match item {
             Item::Struct { members, .. } => &members[..],
             _ => &[],
         });
-        members.filter(|(_, value)| matches!(value, Value::OfTheHost(true))).map(|(member, _)| member.name).collect()
+        members.filter(|(_, value)| matches!(value, Value::OfTheHost(true))).map(|(place, _)| &*place.name).collect()
     }
 
     /// The memory that calls may use.
@@ -184,19 +184,19 @@ impl Dump {
     fn write_structs(&self) -> Result<(), String> {
         for index in 0..self.memory.len() {
             let Item::Struct { members, .. } = &self.parsed.items[index] else { continue };
-            for (member, value) in members {
+            for (place, value) in members {
                 let bits = match *value {
                     Value::Int32(value) => u64::from(value as u32),
                     Value::Int64(value) => value as u64,
                     Value::Double(value) => value.to_bits(),
                     Value::OfTheHost(_) => 0,
-                    Value::Pointer(Target::Item(item)) => self.place(member.kind, item)? as u64,
+                    Value::Pointer(Target::Item(item)) => self.place(place.kind, item)? as u64,
                     Value::Pointer(_) => 0,
                 };
                 // SAFETY (both): a struct of ours has room for any size, and its members are aligned.
                 unsafe {
-                    let to = self.starts[index].cast::<u8>().add(member.at);
-                    match member.bytes() {
+                    let to = self.starts[index].cast::<u8>().add(place.at);
+                    match place.kind.bytes() {
                         4 => to.cast::<u32>().write(bits as u32),
                         _ => to.cast::<u64>().write(bits),
                     }

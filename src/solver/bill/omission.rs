@@ -2,85 +2,43 @@
 
 use crate::effects::replace_bodies;
 use crate::scene::{Bodies, Coefficient, Friction, Layer, Scene};
+use crate::solver::numbered::numbered;
 
-/// An effect that is left out or replaced by a simpler one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Omission {
-    /// The coatings: the bodies are of the substrate's material.
-    Coating,
-    /// The period: the scene stands alone.
-    Period,
-    /// The patches: all are fully coupled.
-    Patches,
-    /// The thin compliant layer.
-    Layer,
-    /// The limit of pressures.
-    PressureLimit,
-    /// Friction, with the effect of tractions on pressures of unlike bodies.
-    Friction,
-    /// The coupling of tractions and pressures of unlike bodies.
-    Coupling,
-    /// The spin.
-    Spin,
-    /// The tangential compliance of a third body.
-    FrictionCompliance,
-    /// The coatings, replaced by a thin compliant layer: their limit for waves much longer than their thickness.
-    CoatingAsLayer,
-    /// The attraction between the bodies.
-    Adhesion,
-    /// The law of friction: the coefficient is that at rest everywhere.
-    FrictionLaw,
-    /// The yield of a third body, which then carries all that friction does.
-    FrictionLayer,
-    /// The relaxation of the bodies, which keep their instantaneous compliance.
-    Visco,
+numbered! {
+    /// An effect that is left out or replaced by a simpler one.
+    Omission {
+        /// The coatings: the bodies are of the substrate's material.
+        Coating = 1: "coating",
+        /// The period: the scene stands alone.
+        Period: "period",
+        /// The patches: all are fully coupled.
+        Patches: "patches",
+        /// The thin compliant layer.
+        Layer: "layer",
+        /// The limit of pressures.
+        PressureLimit: "pressure_limit",
+        /// Friction, with the effect of tractions on pressures of unlike bodies.
+        Friction: "friction",
+        /// The coupling of tractions and pressures of unlike bodies.
+        Coupling: "coupling",
+        /// The spin.
+        Spin: "spin",
+        /// The tangential compliance of a third body.
+        FrictionCompliance: "friction_compliance",
+        /// The coatings, replaced by a thin compliant layer: their limit for waves much longer than their thickness.
+        CoatingAsLayer: "coating_as_layer",
+        /// The attraction between the bodies.
+        Adhesion: "adhesion",
+        /// The law of friction: the coefficient is that at rest everywhere.
+        FrictionLaw: "friction_law",
+        /// The yield of a third body, which then carries all that friction does.
+        FrictionLayer: "friction_layer",
+        /// The relaxation of the bodies, which keep their instantaneous compliance.
+        Visco: "visco",
+    }
 }
 
 impl Omission {
-    /// All omissions, in the order of their numbers in the C ABI, which begin at 1.
-    pub const ALL: [Omission; 14] = [
-        Omission::Coating,
-        Omission::Period,
-        Omission::Patches,
-        Omission::Layer,
-        Omission::PressureLimit,
-        Omission::Friction,
-        Omission::Coupling,
-        Omission::Spin,
-        Omission::FrictionCompliance,
-        Omission::CoatingAsLayer,
-        Omission::Adhesion,
-        Omission::FrictionLaw,
-        Omission::FrictionLayer,
-        Omission::Visco,
-    ];
-
-    /// The number in the C ABI, from 1 on.
-    pub fn number(self) -> usize {
-        self as usize + 1
-    }
-
-    /// The name.
-    pub fn name(self) -> &'static str {
-        const NAMES: [&str; 14] = [
-            "coating",
-            "period",
-            "patches",
-            "layer",
-            "pressure_limit",
-            "friction",
-            "coupling",
-            "spin",
-            "friction_compliance",
-            "coating_as_layer",
-            "adhesion",
-            "friction_law",
-            "friction_layer",
-            "visco",
-        ];
-        NAMES[self as usize]
-    }
-
     /// The omissions of a bill: each alone, then the pairs.
     pub fn left_out_of(scene: &Scene<'_>, pairs: bool) -> Vec<Vec<Omission>> {
         let all = Omission::of(scene);

@@ -14,76 +14,39 @@ pub use on_grids::{quantities, OnGrid, QuantityRow};
 pub use sequence::Sequence;
 pub use values::{values, Lack};
 
-/// A quantity that has an accuracy and a price.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
-    /// The force, or the approach if the force is prescribed.
-    Force,
-    /// The largest pressure.
-    MaxPressure,
-    /// The corrected contact area.
-    ContactArea,
-    /// The mean of the deformed distance over all elements with a surface.
-    MeanGap,
-    /// dF/d approach, at fixed contact area.
-    Stiffness,
-    /// The length of the tangential force.
-    TangentialForce,
-    /// The length of the creepage, in the directions of prescribed force.
-    Creepage,
-    /// The moment of the tractions about the spin centre.
-    SpinMoment,
-    /// The area of stick.
-    StickArea,
-    /// The largest von Mises stress in both bodies.
-    MaxVonMises,
-    /// The depth of the largest von Mises stress.
-    VonMisesDepth,
-    /// The largest shear stress in both bodies.
-    MaxShear,
+use crate::solver::numbered::numbered;
+
+numbered! {
+    /// A quantity that has an accuracy and a price.
+    Quantity {
+        /// The force, or the approach if the force is prescribed.
+        Force: "force",
+        /// The largest pressure.
+        MaxPressure: "max_pressure",
+        /// The corrected contact area.
+        ContactArea: "contact_area",
+        /// The mean of the deformed distance over all elements with a surface.
+        MeanGap: "mean_gap",
+        /// dF/d approach, at fixed contact area.
+        Stiffness: "stiffness",
+        /// The length of the tangential force.
+        TangentialForce: "tangential_force",
+        /// The length of the creepage, in the directions of prescribed force.
+        Creepage: "creepage",
+        /// The moment of the tractions about the spin centre.
+        SpinMoment: "spin_moment",
+        /// The area of stick.
+        StickArea: "stick_area",
+        /// The largest von Mises stress in both bodies.
+        MaxVonMises: "max_von_mises",
+        /// The depth of the largest von Mises stress.
+        VonMisesDepth: "von_mises_depth",
+        /// The largest shear stress in both bodies.
+        MaxShear: "max_shear",
+    }
 }
 
 impl Quantity {
-    /// All quantities, in the order of their numbers in the C ABI.
-    pub const ALL: [Quantity; 12] = [
-        Quantity::Force,
-        Quantity::MaxPressure,
-        Quantity::ContactArea,
-        Quantity::MeanGap,
-        Quantity::Stiffness,
-        Quantity::TangentialForce,
-        Quantity::Creepage,
-        Quantity::SpinMoment,
-        Quantity::StickArea,
-        Quantity::MaxVonMises,
-        Quantity::VonMisesDepth,
-        Quantity::MaxShear,
-    ];
-
-    /// The number in the C ABI.
-    pub fn number(self) -> usize {
-        self as usize
-    }
-
-    /// The name, the same in C, Fortran and Python.
-    pub fn name(self) -> &'static str {
-        const NAMES: [&str; 12] = [
-            "force",
-            "max_pressure",
-            "contact_area",
-            "mean_gap",
-            "stiffness",
-            "tangential_force",
-            "creepage",
-            "spin_moment",
-            "stick_area",
-            "max_von_mises",
-            "von_mises_depth",
-            "max_shear",
-        ];
-        NAMES[self.number()]
-    }
-
     /// Whether its error is estimated from one grid.
     pub fn has_estimate(self) -> bool {
         matches!(self, Quantity::Force | Quantity::MaxPressure | Quantity::ContactArea)
