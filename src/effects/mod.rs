@@ -33,6 +33,7 @@
 mod adhesion;
 mod coating;
 mod coupled;
+mod each;
 mod effect;
 mod friction;
 mod friction_bounds;
@@ -57,6 +58,7 @@ mod visco_step;
 pub use adhesion::{Adhesion, Work};
 pub use coating::{Coating, CoatingLayer};
 pub use coupled::{Coupled, History};
+pub use each::Each;
 pub use effect::{Effect, Value};
 pub use friction::{Coefficient, Friction, Motion, Prescribed, Previous};
 pub use friction_law::{Branch, Fall, FrictionLaw, PlasticLayer};

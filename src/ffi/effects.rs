@@ -4,7 +4,7 @@ use super::arguments::{count, optional, required, reserved, GivenEffect, Regions
 use super::status::Refusal;
 use super::structs::versioned;
 use crate::grid::Grid;
-use crate::scene::{Layer, Patches, Period, PressureLimit};
+use crate::scene::{Each, Layer, Patches, Period, PressureLimit};
 
 /// Effect: the scene repeats itself after `mx dx` in x, after `my dy` in y, or after both: the grid is one period. With both, mean
 /// displacements are zero and the approach is relative to the mean planes of the bodies (docs/effects.md).
@@ -86,7 +86,7 @@ impl contact_normal_layer {
     /// The caller's array must live as long as the result is used.
     pub(super) unsafe fn translate<'a>(&self, grid: &Grid) -> Layer<'a> {
         // SAFETY: NULL or one value per element, by the conventions of the ABI.
-        unsafe { optional(self.compliances, grid.len()) }.map_or(Layer::Uniform(self.compliance), Layer::PerElement)
+        Layer(Each::of(unsafe { optional(self.compliances, grid.len()) }, self.compliance))
     }
 }
 
@@ -100,8 +100,7 @@ impl contact_normal_pressure_limit {
     /// The caller's array must live as long as the result is used.
     pub(super) unsafe fn translate<'a>(&self, grid: &Grid) -> PressureLimit<'a> {
         // SAFETY: NULL or one value per element, by the conventions of the ABI.
-        unsafe { optional(self.limits, grid.len()) }
-            .map_or(PressureLimit::Uniform(self.limit), PressureLimit::PerElement)
+        PressureLimit(Each::of(unsafe { optional(self.limits, grid.len()) }, self.limit))
     }
 }
 

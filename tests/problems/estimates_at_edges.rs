@@ -6,7 +6,7 @@
 use std::f64::consts::PI;
 
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Load, Period, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Each, Load, Period, PressureLimit, Scene};
 use contact_normal::solver::{
     cost_of_accuracy, solve, solve_to_accuracy, Accuracy, Options, Outcome, Quantity, Report,
 };
@@ -168,7 +168,7 @@ fn a_limit_that_is_not_reached_leaves_the_estimates() {
     let plain = report(&Scene::new(grid, &h, UNIT, Load::Approach(0.13)));
     assert!(plain.error.force > 0.0);
     for limit in [f64::INFINITY, 1e6, 1.1 * plain.measures.max_pressure] {
-        let limit = PressureLimit::Uniform(limit);
+        let limit = PressureLimit(Each::Uniform(limit));
         let scene = Scene { pressure_limit: Some(limit), ..Scene::new(grid, &h, UNIT, Load::Approach(0.13)) };
         let error = report(&scene).error;
         for (limited, plain) in [
@@ -181,7 +181,7 @@ fn a_limit_that_is_not_reached_leaves_the_estimates() {
             assert!((limited / plain - 1.0).abs() < 1e-3, "{limit:?}: {limited}, {plain} without");
         }
     }
-    let limit = PressureLimit::Uniform(0.9 * plain.measures.max_pressure);
+    let limit = PressureLimit(Each::Uniform(0.9 * plain.measures.max_pressure));
     let scene = Scene { pressure_limit: Some(limit), ..Scene::new(grid, &h, UNIT, Load::Approach(0.13)) };
     assert!(report(&scene).error.force < 0.0);
 }
