@@ -98,12 +98,7 @@ impl Layer<'_> {
                     continue;
                 }
                 // The half-space has the usual base at this offset.
-                let less = 1.0 - self.radial.transfer.substrate;
-                let other = match (base, here) {
-                    (Base::Layer, Base::Substrate) => less,
-                    (Base::Substrate, Base::Layer) => -less,
-                    _ => 0.0,
-                };
+                let other = base.to(here) * (1.0 - self.radial.transfer.substrate);
                 let half_space = if other == 0.0 { 0.0 } else { other * self.half_space.at(kx as i64, ky as i64) };
                 *value += c * (corners.difference(kx, ky) + half_space);
             }
