@@ -2,7 +2,7 @@
 
 use crate::error::{invalid, require, Error, Number, Result};
 use crate::grid::Grid;
-use crate::memory::collected;
+use crate::memory::copied;
 
 /// The caller's tangential influence coefficients: three tables over offsets `-cx..cx-1` by `-cy..cy-1`, x fastest, in
 /// the layout of the normal table. Axx and Ayy must be even in both directions, Axy odd in both. In steady rolling they
@@ -180,7 +180,7 @@ pub struct KeptInfluence {
 impl KeptInfluence {
     /// Copies tables, whose sizes are checked.
     pub fn new(of: &TangentialInfluence<'_>) -> Result<KeptInfluence> {
-        let copy = |values: &[f64]| collected(values.iter().copied(), "the tangential influence coefficients");
+        let copy = |values: &[f64]| copied(values, "the tangential influence coefficients");
         let [xx, yy, xy] = of.coefficients;
         let cross = match of.cross {
             Some([xz, yz]) => Some([copy(xz)?, copy(yz)?]),

@@ -14,7 +14,7 @@ use super::solver::Solver;
 use crate::effects::Branch;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::collected;
+use crate::memory::copied;
 use crate::progress::Outcome;
 use crate::rectangle::Rectangle;
 
@@ -131,7 +131,7 @@ impl Solver {
     /// A copy of the finest grid's state.
     fn keep(&self, report: &Report) -> Result<Kept> {
         let Level { problem, state, .. } = &self.levels[0];
-        let (q, bound) = (collected(state.q.iter().copied(), KEPT)?, collected(problem.bound.iter().copied(), KEPT)?);
+        let (q, bound) = (copied(&state.q, KEPT)?, copied(&problem.bound, KEPT)?);
         Ok(Kept { q, bound, certificate: report.certificate })
     }
 
