@@ -68,7 +68,7 @@ pub use named::{Named, SET_THEM};
 pub use patches::{Patches, NO_PATCH};
 pub use period::Period;
 pub use properties::{Continues, Layout, PressureLimit, Properties, Stresses};
-pub use tangential_influence::{KeptInfluence, TangentialInfluence};
+pub use tangential_influence::{KeptInfluence, TangentialInfluence, TangentialTables};
 pub use together::{
     beside, check_bodies, check_effects, check_other_grids, continuing, coupled, effects, excluded_method, keep,
     limits, memory, own_coefficients, place, repeats, replace_bodies, surface, without_given_area, COUNT,
