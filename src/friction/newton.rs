@@ -22,6 +22,7 @@ use super::problem::{Problem, State};
 use super::shift::Goal;
 use super::step::{compliance, enough, polish, step, Effort, DIRECTIONS};
 use super::tangent::{rho_of, Measures, Tangent};
+use crate::contact::largest;
 use crate::error::Result;
 use crate::methods::fields::Fields;
 use crate::progress::Outcome;
@@ -212,11 +213,6 @@ fn unloaded(problem: &mut Problem, state: &mut State) -> Outcome {
     problem.offset = [0.0; 2];
     state.unload(problem.threads());
     Outcome::Stagnated
-}
-
-/// The largest of these, which are not negative; NaN if there is one.
-fn largest(values: [f64; 3]) -> f64 {
-    values.into_iter().fold(0.0, |most, value| if most.is_nan() || value <= most { most } else { value })
 }
 
 /// As many directions as unknowns, if they hold at most MOST_VALUES values together.

@@ -24,6 +24,7 @@ use crate::memory::{copied, zeros};
 use crate::methods::{Start, Task};
 use crate::progress::{Criterion, Goal, Monitor};
 use crate::scene::Load;
+use crate::sums::dot;
 
 /// Relative residual of the fixed point.
 const TOLERANCE: f64 = 1e-6;
@@ -184,10 +185,6 @@ impl Linear<'_> {
         self.products += own.count.work_units;
         Ok(())
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn norm(a: &[f64]) -> f64 {
