@@ -182,6 +182,11 @@ impl Friction<'_> {
         [distance * (creepage[0] - self.spin * y) + own[0], distance * (creepage[1] + self.spin * x) + own[1]]
     }
 
+    /// Whether the force is given in x, and in y.
+    pub fn has_forces(&self) -> [bool; 2] {
+        self.prescribed.map(|given| matches!(given, Prescribed::Force(_)))
+    }
+
     /// The weights of the creepages at element i.
     pub fn weight_at(&self, i: usize) -> [f64; 2] {
         self.weights.map_or([1.0; 2], |[x, y]| [x[i], y[i]])

@@ -17,7 +17,7 @@ use crate::effects::Coefficient;
 use crate::error::Result;
 use crate::friction::{dot, length, Vector};
 use crate::progress::Outcome;
-use crate::scene::{Load, Prescribed, Scene};
+use crate::scene::{Load, Scene};
 
 /// If forces miss less than CLOSE_FORCES times mu N, tractions by force are tried with the same pressures, with
 /// FINISHING_PRODUCTS products.
@@ -39,8 +39,7 @@ const FARTHEST: f64 = 1e20;
 
 /// The directions of given forces.
 fn given(scene: &Scene<'_>) -> [bool; 2] {
-    let prescribed = scene.friction.map_or([Prescribed::Creepage(0.0); 2], |friction| friction.prescribed);
-    prescribed.map(|prescribed| matches!(prescribed, Prescribed::Force(_)))
+    scene.friction.map_or([false; 2], |friction| friction.has_forces())
 }
 
 impl InTurns<'_, '_, '_> {
