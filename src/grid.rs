@@ -94,6 +94,13 @@ impl Grid {
         [from_middle(i % self.mx, self.mx, self.dx), from_middle(i / self.mx, self.my, self.dy)]
     }
 
+    /// Numbers of offsets >= 0 in x and in y: those of the grid, and in directions in which it is a period those up to half of it (so many are also the
+    /// bins >= 0 of a transform).
+    pub(crate) fn offsets(&self, (x, y): (bool, bool)) -> (usize, usize) {
+        let offsets = |repeats: bool, m: usize| if repeats { m / 2 + 1 } else { m };
+        (offsets(x, self.mx), offsets(y, self.my))
+    }
+
     /// Index of element `(ix, iy)`.
     pub fn index(&self, ix: usize, iy: usize) -> usize {
         iy * self.mx + ix

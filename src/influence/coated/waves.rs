@@ -23,11 +23,6 @@ const NODES: usize = 24;
 /// The name of this memory in messages.
 const WAVES: &str = "the waves of a coating";
 
-/// Bins of a period that are not negative.
-pub fn bins(grid: &Grid) -> (usize, usize) {
-    (grid.mx / 2 + 1, grid.my / 2 + 1)
-}
-
 /// Adds the responses to all waves, `[bin in y][bin in x]`.
 pub fn add(body: &CoatedBody, grid: &Grid, waves: &mut [f64]) -> Result<()> {
     let Some((t, _)) = body.layer else { return Ok(()) };
@@ -78,7 +73,7 @@ fn nearest(grid: &Grid) -> (i64, i64) {
 /// Adds the nearest aliases of all waves except the constant one.
 fn add_nearest(body: &CoatedBody, grid: &Grid, waves: &mut [f64]) -> Result<()> {
     let Some((t, radial)) = &body.layer else { return Ok(()) };
-    let ((row, rows), (last_x, last_y)) = (bins(grid), nearest(grid));
+    let ((row, rows), (last_x, last_y)) = (grid.offsets((true, true)), nearest(grid));
     let [of_x, of_y] = [(grid.dx, grid.mx), (grid.dy, grid.my)]
         .map(|(d, m)| move |bin: usize, number: i64| alias(d / t, PI * bin as f64 / m as f64, number));
     let scale = 2.0 * PI * body.compliance * t;
@@ -191,7 +186,7 @@ impl Direction {
 
 /// The coefficients at offsets up to half the period with these responses: sums of cosines.
 pub fn coefficients(waves: &[f64], grid: &Grid) -> Result<Vec<f64>> {
-    let (row, rows) = bins(grid);
+    let (row, rows) = grid.offsets((true, true));
     // Rows beyond the last that is not 0 cost nothing.
     let last = waves.chunks_exact(row).rposition(|waves| waves.iter().any(|wave| *wave != 0.0)).unwrap_or(0);
     let product = ParityProduct::new(grid.mx, grid.my)?;
