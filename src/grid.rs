@@ -94,8 +94,7 @@ impl Grid {
         [from_middle(i % self.mx, self.mx, self.dx), from_middle(i / self.mx, self.my, self.dy)]
     }
 
-    /// Numbers of offsets >= 0 in x and in y: those of the grid, and in directions in which it is a period those up to half of it (so many are also the
-    /// bins >= 0 of a transform).
+    /// Numbers of offsets >= 0 in x and in y: those of the grid, or of half of it in directions in which it is a period, which has as many bins >= 0.
     pub(crate) fn offsets(&self, (x, y): (bool, bool)) -> (usize, usize) {
         let offsets = |repeats: bool, m: usize| if repeats { m / 2 + 1 } else { m };
         (offsets(x, self.mx), offsets(y, self.my))
