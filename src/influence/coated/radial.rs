@@ -291,7 +291,7 @@ pub(super) fn panel_of(w: f64) -> (usize, (f64, f64)) {
 }
 
 /// Exponent and first two bits of 4.
-const FIRST_PANEL: usize = (1023 + 2) << 2;
+const FIRST_PANEL: usize = (4f64.to_bits() >> 50) as usize;
 
 /// The ends of a panel.
 pub(super) fn ends_of(panel: usize) -> (f64, f64) {
