@@ -20,7 +20,7 @@ pub struct Grid {
 }
 
 /// The largest number of elements: the padded products and the C ABI count elements in 32 bits.
-const MOST_ELEMENTS: usize = i32::MAX as usize;
+pub(crate) const MOST_ELEMENTS: usize = i32::MAX as usize;
 
 impl Grid {
     /// The first size that differs from the grid of a set-up, in words. None if all are the same.

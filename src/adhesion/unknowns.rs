@@ -1,7 +1,7 @@
 //! The unknowns of one grid, and their measures.
 
 use super::law::Attraction;
-use crate::contact::{largest, relative, ROUND_OFF};
+use crate::contact::{largest, relative, CANCELLED, ROUND_OFF};
 use crate::error::Result;
 use crate::memory::unwritten;
 use crate::methods::fgmres::Bordered;
@@ -169,9 +169,6 @@ impl Surface {
         self.h[i] - unknowns.p.border[0] + unknowns.u[i][0]
     }
 }
-
-/// Contact pressures q and attraction cancel if p is below this share of q.
-pub const CANCELLED: f64 = 1e-3;
 
 /// The measures of the conditions, each relative to its own scale. If contact pressures and attraction cancel, as below a flat punch without a
 /// load, total pressures are round-off: the scale of pressures is p, or [`CANCELLED`] times q if that is larger.

@@ -65,7 +65,7 @@ pub use friction_law::{Branch, Fall, FrictionLaw, PlasticLayer};
 pub use layer::Layer;
 pub use memory::Memory;
 pub use named::{Named, SET_THEM};
-pub use patches::{Patches, NO_PATCH};
+pub use patches::{Patches, MOST_PATCHES, NO_PATCH};
 pub use period::Period;
 pub use properties::{Continues, Layout, PressureLimit, Properties, Stresses};
 pub use tangential_influence::{KeptInfluence, TangentialInfluence, TangentialTables};

@@ -1,5 +1,7 @@
 //! The caller's tangential influence coefficients, beside [`Friction`](super::Friction), and their checks.
 
+use toeplitz::coefficients::SYMMETRY;
+
 use crate::error::{invalid, require, Error, Number, Result};
 use crate::grid::Grid;
 use crate::memory::copied;
@@ -60,9 +62,6 @@ const SYMMETRIES: [Symmetry; 5] = [
     Symmetry { name: "friction->influence_cross[0] (xz)", in_x: -1.0, in_y: 1.0, rule: CROSS },
     Symmetry { name: "friction->influence_cross[1] (yz)", in_x: 1.0, in_y: -1.0, rule: CROSS },
 ];
-
-/// Round-off allowed in even and odd tables, relative to the largest coefficient: tables in single precision pass.
-pub(super) const SYMMETRY: f64 = 1e-7;
 
 impl TangentialInfluence<'_> {
     /// The name of the member of friction.

@@ -3,6 +3,7 @@
 use super::arguments::{count, optional, required, reserved, GivenEffect, Regions};
 use super::status::Refusal;
 use super::structs::versioned;
+use crate::effects::MOST_PATCHES;
 use crate::grid::Grid;
 use crate::scene::{Each, Layer, Patches, Period, PressureLimit};
 
@@ -110,9 +111,6 @@ impl GivenEffect for contact_normal_pressure_limit {
     }
 }
 
-/// Patches at most: of more the factors are not looked at, and the core refuses their count.
-const MOST_PATCHES: usize = 64;
-
 impl contact_normal_patches {
     /// The caller's arrays must live as long as the result is used.
     pub(super) unsafe fn translate<'a>(&self, grid: &Grid) -> Result<Patches<'a>, Refusal> {
@@ -128,7 +126,7 @@ impl contact_normal_patches {
         Ok(Patches { count, patch, factors })
     }
 
-    /// Factors that are read.
+    /// Factors that are read: of too many patches none, whose count the core refuses.
     fn factor_count(&self) -> usize {
         usize::try_from(self.count).ok().filter(|count| *count <= MOST_PATCHES).map_or(0, |count| count * count)
     }

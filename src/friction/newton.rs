@@ -48,7 +48,7 @@ const WORSE_CERTIFICATE: f64 = 1.5;
 const TIMES_WORSE: u32 = 2;
 /// Steps without progress before a cut; progress is a residual below PROGRESS times the least.
 const PATIENCE: u32 = 4;
-const PROGRESS: f64 = 0.7;
+pub const PROGRESS: f64 = 0.7;
 /// Coarser grids may leave q above its bounds by this times the tolerance: the next finer grid projects q.
 const COARSE_EXCESS: f64 = 10.0;
 /// Most steps on a grid without certificate.

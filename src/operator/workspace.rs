@@ -7,9 +7,6 @@ use crate::error::Result;
 use crate::memory::{keep, zeros};
 use crate::threads::Threads;
 
-/// Names its memory in messages.
-const WORKSPACE: &str = "the product's workspace";
-
 /// Memory for a product, which then allocates nothing.
 pub struct Workspace<T: Real> {
     pub(super) memory: Memory<T>,
@@ -39,7 +36,7 @@ impl Needs {
 impl<T: Real> Workspace<T> {
     /// Memory for products with these needs.
     pub fn of(needs: Needs, threads: &Threads) -> Result<Workspace<T>> {
-        let memory = |n| zeros(n, WORKSPACE);
+        let memory = |n| zeros(n, "the product's workspace");
         Ok(Workspace {
             memory: Memory::new(needs.room, threads)?,
             masked: [memory(needs.masked)?, memory(needs.masked)?],

@@ -15,14 +15,13 @@ use super::turns::InTurns;
 use crate::contact::Survey;
 use crate::effects::Coefficient;
 use crate::error::Result;
-use crate::friction::{dot, length, Vector};
+use crate::friction::{dot, length, Vector, FINISHING_PRODUCTS};
 use crate::progress::Outcome;
 use crate::scene::{Load, Scene};
 
 /// If forces miss less than CLOSE_FORCES times mu N, tractions by force are tried with the same pressures, with
-/// FINISHING_PRODUCTS products.
+/// [`FINISHING_PRODUCTS`] products.
 const CLOSE_FORCES: f64 = 1e-4;
-const FINISHING_PRODUCTS: usize = 30;
 /// Most creepages.
 const MOST_TRIALS: u32 = 30;
 /// Creepages that are tried, relative to those of turns by force. With two forces, those from OPPOSITE_FROM on are
@@ -162,7 +161,7 @@ impl InTurns<'_, '_, '_> {
     fn finish(&mut self) -> Result<bool> {
         let InTurns { solver, turns, monitor, .. } = self;
         if let Some(friction) = &mut turns.friction {
-            (friction.held, friction.most) = (None, FINISHING_PRODUCTS);
+            (friction.held, friction.most) = (None, FINISHING_PRODUCTS as usize);
         }
         let end = turns.solve(true, Outcome::Converged, &solver.state, monitor)?;
         let (distance, change) = turns.distance(&solver.state);
