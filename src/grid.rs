@@ -20,7 +20,7 @@ pub struct Grid {
 }
 
 /// The largest number of elements: the padded products and the C ABI count elements in 32 bits.
-const MOST_ELEMENTS: usize = i32::MAX as usize;
+pub(crate) const MOST_ELEMENTS: usize = i32::MAX as usize;
 
 impl Grid {
     /// The first size that differs from the grid of a set-up, in words. None if all are the same.
@@ -92,6 +92,12 @@ impl Grid {
     pub fn place(&self, i: usize) -> [f64; 2] {
         let from_middle = |k: usize, m: usize, d: f64| (k as f64 - 0.5 * (m as f64 - 1.0)) * d;
         [from_middle(i % self.mx, self.mx, self.dx), from_middle(i / self.mx, self.my, self.dy)]
+    }
+
+    /// Numbers of offsets >= 0 in x and in y: those of the grid, or of half of it in directions in which it is a period, which has as many bins >= 0.
+    pub(crate) fn offsets(&self, (x, y): (bool, bool)) -> (usize, usize) {
+        let offsets = |repeats: bool, m: usize| if repeats { m / 2 + 1 } else { m };
+        (offsets(x, self.mx), offsets(y, self.my))
     }
 
     /// Index of element `(ix, iy)`.

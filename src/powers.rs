@@ -50,6 +50,9 @@ impl Scaled {
     }
 }
 
+/// Exponents beyond this are dropped, because e^-40 = 4e-18 is round-off.
+pub(crate) const FADED: f64 = 40.0;
+
 /// Upper limit on lengths and tractions: sums of their squares are finite.
 pub(crate) const LARGEST: f64 = 1e140;
 

@@ -68,17 +68,11 @@ impl Wear<'_> {
         let [qx, qy] = self.traction;
         let [sx, sy] = self.slip;
         let fields = [("traction[0]", qx), ("traction[1]", qy), ("slip[0]", sx), ("slip[1]", sy)];
-        let own = match self.coefficient {
-            Coefficient::Uniform(_) => None,
-            Coefficient::PerElement(values) => Some(("coefficients", values)),
-        };
+        let own = self.coefficient.per_element().map(|values| ("coefficients", values));
         for (name, values) in fields.into_iter().chain(self.pressure.map(|p| ("pressure", p))).chain(own) {
             check_values(name, values, &self.grid, finite)?;
         }
-        match self.coefficient {
-            Coefficient::Uniform(value) => not_negative("coefficient", value)?,
-            Coefficient::PerElement(values) => check_values("coefficients", values, &self.grid, not_negative)?,
-        }
+        self.coefficient.check(["coefficient", "coefficients"], &self.grid, not_negative)?;
         positive("hardness", self.hardness)?;
         not_negative("steps", self.steps)?;
         not_negative("rolling_distance", self.rolling_distance)

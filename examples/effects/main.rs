@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Kernel, RowTables};
-use contact_normal::scene::{Bodies, Layer, Load, Patches, Period, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Each, Layer, Load, Patches, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, Options, Outcome, Report};
 
 const ROWS: [&str; 10] = [
@@ -48,10 +48,10 @@ impl Arrays {
     fn scene(&self, row: &str) -> Scene<'_> {
         let mut scene = Scene::new(self.grid, &self.h, Bodies::same(82000.0, 0.28), Load::Force(82000.0));
         match row {
-            "layer" => scene.layer = Some(Layer::Uniform(1e-5)),
-            "layer-per-element" => scene.layer = Some(Layer::PerElement(&self.compliances)),
-            "pressure_limit-not-reached" => scene.pressure_limit = Some(PressureLimit::Uniform(2000.0)),
-            "pressure_limit" => scene.pressure_limit = Some(PressureLimit::Uniform(1400.0)),
+            "layer" => scene.layer = Some(Layer(Each::Uniform(1e-5))),
+            "layer-per-element" => scene.layer = Some(Layer(Each::PerElement(&self.compliances))),
+            "pressure_limit-not-reached" => scene.pressure_limit = Some(PressureLimit(Each::Uniform(2000.0))),
+            "pressure_limit" => scene.pressure_limit = Some(PressureLimit(Each::Uniform(1400.0))),
             "period-x" => scene.period = Some(Period { x: true, y: false }),
             "period-xy" => scene.period = Some(Period { x: true, y: true }),
             "patches" => {
@@ -59,7 +59,7 @@ impl Arrays {
             }
             "row_tables" => scene.row_tables = Some(self.row_tables(scene.bodies)),
             "period-xy-layer" => {
-                (scene.period, scene.layer) = (Some(Period { x: true, y: true }), Some(Layer::Uniform(1e-5)));
+                (scene.period, scene.layer) = (Some(Period { x: true, y: true }), Some(Layer(Each::Uniform(1e-5))));
             }
             _ => {}
         }

@@ -3,7 +3,7 @@
 //! `cargo run --release --example pressure_limits` prints one row per scene: an ellipse and a rough surface of 64 to 512 elements, by
 //! approach and by force, with limits of parts of the largest pressure; then the mean, the largest, and how many are above 3.
 
-use contact_normal::scene::{Load, PressureLimit, Scene};
+use contact_normal::scene::{Each, Load, PressureLimit, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
 #[path = "../../benches/performance/case.rs"]
@@ -45,7 +45,7 @@ fn row(case: &case::Case, load: Load, largest: f64, factors: &mut Vec<f64>) {
     let by = if matches!(load, Load::Force(_)) { "force" } else { "approach" };
     print!("{:14} {by:8} {alone:>6.2}", case.name);
     for share in SHARES {
-        let limit = PressureLimit::Uniform(share * largest);
+        let limit = PressureLimit(Each::Uniform(share * largest));
         match work(&Scene { pressure_limit: Some(limit), ..plain.clone() }) {
             Some(work) => {
                 factors.push(work / alone);

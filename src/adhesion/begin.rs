@@ -15,20 +15,17 @@ use crate::progress::Monitor;
 /// Without a state of less force, bodies are first pressed together by this part of the whole attraction.
 const FIRST_PRESSING_FORCE: f64 = 0.01;
 /// A pressing force is PRESSING_FORCE_RATIO times the size of the least known force, or times the last pressing force.
-/// At most MOST_WAYS_DOWN ways lead down from pressed bodies.
 const PRESSING_FORCE_RATIO: f64 = 10.0;
-const MOST_WAYS_DOWN: u32 = 4;
-/// Pulls below this part of the whole attraction count as none.
+/// Most ways that lead down from pressed bodies, or that begin below a lost way of a pull-off.
+const MOST_WAYS: u32 = 4;
+/// Pulls below this part of the whole attraction count as none, and a pull is stronger than another if it exceeds it by this part.
 const LEAST_PULL: f64 = 1e-6;
-/// A way has found a stronger pull if it exceeds the strongest known by this factor.
-const STRONGER_PULL: f64 = 1.0 + 1e-6;
 /// The first way of a search for a pull may take the cycles of PULL_OFF_CYCLES solves.
 const PULL_OFF_CYCLES: u64 = 3;
 /// Each state of a pull-off may take 1/STATES_OF_PULL_OFF of the cycles of a solve.
 const STATES_OF_PULL_OFF: u64 = 4;
-/// If the way of a pull-off is lost, at most MOST_WAYS_BELOW further ways begin below it. Each start is sought in
-/// STEPS_BELOW steps of STEP_BELOW times the length of the contact.
-const MOST_WAYS_BELOW: u32 = 4;
+/// If the way of a pull-off is lost, further ways begin below it. Each start is sought in STEPS_BELOW steps of STEP_BELOW times the length of the
+/// contact.
 const STEPS_BELOW: u32 = 6;
 const STEP_BELOW: f64 = 0.1;
 /// Cycles of a further way: FURTHER_WAY_CYCLES times the first way's, plus LEAST_WAY_CYCLES; at least the goal's.
@@ -140,7 +137,7 @@ impl Solver {
         let before = monitor.count.cycles;
         let mut ended = self.first_walker(goal, 0, make, monitor).walk(None)?;
         let mut spent = monitor.count.cycles - before;
-        for _ in 0..MOST_WAYS_BELOW {
+        for _ in 0..MOST_WAYS {
             if ended != Walk::Lost || goal.wanted.is_some() {
                 break;
             }
@@ -227,7 +224,7 @@ impl Solver {
             before = Some(Place::of(&self.levels[0], Met::of(&self.levels[0]).sum)?);
         }
         let mut pressing = self.first_pressing(least.as_ref(), goal);
-        for _ in 0..MOST_WAYS_DOWN {
+        for _ in 0..MOST_WAYS {
             let pressed = Goal { wanted: Some(pressing), most, ..goal };
             let ended = nested::solve(&mut self.levels, pressed, (Start::Auto, make), monitor)?;
             let walk = match ended.end {
@@ -243,7 +240,7 @@ impl Solver {
             pressing *= PRESSING_FORCE_RATIO;
             match walk {
                 Walk::Found => return Ok(Walk::Found),
-                Walk::Least { sum, .. } if least.as_ref().is_none_or(|least| sum < STRONGER_PULL * least.sum) => {
+                Walk::Least { sum, .. } if least.as_ref().is_none_or(|least| sum < (1.0 + LEAST_PULL) * least.sum) => {
                     met = Some(Met::of(&self.levels[0]));
                     pressing = if self.is_pull(sum) { PRESSING_FORCE_RATIO * sum.abs() } else { pressing };
                     least = Some(Place::of(&self.levels[0], sum)?);

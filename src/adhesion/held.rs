@@ -9,7 +9,7 @@ use super::place::{Met, Place, Walk};
 use super::request::Start;
 use super::solver::Solver;
 use super::tangent::is_stable;
-use super::way::Walker;
+use super::way::{Walker, GROWTH};
 use crate::error::Result;
 use crate::progress::Monitor;
 
@@ -17,9 +17,8 @@ use crate::progress::Monitor;
 const MOST_SECANTS: u32 = 40;
 /// Least distance of a secant step from both states, relative to the distance between them.
 const SECANT_MARGIN: f64 = 0.02;
-/// Most steps of growing approach, and the ratio of successive steps.
+/// Most steps of growing approach; each is [`GROWTH`] times as long as the one before.
 const MOST_STEPS: u32 = 80;
-const GROWTH: f64 = 1.5;
 /// The first of these steps, relative to the length of the contact.
 const FIRST_STEP: f64 = 0.02;
 /// A prescribed pull is also sought on the branches of a pull-off if it is weaker than this many times the strongest

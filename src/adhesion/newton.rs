@@ -39,7 +39,7 @@ const CLOSE_TOLERANCE: f64 = 0.1;
 const MOST_RANGES_FROM_E: f64 = 3.0;
 /// Most directions of a linear solve: systems that take more are nearly singular. Grids that are not small have `IN_MEMORY`, those of more than
 /// `LARGE_GRID` elements `FIRST_DIRECTIONS`, doubled after each solve for which they were too few.
-const MOST_DIRECTIONS: usize = 30;
+pub const MOST_DIRECTIONS: usize = 30;
 pub const IN_MEMORY: usize = 2 * KEPT_PRODUCTS;
 const LARGE_GRID: usize = 1 << 16;
 const FIRST_DIRECTIONS: usize = 6;

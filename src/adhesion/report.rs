@@ -1,8 +1,8 @@
 //! The results of adhesion and their measures.
 
 use super::level::Level;
-use super::unknowns::{energies, largest, Measured, Unknowns};
-use crate::contact::Certificate;
+use super::unknowns::{energies, Measured, Unknowns};
+use crate::contact::{largest, Certificate};
 use crate::grid::Grid;
 use crate::methods::fields;
 use crate::progress::{DiscretisationError, Measures, Monitor};

@@ -4,7 +4,7 @@
 use super::level::{Level, MakeFrozen};
 use super::majorise::{descend, Descent, Steps};
 use super::newton::{newton, End, Goal, Pace};
-use super::tangent::is_stable;
+use super::tangent::{is_stable, CHEAP};
 use super::unknowns::{energies, Measured};
 use crate::error::Result;
 use crate::progress::Monitor;
@@ -15,10 +15,8 @@ const NEWTON_TRIALS: u32 = 12;
 pub const DESCENT_STEPS: u64 = 5;
 /// Relative increase of energy that counts as uphill.
 const UPHILL: f64 = 1e-6;
-/// Elements of a grid up to which stability is always tested, at little cost. Larger grids are tested if Newton's
-/// method takes more than FEW_STEPS steps: they start near the equilibrium of a coarser grid or of the last load, and
-/// few steps from a stable equilibrium end at a stable one.
-const ALWAYS_TESTED: usize = 1024;
+/// Grids of more than [`CHEAP`] elements are tested if Newton's method takes more than FEW_STEPS steps: they start near
+/// the equilibrium of a coarser grid or of the last load, and few steps from a stable equilibrium end at a stable one.
 const FEW_STEPS: u64 = 6;
 
 /// The end of a solve of a grid.
@@ -48,7 +46,7 @@ pub fn energy(level: &Level, wanted: Option<f64>) -> f64 {
 /// Whether Newton's method ended at an equilibrium that does not minimise the energy at a given approach. With a given force the end of the whole
 /// solve tests this.
 fn is_saddle(level: &mut Level, goal: Goal, is_long: bool, monitor: &mut Monitor<'_>) -> Result<bool> {
-    let is_asked = level.now.u.len() <= ALWAYS_TESTED || goal.certified && is_long;
+    let is_asked = level.now.u.len() <= CHEAP || goal.certified && is_long;
     Ok(goal.wanted.is_none() && is_asked && !is_stable(level, false, monitor)?)
 }
 

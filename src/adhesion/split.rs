@@ -3,7 +3,7 @@
 use super::unknowns::Surface;
 use crate::contact::State;
 use crate::error::Result;
-use crate::memory::collected;
+use crate::memory::copied;
 
 /// The law and the works of adhesion of a result. They stay when the handle later gets another scene or other
 /// coefficients.
@@ -12,7 +12,7 @@ pub struct Split(Surface);
 impl Split {
     /// The split of a solution for these surfaces.
     pub fn of(surface: &Surface) -> Result<Split> {
-        let works = collected(surface.works.iter().copied(), "works of adhesion")?;
+        let works = copied(&surface.works, "works of adhesion")?;
         Ok(Split(Surface { h: Vec::new(), attraction: surface.attraction, works, work: surface.work }))
     }
 

@@ -16,7 +16,7 @@
 //! half-spaces. So `g > 0` everywhere implies `lambda < 1` (Collatz 1942). If g is clearly negative somewhere, lambda itself is computed.
 
 use super::level::Level;
-use super::newton::{stiffnesses, IN_MEMORY};
+use super::newton::{stiffnesses, IN_MEMORY, MOST_DIRECTIONS};
 use super::parts::{solve_in_parts, Effort, Solution};
 use super::stability::stability;
 use super::system::Linearised;
@@ -27,12 +27,13 @@ use crate::progress::Monitor;
 /// The relative tolerance of the linear system, the smaller one for cases that the larger one does not decide. The most directions of each.
 const LOOSE_TOLERANCE: f64 = 1e-3;
 const FIRM_TOLERANCE: f64 = 1e-5;
-const DIRECTIONS: [usize; 2] = [30, 90];
+const DIRECTIONS: [usize; 2] = [MOST_DIRECTIONS, 3 * MOST_DIRECTIONS];
 /// A solve on a large grid keeps this many directions. y and its product use the memory of two more.
 const AT_ONCE: usize = IN_MEMORY - 2;
-/// On grids of more than `ROUGHLY_FIRST` elements, stability under a force is first computed roughly. The result is accepted if the sum of y is at
-/// least the fraction `BEYOND_DOUBT` of the sum of |y| and no g is below -`BEYOND_DOUBT`. That takes half as many directions.
-const ROUGHLY_FIRST: usize = 1024;
+/// Elements of a grid up to which a test of stability costs little.
+pub const CHEAP: usize = 1024;
+/// On larger grids, stability under a force is first computed roughly. The result is accepted if the sum of y is at least the fraction
+/// `BEYOND_DOUBT` of the sum of |y| and no g is below -`BEYOND_DOUBT`. That takes half as many directions.
 const ROUGH: (f64, usize) = (0.03, 18);
 const BEYOND_DOUBT: f64 = 0.3;
 /// Below this fraction of the sum of |y| the sum of y counts as near 0.
@@ -124,7 +125,7 @@ pub fn is_stable(level: &mut Level, by_force: bool, monitor: &mut Monitor<'_>) -
     if is_all_in_contact(level) {
         return Ok(true);
     }
-    if by_force && level.now.u.len() > ROUGHLY_FIRST {
+    if by_force && level.now.u.len() > CHEAP {
         let found = tangent(level, ROUGH, monitor)?;
         if found.is_solved && found.stiffness > BEYOND_DOUBT * found.all && found.closing > -BEYOND_DOUBT {
             return Ok(true);

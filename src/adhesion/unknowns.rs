@@ -1,7 +1,7 @@
 //! The unknowns of one grid, and their measures.
 
 use super::law::Attraction;
-use crate::contact::ROUND_OFF;
+use crate::contact::{largest, relative, CANCELLED, ROUND_OFF};
 use crate::error::Result;
 use crate::memory::unwritten;
 use crate::methods::fgmres::Bordered;
@@ -170,9 +170,6 @@ impl Surface {
     }
 }
 
-/// Contact pressures q and attraction cancel if p is below this share of q.
-pub const CANCELLED: f64 = 1e-3;
-
 /// The measures of the conditions, each relative to its own scale. If contact pressures and attraction cancel, as below a flat punch without a
 /// load, total pressures are round-off: the scale of pressures is p, or [`CANCELLED`] times q if that is larger.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -216,15 +213,6 @@ impl Measured {
     }
 }
 
-/// The largest of some values, infinite if one is NaN.
-pub fn largest<const K: usize>(values: [f64; K]) -> f64 {
-    values.into_iter().fold(0.0, |worst: f64, value| match value {
-        value if value <= worst => worst,
-        value if value.is_nan() => f64::INFINITY,
-        value => value,
-    })
-}
-
 /// Takes C from the natural map q - e/a0 > 0, unless it `is_kept`, and measures. `round_off`: that of displacements per unit of pressure; `wanted`:
 /// the sum of p if the force is given; `is_mean_free`: whether the approach is given and a uniform pressure displaces nothing.
 pub fn measure(
@@ -264,18 +252,17 @@ pub fn measure(
     let (part, nothing) = (CANCELLED * CANCELLED * qc, LEAST_PRESSURE_SCALE * surface.work / surface.attraction.range);
     let scale = (dd / n).sqrt().max(self_influence * (pc.max(part) / n).sqrt());
     let scale = if count > 0.0 { scale } else { scale.max(self_influence * (pp / u.len() as f64).sqrt()) };
-    let ratio = |value: f64, of: f64| if value == 0.0 { 0.0 } else { value / of };
     let noise = ROUND_OFF * approach.abs() + round_off * (pc.max(qc) / n).sqrt();
     let [of_e, of_d] = [ee, dd].map(|squares| (squares / n).sqrt());
     let fits = noise.is_finite() && of_d <= noise && of_e <= noise;
     let opening = if is_mean_free && count as usize == u.len() { distances / n } else { 0.0 };
     let opening = if opening.abs() <= ROUND_OFF * approach.abs() { 0.0 } else { opening };
     Measured {
-        distance: if fits { 0.0 } else { ratio(of_e, scale) }.max(ratio(opening.abs(), of_d)),
+        distance: if fits { 0.0 } else { relative(of_e, scale) }.max(relative(opening.abs(), of_d)),
         penetration,
-        violation: if fits && penetration <= noise { 0.0 } else { ratio(penetration, scale) },
-        law: ratio(off.sqrt(), pp.max(part).sqrt().max(nothing)),
-        force: wanted.map_or(0.0, |wanted| ratio((sum - wanted).abs(), all.max(CANCELLED * repulsion).max(nothing))),
+        violation: if fits && penetration <= noise { 0.0 } else { relative(penetration, scale) },
+        law: relative(off.sqrt(), pp.max(part).sqrt().max(nothing)),
+        force: wanted.map_or(0.0, |wanted| relative((sum - wanted).abs(), all.max(CANCELLED * repulsion).max(nothing))),
         count: count as usize,
         changed: changed as usize,
         pressures: sum,

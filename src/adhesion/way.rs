@@ -23,7 +23,7 @@ const SNAP_DOUBLINGS: u32 = 2;
 const SNAP_CYCLES: u64 = 4;
 /// If a state took at most EASY_STEPS Newton steps, the next step along the branch is GROWTH times as long.
 const EASY_STEPS: u64 = 6;
-const GROWTH: f64 = 1.5;
+pub const GROWTH: f64 = 1.5;
 /// The first step after a snap is this fraction of the longest step.
 const AFTER_SNAP: f64 = 0.25;
 /// The contact has snapped if its number of elements changes by more than this fraction plus this number.

@@ -10,7 +10,7 @@
 //! An element is free (in C, with e = 0), exterior (p = 0, e >= 0), or at its limit (p = p_max, e <= 0). A half-line has no limit:
 //! [`AdmissibleSet::LIMITED`] is a constant, and code for limits is not compiled.
 
-use crate::scene::PressureLimit;
+use crate::scene::{Each, PressureLimit};
 
 /// The pressures that each element may have.
 pub trait AdmissibleSet: Copy + Send + Sync {
@@ -99,21 +99,19 @@ impl AdmissibleSet for PressureLimit<'_> {
     type Within<'a> = PressureLimit<'a>;
 
     fn within(limits: &[f64]) -> PressureLimit<'_> {
-        PressureLimit::PerElement(limits)
+        PressureLimit(Each::PerElement(limits))
     }
 
     #[inline]
     fn limit(&self, i: usize) -> f64 {
-        self.at(i)
+        self.0.at(i)
     }
 
     #[inline]
     fn any_beyond(&self, first: usize, p: impl Iterator<Item = f64>) -> bool {
-        match self {
-            PressureLimit::Uniform(limit) => p.fold(false, |any, p| any | (p > *limit)),
-            PressureLimit::PerElement(limits) => {
-                p.zip(&limits[first..]).fold(false, |any, (p, limit)| any | (p > *limit))
-            }
+        match self.0 {
+            Each::Uniform(limit) => p.fold(false, |any, p| any | (p > limit)),
+            Each::PerElement(limits) => p.zip(&limits[first..]).fold(false, |any, (p, limit)| any | (p > *limit)),
         }
     }
 }

@@ -13,8 +13,9 @@ use crate::threads::Threads;
 /// Most rounds of raising pressures below their limit; each but the last brings at least one element to its limit, most bring many.
 const ROUNDS: u32 = 50;
 
-/// Forces below this part of the sum of |p| are carried by adding to p, not by scaling p.
-const CANCELLED: f64 = 1e-3;
+/// Pressures cancel if their sum is below this part of the sum of |p|: such forces are carried by adding to p, not by scaling p. Contact pressures q
+/// and attraction cancel if p is below this part of q.
+pub const CANCELLED: f64 = 1e-3;
 
 impl State {
     /// Whether p carries a prescribed force.

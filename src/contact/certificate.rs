@@ -125,6 +125,15 @@ pub fn relative(value: f64, scale: f64) -> f64 {
     }
 }
 
+/// The largest of some measures, infinite if one is NaN.
+pub fn largest<const K: usize>(values: [f64; K]) -> f64 {
+    values.into_iter().fold(0.0, |worst: f64, value| match value {
+        value if value <= worst => worst,
+        value if value.is_nan() => f64::INFINITY,
+        value => value,
+    })
+}
+
 /// 2-norm over C of `h - approach`.
 pub fn norm_of_distance(state: &State) -> f64 {
     over_contact(state, |i| state.h[i] - state.approach)

@@ -20,7 +20,8 @@ mod survey_pass;
 mod values;
 
 pub use admissible::{AdmissibleSet, Fixed, NonNegative};
-pub use certificate::{norm_of_distance, relative, residual_norm, Certificate, Survey, ROUND_OFF};
+pub(crate) use balance::CANCELLED;
+pub use certificate::{largest, norm_of_distance, relative, residual_norm, Certificate, Survey, ROUND_OFF};
 pub use curvature::Curvature;
 pub use ends::{at_ends, beyond_ends};
 pub use exchange::{admit, all_stay, enter, leave, truncate};

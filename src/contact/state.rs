@@ -8,7 +8,7 @@ pub use super::values::Freshness;
 use crate::blocks;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::{asleep, keep, rest, wake, zeros};
+use crate::memory::{asleep, copied, keep, rest, wake, zeros};
 use crate::scene::Load;
 use crate::sums::{sum_where, Sums};
 use crate::threads::Threads;
@@ -84,8 +84,7 @@ impl State {
         copy.p.copy_from_slice(&self.p);
         copy.u.copy_from_slice(&self.u);
         copy.contact.copy_from_slice(&self.contact);
-        copy.at_limit = zeros(self.at_limit.len(), "elements at their limit")?;
-        copy.at_limit.copy_from_slice(&self.at_limit);
+        copy.at_limit = copied(&self.at_limit, "elements at their limit")?;
         (copy.u_is, copy.reached_limit, copy.approach) = (self.u_is, self.reached_limit, self.approach);
         copy.round_off = self.round_off;
         Ok(copy)

@@ -2,11 +2,12 @@
 //!
 //! See [`adhesion`](crate::adhesion) for the problem that is solved.
 
+use super::each::Each;
 use super::effect::{Effect, Value};
 use super::properties::{Properties, Stresses};
 use crate::adhesion::{Law, Start};
 use crate::error::{not_negative, require, Error, Number, Result};
-use crate::grid::{check_values, Grid};
+use crate::grid::Grid;
 use crate::powers::LARGEST;
 use crate::scene::{Load, Plain};
 
@@ -15,14 +16,8 @@ const RANGE: (f64, f64) = (1e-70, 1e70);
 /// Least part of the range over which the edge of a law is smeared: no grid resolves less.
 const LEAST_SMEAR: f64 = 1e-6;
 
-/// w, a force per length (an energy per area): the same everywhere or one per element, `[my][mx]`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Work<'a> {
-    /// The same everywhere.
-    Uniform(f64),
-    /// One per element.
-    PerElement(&'a [f64]),
-}
+/// w, a force per length (an energy per area).
+pub type Work<'a> = Each<'a>;
 
 /// Attraction between the bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,10 +41,7 @@ pub struct Adhesion<'a> {
 impl Adhesion<'_> {
     /// Whether anything attracts: a work of 0 everywhere is no adhesion.
     pub fn attracts(&self) -> bool {
-        match self.work {
-            Work::Uniform(work) => work != 0.0,
-            Work::PerElement(works) => works.iter().any(|work| *work != 0.0),
-        }
+        !self.work.is_zero()
     }
 }
 
@@ -84,10 +76,7 @@ impl Effect for Adhesion<'_> {
             let is_work = work == 0.0 || (RANGE.0..RANGE.1).contains(&work);
             require(is_work, name, work, "it must be 0 or lie in 1e-70..1e70: choose other units")
         };
-        match self.work {
-            Work::Uniform(work) => require_work("adhesion->work_of_adhesion", work)?,
-            Work::PerElement(works) => check_values("adhesion->works_of_adhesion", works, grid, require_work)?,
-        }
+        self.work.check(["adhesion->work_of_adhesion", "adhesion->works_of_adhesion"], grid, require_work)?;
         let is_range = self.range == 0.0 || (RANGE.0..RANGE.1).contains(&self.range);
         require(
             is_range,

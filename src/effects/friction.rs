@@ -3,6 +3,7 @@
 //! See [`friction`](crate::friction) for the problem that is solved. The normal problem is the same with and without it where the bodies
 //! are alike; it is solved first.
 
+use super::each::Each;
 use super::effect::{Effect, Value};
 use super::friction_law::{Branch, FrictionLaw, PlasticLayer};
 use super::properties::{Continues, Properties, Stresses};
@@ -11,24 +12,8 @@ use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::scene::Plain;
 
-/// A coefficient: the same everywhere or one per element, `[my][mx]`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Coefficient<'a> {
-    /// The same everywhere.
-    Uniform(f64),
-    /// One per element.
-    PerElement(&'a [f64]),
-}
-
-impl Coefficient<'_> {
-    /// The value at element i.
-    pub fn at(&self, i: usize) -> f64 {
-        match self {
-            Coefficient::Uniform(mu) => *mu,
-            Coefficient::PerElement(mu) => mu[i],
-        }
-    }
-}
+/// A coefficient of friction or of wear, or a compliance.
+pub type Coefficient<'a> = Each<'a>;
 
 /// Relative round-off of `distance * cosine / dx`: below 1e-15 from the angle (at most 2 pi), cosine, product and quotient; ten times that.
 const ROUND_OFF: f64 = 1e-14;
@@ -195,6 +180,11 @@ impl Friction<'_> {
         let weight = self.weight_at(i);
         let creepage = [weight[0] * creepage[0], weight[1] * creepage[1]];
         [distance * (creepage[0] - self.spin * y) + own[0], distance * (creepage[1] + self.spin * x) + own[1]]
+    }
+
+    /// Whether the force is given in x, and in y.
+    pub fn has_forces(&self) -> [bool; 2] {
+        self.prescribed.map(|given| matches!(given, Prescribed::Force(_)))
     }
 
     /// The weights of the creepages at element i.

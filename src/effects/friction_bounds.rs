@@ -1,6 +1,6 @@
 //! Bounds of tractions with a law or a layer, and the checks of these.
 
-use super::friction::{Friction, Motion, Prescribed};
+use super::friction::{Friction, Motion};
 use super::friction_law::{ordinary, zero_or_ordinary, Branch};
 use crate::error::{require, Error, Result};
 use crate::grid::{check_values, Grid};
@@ -63,7 +63,7 @@ impl Friction<'_> {
             let name = if self.law.is_some() { "friction->law" } else { "friction->hardening" };
             Err(Error::Unsupported(format!("{name} is given: {rule}")))
         };
-        if self.branch != Branch::Near && self.prescribed.iter().any(|given| matches!(given, Prescribed::Force(_))) {
+        if self.branch != Branch::Near && self.has_forces() != [false; 2] {
             return refused("with a branch creepages must be prescribed in both directions");
         }
         if self.sensitivities {

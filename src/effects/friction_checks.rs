@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::friction::{Coefficient, Friction, Motion, Prescribed, Previous};
+use super::friction::{Friction, Motion, Prescribed, Previous};
 use crate::error::{finite, require, Error, Result, Rounded};
 use crate::grid::{check_values, Grid};
 use crate::powers::LARGEST;
@@ -80,18 +80,11 @@ impl Friction<'_> {
             let rule = "a coefficient of friction must be 0 or more, and below 1e140";
             require((0.0..LARGEST).contains(&mu), name, mu, rule)
         };
-        match self.coefficient {
-            Coefficient::Uniform(mu) => coefficient("friction->coefficient", mu)?,
-            Coefficient::PerElement(mu) => check_values("friction->coefficients", mu, grid, coefficient)?,
-        }
+        self.coefficient.check(["friction->coefficient", "friction->coefficients"], grid, coefficient)?;
         let compliance = |name: &str, value: f64| {
             require((0.0..LARGEST).contains(&value), name, value, "a compliance must be 0 or more, and below 1e140")
         };
-        match self.compliance {
-            Coefficient::Uniform(value) => compliance("friction->compliance", value)?,
-            Coefficient::PerElement(values) => check_values("friction->compliances", values, grid, compliance)?,
-        }
-        Ok(())
+        self.compliance.check(["friction->compliance", "friction->compliances"], grid, compliance)
     }
 
     /// Refuses invalid numbers.

@@ -33,6 +33,7 @@
 mod adhesion;
 mod coating;
 mod coupled;
+mod each;
 mod effect;
 mod friction;
 mod friction_bounds;
@@ -57,16 +58,17 @@ mod visco_step;
 pub use adhesion::{Adhesion, Work};
 pub use coating::{Coating, CoatingLayer};
 pub use coupled::{Coupled, History};
+pub use each::Each;
 pub use effect::{Effect, Value};
 pub use friction::{Coefficient, Friction, Motion, Prescribed, Previous};
 pub use friction_law::{Branch, Fall, FrictionLaw, PlasticLayer};
 pub use layer::Layer;
 pub use memory::Memory;
 pub use named::{Named, SET_THEM};
-pub use patches::{Patches, NO_PATCH};
+pub use patches::{Patches, MOST_PATCHES, NO_PATCH};
 pub use period::Period;
 pub use properties::{Continues, Layout, PressureLimit, Properties, Stresses};
-pub use tangential_influence::{KeptInfluence, TangentialInfluence};
+pub use tangential_influence::{KeptInfluence, TangentialInfluence, TangentialTables};
 pub use together::{
     beside, check_bodies, check_effects, check_other_grids, continuing, coupled, effects, excluded_method, keep,
     limits, memory, own_coefficients, place, repeats, replace_bodies, surface, without_given_area, COUNT,

@@ -9,7 +9,7 @@ use crate::memory::collected;
 use crate::scene::Plain;
 
 /// Most patches. Each patch takes one product.
-const MOST: usize = 64;
+pub const MOST_PATCHES: usize = 64;
 
 /// Marks an element without a patch, which has no surface.
 pub const NO_PATCH: i32 = -1;
@@ -58,8 +58,8 @@ impl Effect for Patches<'_> {
 
     fn check(&self, grid: &Grid) -> Result<()> {
         let count = self.count;
-        if !(1..=MOST).contains(&count) {
-            return invalid(format!("patches->count is {count}; it must lie in 1..{MOST}"));
+        if !(1..=MOST_PATCHES).contains(&count) {
+            return invalid(format!("patches->count is {count}; it must lie in 1..{MOST_PATCHES}"));
         }
         if self.patch.len() != grid.len() || self.factors.len() != count * count {
             return invalid(format!(

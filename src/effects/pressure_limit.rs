@@ -11,11 +11,12 @@
 
 use std::ops::Range;
 
+use super::each::Each;
 use super::effect::{Effect, Value};
 use super::properties::{PressureLimit, Properties, Stresses};
 use crate::blocks;
 use crate::error::{invalid, Error, Number, Result};
-use crate::grid::{check_values, Grid};
+use crate::grid::Grid;
 use crate::scene::{Load, Plain};
 use crate::sums::ROUND_OFF;
 use crate::threads::Threads;
@@ -47,19 +48,16 @@ impl Effect for PressureLimit<'_> {
             }
             _ => Ok(()),
         };
-        match self {
-            PressureLimit::Uniform(limit) => require("pressure_limit->limit", *limit),
-            PressureLimit::PerElement(limits) => check_values("pressure_limit->limits", limits, grid, require),
-        }
+        self.0.check(["pressure_limit->limit", "pressure_limit->limits"], grid, require)
     }
 
     // Elements at their limit leave the mean distance to the others.
     fn gives_way(&self, scene: &Plain<'_>) -> bool {
         let is_held = |(h, limit): (&f64, f64)| h.is_finite() && limit < f64::INFINITY;
         let h = scene.undeformed_distance.iter();
-        match *self {
-            PressureLimit::Uniform(limit) => h.zip(std::iter::repeat(limit)).any(is_held),
-            PressureLimit::PerElement(limits) => h.zip(limits.iter().copied()).any(is_held),
+        match self.0 {
+            Each::Uniform(limit) => h.zip(std::iter::repeat(limit)).any(is_held),
+            Each::PerElement(limits) => h.zip(limits.iter().copied()).any(is_held),
         }
     }
 
@@ -70,9 +68,9 @@ impl Effect for PressureLimit<'_> {
         let h = scene.undeformed_distance;
         let surface = |block: Range<usize>| block.filter(|&i| h[i].is_finite());
         // In blocks, or as a product: the error of a plain sum of many equal limits exceeds that allowed for a force.
-        let limits = match self {
-            PressureLimit::Uniform(limit) => surface(0..h.len()).count() as f64 * limit,
-            PressureLimit::PerElement(limits) => {
+        let limits = match self.0 {
+            Each::Uniform(limit) => surface(0..h.len()).count() as f64 * limit,
+            Each::PerElement(limits) => {
                 let of_block = |block| surface(block).map(|i| limits[i]).sum::<f64>();
                 blocks::fold(&scene.grid, &Threads::One, 0.0, of_block, |sum, block| sum + block)
             }

@@ -1,25 +1,11 @@
 //! The properties of an effect that the rest of the library uses. Every effect states all of them: one that omits a property does not
 //! compile.
 
+use super::each::Each;
+
 /// p_max, a pressure; +infinity: no limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PressureLimit<'a> {
-    /// The same everywhere.
-    Uniform(f64),
-    /// One per element, `[my][mx]`.
-    PerElement(&'a [f64]),
-}
-
-impl PressureLimit<'_> {
-    /// The limit of element i.
-    #[inline]
-    pub fn at(&self, i: usize) -> f64 {
-        match self {
-            PressureLimit::Uniform(limit) => *limit,
-            PressureLimit::PerElement(limits) => limits[i],
-        }
-    }
-}
+pub struct PressureLimit<'a>(pub Each<'a>);
 
 /// The layout of the caller's coefficients.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

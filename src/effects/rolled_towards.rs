@@ -1,8 +1,9 @@
 //! The direction of rolling of coefficients that are not even in an offset: those of relaxing bodies, which are softer behind. A step of rolling must
 //! have this direction. Otherwise bodies would return more work than was done on them, and the problem would have no solution or several.
 
+use toeplitz::coefficients::SYMMETRY;
+
 use super::friction::{Friction, Motion};
-use super::tangential_influence::SYMMETRY;
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 

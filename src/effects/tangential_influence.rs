@@ -1,15 +1,23 @@
 //! The caller's tangential influence coefficients, beside [`Friction`](super::Friction), and their checks.
 
+use toeplitz::coefficients::SYMMETRY;
+
 use crate::error::{invalid, require, Error, Number, Result};
 use crate::grid::Grid;
-use crate::memory::collected;
+use crate::memory::copied;
 
-/// The caller's tangential influence coefficients: three tables over offsets `-cx..cx-1` by `-cy..cy-1`, x fastest, in
+/// The caller's tables.
+pub type TangentialInfluence<'a> = TangentialTables<&'a [f64]>;
+
+/// A solver's copy of them.
+pub type KeptInfluence = TangentialTables<Vec<f64>>;
+
+/// Tangential influence coefficients: three tables over offsets `-cx..cx-1` by `-cy..cy-1`, x fastest, in
 /// the layout of the normal table. Axx and Ayy must be even in both directions, Axy odd in both. In steady rolling they
 /// need this symmetry in y only, because relaxing bodies are softer behind. With `by_row` there is a table for each
 /// loaded row (`tangential_rows.rs`).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TangentialInfluence<'a> {
+pub struct TangentialTables<A> {
     /// Columns of the tables' grid.
     pub cx: usize,
     /// Rows of the tables' grid.
@@ -18,10 +26,10 @@ pub struct TangentialInfluence<'a> {
     pub by_row: bool,
     /// Axx, Ayy and Axy: the displacement in x by a traction in x, in y by one in y, and across. In tables per loaded row Axy is the displacement in
     /// x by a traction in y.
-    pub coefficients: [&'a [f64]; 3],
+    pub coefficients: [A; 3],
     /// For unlike bodies Axz and Ayz: displacements in x and in y by a unit pressure. Tractions displace along the normal by
     /// `-(Axz qx + Ayz qy)`.
-    pub cross: Option<[&'a [f64]; 2]>,
+    pub cross: Option<[A; 2]>,
     /// A positive factor on every coefficient.
     pub scale: f64,
 }
@@ -54,9 +62,6 @@ const SYMMETRIES: [Symmetry; 5] = [
     Symmetry { name: "friction->influence_cross[0] (xz)", in_x: -1.0, in_y: 1.0, rule: CROSS },
     Symmetry { name: "friction->influence_cross[1] (yz)", in_x: 1.0, in_y: -1.0, rule: CROSS },
 ];
-
-/// Round-off allowed in even and odd tables, relative to the largest coefficient: tables in single precision pass.
-pub(super) const SYMMETRY: f64 = 1e-7;
 
 impl TangentialInfluence<'_> {
     /// The name of the member of friction.
@@ -166,46 +171,24 @@ impl TangentialInfluence<'_> {
     }
 }
 
-/// A solver's copy of the caller's tables.
-#[derive(Clone, Debug)]
-pub struct KeptInfluence {
-    cx: usize,
-    cy: usize,
-    by_row: bool,
-    coefficients: [Vec<f64>; 3],
-    cross: Option<[Vec<f64>; 2]>,
-    scale: f64,
-}
-
 impl KeptInfluence {
     /// Copies tables, whose sizes are checked.
     pub fn new(of: &TangentialInfluence<'_>) -> Result<KeptInfluence> {
-        let copy = |values: &[f64]| collected(values.iter().copied(), "the tangential influence coefficients");
-        let [xx, yy, xy] = of.coefficients;
-        let cross = match of.cross {
+        let copy = |values: &[f64]| copied(values, "the tangential influence coefficients");
+        let TangentialTables { cx, cy, by_row, coefficients: [xx, yy, xy], cross, scale } = *of;
+        let cross = match cross {
             Some([xz, yz]) => Some([copy(xz)?, copy(yz)?]),
             None => None,
         };
-        Ok(KeptInfluence {
-            cx: of.cx,
-            cy: of.cy,
-            by_row: of.by_row,
-            coefficients: [copy(xx)?, copy(yy)?, copy(xy)?],
-            cross,
-            scale: of.scale,
-        })
+        Ok(TangentialTables { cx, cy, by_row, coefficients: [copy(xx)?, copy(yy)?, copy(xy)?], cross, scale })
     }
 
     /// The tables.
     pub fn view(&self) -> TangentialInfluence<'_> {
-        TangentialInfluence {
-            cx: self.cx,
-            cy: self.cy,
-            by_row: self.by_row,
-            coefficients: self.coefficients.each_ref().map(|values| &values[..]),
-            cross: self.cross.as_ref().map(|tables| tables.each_ref().map(|values| &values[..])),
-            scale: self.scale,
-        }
+        let TangentialTables { cx, cy, by_row, ref coefficients, ref cross, scale } = *self;
+        let coefficients = coefficients.each_ref().map(|values| &values[..]);
+        let cross = cross.as_ref().map(|tables| tables.each_ref().map(|values| &values[..]));
+        TangentialTables { cx, cy, by_row, coefficients, cross, scale }
     }
 
     /// Whether these tables are equal, except row -cy and column -cx, which no product reads.

@@ -7,7 +7,9 @@
 //! xx_jy(iy, k) = xx_iy(jy, -k),   yy alike,   yx_jy(iy, k) = xy_iy(jy, -k)           the operator is symmetric as a whole
 //! ```
 
-use super::tangential_influence::{TangentialInfluence, SCALE, SYMMETRY};
+use toeplitz::coefficients::SYMMETRY;
+
+use super::tangential_influence::{TangentialInfluence, SCALE};
 use crate::error::{invalid, require, Error, Number, Result};
 use crate::grid::Grid;
 

@@ -6,7 +6,7 @@ use super::status::Refusal;
 use super::structs::versioned;
 use crate::adhesion::{Law, Report, Start};
 use crate::grid::Grid;
-use crate::scene::{Adhesion, Work};
+use crate::scene::{Adhesion, Each};
 
 /// `law`: sigma = w/rho exp(-e/rho).
 pub const CONTACT_NORMAL_LAW_EXPONENTIAL: i32 = 0;
@@ -77,7 +77,7 @@ impl contact_normal_adhesion {
         let stability = switch("adhesion->stability", self.stability)?;
         // SAFETY: NULL or one value per element, by the conventions of the ABI.
         let works = unsafe { optional(self.works_of_adhesion, grid.len()) };
-        let work = works.map_or(Work::Uniform(self.work_of_adhesion), Work::PerElement);
+        let work = Each::of(works, self.work_of_adhesion);
         let (range, shear_strength) = (self.range, self.shear_strength);
         Ok(Adhesion { law, work, range, start, stiffness, stability, shear_strength })
     }

@@ -3,8 +3,9 @@
 use super::arguments::{count, optional, required, reserved, switch, GivenEffect, Regions};
 use super::status::Refusal;
 use super::structs::versioned;
+use crate::effects::MOST_PATCHES;
 use crate::grid::Grid;
-use crate::scene::{Layer, Patches, Period, PressureLimit};
+use crate::scene::{Each, Layer, Patches, Period, PressureLimit};
 
 /// Effect: the scene repeats itself after `mx dx` in x, after `my dy` in y, or after both: the grid is one period. With both, mean
 /// displacements are zero and the approach is relative to the mean planes of the bodies (docs/effects.md).
@@ -81,7 +82,7 @@ impl contact_normal_layer {
     /// The caller's array must live as long as the result is used.
     pub(super) unsafe fn translate<'a>(&self, grid: &Grid) -> Layer<'a> {
         // SAFETY: NULL or one value per element, by the conventions of the ABI.
-        unsafe { optional(self.compliances, grid.len()) }.map_or(Layer::Uniform(self.compliance), Layer::PerElement)
+        Layer(Each::of(unsafe { optional(self.compliances, grid.len()) }, self.compliance))
     }
 }
 
@@ -95,8 +96,7 @@ impl contact_normal_pressure_limit {
     /// The caller's array must live as long as the result is used.
     pub(super) unsafe fn translate<'a>(&self, grid: &Grid) -> PressureLimit<'a> {
         // SAFETY: NULL or one value per element, by the conventions of the ABI.
-        unsafe { optional(self.limits, grid.len()) }
-            .map_or(PressureLimit::Uniform(self.limit), PressureLimit::PerElement)
+        PressureLimit(Each::of(unsafe { optional(self.limits, grid.len()) }, self.limit))
     }
 }
 
@@ -105,9 +105,6 @@ impl GivenEffect for contact_normal_pressure_limit {
         regions.input("pressure_limit->limits", self.limits, grid.len())
     }
 }
-
-/// Patches at most: of more the factors are not looked at, and the core refuses their count.
-const MOST_PATCHES: usize = 64;
 
 impl contact_normal_patches {
     /// The caller's arrays must live as long as the result is used.
@@ -124,7 +121,7 @@ impl contact_normal_patches {
         Ok(Patches { count, patch, factors })
     }
 
-    /// Factors that are read.
+    /// Factors that are read: of too many patches none, whose count the core refuses.
     fn factor_count(&self) -> usize {
         usize::try_from(self.count).ok().filter(|count| *count <= MOST_PATCHES).map_or(0, |count| count * count)
     }

@@ -6,7 +6,7 @@ use super::status::Refusal;
 use super::structs::versioned;
 use crate::friction::{EXTERIOR, PLASTIC, SLIP, STICK};
 use crate::grid::Grid;
-use crate::scene::{Branch, Coefficient, Fall, Friction, FrictionLaw, Motion, PlasticLayer, Prescribed, Previous};
+use crate::scene::{Branch, Each, Fall, Friction, FrictionLaw, Motion, PlasticLayer, Prescribed, Previous};
 
 /// `motion`: sideways and about the normal, without rolling.
 pub const CONTACT_NORMAL_MOTION_SHIFT: i32 = 0;
@@ -196,7 +196,7 @@ impl contact_normal_friction {
         let (coefficients, compliances) =
             unsafe { (optional(self.coefficients, grid.len()), optional(self.compliances, grid.len())) };
         Ok(Friction {
-            coefficient: coefficients.map_or(Coefficient::Uniform(self.coefficient), Coefficient::PerElement),
+            coefficient: Each::of(coefficients, self.coefficient),
             motion,
             prescribed: [self.prescribed_in(0)?, self.prescribed_in(1)?],
             spin: self.spin,
@@ -208,7 +208,7 @@ impl contact_normal_friction {
             initial: pair("initial_traction", self.initial_traction)?,
             rigid_slip: pair("rigid_slip", self.rigid_slip)?,
             weights: pair("creepage_weight", self.creepage_weight)?,
-            compliance: compliances.map_or(Coefficient::Uniform(self.compliance), Coefficient::PerElement),
+            compliance: Each::of(compliances, self.compliance),
             influence: self.own_influence()?,
             sensitivities,
             law: self.law()?,

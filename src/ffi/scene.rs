@@ -12,7 +12,7 @@ use super::status::Refusal;
 use super::structs::{self, versioned};
 use super::visco::contact_normal_visco;
 use crate::grid::Grid;
-use crate::memory::collected;
+use crate::memory::copied;
 use crate::scene::{Bodies, Coating, Load, Scene};
 
 /// `load`: the one of `approach` and `force` that is set. Both or neither are refused.
@@ -185,7 +185,7 @@ impl Named {
     /// A copy of the undeformed distance.
     pub unsafe fn copy_of_distance(&self) -> Result<Vec<f64>, Refusal> {
         // SAFETY: by the caller.
-        Ok(collected(unsafe { self.distance()? }.iter().copied(), "undeformed distances")?)
+        Ok(copied(unsafe { self.distance()? }, "undeformed distances")?)
     }
 
     unsafe fn distance<'a>(&self) -> Result<&'a [f64], Refusal> {

@@ -4,7 +4,7 @@ use super::arguments::{copy_to, count, optional, required, Regions};
 use super::guard::guard;
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{self, versioned};
-use crate::effects::Coefficient;
+use crate::effects::Each;
 use crate::grid::Grid;
 use crate::wear::{frictional_wear, Wear, Worn};
 
@@ -132,13 +132,12 @@ pub unsafe extern "C" fn contact_normal_frictional_wear(
                 required("wear->traction[1]", given.traction[1], n)?,
             ];
             let slip = [required("wear->slip[0]", given.slip[0], n)?, required("wear->slip[1]", given.slip[1], n)?];
-            let own = optional(given.coefficients, n).map(Coefficient::PerElement);
             let found = frictional_wear(&Wear {
                 grid,
                 traction,
                 slip,
                 pressure: optional(given.pressure, n),
-                coefficient: own.unwrap_or(Coefficient::Uniform(given.coefficient)),
+                coefficient: Each::of(optional(given.coefficients, n), given.coefficient),
                 hardness: given.hardness,
                 steps: given.steps,
                 rolling_distance: given.rolling_distance,

@@ -20,10 +20,10 @@ use crate::error::Result;
 use crate::methods::fields;
 use crate::progress::Outcome;
 
-/// Each time the missing force falls to CLOSE_RATIO times the last value, Newton's method with balanced creepages gets
-/// FINISHING_PRODUCTS products.
+/// Each time the missing force falls to CLOSE_RATIO times the last value, Newton's method with balanced creepages is tried.
 const CLOSE_RATIO: f64 = 0.1;
-const FINISHING_PRODUCTS: u64 = 30;
+/// Products of a try of tractions by force, when the forces are nearly met.
+pub const FINISHING_PRODUCTS: u64 = 30;
 /// Factor on the residual of solves if other creepages leave the forces unchanged, and its least value.
 const TIGHTER: f64 = 0.03;
 const LEAST_INNER: f64 = 1e-14;

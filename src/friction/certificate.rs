@@ -14,6 +14,7 @@
 
 use super::plane::{add, dot, square, Vector};
 use super::problem::{Problem, State};
+use crate::contact::relative;
 use crate::methods::fields::{self, BLOCK};
 
 /// Tractions of at least this share of the bound are on the circle. The round-off of the projection is far smaller.
@@ -38,15 +39,6 @@ const NO_SLIP: f64 = 1e-8;
 /// The scale of residuals.
 pub fn scale(problem: &Problem, state: &State) -> f64 {
     problem.compared(problem.rms_rigid(), problem.rms(|i| state.u[i]))
-}
-
-/// A length relative to another one; 0 relative to 0 is 0.
-pub fn relative(value: f64, scale: f64) -> f64 {
-    if value == 0.0 {
-        0.0
-    } else {
-        value / scale
-    }
 }
 
 impl Certificate {

@@ -22,15 +22,12 @@ use super::unit::unit_of;
 use crate::effects::TangentialInfluence;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::{gauss, gauss_each, Coefficients, Kernel};
+use crate::influence::{gauss, gauss_each, Coefficients, Kernel, MOST_TERMS, SERIES};
 use crate::memory::zeros;
 use crate::operator::fft::Complex;
 use crate::operator::{Operator, Workspace};
 use crate::threads::Threads;
 
-/// Half-diagonals from which the series suffices, with TERMS terms after the first: the next is `6^-18`, 1e-14 of the first, times m_18.
-const SERIES_DISTANCE: f64 = 6.0;
-const TERMS: usize = 8;
 /// Distance up to which differences over corners serve next to the element, in units of its shorter side.
 const CORNERS_DISTANCE: f64 = 2.0;
 /// Beyond CORNERS_DISTANCE, the end of a panel is this many times as far away as its start.
@@ -128,7 +125,8 @@ impl Kernel for Cross {
 pub fn integrals(x: f64, y: f64, dx: f64, dy: f64) -> [f64; 2] {
     let (kx, ky) = (x.abs(), y.abs());
     let (px, py) = (kx * dx, ky * dy);
-    let far = SERIES_DISTANCE * 0.5 * dx.hypot(dy);
+    // There the series suffices with MOST_TERMS terms after the first: the next is `6^-18`, 1e-14 of the first, times m_18.
+    let far = SERIES[0].0 * 0.5 * dx.hypot(dy);
     let [jx, jy] = if px * px + py * py >= far * far { series(px, py, dx, dy) } else { near(kx, ky, dx, dy) };
     // Odd functions: exactly 0 at the centre.
     let odd = |x: f64, value: f64| if x == 0.0 { 0.0 } else { value.copysign(x) };
@@ -138,7 +136,7 @@ pub fn integrals(x: f64, y: f64, dx: f64, dy: f64) -> [f64; 2] {
 fn series(px: f64, py: f64, dx: f64, dy: f64) -> [f64; 2] {
     let inverse = Complex::new(px, py).inv();
     let (square, mut sum) = (inverse * inverse, Complex::new(0.0, 0.0));
-    for k in (0..=TERMS).rev() {
+    for k in (0..=MOST_TERMS).rev() {
         sum = sum * square + moment(k, dx, dy);
     }
     sum = sum * inverse * (dx * dy);

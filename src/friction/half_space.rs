@@ -30,9 +30,7 @@ use super::compliance::Compliance;
 use super::near_element::near;
 use super::series::{Series, Shape};
 use super::tables::Entry;
-
-/// `(distance in half-diagonals, K)`: from this distance on the terms `k <= K` suffice, as for the normal coefficients.
-const SERIES: [(f64, usize); 4] = [(6.0, 8), (12.0, 6), (40.0, 4), (300.0, 2)];
+use crate::influence::SERIES;
 
 /// Offsets whose series are summed side by side.
 const LANES: usize = 4;

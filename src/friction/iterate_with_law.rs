@@ -14,15 +14,14 @@ use super::solver::Solver;
 use crate::effects::Branch;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::collected;
+use crate::memory::copied;
 use crate::progress::Outcome;
 use crate::rectangle::Rectangle;
 
 /// With given forces: tolerance of the first solve, of Coulomb's law with the coefficients at rest.
 const FIRST_TOLERANCE: f64 = 1e-2;
 
-/// The residual of the first turns before Newton's method is tried again, and its factor for the next ones.
-const FIRST_TURNS_RESIDUAL: f64 = 1e-2;
+/// The ratio of the residuals at which Newton's method is tried again.
 const TURNS_RESIDUAL_RATIO: f64 = 0.1;
 /// The name of this memory in messages.
 const KEPT: &str = "the tractions before turns";
@@ -88,7 +87,7 @@ impl Solver {
         self.alternate((request, began.1), &mut march, watch, report)
     }
 
-    /// After Newton's method found no solution: turns of the branch LOW down to [`FIRST_TURNS_RESIDUAL`], then Newton's
+    /// After Newton's method found no solution: turns of the branch LOW down to [`NEWTON_RESIDUAL`](stages::NEWTON_RESIDUAL), then Newton's
     /// method from there. If this fails, the next turns go ten times as far, and so on. Ends with the best state if all
     /// fail.
     fn alternate(
@@ -98,7 +97,8 @@ impl Solver {
         watch: &mut dyn FnMut(&Grid, f64) -> bool,
         report: &mut Report,
     ) -> Result<Outcome> {
-        let (mut best, mut aim, mut begins) = (self.keep(report)?, FIRST_TURNS_RESIDUAL.max(request.tolerance), true);
+        let (mut best, mut aim, mut begins) =
+            (self.keep(report)?, stages::NEWTON_RESIDUAL.max(request.tolerance), true);
         loop {
             let turns = Request { tolerance: aim, ..*request };
             let turned = self.in_turns((&turns, (false, had_slip)), (march, begins), watch, report)?;
@@ -131,7 +131,7 @@ impl Solver {
     /// A copy of the finest grid's state.
     fn keep(&self, report: &Report) -> Result<Kept> {
         let Level { problem, state, .. } = &self.levels[0];
-        let (q, bound) = (collected(state.q.iter().copied(), KEPT)?, collected(problem.bound.iter().copied(), KEPT)?);
+        let (q, bound) = (copied(&state.q, KEPT)?, copied(&problem.bound, KEPT)?);
         Ok(Kept { q, bound, certificate: report.certificate })
     }
 

@@ -4,7 +4,7 @@ use super::plane::Vector;
 use super::solution::Solution;
 use super::solver::Solver;
 use crate::error::Result;
-use crate::memory::{blank, collected, keep};
+use crate::memory::{copied, keep};
 
 /// A copy of the last result.
 pub struct Last {
@@ -35,15 +35,10 @@ impl Solver {
     /// A copy of the last result, if there is one.
     pub fn last(&self) -> Result<Option<Last>> {
         let Some(Solution { traction, slip, stick_slip, particles }) = self.last_step() else { return Ok(None) };
-        let copy = |field: &[Vector]| -> Result<Vec<Vector>> {
-            let mut copy = blank(field.len(), [f64::NAN; 2], "the tractions before")?;
-            copy.copy_from_slice(field);
-            Ok(copy)
-        };
-        let mut sides = blank(stick_slip.len(), 0, "the tractions before")?;
-        sides.copy_from_slice(stick_slip);
-        let particles = collected(particles.iter().copied(), "the tractions before")?;
-        let solution = Solution { traction: copy(traction)?, slip: copy(slip)?, stick_slip: sides, particles };
+        let what = "the tractions before";
+        let (traction, slip) = (copied(traction, what)?, copied(slip, what)?);
+        let (stick_slip, particles) = (copied(stick_slip, what)?, copied(particles, what)?);
+        let solution = Solution { traction, slip, stick_slip, particles };
         Ok(Some(Last { solution, offset: self.offset, is_last: self.is_last }))
     }
 

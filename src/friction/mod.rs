@@ -72,6 +72,7 @@ mod toeplitz;
 mod unit;
 mod with_law;
 
+pub(crate) use bracket::FINISHING_PRODUCTS;
 pub use certificate::Certificate;
 pub use coefficients::{Compliance, Tangential};
 pub use cross::{Coupling, CrossTables, Source};

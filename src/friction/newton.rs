@@ -22,6 +22,7 @@ use super::problem::{Problem, State};
 use super::shift::Goal;
 use super::step::{compliance, enough, polish, step, Effort, DIRECTIONS};
 use super::tangent::{rho_of, Measures, Tangent};
+use crate::contact::largest;
 use crate::error::Result;
 use crate::methods::fields::Fields;
 use crate::progress::Outcome;
@@ -47,7 +48,7 @@ const WORSE_CERTIFICATE: f64 = 1.5;
 const TIMES_WORSE: u32 = 2;
 /// Steps without progress before a cut; progress is a residual below PROGRESS times the least.
 const PATIENCE: u32 = 4;
-const PROGRESS: f64 = 0.7;
+pub const PROGRESS: f64 = 0.7;
 /// Coarser grids may leave q above its bounds by this times the tolerance: the next finer grid projects q.
 const COARSE_EXCESS: f64 = 10.0;
 /// Most steps on a grid without certificate.
@@ -212,11 +213,6 @@ fn unloaded(problem: &mut Problem, state: &mut State) -> Outcome {
     problem.offset = [0.0; 2];
     state.unload(problem.threads());
     Outcome::Stagnated
-}
-
-/// The largest of these, which are not negative; NaN if there is one.
-fn largest(values: [f64; 3]) -> f64 {
-    values.into_iter().fold(0.0, |most, value| if most.is_nan() || value <= most { most } else { value })
 }
 
 /// As many directions as unknowns, if they hold at most MOST_VALUES values together.

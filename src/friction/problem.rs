@@ -21,13 +21,10 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::{blank, keep};
 use crate::methods::extension::Extension;
-use crate::methods::fields::{self, BLOCK};
+use crate::methods::fields::{self, Stored, BLOCK};
 use crate::threads::Threads;
 
 pub const FIELDS: &str = "tangential fields";
-
-/// A residual far above the round-off of a product in single precision.
-const SINGLE_PRECISION_RESIDUAL: f64 = 1e-6;
 
 /// Least weight of an element, relative to the largest, that bounds the creepages.
 const LEAST_WEIGHT: f64 = 1e-6;
@@ -273,7 +270,7 @@ impl Problem {
 
     /// [`Problem::refresh`], in single precision if that suffices for the tolerance.
     pub fn refresh_to(&mut self, state: &mut State, tolerance: f64) {
-        if tolerance < SINGLE_PRECISION_RESIDUAL {
+        if tolerance < f32::ROUND_OFF {
             return self.refresh(state);
         }
         self.clip(state);

@@ -1,7 +1,6 @@
 //! The series of tangential coefficients far from an element: polynomials in `t = (X/r)^2` for each power of `z = (d/r)^2`.
 
-/// Most terms of the series.
-const MOST_TERMS: usize = 8;
+use crate::influence::MOST_TERMS;
 
 /// Polynomials `p_k(t) = sum_j series[k][j] t^j`.
 pub type Series = [[f64; MOST_TERMS + 2]; MOST_TERMS + 1];

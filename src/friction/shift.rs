@@ -13,10 +13,10 @@
 //!
 //! Fields are on C only ([`Discs`]).
 
-use super::certificate::relative;
 use super::discs::{Discs, Sums};
 use super::problem::{Problem, State};
 use super::tangent::Tangent;
+use crate::contact::relative;
 use crate::error::Result;
 use crate::methods::fields::Fields;
 use crate::operator::fft::Real;

@@ -11,7 +11,7 @@ use super::scales::Scales;
 use super::solution::{Solution, EXTERIOR};
 use super::solver::Solver;
 use super::sweep::{Rolling, Sweep};
-use crate::effects::{Coefficient, Friction, Motion, Prescribed, Previous};
+use crate::effects::{Coefficient, Friction, Motion, Previous};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::{blank, collected, unwritten, zeros};
@@ -101,7 +101,7 @@ impl Solver {
             });
         }
         take_step(problem, friction, grid, (&scales, self.offset));
-        let found = |k: usize| matches!(friction.prescribed[k], Prescribed::Force(_));
+        let found = friction.has_forces();
         (problem.given, problem.left, problem.update) = (0.0, 0.0, 0.0);
         problem.bound_changed();
         threads.for_each_row_pair((&mut problem.slip, width), (&mut problem.rigid, width), |_, slip, rigid| {
@@ -119,7 +119,7 @@ impl Solver {
         let mostly = problem.places.is_mostly_slip(slipped);
         problem.refresh(state);
         if let Start::Given(_) = request.start {
-            problem.offset = [0, 1].map(|k| if found(k) { creepage_of(problem, state, k) } else { 0.0 });
+            problem.offset = [0, 1].map(|k| if found[k] { creepage_of(problem, state, k) } else { 0.0 });
         }
         Ok(mostly)
     }
@@ -134,9 +134,9 @@ impl Solver {
                 window
                     .elements(&self.grid)
                     .for_each(|(k, i)| state.q[k] = self.solution.traction[i].map(|q| scales.traction(q)));
-                let found = |k: usize| matches!(request.friction.prescribed[k], Prescribed::Force(_));
+                let found = request.friction.has_forces();
                 let offset = if let Start::Held(offset) = request.start { offset } else { self.offset };
-                problem.offset = scales.displacement([0, 1].map(|k| if found(k) { offset[k] } else { 0.0 }));
+                problem.offset = scales.displacement([0, 1].map(|k| if found[k] { offset[k] } else { 0.0 }));
             }
             Start::Given([x, y]) => {
                 window.elements(&self.grid).for_each(|(k, i)| state.q[k] = in_range([x[i], y[i]], &scales));
@@ -206,11 +206,11 @@ impl Solver {
 fn take_step(problem: &mut Problem, friction: &Friction<'_>, grid: &Grid, (scales, last): (&Scales, Vector)) {
     // A warm start of steady rolling includes the last creepages.
     let is_warm = friction.motion == Motion::SteadyRolling && friction.previous == Previous::Kept;
-    let found = |k: usize| matches!(friction.prescribed[k], Prescribed::Force(_));
-    problem.offset = scales.displacement([0, 1].map(|k| if is_warm && found(k) { last[k] } else { 0.0 }));
+    let found = friction.has_forces();
+    problem.offset = scales.displacement([0, 1].map(|k| if is_warm && found[k] { last[k] } else { 0.0 }));
     problem.scale = match friction.motion {
         Motion::Shift => Scale::SlipOrDisplacement,
-        Motion::SteadyRolling if found(0) || found(1) => Scale::SlipOrDisplacement,
+        Motion::SteadyRolling if found != [false; 2] => Scale::SlipOrDisplacement,
         _ => Scale::Slip,
     };
     problem.ahead = scales.displacement(spin_ahead(friction, grid));

@@ -12,9 +12,10 @@
 //! For tractions near their circle n is q/|q| and `D = -(n.s)/g`, the same at the solution: the step to the circle is then the shortest, of
 //! second order in the error.
 
-use super::certificate::{relative, rest};
+use super::certificate::rest;
 use super::plane::{add, dot, plus, square, Vector};
 use super::problem::{Problem, State};
+use crate::contact::relative;
 use crate::error::Result;
 use crate::memory::zeros;
 use crate::methods::fields::{self, BLOCK};

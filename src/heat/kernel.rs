@@ -20,8 +20,8 @@
 
 use std::f64::consts::PI;
 
-/// Exponents beyond this are dropped, because e^-40 = 4e-18 is round-off.
-const FADED: f64 = 40.0;
+use crate::powers::FADED;
+
 /// Longest panel in t, on which the rule integrates exp(-a cosh t) to 1e-10.
 const PANEL: f64 = 2.0;
 /// Largest t: beyond it sinh(t) is infinite, as quotients are by wakes next to nothing.

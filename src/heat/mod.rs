@@ -13,7 +13,7 @@ mod kernel;
 use crate::error::{finite, positive, require, Error, Result};
 use crate::grid::{check_values, Grid};
 use crate::influence::{gauss_legendre, Coefficients, Table};
-use crate::memory::{collected, zeros};
+use crate::memory::{copied, zeros};
 use crate::operator::Operator;
 use crate::threads::Threads;
 
@@ -114,7 +114,7 @@ impl Heat<'_> {
     fn each(&self, threads: &Threads) -> Result<[Vec<f64>; 2]> {
         let first = self.alone(0, threads)?;
         let is_same = self.speed[0] == self.speed[1] && self.diffusivity[0] == self.diffusivity[1];
-        let second = if is_same { collected(first.iter().copied(), FIELDS)? } else { self.alone(1, threads)? };
+        let second = if is_same { copied(&first, FIELDS)? } else { self.alone(1, threads)? };
         let mut both = [first, second];
         for (b, (rise, conductivity)) in both.iter_mut().zip(self.conductivity).enumerate() {
             rise.iter_mut().for_each(|rise| *rise /= conductivity);

@@ -27,12 +27,11 @@ use crate::grid::Grid;
 use crate::powers::{apart, times_power};
 use crate::threads::made_once;
 
-/// Most terms of the multipole series (degree `2 * 8 = 16`).
-const MOST_TERMS: usize = 8;
-
 /// `(distance in half-diagonals, K)`: from this distance on the terms `k <= K` suffice; the first omitted term is
 /// `z^(K+1) <= 2e-15` (1e-14 at the first distance, where `|q_9| < 0.1`).
-const SERIES: [(f64, usize); 4] = [(6.0, 8), (12.0, 6), (40.0, 4), (300.0, 2)];
+pub const SERIES: [(f64, usize); 4] = [(6.0, 8), (12.0, 6), (40.0, 4), (300.0, 2)];
+/// Most terms of the multipole series (degree `2 * 8 = 16`).
+pub const MOST_TERMS: usize = SERIES[0].1;
 
 /// The most kept coefficients of one quadrant at offsets nearer than the series.
 const MOST_KEPT: usize = 1024;

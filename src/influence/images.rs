@@ -50,12 +50,6 @@ impl Near {
     }
 }
 
-/// Number of offsets >= 0 in x and y: up to half the period in a periodic direction.
-pub(super) fn offsets((x, y): (bool, bool), grid: &Grid) -> (usize, usize) {
-    let offsets = |repeats: bool, m: usize| if repeats { m / 2 + 1 } else { m };
-    (offsets(x, grid.mx), offsets(y, grid.my))
-}
-
 /// The grid's lengths.
 pub(super) fn lengths(grid: &Grid) -> (f64, f64) {
     (grid.mx as f64 * grid.dx, grid.my as f64 * grid.dy)
@@ -115,7 +109,7 @@ impl Far {
         let (mut across, mut near_lines) = (own_across.max(COVERED_PERIOD * width), 0);
         if fades {
             // Across lines coarser elements reach farther, at most to the end.
-            let ((_, count), (_, d)) = (lines.turn(offsets(directions, grid)), lines.turn((grid.dx, grid.dy)));
+            let ((_, count), (_, d)) = (lines.turn(grid.offsets(directions)), lines.turn((grid.dx, grid.dy)));
             across = own_across.max(f64::min((count as f64 - 0.5) * d, 1.5 * FADED * length));
         } else {
             near_lines = reach(width, across, along);
@@ -162,7 +156,7 @@ impl Far {
 
     /// The offsets of a grid for which images are summed.
     pub fn near(&self, grid: &Grid) -> Near {
-        let (row, rows) = offsets(self.directions, grid);
+        let (row, rows) = grid.offsets(self.directions);
         let mut near = Near { offsets: (row, rows), element: (grid.dx, grid.dy) };
         match self.lines {
             _ if !self.fades => {}

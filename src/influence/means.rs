@@ -16,6 +16,8 @@ pub const HALO: usize = 4;
 /// Elements in a mean in one direction.
 pub const ROWS: usize = 2 * HALO + 1;
 
+/// Distance from a singularity, in longer sides of an element, from which means follow from the values at centres.
+pub const LEAST_DISTANCE: f64 = 32.0;
 /// Distance, in longer sides, from which differences up to the fourth suffice: the sixth is 2e-12 of 1/r^3.
 const FOURTH_DIFFERENCES: f64 = 128.0;
 /// Neighbours on either side in a mean beyond this distance.

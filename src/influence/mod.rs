@@ -31,8 +31,8 @@ pub use coated::{radial, Across, Along, Base, Coat, Coated, CoatedBody, CoatedPe
 pub use coefficients::Coefficients;
 pub use diagonal::Layer;
 pub(crate) use gauss::{gauss, gauss_each};
-pub(crate) use half_space::integral_at;
 pub use half_space::HalfSpace;
+pub(crate) use half_space::{integral_at, MOST_TERMS, SERIES};
 pub use kernel::Kernel;
 pub use patches::Patches;
 pub use periodic::Periodic;

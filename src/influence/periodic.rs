@@ -28,7 +28,7 @@ use std::sync::Arc;
 
 use super::gauss::gauss;
 use super::half_space::HalfSpace;
-use super::images::{lengths, offsets, Far, Lines, Near, NODES};
+use super::images::{lengths, Far, Lines, Near, NODES};
 use super::kernel::Kernel;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -65,7 +65,7 @@ impl Periodic {
     }
 
     fn with_far(half_space: HalfSpace, (x, y): (bool, bool), grid: &Grid, far: Arc<Far>) -> Result<Periodic> {
-        let (row, rows) = offsets((x, y), grid);
+        let (row, rows) = grid.offsets((x, y));
         let mut table = zeros(row * rows, PERIODIC)?;
         let periodic = Periodic { half_space, x, y, mx: grid.mx, my: grid.my, far, table: Arc::default(), row };
         let near = periodic.far.near(grid);
@@ -135,6 +135,12 @@ impl Periodic {
         table.iter_mut().for_each(|value| *value -= mean);
     }
 
+    /// The offset up to half a period of m elements with the same coefficients.
+    pub fn folded(k: i64, m: usize) -> usize {
+        let k = k.unsigned_abs() as usize % m;
+        k.min(m - k)
+    }
+
     /// The coefficients of a coarser grid. With an odd count it is longer by an element, which suffices for a start.
     pub fn coarsened(&self, coarse: &Grid) -> Result<Periodic> {
         let directions = (self.x, self.y);
@@ -146,13 +152,9 @@ impl Periodic {
 
 impl Kernel for Periodic {
     fn at(&self, kx: i64, ky: i64) -> f64 {
-        let folded = |k: i64, repeats: bool, m: usize| {
-            let k = if repeats { k.unsigned_abs() as usize % m } else { (k.unsigned_abs() as usize).min(m - 1) };
-            if repeats {
-                k.min(m - k)
-            } else {
-                k
-            }
+        let folded = |k: i64, repeats: bool, m: usize| match repeats {
+            true => Periodic::folded(k, m),
+            false => (k.unsigned_abs() as usize).min(m - 1),
         };
         self.table[folded(ky, self.y, self.my) * self.row + folded(kx, self.x, self.mx)]
     }

@@ -8,7 +8,7 @@ mod regrid;
 mod with_effects;
 
 pub use crate::effects::{
-    Adhesion, Branch, Branches, Coating, CoatingLayer, Coefficient, Fall, Friction, FrictionLaw, Layer, Motion,
+    Adhesion, Branch, Branches, Coating, CoatingLayer, Coefficient, Each, Fall, Friction, FrictionLaw, Layer, Motion,
     Patches, Period, PlasticLayer, Prescribed, PressureLimit, Previous, TangentialInfluence, Visco, Work,
 };
 pub use bodies::Bodies;

@@ -1,6 +1,6 @@
 //! A scene on another grid over the same rectangle: coarser or finer, in any ratio.
 
-use super::{refine, Adhesion, Coefficient, Friction, Layer, Motion, Patches, PressureLimit, Previous, Scene, Work};
+use super::{refine, Adhesion, Each, Friction, Layer, Motion, Patches, PressureLimit, Previous, Scene};
 use crate::effects::check_other_grids;
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
@@ -90,11 +90,9 @@ impl Regrid {
         Ok(collected((0..self.to.len()).map(of), "patches of a scene on another grid")?)
     }
 
-    fn of_coefficient(&self, coefficient: Coefficient<'_>) -> Result<Option<Vec<f64>>> {
-        match coefficient {
-            Coefficient::Uniform(_) => Ok(None),
-            Coefficient::PerElement(values) => self.means(values).map(Some),
-        }
+    /// The means of values given per element.
+    fn each(&self, values: Option<Each<'_>>) -> Result<Option<Vec<f64>>> {
+        values.and_then(|values| values.per_element()).map(|values| self.means(values)).transpose()
     }
 }
 
@@ -140,18 +138,9 @@ impl Regridded {
             (friction.distance(&from), if stays { friction.distance(&from) } else { friction.rolling_distance })
         });
         let step = friction.map_or(1.0, |friction| Friction { rolling_distance, ..*friction }.distance(&to));
-        let of_layer = match scene.layer {
-            Some(Layer::PerElement(values)) => Some(regrid.means(values)?),
-            _ => None,
-        };
-        let limits = match scene.pressure_limit {
-            Some(PressureLimit::PerElement(values)) => Some(regrid.means(values)?),
-            _ => None,
-        };
-        let works = match scene.adhesion.map(|adhesion| adhesion.work) {
-            Some(Work::PerElement(values)) => Some(regrid.means(values)?),
-            _ => None,
-        };
+        let layer = regrid.each(scene.layer.map(|layer| layer.0))?;
+        let limits = regrid.each(scene.pressure_limit.map(|limit| limit.0))?;
+        let works = regrid.each(scene.adhesion.map(|adhesion| adhesion.work))?;
         let mut undeformed_distance = match surface {
             Some(surface) => surface,
             None => distance(scene.undeformed_distance, &from, &to)?,
@@ -163,18 +152,15 @@ impl Regridded {
                 *h = f64::INFINITY;
             }
         }
-        let of = |coefficient: Option<Coefficient<'_>>| {
-            coefficient.map_or(Ok(None), |coefficient| regrid.of_coefficient(coefficient))
-        };
         Ok(Regridded {
             grid: to,
             undeformed_distance,
-            layer: of_layer,
+            layer,
             limits,
             works,
             patches,
-            coefficients: of(friction.map(|friction| friction.coefficient))?,
-            compliances: of(friction.map(|friction| friction.compliance))?,
+            coefficients: regrid.each(friction.map(|friction| friction.coefficient))?,
+            compliances: regrid.each(friction.map(|friction| friction.compliance))?,
             weights: regrid.pair(friction.and_then(|friction| friction.weights), 1.0)?,
             rigid_slip: regrid.pair(friction.and_then(|friction| friction.rigid_slip), step / before)?,
             previous: match friction.map(|friction| friction.previous) {
@@ -187,21 +173,18 @@ impl Regridded {
 
     /// The scene of [`Regridded::new`] on the other grid.
     pub fn scene<'a>(&'a self, scene: &Scene<'a>) -> Scene<'a> {
-        let per_element = |values: &'a Option<Vec<f64>>, uniform: Coefficient<'a>| {
-            values.as_ref().map_or(uniform, |values| Coefficient::PerElement(values))
+        let per_element = |values: &'a Option<Vec<f64>>, uniform: Each<'a>| {
+            values.as_ref().map_or(uniform, |values| Each::PerElement(values))
         };
         let pair = |pair: &'a Option<[Vec<f64>; 2]>| pair.as_ref().map(|[x, y]| [&x[..], &y[..]]);
         Scene {
             grid: self.grid,
             undeformed_distance: &self.undeformed_distance,
-            layer: scene.layer.map(|layer| self.layer.as_ref().map_or(layer, |values| Layer::PerElement(values))),
-            pressure_limit: scene
-                .pressure_limit
-                .map(|limit| self.limits.as_ref().map_or(limit, |values| PressureLimit::PerElement(values))),
-            adhesion: scene.adhesion.map(|adhesion| Adhesion {
-                work: self.works.as_ref().map_or(adhesion.work, |values| Work::PerElement(values)),
-                ..adhesion
-            }),
+            layer: scene.layer.map(|layer| Layer(per_element(&self.layer, layer.0))),
+            pressure_limit: scene.pressure_limit.map(|limit| PressureLimit(per_element(&self.limits, limit.0))),
+            adhesion: scene
+                .adhesion
+                .map(|adhesion| Adhesion { work: per_element(&self.works, adhesion.work), ..adhesion }),
             patches: scene
                 .patches
                 .map(|patches| Patches { patch: self.patches.as_deref().unwrap_or_default(), ..patches }),

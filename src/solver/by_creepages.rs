@@ -15,14 +15,13 @@ use super::turns::InTurns;
 use crate::contact::Survey;
 use crate::effects::Coefficient;
 use crate::error::Result;
-use crate::friction::{dot, length, Vector};
+use crate::friction::{dot, length, Vector, FINISHING_PRODUCTS};
 use crate::progress::Outcome;
-use crate::scene::{Load, Prescribed, Scene};
+use crate::scene::{Load, Scene};
 
 /// If forces miss less than CLOSE_FORCES times mu N, tractions by force are tried with the same pressures, with
-/// FINISHING_PRODUCTS products.
+/// [`FINISHING_PRODUCTS`] products.
 const CLOSE_FORCES: f64 = 1e-4;
-const FINISHING_PRODUCTS: usize = 30;
 /// Most creepages.
 const MOST_TRIALS: u32 = 30;
 /// Creepages that are tried, relative to those of turns by force. With two forces, those from OPPOSITE_FROM on are
@@ -39,8 +38,7 @@ const FARTHEST: f64 = 1e20;
 
 /// The directions of given forces.
 fn given(scene: &Scene<'_>) -> [bool; 2] {
-    let prescribed = scene.friction.map_or([Prescribed::Creepage(0.0); 2], |friction| friction.prescribed);
-    prescribed.map(|prescribed| matches!(prescribed, Prescribed::Force(_)))
+    scene.friction.map_or([false; 2], |friction| friction.has_forces())
 }
 
 impl InTurns<'_, '_, '_> {
@@ -163,7 +161,7 @@ impl InTurns<'_, '_, '_> {
     fn finish(&mut self) -> Result<bool> {
         let InTurns { solver, turns, monitor, .. } = self;
         if let Some(friction) = &mut turns.friction {
-            (friction.held, friction.most) = (None, FINISHING_PRODUCTS);
+            (friction.held, friction.most) = (None, FINISHING_PRODUCTS as usize);
         }
         let end = turns.solve(true, Outcome::Converged, &solver.state, monitor)?;
         let (distance, change) = turns.distance(&solver.state);

@@ -145,7 +145,7 @@ pub fn range(
                 None => 0.0,
             };
             // A single element with two periods has the coefficient 0 and carries its limit. Without penetration there is no pressure.
-            let limit = effects::limits(scene).filter(|_| influence == 0.0).map(|limit| limit.at(0));
+            let limit = effects::limits(scene).filter(|_| influence == 0.0).map(|limit| limit.0.at(0));
             let pressure = if depth == 0.0 { 0.0 } else { limit.unwrap_or(depth / influence) };
             (pressure, depth, 0.0)
         }

@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::memory::{reserve, zeros};
 use crate::methods::Task;
 use crate::progress::{Monitor, Outcome};
-use crate::scene::{PressureLimit, Scene};
+use crate::scene::{Each, PressureLimit, Scene};
 
 impl Solver {
     /// Solves the normal problem on the scene's admissible set. `lowest`: the least distance.
@@ -42,13 +42,13 @@ impl Solver {
             self.state.at_limit = zeros(n, "elements at their limit")?;
         }
         let mut limits = std::mem::take(&mut self.limits);
-        let set = match limit {
-            PressureLimit::Uniform(_) => limit,
-            PressureLimit::PerElement(given) => {
+        let set = match limit.0 {
+            Each::Uniform(_) => limit,
+            Each::PerElement(given) => {
                 limits.clear();
                 reserve(&mut limits, n, "pressure limits")?;
                 limits.extend_from_slice(given);
-                PressureLimit::PerElement(&limits)
+                PressureLimit(Each::PerElement(&limits))
             }
         };
         let mut outcome = self.run((scene, lowest), set, options, guess, monitor);

@@ -90,8 +90,8 @@ pub fn estimate(solved: &Solved<'_>, found: &Report) -> Vector {
     let differences = match (friction.motion, found.coarser) {
         (Motion::Shift, _) if found.from_rest => [[0.0; 2]; 2],
         (Motion::SteadyRolling, Some((force, creepage))) if alike => {
-            let is_found = |k: usize| matches!(friction.prescribed[k], Prescribed::Force(_));
-            let of_creepage = |k: usize| if is_found(k) { (found.creepage[k] - creepage[k]).abs() } else { 0.0 };
+            let is_found = friction.has_forces();
+            let of_creepage = |k: usize| if is_found[k] { (found.creepage[k] - creepage[k]).abs() } else { 0.0 };
             [[0, 1].map(|k| (found.force[k] - force[k]).abs()), [0, 1].map(of_creepage)]
         }
         _ => return unknown,
@@ -122,7 +122,7 @@ pub fn estimate(solved: &Solved<'_>, found: &Report) -> Vector {
 /// Whether the law of friction, if there is one, allows an estimate: of a shift by creepages. Near the largest force of a falling coefficient errors of
 /// the creepage were up to 1.5 times the estimate. In steady rolling no coarser grid is solved with the law.
 fn is_known_with_law(friction: &Friction<'_>) -> bool {
-    let by_creepages = friction.prescribed.iter().all(|prescribed| matches!(prescribed, Prescribed::Creepage(_)));
+    let by_creepages = friction.has_forces() == [false; 2];
     !friction.has_law() || friction.motion == Motion::Shift && by_creepages
 }
 

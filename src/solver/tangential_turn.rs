@@ -7,7 +7,7 @@ use crate::effects::Coupled;
 use crate::error::{Error, Number, Result};
 use crate::friction::{length, Report, Start, Vector};
 use crate::progress::Monitor;
-use crate::scene::{Friction, Prescribed};
+use crate::scene::Prescribed;
 
 /// The solver of the tangential problem, and the results so far.
 pub struct TangentialTurn<'a> {
@@ -49,8 +49,7 @@ pub fn sharper(options: &Options) -> Options {
 impl<'a> TangentialTurn<'a> {
     /// The tangential problem before its first solve.
     pub fn new(tangent: &'a mut Tangent, turn: Turn<'a>) -> TangentialTurn<'a> {
-        let Friction { prescribed, .. } = turn.friction;
-        let by_force = prescribed.iter().any(|prescribed| matches!(prescribed, Prescribed::Force(_)));
+        let by_force = turn.friction.has_forces() != [false; 2];
         // Tolerances below round-off gain nothing.
         let is_attainable = turn.options.tolerance >= LEAST_TOLERANCE;
         let by_force = by_force && is_attainable && !tangent.is_of_like_bodies() && !turn.friction.has_law();

@@ -20,10 +20,11 @@ use super::Solver;
 use crate::contact::{Fixed, Freshness, State, Survey};
 use crate::error::Result;
 use crate::friction::{self, Vector};
-use crate::memory::zeros;
+use crate::memory::{copied, zeros};
 use crate::methods::{Start, Task};
 use crate::progress::{Criterion, Goal, Monitor};
 use crate::scene::Load;
+use crate::sums::dot;
 
 /// Relative residual of the fixed point.
 const TOLERANCE: f64 = 1e-6;
@@ -124,8 +125,7 @@ impl Linear<'_> {
 
     /// The next direction, from the residual; none at round-off.
     fn direction(&mut self, residual: &[f64], directions: &[Direction]) -> Result<Option<Direction>> {
-        let mut new = Direction { dp: zeros(residual.len(), FIELDS)?, left: zeros(residual.len(), FIELDS)? };
-        new.dp.copy_from_slice(residual);
+        let mut new = Direction { dp: copied(residual, FIELDS)?, left: zeros(residual.len(), FIELDS)? };
         self.turn(None, residual, &mut new.left)?;
         new.left.iter_mut().zip(residual).for_each(|(left, dp)| *left = dp - *left);
         for Direction { dp, left } in directions {
@@ -185,10 +185,6 @@ impl Linear<'_> {
         self.products += own.count.work_units;
         Ok(())
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn norm(a: &[f64]) -> f64 {

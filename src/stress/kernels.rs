@@ -4,7 +4,7 @@
 //!
 //! * below [`CLOSED_FORM_DISTANCE`] the closed form of [`element`](super::element), whose corner differences lose
 //!   digits with the distance;
-//! * below [`GAUSS_DISTANCE`] point forces at 4 x 4 Gauss points of the element;
+//! * below [`LEAST_DISTANCE`] point forces at 4 x 4 Gauss points of the element;
 //! * beyond, point forces at the centres of the elements, from which means over elements follow (see [`means`](crate::influence::means)):
 //!   one evaluation per element, and no cancellation at any distance.
 
@@ -13,13 +13,11 @@ use super::element;
 use super::point_force::{self, Lanes, Values};
 use crate::blocks::LANES;
 use crate::error::Result;
-use crate::influence::means::{in_x, in_y, HALO, ROWS};
+use crate::influence::means::{in_x, in_y, HALO, LEAST_DISTANCE, ROWS};
 use crate::memory::zeros;
 
 /// The closed form is used up to this distance.
 const CLOSED_FORM_DISTANCE: f64 = 12.0;
-/// Gauss points are used up to this distance.
-const GAUSS_DISTANCE: f64 = 32.0;
 /// Nodes and weights of the 4-point Gauss-Legendre rule on [-1/2, 1/2] (Abramowitz & Stegun 25.4).
 const GAUSS: [(f64, f64); 4] = [
     (-0.430_568_155_797_026_3, 0.173_927_422_568_726_93),
@@ -105,7 +103,7 @@ impl Kernels {
     pub fn combine(&mut self, body: &Body, depths: &[(f64, f64)]) {
         self.fill_far(body, depths);
         let least = depths.iter().fold(f64::INFINITY, |least, (z, _)| z.min(least));
-        if least < GAUSS_DISTANCE {
+        if least < LEAST_DISTANCE {
             self.fill_near(body, depths, least);
         }
     }
@@ -158,7 +156,7 @@ impl Kernels {
         };
         for ky in 0..my {
             let y = ky as f64 * dy;
-            let far = within(GAUSS_DISTANCE, y, least);
+            let far = within(LEAST_DISTANCE, y, least);
             if far == 0 {
                 break;
             }

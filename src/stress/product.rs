@@ -85,8 +85,7 @@ impl<'a> Product<'a> {
 
     /// Offsets at which kernels are tabulated: those of the grid, or up to half a period.
     fn offsets(&self) -> (usize, usize) {
-        let given = |m: usize| if self.body.periodic { m / 2 + 1 } else { m };
-        (given(self.body.grid.mx), given(self.body.grid.my))
+        self.body.grid.offsets((self.body.periodic, self.body.periodic))
     }
 
     /// Memory for the products of one depth, with these components.

@@ -10,8 +10,8 @@ use crate::memory::zeros;
 
 /// k z beyond which waves are dropped: `exp(-37) = 9e-17`.
 const FADED: f64 = 37.0;
-/// Most aliases of a bin at depths of at least an element's longer side: `2 FADED/(2 pi) + 1`.
-const MOST_ALIASES: usize = 13;
+/// Most aliases of a bin at depths of at least an element's longer side: `2 FADED/(2 pi) + 1`, rounded up.
+const MOST_ALIASES: usize = (2.0 * FADED / (2.0 * PI)) as usize + 2;
 /// Nodes of the extrapolation of a kernel to the surface: depths of 1, 2, ... sides.
 pub const NODES: usize = 10;
 

@@ -21,13 +21,12 @@ use crate::error::{invalid, not_negative, require, Error, Result};
 use crate::grid::Grid;
 use crate::influence::{gauss_legendre, integral_at};
 use crate::memory::zeros;
-use crate::powers::{apart, times_power};
+use crate::powers::{apart, times_power, FADED};
 
 /// Nodes of a panel.
 const NODES: usize = 12;
-/// The longest panel, and the distance after which `exp(-s/L)` is negligible (4e-18), in L.
+/// The longest panel, in L.
 const LONGEST_PANEL: f64 = 2.0;
-const DECAYED: f64 = 40.0;
 /// For panels near an edge: the distance of the near end from the edge over that of the far end. With this ratio 12
 /// nodes give 14 digits.
 const PANEL_RATIO: f64 = 0.35;
@@ -94,7 +93,7 @@ impl<const N: usize> Row<'_, N> {
 
     /// The same for an interval, in panels that are short compared with L.
     fn interval(&self, kx: f64, (from, to): (f64, f64), length: f64) -> [f64; N] {
-        let to = to.min(DECAYED * length);
+        let to = to.min(FADED * length);
         if !(to > from) {
             return [0.0; N];
         }
@@ -122,7 +121,7 @@ impl<const N: usize> Row<'_, N> {
     /// W at an offset, by integration to the end.
     fn tail(&self, kx: i64, length: f64) -> [f64; N] {
         let (mut sum, mut s) = ([0.0; N], 0.0);
-        while s < DECAYED * length {
+        while s < FADED * length {
             let d = (OF_DISTANCE * (kx as f64 + s)).max(OF_DISTANCE).min(LONGEST_PANEL * length);
             sum = plus(sum, 1.0, self.panel(kx as f64, (s, d), length));
             s += d;

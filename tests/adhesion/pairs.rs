@@ -3,7 +3,7 @@
 use contact_normal::adhesion::Law;
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Coating, Friction, Layer, Load, Patches, PressureLimit, Scene};
+use contact_normal::scene::{Coating, Each, Friction, Layer, Load, Patches, PressureLimit, Scene};
 use contact_normal::solver::{self, solve_to_accuracy, Accuracy, Criterion, Method, Options, Outcome, Solver};
 
 use super::certificate::{displacements, traction, worst};
@@ -22,7 +22,7 @@ fn effects_that_are_not_solved_with_it_are_refused_by_name() {
     let plain = sphere.scene(Load::Approach(0.5));
     let friction = Friction::new(0.3);
     let refused = [
-        ("pressure_limit", Scene { pressure_limit: Some(PressureLimit::Uniform(1.0)), ..plain.clone() }),
+        ("pressure_limit", Scene { pressure_limit: Some(PressureLimit(Each::Uniform(1.0))), ..plain.clone() }),
         // One of the bodies is rigid: tractions change the pressures.
         ("friction", Scene { friction: Some(friction), ..plain.clone() }),
     ];
@@ -43,7 +43,7 @@ fn effects_that_are_not_solved_with_it_are_refused_by_name() {
 fn a_layer_gives_way_by_its_compliance() {
     let sphere = Sphere::by_tabor(1.0, 40, 3.0);
     let compliances: Vec<f64> = (0..1600).map(|i| if i % 40 < 20 { 0.02 } else { 0.05 }).collect();
-    for layer in [Layer::Uniform(0.03), Layer::PerElement(&compliances)] {
+    for layer in [Layer(Each::Uniform(0.03)), Layer(Each::PerElement(&compliances))] {
         for load in [Load::Approach(0.5), Load::Force(-0.5)] {
             let scene = Scene { layer: Some(layer), ..sphere.scene(load) };
             let (solver, outcome, _) = solver::solve(&scene, &Options::default()).expect("a solve");
@@ -53,8 +53,8 @@ fn a_layer_gives_way_by_its_compliance() {
             for (i, u) in u.iter_mut().enumerate() {
                 *u += state.p[i]
                     * match layer {
-                        Layer::Uniform(c) => c,
-                        Layer::PerElement(c) => c[i],
+                        Layer(Each::Uniform(c)) => c,
+                        Layer(Each::PerElement(c)) => c[i],
                     };
             }
             let worst = worst(state, &u, |_, e| traction(Law::Exponential, sphere_work(), sphere.adhesion.range, e));

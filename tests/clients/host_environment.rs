@@ -58,3 +58,13 @@ fn eight_threads_solve_on_handles_of_their_own() {
 fn a_solve_beside_spinning_openmp_threads_is_the_same() {
     host_with_threads("openmp");
 }
+
+#[test]
+fn a_child_that_is_forked_beside_a_first_call_does_not_wait() {
+    host_with_threads("first_calls");
+}
+
+#[test]
+fn calls_at_the_end_of_the_process_solve_and_have_messages() {
+    host_with_threads("at_the_end");
+}

@@ -1,4 +1,4 @@
-/* A host with threads of its own: host_threads own_handles | openmp. Built with -Ofast, which flushes denormals to zero. Prints nothing
+/* A host with threads of its own: host_threads own_handles | openmp | first_calls | at_the_end. Built with -Ofast, which flushes denormals to zero. Prints nothing
  * but what goes wrong. */
 #define _POSIX_C_SOURCE 200809L
 #include <omp.h>
@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "contact_normal.h"
 
@@ -103,11 +105,64 @@ static int openmp(void)
     return good ? EXIT_SUCCESS : fail("a solve beside OpenMP failed, or differs from the one before");
 }
 
+static void *call(void *argument)
+{
+    contact_normal_solve(NULL, NULL, NULL, NULL);
+    return argument;
+}
+
+/* 0, or what a child of a process returns that is forked while a thread makes the very first call. */
+static int first_call(void)
+{
+    int status = 0;
+    pthread_t thread;
+    pid_t child;
+
+    if (pthread_create(&thread, NULL, call, NULL) != 0) return 1;
+    child = fork();
+    if (child == 0) {
+        alarm(20);
+        _exit(contact_normal_solve(NULL, NULL, NULL, NULL) != CONTACT_NORMAL_NULL_POINTER);
+    }
+    if (child < 0 || waitpid(child, &status, 0) != child) return 1;
+    pthread_join(thread, NULL);
+    return status != 0;
+}
+
+/* Each time in a process that has made no call. */
+static int first_calls(void)
+{
+    int k, status, bad = 0;
+
+    for (k = 0; k < 40; k++) {
+        const pid_t child = fork();
+        if (child == 0) _exit(first_call());
+        if (child < 0 || waitpid(child, &status, 0) != child || status != 0) bad++;
+    }
+    return bad == 0 ? EXIT_SUCCESS : fail("a child that was forked beside a first call hangs or fails");
+}
+
+/* After main has returned: the data of the thread are gone. */
+static void last_step(void)
+{
+    if (contact_normal_solve(&scenes[0], NULL, NULL, NULL) != CONTACT_NORMAL_OK) {
+        fail("a solve at the end of the process");
+        _exit(EXIT_FAILURE);
+    }
+    contact_normal_solve(NULL, NULL, NULL, NULL);
+    if (strstr(contact_normal_last_error(), "scene") == NULL) {
+        fail("a refusal at the end of the process");
+        _exit(EXIT_FAILURE);
+    }
+}
+
 int main(int argc, char **argv)
 {
     contact_normal_fields fields;
     int k;
 
+    if (argc == 2 && strcmp(argv[1], "first_calls") == 0) return first_calls();
+    if (argc == 2 && strcmp(argv[1], "at_the_end") == 0 && atexit(last_step) != 0) return fail("atexit");
     contact_normal_fields_init(&fields);
     for (k = 0; k < THREADS; k++) {
         scenes[k] = scene(k);
@@ -116,5 +171,6 @@ int main(int argc, char **argv)
     }
     if (argc == 2 && strcmp(argv[1], "own_handles") == 0) return own_handles();
     if (argc == 2 && strcmp(argv[1], "openmp") == 0) return openmp();
-    return fail("usage: host_threads own_handles | openmp");
+    if (argc == 2 && strcmp(argv[1], "at_the_end") == 0) return EXIT_SUCCESS;
+    return fail("usage: host_threads own_handles | openmp | first_calls | at_the_end");
 }

@@ -2,7 +2,7 @@
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{
-    Bodies, Friction, Layer, Load, Motion, Period, Prescribed, PressureLimit, Previous, Scene,
+    Bodies, Each, Friction, Layer, Load, Motion, Period, Prescribed, PressureLimit, Previous, Scene,
 };
 use contact_normal::solver::{
     cost_of_accuracy, solve, solve_friction_batch, solve_tangential, solve_to_accuracy, Accuracy, ActiveSet, Entry,
@@ -81,19 +81,19 @@ fn on_a_handle<'s>(
 #[test]
 fn the_normal_problem_by_every_method() {
     let (grid, h) = ball(28, 0.1);
-    let limit = Some(PressureLimit::Uniform(0.01));
+    let limit = Some(PressureLimit(Each::Uniform(0.01)));
     for load in [Load::Force(0.03), Load::Approach(0.015)] {
         let plain = Scene::new(grid, &h, LIKE, load);
         // Iterates reach it, the result does not: a second solve is without it.
         let largest = solve(&plain, &Options::default()).expect("a solve").2.measures.max_pressure;
-        let above = Some(PressureLimit::Uniform(1.0001 * largest));
+        let above = Some(PressureLimit(Each::Uniform(1.0001 * largest)));
         let scenes = [
             ("plain", plain.clone(), false),
             ("a limit", Scene { pressure_limit: limit, ..plain.clone() }, false),
             ("a limit above", Scene { pressure_limit: above, ..plain.clone() }, false),
             ("a fixed area", plain.clone(), true),
             ("a period", Scene { period: Some(Period { x: true, y: false }), ..plain.clone() }, false),
-            ("a layer", Scene { layer: Some(Layer::Uniform(0.01)), ..plain }, false),
+            ("a layer", Scene { layer: Some(Layer(Each::Uniform(0.01))), ..plain }, false),
         ];
         for (name, scene, fixed) in &scenes {
             for method in [Method::Auto, Method::Norm, Method::Multigrid, Method::FullMultigrid, Method::ProjectedCg] {

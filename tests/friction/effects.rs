@@ -3,8 +3,8 @@
 use contact_normal::error::Error;
 use contact_normal::influence::{RowTables, Table};
 use contact_normal::scene::{
-    Bodies, Coating, CoatingLayer, Coefficient, Friction, Layer, Load, Patches, Period, Prescribed, PressureLimit,
-    Scene,
+    Bodies, Coating, CoatingLayer, Coefficient, Each, Friction, Layer, Load, Patches, Period, Prescribed,
+    PressureLimit, Scene,
 };
 use contact_normal::solver::{solve, ActiveSet, Guess, Options, Outcome, Progress, Solver};
 
@@ -45,8 +45,8 @@ fn each_effect_changes_the_tractions_or_is_refused() {
         let mut scene = plain.clone();
         let mut options = Options::default();
         match name {
-            "layer" => scene.layer = Some(Layer::Uniform(1e-6)),
-            "pressure_limit" => scene.pressure_limit = Some(PressureLimit::Uniform(600.0)),
+            "layer" => scene.layer = Some(Layer(Each::Uniform(1e-6))),
+            "pressure_limit" => scene.pressure_limit = Some(PressureLimit(Each::Uniform(600.0))),
             "excluded elements" => scene.undeformed_distance = &holes,
             "fixed contact area" => options.active_set = ActiveSet::Fixed,
             "period" => scene.period = Some(Period { x: true, y: false }),

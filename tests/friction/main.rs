@@ -53,6 +53,7 @@ mod unlike;
 mod unlike_at_limit;
 mod unlike_forces;
 mod unlike_sensitivities;
+mod unloading;
 mod wear;
 mod weights;
 mod wheel_on_rail;

@@ -4,7 +4,7 @@
 use contact_normal::friction::Solution;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{
-    Bodies, Coefficient, Friction, Load, Motion, Prescribed, PressureLimit, Previous, Scene, TangentialInfluence,
+    Bodies, Coefficient, Each, Friction, Load, Motion, Prescribed, PressureLimit, Previous, Scene, TangentialInfluence,
 };
 use contact_normal::solver::{InitialGuess, Options, Outcome, Solver};
 
@@ -76,7 +76,7 @@ fn a_handle_keeps_its_result_and_its_way_on() {
         for load in [Load::Force(0.03), Load::Approach(0.01)] {
             let plain = Scene::new(grid, &h, bodies, load);
             for (first, limit) in
-                [(None, None), (Some(pushed()), None), (Some(pushed()), Some(PressureLimit::Uniform(0.012)))]
+                [(None, None), (Some(pushed()), None), (Some(pushed()), Some(PressureLimit(Each::Uniform(0.012))))]
             {
                 let first_scene = Scene { friction: first, pressure_limit: limit, ..plain.clone() };
                 for (what, friction) in refused(first.is_some()) {

@@ -1,6 +1,6 @@
 //! A solve that starts from nothing, or from a given guess, has the same bits whatever the handle solved before, and in a batch of any number of threads.
 
-use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, PressureLimit, Previous, Scene};
+use contact_normal::scene::{Bodies, Each, Friction, Load, Motion, Prescribed, PressureLimit, Previous, Scene};
 use contact_normal::solver::{solve, Guess, InitialGuess, Method, Options, Problem, Solver};
 
 use super::support::ball;
@@ -27,7 +27,7 @@ fn on_a_handle_that_solved_other_scenes() {
     let guess: Vec<f64> = h.iter().map(|h| (0.01 - h).max(0.0) * 2.0).collect();
     let inside: Vec<bool> = guess.iter().map(|p| *p > 0.0).collect();
     let motions = [Motion::Shift, Motion::TransientRolling, Motion::SteadyRolling];
-    let limit = Some(PressureLimit::Uniform(0.012));
+    let limit = Some(PressureLimit(Each::Uniform(0.012)));
     for method in [Method::Auto, Method::Norm, Method::FullMultigrid] {
         for initial_guess in [InitialGuess::None, InitialGuess::Given] {
             for (k, motion) in motions.into_iter().enumerate() {

@@ -1,7 +1,7 @@
 //! Unlike bodies where all or part of the contact is at its pressure limit, or is one element: the normal conditions with what the tractions
 //! displace, by direct sums.
 
-use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Each, Friction, Load, Motion, Prescribed, PressureLimit, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
 use super::unlike::{ball, Sums, RIGID_ON_SOFT};
@@ -20,7 +20,7 @@ fn left(sums: &Sums, scene: &Scene<'_>, tolerance: f64) -> (f64, usize, usize) {
         let e = d + by_p[2];
         let p = state.p[i];
         assert!((state.deformed_distance(i) - e).abs() <= 1e-12, "{i}: {} {e}", state.deformed_distance(i));
-        match scene.pressure_limit.map_or(f64::INFINITY, |limit| limit.at(i)) {
+        match scene.pressure_limit.map_or(f64::INFINITY, |limit| limit.0.at(i)) {
             _ if p == 0.0 => {
                 violation = violation.max(-e);
                 continue;
@@ -54,7 +54,7 @@ fn elements_at_their_limit_are_moved_by_tractions() {
             let friction = Friction { motion, prescribed, spin: 1e-3, ..Friction::new(0.5) };
             for limit in [5e-4, 1e-3, 4e-3, 0.03] {
                 for load in [Load::Approach(0.02), Load::Approach(0.006), Load::Force(0.5 * limit)] {
-                    let pressure_limit = Some(PressureLimit::Uniform(limit));
+                    let pressure_limit = Some(PressureLimit(Each::Uniform(limit)));
                     let plain = Scene::new(grid, &h, bodies, load);
                     let scene = Scene { friction: Some(friction), pressure_limit, ..plain };
                     let (left, limited, touching) = left(&sums, &scene, 1e-6);

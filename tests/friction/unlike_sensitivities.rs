@@ -1,6 +1,6 @@
 //! Derivatives of the forces of unlike bodies against central differences of whole solves: pressures follow the tractions.
 
-use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, PressureLimit, Previous, Scene};
+use contact_normal::scene::{Bodies, Each, Friction, Load, Motion, Prescribed, PressureLimit, Previous, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
 use super::unlike::RIGID_ON_SOFT;
@@ -62,7 +62,7 @@ fn derivatives_are_those_of_whole_solves() {
                 let friction = Friction { motion, previous, ..Friction::new(mu) };
                 let scene = Scene {
                     friction: Some(friction),
-                    pressure_limit: limit.map(PressureLimit::Uniform),
+                    pressure_limit: limit.map(|limit| PressureLimit(Each::Uniform(limit))),
                     ..Scene::new(grid, &h, bodies, load)
                 };
                 // From little slip to nothing but slip.

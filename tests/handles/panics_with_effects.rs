@@ -7,7 +7,7 @@ use contact_normal::adhesion::{Law, Start};
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Kernel, RowTables};
 use contact_normal::panics::BLOCKS;
-use contact_normal::scene::{Adhesion, Bodies, Layer, Load, Patches, Scene, Work};
+use contact_normal::scene::{Adhesion, Bodies, Each, Layer, Load, Patches, Scene, Work};
 use contact_normal::solver::{Options, Outcome, Solver};
 
 #[test]
@@ -24,7 +24,7 @@ fn after_a_panic_the_next_solve_is_right_with_every_effect() {
     let values = (0..10 * 10 * 24).map(|k| (k as i64 / 240, k as i64 / 24 % 10, k as i64 % 24 - 12));
     let values: Vec<f64> = values.map(|(jy, iy, kx)| half_space.at(kx, iy - jy)).collect();
     let plain = Scene::new(grid, &h, bodies, Load::Force(2.0));
-    let layer = Some(Layer::PerElement(&compliances));
+    let layer = Some(Layer(Each::PerElement(&compliances)));
     let patches = Some(Patches { count: 2, patch: &patch, factors: &[1.0, 0.5, 0.5, 1.0] });
     let row_tables = Some(RowTables::new(12, 10, &values, &grid).unwrap());
     let attraction = Adhesion {

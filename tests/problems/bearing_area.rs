@@ -5,7 +5,7 @@ use crate::limits_that_differ::assert_conditions;
 use crate::periodic_by_approach::rough;
 use crate::random::Random;
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Load, Period, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Each, Load, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, Method, Options, Outcome};
 
 /// A rough square, a punch with flanks, or one with a spike and a pit.
@@ -47,7 +47,7 @@ fn soft_surfaces_are_solved_from_their_heights() {
             _ => Load::Force(random.between(0.05, 0.95) * carried),
         };
         let period = Some(Period { x: k % 4 != 2, y: k % 4 != 3 }).filter(|_| k % 4 != 0);
-        let pressure_limit = Some(PressureLimit::PerElement(&limits));
+        let pressure_limit = Some(PressureLimit(Each::PerElement(&limits)));
         let scene = Scene { period, pressure_limit, ..Scene::new(grid, &h, Bodies::same(1.0, 0.3), load) };
         let (solver, stop, report) = solve(&scene, &Options::default()).unwrap();
         let what = format!("{k}: {m} x {m}, limit {limit:.1e}, {load:?}, {period:?}: {:?}", report.count);
@@ -78,7 +78,7 @@ fn the_lowest_elements_are_at_their_limit() {
             let limit = 0.5f64.powi(k);
             let h = waves(seed, last_bits);
             let scene = Scene {
-                pressure_limit: Some(PressureLimit::Uniform(limit)),
+                pressure_limit: Some(PressureLimit(Each::Uniform(limit))),
                 ..Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(700.2 * limit))
             };
             let options = Options { method: Method::Auto, tolerance: 1e-8, ..Options::default() };

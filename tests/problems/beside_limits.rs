@@ -1,7 +1,7 @@
 //! Elements at their pressure limit touch like others: in searches, in corrected areas, and for each method.
 
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Load, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Each, Load, PressureLimit, Scene};
 
 use contact_normal::solver::{quantities, solve, solve_to_accuracy, Accuracy, Method, Options, Outcome, Quantity};
 
@@ -16,7 +16,7 @@ fn bowl(m: usize) -> (Grid, Vec<f64>) {
 }
 
 fn limited<'a>((grid, h): &'a (Grid, Vec<f64>), load: Load, limit: f64) -> Scene<'a> {
-    Scene { pressure_limit: Some(PressureLimit::Uniform(limit)), ..Scene::new(*grid, h, BODIES, load) }
+    Scene { pressure_limit: Some(PressureLimit(Each::Uniform(limit))), ..Scene::new(*grid, h, BODIES, load) }
 }
 
 /// All of a punch at its limit: the force is the limit times the area, and no finer grid is needed.

@@ -4,7 +4,7 @@ use contact_normal::adhesion::{Law, Start};
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{
-    Adhesion, Bodies, Coating, Coefficient, Fall, Friction, FrictionLaw, Layer, Load, Motion, Patches, Period,
+    Adhesion, Bodies, Coating, Coefficient, Each, Fall, Friction, FrictionLaw, Layer, Load, Motion, Patches, Period,
     PlasticLayer, Prescribed, PressureLimit, Scene, Work,
 };
 use contact_normal::solver::{
@@ -49,9 +49,9 @@ fn with_effects<'a>(h: &'a [f64], patch: &'a [i32], random: &mut Random) -> Scen
     let mut scene = plain(h);
     let size = 10f64.powf(-3.0 + 4.0 * random.uniform());
     match (random.uniform() * 4.0) as usize {
-        0 => scene.layer = Some(Layer::Uniform(1e-7 * size)),
+        0 => scene.layer = Some(Layer(Each::Uniform(1e-7 * size))),
         1 => scene.coating = Some(Coating::of_body_1(0.05 * size.min(1.0), 2e5, 0.25)),
-        2 => scene.pressure_limit = Some(PressureLimit::Uniform(300.0 + 3000.0 * random.uniform())),
+        2 => scene.pressure_limit = Some(PressureLimit(Each::Uniform(300.0 + 3000.0 * random.uniform()))),
         _ => {
             scene.patches = Some(Patches { count: 2, patch, factors: &[1.0, 0.9, 0.9, 1.0] });
         }
@@ -105,7 +105,7 @@ fn small_grids_tell_of_the_whole_one() {
     let grid = Grid::new(m, m, 0.0125, 0.0125).expect("a grid");
     let at = |k: usize| (k as f64 - 0.5 * (m as f64 - 1.0)) * 0.0125;
     let h: Vec<f64> = (0..m * m).map(|i| (at(i % m).powi(2) + at(i / m).powi(2)) / 100.0).collect();
-    let scene = Scene { layer: Some(Layer::Uniform(2e-7)), grid, ..plain(&h) };
+    let scene = Scene { layer: Some(Layer(Each::Uniform(2e-7))), grid, ..plain(&h) };
     let (stop, rows) =
         effects_bill(&scene, &Options::default(), &BillOptions::new(1e-3), &WANTED, None).expect("a bill");
     assert_eq!((stop, rows.len()), (Outcome::Converged, 3));
@@ -206,7 +206,7 @@ fn a_pressure_limit_stays() {
     let (.., report) = solve(&plain(&h), &Options::default()).expect("a solvable scene");
     let peak = report.measures.max_pressure;
     for limit in [0.95 * peak, 2.0 * peak] {
-        let scene = Scene { pressure_limit: Some(PressureLimit::Uniform(limit)), ..plain(&h) };
+        let scene = Scene { pressure_limit: Some(PressureLimit(Each::Uniform(limit))), ..plain(&h) };
         let neglected = Neglected::of(&scene, &Options::default(), 0.1, None).expect("a scene");
         assert_eq!(neglected, Neglected::default(), "{limit} beside {peak}");
     }

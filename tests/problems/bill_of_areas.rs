@@ -1,7 +1,7 @@
 //! What small grids do not show of an area: no element changes sides there, and yet it is off on the grid of the scene.
 
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Friction, Layer, Load, Motion, Prescribed, Scene};
+use contact_normal::scene::{Bodies, Each, Friction, Layer, Load, Motion, Prescribed, Scene};
 use contact_normal::solver::{effects_bill, quantities, BillOptions, Omission, Options, Quantity, Verdict};
 
 const M: usize = 256;
@@ -19,7 +19,7 @@ fn an_area_that_no_element_of_small_grids_changes_is_not_decided() {
     let prescribed = [Prescribed::Creepage(0.0037), Prescribed::Creepage(0.0)];
     let friction = Friction { prescribed, motion: Motion::SteadyRolling, spin: 2.6e-4, ..Friction::new(0.3) };
     let plain = Scene::new(grid, &h, bodies, Load::Force(0.0021468));
-    let scene = Scene { layer: Some(Layer::Uniform(0.0022278)), friction: Some(friction), ..plain.clone() };
+    let scene = Scene { layer: Some(Layer(Each::Uniform(0.0022278))), friction: Some(friction), ..plain.clone() };
     let asked = BillOptions { max_seconds: 0.1, ..BillOptions::new(TARGET) };
     let wanted = [Quantity::ContactArea];
     let (_, rows) = effects_bill(&scene, &Options::default(), &asked, &wanted, None).expect("a bill");

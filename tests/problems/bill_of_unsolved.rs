@@ -2,7 +2,7 @@
 
 use contact_normal::grid::Grid;
 use contact_normal::progress::Progress;
-use contact_normal::scene::{Bodies, Layer, Load, Scene};
+use contact_normal::scene::{Bodies, Each, Layer, Load, Scene};
 use contact_normal::solver::{
     effects_bill, quantities, solve, BillOptions, Lack, Omission, Options, Outcome, Quantity, Verdict,
 };
@@ -20,7 +20,7 @@ fn rough_ball() -> Vec<f64> {
 fn with_layer(h: &[f64]) -> Scene<'_> {
     let grid = Grid::new(M, M, D, D).expect("a grid");
     let plain = Scene::new(grid, h, Bodies::same(82000.0, 0.28), Load::Approach(0.05));
-    Scene { layer: Some(Layer::Uniform(2e-6)), ..plain }
+    Scene { layer: Some(Layer(Each::Uniform(2e-6))), ..plain }
 }
 
 /// A bill on all grids up to the scene's.

@@ -1,7 +1,7 @@
 //! Values that are exactly 0, as nothing touches: quantities, price lists and searches agree on them. And price lists of what is not solved.
 
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Friction, Layer, Load, Scene};
+use contact_normal::scene::{Bodies, Each, Friction, Layer, Load, Scene};
 use contact_normal::solver::{
     cost_of_accuracy, effects_bill, quantities, solve_to_accuracy, Accuracy, BillOptions, Lack, Method, Obstacle,
     Options, Outcome, Price, Quantity, Verdict,
@@ -76,7 +76,8 @@ fn a_grid_that_misses_the_contact_has_no_error() {
 #[test]
 fn a_bill_counts_no_grid_that_misses_the_contact() {
     let h = spike();
-    let scene = Scene { layer: Some(Layer::Uniform(0.08)), ..Scene::new(grid(), &h, BODIES, Load::Approach(0.01)) };
+    let scene =
+        Scene { layer: Some(Layer(Each::Uniform(0.08))), ..Scene::new(grid(), &h, BODIES, Load::Approach(0.01)) };
     let asked = BillOptions { max_seconds: 1e3, ..BillOptions::new(1e-2) };
     let (stop, rows) = effects_bill(&scene, &Options::default(), &asked, &[Quantity::Force], None).expect("a bill");
     assert_eq!((stop, rows.len(), rows[0].verdict), (Outcome::Converged, 1, Verdict::Needed), "{rows:?}");

@@ -7,7 +7,7 @@ use contact_normal::error::Error;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{radial, CoatedBody, CoatedPeriodic, HalfSpace, Kernel, Periodic, Response, Transfer};
 use contact_normal::operator::dense;
-use contact_normal::scene::{Bodies, Coating, CoatingLayer, Layer, Load, Period, Scene};
+use contact_normal::scene::{Bodies, Coating, CoatingLayer, Each, Layer, Load, Period, Scene};
 use contact_normal::solver::{solve, ActiveSet, Guess, InitialGuess, Method, Options, Outcome, Problem, Solver};
 
 use crate::support::{assert_conditions, run};
@@ -142,7 +142,7 @@ fn a_uniform_pressure_compresses_by_the_oedometric_moduli() {
             let scene = Scene {
                 coating: Some(coating),
                 period: BOTH,
-                layer: (c > 0.0).then_some(Layer::Uniform(c)),
+                layer: (c > 0.0).then_some(Layer(Each::Uniform(c))),
                 ..Scene::new(grid, &h, BODIES, Load::Force(2.0))
             };
             let options = Options { method, ..Options::default() };
@@ -237,7 +237,7 @@ fn a_thin_coating_has_the_approach_of_a_layer() {
     let c = oedometric(g, nu) - nu * (1.0 - 0.6) / (0.7 * 4.0) - g * 0.16 / (1.4 * 16.0);
     let plain = Scene { period: BOTH, ..Scene::new(grid, &h, bodies, Load::Force(0.2)) };
     let (_, coated) = run(&Scene { coating: Some(Coating::of_body_1(t, g, nu)), ..plain.clone() }, &Options::default());
-    let (_, layered) = run(&Scene { layer: Some(Layer::Uniform(c * t)), ..plain.clone() }, &Options::default());
+    let (_, layered) = run(&Scene { layer: Some(Layer(Each::Uniform(c * t))), ..plain.clone() }, &Options::default());
     let (mean, difference) = (c * t * 0.2 / 16.0, coated.measures.approach - layered.measures.approach);
     // Of second order in the thickness.
     assert!(difference.abs() <= 0.03 * mean, "{difference} of {mean}");

@@ -9,7 +9,7 @@ use contact_normal::influence::{
     radial, Base, Coated, CoatedBody, Coefficients, HalfSpace, Kernel, Response, Transfer,
 };
 use contact_normal::operator::{dense, Operator};
-use contact_normal::scene::{Bodies, Coating, CoatingLayer, Layer, Load, Patches, Period, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Coating, CoatingLayer, Each, Layer, Load, Patches, Period, PressureLimit, Scene};
 use contact_normal::solver::{Method, Options, Outcome, Solver};
 use contact_normal::threads::Threads;
 
@@ -396,8 +396,8 @@ fn a_coating_goes_with_other_effects_and_methods() {
     let scenes = [
         ("alone", plain.clone()),
         ("approach", Scene { load: Load::Approach(0.03), ..plain.clone() }),
-        ("layer", Scene { layer: Some(Layer::Uniform(0.02)), ..plain.clone() }),
-        ("layers", Scene { layer: Some(Layer::PerElement(&compliances)), ..plain.clone() }),
+        ("layer", Scene { layer: Some(Layer(Each::Uniform(0.02))), ..plain.clone() }),
+        ("layers", Scene { layer: Some(Layer(Each::PerElement(&compliances))), ..plain.clone() }),
         ("patches", Scene { patches: Some(patches), ..plain.clone() }),
         ("period", Scene { period: Some(Period { x: true, y: true }), ..plain.clone() }),
     ];
@@ -415,7 +415,7 @@ fn a_coating_goes_with_other_effects_and_methods() {
             assert_conditions(&h, report.measures.approach, p, &u, &format!("{name} {method:?}"));
         }
     }
-    let limited = Scene { pressure_limit: Some(PressureLimit::Uniform(0.05)), ..plain.clone() };
+    let limited = Scene { pressure_limit: Some(PressureLimit(Each::Uniform(0.05))), ..plain.clone() };
     let (solver, report) = run(&limited, &Options::default());
     let state = solver.state();
     let largest = state.p.iter().copied().fold(0.0, f64::max);

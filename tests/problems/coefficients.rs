@@ -7,7 +7,7 @@ use contact_normal::effects::Named;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace, Kernel, Periodic, RowTables, Table};
 use contact_normal::operator::{dense, Operator, SetUp};
-use contact_normal::scene::{Bodies, Layer, Load, Patches, Period, Scene};
+use contact_normal::scene::{Bodies, Each, Layer, Load, Patches, Period, Scene};
 use contact_normal::threads::Threads;
 
 const BODIES: Bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3; 2] };
@@ -41,7 +41,7 @@ fn the_oracle_is_right_for_every_effect_and_products_agree_with_it() {
     let half_space = HalfSpace::new(0.5, 0.4, BODIES.compliance());
     let p = numbers(n, 4);
     for kernel in 0..3 {
-        for layer in [None, Some(Layer::Uniform(0.7)), Some(Layer::PerElement(&compliances))] {
+        for layer in [None, Some(Layer(Each::Uniform(0.7))), Some(Layer(Each::PerElement(&compliances)))] {
             for coupled in [false, true] {
                 let scene = Scene {
                     influence: (kernel == 1).then(|| Table::scaled(mx, my, &table, 0.5, &grid).unwrap()),
@@ -62,8 +62,8 @@ fn the_oracle_is_right_for_every_effect_and_products_agree_with_it() {
                     let (ix, iy) = (i % mx, i / mx);
                     let mut sum = match layer {
                         None => 0.0,
-                        Some(Layer::Uniform(c)) => c * p[i],
-                        Some(Layer::PerElement(c)) => c[i] * p[i],
+                        Some(Layer(Each::Uniform(c))) => c * p[i],
+                        Some(Layer(Each::PerElement(c))) => c[i] * p[i],
                     };
                     for j in 0..n {
                         let (jx, jy) = (j % mx, j / mx);
@@ -219,19 +219,19 @@ fn what_differs_from_the_set_up_is_named_with_its_values() {
         Table::new(3, 2, &values, &grid).unwrap()
     };
     let layer = |layer: Layer<'static>| Scene { layer: Some(layer), ..plain.clone() };
-    let per_element = |c| Scene { layer: Some(Layer::PerElement(c)), ..plain.clone() };
+    let per_element = |c| Scene { layer: Some(Layer(Each::PerElement(c))), ..plain.clone() };
     let patches = |patch, factors| Scene { patches: Some(Patches { count: 2, patch, factors }), ..plain.clone() };
     let period = |x, y| Scene { period: Some(Period { x, y }), ..plain.clone() };
     let own = |far| Scene { influence: Some(table(far)), ..plain.clone() };
     let softer = Scene { bodies: Bodies::same(0.5, 0.3), ..plain.clone() };
     let cases: &[(&Scene, &Scene, &[&str])] = &[
         (&plain, &softer, &["shear_modulus[0]", "0.5", "1"]),
-        (&layer(Layer::Uniform(0.25)), &layer(Layer::Uniform(0.5)), &["layer->compliance", "0.5", "0.25"]),
-        (&layer(Layer::Uniform(0.25)), &plain, &["layer", "not given"]),
-        (&layer(Layer::Uniform(0.25)), &layer(Layer::Uniform(0.0)), &["layer", "not given"]),
-        (&plain, &layer(Layer::Uniform(0.25)), &["layer", "without"]),
+        (&layer(Layer(Each::Uniform(0.25))), &layer(Layer(Each::Uniform(0.5))), &["layer->compliance", "0.5", "0.25"]),
+        (&layer(Layer(Each::Uniform(0.25))), &plain, &["layer", "not given"]),
+        (&layer(Layer(Each::Uniform(0.25))), &layer(Layer(Each::Uniform(0.0))), &["layer", "not given"]),
+        (&plain, &layer(Layer(Each::Uniform(0.25))), &["layer", "without"]),
         (&per_element(&c), &per_element(&other_c), &["layer->compliances"]),
-        (&per_element(&c), &layer(Layer::Uniform(0.1)), &["layer->compliance", "without"]),
+        (&per_element(&c), &layer(Layer(Each::Uniform(0.1))), &["layer->compliance", "without"]),
         (&patches(&patch, &low), &patches(&other_patch, &low), &["patches->patch"]),
         (&patches(&patch, &low), &patches(&patch, &high), &["patches->factors"]),
         (&patches(&patch, &low), &plain, &["patches", "not given"]),
@@ -247,5 +247,5 @@ fn what_differs_from_the_set_up_is_named_with_its_values() {
     }
     // Own coefficients need not be given again, a layer that gives way nowhere is none, and bodies do not matter beside a table.
     assert_eq!(Named::new(&own(0.25)).check(&softer), Ok(()));
-    assert_eq!(Named::new(&plain).check(&layer(Layer::Uniform(0.0))), Ok(()));
+    assert_eq!(Named::new(&plain).check(&layer(Layer(Each::Uniform(0.0)))), Ok(()));
 }

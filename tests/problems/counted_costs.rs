@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use contact_normal::grid::Grid;
 use contact_normal::progress::Progress;
-use contact_normal::scene::{Bodies, Friction, Layer, Load, Motion, Prescribed, Scene};
+use contact_normal::scene::{Bodies, Each, Friction, Layer, Load, Motion, Prescribed, Scene};
 use contact_normal::solver::{
     cost_of_accuracy, effects_bill, solve, Accuracy, BillOptions, BillRow, Options, Quantity,
 };
@@ -30,7 +30,7 @@ fn a_bill_is_the_same_on_a_busy_machine() {
     let mut h = vec![0.0; grid.len()];
     paraboloid(&grid, &mut h);
     let plain = Scene::new(grid, &h, ALIKE, Load::Approach(0.04));
-    let scene = Scene { layer: Some(Layer::Uniform(0.003)), ..plain };
+    let scene = Scene { layer: Some(Layer(Each::Uniform(0.003))), ..plain };
     let of = |wait: u64| -> Vec<BillRow> {
         let mut progress = |_: &Progress| {
             std::thread::sleep(Duration::from_millis(wait));
@@ -56,7 +56,7 @@ fn the_depth_of_a_largest_stress_costs_nothing_beside_it() {
     let mut h = vec![0.0; grid.len()];
     paraboloid(&grid, &mut h);
     let plain = Scene::new(grid, &h, ALIKE, Load::Approach(0.04));
-    let scene = Scene { layer: Some(Layer::Uniform(0.003)), ..plain };
+    let scene = Scene { layer: Some(Layer(Each::Uniform(0.003))), ..plain };
     let of = |wanted: &[Quantity]| -> Vec<BillRow> {
         let (_, rows) =
             effects_bill(&scene, &Options::default(), &BillOptions::new(1e-2), wanted, None).expect("a bill");

@@ -114,7 +114,7 @@ pub fn assert_path(what: &str, scene: &Scene<'_>, shares: [f64; 2], path: &[(f64
         .filter(|&b| shares[b] > 0.0)
         .map(|b| Dashpots::new(shares[b], coated(b).unwrap_or(scene.bodies.shear_modulus[b]), &visco.bodies[b]))
         .collect();
-    let limit = scene.pressure_limit.map_or(f64::INFINITY, |limit| limit.at(0));
+    let limit = scene.pressure_limit.map_or(f64::INFINITY, |limit| limit.0.at(0));
     let mut solver = Solver::new(scene, options).unwrap();
     let (mut time, mut carried) = (0.0, 0);
     for (k, (dt, load)) in path.iter().enumerate() {

@@ -6,7 +6,7 @@ use contact_normal::contact::State;
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{radial, Coated, CoatedBody, HalfSpace, Kernel, Periodic, RowTables, Table};
-use contact_normal::scene::{Bodies, Coating, Layer, Load, Patches, Period, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Coating, Each, Layer, Load, Patches, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
 const EFFECTS: [&str; 8] =
@@ -31,7 +31,7 @@ fn assert_conditions(
     names: &[&str; 2],
 ) {
     let (mut residual, mut distance, mut count, mut violation) = (0.0, 0.0, 0.0, 0.0f64);
-    let limit = scene.pressure_limit.map_or(f64::INFINITY, |limit| limit.at(0));
+    let limit = scene.pressure_limit.map_or(f64::INFINITY, |limit| limit.0.at(0));
     for (i, &h) in scene.undeformed_distance.iter().enumerate() {
         let p = state.p[i];
         assert!(p >= 0.0 && p <= limit && (h.is_finite() || p == 0.0), "{names:?}: p = {p}");
@@ -84,8 +84,8 @@ fn every_pair_is_solved_or_refused_and_each_effect_tells() {
         let has = |name: &str| names.contains(&name);
         Scene {
             influence: has("influence").then(|| table.clone()),
-            layer: has("layer").then_some(Layer::Uniform(0.05)),
-            pressure_limit: has("pressure_limit").then_some(PressureLimit::Uniform(0.15)),
+            layer: has("layer").then_some(Layer(Each::Uniform(0.05))),
+            pressure_limit: has("pressure_limit").then_some(PressureLimit(Each::Uniform(0.15))),
             patches: has("patches").then_some(Patches { count: 2, patch: &patch, factors: &[1.0, 0.2, 0.2, 1.0] }),
             row_tables: has("row_tables").then(|| row_tables.clone()),
             coating: has("coating").then_some(Coating::of_body_1(0.2, 0.3, 0.4)),

@@ -3,7 +3,7 @@
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
 use contact_normal::influence::Table;
-use contact_normal::scene::{Bodies, Load, Period, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Each, Load, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, Method, Options, Outcome, Solver};
 use contact_normal::stress::{stress_at_points, subsurface_stress, Body, Loads, Wanted};
 use contact_normal::threads::Threads;
@@ -39,7 +39,7 @@ fn areas_and_forces_beyond_the_range_of_numbers_are_refused() {
 fn the_area_of_a_single_element_with_two_periods_is_in_range() {
     for (side, is_refused) in [(1e-160, true), (1.0, false), (1e150, true)] {
         let grid = Grid::new(1, 1, side, side).expect("a grid");
-        let (period, limit) = (Some(Period { x: true, y: true }), Some(PressureLimit::Uniform(1e-3)));
+        let (period, limit) = (Some(Period { x: true, y: true }), Some(PressureLimit(Each::Uniform(1e-3))));
         let scene = Scene { period, pressure_limit: limit, ..Scene::new(grid, &[0.0], BODIES, Load::Approach(0.3)) };
         assert_eq!(solve(&scene, &Options::default()).is_err(), is_refused, "{side}");
     }
@@ -92,7 +92,7 @@ fn limits_next_to_nothing_are_reached() {
     for h in [[0.5, 0.2], [0.2, 0.5]] {
         for small in [1e-20, 1e-40, 1e-300] {
             let limits = if h[0] > h[1] { [small, 1e3] } else { [1e3, small] };
-            let pressure_limit = Some(PressureLimit::PerElement(&limits));
+            let pressure_limit = Some(PressureLimit(Each::PerElement(&limits)));
             let scene = Scene { period, pressure_limit, ..Scene::new(grid, &h, BODIES, Load::Approach(0.43)) };
             // PROJECTED_CG alone stagnates where a limit is beyond the range of single precision.
             let alone = if small > 1e-38 { Method::ProjectedCg } else { Method::Auto };
@@ -115,7 +115,7 @@ fn a_result_that_holds_is_ok_whatever_ended_the_cycles() {
         let grid = Grid::new(mx, my, 0.1, 0.1).expect("a grid");
         let h: Vec<f64> = (0..grid.len()).map(|i| 0.01 * (i as f64 * 1.7).sin()).collect();
         for method in [Method::Auto, Method::Norm, Method::ProjectedCg] {
-            let pressure_limit = Some(PressureLimit::Uniform(1e-3));
+            let pressure_limit = Some(PressureLimit(Each::Uniform(1e-3)));
             let scene = Scene { pressure_limit, ..Scene::new(grid, &h, BODIES, Load::Approach(0.3)) };
             let options = Options { method, max_cycles: 1, ..Options::default() };
             let (solver, outcome, _) = solve(&scene, &options).expect("a scene");
@@ -154,7 +154,7 @@ fn a_limit_of_the_solve_before_changes_not_a_bit() {
     let (fresh, outcome, report) = solve(&plain, &Options::default()).expect("a scene");
     assert_eq!(outcome, Outcome::Converged);
     let limit = 0.5 * report.measures.max_pressure;
-    let limited = Scene { pressure_limit: Some(PressureLimit::Uniform(limit)), ..plain.clone() };
+    let limited = Scene { pressure_limit: Some(PressureLimit(Each::Uniform(limit))), ..plain.clone() };
     let mut solver = Solver::new(&plain, &Options::default()).expect("a solver");
     let (_, first) = solver.solve(&limited, &Options::default(), None, None).expect("a scene");
     assert!(first.count.cycles > 0 && solver.state().at_limit.contains(&true));

@@ -6,9 +6,9 @@
 use std::f64::consts::PI;
 
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Load, Period, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Each, Layer, Load, Patches, Period, PressureLimit, Scene};
 use contact_normal::solver::{
-    cost_of_accuracy, solve, solve_to_accuracy, Accuracy, Options, Outcome, Quantity, Report,
+    cost_of_accuracy, solve, solve_to_accuracy, Accuracy, Options, Outcome, Quantity, Report, Solver,
 };
 
 use crate::support::run;
@@ -168,7 +168,7 @@ fn a_limit_that_is_not_reached_leaves_the_estimates() {
     let plain = report(&Scene::new(grid, &h, UNIT, Load::Approach(0.13)));
     assert!(plain.error.force > 0.0);
     for limit in [f64::INFINITY, 1e6, 1.1 * plain.measures.max_pressure] {
-        let limit = PressureLimit::Uniform(limit);
+        let limit = PressureLimit(Each::Uniform(limit));
         let scene = Scene { pressure_limit: Some(limit), ..Scene::new(grid, &h, UNIT, Load::Approach(0.13)) };
         let error = report(&scene).error;
         for (limited, plain) in [
@@ -181,7 +181,7 @@ fn a_limit_that_is_not_reached_leaves_the_estimates() {
             assert!((limited / plain - 1.0).abs() < 1e-3, "{limit:?}: {limited}, {plain} without");
         }
     }
-    let limit = PressureLimit::Uniform(0.9 * plain.measures.max_pressure);
+    let limit = PressureLimit(Each::Uniform(0.9 * plain.measures.max_pressure));
     let scene = Scene { pressure_limit: Some(limit), ..Scene::new(grid, &h, UNIT, Load::Approach(0.13)) };
     assert!(report(&scene).error.force < 0.0);
 }
@@ -203,4 +203,60 @@ fn jumps_are_found_and_waves_are_not() {
     }
     let step = of(&|x, y| 0.2 * (x * x + y * y) + if x > 0.013 { 0.01 } else { 0.0 }, 0.05, None);
     assert!(step > 0.5, "{step}");
+}
+
+/// A ball on m x m elements, one half of which has other coefficients than the other one, by an approach.
+fn of_halves(m: usize, factor: f64, compliance: f64) -> (Solver, Report) {
+    const SIDE: f64 = 2.4;
+    let grid = Grid::new(m, m, SIDE / m as f64, SIDE / m as f64).unwrap();
+    let h = at_centres(&grid, [0.0, 0.0], &|x, y| 0.5 * (x * x + y * y));
+    let left = |i: usize| i % m < m / 2;
+    let patch: Vec<i32> = (0..m * m).map(|i| i32::from(left(i))).collect();
+    let compliances: Vec<f64> = (0..m * m).map(|i| if left(i) { 0.0 } else { compliance }).collect();
+    let factors = [1.0, factor, factor, 1.0];
+    let patches = (factor < 1.0).then_some(Patches { count: 2, patch: &patch, factors: &factors });
+    let layer = (compliance > 0.0).then_some(Layer(Each::PerElement(&compliances)));
+    let bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3; 2] };
+    run(&Scene { patches, layer, ..Scene::new(grid, &h, bodies, Load::Approach(0.12)) }, &estimating())
+}
+
+/// Pressures are singular where patches touch, and on the stiffer side of a jump of a layer. The force is that of grids whose error is of first order.
+#[test]
+fn the_error_beside_jumps_of_the_coefficients_is_covered() {
+    for (factor, compliance) in [(0.0, 0.0), (0.3, 0.0), (0.8, 0.0), (1.0, 0.1), (1.0, 1.0), (1.0, 10.0)] {
+        let force = |m: usize| of_halves(m, factor, compliance).1.measures.force;
+        let exact = 2.0 * force(384) - force(192);
+        for m in [16, 24, 32, 48, 64, 96] {
+            let (_, report) = of_halves(m, factor, compliance);
+            let off = (report.measures.force - exact).abs();
+            let error = report.error.force;
+            assert!(error >= off, "{factor} {compliance} {m}: off by {off:e}, estimated {error:e}");
+            // Of the largest errors: smaller ones are met by chance.
+            assert!(error <= 10.0 * off || error <= 0.03 * exact, "{factor} {compliance} {m}: {off:e}, {error:e}");
+        }
+    }
+}
+
+/// Before a step of the first cycle no pressure carries the force, and no error of the area follows from that of the force.
+#[test]
+fn errors_of_a_solve_that_is_cut_short_are_numbers() {
+    let mut count = 0;
+    for m in [8, 10, 13, 19] {
+        let grid = Grid::new(m, m, 1.0, 1.0).unwrap();
+        for waves in 1..8 {
+            let h = at_centres(&grid, [0.3, 0.1], &|x, y| {
+                0.01 * (x * x + y * y) + 0.3 * (0.7 * f64::from(waves) * x).sin() * (1.3 * y).cos()
+            });
+            for approach in [0.01, 0.1, 1.0] {
+                let scene = Scene::new(grid, &h, UNIT, Load::Approach(approach));
+                let Ok((_, _, report)) = solve(&scene, &Options { max_cycles: 1, ..estimating() }) else { continue };
+                let area = grid.len() as f64 * grid.element_area();
+                for error in [report.error.contact_area, report.error.corrected_area] {
+                    assert!(error <= area, "{m} {waves} {approach}: {error}");
+                }
+                count += 1;
+            }
+        }
+    }
+    assert!(count > 60, "{count}");
 }

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Layer, Load, Patches, Period, Scene};
+use contact_normal::scene::{Bodies, Each, Layer, Load, Patches, Period, Scene};
 use contact_normal::solver::{solve, Options, Report};
 
 /// E* = 1.
@@ -200,7 +200,7 @@ fn errors_near_full_contact_of_two_periods_are_numbers_or_unknown() {
     ] {
         for load in loads {
             let plain = Scene::new(grid, h, UNIT, load);
-            let layer = (layer > 0.0).then_some(Layer::Uniform(layer));
+            let layer = (layer > 0.0).then_some(Layer(Each::Uniform(layer)));
             let error = report(&Scene { period: Some(Period { x: true, y: true }), layer, ..plain }).error;
             for value in [error.force, error.max_pressure, error.contact_area, error.corrected_area, error.pressure] {
                 assert!(value >= 0.0 || value == -1.0, "{load:?}, layer {layer:?}: {error:?}");

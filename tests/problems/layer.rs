@@ -5,7 +5,7 @@ use crate::support::run;
 use contact_normal::contact::State;
 use contact_normal::grid::Grid;
 use contact_normal::operator::dense;
-use contact_normal::scene::{Bodies, Layer, Load, Period, Scene};
+use contact_normal::scene::{Bodies, Each, Layer, Load, Period, Scene};
 use contact_normal::solver::{solve, Method, Options, Solver};
 
 fn ellipse(grid: &Grid) -> Vec<f64> {
@@ -39,12 +39,12 @@ fn a_soft_layer_is_winklers_foundation() {
     let c = 1e9 * self_influence(&plain);
     let winkler: Vec<f64> = h.iter().map(|h| f64::max(0.2 - h, 0.0) / c).collect();
     for method in [Method::Auto, Method::Norm, Method::Multigrid, Method::FullMultigrid] {
-        let scene = Scene { layer: Some(Layer::Uniform(c)), ..plain.clone() };
+        let scene = Scene { layer: Some(Layer(Each::Uniform(c))), ..plain.clone() };
         let (solver, _) = run(&scene, &tight(method));
         assert_near(solver.state(), &winkler, 2e-6, &format!("{method:?}"));
     }
     let each = vec![c; grid.len()];
-    let scene = Scene { layer: Some(Layer::PerElement(&each)), ..plain };
+    let scene = Scene { layer: Some(Layer(Each::PerElement(&each))), ..plain };
     for method in [Method::Auto, Method::ProjectedCg, Method::Norm] {
         assert_near(run(&scene, &tight(method)).0.state(), &winkler, 2e-6, &format!("{method:?} per element"));
     }
@@ -57,13 +57,13 @@ fn a_rigid_layer_is_none_and_a_stiff_one_hardly_any() {
     let plain = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(0.2));
     let (without, _) = run(&plain, &tight(Method::Auto));
     let zeros = vec![0.0; grid.len()];
-    for layer in [Layer::Uniform(0.0), Layer::PerElement(&zeros)] {
+    for layer in [Layer(Each::Uniform(0.0)), Layer(Each::PerElement(&zeros))] {
         let (rigid, _) = run(&Scene { layer: Some(layer), ..plain.clone() }, &tight(Method::Auto));
         assert_eq!((&rigid.state().p, &rigid.state().u), (&without.state().p, &without.state().u));
     }
     // The smallest eigenvalue of A is about 0.3 of the self-influence, so that pressures change by at most about c/0.3 of it.
     let c = 1e-6 * self_influence(&plain);
-    let (stiff, _) = run(&Scene { layer: Some(Layer::Uniform(c)), ..plain }, &tight(Method::Auto));
+    let (stiff, _) = run(&Scene { layer: Some(Layer(Each::Uniform(c))), ..plain }, &tight(Method::Auto));
     assert_near(stiff.state(), &without.state().p, 1e-5, "stiff");
     assert!(stiff.state().p != without.state().p);
 }
@@ -87,7 +87,7 @@ fn one_compliance_per_element_satisfies_the_equations_of_the_direct_sum() {
         for period in [None, Some(Period { x: true, y: false }), Some(Period { x: true, y: true })] {
             let bodies = Scene { period, ..plain.clone() }.coefficients().unwrap();
             for load in [Load::Force(0.2), Load::Approach(0.15)] {
-                let scene = Scene { layer: Some(Layer::PerElement(&c)), load, period, ..plain.clone() };
+                let scene = Scene { layer: Some(Layer(Each::PerElement(&c))), load, period, ..plain.clone() };
                 let (solver, report) = run(&scene, &tight(Method::Auto));
                 let state = solver.state();
                 let mut u = vec![0.0; grid.len()];
@@ -113,8 +113,8 @@ fn one_compliance_everywhere_is_the_uniform_layer() {
     let plain = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(0.3));
     let c = 0.7 * self_influence(&plain);
     let each = vec![c; grid.len()];
-    let (uniform, _) = run(&Scene { layer: Some(Layer::Uniform(c)), ..plain.clone() }, &tight(Method::Auto));
-    let scene = Scene { layer: Some(Layer::PerElement(&each)), ..plain };
+    let (uniform, _) = run(&Scene { layer: Some(Layer(Each::Uniform(c))), ..plain.clone() }, &tight(Method::Auto));
+    let scene = Scene { layer: Some(Layer(Each::PerElement(&each))), ..plain };
     for method in [Method::Auto, Method::Norm] {
         // Relative residual 1e-10, condition number below 100 with that layer.
         assert_near(run(&scene, &tight(method)).0.state(), &uniform.state().p, 1e-8, &format!("{method:?}"));
@@ -133,10 +133,10 @@ fn the_count_of_products_does_not_grow() {
         let without = products(None);
         for relative in [1e-3, 0.1, 1.0, 10.0, 1e3] {
             let c = relative * self_influence(&plain);
-            let (uniform, each) = (products(Some(Layer::Uniform(c))), uneven(&grid, c));
-            let each = products(Some(Layer::PerElement(&each)));
+            let (uniform, each) = (products(Some(Layer(Each::Uniform(c)))), uneven(&grid, c));
+            let each = products(Some(Layer(Each::PerElement(&each))));
             let smooth: Vec<f64> = (0..grid.len()).map(|i| c * ((i % grid.mx) as f64 / 64.0 - 1.0).powi(2)).collect();
-            let smooth = products(Some(Layer::PerElement(&smooth)));
+            let smooth = products(Some(Layer(Each::PerElement(&smooth))));
             assert!(smooth <= without + 2, "{relative}, smooth: {smooth} products, without a layer {without}");
             assert!(uniform <= without + 2, "{relative}: {uniform} products, without a layer {without}");
             // Compliances over three decades side by side, none at the rim: measured 7 to 17, without a layer 8.
@@ -158,14 +158,14 @@ fn what_is_no_layer_is_refused_by_name() {
         let Err(error) = solve(&scene, &tight(method)) else { panic!("{words:?}: solved") };
         assert!(words.iter().all(|word| error.to_string().contains(word)), "{error}");
     };
-    refuse(Layer::Uniform(-2.5), Method::Auto, &["layer->compliance", "-2.5"]);
-    refuse(Layer::Uniform(f64::NAN), Method::Auto, &["layer->compliance", "NaN"]);
-    refuse(Layer::PerElement(&negative), Method::Auto, &["layer->compliances", "(2, 1)", "-1"]);
-    refuse(Layer::PerElement(&short), Method::Auto, &["layer->compliances", "63", "64"]);
-    refuse(Layer::PerElement(&[1.0; 64]), Method::Multigrid, &["MULTIGRID", "layer"]);
-    refuse(Layer::PerElement(&[1.0; 64]), Method::FullMultigrid, &["FULL_MULTIGRID", "layer"]);
+    refuse(Layer(Each::Uniform(-2.5)), Method::Auto, &["layer->compliance", "-2.5"]);
+    refuse(Layer(Each::Uniform(f64::NAN)), Method::Auto, &["layer->compliance", "NaN"]);
+    refuse(Layer(Each::PerElement(&negative)), Method::Auto, &["layer->compliances", "(2, 1)", "-1"]);
+    refuse(Layer(Each::PerElement(&short)), Method::Auto, &["layer->compliances", "63", "64"]);
+    refuse(Layer(Each::PerElement(&[1.0; 64])), Method::Multigrid, &["MULTIGRID", "layer"]);
+    refuse(Layer(Each::PerElement(&[1.0; 64])), Method::FullMultigrid, &["FULL_MULTIGRID", "layer"]);
     let mut solver = Solver::new(&plain, &Options::default()).unwrap();
-    let layered = Scene { layer: Some(Layer::Uniform(1.0)), ..plain.clone() };
+    let layered = Scene { layer: Some(Layer(Each::Uniform(1.0))), ..plain.clone() };
     let error = solver.solve(&layered, &Options::default(), None, None).unwrap_err();
     assert!(error.to_string().contains("without"), "{error}");
 }

@@ -4,7 +4,7 @@
 use crate::periodic_by_approach::{displacements, rough};
 use crate::random::Random;
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Load, Period, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Each, Load, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, Options, Outcome, Solver};
 
 /// The tolerance of 1e-6, and round-off of two products.
@@ -51,7 +51,7 @@ fn check(grid: Grid, h: &[f64], (size, spread): (f64, f64), load: Load, random: 
     let what = format!("{} x {}, limits {size:.1e} and {spread:.1} times that, {load:?}", grid.mx, grid.my);
     let scene = Scene {
         period: Some(Period { x: true, y: true }),
-        pressure_limit: Some(PressureLimit::PerElement(&limits)),
+        pressure_limit: Some(PressureLimit(Each::PerElement(&limits))),
         ..Scene::new(grid, h, Bodies::same(1.0, 0.3), load)
     };
     let (solver, stop, report) = solve(&scene, &Options::default()).unwrap();
@@ -126,7 +126,7 @@ fn the_mean_is_found_where_a_few_elements_are_at_their_limit() {
         let last = pressures.len() - few;
         let limit = 0.5 * (pressures[last] + pressures[last - 1]);
         let limits = vec![limit; m * m];
-        let limited = Scene { pressure_limit: Some(PressureLimit::Uniform(limit)), ..free.clone() };
+        let limited = Scene { pressure_limit: Some(PressureLimit(Each::Uniform(limit))), ..free.clone() };
         let (solver, stop, report) = solve(&limited, &Options::default()).unwrap();
         assert_eq!(stop, Outcome::Converged);
         assert_conditions(&solver, &limited, &limits, "by force");

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
 use contact_normal::influence::Table;
-use contact_normal::scene::{Bodies, Coating, CoatingLayer, Layer, Load, Patches, Period, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Coating, CoatingLayer, Each, Layer, Load, Patches, Period, PressureLimit, Scene};
 use contact_normal::solver::{ActiveSet, Guess, InitialGuess, Options, Outcome, Solver};
 
 use crate::support::run;
@@ -94,7 +94,7 @@ fn a_product_is_that_of_the_dense_matrix_and_leaves_the_result_alone() {
     let factors = [1.0, 0.4, 0.4, 1.0];
     let plain = Scene::new(grid, &h, bodies, Load::Approach(0.3));
     let scene = Scene {
-        layer: Some(Layer::PerElement(&compliances)),
+        layer: Some(Layer(Each::PerElement(&compliances))),
         patches: Some(Patches { count: 2, patch: &patch, factors: &factors }),
         ..plain.clone()
     };
@@ -186,7 +186,7 @@ fn the_stiffness_is_that_of_the_dense_equations() {
     let scenes = [
         ("plain", plain.clone(), &matrix),
         ("force", Scene { load: Load::Force(1.0), ..plain.clone() }, &matrix),
-        ("limit", Scene { pressure_limit: Some(PressureLimit::Uniform(0.15)), ..plain.clone() }, &matrix),
+        ("limit", Scene { pressure_limit: Some(PressureLimit(Each::Uniform(0.15))), ..plain.clone() }, &matrix),
         ("table", Scene { influence: table, ..plain.clone() }, &of_table),
     ];
     for (what, scene, matrix) in scenes {
@@ -215,9 +215,9 @@ fn the_stiffness_is_the_difference_of_two_solves() {
     let period = |x, y| Some(Period { x, y });
     let scenes = [
         ("plain", plain.clone()),
-        ("layer", Scene { layer: Some(Layer::Uniform(0.3)), ..plain.clone() }),
+        ("layer", Scene { layer: Some(Layer(Each::Uniform(0.3))), ..plain.clone() }),
         ("coating", Scene { coating: Some(coating), ..plain.clone() }),
-        ("limit", Scene { pressure_limit: Some(PressureLimit::Uniform(0.12)), ..plain.clone() }),
+        ("limit", Scene { pressure_limit: Some(PressureLimit(Each::Uniform(0.12))), ..plain.clone() }),
         ("period", Scene { period: period(true, false), ..plain.clone() }),
         ("periods", Scene { period: period(true, true), ..plain.clone() }),
         ("coated periods", Scene { coating: Some(coating), period: period(true, true), ..plain.clone() }),

@@ -7,7 +7,7 @@ use crate::support::assert_conditions;
 use crate::white_noise;
 use contact_normal::contact::State;
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Load, Period, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Each, Load, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, Method, Options, Outcome, Report, Solver};
 
 const BOTH: Period = Period { x: true, y: true };
@@ -133,7 +133,7 @@ fn a_limit_that_is_not_reached_changes_nothing_of_that() {
     let grid = Grid::new(m, m, 1.0, 1.0).unwrap();
     for load in [Load::Force(5000.0), Load::Approach(2003.0)] {
         let scene = Scene::new(grid, &h, bodies(), load);
-        let limited = Scene { pressure_limit: Some(PressureLimit::Uniform(1e6)), ..scene.clone() };
+        let limited = Scene { pressure_limit: Some(PressureLimit(Each::Uniform(1e6))), ..scene.clone() };
         let (plain, with_limit) = (auto(&scene, "no limit").1, auto(&limited, "a limit").1);
         let (plain, found) = (plain.count.cycles, with_limit.count.cycles);
         assert!(found as f64 <= 1.5 * plain as f64 + 5.0, "{load:?}: {found} iterations, {plain} without a limit");
@@ -228,12 +228,12 @@ fn flat_on_flat_within_limits_fills_them() {
         for (height, depth, limit) in [(0.0, 1e-6, 1e-4), (-0.3, 0.01, 0.4), (0.7, 0.8, 1e-3)] {
             let (grid, h) = (Grid::new(mx, my, 0.7, 0.7).unwrap(), vec![height; mx * my]);
             let limits: Vec<f64> = (0..mx * my).map(|i| limit * (1.0 + 1e-9 * (i % 2) as f64)).collect();
-            for limit in [PressureLimit::Uniform(limit), PressureLimit::PerElement(&limits)] {
+            for limit in [PressureLimit(Each::Uniform(limit)), PressureLimit(Each::PerElement(&limits))] {
                 let load = Load::Approach(height + depth);
                 let scene =
                     Scene { period: Some(BOTH), pressure_limit: Some(limit), ..Scene::new(grid, &h, bodies(), load) };
                 let (solver, report) = auto(&scene, &format!("{mx} x {my}, {depth}, {limit:?}"));
-                assert!((0..mx * my).all(|i| solver.state().p[i] == limit.at(i)));
+                assert!((0..mx * my).all(|i| solver.state().p[i] == limit.0.at(i)));
                 assert!(report.measures.certificate.residual == 0.0);
             }
         }
@@ -249,7 +249,7 @@ fn forces_that_nearly_all_elements_carry_at_their_limit() {
         let grid = Grid::new(m, m, 1.0, 1.0).unwrap();
         for (part, period) in [(0.99, None), (0.99, Some(BOTH)), (1.0, None), (1.0, Some(BOTH))] {
             let force = part * 0.1 * (m * m) as f64;
-            let limit = Some(PressureLimit::Uniform(0.1));
+            let limit = Some(PressureLimit(Each::Uniform(0.1)));
             let scene = Scene { period, pressure_limit: limit, ..Scene::new(grid, &h, bodies(), Load::Force(force)) };
             let what = format!("{m} x {m}, {part} of the greatest force, {period:?}");
             let (solver, report) = auto(&scene, &what);
@@ -283,7 +283,7 @@ fn a_limit_beside_a_hole_takes_few_iterations() {
             .collect();
         let bodies = Bodies { shear_modulus: [1.0, f64::INFINITY], poisson_ratio: [0.3; 2] };
         let scene = Scene {
-            pressure_limit: Some(PressureLimit::Uniform(limit)),
+            pressure_limit: Some(PressureLimit(Each::Uniform(limit))),
             ..Scene::new(grid, &h, bodies, Load::Force(force))
         };
         let (_, report) = auto(&scene, &format!("{mx} x {my}"));

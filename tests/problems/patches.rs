@@ -4,7 +4,7 @@ use crate::support::run;
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
 use contact_normal::operator::dense;
-use contact_normal::scene::{Bodies, Layer, Load, Patches, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Each, Layer, Load, Patches, PressureLimit, Scene};
 use contact_normal::solver::{solve, Method, Options, Solver};
 
 /// Two or three bumps side by side, and whose element is whose: thirds of the grid in x.
@@ -35,7 +35,7 @@ fn the_equations_hold_with_the_direct_sum() {
     let patches = Some(Patches { count: 3, patch: &patch, factors: &FACTORS });
     let c: Vec<f64> = (0..grid.len()).map(|i| 0.1 * (i % 4) as f64).collect();
     for load in [plain.load, Load::Force(5.0)] {
-        for layer in [None, Some(Layer::Uniform(0.2)), Some(Layer::PerElement(&c))] {
+        for layer in [None, Some(Layer(Each::Uniform(0.2))), Some(Layer(Each::PerElement(&c)))] {
             let scene = Scene { patches, load, layer, ..plain.clone() };
             for method in [Method::Auto, Method::Norm] {
                 let (solver, report) = run(&scene, &tight(method));
@@ -55,8 +55,8 @@ fn the_equations_hold_with_the_direct_sum() {
                 for i in 0..grid.len() {
                     let give = match layer {
                         None => 0.0,
-                        Some(Layer::Uniform(c)) => c,
-                        Some(Layer::PerElement(c)) => c[i],
+                        Some(Layer(Each::Uniform(c))) => c,
+                        Some(Layer(Each::PerElement(c))) => c[i],
                     };
                     let e = h[i] - report.measures.approach + u[i] + give * state.p[i];
                     let holds = if state.contact[i] { e.abs() <= allowed } else { e >= -allowed && state.p[i] == 0.0 };
@@ -98,7 +98,7 @@ fn factors_of_one_are_none() {
     let plain = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(4.0));
     let (without, report) = run(&plain, &tight(Method::Auto));
     let patches = Some(Patches { count: 3, patch: &patch, factors: &[1.0; 9] });
-    for limit in [None, Some(PressureLimit::Uniform(0.8 * report.measures.max_pressure))] {
+    for limit in [None, Some(PressureLimit(Each::Uniform(0.8 * report.measures.max_pressure)))] {
         let expected = run(&Scene { pressure_limit: limit, ..plain.clone() }, &tight(Method::Auto)).0;
         let (with, _) = run(&Scene { patches, pressure_limit: limit, ..plain.clone() }, &tight(Method::Auto));
         for (a, b) in with.state().p.iter().zip(&expected.state().p) {

@@ -3,7 +3,7 @@
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Load, Period, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Each, Load, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, ActiveSet, Guess, Method, Options, Outcome, Solver};
 
 use crate::periodic_by_approach::{displacements, rough};
@@ -76,7 +76,8 @@ fn a_given_contact_area_that_is_full_takes_a_force() {
 fn limits_give_way_beyond_the_mean() {
     let h = surface();
     let one: Vec<f64> = (0..h.len()).map(|i| if i == 100 { 0.5 } else { f64::INFINITY }).collect();
-    let limits = [PressureLimit::Uniform(0.2), PressureLimit::Uniform(5.0), PressureLimit::PerElement(&one)];
+    let limits =
+        [PressureLimit(Each::Uniform(0.2)), PressureLimit(Each::Uniform(5.0)), PressureLimit(Each::PerElement(&one))];
     for (k, limit) in limits.into_iter().enumerate() {
         for approach in APPROACHES {
             let scene = Scene { pressure_limit: Some(limit), ..scene(&h, approach) };
@@ -87,8 +88,8 @@ fn limits_give_way_beyond_the_mean() {
             let p = &solver.state().p;
             let u = displacements(&scene, p);
             let most = |i: usize| match limit {
-                PressureLimit::Uniform(limit) => limit,
-                PressureLimit::PerElement(limits) => limits[i],
+                PressureLimit(Each::Uniform(limit)) => limit,
+                PressureLimit(Each::PerElement(limits)) => limits[i],
             };
             let scale = (0..p.len()).map(|i| (h[i] - approach).powi(2)).sum::<f64>().sqrt();
             // The tolerance, of all elements together.
@@ -100,6 +101,6 @@ fn limits_give_way_beyond_the_mean() {
             }
         }
     }
-    let none = Scene { pressure_limit: Some(PressureLimit::Uniform(f64::INFINITY)), ..scene(&h, 0.1) };
+    let none = Scene { pressure_limit: Some(PressureLimit(Each::Uniform(f64::INFINITY))), ..scene(&h, 0.1) };
     assert!(matches!(solve(&none, &Options::default()), Err(Error::Infeasible(_))));
 }

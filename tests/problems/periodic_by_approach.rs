@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use crate::support::assert_conditions;
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Load, Period, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Each, Load, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
 /// A random surface of all waves up to `m/part`, their amplitudes falling as `k^-1.8`.
@@ -100,7 +100,7 @@ fn a_single_element_has_its_own_distance_for_an_approach() {
 fn a_single_element_carries_its_limit() {
     let (grid, h) = (Grid::new(1, 1, 0.8, 0.8).unwrap(), [0.3]);
     for approach in [0.3 + 1e-9, 0.4, 7.0] {
-        for limit in [PressureLimit::Uniform(2.0), PressureLimit::PerElement(&[2.0])] {
+        for limit in [PressureLimit(Each::Uniform(2.0)), PressureLimit(Each::PerElement(&[2.0]))] {
             let scene = Scene {
                 period: Some(Period { x: true, y: true }),
                 pressure_limit: Some(limit),

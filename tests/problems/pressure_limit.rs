@@ -4,7 +4,7 @@
 use crate::support::run;
 use contact_normal::grid::Grid;
 use contact_normal::operator::dense;
-use contact_normal::scene::{Bodies, Coating, CoatingLayer, Layer, Load, Period, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Coating, CoatingLayer, Each, Layer, Load, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, ActiveSet, Guess, InitialGuess, Method, Options, Outcome, Report, Solver};
 
 fn ball(grid: &Grid) -> Vec<f64> {
@@ -35,7 +35,7 @@ fn assert_holds(scene: &Scene<'_>, solver: &Solver, report: &Report, what: &str)
     let mut u = vec![0.0; grid.len()];
     let bodies = Scene { layer: None, ..scene.clone() }.coefficients().unwrap();
     dense::apply(&bodies, &grid, &state.p, &mut u);
-    if let Some(Layer::Uniform(c)) = scene.layer {
+    if let Some(Layer(Each::Uniform(c))) = scene.layer {
         u.iter_mut().zip(&state.p).for_each(|(u, p)| *u += c * p);
     }
     // The tolerance of 1e-9 is in the rms over some 1000 elements, one of which may have it all: 32 times that.
@@ -43,7 +43,7 @@ fn assert_holds(scene: &Scene<'_>, solver: &Solver, report: &Report, what: &str)
     let mut count = 0;
     for (i, u) in u.iter().enumerate() {
         let e = scene.undeformed_distance[i] - report.measures.approach + u;
-        let (p, most) = (state.p[i], limit.at(i));
+        let (p, most) = (state.p[i], limit.0.at(i));
         let at_limit = state.at_limit.get(i).copied().unwrap_or(false);
         let holds = match (at_limit, state.contact[i]) {
             (true, false) => p == most && e <= allowed,
@@ -71,7 +71,7 @@ fn the_conditions_hold_on_both_sides() {
         let (greatest, force) = (report.measures.max_pressure, report.measures.force);
         let uneven: Vec<f64> = (0..grid.len()).map(|i| greatest * (0.3 + 0.1 * (i % 5) as f64)).collect();
         for share in [0.9, 0.5, 0.2] {
-            for limit in [PressureLimit::Uniform(share * greatest), PressureLimit::PerElement(&uneven)] {
+            for limit in [PressureLimit(Each::Uniform(share * greatest)), PressureLimit(Each::PerElement(&uneven))] {
                 for load in [elastic.load, Load::Force(0.5 * force)] {
                     for method in [Method::Auto, Method::Norm] {
                         let scene = Scene { pressure_limit: Some(limit), load, ..elastic.clone() };
@@ -99,7 +99,7 @@ fn a_limit_that_is_not_reached_changes_not_a_bit() {
         let (without, report) = run(&elastic, &Options::default());
         for limit in [f64::INFINITY, report.measures.max_pressure] {
             let (with, again) = run(
-                &Scene { pressure_limit: Some(PressureLimit::Uniform(limit)), ..elastic.clone() },
+                &Scene { pressure_limit: Some(PressureLimit(Each::Uniform(limit))), ..elastic.clone() },
                 &Options::default(),
             );
             let (a, b) = (without.state(), with.state());
@@ -117,7 +117,7 @@ fn up_to_the_greatest_force_and_not_beyond() {
     h[5] = f64::INFINITY;
     let greatest = 2.0 * 191.0 * grid.element_area();
     let scene = |force: f64| Scene {
-        pressure_limit: Some(PressureLimit::Uniform(2.0)),
+        pressure_limit: Some(PressureLimit(Each::Uniform(2.0))),
         ..Scene::new(grid, &h, Bodies::same(1e3, 0.3), Load::Force(force))
     };
     for share in [0.01, 0.3, 0.9, 0.999, 1.0] {
@@ -140,7 +140,7 @@ fn checkerboards_of_limits_carry_nearly_the_greatest_force() {
         let dark = |i: usize| (i % 32 / side + i / 32 / side) % 2 == 0;
         let limits: Vec<f64> = (0..grid.len()).map(|i| if dark(i) { 0.05 } else { 1.0 }).collect();
         let force = 0.95 * limits.iter().sum::<f64>() * grid.element_area();
-        let limit = Some(PressureLimit::PerElement(&limits));
+        let limit = Some(PressureLimit(Each::PerElement(&limits)));
         let scene = Scene { pressure_limit: limit, ..Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(force)) };
         let (solver, report) = run(&scene, &tight(Method::Auto));
         let count = assert_holds(&scene, &solver, &report, &format!("squares of {side}"));
@@ -156,7 +156,7 @@ fn flat_planes_do_not_end_above_a_limit() {
     limits[27] = 0.5;
     for method in [Method::Auto, Method::Norm, Method::ProjectedCg] {
         let scene = Scene {
-            pressure_limit: Some(PressureLimit::PerElement(&limits)),
+            pressure_limit: Some(PressureLimit(Each::PerElement(&limits))),
             period: Some(Period { x: true, y: true }),
             ..Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(64.0))
         };
@@ -174,13 +174,13 @@ fn with_a_layer_and_with_a_period() {
     let grid = Grid::new(32, 24, 0.05, 0.05).unwrap();
     let h = rough(&grid);
     let elastic = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(0.1));
-    let limit = Some(PressureLimit::Uniform(0.4 * run(&elastic, &Options::default()).1.measures.max_pressure));
+    let limit = Some(PressureLimit(Each::Uniform(0.4 * run(&elastic, &Options::default()).1.measures.max_pressure)));
     let c = elastic.coefficients().unwrap().at(0, 0);
     for (layer, period) in [
-        (Some(Layer::Uniform(0.2 * c)), None),
+        (Some(Layer(Each::Uniform(0.2 * c))), None),
         (None, Some(Period { x: true, y: false })),
         (None, Some(Period { x: true, y: true })),
-        (Some(Layer::Uniform(c)), Some(Period { x: true, y: true })),
+        (Some(Layer(Each::Uniform(c))), Some(Period { x: true, y: true })),
     ] {
         let scene = Scene { pressure_limit: limit, layer, period, ..elastic.clone() };
         let (solver, report) = run(&scene, &tight(Method::Auto));
@@ -209,8 +209,12 @@ fn forces_on_white_noise_from_soft_to_nearly_rigid() {
         let uneven: Vec<f64> = uneven.iter().map(|u| 0.5 + u).collect();
         for modulus in [10.0, 1e3, 1e5] {
             for (k, share) in [0.05, 0.3, 0.7, 0.95, 1.0].into_iter().enumerate() {
-                let limits = if k % 2 == 0 { PressureLimit::Uniform(1.0) } else { PressureLimit::PerElement(&uneven) };
-                let greatest = (0..grid.len()).map(|i| limits.at(i)).sum::<f64>() * grid.element_area();
+                let limits = if k % 2 == 0 {
+                    PressureLimit(Each::Uniform(1.0))
+                } else {
+                    PressureLimit(Each::PerElement(&uneven))
+                };
+                let greatest = (0..grid.len()).map(|i| limits.0.at(i)).sum::<f64>() * grid.element_area();
                 let plain = Scene::new(grid, &h, Bodies::same(modulus, 0.3), Load::Force(share * greatest));
                 let scene = Scene { pressure_limit: Some(limits), ..plain };
                 let (solver, stop, report) = solve(&scene, &tight(Method::Auto)).unwrap();
@@ -233,11 +237,11 @@ fn forces_on_an_uneven_layer() {
     for seed in 0..300 {
         let h: Vec<f64> = noise(grid.len(), seed).iter().map(|u| 3e-4 * u).collect();
         let layers: Vec<f64> = noise(grid.len(), seed + 1000).iter().map(|u| 10f64.powf(5.0 * u) - 1.0).collect();
-        let layer = Some(Layer::PerElement(&layers));
+        let layer = Some(Layer(Each::PerElement(&layers)));
         let scene = Scene {
             layer,
             coating,
-            pressure_limit: Some(PressureLimit::Uniform(3e-4)),
+            pressure_limit: Some(PressureLimit(Each::Uniform(3e-4))),
             ..Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(1e-4))
         };
         let (_, stop, report) = solve(&scene, &Options { tolerance: 1e-6, ..Options::default() }).unwrap();
@@ -249,7 +253,7 @@ fn forces_on_an_uneven_layer() {
 fn every_method_and_a_handle_find_the_same() {
     let grid = Grid::new(40, 40, 0.05, 0.05).unwrap();
     let h = ball(&grid);
-    let limit = Some(PressureLimit::Uniform(0.12));
+    let limit = Some(PressureLimit(Each::Uniform(0.12)));
     let scene = Scene { pressure_limit: limit, ..Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(0.1)) };
     let (first, report) = run(&scene, &tight(Method::Auto));
     assert!(assert_holds(&scene, &first, &report, "AUTO") > 20);
@@ -293,13 +297,13 @@ fn what_is_no_limit_is_refused_by_name() {
     let mut limits = [1.0; 64];
     limits[9] = -3.0;
     for load in [Load::Force(0.1), Load::Approach(0.1)] {
-        refuse(PressureLimit::Uniform(0.0), load, &["pressure_limit->limit", "0"]);
-        refuse(PressureLimit::Uniform(f64::NAN), load, &["pressure_limit->limit", "NaN"]);
-        refuse(PressureLimit::PerElement(&limits), load, &["pressure_limit->limits", "(1, 1)", "-3"]);
-        refuse(PressureLimit::PerElement(&limits[..63]), load, &["pressure_limit->limits", "63"]);
+        refuse(PressureLimit(Each::Uniform(0.0)), load, &["pressure_limit->limit", "0"]);
+        refuse(PressureLimit(Each::Uniform(f64::NAN)), load, &["pressure_limit->limit", "NaN"]);
+        refuse(PressureLimit(Each::PerElement(&limits)), load, &["pressure_limit->limits", "(1, 1)", "-3"]);
+        refuse(PressureLimit(Each::PerElement(&limits[..63])), load, &["pressure_limit->limits", "63"]);
     }
     let scene = Scene {
-        pressure_limit: Some(PressureLimit::Uniform(1.0)),
+        pressure_limit: Some(PressureLimit(Each::Uniform(1.0))),
         ..Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Approach(0.1))
     };
     let mut solver = Solver::new(&scene, &Options::default()).unwrap();
@@ -324,7 +328,7 @@ fn a_limit_costs_at_most_three_times_the_plain_scene_but_for_one() {
                 let scene = Scene { load, ..plain.clone() };
                 let (_, _, alone) = solve(&scene, &Options::default()).unwrap();
                 for share in [0.9, 0.75, 0.6] {
-                    let limit = PressureLimit::Uniform(share * found.measures.max_pressure);
+                    let limit = PressureLimit(Each::Uniform(share * found.measures.max_pressure));
                     let limited = Scene { pressure_limit: Some(limit), ..scene.clone() };
                     let (solver, stop, report) = solve(&limited, &Options::default()).unwrap();
                     let what =

@@ -3,7 +3,7 @@
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
 use contact_normal::operator::dense;
-use contact_normal::scene::{Bodies, Layer, Load, Period, Scene};
+use contact_normal::scene::{Bodies, Each, Layer, Load, Period, Scene};
 use contact_normal::solver::{solve, ActiveSet, Guess, InitialGuess, Method, Options, Outcome, Solver};
 
 fn fixed(method: Method) -> Options {
@@ -27,9 +27,9 @@ fn a_force_that_pulls_is_carried_by_every_method() {
     let pressure = vec![0.0; h.len()];
     let compliances: Vec<f64> = (0..h.len()).map(|i| 0.1 * (i % 3) as f64).collect();
     let plain = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(0.0));
-    let with_multigrid = [plain.clone(), Scene { layer: Some(Layer::Uniform(0.2)), ..plain.clone() }];
+    let with_multigrid = [plain.clone(), Scene { layer: Some(Layer(Each::Uniform(0.2))), ..plain.clone() }];
     let without = [
-        Scene { layer: Some(Layer::PerElement(&compliances)), ..plain.clone() },
+        Scene { layer: Some(Layer(Each::PerElement(&compliances))), ..plain.clone() },
         Scene { period: Some(Period { x: true, y: false }), ..plain.clone() },
         Scene { period: Some(Period { x: true, y: true }), ..plain.clone() },
     ];

@@ -8,7 +8,7 @@
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{
-    Bodies, Coating, Friction, Load, Motion, Period, Prescribed, PressureLimit, Previous, Scene,
+    Bodies, Coating, Each, Friction, Load, Motion, Period, Prescribed, PressureLimit, Previous, Scene,
 };
 use contact_normal::solver::{
     cost_of_accuracy, quantities, solve_to_accuracy, Accuracy, Lack, Options, Outcome, Quantity, QuantityRow,
@@ -241,7 +241,7 @@ fn accuracies_and_prices_of_every_quantity_are_kept() {
 #[test]
 fn reached_limits_have_errors_from_several_grids() {
     let limited = |grid: Grid, h: &'static [f64]| Scene {
-        pressure_limit: Some(PressureLimit::Uniform(0.7 * truth(Quantity::MaxPressure))),
+        pressure_limit: Some(PressureLimit(Each::Uniform(0.7 * truth(Quantity::MaxPressure)))),
         ..scene(grid, h)
     };
     let on = |m: usize| -> (Grid, &'static [f64]) {

@@ -5,7 +5,7 @@
 
 use contact_normal::grid::Grid;
 use contact_normal::operator::dense;
-use contact_normal::scene::{Bodies, Friction, Layer, Load, Motion, Prescribed, Scene};
+use contact_normal::scene::{Bodies, Each, Friction, Layer, Load, Motion, Prescribed, Scene};
 use contact_normal::solver::{
     cost_of_accuracy, effects_bill, quantities, solve, solve_to_accuracy, Accuracy, BillOptions, Lack, Options,
     Outcome, Quantity,
@@ -69,7 +69,7 @@ fn searches_and_price_lists_begin_with_the_grid_of_the_scene() {
 fn a_bill_is_that_of_the_grid_of_the_scene() {
     let (grid, h) = columns();
     let plain = Scene::new(grid, &h, BODIES, Load::Force(FORCE));
-    let scene = Scene { layer: Some(Layer::Uniform(0.01)), ..plain };
+    let scene = Scene { layer: Some(Layer(Each::Uniform(0.01))), ..plain };
     let (stop, rows) =
         effects_bill(&scene, &Options::default(), &BillOptions::new(1e-2), &[Quantity::Force], None).expect("a bill");
     assert_eq!(stop, Outcome::Converged);

@@ -5,7 +5,7 @@ use crate::support::run;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace, Kernel, RowTables};
 use contact_normal::operator::Operator;
-use contact_normal::scene::{Bodies, Layer, Load, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Each, Layer, Load, PressureLimit, Scene};
 use contact_normal::solver::{solve, solve_to_accuracy, Accuracy, ActiveSet, Guess, Method, Options, Outcome, Solver};
 use contact_normal::threads::Threads;
 
@@ -131,10 +131,13 @@ fn tables_of_the_half_space_are_no_effect() {
     for load in [Load::Approach(0.5), Load::Force(4.0)] {
         let plain = Scene::new(grid, &h, BODIES, load);
         let peak = run(&plain, &tight(Method::Auto)).1.measures.max_pressure;
-        let limit = Some(PressureLimit::Uniform(0.8 * peak));
-        for (layer, pressure_limit) in
-            [(None, None), (Some(Layer::Uniform(0.2)), None), (Some(Layer::PerElement(&c)), None), (None, limit)]
-        {
+        let limit = Some(PressureLimit(Each::Uniform(0.8 * peak)));
+        for (layer, pressure_limit) in [
+            (None, None),
+            (Some(Layer(Each::Uniform(0.2))), None),
+            (Some(Layer(Each::PerElement(&c))), None),
+            (None, limit),
+        ] {
             let plain = Scene { layer, pressure_limit, ..plain.clone() };
             let scene = Scene { row_tables: row_tables.clone(), ..plain.clone() };
             for method in [Method::Auto, Method::ProjectedCg, Method::Norm] {
@@ -196,14 +199,14 @@ fn the_conditions_hold_with_the_direct_sum() {
     h[16 * 40 + 21] = f64::INFINITY;
     let row_tables = Some(turning(&grid));
     for load in [Load::Approach(0.7), Load::Force(5.0)] {
-        for layer in [None, Some(Layer::Uniform(0.2)), Some(Layer::PerElement(&c))] {
+        for layer in [None, Some(Layer(Each::Uniform(0.2))), Some(Layer(Each::PerElement(&c)))] {
             let scene = Scene { row_tables: row_tables.clone(), layer, ..Scene::new(grid, &h, BODIES, load) };
             for method in [Method::Auto, Method::ProjectedCg, Method::Norm] {
                 let (solver, report) = run(&scene, &tight(method));
                 let give = |i: usize| match layer {
                     None => 0.0,
-                    Some(Layer::Uniform(c)) => c,
-                    Some(Layer::PerElement(c)) => c[i],
+                    Some(Layer(Each::Uniform(c))) => c,
+                    Some(Layer(Each::PerElement(c))) => c[i],
                 };
                 assert_conditions(&scene, &solver, give, &format!("{load:?} {layer:?} {method:?}"));
                 // As of the plain scene on such a grid, or with conjugate gradients without preconditioner.

@@ -1,7 +1,7 @@
 //! Errors of what converges slowly, against a finer grid: stresses at the surface that overtake those below, forces of steady rolling.
 
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, PressureLimit, Scene};
+use contact_normal::scene::{Bodies, Each, Friction, Load, Motion, Prescribed, PressureLimit, Scene};
 use contact_normal::solver::{
     quantities, solve, solve_to_accuracy, Accuracy, Lack, Options, Outcome, Quantity, QuantityRow,
 };
@@ -81,7 +81,7 @@ fn the_tip_of_a_cone() {
 /// is the largest.
 #[test]
 fn a_limit_beside_friction() {
-    let limit = Some(PressureLimit::Uniform(0.06));
+    let limit = Some(PressureLimit(Each::Uniform(0.06)));
     let plain = scene(Bodies::same(0.5, 0.3), Load::Force(0.006));
     let scene = Scene { pressure_limit: limit, friction: Some(rolling()), ..plain };
     for quantity in [Quantity::MaxVonMises, Quantity::VonMisesDepth, Quantity::MaxShear] {
@@ -174,7 +174,7 @@ fn ends_at_38(x: f64, y: f64) -> f64 {
 #[test]
 fn a_limit_beside_ends_between_elements() {
     let scene = scene(Bodies::same(1.0, 0.3), Load::Approach(0.04));
-    let scene = Scene { pressure_limit: Some(PressureLimit::Uniform(0.06)), ..scene };
+    let scene = Scene { pressure_limit: Some(PressureLimit(Each::Uniform(0.06))), ..scene };
     let truth = last(&scene, 200, ends_at_38, (Quantity::Force, 0)).value.expect("a force");
     let mut met = 0;
     for start in [8, 12, 16, 20, 28] {

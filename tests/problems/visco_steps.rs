@@ -4,8 +4,8 @@ use contact_normal::error::Error;
 use contact_normal::grid::Grid;
 use contact_normal::influence::Table;
 use contact_normal::scene::{
-    Adhesion, Bodies, Branches, Coating, CoatingLayer, Friction, Layer, Load, Patches, Period, PressureLimit, Scene,
-    Visco, Work,
+    Adhesion, Bodies, Branches, Coating, CoatingLayer, Each, Friction, Layer, Load, Patches, Period, PressureLimit,
+    Scene, Visco, Work,
 };
 use contact_normal::solver::{
     effects_bill, solve, solve_to_accuracy, Accuracy, ActiveSet, BillOptions, Guess, Method, Options, Outcome, Problem,
@@ -85,7 +85,7 @@ fn beside_other_effects_steps_meet_the_conditions() {
     let options = Options::default();
     assert_path("hole", &Scene { undeformed_distance: &hole, ..plain.clone() }, both, &PATH, &options);
     assert_path("patches", &Scene { patches, ..plain.clone() }, both, &PATH, &options);
-    let pressure_limit = Some(PressureLimit::Uniform(0.9));
+    let pressure_limit = Some(PressureLimit(Each::Uniform(0.9)));
     assert_path("limit", &Scene { pressure_limit, ..plain.clone() }, both, &PATH, &options);
     for (x, y) in [(true, false), (true, true)] {
         let period = Some(Period { x, y });
@@ -249,7 +249,7 @@ fn what_is_not_solved_is_refused_by_name() {
     let coating = |layers| Some(Coating { layers });
     for (scene, words) in [
         (Scene { influence: Some(table), ..plain.clone() }, "visco and influence"),
-        (Scene { layer: Some(Layer::Uniform(0.1)), ..plain.clone() }, "visco and layer"),
+        (Scene { layer: Some(Layer(Each::Uniform(0.1))), ..plain.clone() }, "visco and layer"),
         (Scene { friction: Some(Friction::new(0.3)), ..plain.clone() }, "visco and friction"),
         (Scene { adhesion: Some(adhesion), ..plain.clone() }, "visco and adhesion"),
         (Scene { coating: coating([None, layer]), ..plain.clone() }, "body 2 below its coating"),

@@ -6,7 +6,7 @@ use super::Foundation;
 use crate::error::Error;
 use crate::grid::Grid;
 use crate::influence::{RowTables, Table};
-use crate::scene::{Bodies, Coating, Friction, Layer, Load, Patches, Period, Prescribed, PressureLimit, Scene};
+use crate::scene::{Bodies, Coating, Each, Friction, Layer, Load, Patches, Period, Prescribed, PressureLimit, Scene};
 use crate::solver::{solve, solve_to_accuracy, Accuracy, Method, Options, Outcome, Problem, Solver};
 use crate::stress;
 
@@ -118,7 +118,7 @@ fn steps_are_those_of_a_dense_solution_by_every_method() {
 /// distances `beside` by others.
 fn assert_conditions(name: &str, scene: &Scene<'_>, solver: &Solver, beside: &[f64]) {
     let (state, coefficients) = (solver.state(), scene.coefficients().expect("coefficients"));
-    let limit = scene.pressure_limit.map_or(f64::INFINITY, |limit| limit.at(0));
+    let limit = scene.pressure_limit.map_or(f64::INFINITY, |limit| limit.0.at(0));
     let Foundation { later, step, .. } = FOUNDATION;
     let (mut residual, mut distance, mut deepest, mut violation) = (0.0, 0.0, 0.0_f64, 0.0_f64);
     for (i, h) in scene.undeformed_distance.iter().enumerate() {
@@ -177,10 +177,10 @@ fn beside_every_other_effect_conditions_hold_or_it_is_refused() {
                 ..plain.clone()
             },
         ),
-        ("pressure_limit", Scene { pressure_limit: Some(PressureLimit::Uniform(0.08)), ..plain.clone() }),
+        ("pressure_limit", Scene { pressure_limit: Some(PressureLimit(Each::Uniform(0.08))), ..plain.clone() }),
         ("excluded elements", Scene { undeformed_distance: &hole, ..plain.clone() }),
         ("friction", Scene { friction: Some(friction), ..plain.clone() }),
-        ("layer", Scene { layer: Some(Layer::Uniform(0.05)), ..plain.clone() }),
+        ("layer", Scene { layer: Some(Layer(Each::Uniform(0.05))), ..plain.clone() }),
     ];
     let mut alone = Vec::new();
     for (name, scene) in &scenes {

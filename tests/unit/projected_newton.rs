@@ -4,7 +4,7 @@ use super::bounds::{find_free, snap};
 use super::projection::constant_for;
 use crate::contact::{NonNegative, State};
 use crate::grid::Grid;
-use crate::scene::{Load, PressureLimit};
+use crate::scene::{Each, Load, PressureLimit};
 use crate::threads::Threads;
 
 fn state(load: Load, h: &[f64]) -> State {
@@ -43,7 +43,7 @@ fn pressures_at_a_bound_but_for_rounding_are_at_it() {
     let mut state = state(Load::Approach(1.0), &[0.0; 4]);
     let (limit, rest) = (2.0, 1e-15);
     state.p = vec![limit * (1.0 - rest), rest, 1.0, 1e-6];
-    snap(&mut state, PressureLimit::Uniform(limit));
+    snap(&mut state, PressureLimit(Each::Uniform(limit)));
     assert_eq!(state.p, [limit, 0.0, 1.0, 1e-6]);
     // Without limits a small pressure is one.
     state.p = vec![1.0, rest, 1.0, 1e-6];
@@ -58,7 +58,7 @@ fn an_approach_between_held_and_touched_elements_frees_those_in_the_wrong_order(
     state.p = vec![1.0, 1.0, 0.0, 0.0];
     state.at_limit = vec![true, true, false, false];
     let (mut distance, mut free) = (vec![0.0; 4], vec![false; 4]);
-    find_free(&state, PressureLimit::Uniform(1.0), &mut distance, &mut free);
+    find_free(&state, PressureLimit(Each::Uniform(1.0)), &mut distance, &mut free);
     // The approach is .35, the middle of .4 and .3.
     assert_eq!(free, [false, true, true, false], "{distance:?}");
     assert!((distance[1] - 0.05).abs() < 1e-15 && (distance[2] + 0.05).abs() < 1e-15, "{distance:?}");

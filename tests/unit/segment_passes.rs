@@ -6,7 +6,7 @@ use super::*;
 use crate::contact::{AdmissibleSet, Fixed, NonNegative};
 use crate::methods::projected_cg::formulas::*;
 use crate::methods::projected_cg::step_sums::Update;
-use crate::scene::PressureLimit;
+use crate::scene::{Each, PressureLimit};
 
 /// Some contact area, and values that differ.
 struct Given {
@@ -75,7 +75,7 @@ fn by(arch: pulp::Arch, n: usize) -> Vec<Vec<u64>> {
             (p, t.as_slice(), q),
             Leaving { moved, forecast, set: NonNegative, elements: n },
         ));
-        let set = PressureLimit::Uniform(0.2);
+        let set = PressureLimit(Each::Uniform(0.2));
         found.push(leaving(arch, block, (p, t.as_slice(), q), Leaving { moved, forecast, set, elements: n }));
     }
     for held in [vec![], (0..n).map(|i| !contact[i] && i % 3 == 0).collect()] {
@@ -142,10 +142,10 @@ fn check_who_leaves<S: AdmissibleSet>(set: S, n: usize) {
 fn elements_leave_by_the_rule_of_the_admissible_set() {
     for n in [1, 8, 30, 1001] {
         check_who_leaves(NonNegative, n);
-        check_who_leaves(PressureLimit::Uniform(0.6), n);
+        check_who_leaves(PressureLimit(Each::Uniform(0.6)), n);
         let limits: Vec<f64> =
             (0..n).map(|i| if i % 5 == 0 { f64::INFINITY } else { 0.3 + 0.001 * i as f64 }).collect();
-        check_who_leaves(PressureLimit::PerElement(&limits), n);
+        check_who_leaves(PressureLimit(Each::PerElement(&limits)), n);
     }
 }
 
@@ -154,7 +154,7 @@ fn what_is_no_number_or_at_a_bound_does_not_leave() {
     // Pressures that the step leaves at 0, at the limit, beyond both; and no number.
     let (p, t) = ([0.5, 0.5, 0.5, 0.5, f64::NAN], [-0.5_f32, 0.5, -0.6, 0.6, 1.0]);
     let block = Block::new(0, &[true; 5], 5, &[0]);
-    let (moved, set) = (Moved { alpha: 1.0, gamma: 0.0 }, PressureLimit::Uniform(1.0));
+    let (moved, set) = (Moved { alpha: 1.0, gamma: 0.0 }, PressureLimit(Each::Uniform(1.0)));
     let wanted = Leaving { moved, forecast: None, set, elements: 5 };
     assert_eq!(leaving(pulp::Arch::new(), block, (&p, &t, &t), wanted), [2, 3]);
 }
@@ -190,7 +190,7 @@ fn check_who_enters<S: AdmissibleSet>(set: S, n: usize) {
 fn elements_enter_by_the_rule_of_the_admissible_set() {
     for n in [1, 8, 30, 1001] {
         check_who_enters(NonNegative, n);
-        check_who_enters(PressureLimit::Uniform(1.0), n);
+        check_who_enters(PressureLimit(Each::Uniform(1.0)), n);
         check_who_enters(Fixed, n);
     }
 }

@@ -111,6 +111,12 @@ pub fn in_blocks(mut values: impl Iterator<Item = f64>) -> f64 {
     all
 }
 
+/// The sum of products, one after the other.
+#[inline]
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
 /// The mean of values.
 pub fn mean(values: &[f64]) -> f64 {
     in_blocks(values.iter().copied()) / values.len() as f64

@@ -38,8 +38,8 @@ pub fn parts_mut<T: Scalar>(values: &mut [Complex<T>]) -> &mut [T] {
     unsafe { std::slice::from_raw_parts_mut(values.as_mut_ptr().cast(), 2 * values.len()) }
 }
 
-/// Bytes of a line of the caches; longer lines are prefetched twice.
-const LINE: usize = 64;
+/// Bytes of a line of the caches; the longest vector has as many. Longer lines are prefetched twice.
+pub(crate) const LINE: usize = 64;
 
 /// Prefetches `count` values from `first` on during other work. This is a hint, valid for any address; if `first` is not at the start of a line, the
 /// last line is left out.

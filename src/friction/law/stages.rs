@@ -14,6 +14,7 @@
 
 use super::super::best::Best;
 use super::super::forces::Forces;
+use super::super::newton::PROGRESS;
 use super::super::plane::{plus, square};
 use super::super::problem::{Problem, State};
 use super::super::shift::Goal;
@@ -28,9 +29,8 @@ use crate::methods::fields::Fields;
 use crate::progress::Outcome;
 
 /// Residual below which steps are Newton's.
-const NEWTON_RESIDUAL: f64 = 1e-2;
-/// A Newton step must reduce the residual to this part of the least so far; if not, LAGGED_STEPS lagged steps follow.
-const PROGRESS: f64 = 0.7;
+pub const NEWTON_RESIDUAL: f64 = 1e-2;
+/// A Newton step must make [`PROGRESS`]; if not, LAGGED_STEPS lagged steps follow.
 const LAGGED_STEPS: u32 = 5;
 /// Relative residual of linear solves, of Newton steps and of lagged ones.
 const INNER: f64 = 0.2;

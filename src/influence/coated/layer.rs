@@ -2,7 +2,7 @@
 //!
 //! The integral over an element, by the larger of its distance and t, in longer sides of an element:
 //!
-//! * beyond [`STENCIL_DISTANCE`], by values at the centres of the element and its neighbours (see [`means`]): one
+//! * beyond [`LEAST_DISTANCE`], by values at the centres of the element and its neighbours (see [`means`]): one
 //!   evaluation per element;
 //! * nearer, by tensor Gauss, or up to [`CORNERS`] diagonals by corner differences of `S(x, y) = integral from 0 to x and 0 to y of F`,
 //!
@@ -17,15 +17,14 @@ use super::quadrature::gauss_legendre;
 use super::radial::{Base, Radial};
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::influence::{means, HalfSpace, Kernel};
+use crate::influence::means::{self, LEAST_DISTANCE};
+use crate::influence::{HalfSpace, Kernel};
 use crate::memory::zeros;
 
-/// Distance beyond which the stencil of neighbours is used.
-const STENCIL_DISTANCE: f64 = 32.0;
 /// Diagonals of an element up to which differences over its corners serve.
 pub(super) const CORNERS: f64 = 2.5;
 /// Points a side of tensor Gauss below these distances.
-const POINTS: [(f64, usize); 2] = [(12.0, 7), (STENCIL_DISTANCE, 4)];
+const POINTS: [(f64, usize); 2] = [(12.0, 7), (LEAST_DISTANCE, 4)];
 
 /// The correction of one layer on a grid.
 pub struct Layer<'a> {
@@ -40,7 +39,7 @@ impl Layer<'_> {
     /// Adds `(c/t) integral of F`, with the base of each offset, from [`first_of_half`] on in each row.
     pub fn add(&self, c: f64, table: &mut [f64]) -> Result<()> {
         let Grid { mx, my, dx, dy } = self.grid;
-        let (far, row_distance) = (STENCIL_DISTANCE * dx.max(dy), dy / dx.max(dy));
+        let (far, row_distance) = (LEAST_DISTANCE * dx.max(dy), dy / dx.max(dy));
         let first = |ky: usize| first_of_half(&self.grid, ky);
         let scale = c * dx * dy / self.t;
         let fill = |base: Base| {
@@ -85,9 +84,9 @@ impl Layer<'_> {
         let base = if h < self.t { Base::Layer } else { Base::Substrate };
         let corners = Corners::new(self, base, (count(dx, by_corners, mx), count(dy, by_corners, my)))?;
         let rules = POINTS.map(|(_, n)| gauss_legendre(n));
-        for ky in 0..count(dy, STENCIL_DISTANCE * h, my) {
+        for ky in 0..count(dy, LEAST_DISTANCE * h, my) {
             let first_of_substrate = first_beyond(self.t, &self.grid, ky);
-            for kx in first_of_half(&self.grid, ky)..first_beyond(STENCIL_DISTANCE * h, &self.grid, ky) {
+            for kx in first_of_half(&self.grid, ky)..first_beyond(LEAST_DISTANCE * h, &self.grid, ky) {
                 let (x, y) = (kx as f64 * dx, ky as f64 * dy);
                 let r = x.hypot(y);
                 let here = if kx >= first_of_substrate { Base::Substrate } else { Base::Layer };
@@ -98,12 +97,7 @@ impl Layer<'_> {
                     continue;
                 }
                 // The half-space has the usual base at this offset.
-                let less = 1.0 - self.radial.transfer.substrate;
-                let other = match (base, here) {
-                    (Base::Layer, Base::Substrate) => less,
-                    (Base::Substrate, Base::Layer) => -less,
-                    _ => 0.0,
-                };
+                let other = base.to(here) * (1.0 - self.radial.transfer.substrate);
                 let half_space = if other == 0.0 { 0.0 } else { other * self.half_space.at(kx as i64, ky as i64) };
                 *value += c * (corners.difference(kx, ky) + half_space);
             }

@@ -51,7 +51,7 @@ impl CoatedPeriodic {
     }
 
     fn with_half_space(bodies: [CoatedBody; 2], half_space: Periodic, grid: &Grid) -> Result<CoatedPeriodic> {
-        let (row, rows) = waves::bins(grid);
+        let (row, rows) = grid.offsets((true, true));
         let mut changes: Vec<f64> = zeros(row * rows, COATED)?;
         bodies.iter().try_for_each(|body| waves::add(body, grid, &mut changes))?;
         let mut table = waves::coefficients(&changes, grid)?;
@@ -66,7 +66,7 @@ impl CoatedPeriodic {
 
     /// The coefficients of a grid of joined elements.
     fn joined(&self, coarse: &Grid) -> Result<CoatedPeriodic> {
-        let (row, rows) = waves::bins(coarse);
+        let (row, rows) = coarse.offsets((true, true));
         let parts = |m: usize, fine: usize, k: i64| match m < fine {
             true => [(2 * k, 1.0), (2 * k - 1, 0.5), (2 * k + 1, 0.5)],
             false => [(k, 1.0), (k, 0.0), (k, 0.0)],
@@ -86,11 +86,7 @@ impl CoatedPeriodic {
 
     /// The coefficient without the constant.
     fn own(&self, kx: i64, ky: i64) -> f64 {
-        let folded = |k: i64, m: usize| {
-            let k = k.unsigned_abs() as usize % m;
-            k.min(m - k)
-        };
-        self.table[folded(ky, self.my) * (self.mx / 2 + 1) + folded(kx, self.mx)]
+        self.table[Periodic::folded(ky, self.my) * (self.mx / 2 + 1) + Periodic::folded(kx, self.mx)]
     }
 
     fn share(&self, response: f64) -> f64 {

@@ -27,9 +27,8 @@ use super::response::{Response, TERMS};
 use super::transfer::Transfer;
 use crate::blocks::LANES;
 
-/// Most coefficients of a polynomial in w, of degree 13, and of its integral.
+/// Most coefficients of a polynomial in w, of degree 13.
 pub const P: usize = 14;
-const OF_INTEGRAL: usize = P + 1;
 /// Bound on the omitted terms of a polynomial, relative to the half-space's `b/rho`.
 const LEFT_OUT: f64 = 1e-15;
 /// w at rho = 2.
@@ -42,6 +41,26 @@ pub enum Base {
     Layer,
     /// b = B(0): the half-space of the substrate.
     Substrate,
+}
+
+impl Base {
+    /// The base that panels have at `w = 4 + rho^2`.
+    pub(super) fn at(w: f64) -> Base {
+        if w < SMOOTH {
+            Base::Layer
+        } else {
+            Base::Substrate
+        }
+    }
+
+    /// How often the difference of the half-spaces is added on the way to another base.
+    pub(super) fn to(self, other: Base) -> f64 {
+        match (self, other) {
+            (Base::Layer, Base::Substrate) => 1.0,
+            (Base::Substrate, Base::Layer) => -1.0,
+            _ => 0.0,
+        }
+    }
 }
 
 /// The radial functions of a layer of unit thickness.
@@ -66,7 +85,7 @@ struct Panel {
     f: [f64; P],
     /// Coefficients of f above [`LEFT_OUT`]: fewer far away, where F is small compared with the half-space.
     terms: usize,
-    m: [f64; OF_INTEGRAL],
+    m: [f64; P + 1],
 }
 
 impl Panel {
@@ -158,18 +177,22 @@ impl<R: Response> Radial<R> {
     /// F at a square of rho.
     pub fn f_at_square(&self, rho2: f64, base: Base) -> f64 {
         let w = 4.0 + rho2;
-        let (value, of) = if w < self.far {
+        let value = self.on_panel(w, Panel::f).unwrap_or_else(|| self.far_f(rho2.sqrt()));
+        self.change(w, base).map_or(value, |change| value + change / rho2.sqrt())
+    }
+
+    /// A function of the panels at w, if there is a panel.
+    fn on_panel(&self, w: f64, of: impl Fn(&Panel) -> &[f64]) -> Option<f64> {
+        (w < self.far).then(|| {
             let (panel, (low, high)) = panel_of(w);
-            let x = (w - 0.5 * (low + high)) * (2.0 / (high - low));
-            (evaluate(self.panels[panel].f(), x), if w < SMOOTH { Base::Layer } else { Base::Substrate })
-        } else {
-            (self.far_f(rho2.sqrt()), Base::Substrate)
-        };
-        match (of, base) {
-            (Base::Layer, Base::Substrate) => value + (1.0 - self.transfer.substrate()) / rho2.sqrt(),
-            (Base::Substrate, Base::Layer) => value - (1.0 - self.transfer.substrate()) / rho2.sqrt(),
-            _ => value,
-        }
+            evaluate(of(&self.panels[panel]), (w - 0.5 * (low + high)) * (2.0 / (high - low)))
+        })
+    }
+
+    /// The change of `F rho` and of `M/rho` from the base that panels have at w to another one.
+    fn change(&self, w: f64, base: Base) -> Option<f64> {
+        let change = Base::at(w).to(base) * (1.0 - self.transfer.substrate());
+        (change != 0.0).then_some(change)
     }
 
     /// `out[k]` is F at distance `sqrt((x + k dx)^2 + y^2)`, all in thicknesses, x and y >= 0: a run of places with one polynomial at a time.
@@ -178,14 +201,14 @@ impl<R: Response> Radial<R> {
             let x = x + k as f64 * dx;
             4.0 + (x * x + y * y)
         };
-        let less = 1.0 - self.transfer.substrate();
         let mut first = 0;
         while first < out.len() {
             let start = w(first);
             if start >= self.far {
                 for (k, value) in out.iter_mut().enumerate().skip(first) {
                     let rho = (w(k) - 4.0).sqrt();
-                    *value = self.far_f(rho) - if base == Base::Layer { less / rho } else { 0.0 };
+                    let far = self.far_f(rho);
+                    *value = self.change(start, base).map_or(far, |change| far + change / rho);
                 }
                 return;
             }
@@ -197,12 +220,7 @@ impl<R: Response> Radial<R> {
             let end = end.min(out.len());
             let run = &mut out[first..end];
             fill_run(polynomial, (x + first as f64 * dx, dx, 4.0 + y * y - middle, scale), run);
-            let change = match (start < SMOOTH, base) {
-                (true, Base::Substrate) => less,
-                (false, Base::Layer) => -less,
-                _ => 0.0,
-            };
-            if change != 0.0 {
+            if let Some(change) = self.change(start, base) {
                 run.iter_mut().enumerate().for_each(|(k, value)| *value += change / (w(first + k) - 4.0).sqrt());
             }
             first += run.len();
@@ -212,18 +230,8 @@ impl<R: Response> Radial<R> {
     /// M at a distance rho in thicknesses.
     pub fn m(&self, rho: f64, base: Base) -> f64 {
         let w = 4.0 + rho * rho;
-        let (value, of) = if w < self.far {
-            let (panel, (low, high)) = panel_of(w);
-            let x = (w - 0.5 * (low + high)) * (2.0 / (high - low));
-            (evaluate(&self.panels[panel].m, x), if w < SMOOTH { Base::Layer } else { Base::Substrate })
-        } else {
-            (self.far_m(rho), Base::Substrate)
-        };
-        match (of, base) {
-            (Base::Layer, Base::Substrate) => value + (1.0 - self.transfer.substrate()) * rho,
-            (Base::Substrate, Base::Layer) => value - (1.0 - self.transfer.substrate()) * rho,
-            _ => value,
-        }
+        let value = self.on_panel(w, |panel| &panel.m).unwrap_or_else(|| self.far_m(rho));
+        self.change(w, base).map_or(value, |change| value + change * rho)
     }
 
     /// `M/rho^2` at a square of rho, which may be 0 with the layer as base.
@@ -283,7 +291,7 @@ pub(super) fn panel_of(w: f64) -> (usize, (f64, f64)) {
 }
 
 /// Exponent and first two bits of 4.
-const FIRST_PANEL: usize = (1023 + 2) << 2;
+const FIRST_PANEL: usize = (4f64.to_bits() >> 50) as usize;
 
 /// The ends of a panel.
 pub(super) fn ends_of(panel: usize) -> (f64, f64) {

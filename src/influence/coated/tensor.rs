@@ -40,7 +40,7 @@ impl Tensor {
         let (low, high) = ends_of(panel);
         let values: [[f64; 2]; P] = std::array::from_fn(|i| {
             let rho2 = 0.5 * (low + high) + 0.5 * (high - low) * node(i, P) - 4.0;
-            self.values(rho2.max(0.0), base_of(panel))
+            self.values(rho2.max(0.0), Base::at(low))
         });
         [0, 1].map(|k| powers(&chebyshev::<P>(&std::array::from_fn(|i| values[i][k]))))
     }
@@ -61,22 +61,12 @@ impl Tensor {
         let Some([all, turning]) = self.panels.get(panel) else { return self.values(rho2, base) };
         let x = (w - 0.5 * (low + high)) * (2.0 / (high - low));
         let value = [evaluate(all, x), evaluate(turning, x)];
-        let sign = match (base_of(panel), base) {
-            (Base::Layer, Base::Substrate) => 1.0,
-            (Base::Substrate, Base::Layer) => -1.0,
-            _ => return value,
-        };
+        let sign = Base::at(w).to(base);
+        if sign == 0.0 {
+            return value;
+        }
         let (along, across) = (1.0 - self.along.transfer.substrate(), 1.0 - self.across.transfer.substrate());
         let more = sign / rho2.sqrt();
         [value[0] + more * self.kept * along, value[1] + more * (across - self.kept * along) / rho2]
-    }
-}
-
-/// The base of a panel: the first four end at rho = 2.
-fn base_of(panel: usize) -> Base {
-    if panel < 4 {
-        Base::Layer
-    } else {
-        Base::Substrate
     }
 }

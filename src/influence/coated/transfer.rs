@@ -19,9 +19,10 @@
 //! ```
 
 use super::response::{quotient, Response, TERMS};
+use crate::powers::FADED;
 
-/// Beyond this s, exponentials are below exp(-40) = 4e-18, so that nothing cancels.
-pub(super) const NEGLIGIBLE_EXPONENTIALS: f64 = 20.0;
+/// Beyond this s, `exp(-2 s)` has faded, so that nothing cancels.
+pub(super) const NEGLIGIBLE_EXPONENTIALS: f64 = 0.5 * FADED;
 /// s above which exp(-2 s) is 0 in double precision.
 const ZERO_EXPONENTIALS: f64 = 373.0;
 

@@ -8,26 +8,20 @@
 
 use std::f64::consts::PI;
 
+use toeplitz::ParityProduct;
+
 use super::response::Response;
 use super::CoatedBody;
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::memory::{collected, zeros};
-use crate::operator::fft::{ColumnTransform, Complex};
+use crate::memory::{collected, computed, zeros};
 
 /// The k t beyond which aliases are dropped: `exp(-2 k t) (k t)^2` is 1.7e-15 there.
 const FADED: f64 = 20.0;
 /// Nodes of the interpolation of aliases, in each direction.
 const NODES: usize = 24;
-/// Columns that are transformed at a time.
-const BLOCK: usize = 8;
 /// The name of this memory in messages.
 const WAVES: &str = "the waves of a coating";
-
-/// Bins of a period that are not negative.
-pub fn bins(grid: &Grid) -> (usize, usize) {
-    (grid.mx / 2 + 1, grid.my / 2 + 1)
-}
 
 /// Adds the responses to all waves, `[bin in y][bin in x]`.
 pub fn add(body: &CoatedBody, grid: &Grid, waves: &mut [f64]) -> Result<()> {
@@ -79,7 +73,7 @@ fn nearest(grid: &Grid) -> (i64, i64) {
 /// Adds the nearest aliases of all waves except the constant one.
 fn add_nearest(body: &CoatedBody, grid: &Grid, waves: &mut [f64]) -> Result<()> {
     let Some((t, radial)) = &body.layer else { return Ok(()) };
-    let ((row, rows), (last_x, last_y)) = (bins(grid), nearest(grid));
+    let ((row, rows), (last_x, last_y)) = (grid.offsets((true, true)), nearest(grid));
     let [of_x, of_y] = [(grid.dx, grid.mx), (grid.dy, grid.my)]
         .map(|(d, m)| move |bin: usize, number: i64| alias(d / t, PI * bin as f64 / m as f64, number));
     let scale = 2.0 * PI * body.compliance * t;
@@ -192,50 +186,15 @@ impl Direction {
 
 /// The coefficients at offsets up to half the period with these responses: sums of cosines.
 pub fn coefficients(waves: &[f64], grid: &Grid) -> Result<Vec<f64>> {
-    let (mx, my, (row, rows)) = (grid.mx, grid.my, bins(grid));
-    let (x, y) = (ColumnTransform::<f64>::new(mx)?, ColumnTransform::<f64>::new(my)?);
-    let mut scratch = x.scratch()?;
-    y.fit(&mut scratch)?;
-    let mut in_x: Vec<f64> = zeros(row * rows, WAVES)?;
-    // Even data have a real transform: two rows, or columns, share one complex transform.
-    let mut line: Vec<Complex<f64>> = zeros(mx, WAVES)?;
-    for (waves, in_x) in waves.chunks(2 * row).zip(in_x.chunks_mut(2 * row)) {
-        if waves.iter().all(|wave| *wave == 0.0) {
-            continue;
-        }
-        let (one, other) = waves.split_at(row);
-        mirrored(&mut line, |i| Complex::new(one[i], other.get(i).copied().unwrap_or(0.0)));
-        x.forward(&mut line, &mut scratch);
-        let (one, other) = in_x.split_at_mut(row);
-        one.iter_mut().zip(&line).for_each(|(value, sum)| *value = sum.re);
-        other.iter_mut().zip(&line).for_each(|(value, sum)| *value = sum.im);
-    }
-    let mut table: Vec<f64> = zeros(row * rows, WAVES)?;
-    let mut columns: Vec<Complex<f64>> = zeros(BLOCK * my, WAVES)?;
+    let (row, rows) = grid.offsets((true, true));
+    // Rows beyond the last that is not 0 cost nothing.
+    let last = waves.chunks_exact(row).rposition(|waves| waves.iter().any(|wave| *wave != 0.0)).unwrap_or(0);
+    let product = ParityProduct::new(grid.mx, grid.my)?;
+    let mut sums = zeros(row * rows, WAVES)?;
+    let mut memory = product.memory(last + 1)?;
+    product.of_kernel(&waves[..(last + 1) * row], row, (false, false), &mut memory, &mut sums);
+    drop(memory);
     let share = 1.0 / grid.len() as f64;
-    for first in (0..row).step_by(2 * BLOCK) {
-        let values = (row - first).min(2 * BLOCK);
-        let columns = &mut columns[..values.div_ceil(2) * my];
-        for (k, column) in columns.chunks_exact_mut(my).enumerate() {
-            let at = |j: usize, k: usize| if k < values { in_x[j * row + first + k] } else { 0.0 };
-            mirrored(column, |j| Complex::new(at(j, 2 * k), at(j, 2 * k + 1)));
-        }
-        y.forward(columns, &mut scratch);
-        for (ky, table) in table.chunks_exact_mut(row).enumerate() {
-            for (two, column) in table[first..first + values].chunks_mut(2).zip(columns.chunks_exact(my)) {
-                let both = [column[ky].re, column[ky].im];
-                two.iter_mut().zip(both).for_each(|(value, sum)| *value = share * sum);
-            }
-        }
-    }
-    Ok(table)
-}
-
-/// Fills a period with an even sequence.
-fn mirrored(line: &mut [Complex<f64>], value: impl Fn(usize) -> Complex<f64>) {
-    let m = line.len();
-    for i in 0..m / 2 + 1 {
-        line[i] = value(i);
-        line[(m - i) % m] = line[i];
-    }
+    // Sums are `[kx][ky]`.
+    Ok(computed((0..row * rows).map(|i| share * sums[i % row * rows + i / row]), WAVES)?)
 }

@@ -11,6 +11,7 @@ use crate::contact::{norm_of_distance, relative, State, OF_PRODUCT};
 use crate::error::{Error, Result};
 use crate::methods::Task;
 use crate::scene::Load;
+use crate::sums::dot;
 
 /// The stopping criteria of the inner iteration.
 #[derive(Clone, Copy, Debug)]
@@ -104,8 +105,4 @@ fn project(values: &mut [f64], contact: &[bool], count: Option<f64>) {
 pub(super) fn noise(state: &State, elements: impl Iterator<Item = usize>, u: &[f64]) -> f64 {
     let terms = |i: usize| (state.approach - state.h[i]).abs() + u[i].abs();
     OF_PRODUCT * elements.map(|i| terms(i) * terms(i)).sum::<f64>().sqrt()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

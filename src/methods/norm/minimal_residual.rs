@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::memory::reserve;
 use crate::methods::Task;
 use crate::scene::Load;
+use crate::sums::dot;
 
 /// Directions kept before a restart.
 const RESTART: usize = 40;
@@ -167,5 +168,5 @@ pub fn minimal_residual<S>(task: &mut Task<'_, '_, S>, stop: InnerStop, workspac
 }
 
 fn norm(values: &[f64]) -> f64 {
-    values.iter().map(|v| v * v).sum::<f64>().sqrt()
+    dot(values, values).sqrt()
 }

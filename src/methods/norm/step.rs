@@ -9,11 +9,10 @@ use crate::memory::reserve;
 use crate::methods::{Change, Policy, Step, Task};
 use crate::progress::Goal;
 use crate::scene::Load;
+use crate::sums::ROUND_OFF;
 
 /// Restarts of an inner solve whose recursive residual was met but the true one was not.
 const RESTARTS: u32 = 8;
-/// If an inner solve ends at round-off, violations of this relative size are round-off too.
-const ROUND_OFF_VIOLATION: f64 = 1e-12;
 
 /// The method, and its memory, kept from one solve to the next.
 #[derive(Default)]
@@ -131,7 +130,7 @@ impl Norm {
 
 /// Whether the violations of a trial are round-off. Then there is nothing to exchange.
 fn is_at_round_off<S: AdmissibleSet>(task: &Task<'_, '_, S>) -> bool {
-    let floor = Goal { tolerance: ROUND_OFF_VIOLATION.max(task.goal.tolerance), ..task.goal };
+    let floor = Goal { tolerance: ROUND_OFF.max(task.goal.tolerance), ..task.goal };
     floor.holds(&Survey::of(task.state), 0.0, task.set)
 }
 

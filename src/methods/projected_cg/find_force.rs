@@ -27,6 +27,7 @@ use super::End;
 use crate::contact::{norm_of_distance, AdmissibleSet, Freshness, State};
 use crate::error::Result;
 use crate::memory::{computed, reserve};
+use crate::methods::fields::Stored;
 use crate::progress::Goal;
 use crate::scene::Load;
 use crate::sums::{in_blocks, mean};
@@ -47,7 +48,7 @@ const MOST_FORCES: usize = 20;
 const MOST_ALONG: u64 = 40;
 const ALONG_GAIN: f64 = 0.1;
 /// Round-off of u in single precision, in the residual and in the approach.
-const ROUNDING: f64 = 1e-6;
+const ROUNDING: f64 = f32::ROUND_OFF;
 /// The part of the elements in C above which a uniform pressure is added.
 const UNIFORM_SHARE: f64 = 0.25;
 

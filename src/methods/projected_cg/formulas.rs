@@ -5,9 +5,10 @@ use pulp::Simd;
 use super::segments::{Becomes, Holds, Terms, Vector, Wanted};
 use super::step_sums::Update;
 use crate::contact::AdmissibleSet;
+use crate::methods::fields::Stored;
 
 /// An element was clipped if the forecast step leaves at most this part of its pressure: round-off of single precision.
-pub(super) const CLIPPED_SHARE: f64 = 1e-6;
+pub(super) const CLIPPED_SHARE: f64 = f32::ROUND_OFF;
 
 /// The sum of `h - approach + u`, u being that after `update` without w.
 #[derive(Clone, Copy)]

@@ -11,8 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::deflation::Last;
 use crate::contact::{presses, Freshness, State};
 use crate::error::Result;
-use crate::memory::keep;
-use crate::operator::zeros;
+use crate::memory::{copied, keep};
 use crate::rectangle::Rectangle;
 use crate::scene::Load;
 use crate::sums::Sums;
@@ -20,6 +19,8 @@ use crate::threads::Threads;
 
 /// If d minus its component along p has at most this fraction of the energy of d, it is round-off.
 const NOISE: f64 = 1e-9;
+/// The name of this memory in messages.
+const LAST: &str = "the solution before";
 
 /// The solution before the last. Empty if there is none.
 #[derive(Default)]
@@ -38,12 +39,7 @@ impl Predictor {
 
     /// Copies it; memory is fallible.
     pub fn copy(&self) -> Result<Predictor> {
-        let copy = |values: &[f64]| -> Result<Vec<f64>> {
-            let mut copy = zeros(values.len(), "the solution before")?;
-            copy.copy_from_slice(values);
-            Ok(copy)
-        };
-        Ok(Predictor { p: copy(&self.p)?, u: copy(&self.u)?, is_of_others: self.is_of_others })
+        Ok(Predictor { p: copied(&self.p, LAST)?, u: copied(&self.u, LAST)?, is_of_others: self.is_of_others })
     }
 
     /// Marks u as approximate, after a change of coefficients.
@@ -68,9 +64,7 @@ impl Predictor {
         let n = state.p.len();
         if self.p.is_empty() {
             // The change d is 0.
-            (self.p, self.u) = (zeros(n, "the solution before")?, zeros(n, "the solution before")?);
-            self.p.copy_from_slice(&state.p);
-            self.u.copy_from_slice(&state.u);
+            (self.p, self.u) = (copied(&state.p, LAST)?, copied(&state.u, LAST)?);
         }
         let (now, before) = self.shares(state);
         // The last solution replaces the one before it, which the state's memory now holds.

@@ -1,7 +1,7 @@
 //! Omissions: the named effects of a scene, and refinements that it has without naming them.
 
 use crate::effects::replace_bodies;
-use crate::scene::{Bodies, Coefficient, Friction, Layer, Scene};
+use crate::scene::{Bodies, Coefficient, Each, Friction, Layer, Scene};
 use crate::solver::numbered::numbered;
 
 numbered! {
@@ -148,8 +148,8 @@ const LONG_WAVE: f64 = 1e-3;
 fn as_layer<'a>(scene: &Scene<'a>) -> Option<Layer<'a>> {
     let there = match scene.layer {
         None => 0.0,
-        Some(Layer::Uniform(compliance)) => compliance,
-        Some(Layer::PerElement(_)) => return None,
+        Some(Layer(Each::Uniform(compliance))) => compliance,
+        Some(Layer(Each::PerElement(_))) => return None,
     };
     let (plain, coating) = (scene.plain(), scene.coating?);
     let thickest =
@@ -160,5 +160,5 @@ fn as_layer<'a>(scene: &Scene<'a>) -> Option<Layer<'a>> {
     if added < 0.0 {
         return None;
     }
-    Some(Layer::Uniform(there + added))
+    Some(Layer(Each::Uniform(there + added)))
 }

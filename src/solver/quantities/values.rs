@@ -6,7 +6,7 @@ use crate::contact::{beyond_ends, Outline};
 use crate::error::{invalid, Error, Result};
 use crate::friction::STICK;
 use crate::grid::Grid;
-use crate::scene::{Prescribed, Scene};
+use crate::scene::Scene;
 use crate::solver::{Outcome, Report, Solver};
 use crate::stress::{of_scene, MOST_SLENDER};
 use crate::sums::in_blocks;
@@ -64,7 +64,7 @@ impl Quantity {
         match self {
             TangentialForce | Creepage | SpinMoment | StickArea => {
                 let Some(friction) = &scene.friction else { return Some(Lack::NoFriction) };
-                let is_found = friction.prescribed.map(|prescribed| matches!(prescribed, Prescribed::Force(_)));
+                let is_found = friction.has_forces();
                 let is_prescribed = match self {
                     TangentialForce => is_found == [true; 2],
                     Creepage => is_found == [false; 2],
@@ -176,7 +176,7 @@ fn tangential(
 ) -> std::result::Result<f64, Lack> {
     let found = (&scene.friction, &report.friction, solver.friction());
     let (Some(friction), Some(found), Some(solution)) = found else { return Err(Lack::NoFriction) };
-    let is_found = friction.prescribed.map(|prescribed| matches!(prescribed, Prescribed::Force(_)));
+    let is_found = friction.has_forces();
     match quantity {
         Quantity::TangentialForce => Ok(found.force[0].hypot(found.force[1])),
         Quantity::Creepage => {

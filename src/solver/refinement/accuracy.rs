@@ -2,13 +2,14 @@
 
 use super::outlook::Outlook;
 use crate::error::{invalid, require, Result};
+use crate::grid;
 use crate::solver::falling::Falling;
 use crate::solver::quantities::Quantity;
 
 /// Most elements of a grid, unless the caller sets a limit.
 pub(super) const MOST_ELEMENTS: u64 = 4096 * 4096;
 /// Most elements of any grid.
-pub(super) const ALL_ELEMENTS: u64 = i32::MAX as u64;
+pub(super) const ALL_ELEMENTS: u64 = grid::MOST_ELEMENTS as u64;
 /// Errors below this cannot be estimated: 450 times the machine epsilon.
 pub(super) const ROUND_OFF: f64 = 1e-13;
 /// Least tolerance of a solve.

@@ -267,6 +267,11 @@ pub fn computed<A: Copy + Send + 'static>(values: impl ExactSizeIterator<Item = 
     Ok(computed)
 }
 
+/// A copy of values.
+pub fn copied<A: Copy + Send + 'static>(values: &[A], what: &str) -> Result<Vec<A>> {
+    computed(values.iter().copied(), what)
+}
+
 #[cfg(test)]
 #[path = "../../tests/unit/memory.rs"]
 mod tests;

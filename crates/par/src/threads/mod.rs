@@ -17,6 +17,7 @@ use std::sync::{Mutex, PoisonError};
 
 pub use crew::THREAD_NAME;
 use pool::Pool;
+pub use pool::{kept, release};
 pub use shared::{made_once, Shared};
 
 use crate::error::Result;
@@ -236,14 +237,4 @@ impl Threads {
             self.clone()
         }
     }
-}
-
-/// Ends the kept threads that no solver holds.
-pub fn release() {
-    Pool::release();
-}
-
-/// The number of kept threads, without the callers' threads.
-pub fn kept() -> usize {
-    Pool::kept()
 }

@@ -45,6 +45,16 @@ fn crew() -> MutexGuard<'static, Option<Arc<Crew>>> {
     }
 }
 
+/// Ends the kept threads that no solver holds.
+pub fn release() {
+    drop(crew().take());
+}
+
+/// The number of kept threads, without the callers' threads.
+pub fn kept() -> usize {
+    crew().as_ref().map_or(0, |crew| crew.len())
+}
+
 impl Pool {
     /// A pool of `count` threads, the caller's own among them.
     pub fn of(count: usize) -> Result<Pool> {
@@ -52,16 +62,6 @@ impl Pool {
         let crew = kept.get_or_insert_with(|| Arc::new(Crew::new())).clone();
         crew.grow_to(count - 1)?;
         Ok(Pool { count, crew })
-    }
-
-    /// Ends the workers as soon as no solver holds them.
-    pub fn release() {
-        drop(crew().take());
-    }
-
-    /// The number of workers of this process.
-    pub fn kept() -> usize {
-        crew().as_ref().map_or(0, |crew| crew.len())
     }
 
     /// This pool, or a new one after a fork; none if that fails.

@@ -17,10 +17,10 @@ fn a_child_that_is_forked_while_a_pool_is_made_makes_its_own() {
         let mut items = [0; 1];
         let pool = before.here().expect("threads");
         pool.beside(&mut items, &|item| *item += 1, || ());
-        Pool::release();
+        release();
         drop((pool, before));
         // SAFETY: as above.
-        unsafe { libc::_exit(i32::from(Pool::kept() != 0)) };
+        unsafe { libc::_exit(i32::from(kept() != 0)) };
     }
     let mut status = 0;
     // SAFETY: the child of this test; the status is written.

@@ -17,7 +17,7 @@ use std::marker::PhantomData;
 
 use pulp::{Simd, WithSimd};
 
-use crate::block::parts_mut;
+use crate::block::{parts_mut, LINE};
 use crate::fft::butterflies::butterfly;
 use crate::fft::lanes::{lane_count, Arithmetic, Lanes, Parts, C};
 use crate::lengths::LONGEST;
@@ -39,9 +39,6 @@ impl<T: Scalar> Stage<T> {
         self.twiddles.len() / (self.radix - 1)
     }
 }
-
-/// Bytes of a cache line; the longest vector has as many.
-const LINE: usize = 64;
 
 /// The most complex numbers that memory can have before its first cache line.
 pub(crate) const fn before_a_line<T>() -> usize {

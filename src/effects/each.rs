@@ -1,0 +1,58 @@
+//! Numbers of elements.
+
+use crate::error::Result;
+use crate::grid::{check_values, Grid};
+
+/// A number of each element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Each<'a> {
+    /// The same everywhere.
+    Uniform(f64),
+    /// One per element, `[my][mx]`.
+    PerElement(&'a [f64]),
+}
+
+impl<'a> Each<'a> {
+    /// One per element, or else the same everywhere.
+    pub fn of(each: Option<&'a [f64]>, uniform: f64) -> Each<'a> {
+        each.map_or(Each::Uniform(uniform), Each::PerElement)
+    }
+
+    /// The value at element i.
+    #[inline]
+    pub fn at(&self, i: usize) -> f64 {
+        match self {
+            Each::Uniform(value) => *value,
+            Each::PerElement(values) => values[i],
+        }
+    }
+
+    /// Whether it is 0 everywhere.
+    pub fn is_zero(&self) -> bool {
+        match self {
+            Each::Uniform(value) => *value == 0.0,
+            Each::PerElement(values) => values.iter().all(|value| *value == 0.0),
+        }
+    }
+
+    /// The values, if they are given per element.
+    pub fn per_element(&self) -> Option<&'a [f64]> {
+        match self {
+            Each::Uniform(_) => None,
+            Each::PerElement(values) => Some(values),
+        }
+    }
+
+    /// Checks the value or each of the values. Messages name them so.
+    pub(crate) fn check(
+        &self,
+        [one, each]: [&str; 2],
+        grid: &Grid,
+        require: impl Fn(&str, f64) -> Result<()>,
+    ) -> Result<()> {
+        match self {
+            Each::Uniform(value) => require(one, *value),
+            Each::PerElement(values) => check_values(each, values, grid, require),
+        }
+    }
+}
