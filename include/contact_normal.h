@@ -513,7 +513,8 @@
 #define CONTACT_NORMAL_WARNING_SPIKE 4
 
 /*
- `warnings`: an error of the force (or the approach) was to be estimated, and cannot be: see `accuracy.untrusted`.
+ `warnings`: an error of the force (or the approach) was to be estimated, and cannot be: see `accuracy.untrusted`. If that is 0, one grid does
+ not tell the error: pressures are at their limit, or bodies attract each other.
  */
 #define CONTACT_NORMAL_WARNING_ERROR_UNKNOWN 8
 
@@ -1751,7 +1752,7 @@ typedef struct contact_normal_report_tangential {
    */
   double residual;
   /*
-   `sum of (s.q + mu p |s|) / sum of mu p |rigid slip|`: 0 for the solution only.
+   `sum of (s.q + mu p |s|) / sum of mu p |rigid slip|`: 0 for the solution only. Without a rigid slip the scale of the residual is in its place.
    */
   double gap;
   /*
@@ -2755,9 +2756,10 @@ void contact_normal_init(int32_t kind,
                          int64_t size);
 
 /*
- The displacement of a coated body with this `shear_modulus` (+infinity: rigid) and `poisson_ratio` below, by a pressure wave: the amplitude of the
- displacement over that of the pressure, for `wave_number` (2 pi over the wave's length) > 0. To compare a coating with a formula of
- one's own: `(1 - nu)/(G k)` for a body of one material. Since 0.2.
+ Writes the `compliance` of a coated body under a pressure wave: the amplitude of the displacement over that of the
+ pressure. `shear_modulus` (+infinity: rigid) and `poisson_ratio` are those of the body below the coating.
+ `wave_number` is 2 pi over the wavelength, > 0. Compare it with a formula of your own; a body of one material has
+ `(1 - nu)/(G k)`. Since 0.2.
  */
 contact_normal_status contact_normal_coating_compliance(const struct contact_normal_coating *coating,
                                                         double shear_modulus,
@@ -2795,8 +2797,8 @@ contact_normal_status contact_normal_solver_new(const struct contact_normal_scen
                                                 struct contact_normal_solver **solver);
 
 /*
- Solves for the undeformed distance, the load and the pressure limit of `scene`. Grid, bodies, layer, period and patches must be those
- of the set-up; what differs is refused by name. `scene->influence` and `scene->row_tables` may be NULL: those of the solver. If they
+ Solves for the undeformed distance, the load and the pressure limit of `scene`. Grid, bodies and their branches, layer, coatings, period
+ and patches must be those of the set-up; what differs is refused by name. `scene->influence` and `scene->row_tables` may be NULL: those of the solver. If they
  are not NULL, each solve reads and compares them. Other coefficients need `contact_normal_solver_set_influence`. `fields`, `report`
  NULL: not wanted. After a first solve, further ones of the same kind allocate nothing, with one thread and without coefficients to
  compare (docs/conventions.md, "Many solves"). Since 0.1.
@@ -3073,7 +3075,7 @@ contact_normal_status contact_normal_influence_rolling_tangential(int32_t cx,
  and +y; depths, >= 0 and in any order, go into it. Of the scene the grid, the Poisson ratio of the body, a `period` in both directions,
  and `patches` matter: below an element of a patch the loads on another one count times the factor between both, and below one of no patch
  all loads in full. With a `coating` on this body, `influence`, `row_tables` or a period in one direction: UNSUPPORTED. Of the options (NULL:
- the defaults) `threads`, `progress`, `max_seconds` and `stop` matter; a cycle is a depth. CANCELLED, or ITERATION_LIMIT by `max_seconds`: the
+ the defaults) `threads`, `progress`, `max_seconds`, `stop` and `dump` matter; a cycle is a depth. CANCELLED, or ITERATION_LIMIT by `max_seconds`: the
  depths done so far are written, others are left alone. Loads must lie below 1e304. Without a depth the largest stresses are left alone. Since 0.2.
  */
 contact_normal_status contact_normal_subsurface_stress(const struct contact_normal_scene *scene,
@@ -3167,7 +3169,7 @@ int32_t contact_normal_has(const char *name);
 /*
  Sets the option of this `name` to the `value` of a text: "tolerance" to "1e-8", "method" to "PROJECTED_CG" (or "METHOD_PROJECTED_CG", or
  "4"). Upper and lower case are the same, blanks around do not matter, and numbers may be written as in Fortran, "1d-8". For hosts that
- read options from a file. INVALID_ARGUMENT: there is no such option, or the text is no value of it; the message lists those that exist.
+ read options from a file. INVALID_ARGUMENT: there is no such option, or the text is no value of it; the message has similar names, or all.
  The call that uses a number checks its range. Callbacks, `cycle`, `stop` and `dump` are set by the program. Since 0.2.
  */
 contact_normal_status contact_normal_set_option(struct contact_normal_options *options,

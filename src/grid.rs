@@ -31,6 +31,20 @@ impl Grid {
         Some(format!("{} is {}; this solver was set up for {}", now.0, now.1, then.1))
     }
 
+    /// The directions in which a finer grid has more elements. A direction of one element that repeats is the same everywhere: it keeps its element.
+    pub fn refines(&self, (repeats_x, repeats_y): (bool, bool)) -> (bool, bool) {
+        (self.mx > 1 || !repeats_x || self.my == 1, self.my > 1 || !repeats_y || self.mx == 1)
+    }
+
+    /// The ratio of the elements of a grid of half the element sizes to those of this one.
+    pub fn doubling(&self, repeats: (bool, bool)) -> f64 {
+        if self.refines(repeats) == (true, true) {
+            4.0
+        } else {
+            2.0
+        }
+    }
+
     /// A grid, after a check of its sizes.
     pub fn new(mx: usize, my: usize, dx: f64, dy: f64) -> Result<Grid> {
         let grid = Grid { mx, my, dx, dy };

@@ -63,21 +63,27 @@ def effects_of(given: argparse.Namespace, period: str | None) -> dict[str, Any]:
     return {"period": period, "pressure_limit": given.pressure_limit, "layer": given.layer, "coating": coating if any(coating) else None}
 
 
+def _period_of(found: Gap | Heights, given: argparse.Namespace) -> str | None:
+    """The period that the options name, or that of the file."""
+    if given.period is not None:
+        return None if given.period == "none" else str(given.period)
+    if found.period:
+        print(f"the surface repeats itself in {found.period}, as {given.file} says: --period none takes it as a piece alone", file=sys.stderr)
+    return found.period
+
+
 def gap_of(given: argparse.Namespace) -> Gap:
     """The undeformed distance that the options name, with the period that they or the file say."""
-    asked = None if given.period == "none" else given.period
     if given.gap and Gap.is_in(given.file):
         for name in ("dx", "dy", "axes", "top_first", "variable", "hole", "faults", "level"):
             if getattr(given, name) not in (None, False):
                 raise ValueError(f"{given.file} is a gap with the sizes of its elements, as Gap.write makes it: --{name.replace('_', '-')} does not go with it")
         found = Gap.read(given.file)
-        return dataclasses.replace(found, units=tuple(given.units) if given.units else None, period=asked)
+        return dataclasses.replace(found, units=tuple(given.units) if given.units else None, period=_period_of(found, given))
     if not given.gap and Path(given.file).is_file() and Gap.is_in(given.file):
         raise ValueError(f"{given.file} holds a gap, and not heights: add --gap")
     heights = _heights_of(given)
-    period = asked or (heights.period if given.period is None else None)
-    if period != asked:
-        print(f"the surface repeats itself in {period}, as {given.file} says: --period none takes it as a piece alone", file=sys.stderr)
+    period = _period_of(heights, given)
     # A field that is one period of its surface is levelled first.
     heights = dataclasses.replace(heights, period=None)
     if given.faults:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -78,13 +79,14 @@ class Gap(Short):
     def write(self, path: str | os.PathLike[str], comment: str = "") -> None:
         """Writes the gap as text, which the examples `gap.c` and `gap.f90` read.
 
-        The file has two lines that begin with "#", then `mx my dx dy`, then one undeformed distance a line, x fastest. "inf" stands where there
-        is no surface.
+        The file has two lines that begin with "#", then `mx my dx dy`, then one undeformed distance a line, x fastest; "inf": no surface. The
+        second line has the period, if there is one, and the comment. Middle and units are not in the file.
         """
         if "\n" in comment or "\r" in comment:
             raise ValueError("comment has several lines; it must be one")
         my, mx = self.h.shape
-        lines = [_HEAD, f"# {comment}", f"{mx} {my} {float(self.dx)!r} {float(self.dy)!r}", *(repr(float(value)) for value in self.h.flat)]
+        period = f"period {self.period}: " if self.period else ""
+        lines = [_HEAD, f"# {period}{comment}", f"{mx} {my} {float(self.dx)!r} {float(self.dy)!r}", *(repr(float(value)) for value in self.h.flat)]
         Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
     @staticmethod
@@ -95,7 +97,7 @@ class Gap(Short):
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Gap:
-        """The gap of a file that `write` wrote. Middle, period and units are not in the file."""
+        """The gap of a file that `write` wrote."""
         lines = Path(path).read_text(encoding="utf-8").rstrip("\n").split("\n")
         if len(lines) < 3 or lines[0] != _HEAD:
             raise ValueError(f"{path} does not begin with {_HEAD!r}: it is no file of a gap")
@@ -112,7 +114,8 @@ class Gap(Short):
             raise ValueError(f"{path}: {error}; there must be one undeformed distance a line") from None
         if h.size != mx * my:
             raise ValueError(f"{path} has {h.size} distances; {mx} x {my} elements need {mx * my}")
-        return cls(h.reshape(my, mx), dx, dy)
+        period = re.match("# period (xy|x|y): ", lines[1])
+        return cls(h.reshape(my, mx), dx, dy, period=period[1] if period else None)
 
     def plot(self, axes: Axes | None = None, largest: float | None = None) -> Axes:
         """Draws the undeformed distance, up to `largest` if it is given. Elements without a surface are white."""

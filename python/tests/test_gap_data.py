@@ -3,6 +3,7 @@
 import sys
 import tempfile
 import unittest
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -51,6 +52,9 @@ class Texts(unittest.TestCase):
             for comment in ("", "a\x0cb", "a\u2028b\x85"):
                 gap.write(path, comment)
                 np.testing.assert_array_equal(Gap.read(path).h, gap.h)
+                for period in ("x", "y", "xy", None):
+                    replace(gap, period=period).write(path, comment)
+                    self.assertEqual(Gap.read(path).period, period)
             for comment in ("a\nb", "a\rb"):
                 with self.assertRaisesRegex(ValueError, "comment has several lines"):
                     gap.write(path, comment)

@@ -20,8 +20,8 @@
 //!
 //! *Jumps of the coefficients.* Where two patches touch that displace each other less than themselves, and beside an
 //! element whose layer is much softer, pressures are singular, too. The edge lies on an edge of elements. A part of the
-//! release counts: 1 less the factor between the patches, and the part that the jump of the compliance has of it and
-//! the compliance of some elements.
+//! release counts: 1 less the factor between the patches, and the jump of the compliance over the sum of it and the
+//! compliance of some elements with their layer. A jump is what exceeds the changes beside it, so a slope has none.
 
 use std::f64::consts::PI;
 
@@ -36,6 +36,8 @@ const STEPPED_EDGE: f64 = 0.12;
 const EXACT_EDGE: f64 = 0.2;
 /// At a jump of the layer: the compliance of a side of the element that counts beside the jump. Jumps of less hardly bend the pressures.
 const BESIDE_JUMP: f64 = 4.0;
+/// The least part of an end at which the peak may lie.
+const SINGULAR_PART: f64 = 0.1;
 /// Change of a sum over the parts of force and energy: 1 for a flat punch, and up to 1.22 for x^6.
 const SUM_FACTOR: f64 = 1.3;
 
@@ -56,8 +58,21 @@ struct End {
     elements: f64,
     /// Whether the end lies on an edge of elements.
     is_exact: bool,
-    /// The compliance `pi d/(2 E*) + c`.
+    /// Whether the pressures are singular there.
+    is_singular: bool,
+    /// The compliance `pi d/(2 E*) + c`; at a jump without c, whose part `c p` is known.
     compliance: f64,
+}
+
+/// The largest pressure where the surface ends or coefficients jump within the contact.
+pub fn highest_at_ends(problem: &Problem, state: &State) -> f64 {
+    let mut highest = 0.0_f64;
+    each_end(problem, state, |i, end| {
+        if end.is_singular {
+            highest = highest.max(state.p[i]);
+        }
+    });
+    highest
 }
 
 /// Sum over the sides at which the surface ends within the contact: `t (pi d/(2 E*) + c) p` times the area of an element, with the
@@ -107,10 +122,15 @@ fn each_end(problem: &Problem, state: &State, mut each: impl FnMut(usize, End)) 
             for side in [0, 1] {
                 let compliance = flexibility * sizes[k];
                 let (elements, is_exact) = match beside(across, state, (i, place[k]), side) {
-                    Beside::Surface(j) => match jump(problem, state, (i, j), compliance) {
-                        0.0 => continue,
-                        part => (EXACT_EDGE * part, true),
-                    },
+                    Beside::Surface(_) if !problem.coefficients.may_jump() => continue,
+                    Beside::Surface(j) => {
+                        let part = jump(problem, state, [i, j], (across, place[k], side), compliance);
+                        if part > 0.0 {
+                            let (elements, is_singular) = (EXACT_EDGE * part, part > SINGULAR_PART);
+                            each(i, End { elements, is_exact: true, is_singular, compliance });
+                        }
+                        continue;
+                    }
                     Beside::Border => (EXACT_EDGE, true),
                     Beside::Hole if problem.exact_edges => (EXACT_EDGE, true),
                     Beside::Hole if is_straight(along, state, (i, place[1 - k]), (across, place[k], side)) => {
@@ -118,21 +138,37 @@ fn each_end(problem: &Problem, state: &State, mut each: impl FnMut(usize, End)) 
                     }
                     Beside::Hole => (STEPPED_EDGE, false),
                 };
-                each(i, End { elements, is_exact, compliance: compliance + problem.layer(i) });
+                let compliance = compliance + problem.layer(i);
+                each(i, End { elements, is_exact, is_singular: true, compliance });
             }
         }
     }
 }
 
-/// The part of an end that the jump of the coefficients from element i to element j is, from 0 to 1. `compliance` is that of a side of i.
-fn jump(problem: &Problem, state: &State, (i, j): (usize, usize), compliance: f64) -> f64 {
-    if !problem.coefficients.may_jump() || !state.touches(j) {
+/// The part of an end that the jump of the coefficients from element i to its neighbour j is, from 0 to 1. `compliance` is that of a side of i.
+fn jump(
+    problem: &Problem,
+    state: &State,
+    [i, j]: [usize; 2],
+    (across, place, side): (Direction, usize, usize),
+    compliance: f64,
+) -> f64 {
+    if !state.touches(j) {
         return 0.0;
     }
-    let softer = problem.layer(j) - problem.layer(i);
-    let of_layer = if softer > 0.0 { softer / (softer + BESIDE_JUMP * compliance) } else { 0.0 };
     let factor = problem.coefficients.patches().map_or(1.0, |patches| patches.between(i, j));
-    of_layer.max(1.0 - factor)
+    let change = problem.layer(j) - problem.layer(i);
+    if change <= 0.0 {
+        return 1.0 - factor;
+    }
+    // The changes before i and behind j.
+    let step = if side == 0 { -1 } else { 1 };
+    let beyond = |steps: isize, of: usize| {
+        let next = across.at(place as isize + step * steps).map(|at| i + at - place * across.step);
+        next.map_or(0.0, |next| (problem.layer(next) - problem.layer(of)).abs())
+    };
+    let softer = (change - beyond(-1, i).max(beyond(2, j))).max(0.0);
+    (softer / (softer + BESIDE_JUMP * (compliance + problem.layer(i)))).max(1.0 - factor)
 }
 
 /// The neighbour of element `i` at `place` of its line in this direction: the one before (side 0), or behind.

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::floating_point::DefaultEnvironment;
 use super::status::{contact_normal_status, set_last_error, Refusal, CONTACT_NORMAL_INTERNAL};
+use crate::threads::is_worker;
 
 thread_local! {
     static INSIDE: Cell<bool> = const { Cell::new(false) };
@@ -65,9 +66,7 @@ fn silence_our_panics() {
     }
     let previous = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
-        let thread = std::thread::current();
-        let ours = thread.name().is_some_and(|name| name.starts_with(crate::threads::THREAD_NAME));
-        if !INSIDE.get() && !ours {
+        if !INSIDE.get() && !is_worker() {
             previous(info);
         }
     }));

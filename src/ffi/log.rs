@@ -10,7 +10,7 @@ use super::arguments::unknown;
 use super::floating_point::in_host_environment;
 use super::guard::guard;
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_UNSUPPORTED};
-use crate::threads::Shared;
+use crate::threads::{is_worker, Shared};
 
 /// Log level: nothing.
 pub const CONTACT_NORMAL_LOG_OFF: i32 = 0;
@@ -62,9 +62,7 @@ impl Log for Forward {
 
     fn log(&self, record: &Record<'_>) {
         // Callbacks are called on the thread that called us, never from a thread of ours, and not for a part of the problems of a batch.
-        if QUIET.get()
-            || std::thread::current().name().is_some_and(|name| name.starts_with(crate::threads::THREAD_NAME))
-        {
+        if QUIET.get() || is_worker() {
             return;
         }
         // A copy, so that the lock is not held during the call.

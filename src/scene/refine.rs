@@ -4,26 +4,27 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::zeros;
 
-/// The values `h` of `grid` at the centres of a grid with `parts` elements for each one in both directions.
+/// The values `h` of `grid` at the centres of a grid with `parts` elements for each one in x and in y.
 ///
 /// By cubics through the four nearest centres in each direction (with fewer elements, the polynomial through all): exact for cubics,
 /// and without additional roughness. Parts of an element without surface (+infinity) have none. If one of the four has none, the line
 /// through the element and its neighbour with surface is used, on the side of the part if possible, else a constant.
-pub fn refine(h: &[f64], grid: &Grid, parts: usize) -> Result<Vec<f64>> {
+pub fn refine(h: &[f64], grid: &Grid, parts: (usize, usize)) -> Result<Vec<f64>> {
     let (mx, my) = (grid.mx, grid.my);
-    let (fine_mx, fine_my) = (mx * parts, my * parts);
-    let weights: Vec<Part> = (0..parts).map(|part| Part::new(part, parts)).collect();
+    let (fine_mx, fine_my) = (mx * parts.0, my * parts.1);
+    let weights = |parts: usize| -> Vec<Part> { (0..parts).map(|part| Part::new(part, parts)).collect() };
+    let (in_x, in_y) = (weights(parts.0), weights(parts.1));
 
     let mut rows = zeros(fine_mx * my, "undeformed distances of a finer grid")?;
     for (row, refined) in h.chunks_exact(mx).zip(rows.chunks_exact_mut(fine_mx)) {
         for (i, value) in refined.iter_mut().enumerate() {
-            *value = weights[i % parts].at(i / parts, mx, |j| row[j]);
+            *value = in_x[i % parts.0].at(i / parts.0, mx, |j| row[j]);
         }
     }
     let mut fine = zeros(fine_mx * fine_my, "undeformed distances of a finer grid")?;
     for (iy, refined) in fine.chunks_exact_mut(fine_mx).enumerate() {
         for (ix, value) in refined.iter_mut().enumerate() {
-            *value = weights[iy % parts].at(iy / parts, my, |j| rows[j * fine_mx + ix]);
+            *value = in_y[iy % parts.1].at(iy / parts.1, my, |j| rows[j * fine_mx + ix]);
         }
     }
     Ok(fine)

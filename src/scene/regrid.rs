@@ -1,19 +1,21 @@
 //! A scene on another grid over the same rectangle: coarser or finer, in any ratio.
 
 use super::{refine, Adhesion, Each, Friction, Layer, Motion, Patches, PressureLimit, Previous, Scene};
-use crate::effects::check_other_grids;
+use crate::effects::{check_other_grids, repeats};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::{collected, zeros};
 
-/// The grid over the rectangle of `grid` with the elements of both directions doubled `doublings` times. A negative number halves them,
-/// rounded, down to one.
-pub fn scaled(grid: &Grid, doublings: i32) -> Result<Grid> {
-    let Grid { mx, my, dx, dy } = *grid;
+/// The grid over the rectangle of a scene with the elements of both directions doubled `doublings` times, see [`Grid::refines`]. A negative
+/// number halves them, rounded, down to one.
+pub fn scaled(scene: &Scene<'_>, doublings: i32) -> Result<Grid> {
+    let Grid { mx, my, dx, dy } = scene.grid;
     if doublings >= 0 {
         let parts = 1_usize.checked_shl(doublings as u32).unwrap_or(0);
-        return match (mx.checked_mul(parts), my.checked_mul(parts)) {
-            (Some(mx), Some(my)) if parts > 0 => Grid::new(mx, my, dx / parts as f64, dy / parts as f64),
+        let (in_x, in_y) = scene.grid.refines(repeats(scene));
+        let (x, y) = (if in_x { parts } else { 1 }, if in_y { parts } else { 1 });
+        return match (mx.checked_mul(x), my.checked_mul(y)) {
+            (Some(mx), Some(my)) if parts > 0 => Grid::new(mx, my, dx / x as f64, dy / y as f64),
             _ => invalid(format!("{mx} x {my} elements cannot be divided {doublings} times")),
         };
     }
@@ -209,8 +211,8 @@ impl Regridded {
 /// h on another grid: refined by cubics if each element becomes a whole number of elements, else sampled.
 fn distance(h: &[f64], from: &Grid, to: &Grid) -> Result<Vec<f64>> {
     let (x, y) = (to.mx / from.mx, to.my / from.my);
-    if x == y && x >= 1 && to.mx == x * from.mx && to.my == y * from.my {
-        return refine(h, from, x);
+    if x >= 1 && y >= 1 && to.mx == x * from.mx && to.my == y * from.my {
+        return refine(h, from, (x, y));
     }
     sample(h, from, to)
 }

@@ -23,11 +23,9 @@
 //! of the corrected area. Straight pieces and straight ends of the surface have an error of half an element. Ends in steps have the square root of
 //! their number.
 
-use std::cell::Cell;
-
 use super::falling::Falling;
 use super::report::{Halving, Limit};
-use crate::contact::{at_ends, Curvature, Outline, Problem, State};
+use crate::contact::{at_ends, highest_at_ends, Curvature, Outline, Problem, State};
 use crate::progress::{DiscretisationError, LedgerRow};
 use crate::scene::Load;
 
@@ -141,12 +139,8 @@ fn ends(problem: &Problem, state: &State, outline: &Outline) -> (f64, f64) {
     if outline.ends(problem.coefficients.repeats(&state.grid)) == 0 && !problem.coefficients.may_jump() {
         return (0.0, 0.0);
     }
-    let highest = Cell::new(0.0_f64);
-    let [sum] = at_ends(problem, state, |i| {
-        highest.set(highest.get().max(state.p[i]));
-        [state.p[i]]
-    });
-    (sum / state.force(), highest.get())
+    let [sum] = at_ends(problem, state, |i| [state.p[i]]);
+    (sum / state.force(), highest_at_ends(problem, state))
 }
 
 /// The relative error of a direction of one element without a period.
@@ -248,7 +242,8 @@ pub fn estimate(
     let Some(parts) = parts else { return Default::default() };
     let hidden = residual * found.abs();
     let falling = Falling { by_sixteen: parts.short, by_four: parts.smooth, by_two: parts.of_first_order(), hidden };
-    let halving = Halving { seconds: 4.0_f64.powf(SECONDS_EXPONENT) * seconds, error: Some(falling) };
+    let doubling = finest.grid.doubling(problem.coefficients.repeats(&finest.grid));
+    let halving = Halving { seconds: doubling.powf(SECONDS_EXPONENT) * seconds, error: Some(falling) };
     let limit = if parts.error() >= hidden { Limit::Grid } else { Limit::Tolerance };
     (limit, halving)
 }

@@ -176,7 +176,7 @@ fn on_grid(
     progress: &mut Option<ProgressCallback<'_>>,
     late: &dyn Fn(&Progress) -> bool,
 ) -> Result<OnGrid> {
-    let grid = scaled(&scene.grid, doublings)?;
+    let grid = scaled(scene, doublings)?;
     match solve_on(scene, options_and_wanted, (grid, doublings), surface, progress, late) {
         // A coarser grid may be refused where the scene's is not.
         Err(error) if doublings < 0 => Ok(Err((Outcome::Stagnated, error.to_string(), None))),

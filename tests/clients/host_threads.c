@@ -142,11 +142,25 @@ static int first_calls(void)
     return bad == 0 ? EXIT_SUCCESS : fail("a child that was forked beside a first call hangs or fails");
 }
 
+static void hear(int32_t level, const char *message, void *user)
+{
+    (void)level;
+    (void)message;
+    ++*(int *)user;
+}
+
 /* After main has returned: the data of the thread are gone. */
 static void last_step(void)
 {
+    static int heard = 0;
+
+    contact_normal_set_log(hear, CONTACT_NORMAL_LOG_INFO, &heard);
     if (contact_normal_solve(&scenes[0], NULL, NULL, NULL) != CONTACT_NORMAL_OK) {
         fail("a solve at the end of the process");
+        _exit(EXIT_FAILURE);
+    }
+    if (heard == 0) {
+        fail("no message was logged at the end of the process");
         _exit(EXIT_FAILURE);
     }
     contact_normal_solve(NULL, NULL, NULL, NULL);

@@ -51,9 +51,7 @@ fn tractions_relax_however_large_they_were() {
             let (solver, gap) = solved(&scene, &what);
             let (p, q) = (&solver.state().p, &solver.friction().expect("tractions").traction);
             let pressed = |i: usize| p[i] > 0.0;
-            // Outside the contact there were none.
-            let left: Vec<Vector> =
-                (0..grid.len()).map(|i| [0, 1].map(|k| if pressed(i) { before[k][i] } else { 0.0 })).collect();
+            let left: Vec<Vector> = (0..grid.len()).map(|i| [before[0][i], before[1][i]]).collect();
             let (now, then) = (displaced(&grid, 0.0, q), displaced(&grid, by, &left));
             let (mut lost, mut scale) = (0.0, 0.0);
             for i in (0..grid.len()).filter(|&i| pressed(i)) {

@@ -5,8 +5,10 @@ use crate::paper as case;
 
 use contact_normal::analytic::{hertz, hertz_by_force, Hertz};
 use contact_normal::grid::Grid;
-use contact_normal::scene::{Bodies, Load, Scene};
-use contact_normal::solver::{solve_to_accuracy, Accuracy, Method, Options, Outcome, Refinement};
+use contact_normal::scene::{Bodies, Load, Period, Scene};
+use contact_normal::solver::{
+    cost_of_accuracy, solve_to_accuracy, Accuracy, Method, Options, Outcome, Quantity, Refinement,
+};
 
 /// True error over the target at most, where the target is met: the estimate may be too small by this (the effectivity that
 /// error estimates are judged by).
@@ -227,4 +229,39 @@ fn without_an_estimate_it_is_given_up() {
     // 16 x 16 does not count, 32 and finer ones do.
     assert_eq!(grid_of(&outcome).mx, 128);
     assert!(outcome.reason.contains("no estimate") && outcome.reason.contains("not known"), "{}", outcome.reason);
+}
+
+/// Lines in plane strain, one element across two periods: finer grids keep the one element, along which nothing differs. The pressures are those of
+/// Westergaard (J. Appl. Mech. 6, 1939): the largest is `2 sqrt(pm p*)` for a mean of pm, with `p* = pi E* times the height over the length` of the wave.
+#[test]
+fn a_line_in_plane_strain_keeps_its_one_element() {
+    let (amplitude, across, part) = (0.01, 0.5, 0.3);
+    let full = std::f64::consts::PI * amplitude;
+    let bodies = Bodies { shear_modulus: [0.5, f64::INFINITY], poisson_ratio: [0.0; 2] };
+    for along_x in [true, false] {
+        let place = |i: usize| 2.0 * std::f64::consts::PI * (i as f64 + 0.5) / 40.0;
+        let h: Vec<f64> = (0..40).map(|i| amplitude * (1.0 - place(i).cos())).collect();
+        let grid = match along_x {
+            true => Grid::new(40, 1, 1.0 / 40.0, across),
+            false => Grid::new(1, 40, across, 1.0 / 40.0),
+        };
+        let load = Load::Force(part * full * across);
+        let period = Some(Period { x: true, y: true });
+        let scene = Scene { period, ..Scene::new(grid.unwrap(), &h, bodies, load) };
+        let options = Options { threads: 1, ..Options::default() };
+        let found = solve_to_accuracy(&scene, &options, &Accuracy::new(1e-4), None, None).unwrap();
+        assert_eq!(found.stop, Outcome::Converged, "{}", found.reason);
+        let on = |grid: &Grid| if along_x { (grid.mx, grid.my) } else { (grid.my, grid.mx) };
+        let (along, one) = on(&grid_of(&found));
+        assert!(along >= 80 && one == 1, "{along} x {one}");
+        let off = found.report.measures.max_pressure / (2.0 * full * part.sqrt()) - 1.0;
+        // The element at the top has the mean of its pressures: `(pi/along)^2/6` less, in the parts of the wave.
+        assert!(off.abs() <= 2e-3, "{off:e} on {along}");
+        let wanted = (Quantity::Force, &[1e-2, 1e-3, 1e-4][..]);
+        let (_, rows) = cost_of_accuracy(&scene, &options, &Accuracy::new(0.0), wanted, None, None).unwrap();
+        for row in rows {
+            let grid = row.grid.unwrap_or_else(|| panic!("{row:?}"));
+            assert!(on(&grid).1 == 1 && on(&grid).0 <= 4 * along, "{row:?}");
+        }
+    }
 }

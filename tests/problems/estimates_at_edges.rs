@@ -205,17 +205,17 @@ fn jumps_are_found_and_waves_are_not() {
     assert!(step > 0.5, "{step}");
 }
 
-/// A ball on m x m elements, one half of which has other coefficients than the other one, by an approach.
-fn of_halves(m: usize, factor: f64, compliance: f64) -> (Solver, Report) {
+/// A ball on m x m elements by an approach, with two patches and a layer of the compliance `of(x, y)`.
+fn with_coefficients(m: usize, factor: f64, of: &dyn Fn(f64, f64) -> f64) -> (Solver, Report) {
     const SIDE: f64 = 2.4;
     let grid = Grid::new(m, m, SIDE / m as f64, SIDE / m as f64).unwrap();
     let h = at_centres(&grid, [0.0, 0.0], &|x, y| 0.5 * (x * x + y * y));
     let left = |i: usize| i % m < m / 2;
     let patch: Vec<i32> = (0..m * m).map(|i| i32::from(left(i))).collect();
-    let compliances: Vec<f64> = (0..m * m).map(|i| if left(i) { 0.0 } else { compliance }).collect();
+    let compliances = at_centres(&grid, [0.0, 0.0], of);
     let factors = [1.0, factor, factor, 1.0];
     let patches = (factor < 1.0).then_some(Patches { count: 2, patch: &patch, factors: &factors });
-    let layer = (compliance > 0.0).then_some(Layer(Each::PerElement(&compliances)));
+    let layer = compliances.iter().any(|c| *c > 0.0).then_some(Layer(Each::PerElement(&compliances)));
     let bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3; 2] };
     run(&Scene { patches, layer, ..Scene::new(grid, &h, bodies, Load::Approach(0.12)) }, &estimating())
 }
@@ -223,16 +223,41 @@ fn of_halves(m: usize, factor: f64, compliance: f64) -> (Solver, Report) {
 /// Pressures are singular where patches touch, and on the stiffer side of a jump of a layer. The force is that of grids whose error is of first order.
 #[test]
 fn the_error_beside_jumps_of_the_coefficients_is_covered() {
-    for (factor, compliance) in [(0.0, 0.0), (0.3, 0.0), (0.8, 0.0), (1.0, 0.1), (1.0, 1.0), (1.0, 10.0)] {
-        let force = |m: usize| of_halves(m, factor, compliance).1.measures.force;
+    let halves = [(0.0, [0.0; 2]), (0.3, [0.0; 2]), (0.8, [0.0; 2])];
+    let layers = [[0.0, 0.1], [0.0, 1.0], [0.0, 10.0], [0.1, 1.0]].map(|compliances| (1.0, compliances));
+    for (factor, compliances) in halves.into_iter().chain(layers) {
+        let of = |x: f64, _: f64| compliances[usize::from(x > 0.0)];
+        let force = |m: usize| with_coefficients(m, factor, &of).1.measures.force;
         let exact = 2.0 * force(384) - force(192);
         for m in [16, 24, 32, 48, 64, 96] {
-            let (_, report) = of_halves(m, factor, compliance);
+            let (_, report) = with_coefficients(m, factor, &of);
             let off = (report.measures.force - exact).abs();
             let error = report.error.force;
-            assert!(error >= off, "{factor} {compliance} {m}: off by {off:e}, estimated {error:e}");
+            assert!(error >= off, "{factor} {compliances:?} {m}: off by {off:e}, estimated {error:e}");
             // Of the largest errors: smaller ones are met by chance.
-            assert!(error <= 10.0 * off || error <= 0.03 * exact, "{factor} {compliance} {m}: {off:e}, {error:e}");
+            assert!(error <= 10.0 * off || error <= 0.03 * exact, "{factor} {compliances:?} {m}: {off:e}, {error:e}");
+        }
+    }
+}
+
+/// Compliances without a jump do not change the errors: slopes, and noise of few per cent.
+#[test]
+fn compliances_that_do_not_jump_have_the_errors_of_one() {
+    let noise = |x: f64, y: f64| 1.0 + 1e-9 * (1e3 * (3.0 * x + 5.0 * y)).sin();
+    for (name, of) in [
+        ("slope", &(|x: f64, _: f64| 1.0 + 0.2 * x) as &dyn Fn(f64, f64) -> f64),
+        ("bowl", &|x, y| 1.0 + 0.3 * (x * x + y * y)),
+        ("noise", &noise),
+    ] {
+        for m in [32, 64, 128] {
+            let (with, without) = (with_coefficients(m, 1.0, of).1, with_coefficients(m, 1.0, &|_, _| 1.0).1);
+            let ratio = |of: fn(&Report) -> f64| of(&with) / of(&without);
+            for (of, what) in [
+                (ratio(|report| report.error.force / report.measures.force), "force"),
+                (ratio(|report| report.error.max_pressure / report.measures.max_pressure), "largest pressure"),
+            ] {
+                assert!((0.6..=1.6).contains(&of), "{name} {m}: {what} {of}");
+            }
         }
     }
 }

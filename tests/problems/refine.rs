@@ -19,7 +19,7 @@ fn finer(grid: &Grid, parts: usize) -> Grid {
 /// Largest difference of the refined samples from the samples on the finer grid.
 fn error(mx: usize, my: usize, parts: usize, value: impl Fn(f64, f64) -> f64 + Copy) -> f64 {
     let grid = Grid::new(mx, my, 1.0 / mx as f64, 0.7 / my as f64).expect("a grid");
-    let refined = refine(&sampled(&grid, value), &grid, parts).expect("memory");
+    let refined = refine(&sampled(&grid, value), &grid, (parts, parts)).expect("memory");
     let exact = sampled(&finer(&grid, parts), value);
     refined.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
@@ -47,7 +47,7 @@ fn parts_of_a_hole_are_holes_and_lines_go_on_beside_it() {
     let mut h = sampled(&grid, line);
     let holes = [grid.index(0, 0), grid.index(2, 2), grid.index(3, 2), grid.index(5, 4)];
     holes.iter().for_each(|&i| h[i] = INF);
-    let refined = refine(&h, &grid, 4).expect("memory");
+    let refined = refine(&h, &grid, (4, 4)).expect("memory");
     let fine = finer(&grid, 4);
     for (i, (found, exact)) in refined.iter().zip(sampled(&fine, line)).enumerate() {
         let (ix, iy) = (i % fine.mx, i / fine.mx);
@@ -64,6 +64,6 @@ fn an_element_alone_is_flat() {
     let grid = Grid::new(3, 3, 1.0, 1.0).expect("a grid");
     let mut h = vec![INF; 9];
     h[4] = 0.75;
-    let refined = refine(&h, &grid, 2).expect("memory");
+    let refined = refine(&h, &grid, (2, 2)).expect("memory");
     assert_eq!(refined.iter().filter(|v| v.is_finite()).copied().collect::<Vec<f64>>(), [0.75; 4]);
 }

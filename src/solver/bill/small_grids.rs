@@ -157,7 +157,7 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
 
     /// One grid; false: cancelled. The results stay those of the grid before if the solve is cancelled, and if a coarser grid refuses the scene.
     fn on(&mut self, doublings: i32, progress: &mut Option<ProgressCallback<'_>>) -> Result<bool> {
-        let grid = scaled(&self.scene.grid, doublings)?;
+        let grid = scaled(self.scene, doublings)?;
         let regridded = Regridded::new(self.scene, grid, None)?;
         let scene = regridded.scene(self.scene);
         let mut solved: Vec<Solved> = vec![];

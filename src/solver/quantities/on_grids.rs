@@ -142,7 +142,7 @@ pub fn quantities(
     let mut courses: Vec<Course> = wanted.iter().map(|quantity| Course::of(*quantity, scene)).collect();
     let (mut rows, mut worst, mut before, mut is_apart) = (Vec::new(), Outcome::Converged, None, false);
     for doublings in -(coarser as i32)..=0 {
-        let grid = scaled(&scene.grid, doublings)?;
+        let grid = scaled(scene, doublings)?;
         // The grid cannot be coarsened any more.
         if before == Some(grid) {
             continue;

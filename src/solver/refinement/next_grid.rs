@@ -14,6 +14,8 @@ use crate::solver::falling::Falling;
 #[derive(Clone, Debug)]
 pub(super) struct Past {
     pub grid: Grid,
+    /// The directions in which the scene repeats.
+    pub repeats: (bool, bool),
     /// Elements across the contact area.
     pub across: (usize, usize),
     /// Elements across that suffice for all targets.
@@ -37,7 +39,7 @@ pub(super) struct Past {
 /// The next grid, or the end.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Next {
-    /// Double the elements of both directions this many times.
+    /// Double the elements of the directions that [refine](Grid::refines) this many times.
     Refine(u32),
     /// The limit that forbids the next grid.
     Limit(String),
@@ -68,10 +70,12 @@ impl Past {
             let ratio = problem.grid.len() as f64 / before.grid.len() as f64;
             (seconds / before.seconds).ln() / ratio.ln()
         });
+        let repeats = problem.coefficients.repeats(&problem.grid);
         let exponent = seen.filter(|seen| seen.is_finite()).unwrap_or(SECONDS_EXPONENT);
         Past {
             grid: problem.grid,
-            across: across(solved.solver.state(), problem.coefficients.repeats(&problem.grid), scene),
+            repeats,
+            across: across(solved.solver.state(), repeats, scene),
             enough: accuracy.wanted().map(|(quantity, _)| quantity.enough_across()).max().unwrap_or(1),
             excesses: accuracy.excesses(&solved.outlook),
             is_believed,
@@ -162,7 +166,9 @@ impl Accuracy {
 
     /// The limit that these doublings would break, if any.
     fn limit(&self, past: &Past, doublings: u32) -> Option<String> {
-        let (mx, my) = ((past.grid.mx as u64) << doublings, (past.grid.my as u64) << doublings);
+        let (in_x, in_y) = past.grid.refines(past.repeats);
+        let times = |m: usize, refines: bool| if refines { (m as u64) << doublings } else { m as u64 };
+        let (mx, my) = (times(past.grid.mx, in_x), times(past.grid.my, in_y));
         let why = match past.is_resolved() {
             true => String::new(),
             false => format!(
@@ -177,7 +183,7 @@ impl Accuracy {
         if mx.saturating_mul(my) > most.min(ALL_ELEMENTS) {
             return in_the_way(format!("max_elements, {most},"));
         }
-        let ratio = 4f64.powi(doublings as i32);
+        let ratio = past.grid.doubling(past.repeats).powi(doublings as i32);
         let bytes = past.bytes as f64 * (1.0 + ratio);
         if self.max_bytes > 0 && bytes > self.max_bytes as f64 {
             return in_the_way(format!("max_bytes, {} of the {bytes:.0} predicted,", self.max_bytes));

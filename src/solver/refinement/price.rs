@@ -3,6 +3,7 @@
 use super::accuracy::{tolerance_for, MOST_ELEMENTS, ROUND_OFF};
 use super::sample::Sample;
 use super::Accuracy;
+use crate::effects::repeats;
 use crate::grid::Grid;
 use crate::scene::{scaled, Scene};
 use crate::solver::falling::Falling;
@@ -83,7 +84,8 @@ pub(super) fn predict(
 ) -> Option<(i32, f64)> {
     let last = samples.last()?;
     let costs: Vec<Cost> = samples.iter().map(|sample| sample.cost).collect();
-    let seconds = |k: i32| seconds_on(&costs, last.cost.elements * 4f64.powi(k));
+    let doubling = scene.grid.doubling(repeats(scene));
+    let seconds = |k: i32| seconds_on(&costs, last.cost.elements * doubling.powi(k));
     if last.is_exact() {
         return Some((-last.doublings, seconds(-last.doublings)));
     }
@@ -91,7 +93,7 @@ pub(super) fn predict(
     let (least, most) = (-(last.across.ilog2() as i32), (MOST_ELEMENTS as f64).log2() as i32);
     let does = |k: &i32| {
         let enough = last.across as f64 * 2f64.powi(*k) >= quantity.enough_across() as f64;
-        enough && falling.after(*k) <= target && scaled(&scene.grid, last.doublings + k).is_ok()
+        enough && falling.after(*k) <= target && scaled(scene, last.doublings + k).is_ok()
     };
     let k = (least..=most).find(does)?;
     Some((k, seconds(k)))
@@ -145,13 +147,14 @@ pub(super) fn price(
     let Some((k, seconds)) = predict(scene, samples, (quantity, target)) else {
         return Price { obstacle: Some(Obstacle::Elements), ..nothing };
     };
-    let Ok(grid) = scaled(&scene.grid, last.doublings + k) else { return nothing };
+    let Ok(grid) = scaled(scene, last.doublings + k) else { return nothing };
     let (part, work_units) = to(samples, last.doublings + k, tolerance);
     let work_units = counted.iter().find(|one| one.is_of(&grid, tolerance)).map_or(work_units, |one| one.products);
     let seconds = seconds * part;
-    let bytes = last.bytes * 4f64.powi(k);
+    let doubling = scene.grid.doubling(repeats(scene));
+    let bytes = last.bytes * doubling.powi(k);
     // A search holds the solver of the grid before, of half the elements a side or less, unless it ends on its first grid.
-    let before = if last.doublings + k > 0 { bytes / 4.0 } else { 0.0 };
+    let before = if last.doublings + k > 0 { bytes / doubling } else { 0.0 };
     let most = if accuracy.max_elements == 0 { MOST_ELEMENTS } else { accuracy.max_elements };
     let obstacles = [
         (grid.len() as u64 > most, Obstacle::Elements),

@@ -13,7 +13,6 @@ pub use super::price::{Obstacle, Price};
 use super::sample::{Callbacks, Sample, Taken};
 use super::{check, Accuracy, SurfaceCallback};
 use crate::error::Result;
-use crate::grid::Grid;
 use crate::scene::{scaled, Scene};
 use crate::solver::machine::{self, NEXT_GRID_RATIO};
 use crate::solver::quantities::Quantity;
@@ -60,7 +59,7 @@ pub fn cost_of_accuracy(
     // The first call in a process times the machine, before the list's own time begins.
     machine::growth(1.0, 1.0);
     let began = Instant::now();
-    let (mut samples, mut doublings): (Vec<Sample>, i32) = (Vec::new(), first(&scene.grid));
+    let (mut samples, mut doublings): (Vec<Sample>, i32) = (Vec::new(), first(scene));
     let list_with = |samples: &[Sample], counted: &[Counted], speed_up: f64| -> Vec<Price> {
         let one = |target: &f64| price(scene, (samples, counted), accuracy, (quantity, *target), speed_up);
         targets.iter().map(one).collect()
@@ -90,7 +89,7 @@ pub fn cost_of_accuracy(
         }
         let ends = began.elapsed().as_secs_f64() + next;
         let is_over = ends > most && (ends > UNKNOWN_SECONDS || is_known(&samples, history.is_believed()));
-        if is_over || is_apart(&samples) || scaled(&scene.grid, doublings).is_err() {
+        if is_over || is_apart(&samples) || scaled(scene, doublings).is_err() {
             break;
         }
     }
@@ -208,8 +207,9 @@ fn count(
 }
 
 /// Doublings from the scene's grid to the first sample; negative: halvings.
-fn first(grid: &Grid) -> i32 {
-    let halves = (0..).take_while(|k| grid.mx.max(grid.my) >> k >= 2 * FIRST_SAMPLE && scaled(grid, -(k + 1)).is_ok());
+fn first(scene: &Scene<'_>) -> i32 {
+    let most = scene.grid.mx.max(scene.grid.my);
+    let halves = (0..).take_while(|k| most >> k >= 2 * FIRST_SAMPLE && scaled(scene, -(k + 1)).is_ok());
     -(halves.count() as i32)
 }
 

@@ -101,7 +101,7 @@ impl Sample {
         (surface, progress): Callbacks<'_, '_, '_>,
     ) -> Result<Taken> {
         let (began, mut reached) = (Instant::now(), Vec::new());
-        let elements = scaled(&scene.grid, doublings)?.len();
+        let elements = scaled(scene, doublings)?.len();
         let mut watch = |told: &Progress| {
             if told.mx * told.my == elements {
                 reached.push((told.residual, began.elapsed().as_secs_f64(), told.work_units));

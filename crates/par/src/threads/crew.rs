@@ -1,5 +1,6 @@
 //! The workers of a process, and the list of regions that they share. rayon lends the threads.
 
+use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -10,6 +11,15 @@ use crate::error::{OutOfMemory, Result};
 
 /// Prefix of the names of our threads.
 pub const THREAD_NAME: &str = "contact-normal-";
+
+thread_local! {
+    static IS_WORKER: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Whether this thread is one of the pool. A thread may ask even while it ends, when its name is gone.
+pub fn is_worker() -> bool {
+    IS_WORKER.get()
+}
 
 /// How long workers spin for more work before they sleep, and a caller for the end of the workers. A solve has hundreds of passes of 10 to
 /// 1000 us, with serial work between them, and waking a sleeping thread takes about 50 us.
@@ -68,7 +78,11 @@ impl Crew {
         }
         let refused = |e| OutOfMemory(format!("threads is {}; the threads could not be started: {e}", workers + 1));
         let builder = rayon::ThreadPoolBuilder::new().num_threads(workers - known);
-        let more = builder.thread_name(move |i| format!("{THREAD_NAME}{}", known + i)).build().map_err(refused)?;
+        let more = builder
+            .thread_name(move |i| format!("{THREAD_NAME}{}", known + i))
+            .start_handler(|_| IS_WORKER.set(true))
+            .build()
+            .map_err(refused)?;
         let shared = self.shared.clone();
         more.spawn_broadcast(move |_| shared.work());
         lent.push(more);

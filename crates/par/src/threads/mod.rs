@@ -15,7 +15,7 @@ mod shared;
 
 use std::sync::{Mutex, PoisonError};
 
-pub use crew::THREAD_NAME;
+pub use crew::{is_worker, THREAD_NAME};
 use pool::Pool;
 pub use pool::{kept, release};
 pub use shared::{made_once, Shared};
