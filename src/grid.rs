@@ -108,7 +108,7 @@ impl Grid {
         [from_middle(i % self.mx, self.mx, self.dx), from_middle(i / self.mx, self.my, self.dy)]
     }
 
-    /// Numbers of offsets >= 0 in x and in y: those of the grid, or of half of it in directions in which it is a period, which has as many bins >= 0.
+    /// Numbers of offsets >= 0 in x and in y. In a periodic direction they reach to half the period, and are as many as the waves >= 0.
     pub(crate) fn offsets(&self, (x, y): (bool, bool)) -> (usize, usize) {
         let offsets = |repeats: bool, m: usize| if repeats { m / 2 + 1 } else { m };
         (offsets(x, self.mx), offsets(y, self.my))

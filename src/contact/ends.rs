@@ -20,8 +20,9 @@
 //!
 //! *Jumps of the coefficients.* Where two patches touch that displace each other less than themselves, and beside an
 //! element whose layer is much softer, pressures are singular, too. The edge lies on an edge of elements. A part of the
-//! release counts: 1 less the factor between the patches, and the jump of the compliance over the sum of it and the
-//! compliance of some elements with their layer. A jump is what exceeds the changes beside it, so a slope has none.
+//! release counts: 1 - F for a factor of F between the patches, and for a layer jump/(jump + [`BESIDE_JUMP`] times the
+//! compliance of an element and its layer). The larger one counts. A jump is a change beyond the changes beside it, so
+//! a slope has none.
 
 use std::f64::consts::PI;
 
@@ -34,7 +35,7 @@ use crate::sums::in_blocks;
 const STRAIGHT_EDGE: f64 = 0.55;
 const STEPPED_EDGE: f64 = 0.12;
 const EXACT_EDGE: f64 = 0.2;
-/// At a jump of the layer: the compliance of a side of the element that counts beside the jump. Jumps of less hardly bend the pressures.
+/// See above. Measured with balls on two halves, of compliances from 0 | 0.01 to 0 | 10: estimates are 2 to 5 times the error.
 const BESIDE_JUMP: f64 = 4.0;
 /// The least part of an end at which the peak may lie.
 const SINGULAR_PART: f64 = 0.1;

@@ -43,7 +43,7 @@ impl<'a> Each<'a> {
         }
     }
 
-    /// Checks the value or each of the values. Messages name them so.
+    /// Checks the value or each of the values. `one` and `each` are their names in messages.
     pub(crate) fn check(
         &self,
         [one, each]: [&str; 2],

@@ -62,7 +62,7 @@ pub struct contact_normal_report_tangential {
     pub creepage: [f64; 2],
     /// rms over C of the wrong part of the slip, relative to the rigid slip, with a fresh product in double precision. Wrong is all slip of an
     /// element that sticks, and the part that is not opposite to q where one slips. In a shift, and in steady rolling by a force, it is relative
-    /// to the displacements where these are larger; otherwise to 1.5e-8 of the displacements at least, their round-off.
+    /// to the displacements where these are larger; otherwise to 1.5e-8 of the displacements, now and before the step, at least: their round-off.
     pub residual: f64,
     /// `sum of (s.q + mu p |s|) / sum of mu p |rigid slip|`: 0 for the solution only. Without a rigid slip the scale of the residual is in its place.
     pub gap: f64,

@@ -171,14 +171,15 @@ pub(super) fn run(
 pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Option<&State>) -> String {
     let (cycles, residual) = (report.count.cycles, report.measures.certificate.residual);
     let tangential = report.friction.map(|found| format!("; that of friction is {:e}", found.certificate.residual));
+    let counted = |count: u64, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
     let products = match report.friction {
         Some(found) if stop == Outcome::IterationLimit => {
-            format!(" and {} products of friction", found.products.round())
+            format!(" and {} of friction", counted(found.products.round() as u64, "product"))
         }
         _ => String::new(),
     };
-    let s = if cycles == 1 { "" } else { "s" };
-    let mut message = format!("{} after {cycles} cycle{s}{products}; the residual is {residual:e}", why(stop));
+    let cycles = counted(cycles, "cycle");
+    let mut message = format!("{} after {cycles}{products}; the residual is {residual:e}", why(stop));
     if stop != Outcome::Cancelled && residual <= report.tolerance && report.friction.is_none() {
         let Certificate { violation, complementarity, .. } = report.measures.certificate;
         message += &format!(", the violation {violation:e} and the complementarity {complementarity:e}");

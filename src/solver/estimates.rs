@@ -14,6 +14,7 @@
 //!
 //! At ends of the surface pressures are infinite, and the end lies anywhere between two centres ([`at_ends`]). A jump of the surface also lies
 //! anywhere between two centres ([`Curvature::jumps`]). Both errors are of first order in the size of the elements.
+//! At jumps of coefficients between patches, and of a layer, pressures are infinite, too; they count as a part of an end.
 //!
 //! *Pressures.* Their errors are fractions of the second differences within the contact area and across its boundary:
 //! [`PEAK_ERROR`] for the largest pressure, [`PRESSURES_ERROR`] in the rms. A peak with a large relative second
@@ -67,7 +68,7 @@ pub struct Parts {
     pub smooth: f64,
     /// The error by the bend at short chords: of fourth order.
     pub short: f64,
-    /// The error by ends of the surface: of first order.
+    /// The error by ends of the surface and jumps of the coefficients: of first order.
     pub ends: f64,
     /// The error by jumps of the surface: of first order.
     pub jumps: f64,
@@ -75,7 +76,7 @@ pub struct Parts {
     pub stiffness: f64,
     /// The factor on errors of the approach.
     by: f64,
-    /// The largest pressure where the surface ends, with a border or a hole.
+    /// The largest pressure beside a border, a hole or a jump of the coefficients.
     pub highest_at_ends: f64,
     /// The mean of `smooth`, with its sign.
     likely: f64,

@@ -121,7 +121,7 @@ static int first_call(void)
     if (pthread_create(&thread, NULL, call, NULL) != 0) return 1;
     child = fork();
     if (child == 0) {
-        alarm(20);
+        alarm(5);
         _exit(contact_normal_solve(NULL, NULL, NULL, NULL) != CONTACT_NORMAL_NULL_POINTER);
     }
     if (child < 0 || waitpid(child, &status, 0) != child) return 1;
@@ -134,7 +134,7 @@ static int first_calls(void)
 {
     int k, status, bad = 0;
 
-    for (k = 0; k < 40; k++) {
+    for (k = 0; k < 120; k++) {
         const pid_t child = fork();
         if (child == 0) _exit(first_call());
         if (child < 0 || waitpid(child, &status, 0) != child || status != 0) bad++;

@@ -96,7 +96,9 @@ fn a_slip_beside_the_contact_is_no_motion() {
 fn a_gap_without_work_is_a_number() {
     let grid = Grid::new(1, 1, 1.0, 1.0).unwrap();
     for motion in [Motion::Shift, Motion::TransientRolling, Motion::SteadyRolling] {
-        for (spin, spin_centre) in [(1e-3, [0.1, 0.2]), (0.01, [0.37, 0.71]), (1.0, [0.1, 0.2])] {
+        for k in 0..100 {
+            let place = |seed: i32| f64::from((k * seed) % 97) / 97.0;
+            let (spin, spin_centre) = (10f64.powi(k % 13 - 12) * (1.0 + place(31)), [place(17), place(59)]);
             let prescribed = [Prescribed::Force(0.0); 2];
             let friction = Friction { motion, prescribed, spin, spin_centre, ..Friction::new(MU) };
             let scene = Scene { friction: Some(friction), ..Scene::new(grid, &[0.0], BODIES, Load::Force(1e-3)) };

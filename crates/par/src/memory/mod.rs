@@ -267,7 +267,7 @@ pub fn computed<A: Copy + Send + 'static>(values: impl ExactSizeIterator<Item = 
     Ok(computed)
 }
 
-/// A copy of values.
+/// A copy of values, in kept memory if there is some.
 pub fn copied<A: Copy + Send + 'static>(values: &[A], what: &str) -> Result<Vec<A>> {
     computed(values.iter().copied(), what)
 }
