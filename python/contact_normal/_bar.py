@@ -22,12 +22,16 @@ class Bar:
     def __init__(self, file: TextIO | None = None) -> None:
         # None where there is no terminal, as in windowed programs and services: nothing is drawn then.
         self._file, self._began = file or sys.stderr, time.monotonic()
+        self._tqdm: Any = None
         try:
-            self._tqdm: Any = importlib.import_module("tqdm").tqdm(
-                total=100, file=self._file, bar_format="{l_bar}{bar}| {elapsed}<{remaining}{postfix}"
-            ) if self._file else None
+            tqdm = importlib.import_module("tqdm").tqdm
         except ImportError:
-            self._tqdm = None
+            return
+        self._written(partial(self._begin, tqdm))
+
+    def _begin(self, tqdm: Any) -> None:
+        # It writes at once.
+        self._tqdm = tqdm(total=100, file=self._file, bar_format="{l_bar}{bar}| {elapsed}<{remaining}{postfix}")
 
     def draw(self, part: float, text: str) -> None:
         """Draws the part that is done, 0 to 1, and a text."""

@@ -65,15 +65,19 @@ class Watched:
         What is solved; None: on grids that are not known beforehand.
     entries : int
         Tangential problems that are solved, too.
+    asks : bool
+        Whether the call has other callbacks.
     """
 
-    def __init__(self, progress: Callable[[Progress], Any] | bool | None, options: Any, scene: Scene | None, entries: int = 0) -> None:
+    def __init__(
+        self, progress: Callable[[Progress], Any] | bool | None, options: Any, scene: Scene | None, entries: int = 0, asks: bool = False
+    ) -> None:
         if progress is not None and not isinstance(progress, bool) and not callable(progress):
             raise TypeError(f"progress is {progress!r}; it must be a callable, or True for a bar")
         self._error: BaseException | None = None
         self._bar = SolveBar(scene.h.size if scene else None, options.tolerance, entries) if progress is True else None
         self._told: Any = self._bar.tell if self._bar else progress
-        self._asks = bool(self._told) or scene is None
+        self._asks = bool(self._told) or asks
         self._is_short = not self._told and not logged and scene is not None and self._ends_soon(scene, options, entries)
         if self._told or not self._is_short and on_main_thread():
             self._callback = ProgressCallback(self._call)
@@ -171,5 +175,6 @@ def _logged(level: int, message: bytes, _user: Any) -> None:
             raise
 
 
-# The library may call it at any time: it is never freed.
+# The library may call it at any time: it is never freed, and a reload of this module keeps the one before.
 _LOGGED = LogCallback(_logged)
+_KEPT = [*globals().get("_KEPT", ()), _LOGGED]

@@ -118,7 +118,7 @@ def creep_force_table(
             return table
         journal = store.Journal(path, plan)
     try:
-        planes = _planes(plan, journal, integer("workers", workers), client, progress)
+        planes = _planes(plan, journal, _workers(workers), client, progress)
     except ContactNormalError:
         if journal is not None:
             journal.leave()
@@ -148,6 +148,12 @@ def _plan(xi: Any, eta: Any, phi: Any, axis_ratio: Any, poisson_ratio: Any, surf
         raise ValueError(f"elements is {elements}; it must be at least 4")
     parts = None if surface is None else prepared(surface, tolerance)
     return Plan(**axes, elements=0 if surface is not None else int(elements), tolerance=number("tolerance", tolerance), surface=parts)
+
+
+def _workers(given: int) -> int:
+    if (workers := integer("workers", given)) < 0:
+        raise ValueError(f"workers is {workers}; it must be at least 1, or 0 for one of each core")
+    return workers
 
 
 def _planes(plan: Plan, journal: store.Journal | None, workers: int, client: Any, progress: Any) -> dict[int, Any]:
@@ -188,7 +194,7 @@ def _computed(plan: Plan, missing: list[int], workers: int, client: Any) -> Iter
     jobs: dict[Any, int] = {}
 
     def submit() -> None:
-        jobs.update((executor.submit(plane, plan, index), index) for index in missing)
+        jobs.update((executor.submit(_at_work if client is None else plane, plan, index), index) for index in missing)
 
     try:
         # By a worker: a signal that interrupts an executor leaves it half begun.
@@ -207,6 +213,19 @@ def _computed(plan: Plan, missing: list[int], workers: int, client: Any) -> Iter
         made(partial(executor.shutdown, wait=client is None))
 
 
+# Held by a worker while it is not computing. One that ended while it sends a result would leave the other side waiting for the rest.
+_sending = threading.Lock()
+
+
+def _at_work(plan: Plan, index: int) -> Any:
+    """As `plane`, in a worker: it may be ended meanwhile."""
+    _sending.release()
+    try:
+        return plane(plan, index)
+    finally:
+        _sending.acquire()
+
+
 def _leave_with_parent(stop: Any) -> None:
     """Ends this process soon after its parent was killed or has set `stop`. Otherwise it would wait for work for ever.
 
@@ -215,9 +234,11 @@ def _leave_with_parent(stop: Any) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     def watch(started_by: int) -> None:
-        while os.getppid() == started_by and not stop.value:
+        while os.getppid() == started_by and not (stop.value and _sending.acquire(timeout=0.05)):
             time.sleep(0.05)
         os._exit(1)
+
+    _sending.acquire()
 
     # With a fork server, the parent is the server. It ends with the process that asks for the work.
     threading.Thread(target=watch, args=(os.getppid(),), daemon=True).start()

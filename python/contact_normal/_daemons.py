@@ -13,7 +13,10 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from typing import Any
 
-# Seconds that the end of the process waits: a cycle of the largest grids takes less.
+from ._library import library
+from ._structs import LogCallback
+
+# Seconds that the end of the process waits at most: most cycles and set-ups take less. A callback after that aborts.
 _LAST_CYCLE = 10.0
 
 # The callable that gets the library's messages, if any.
@@ -24,16 +27,21 @@ _NOTHING = nullcontext()
 
 
 class _Call:
+    """A call that has to be waited for."""
+
     def __enter__(self) -> None:
         _calls.add(self)
+        if _ending.is_set():
+            _calls.discard(self)
+            raise SystemExit
 
     def __exit__(self, *_: object) -> None:
         _calls.discard(self)
 
 
 def within(has_callbacks: bool) -> AbstractContextManager[None]:
-    """Marks a call of the library on this thread, if it has to be waited for."""
-    return _Call() if (has_callbacks or logged) and threading.current_thread().daemon else _NOTHING
+    """Marks a call of the library on this thread, if its callbacks have to be waited for."""
+    return _Call() if has_callbacks and threading.current_thread().daemon else _NOTHING
 
 
 def is_to_end() -> bool:
@@ -47,8 +55,12 @@ def forget() -> None:
 
 
 def end() -> None:
-    """Cancels the calls at their next callback, and waits for them."""
+    """Cancels the calls with callbacks at the next of these, and waits for them. A daemon that begins another one ends, as the interpreter would end it."""
     _ending.set()
+    if logged:
+        # Calls without callbacks go on, and nobody hears their messages. One message may be on its way.
+        library.contact_normal_set_log(LogCallback(), 1, None)
+        time.sleep(0.05)
     last = time.monotonic() + _LAST_CYCLE
     while _calls and time.monotonic() < last:
         time.sleep(0.01)

@@ -270,7 +270,7 @@ def solve_to_accuracy(
         h, dx, dy, shape, corner, effects, approach=approach, force=force, mean_pressure=mean_pressure, shear_modulus=shear_modulus,
         poisson_ratio=poisson_ratio, young_modulus=young_modulus, e_star=e_star,
     )
-    watched = Watched(progress, struct, None)
+    watched = Watched(progress, struct, None, asks=surface is not None)
     accuracy, handle = limits(max_seconds, max_bytes, max_elements, surface), Handle()
     accuracy.target = relative("target", target)
     accuracy.max_pressure_target = relative("max_pressure_target", max_pressure_target)

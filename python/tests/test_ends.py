@@ -64,14 +64,45 @@ time.sleep(0.3)
                 self.assertEqual((ended.returncode, ended.stdout), (0, ""), ended.stderr)
 
     def test_a_daemon_whose_messages_are_logged(self):
-        self.check("""
-cn.set_log(lambda level, text: None)
+        # Whether the solves begin before the callable is set or after.
+        for before, after in (("", "cn.set_log(lambda level, text: None)"), ("cn.set_log(lambda level, text: None)", "")):
+            self.check(f"""
+{before}
 def endless():
     while True:
         cn.solve(h, 0.1, 0.1, **given)
 threading.Thread(target=endless, daemon=True).start()
 time.sleep(0.3)
+{after}
 """, "")
+
+    def test_a_daemon_that_begins_again_while_the_process_ends(self):
+        self.check("""
+import atexit
+def endless():
+    while True:
+        try:
+            cn.solve(h, 0.1, 0.1, progress=lambda told: None, tolerance=1e-300, criterion="UPDATE", method="NORM", **given)
+        except cn.ContactNormalError:
+            pass
+# Registered after the package's handler, and called before it; the time after that handler is what matters.
+from contact_normal import _daemons
+atexit.unregister(_daemons.end)
+atexit.register(time.sleep, 0.3)
+atexit.register(_daemons.end)
+threading.Thread(target=endless, daemon=True).start()
+time.sleep(0.2)
+""", "")
+
+    def test_stresses_of_a_daemon_are_not_waited_for(self):
+        ended = process("""
+import contact_normal._daemons as daemons
+result = cn.solve(h, 0.1, 0.1, **given)
+daemons._LAST_CYCLE = 1000.0
+threading.Thread(target=lambda: result.subsurface(np.linspace(0.1, 1.0, 3000)), daemon=True).start()
+time.sleep(0.2)
+""")
+        self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (0, "", ""))
 
     @unittest.skipUnless(hasattr(os, "fork"), "there is no fork")
     def test_a_fork_that_returns_from_a_callback(self):
@@ -111,7 +142,12 @@ if __name__ == "__main__":
 
 class Bars(unittest.TestCase):
     def test_where_there_is_no_terminal(self):
-        ended = process("""
+        # With tqdm, which writes as soon as it is made, and without.
+        for tqdm in ("None", "types.SimpleNamespace(tqdm=lambda file, **more: file.write(''))"):
+            with self.subTest(tqdm):
+                ended = process(f"""
+import types
+sys.modules["tqdm"] = {tqdm}
 class Full:
     def write(self, text):
         raise BrokenPipeError
@@ -121,7 +157,7 @@ for there in (None, Full()):
     print(cn.solve(h, 0.1, 0.1, progress=True, **given).status)
 sys.stderr = sys.__stderr__
 """)
-        self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (0, "0\n0\n", ""))
+                self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (0, "0\n0\n", ""))
 
 
 class Memory(unittest.TestCase):
