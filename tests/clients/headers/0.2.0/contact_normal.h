@@ -1748,7 +1748,7 @@ typedef struct contact_normal_report_tangential {
   /*
    rms over C of the wrong part of the slip, relative to the rigid slip, with a fresh product in double precision. Wrong is all slip of an
    element that sticks, and the part that is not opposite to q where one slips. In a shift, and in steady rolling by a force, it is relative
-   to the displacements where these are larger; otherwise to 1.5e-8 of the displacements at least, their round-off.
+   to the displacements where these are larger; otherwise to 1.5e-8 of the displacements, now and before the step, at least: their round-off.
    */
   double residual;
   /*
