@@ -1,7 +1,9 @@
 //! The Fortran module and examples, compiled with gfortran and run: exports, expected output, certificates, norm_solve.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::{Mutex, PoisonError};
 
 use crate::c::gap_file;
 use crate::description::{Description, Kind};
@@ -15,15 +17,32 @@ use contact_normal::influence::{Coefficients, HalfSpace};
 /// Every warning is an error: the module must compile cleanly with the strictest users' flags.
 const STRICT: [&str; 5] = ["-std=f2018", "-Wall", "-Wextra", "-pedantic", "-Werror"];
 
-/// Compiles the module and `source` with it; returns the program. `flags` for both.
+/// Compiles `source` with the module; returns the program. `flags` for both.
 fn compile(source: &str, flags: &[&str], folder: &Path) -> PathBuf {
     let name = Path::new(source).file_stem().expect("a file name").to_string_lossy().into_owned();
-    let program = folder.join(name);
+    let (program, module) = (folder.join(name), module(flags));
     let mut gfortran = Command::new("gfortran");
-    gfortran.args(STRICT).args(flags).arg(root().join("include/contact_normal.f90")).arg(root().join(source));
-    gfortran.arg("-o").arg(&program).arg("-L").arg(folder).arg("-lcontact_normal").current_dir(folder);
-    run(&mut gfortran);
+    gfortran.args(STRICT).args(flags).arg("-I").arg(&module).arg(root().join(source));
+    gfortran.arg(module.join("contact_normal.o")).arg("-o").arg(&program);
+    run(gfortran.arg("-L").arg(folder).arg("-lcontact_normal").current_dir(folder));
     program
+}
+
+/// The folder of the module, which is compiled once with these flags.
+fn module(flags: &[&str]) -> PathBuf {
+    static COMPILED: Mutex<BTreeMap<String, PathBuf>> = Mutex::new(BTreeMap::new());
+    let flags_of_name = flags.concat().replace(['=', ','], "_");
+    // One that did not compile leaves nothing behind.
+    let mut compiled = COMPILED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(folder) = compiled.get(&flags_of_name) {
+        return folder.clone();
+    }
+    let folder = scratch(&format!("fortran_compiled{flags_of_name}"));
+    let mut gfortran = Command::new("gfortran");
+    gfortran.args(STRICT).args(flags).arg("-c").arg(root().join("include/contact_normal.f90"));
+    run(gfortran.current_dir(&folder));
+    compiled.insert(flags_of_name, folder.clone());
+    folder
 }
 
 /// What a program prints, without the times.
