@@ -1,4 +1,4 @@
-//! The kernels of subsurface stresses, near and far, against corner differences of the potentials in 400 bits.
+//! The kernels of subsurface stresses, near and far, against corner differences of the potentials in 256 bits.
 
 use astro_float::{BigFloat, Consts, RoundingMode};
 
@@ -7,7 +7,7 @@ use crate::grid::Grid;
 use crate::stress::Body;
 
 /// Corner differences at offset 16384, depth 1e6 and third derivatives cancel: 200 of them would do.
-const BITS: usize = 400;
+const BITS: usize = 256;
 const RM: RoundingMode = RoundingMode::ToEven;
 
 /// Arithmetic of many digits.
@@ -146,13 +146,22 @@ const DEPTHS: [f64; 10] = [0.0, 1e-12, 0.01, 0.3, 1.0, 7.0, 12.1, 32.1, 1e4, 1e6
 
 #[test]
 fn kernels_have_eleven_digits_near_and_far() {
+    have_eleven_digits([((1.0, 1.0), 0.3), ((0.15, 0.1), 0.5)]);
+}
+
+#[test]
+fn kernels_of_slender_elements_have_eleven_digits_near_and_far() {
+    have_eleven_digits([((1.0, 8.0), 0.25), ((8.0, 1.0), 0.0)]);
+}
+
+fn have_eleven_digits(elements: [((f64, f64), f64); 2]) {
     let mut worst: f64 = 0.0;
     let some = [0, 1, 2, 5, 11, 12, 13, 31, 32, 33, 99];
     let square: Vec<_> = some.iter().flat_map(|&kx| some.iter().map(move |&ky| (kx, ky))).collect();
     let far = [32, 33, 250, 4097, 16384];
     let along: Vec<_> = far.iter().flat_map(|&k| (0..3).map(move |l| (k, l))).collect();
     let across: Vec<_> = along.iter().map(|&(k, l)| (l, k)).collect();
-    for (element, nu) in [((1.0, 1.0), 0.3), ((0.15, 0.1), 0.5), ((1.0, 8.0), 0.25), ((8.0, 1.0), 0.0)] {
+    for (element, nu) in elements {
         for z in DEPTHS {
             for (size, offsets) in [((100, 100), &square), ((16385, 3), &along), ((3, 16385), &across)] {
                 worst = worst.max(error(element, nu, z, size, offsets));
