@@ -86,7 +86,11 @@ fn check_bounds(case: &Case, found: &Found, broken: &mut Broken<'_>) -> f64 {
     let of_report =
         report.tangential.force.iter().chain(&report.tangential.creepage).chain(&report.tangential.sensitivities);
     let numbers = found.p.iter().chain(found.q.iter().chain(&found.slip).flatten());
-    let numbers = numbers.chain(of_report).chain([&report.tangential.moment, &report.tangential.residual]);
+    let numbers = numbers.chain(of_report).chain([
+        &report.tangential.moment,
+        &report.tangential.residual,
+        &report.tangential.gap,
+    ]);
     broken.unless(numbers.copied().all(f64::is_finite), "friction returns numbers", || format!("status {status}"));
     let area = case.place.grid.element_area();
     let (mut carried, mut sum) = (0.0, [0.0; 2]);

@@ -107,6 +107,11 @@ fn sound(case: &Case, found: &Outputs) -> Vec<Failure> {
         report.normal.residual,
         report.normal.violation,
         report.normal.max_pressure,
+        report.accuracy.error_force,
+        report.accuracy.error_max_pressure,
+        report.accuracy.error_contact_area,
+        report.accuracy.error_corrected_area,
+        report.accuracy.error_pressure,
     ];
     if !finite || !gaps || numbers.iter().any(|v| !v.is_finite()) {
         return failure(

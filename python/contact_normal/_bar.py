@@ -52,7 +52,7 @@ class Bar:
         if self._file is not None:
             try:
                 write()
-            except (OSError, ValueError):
+            except (OSError, ValueError, AttributeError):
                 self._file = None
 
 

@@ -14,7 +14,7 @@ from ._arguments import distances, integer
 from ._bar import SolveBar
 from ._calls import asked, called, given_up, is_short, on_main_thread, raise_of
 from ._constants import LOG_INFO, OK
-from ._daemons import logged
+from ._daemons import has_logged, logged
 from ._library import check, library
 from ._structs import LogCallback, ProgressCallback, SurfaceCallback
 
@@ -162,6 +162,8 @@ def set_log(callback: Callable[[int, str], Any] | None, level: int = LOG_INFO) -
         raise TypeError(f"callback is {callback!r}; it must be a callable, or None")
     check(library.contact_normal_set_log(LogCallback() if callback is None else _LOGGED, integer("level", level), None))
     logged[:] = [] if callback is None else [callback]
+    if callback is not None:
+        has_logged.set()
 
 
 def _logged(level: int, message: bytes, _user: Any) -> None:

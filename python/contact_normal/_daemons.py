@@ -21,17 +21,21 @@ _LAST_CYCLE = 10.0
 
 # The callable that gets the library's messages, if any.
 logged: list[Callable[[int, str], Any]] = []
+has_logged = threading.Event()
 _calls: set[object] = set()
 _ending = threading.Event()
 _NOTHING = nullcontext()
 
 
 class _Call:
-    """A call that has to be waited for."""
+    """A call that has to be waited for. The thread of a worker may begin one at the end: another one waits for it."""
+
+    def __init__(self, is_of_worker: bool) -> None:
+        self._is_of_worker = is_of_worker
 
     def __enter__(self) -> None:
         _calls.add(self)
-        if _ending.is_set():
+        if _ending.is_set() and not self._is_of_worker:
             _calls.discard(self)
             raise SystemExit
 
@@ -39,9 +43,9 @@ class _Call:
         _calls.discard(self)
 
 
-def within(has_callbacks: bool) -> AbstractContextManager[None]:
+def within(has_callbacks: bool, is_of_worker: bool) -> AbstractContextManager[None]:
     """Marks a call of the library on this thread, if its callbacks have to be waited for."""
-    return _Call() if has_callbacks and threading.current_thread().daemon else _NOTHING
+    return _Call(is_of_worker) if has_callbacks and threading.current_thread().daemon else _NOTHING
 
 
 def is_to_end() -> bool:
@@ -57,7 +61,7 @@ def forget() -> None:
 def end() -> None:
     """Cancels the calls with callbacks at the next of these, and waits for them. A daemon that begins another one ends, as the interpreter would end it."""
     _ending.set()
-    if logged:
+    if has_logged.is_set():
         # Calls without callbacks go on, and nobody hears their messages. One message may be on its way.
         library.contact_normal_set_log(LogCallback(), 1, None)
         time.sleep(0.05)

@@ -85,7 +85,7 @@ class Gap(Short):
         if "\n" in comment or "\r" in comment:
             raise ValueError("comment has several lines; it must be one")
         my, mx = self.h.shape
-        period = f"period {self.period}: " if self.period else ""
+        period = f"period {self.period or 'none'}: " if self.period or comment.startswith("period ") else ""
         lines = [_HEAD, f"# {period}{comment}", f"{mx} {my} {float(self.dx)!r} {float(self.dy)!r}", *(repr(float(value)) for value in self.h.flat)]
         Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
 

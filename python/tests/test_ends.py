@@ -65,7 +65,8 @@ time.sleep(0.3)
 
     def test_a_daemon_whose_messages_are_logged(self):
         # Whether the solves begin before the callable is set or after.
-        for before, after in (("", "cn.set_log(lambda level, text: None)"), ("cn.set_log(lambda level, text: None)", "")):
+        hear, stop = "cn.set_log(lambda level, text: None)", "cn.set_log(None)"
+        for before, after in (("", hear), (hear, ""), (hear, stop)):
             self.check(f"""
 {before}
 def endless():
@@ -93,6 +94,15 @@ atexit.register(_daemons.end)
 threading.Thread(target=endless, daemon=True).start()
 time.sleep(0.2)
 """, "")
+
+    def test_a_handler_that_runs_after_ours_solves(self):
+        self.check("""
+import atexit
+from contact_normal import _daemons
+atexit.unregister(_daemons.end)
+atexit.register(lambda: print(cn.solve(h, 0.1, 0.1, progress=lambda told: None, **given).status))
+atexit.register(_daemons.end)
+""", "0\n")
 
     def test_stresses_of_a_daemon_are_not_waited_for(self):
         ended = process("""

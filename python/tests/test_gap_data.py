@@ -49,7 +49,7 @@ class Texts(unittest.TestCase):
         gap = Gap(np.arange(6.0).reshape(2, 3), 0.1, 0.2)
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder, "gap.txt")
-            for comment in ("", "a\x0cb", "a\u2028b\x85"):
+            for comment in ("", "period x: 2", "a\x0cb", "a\u2028b\x85"):
                 gap.write(path, comment)
                 np.testing.assert_array_equal(Gap.read(path).h, gap.h)
                 for period in ("x", "y", "xy", None):

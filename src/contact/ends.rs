@@ -37,8 +37,9 @@ const STEPPED_EDGE: f64 = 0.12;
 const EXACT_EDGE: f64 = 0.2;
 /// See above. Measured with balls on two halves, of compliances from 0 | 0.01 to 0 | 10: estimates are 2 to 5 times the error.
 const BESIDE_JUMP: f64 = 4.0;
-/// The least part of an end at which the peak may lie.
-const SINGULAR_PART: f64 = 0.1;
+/// The least part of an end at which the largest pressure grows with each finer grid: of a layer, and between patches.
+const SINGULAR_LAYER: f64 = 0.1;
+const SINGULAR_PATCHES: f64 = 0.015;
 /// Change of a sum over the parts of force and energy: 1 for a flat punch, and up to 1.22 for x^6.
 const SUM_FACTOR: f64 = 1.3;
 
@@ -125,10 +126,9 @@ fn each_end(problem: &Problem, state: &State, mut each: impl FnMut(usize, End)) 
                 let (elements, is_exact) = match beside(across, state, (i, place[k]), side) {
                     Beside::Surface(_) if !problem.coefficients.may_jump() => continue,
                     Beside::Surface(j) => {
-                        let part = jump(problem, state, [i, j], (across, place[k], side), compliance);
+                        let (part, is_singular) = jump(problem, state, [i, j], (across, place[k], side), compliance);
                         if part > 0.0 {
-                            let (elements, is_singular) = (EXACT_EDGE * part, part > SINGULAR_PART);
-                            each(i, End { elements, is_exact: true, is_singular, compliance });
+                            each(i, End { elements: EXACT_EDGE * part, is_exact: true, is_singular, compliance });
                         }
                         continue;
                     }
@@ -146,30 +146,37 @@ fn each_end(problem: &Problem, state: &State, mut each: impl FnMut(usize, End)) 
     }
 }
 
-/// The part of an end that the jump of the coefficients from element i to its neighbour j is, from 0 to 1. `compliance` is that of a side of i.
+/// The part of an end that the jump of the coefficients from element i to its neighbour j is, from 0 to 1, and whether pressures are singular
+/// there. `compliance` is that of a side of i.
 fn jump(
     problem: &Problem,
     state: &State,
     [i, j]: [usize; 2],
     (across, place, side): (Direction, usize, usize),
     compliance: f64,
-) -> f64 {
+) -> (f64, bool) {
     if !state.touches(j) {
-        return 0.0;
+        return (0.0, false);
     }
-    let factor = problem.coefficients.patches().map_or(1.0, |patches| patches.between(i, j));
+    let of_patches = 1.0 - problem.coefficients.patches().map_or(1.0, |patches| patches.between(i, j));
     let change = problem.layer(j) - problem.layer(i);
     if change <= 0.0 {
-        return 1.0 - factor;
+        return (of_patches, of_patches > SINGULAR_PATCHES);
     }
-    // The changes before i and behind j.
+    // The changes before i and behind j, in the same direction. One back is that of a single line, or of noise: half of it counts.
     let step = if side == 0 { -1 } else { 1 };
     let beyond = |steps: isize, of: usize| {
         let next = across.at(place as isize + step * steps).map(|at| i + at - place * across.step);
-        next.map_or(0.0, |next| (problem.layer(next) - problem.layer(of)).abs())
+        let change = next.map_or(0.0, |next| (problem.layer(next) - problem.layer(of)) * steps.signum() as f64);
+        if change < 0.0 {
+            -0.5 * change
+        } else {
+            change
+        }
     };
     let softer = (change - beyond(-1, i).max(beyond(2, j))).max(0.0);
-    (softer / (softer + BESIDE_JUMP * (compliance + problem.layer(i)))).max(1.0 - factor)
+    let of_layer = softer / (softer + BESIDE_JUMP * (compliance + problem.layer(i)));
+    (of_layer.max(of_patches), of_layer > SINGULAR_LAYER || of_patches > SINGULAR_PATCHES)
 }
 
 /// The neighbour of element `i` at `place` of its line in this direction: the one before (side 0), or behind.

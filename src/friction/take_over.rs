@@ -180,14 +180,15 @@ impl Solver {
         let (slip, displaced) = (problem.rms_rigid(), problem.displaced_by_bounds());
         let is_far = |slip: f64| !(slip / displaced < LARGEST_RATIO);
         // The squares of small slips underflow.
-        let moves = problem.contact().any(|i| problem.rigid[i] != [0.0; 2]);
+        let rigid = |i: usize| add(problem.rigid[i], problem.weighted(i, problem.offset));
+        let moves = problem.contact().any(|i| rigid(i) != [0.0; 2]);
         // Displacements before the step move the bodies, too.
         let slipped = problem.rms_slip();
         let most = slip.max(slipped);
         let is_near = |most: f64| moves && !(most / displaced > LEAST_RATIO);
         if displaced > 0.0 && (is_far(slip) || is_far(slipped) || is_near(most)) {
             // The mean of tiny slips is 0.
-            let components = problem.contact().flat_map(|i| problem.rigid[i]);
+            let components = problem.contact().flat_map(rigid);
             let largest = components.fold(0.0, |most: f64, w| most.max(w.abs()));
             let slip = if most > 0.0 { most } else { largest };
             let motion = if slip > displaced { "a smaller motion" } else { "a larger motion or none" };

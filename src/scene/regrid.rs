@@ -6,13 +6,30 @@ use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::{collected, zeros};
 
-/// The grid over the rectangle of a scene with the elements of both directions doubled `doublings` times, see [`Grid::refines`]. A negative
-/// number halves them, rounded, down to one.
+/// The directions in which finer grids of a scene have more elements, see [`Grid::refines`]. A surface callback may differ along each.
+pub fn refines(scene: &Scene<'_>) -> (bool, bool) {
+    match scene.undeformed_distance.is_empty() {
+        true => (true, true),
+        false => scene.grid.refines(repeats(scene)),
+    }
+}
+
+/// The ratio of the elements of grids of a scene, one with half the element sizes of the other.
+pub fn doubling(scene: &Scene<'_>) -> f64 {
+    if refines(scene) == (true, true) {
+        4.0
+    } else {
+        2.0
+    }
+}
+
+/// The grid over the rectangle of a scene with the elements of the directions that it [`refines`] doubled `doublings` times. A negative
+/// number halves those of both, rounded, down to one.
 pub fn scaled(scene: &Scene<'_>, doublings: i32) -> Result<Grid> {
     let Grid { mx, my, dx, dy } = scene.grid;
     if doublings >= 0 {
         let parts = 1_usize.checked_shl(doublings as u32).unwrap_or(0);
-        let (in_x, in_y) = scene.grid.refines(repeats(scene));
+        let (in_x, in_y) = refines(scene);
         let (x, y) = (if in_x { parts } else { 1 }, if in_y { parts } else { 1 });
         return match (mx.checked_mul(x), my.checked_mul(y)) {
             (Some(mx), Some(my)) if parts > 0 => Grid::new(mx, my, dx / x as f64, dy / y as f64),

@@ -49,7 +49,7 @@ pub struct Refinement {
 /// The solve on one grid: solved, or the outcome, the reason, and the result so far.
 type OnGrid = std::result::Result<Solved, (Outcome, String, Option<Solved>)>;
 
-/// Solves on the grid of `scene`, then on finer ones with twice (4, 8 times) the elements in both directions, until the estimated
+/// Solves on the grid of `scene`, then on [finer](scaled) ones with twice (4, 8 times) the elements in both directions, until the estimated
 /// relative errors are at most the targets, with [enough](Quantity::enough_across) elements across the contact in both directions. `surface` writes
 /// the undeformed distance of each grid (that of `scene` is then not read); without one the scene's is [refined](crate::scene::refine).
 ///
@@ -94,7 +94,7 @@ pub fn solve_to_accuracy(
             Err(error) => return Err(error),
         };
         let now = began.elapsed().as_secs_f64();
-        let past = Past::of((&solved, history.is_believed()), (accuracy, &scene.grid), (entered, now), before.as_ref());
+        let past = Past::of((&solved, history.is_believed()), (accuracy, scene), (entered, now), before.as_ref());
         if doublings < 0 {
             doublings += 1;
             continue;

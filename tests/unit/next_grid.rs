@@ -5,7 +5,7 @@ use super::*;
 fn past(excess: Option<Falling>) -> Past {
     Past {
         grid: Grid::new(64, 32, 0.1, 0.2).expect("a grid"),
-        repeats: (false, false),
+        refines: (true, true),
         across: (40, 33),
         enough: 32,
         excesses: vec![excess],

@@ -7,6 +7,7 @@ use super::outlook::across;
 use super::solved::Solved;
 use crate::grid::Grid;
 use crate::progress::Outcome;
+use crate::scene::{refines, Scene};
 use crate::solver::estimates::SECONDS_EXPONENT;
 use crate::solver::falling::Falling;
 
@@ -14,8 +15,8 @@ use crate::solver::falling::Falling;
 #[derive(Clone, Debug)]
 pub(super) struct Past {
     pub grid: Grid,
-    /// The directions in which the scene repeats.
-    pub repeats: (bool, bool),
+    /// The directions in which a finer grid has more elements.
+    pub refines: (bool, bool),
     /// Elements across the contact area.
     pub across: (usize, usize),
     /// Elements across that suffice for all targets.
@@ -39,7 +40,7 @@ pub(super) struct Past {
 /// The next grid, or the end.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Next {
-    /// Double the elements of the directions that [refine](Grid::refines) this many times.
+    /// Double the elements of the directions that a scene [`refines`] this many times.
     Refine(u32),
     /// The limit that forbids the next grid.
     Limit(String),
@@ -57,11 +58,11 @@ const EXPONENTS: (f64, f64) = (0.9, 1.25);
 const WORTH_A_TRY: f64 = 1.2;
 
 impl Past {
-    /// `scene`: the grid of the scene. `entered`, `now`: seconds from the start of the first grid to the start and to
+    /// `entered`, `now`: seconds from the start of the first grid to the start and to
     /// the end of this one.
     pub fn of(
         (solved, is_believed): (&Solved, bool),
-        (accuracy, scene): (&Accuracy, &Grid),
+        (accuracy, scene): (&Accuracy, &Scene<'_>),
         (entered, now): (f64, f64),
         before: Option<&Past>,
     ) -> Past {
@@ -74,8 +75,8 @@ impl Past {
         let exponent = seen.filter(|seen| seen.is_finite()).unwrap_or(SECONDS_EXPONENT);
         Past {
             grid: problem.grid,
-            repeats,
-            across: across(solved.solver.state(), repeats, scene),
+            refines: refines(scene),
+            across: across(solved.solver.state(), repeats, &scene.grid),
             enough: accuracy.wanted().map(|(quantity, _)| quantity.enough_across()).max().unwrap_or(1),
             excesses: accuracy.excesses(&solved.outlook),
             is_believed,
@@ -166,9 +167,8 @@ impl Accuracy {
 
     /// The limit that these doublings would break, if any.
     fn limit(&self, past: &Past, doublings: u32) -> Option<String> {
-        let (in_x, in_y) = past.grid.refines(past.repeats);
         let times = |m: usize, refines: bool| if refines { (m as u64) << doublings } else { m as u64 };
-        let (mx, my) = (times(past.grid.mx, in_x), times(past.grid.my, in_y));
+        let (mx, my) = (times(past.grid.mx, past.refines.0), times(past.grid.my, past.refines.1));
         let why = match past.is_resolved() {
             true => String::new(),
             false => format!(
@@ -179,11 +179,10 @@ impl Accuracy {
         };
         let in_the_way = |limit: String| Some(format!("{limit} is in the way of {mx} x {my} elements{why}"));
         let most = if self.max_elements == 0 { MOST_ELEMENTS } else { self.max_elements };
-        // mx and my are below 2^34.
         if mx.saturating_mul(my) > most.min(ALL_ELEMENTS) {
             return in_the_way(format!("max_elements, {most},"));
         }
-        let ratio = past.grid.doubling(past.repeats).powi(doublings as i32);
+        let ratio = mx as f64 * my as f64 / past.grid.len() as f64;
         let bytes = past.bytes as f64 * (1.0 + ratio);
         if self.max_bytes > 0 && bytes > self.max_bytes as f64 {
             return in_the_way(format!("max_bytes, {} of the {bytes:.0} predicted,", self.max_bytes));
