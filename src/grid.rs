@@ -22,6 +22,15 @@ pub struct Grid {
 /// The largest number of elements: the padded products and the C ABI count elements in 32 bits.
 pub(crate) const MOST_ELEMENTS: usize = i32::MAX as usize;
 
+/// How many times as many elements a grid has after a doubling of those in these directions.
+pub fn doubling((in_x, in_y): (bool, bool)) -> f64 {
+    if in_x && in_y {
+        4.0
+    } else {
+        2.0
+    }
+}
+
 impl Grid {
     /// The first size that differs from the grid of a set-up, in words. None if all are the same.
     pub fn differs(&self, of_set_up: &Grid) -> Option<String> {
@@ -34,15 +43,6 @@ impl Grid {
     /// The directions in which a finer grid has more elements. A direction of one element that repeats is the same everywhere: it keeps its element.
     pub fn refines(&self, (repeats_x, repeats_y): (bool, bool)) -> (bool, bool) {
         (self.mx > 1 || !repeats_x || self.my == 1, self.my > 1 || !repeats_y || self.mx == 1)
-    }
-
-    /// The ratio of the elements of a grid of half the element sizes to those of this one.
-    pub fn doubling(&self, repeats: (bool, bool)) -> f64 {
-        if self.refines(repeats) == (true, true) {
-            4.0
-        } else {
-            2.0
-        }
     }
 
     /// A grid, after a check of its sizes.

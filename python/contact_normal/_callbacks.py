@@ -14,7 +14,7 @@ from ._arguments import distances, integer
 from ._bar import SolveBar
 from ._calls import asked, called, given_up, is_short, on_main_thread, raise_of
 from ._constants import LOG_INFO, OK
-from ._daemons import has_logged, logged
+from ._daemons import has_logged
 from ._library import check, library
 from ._structs import LogCallback, ProgressCallback, SurfaceCallback
 
@@ -78,7 +78,7 @@ class Watched:
         self._bar = SolveBar(scene.h.size if scene else None, options.tolerance, entries) if progress is True else None
         self._told: Any = self._bar.tell if self._bar else progress
         self._asks = bool(self._told) or asks
-        self._is_short = not self._told and not logged and scene is not None and self._ends_soon(scene, options, entries)
+        self._is_short = not self._told and not _log and scene is not None and self._ends_soon(scene, options, entries)
         if self._told or not self._is_short and on_main_thread():
             self._callback = ProgressCallback(self._call)
             options.progress = self._callback
@@ -161,14 +161,14 @@ def set_log(callback: Callable[[int, str], Any] | None, level: int = LOG_INFO) -
     if callback is not None and not callable(callback):
         raise TypeError(f"callback is {callback!r}; it must be a callable, or None")
     check(library.contact_normal_set_log(LogCallback() if callback is None else _LOGGED, integer("level", level), None))
-    logged[:] = [] if callback is None else [callback]
+    _log[:] = [] if callback is None else [callback]
     if callback is not None:
         has_logged.set()
 
 
 def _logged(level: int, message: bytes, _user: Any) -> None:
     # A thread may be on its way to here while another replaces the callable.
-    callbacks = list(logged)
+    callbacks = list(_log)
     try:
         if callbacks and not given_up():
             asked(lambda: callbacks[0](level, message.decode()))
@@ -177,6 +177,8 @@ def _logged(level: int, message: bytes, _user: Any) -> None:
             raise
 
 
+# The callable that gets messages, if any.
+_log: list[Callable[[int, str], Any]] = []
 # The library may call it at any time: it is never freed, and a reload of this module keeps the one before.
 _LOGGED = LogCallback(_logged)
 _KEPT = [*globals().get("_KEPT", ()), _LOGGED]

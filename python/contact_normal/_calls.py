@@ -271,7 +271,8 @@ def _told(
     _, report, options = kept
     if options is not None and (call := here()) is not None:
         options.stop = pointer(call.stop)
-    with _daemons.within(asks, here() is not None), _NO_HANDLE if handle is None else handle as first:
+    # The thread that asked a worker waits for its calls.
+    with _daemons.within(asks and here() is None), _NO_HANDLE if handle is None else handle as first:
         status = int(function(*first, *arguments))
         # The message belongs to the thread that calls; after OK it may be one of an earlier call.
         has_message = status or report is not None and report.warnings

@@ -9,9 +9,7 @@ from __future__ import annotations
 import atexit
 import threading
 import time
-from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from typing import Any
 
 from ._library import library
 from ._structs import LogCallback
@@ -19,8 +17,7 @@ from ._structs import LogCallback
 # Seconds that the end of the process waits at most: most cycles and set-ups take less. A callback after that aborts.
 _LAST_CYCLE = 10.0
 
-# The callable that gets the library's messages, if any.
-logged: list[Callable[[int, str], Any]] = []
+# Whether a callable ever got messages of the library.
 has_logged = threading.Event()
 _calls: set[object] = set()
 _ending = threading.Event()
@@ -28,14 +25,11 @@ _NOTHING = nullcontext()
 
 
 class _Call:
-    """A call that has to be waited for. The thread of a worker may begin one at the end: another one waits for it."""
-
-    def __init__(self, is_of_worker: bool) -> None:
-        self._is_of_worker = is_of_worker
+    """A call that has to be waited for."""
 
     def __enter__(self) -> None:
         _calls.add(self)
-        if _ending.is_set() and not self._is_of_worker:
+        if _ending.is_set():
             _calls.discard(self)
             raise SystemExit
 
@@ -43,9 +37,9 @@ class _Call:
         _calls.discard(self)
 
 
-def within(has_callbacks: bool, is_of_worker: bool) -> AbstractContextManager[None]:
+def within(has_callbacks: bool) -> AbstractContextManager[None]:
     """Marks a call of the library on this thread, if its callbacks have to be waited for."""
-    return _Call(is_of_worker) if has_callbacks and threading.current_thread().daemon else _NOTHING
+    return _Call() if has_callbacks and threading.current_thread().daemon else _NOTHING
 
 
 def is_to_end() -> bool:

@@ -18,11 +18,11 @@
 //! if the caller's elements are the surface, the edge lies exactly on edges of elements. (Measured, in elements:
 //! straight -0.46 to 0.2, in steps -0.15 to 0.05, on edges of elements -0.15.)
 //!
-//! *Jumps of the coefficients.* Where two patches touch that displace each other less than themselves, and beside an
-//! element whose layer is much softer, pressures are singular, too. The edge lies on an edge of elements. A part of the
-//! release counts: 1 - F for a factor of F between the patches, and for a layer jump/(jump + [`BESIDE_JUMP`] times the
-//! compliance of an element and its layer). The larger one counts. A jump is a change beyond the changes beside it, so
-//! a slope has none.
+//! *Jumps of the coefficients.* Pressures are singular, too, where two patches touch that displace each other less than
+//! themselves, and beside an element whose layer is much softer. Such an edge lies on an edge of elements. It counts as
+//! a part of an end. Between patches with the factor F this part is 1 - F. For a layer it is jump/(jump + c'), where c'
+//! is [`BESIDE_JUMP`] times the compliance of an element and its layer. The larger part counts. A jump is the change of
+//! the compliance beyond the changes beside it. So a slope has no jump.
 
 use std::f64::consts::PI;
 
@@ -35,7 +35,7 @@ use crate::sums::in_blocks;
 const STRAIGHT_EDGE: f64 = 0.55;
 const STEPPED_EDGE: f64 = 0.12;
 const EXACT_EDGE: f64 = 0.2;
-/// See above. Measured with balls on two halves, of compliances from 0 | 0.01 to 0 | 10: estimates are 2 to 5 times the error.
+/// c' of a jump, in compliances of an element and its layer. Measured with balls on two halves, of compliances from 0 | 0.01 to 0 | 10: estimates are 2 to 5 times the error.
 const BESIDE_JUMP: f64 = 4.0;
 /// The least part of an end at which the largest pressure grows with each finer grid: of a layer, and between patches.
 const SINGULAR_LAYER: f64 = 0.1;
@@ -66,27 +66,34 @@ struct End {
     compliance: f64,
 }
 
-/// The largest pressure where the surface ends or coefficients jump within the contact.
-pub fn highest_at_ends(problem: &Problem, state: &State) -> f64 {
-    let mut highest = 0.0_f64;
+impl End {
+    /// `t (pi d/(2 E*) + c) p` times the area of the element.
+    fn released(&self, state: &State, i: usize) -> f64 {
+        self.elements * self.compliance * state.p[i] * state.grid.element_area()
+    }
+}
+
+/// Sum over the sides at which pressures end within the contact: `t (pi d/(2 E*) + c) p` times the area of an element, with the weights
+/// `w(i)` of the elements, in x and in y. A direction of one element has no ends here.
+pub fn at_ends(problem: &Problem, state: &State, weights: impl Fn(usize) -> [f64; 2]) -> [f64; 2] {
+    let mut sums = [0.0; 2];
     each_end(problem, state, |i, end| {
+        let (released, weights) = (end.released(state, i), weights(i));
+        (0..2).for_each(|k| sums[k] += released * weights[k]);
+    });
+    sums
+}
+
+/// The sum of [`at_ends`] with the pressures as weights, and the largest pressure at a singular end.
+pub fn pressures_at_ends(problem: &Problem, state: &State) -> (f64, f64) {
+    let (mut sum, mut highest) = (0.0, 0.0_f64);
+    each_end(problem, state, |i, end| {
+        sum += end.released(state, i) * state.p[i];
         if end.is_singular {
             highest = highest.max(state.p[i]);
         }
     });
-    highest
-}
-
-/// Sum over the sides at which the surface ends within the contact: `t (pi d/(2 E*) + c) p` times the area of an element, with the
-/// weights `w(i)` of the elements. A direction of one element has no ends here.
-pub fn at_ends<const N: usize>(problem: &Problem, state: &State, weights: impl Fn(usize) -> [f64; N]) -> [f64; N] {
-    let mut sums = [0.0; N];
-    each_end(problem, state, |i, end| {
-        let part = end.elements * end.compliance * state.p[i] * state.grid.element_area();
-        let weights = weights(i);
-        (0..N).for_each(|n| sums[n] += part * weights[n]);
-    });
-    sums
+    (sum, highest)
 }
 
 /// The relative change of a sum if the surface ends farther out by t: the energy released over the whole one, `(p, u)`, and where pressures are
@@ -120,89 +127,89 @@ fn each_end(problem: &Problem, state: &State, mut each: impl FnMut(usize, End)) 
     for i in (0..grid.len()).filter(|&i| state.touches(i)) {
         let place = [i % grid.mx, i / grid.mx];
         for k in (0..2).filter(|&k| directions[k].m > 1) {
-            let (across, along) = (directions[k], directions[1 - k]);
-            for side in [0, 1] {
-                let compliance = flexibility * sizes[k];
-                let (elements, is_exact) = match beside(across, state, (i, place[k]), side) {
-                    Beside::Surface(_) if !problem.coefficients.may_jump() => continue,
-                    Beside::Surface(j) => {
-                        let (part, is_singular) = jump(problem, state, [i, j], (across, place[k], side), compliance);
-                        if part > 0.0 {
-                            each(i, End { elements: EXACT_EDGE * part, is_exact: true, is_singular, compliance });
-                        }
-                        continue;
-                    }
-                    Beside::Border => (EXACT_EDGE, true),
-                    Beside::Hole if problem.exact_edges => (EXACT_EDGE, true),
-                    Beside::Hole if is_straight(along, state, (i, place[1 - k]), (across, place[k], side)) => {
-                        (STRAIGHT_EDGE, false)
-                    }
-                    Beside::Hole => (STEPPED_EDGE, false),
-                };
-                let compliance = compliance + problem.layer(i);
-                each(i, End { elements, is_exact, is_singular: true, compliance });
+            let along = (directions[1 - k], place[1 - k]);
+            for way in [-1, 1] {
+                let side = Side { i, across: directions[k], place: place[k], way };
+                if let Some(end) = side.end(problem, state, along, flexibility * sizes[k]) {
+                    each(i, end);
+                }
             }
         }
     }
 }
 
-/// The part of an end that the jump of the coefficients from element i to its neighbour j is, from 0 to 1, and whether pressures are singular
-/// there. `compliance` is that of a side of i.
-fn jump(
-    problem: &Problem,
-    state: &State,
-    [i, j]: [usize; 2],
-    (across, place, side): (Direction, usize, usize),
-    compliance: f64,
-) -> (f64, bool) {
-    if !state.touches(j) {
-        return (0.0, false);
+/// A side of an element.
+#[derive(Clone, Copy)]
+struct Side {
+    /// The element.
+    i: usize,
+    /// The direction across the side, and the element's place in its line.
+    across: Direction,
+    place: usize,
+    /// 1: the side to the next element of the line, -1: to the one before.
+    way: isize,
+}
+
+impl Side {
+    /// The element so many steps beyond this side, or, if negative, away from it.
+    fn beyond(&self, steps: isize) -> Option<usize> {
+        let at = self.across.at(self.place as isize + self.way * steps);
+        at.map(|at| self.i + at - self.place * self.across.step)
     }
-    let of_patches = 1.0 - problem.coefficients.patches().map_or(1.0, |patches| patches.between(i, j));
-    let change = problem.layer(j) - problem.layer(i);
-    if change <= 0.0 {
-        return (of_patches, of_patches > SINGULAR_PATCHES);
-    }
-    // The changes before i and behind j, in the same direction. One back is that of a single line, or of noise: half of it counts.
-    let step = if side == 0 { -1 } else { 1 };
-    let beyond = |steps: isize, of: usize| {
-        let next = across.at(place as isize + step * steps).map(|at| i + at - place * across.step);
-        let change = next.map_or(0.0, |next| (problem.layer(next) - problem.layer(of)) * steps.signum() as f64);
-        if change < 0.0 {
-            -0.5 * change
-        } else {
-            change
+
+    fn beside(&self, state: &State) -> Beside {
+        match self.beyond(1) {
+            None => Beside::Border,
+            Some(j) if state.h[j].is_finite() => Beside::Surface(j),
+            Some(_) => Beside::Hole,
         }
-    };
-    let softer = (change - beyond(-1, i).max(beyond(2, j))).max(0.0);
-    let of_layer = softer / (softer + BESIDE_JUMP * (compliance + problem.layer(i)));
-    (of_layer.max(of_patches), of_layer > SINGULAR_LAYER || of_patches > SINGULAR_PATCHES)
-}
-
-/// The neighbour of element `i` at `place` of its line in this direction: the one before (side 0), or behind.
-fn beside(direction: Direction, state: &State, (i, place): (usize, usize), side: usize) -> Beside {
-    let next = if side == 0 { place as isize - 1 } else { place as isize + 1 };
-    match direction.at(next) {
-        None => Beside::Border,
-        Some(next) => match i + next - place * direction.step {
-            j if state.h[j].is_finite() => Beside::Surface(j),
-            _ => Beside::Hole,
-        },
     }
-}
 
-/// Whether this edge continues along a line, as a straight piece of the [outline](super::Outline) does.
-fn is_straight(
-    along: Direction,
-    state: &State,
-    (i, place): (usize, usize),
-    (across, place_across, side): (Direction, usize, usize),
-) -> bool {
-    let same = |n: usize| {
-        let at = i + n * along.step - place * along.step;
-        state.touches(at) && beside(across, state, (at, place_across), side) == Beside::Hole
-    };
-    let before = (0..place).rev().take(STRAIGHT).take_while(|&n| same(n)).count();
-    let behind = (place + 1..along.m).take(STRAIGHT).take_while(|&n| same(n)).count();
-    before + 1 + behind >= STRAIGHT.min(along.m)
+    /// The end at this side. `compliance` is that of a side of the element, and `along` the line along the side, with the element's place.
+    fn end(&self, problem: &Problem, state: &State, along: (Direction, usize), compliance: f64) -> Option<End> {
+        let (elements, is_exact) = match self.beside(state) {
+            Beside::Surface(j) => return self.jump(problem, state, j, compliance),
+            Beside::Border => (EXACT_EDGE, true),
+            Beside::Hole if problem.exact_edges => (EXACT_EDGE, true),
+            Beside::Hole if self.is_straight(state, along) => (STRAIGHT_EDGE, false),
+            Beside::Hole => (STEPPED_EDGE, false),
+        };
+        Some(End { elements, is_exact, is_singular: true, compliance: compliance + problem.layer(self.i) })
+    }
+
+    /// The jump of the coefficients to the neighbour j, if there is one.
+    fn jump(&self, problem: &Problem, state: &State, j: usize, compliance: f64) -> Option<End> {
+        if !problem.coefficients.may_jump() || !state.touches(j) {
+            return None;
+        }
+        let of_patches = 1.0 - problem.coefficients.patches().map_or(1.0, |patches| patches.between(self.i, j));
+        let softer = self.softer(problem, j);
+        let of_layer = softer / (softer + BESIDE_JUMP * (compliance + problem.layer(self.i)));
+        let is_singular = of_layer > SINGULAR_LAYER || of_patches > SINGULAR_PATCHES;
+        let part = of_layer.max(of_patches);
+        (part > 0.0).then_some(End { elements: EXACT_EDGE * part, is_exact: true, is_singular, compliance })
+    }
+
+    /// The jump of the layer's compliance from this element to the softer neighbour j, or 0.
+    fn softer(&self, problem: &Problem, j: usize) -> f64 {
+        let change = |from: Option<usize>, to: Option<usize>| match (from, to) {
+            (Some(from), Some(to)) => problem.layer(to) - problem.layer(from),
+            _ => 0.0,
+        };
+        // A change back belongs to a single line of elements, or to noise: half of it counts.
+        let counted = |change: f64| if change < 0.0 { -0.5 * change } else { change };
+        let (before, behind) = (change(self.beyond(-1), Some(self.i)), change(Some(j), self.beyond(2)));
+        (change(Some(self.i), Some(j)) - counted(before).max(counted(behind))).max(0.0)
+    }
+
+    /// Whether this edge continues along a line, as a straight piece of the [outline](super::Outline) does.
+    fn is_straight(&self, state: &State, (along, place): (Direction, usize)) -> bool {
+        let same = |n: usize| {
+            let i = self.i + n * along.step - place * along.step;
+            state.touches(i) && Side { i, ..*self }.beside(state) == Beside::Hole
+        };
+        let before = (0..place).rev().take(STRAIGHT).take_while(|&n| same(n)).count();
+        let behind = (place + 1..along.m).take(STRAIGHT).take_while(|&n| same(n)).count();
+        before + 1 + behind >= STRAIGHT.min(along.m)
+    }
 }

@@ -23,7 +23,7 @@ pub use admissible::{AdmissibleSet, Fixed, NonNegative};
 pub(crate) use balance::CANCELLED;
 pub use certificate::{largest, norm_of_distance, relative, residual_norm, Certificate, Survey, ROUND_OFF};
 pub use curvature::Curvature;
-pub use ends::{at_ends, beyond_ends, highest_at_ends};
+pub use ends::{at_ends, beyond_ends, pressures_at_ends};
 pub use exchange::{admit, all_stay, enter, leave, truncate};
 pub use guard::ExchangeGuard;
 pub use jumps::{at_jumps, each_jump, Jump};

@@ -24,6 +24,9 @@ pub enum Value<'a> {
     Shared(&'a Arc<Held>),
 }
 
+/// The usual reason why an effect excludes another.
+pub(super) const NOT_TOGETHER: &str = "this version does not solve them together";
+
 /// An effect. Its [`Properties`] have no default; its actions have one: nothing.
 pub trait Effect {
     /// The name in a scene.
@@ -47,7 +50,7 @@ pub trait Effect {
 
     /// The reason in the refusal of another effect that it excludes.
     fn why_excluded(&self, _other: &str) -> &'static str {
-        "this version does not solve them together"
+        NOT_TOGETHER
     }
 
     /// Whether the effect is in effect in a scene.

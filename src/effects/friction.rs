@@ -4,7 +4,7 @@
 //! are alike; it is solved first.
 
 use super::each::Each;
-use super::effect::{Effect, Value};
+use super::effect::{Effect, Value, NOT_TOGETHER};
 use super::friction_law::{Branch, FrictionLaw, PlasticLayer};
 use super::properties::{Continues, Properties, Stresses};
 use super::tangential_influence::TangentialInfluence;
@@ -241,7 +241,7 @@ impl Effect for Friction<'_> {
         match other {
             "influence" if self.influence.is_none() => "they are solved together with friction->influence",
             "row_tables" if self.influence.is_none() => "they are solved together with friction->row_tables",
-            _ => "this version does not solve them together",
+            _ => NOT_TOGETHER,
         }
     }
 

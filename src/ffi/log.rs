@@ -48,7 +48,7 @@ pub(super) fn quietly<R>(work: impl FnOnce() -> R) -> R {
             QUIET.set(self.0);
         }
     }
-    // After a panic, too.
+    // Its drop makes messages heard again even after a panic.
     let _restored = Restored(QUIET.replace(true));
     work()
 }

@@ -117,7 +117,7 @@ impl Drop for Owned {
 }
 
 thread_local! {
-    /// The last message. It has no destructor: calls by destructors of a thread that ends have messages, too.
+    /// The last message. This cell has no destructor. So a call has its message even while a thread ends.
     static LAST_ERROR: Cell<*const c_char> = const { Cell::new(c"".as_ptr()) };
     static OWNED: Owned = const { Owned(RefCell::new(None)) };
 }

@@ -19,6 +19,8 @@ use crate::methods::fields::{self, BLOCK};
 
 /// Tractions of at least this share of the bound are on the circle. The round-off of the projection is far smaller.
 pub const ON_THE_CIRCLE: f64 = 1.0 - 1e-7;
+/// A rigid slip less than this part of the scale of residuals is none. Round-off of creepages that cancel a slip is up to 2.5e-8 of it.
+const NO_SLIP: f64 = 1e-6;
 
 /// The measures of a solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,9 +34,6 @@ pub struct Certificate {
     /// Elements that slip.
     pub slip_count: usize,
 }
-
-/// A rigid slip less than this part of the scale of residuals is none. Round-off of creepages that cancel a slip is up to 2.5e-8 of it.
-const NO_SLIP: f64 = 1e-6;
 
 /// The scale of residuals.
 pub fn scale(problem: &Problem, state: &State) -> f64 {

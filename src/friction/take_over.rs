@@ -182,11 +182,10 @@ impl Solver {
         // The squares of small slips underflow.
         let rigid = |i: usize| add(problem.rigid[i], problem.weighted(i, problem.offset));
         let moves = problem.contact().any(|i| rigid(i) != [0.0; 2]);
-        // Displacements before the step move the bodies, too.
+        // The displacements before the step are slips, as well.
         let slipped = problem.rms_slip();
         let most = slip.max(slipped);
-        let is_near = |most: f64| moves && !(most / displaced > LEAST_RATIO);
-        if displaced > 0.0 && (is_far(slip) || is_far(slipped) || is_near(most)) {
+        if displaced > 0.0 && (is_far(slip) || is_far(slipped) || moves && !(most / displaced > LEAST_RATIO)) {
             // The mean of tiny slips is 0.
             let components = problem.contact().flat_map(rigid);
             let largest = components.fold(0.0, |most: f64, w| most.max(w.abs()));

@@ -15,5 +15,5 @@ pub use bodies::Bodies;
 pub use load::Load;
 pub use plain::Plain;
 pub use refine::refine;
-pub use regrid::{doubling, refines, sample, scaled, Regridded};
+pub use regrid::{refines, sample, scaled, Regridded};
 pub use with_effects::Scene;

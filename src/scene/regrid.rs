@@ -14,15 +14,6 @@ pub fn refines(scene: &Scene<'_>) -> (bool, bool) {
     }
 }
 
-/// The ratio of the elements of grids of a scene, one with half the element sizes of the other.
-pub fn doubling(scene: &Scene<'_>) -> f64 {
-    if refines(scene) == (true, true) {
-        4.0
-    } else {
-        2.0
-    }
-}
-
 /// The grid over the rectangle of a scene with the elements of the directions that it [`refines`] doubled `doublings` times. A negative
 /// number halves those of both, rounded, down to one.
 pub fn scaled(scene: &Scene<'_>, doublings: i32) -> Result<Grid> {

@@ -12,9 +12,9 @@
 //! with s = 1/2, measured. On 32 elements across s varies by a third, because the boundary lies anywhere in its elements. Along a straight outline
 //! errors do not average out and are up to a few times larger. ([`Curvature`] computes b; docs/accuracy.md has the measurements.)
 //!
-//! At ends of the surface pressures are infinite, and the end lies anywhere between two centres ([`at_ends`]). A jump of the surface also lies
+//! At ends of the surface pressures are infinite, and the end lies anywhere between two centres ([`pressures_at_ends`]). A jump of the surface also lies
 //! anywhere between two centres ([`Curvature::jumps`]). Both errors are of first order in the size of the elements.
-//! At jumps of coefficients between patches, and of a layer, pressures are infinite, too; they count as a part of an end.
+//! Pressures are also infinite where coefficients jump, between patches or in a layer. Such a jump counts as a part of an end.
 //!
 //! *Pressures.* Their errors are fractions of the second differences within the contact area and across its boundary:
 //! [`PEAK_ERROR`] for the largest pressure, [`PRESSURES_ERROR`] in the rms. A peak with a large relative second
@@ -26,7 +26,8 @@
 
 use super::falling::Falling;
 use super::report::{Halving, Limit};
-use crate::contact::{at_ends, highest_at_ends, Curvature, Outline, Problem, State};
+use crate::contact::{pressures_at_ends, Curvature, Outline, Problem, State};
+use crate::grid::doubling;
 use crate::progress::{DiscretisationError, LedgerRow};
 use crate::scene::Load;
 
@@ -140,8 +141,8 @@ fn ends(problem: &Problem, state: &State, outline: &Outline) -> (f64, f64) {
     if outline.ends(problem.coefficients.repeats(&state.grid)) == 0 && !problem.coefficients.may_jump() {
         return (0.0, 0.0);
     }
-    let [sum] = at_ends(problem, state, |i| [state.p[i]]);
-    (sum / state.force(), highest_at_ends(problem, state))
+    let (sum, highest) = pressures_at_ends(problem, state);
+    (sum / state.force(), highest)
 }
 
 /// The relative error of a direction of one element without a period.
@@ -205,13 +206,10 @@ pub fn estimate(
     let untrusted = untrusted(parts.is_some(), peak.is_some(), pressure.is_some());
     let residual = measures.certificate.residual;
     let found = measures.found(finest.load);
-    let curved = (outline.edges - outline.straight_edges) as f64;
-    let straight = (outline.straight.0 + outline.straight.1) as f64;
-    let lines = STRAIGHT_OFF * straight + edges_off(problem, outline) + curved.sqrt();
     // An error of the force implies an error of the area.
     let carried = parts.filter(|parts| parts.of_bend() > 0.0);
     let carried = carried.map_or(0.0, |parts| parts.of_bend() / parts.by * parts.stiffness / measures.force);
-    let lines = lines * finest.grid.element_area() + carried * measures.contact_area;
+    let lines = outline_off(problem, outline) * finest.grid.element_area() + carried * measures.contact_area;
     // Before pressures carry a force, `carried` is infinite.
     let whole = finest.grid.len() as f64 * finest.grid.element_area();
     let area = |error: f64| if error.is_finite() { error.min(whole) } else { -1.0 };
@@ -243,10 +241,17 @@ pub fn estimate(
     let Some(parts) = parts else { return Default::default() };
     let hidden = residual * found.abs();
     let falling = Falling { by_sixteen: parts.short, by_four: parts.smooth, by_two: parts.of_first_order(), hidden };
-    let doubling = finest.grid.doubling(problem.coefficients.repeats(&finest.grid));
-    let halving = Halving { seconds: doubling.powf(SECONDS_EXPONENT) * seconds, error: Some(falling) };
+    let more = doubling(finest.grid.refines(problem.coefficients.repeats(&finest.grid)));
+    let halving = Halving { seconds: more.powf(SECONDS_EXPONENT) * seconds, error: Some(falling) };
     let limit = if parts.error() >= hidden { Limit::Grid } else { Limit::Tolerance };
     (limit, halving)
+}
+
+/// The error of the contact area along its outline, in elements.
+fn outline_off(problem: &Problem, outline: &Outline) -> f64 {
+    let curved = (outline.edges - outline.straight_edges) as f64;
+    let straight = (outline.straight.0 + outline.straight.1) as f64;
+    STRAIGHT_OFF * straight + edges_off(problem, outline) + curved.sqrt()
 }
 
 /// The error of the contact area along straight ends of the surface, in elements: half of these if all ends are straight. A circle has four short

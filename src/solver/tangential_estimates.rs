@@ -14,8 +14,9 @@
 //! *With a given approach* the error e_N of the normal force adds to the tangential one: `mu e_N` in full slip, else less,
 //! `mu e_N (1 - (1 - F/(mu N))^(1/3))` with a parabola's pressures. The same holds for jumps of the surface.
 //!
-//! *Where the surface ends within the contact*, or coefficients jump ([`at_ends`]), tractions are singular like pressures, and the error of the force is that of the
-//! normal one with the traction in place of the pressure. If the normal force is given, this part goes to 0 towards full slip.
+//! *Where the surface ends within the contact*, or coefficients jump ([`at_ends`]), tractions are singular like pressures, and the error of the
+//! force is that of the normal one with the traction in place of the pressure. If the normal force is given, this part goes to 0 towards full
+//! slip.
 //!
 //! *Where mu jumps* the jump lies anywhere between two centres, and with it that of `mu p` on slip ([`at_jumps`]).
 //!

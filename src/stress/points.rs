@@ -61,22 +61,19 @@ fn check(body: &Body, loads: &Loads<'_>, i: usize, [x, y, z]: [f64; 3]) -> Resul
     let Grid { mx, my, dx, dy } = body.grid;
     let [from_x, from_y, _] = from_corner(&body.grid, [x, y, z]);
     let (in_x, in_y) = (Line::of(from_x, dx, mx), Line::of(from_y, dy, my));
+    let place = || format!("point {i} is ({}, {}, {})", Number(x), Number(y), Number(z));
     let is_at_surface = body.in_units(z) == 0.0 || z <= in_x.rounding.min(in_y.rounding);
     if is_at_surface && in_x.is_inside && in_y.is_inside && (in_x.is_on_edge || in_y.is_on_edge) {
         return invalid(format!(
-            "point {i} is ({}, {}, {}), on the edge of an element at the surface, to within rounding; stresses jump there or are infinite: \
+            "{place}, on the edge of an element at the surface, to within rounding; stresses jump there or are infinite: \
              take a place within an element, or below",
-            Number(x),
-            Number(y),
-            Number(z)
+            place = place()
         ));
     }
     if loads.coupled().is_some() && !(in_x.is_inside && in_y.is_inside) {
         return invalid(format!(
-            "point {i} is ({}, {}, {}), and patches are given; a point takes the factors of the patch above it, so it must lie below the grid",
-            Number(x),
-            Number(y),
-            Number(z)
+            "{}, and patches are given; a point takes the factors of the patch above it, so it must lie below the grid",
+            place()
         ));
     }
     Ok(())

@@ -58,8 +58,7 @@ const EXPONENTS: (f64, f64) = (0.9, 1.25);
 const WORTH_A_TRY: f64 = 1.2;
 
 impl Past {
-    /// `entered`, `now`: seconds from the start of the first grid to the start and to
-    /// the end of this one.
+    /// `entered`, `now`: seconds from the start of the first grid to the start and to the end of this one.
     pub fn of(
         (solved, is_believed): (&Solved, bool),
         (accuracy, scene): (&Accuracy, &Scene<'_>),
@@ -179,6 +178,7 @@ impl Accuracy {
         };
         let in_the_way = |limit: String| Some(format!("{limit} is in the way of {mx} x {my} elements{why}"));
         let most = if self.max_elements == 0 { MOST_ELEMENTS } else { self.max_elements };
+        // mx and my are below 2^34.
         if mx.saturating_mul(my) > most.min(ALL_ELEMENTS) {
             return in_the_way(format!("max_elements, {most},"));
         }

@@ -3,8 +3,8 @@
 use super::accuracy::{tolerance_for, MOST_ELEMENTS, ROUND_OFF};
 use super::sample::Sample;
 use super::Accuracy;
-use crate::grid::Grid;
-use crate::scene::{doubling, scaled, Scene};
+use crate::grid::{doubling, Grid};
+use crate::scene::{refines, scaled, Scene};
 use crate::solver::falling::Falling;
 use crate::solver::machine::{seconds_on, Cost, MOST_PRODUCTS_RATIO};
 use crate::solver::quantities::Quantity;
@@ -83,7 +83,7 @@ pub(super) fn predict(
 ) -> Option<(i32, f64)> {
     let last = samples.last()?;
     let costs: Vec<Cost> = samples.iter().map(|sample| sample.cost).collect();
-    let each = doubling(scene);
+    let each = doubling(refines(scene));
     let seconds = |k: i32| seconds_on(&costs, last.cost.elements * each.powi(k));
     if last.is_exact() {
         return Some((-last.doublings, seconds(-last.doublings)));
@@ -150,7 +150,7 @@ pub(super) fn price(
     let (part, work_units) = to(samples, last.doublings + k, tolerance);
     let work_units = counted.iter().find(|one| one.is_of(&grid, tolerance)).map_or(work_units, |one| one.products);
     let seconds = seconds * part;
-    let each = doubling(scene);
+    let each = doubling(refines(scene));
     let bytes = last.bytes * each.powi(k);
     // A search holds the solver of the grid before, of half the elements a side or less, unless it ends on its first grid.
     let before = if last.doublings + k > 0 { bytes / each } else { 0.0 };
