@@ -1,4 +1,4 @@
-"""Scenes and options that are given together, by the names that `solve` has for them."""
+"""Splits keyword arguments of `solve` into a scene and options."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _LOADS = ("approach", "force", "mean_pressure", "shear_modulus", "poisson_ratio"
 
 
 class SceneArguments(SolveOptions, total=False):
-    """What `solve` takes beside the undeformed distance and the sizes of elements: see there."""
+    """The arguments of `solve` after h, dx and dy; its docstring describes them."""
 
     approach: float | None
     force: float | None
@@ -48,6 +48,6 @@ def scene_and_options(h: Any, dx: Any, dy: Any, given: Mapping[str, Any]) -> tup
     checked(rest.pop("units", None))
     effects = effects_in(rest)
     loads = {name: rest.pop(name, None) for name in _LOADS}
-    # First: a load whose name is written wrong is an unknown option, and not a load that lacks.
+    # Before the scene: a misspelt load is then refused as an unknown option, not as a missing load.
     struct = options(rest)
     return Scene(h, dx, dy, effects=effects, **loads), struct

@@ -179,7 +179,7 @@ class Solved(WithUnits):
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """What to look at, even where the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN"."""
+        """Names of the warnings, also if the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN", "RANGE", "ATTRACTION", "LAW"."""
         return tuple(name for name, bit in _WARNINGS.items() if self.report["warnings"] & bit)
 
     def __repr__(self) -> str:

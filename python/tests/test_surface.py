@@ -1,4 +1,4 @@
-"""From heights to a gap: each step against what is known of it, and what a mistake costs."""
+"""From heights to a gap: each step against a known result, and the effect of mistakes."""
 
 import time
 import unittest
@@ -54,7 +54,7 @@ class Arrays(unittest.TestCase):
         falling = surface.heights(self.Z, x=[2.5, 2.0, 1.5, 1.0], y=[4.0, 2.0, 0.0])
         np.testing.assert_array_equal(falling.z, self.Z[::-1, ::-1])
         self.assertEqual((falling.dx, falling.dy), (0.5, 2.0))
-        # That the first row is the upper one is then said twice.
+        # A falling y and top_first say the same: rows are turned once.
         twice = surface.heights(self.Z, x=[1.0, 1.5, 2.0, 2.5], y=[4.0, 2.0, 0.0], top_first=True)
         np.testing.assert_array_equal(twice.z, self.Z[::-1])
         with self.assertRaisesRegex(ValueError, "y has one place, which tells no spacing: give dx and dy"):
@@ -97,7 +97,7 @@ class Arrays(unittest.TestCase):
     def test_fill_values_of_single_precision_that_a_reader_made_double(self):
         values = np.where(self.Z == 5.0, -9999.9, self.Z).astype(np.float32).astype(np.float64)
         self.assertEqual(np.argwhere(surface.heights(values, 1, 1, fill=-9999.9).holes).tolist(), [[1, 1]])
-        # The text of the largest number of single precision is above it.
+        # The decimal text of the largest single is rounded up: as a double it exceeds the largest single.
         for largest in (3.4028235e38, -3.4028235e38):
             values = np.where(self.Z == 5.0, largest, self.Z).astype(np.float32).astype(np.float64)
             self.assertEqual(np.argwhere(surface.heights(values, 1, 1, fill=largest).holes).tolist(), [[1, 1]])
@@ -116,7 +116,7 @@ class Faults(unittest.TestCase):
             with warnings.catch_warnings():
                 warnings.simplefilter("error")
                 self.assertEqual(np.argwhere(surface.heights(z, 1, 1, fill=value).holes).tolist(), [place])
-                # Holes without a number need no name.
+                # NaN needs no fill value, but may be given as one.
                 surface.heights(np.where(z > 1.0, np.nan, z), 1, 1, fill=np.nan)
 
     def test_fill_values_are_found(self):
@@ -190,7 +190,7 @@ class Faults(unittest.TestCase):
         self.assertIn("1 of 4096 elements (0.02%) were not measured", str(found))
         self.assertIn("5 spikes, the first ones at (iy, ix) = (0, 0), (5, 7)", str(found))
         self.assertEqual(found.removed.holes.sum(), 6)
-        # With a period the border has its neighbours on the other side.
+        # With a period, elements at the border have neighbours at the opposite border.
         step = np.zeros((8, 8))
         step[:, 0] = step[0, :] = 1.0
         step += 1e-3 * np.random.default_rng(2).normal(size=step.shape)
@@ -203,7 +203,7 @@ class Faults(unittest.TestCase):
         z[30:50, 40:70] = np.nan
         made = surface.heights(z, 1, 1)
         self.assertEqual(surface.faults(made).spikes.sum(), 0)
-        # They are still found there, and inside alone. At an edge the two neighbours along it may go with them: of five neighbours one is the spike.
+        # Spikes are found there, and inside nothing else is. At an edge the two neighbours along it may be marked too: one of their five is it.
         for place, most in (((20, 20), 1), ((0, 60), 3), ((99, 3), 3), ((40, 39), 3), ((50, 55), 3), ((0, 0), 3)):
             spoiled = made.z.copy()
             spoiled[place] += 4.0
@@ -230,7 +230,7 @@ class Levels(unittest.TestCase):
             z[3:9, 4:12] = np.nan
             made = surface.heights(z, DX, DY)
             left = surface.level(made, kind).z
-            # Some hundred rounding errors of heights of 3.
+            # A few hundred rounding errors of heights of about 3.
             self.assertLess(np.nanmax(np.abs(left)), 1e-12)
             np.testing.assert_array_equal(np.isnan(left), np.isnan(z))
             self.assertLess(surface.form(made, kind).rms, 1e-12)
@@ -244,7 +244,7 @@ class Levels(unittest.TestCase):
         z = rough(32)
         left = surface.level(surface.heights(z, DX, DY)).z
         x, y = (np.arange(32) - 15.5) * DX, (np.arange(32) - 15.5) * DY
-        # What is left has no moments: 1024 terms of some 10.
+        # The rest has no moments. Each is a sum of 1024 terms of about 10.
         for moment in (left.sum(), (left * x[None, :]).sum(), (left * y[:, None]).sum()):
             self.assertLess(abs(moment), 1e-10)
 
@@ -262,9 +262,9 @@ class Levels(unittest.TestCase):
         self.assertEqual(surface.border_jumps(surface.heights(np.ones((4, 5)), 1, 1)), (0.0, 0.0))
         steps = np.where(np.arange(4)[:, None] < 2, 0.0, 1.0) + np.zeros((4, 5))
         self.assertEqual(surface.border_jumps(surface.heights(steps, 1, 1))[0], 0.0)
-        # Of two rows of steps one is a jump of 1, as is that across the border: 1 over the root of 1/3.
+        # Of the three steps between rows one is 1 and two are 0: rms sqrt(1/3). The step across the border is 1.
         self.assertAlmostEqual(surface.border_jumps(surface.heights(steps, 1, 1))[1], np.sqrt(3.0), delta=1e-12)
-        # Without a pair across the border, or inside, there is no ratio, and no warning.
+        # Without pairs of heights across the border, or inside, the ratio is NaN, without a warning of numpy.
         holes = np.where(np.arange(5) == 4, np.nan, rough()[:5, :5])
         with warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -328,21 +328,21 @@ class Gaps(unittest.TestCase):
 
 class Balance(unittest.TestCase):
     def test_a_tilted_ball_is_turned_upright(self):
-        # To tilt a paraboloid is to move it: balanced, its lowest place is below the force.
+        # A tilted paraboloid is a shifted one. In balance its lowest point is under the force.
         n, d, radius, tilt = 65, 0.02, 2.0, (0.15, -0.1)
         x = (np.arange(n) - n // 2) * d
         h = (x[None, :] ** 2 + x[:, None] ** 2) / (2 * radius) + tilt[0] * x[None, :] + tilt[1] * x[:, None]
         found = surface.balance(surface.Gap(h, d, d), 2e-2, tolerance=1e-5, e_star=1.0)
-        # The centre is within 1e-5 of the length n d: divided by the radius, that is the tilt.
+        # The centre is within 1e-5 n d of the force. Divided by the radius, that is the error of the tilt.
         np.testing.assert_allclose(found.tilt, tilt, atol=1e-5 * n * d / radius)
         self.assertLess(np.abs(found.centre).max(), 1e-5 * n * d)
         upright = (x[None, :] ** 2 + x[:, None] ** 2) / (2 * radius)
         np.testing.assert_allclose(found.gap.h, upright, atol=1e-5 * (n * d) ** 2 / radius)
-        # Of one direction alone, too.
+        # Also a tilt in one direction.
         for one in ((tilt[0], 0.0), (0.0, tilt[1])):
             found = surface.balance(surface.Gap(upright + one[0] * x[None, :] + one[1] * x[:, None], d, d), 2e-2, tolerance=1e-5, e_star=1.0)
             np.testing.assert_allclose(found.tilt, one, atol=1e-5 * n * d / radius)
-        # And a force beside the middle tilts it.
+        # A force beside the middle tilts the ball.
         beside = surface.balance(surface.Gap(h, d, d), 2e-2, at=(0.1, 0.05), tolerance=1e-5, e_star=1.0)
         np.testing.assert_allclose(beside.tilt, (tilt[0] + 0.1 / radius, tilt[1] + 0.05 / radius), atol=1e-5 * n * d / radius)
 
@@ -395,7 +395,7 @@ class Balance(unittest.TestCase):
                 progress(None)
             return result
 
-        # A solve that is complete is what was had so far.
+        # The result is the last complete solve.
         for given_to, status, why in (({"max_seconds": 0.005}, cn.ITERATION_LIMIT, "max_seconds was reached before a tilt"),
                                       ({"progress": lambda _: True}, cn.CANCELLED, "the progress callback cancelled")):
             given.clear()

@@ -10,11 +10,11 @@ use crate::scene::Load;
 use crate::sums::{Sums, ROUND_OFF};
 use crate::threads::Threads;
 
-/// Most rounds of raising pressures below their limit; each but the last brings at least one element to its limit, most bring many.
+/// Most rounds of [`State::carry_force`] with limits. Each round but the last brings at least one element to its limit, most bring many.
 const ROUNDS: u32 = 50;
 
-/// Pressures cancel if their sum is below this part of the sum of |p|: such forces are carried by adding to p, not by scaling p. Contact pressures q
-/// and attraction cancel if p is below this part of q.
+/// Pressures cancel if |sum of p| is below this part of the sum of |p|: p then gets the force by an added pressure, not by a factor. Contact
+/// pressures q and attraction cancel if p is below this part of q.
 pub const CANCELLED: f64 = 1e-3;
 
 impl State {
@@ -81,8 +81,7 @@ impl State {
         self.p.iter_mut().zip(&self.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p += uniform);
     }
 
-    /// Whether a prescribed force is much smaller than the sum of |p|. Then p must not be scaled to the force: the sum
-    /// of p says little about the size of p.
+    /// Whether a prescribed force is much smaller than the sum of |p|. Then a factor on p that gives the force may be far too large.
     pub fn is_cancelled(&self, threads: &Threads) -> bool {
         let Load::Force(force) = self.load else { return false };
         let [all] = self.sum_pressures(threads, |p| [p.abs()]);
@@ -97,7 +96,8 @@ impl State {
         self.p.iter_mut().zip(&self.contact).filter(|(_, &inside)| inside).for_each(|(p, _)| *p += missing);
     }
 
-    /// The sums of p, of p on C, and the elements of C. In blocks, as the error of a plain sum of many equal pressures exceeds [`ROUND_OFF`].
+    /// The sum of p, the sum of p on C, and the number of elements in C. In blocks: the round-off of a plain sum of many equal pressures exceeds
+    /// [`ROUND_OFF`].
     fn sum_on_contact(&self, threads: &Threads) -> [f64; 3] {
         let of_block = |block: Range<usize>| {
             let mut sums = Sums::new();
@@ -109,8 +109,7 @@ impl State {
         blocks::fold(&self.grid, threads, [0.0; 3], of_block, |sums, block| from_fn(|k| sums[k] + block[k]))
     }
 
-    /// Elements of C with a pressure above the limit leave C and are at their limit. Elements at their limit get the
-    /// pressure of the limit, exterior elements 0.
+    /// Moves elements of C with a pressure above their limit to the limit. Sets p to the limit there, and to 0 on exterior elements.
     pub fn project<S: AdmissibleSet>(&mut self, set: S) {
         if !S::LIMITED || !self.reached_limit && !set.any_beyond(0, self.p.iter().copied()) {
             return;

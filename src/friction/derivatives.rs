@@ -1,7 +1,7 @@
 //! Derivatives of the last result by pressures and slip, on the whole grid.
 //!
-//! The elements in slip stay the same. Their tractions follow the pressures, `dq = mu dp n + z` with `P z = z` (see
-//! [`sensitivity`]), and a change dw of the slip, which includes the change of lateral displacements by pressures, gives
+//! The slip area stays constant. Its tractions follow the pressures, `dq = mu dp n + z` with `P z = z` (see [`sensitivity`]). With dw, the change
+//! of the slip from other causes, which include lateral displacements by pressures,
 //!
 //! ```text
 //! (P A P + D) z = -P (dw + A mu dp n)
@@ -18,7 +18,7 @@ use crate::error::Result;
 use crate::grid::Grid;
 
 impl Solver {
-    /// See [`Report::sensitivities`](super::Report::sensitivities): the pressures are fixed. None if `watch` cancels.
+    /// The [`Report::sensitivities`](super::Report::sensitivities) with fixed pressures. None if `watch` cancels.
     pub(super) fn sensitivities(
         &mut self,
         friction: &Friction<'_>,
@@ -60,8 +60,8 @@ impl Solver {
         Ok(Some(derivatives).filter(|_| !is_cancelled))
     }
 
-    /// The change of the tractions of the last result with its pressures, by `dp`, and with the slip from other causes. `change` holds dw on entry
-    /// and dq on return. All arrays are on the whole grid.
+    /// The change dq of the last tractions by a change `dp` of the pressures and a change dw of the slip from other causes. `change` holds dw on
+    /// entry and dq on return. All arrays are on the whole grid.
     pub fn change(&mut self, friction: &Friction<'_>, dp: &[f64], change: &mut [Vector]) -> Result<()> {
         let limits = self.limits(friction, &self.particles_before)?;
         let (Some(window), Some(level)) = (&self.window, self.levels.first_mut()) else {

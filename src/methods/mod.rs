@@ -1,4 +1,4 @@
-//! The methods, each in its folder. Each is a [`Step`] of the solver's loop.
+//! The methods, each a [`Step`] of the solver's loop, and what several of them use: `extension`, `fgmres`, `fields`.
 
 pub mod direct;
 pub mod extension;

@@ -1,4 +1,4 @@
-//! Loops: goals, outcomes, counters, cancellation.
+//! The goal of a loop, its outcome, its counters, its ledger, and calls of the progress callback.
 
 mod criterion;
 mod ledger;
@@ -33,7 +33,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// The progress of work without cycles: a depth of subsurface stresses or an entry of a table counts as a cycle.
+    /// Progress of work without cycles: `cycles`: depths of subsurface stresses, or entries of a table, done so far.
     pub fn of_part(grid: &Grid, cycles: u64, seconds: f64) -> Progress {
         Progress { mx: grid.mx, my: grid.my, cycles, seconds, ..Progress::default() }
     }
@@ -42,14 +42,14 @@ impl Progress {
 /// Called with the progress after each cycle; true cancels.
 pub type ProgressCallback<'a> = &'a mut dyn FnMut(&Progress) -> bool;
 
-/// Counters. All but the work units start anew on each grid.
+/// Counters. [`Monitor::enter_grid`] resets all but the work units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Counters {
     /// Cycles (of multigrid) or iterations (of conjugate gradients, steps of GMRES) on the current grid.
     pub cycles: u64,
     /// Products on the current grid.
     pub matrix_products: u64,
-    /// Elements that entered or left the contact area on the current grid, in all.
+    /// Sum over the cycles on the current grid of the elements that entered or left the contact area.
     pub active_set_changes: u64,
     /// Active-set steps on the current grid.
     pub active_set_steps: u64,
@@ -61,7 +61,7 @@ pub struct Counters {
     pub work_units: f64,
 }
 
-/// Counts the work of a solve, calls the caller's progress callback, and keeps the ledger.
+/// Counts the work of a solve, calls the caller's progress callback, and writes the ledger.
 pub struct Monitor<'a> {
     began: Instant,
     callback: Option<ProgressCallback<'a>>,
@@ -72,12 +72,12 @@ pub struct Monitor<'a> {
     pub coarse_seconds: f64,
     /// The measures of each grid.
     pub ledger: Ledger,
-    /// The last survey of the grid to be closed next, if it still holds.
+    /// The survey of the final state on the current grid; none: [`close_grid`](Monitor::close_grid) makes it.
     pub survey: Option<Survey>,
 }
 
 impl<'a> Monitor<'a> {
-    /// Starts the clock. `rows` lends its memory; `estimates`: whether errors are estimated.
+    /// Starts the clock. The ledger reuses the memory of `rows`; `estimates`: whether errors are estimated.
     pub fn new(callback: Option<ProgressCallback<'a>>, mut rows: Vec<LedgerRow>, estimates: bool) -> Monitor<'a> {
         rows.clear();
         let ledger = Ledger { rows, estimates, ..Ledger::default() };
@@ -107,12 +107,12 @@ impl<'a> Monitor<'a> {
         self.count = Counters { work_units: self.count.work_units, ..Counters::default() };
     }
 
-    /// Counts products on other grids than the current one, as work only.
+    /// Adds the work of products on other grids; `matrix_products` stays.
     pub fn count_work(&mut self, work: f64) {
         self.count.work_units += work;
     }
 
-    /// Counts products on the current grid: their number and the work of one.
+    /// Counts products on the current grid. `work`: that of one, in products on the finest grid.
     pub fn count_products(&mut self, products: u64, work: f64) {
         self.count.work_units += products as f64 * work;
         self.count.matrix_products += products;
@@ -126,7 +126,7 @@ impl<'a> Monitor<'a> {
         self.tell(grid, changes, update, residual)
     }
 
-    /// Calls the callback, which is not called again after it cancelled.
+    /// Calls the callback, unless it has cancelled before. False if the solve is cancelled.
     fn tell(&mut self, grid: &Grid, changes: u64, update: f64, residual: f64) -> bool {
         if let (Some(callback), false) = (&mut self.callback, self.cancelled) {
             let progress = Progress {
@@ -144,7 +144,7 @@ impl<'a> Monitor<'a> {
         !self.cancelled
     }
 
-    /// Reports an iteration that is not counted, of the tangential problem or on a coarser grid; false when the caller cancels.
+    /// Calls the callback after an iteration of the tangential problem or on a coarser grid, without a count. False if the caller cancels.
     pub fn uncounted_done(&mut self, grid: &Grid, residual: f64) -> bool {
         self.tell(grid, 0, 0.0, residual)
     }

@@ -1,12 +1,11 @@
 //! The C clients: the header alone, every example with its expected output and a certificate recomputed from what it wrote, a
-//! program in C++11, the examples under valgrind.
+//! program in C++11.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::support::{
-    assert_certified, finished, recompute, root, run, run_linked, run_under_valgrind, scratch, smaller, Recomputed,
-    EXAMPLES_OF_EFFECTS,
+    assert_certified, finished, recompute, root, run, run_linked, scratch, Recomputed, EXAMPLES_OF_EFFECTS,
 };
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace};
@@ -144,37 +143,6 @@ fn the_effects() {
         let expected = std::fs::read_to_string(root().join(format!("c_examples/{name}.expected"))).expect("expected");
         assert!(printed == expected, "{name} printed\n{printed}\nexpected was\n{expected}");
     }
-}
-
-/// All of them, as the folder has them, on small inputs: valgrind is some 50 times slower.
-#[test]
-fn the_examples_under_valgrind() {
-    let folder = scratch("c_valgrind");
-    let data = root().join("data/wheel_rail/y4_82kN.txt").to_string_lossy().into_owned();
-    let ground = gap_file("ground");
-    std::fs::copy(root().join("c_examples/example.h"), folder.join("example.h")).expect("a header");
-    let mut count = 0;
-    for file in std::fs::read_dir(root().join("c_examples")).expect("the examples") {
-        let file = file.expect("a file").path();
-        if file.extension().is_none_or(|extension| extension != "c") {
-            continue;
-        }
-        let name = file.file_stem().expect("a name").to_string_lossy().into_owned();
-        let source = folder.join(format!("{name}.c"));
-        std::fs::write(&source, smaller(&name, &std::fs::read_to_string(&file).expect("a source")))
-            .expect("a smaller source");
-        let program = compile(compiler("cc", "c99"), source.to_str().expect("a path in UTF-8"), &folder);
-        let arguments = match name.as_str() {
-            "hertz" | "ledger" => vec!["24"],
-            "wheel_rail" => vec![data.as_str()],
-            "gap" => vec![ground.as_str(), "1.2288"],
-            _ => Vec::new(),
-        };
-        let printed = run_under_valgrind(&program, &arguments, &folder);
-        assert!(!printed.is_empty(), "{name}");
-        count += 1;
-    }
-    assert!(count >= 11, "{count} examples");
 }
 
 #[test]

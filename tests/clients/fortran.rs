@@ -9,7 +9,7 @@ use crate::c::gap_file;
 use crate::description::{Description, Kind};
 use crate::generated::header;
 use crate::support::{
-    assert_certified, recompute, root, run, run_linked, run_under_valgrind, scratch, smaller, EXAMPLES_OF_EFFECTS,
+    assert_certified, recompute, root, run, run_linked, run_under_valgrind, scratch, EXAMPLES_OF_EFFECTS,
 };
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace};
@@ -17,19 +17,26 @@ use contact_normal::influence::{Coefficients, HalfSpace};
 /// Every warning is an error: the module must compile cleanly with the strictest users' flags.
 const STRICT: [&str; 5] = ["-std=f2018", "-Wall", "-Wextra", "-pedantic", "-Werror"];
 
+/// The compiler with these flags.
+pub fn compiler(flags: &[&str]) -> Command {
+    let mut gfortran = Command::new("gfortran");
+    gfortran.args(STRICT).args(flags);
+    gfortran
+}
+
 /// Compiles `source` with the module; returns the program. `flags` for both.
 fn compile(source: &str, flags: &[&str], folder: &Path) -> PathBuf {
     let name = Path::new(source).file_stem().expect("a file name").to_string_lossy().into_owned();
     let (program, module) = (folder.join(name), module(flags));
-    let mut gfortran = Command::new("gfortran");
-    gfortran.args(STRICT).args(flags).arg("-I").arg(&module).arg(root().join(source));
+    let mut gfortran = compiler(flags);
+    gfortran.arg("-I").arg(&module).arg(root().join(source));
     gfortran.arg(module.join("contact_normal.o")).arg("-o").arg(&program);
     run(gfortran.arg("-L").arg(folder).arg("-lcontact_normal").current_dir(folder));
     program
 }
 
 /// The folder of the module, which is compiled once with these flags.
-fn module(flags: &[&str]) -> PathBuf {
+pub fn module(flags: &[&str]) -> PathBuf {
     static COMPILED: Mutex<BTreeMap<String, PathBuf>> = Mutex::new(BTreeMap::new());
     let flags_of_name = flags.concat().replace(['=', ','], "_");
     // One that did not compile leaves nothing behind.
@@ -38,8 +45,8 @@ fn module(flags: &[&str]) -> PathBuf {
         return folder.clone();
     }
     let folder = scratch(&format!("fortran_compiled{flags_of_name}"));
-    let mut gfortran = Command::new("gfortran");
-    gfortran.args(STRICT).args(flags).arg("-c").arg(root().join("include/contact_normal.f90"));
+    let mut gfortran = compiler(flags);
+    gfortran.arg("-c").arg(root().join("include/contact_normal.f90"));
     run(gfortran.current_dir(&folder));
     compiled.insert(flags_of_name, folder.clone());
     folder
@@ -136,34 +143,6 @@ fn a_host_with_its_own_floating_point_environment_gets_the_same() {
         check_example("wheel_rail", &[&wheel_rail_case()], flags, PER_UPDATE * 1e-8);
         check_example("norm_drop_in", &[], flags, PER_UPDATE * 1e-9);
     }
-}
-
-/// All of them, on smaller grids.
-#[test]
-fn the_examples_under_valgrind() {
-    let folder = scratch("fortran_valgrind");
-    let mut count = 0;
-    for file in std::fs::read_dir(root().join("fortran_examples")).expect("the examples") {
-        let file = file.expect("a file").path();
-        if file.extension().is_none_or(|extension| extension != "f90") {
-            continue;
-        }
-        let name = file.file_stem().expect("a name").to_string_lossy().into_owned();
-        let source = folder.join(format!("{name}.f90"));
-        let text = std::fs::read_to_string(&file).expect("a source");
-        std::fs::write(&source, smaller(&name, &text)).expect("a smaller source");
-        let program = compile(source.to_str().expect("a path in UTF-8"), &["-g", "-O1"], &folder);
-        let (case, gap) = (wheel_rail_case(), gap_file("wheel_rail"));
-        let arguments = match name.as_str() {
-            "wheel_rail" => vec![case.as_str()],
-            "gap" => vec![gap.as_str(), "80000"],
-            _ => Vec::new(),
-        };
-        let printed = run_under_valgrind(&program, &arguments, &folder);
-        assert!(!printed.is_empty(), "{}", file.display());
-        count += 1;
-    }
-    assert!(count >= 9, "{count} examples");
 }
 
 #[test]

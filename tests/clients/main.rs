@@ -3,6 +3,7 @@
 mod c;
 mod cxx;
 mod description;
+mod examples_under_valgrind;
 mod exported_symbols;
 mod fortran;
 mod generated;

@@ -101,42 +101,6 @@ pub fn run_linked(program: &Path, arguments: &[&str], folder: &Path) -> String {
     run(Command::new(program).args(arguments).env("LD_LIBRARY_PATH", folder).current_dir(folder))
 }
 
-/// Sizes in the examples in C and in Fortran, and smaller ones.
-const SIZES: [(&str, &str); 19] = [
-    ("ROLLED = 32", "ROLLED = 10"),
-    (":: n = 32, reach", ":: n = 10, reach"),
-    ("COUNT = 200", "COUNT = 5"),
-    ("N = 32, M = 2 * N + 1, DEPTHS = 101", "N = 8, M = 2 * N + 1, DEPTHS = 3"),
-    ("N = 32, M = 2*N + 1, DEPTHS = 101", "N = 8, M = 2*N + 1, DEPTHS = 3"),
-    ("STEPS = 100", "STEPS = 4"),
-    ("M = 64, STEPS = 8", "M = 16, STEPS = 3"),
-    ("m = 64, steps = 8", "m = 16, steps = 3"),
-    ("M = 48, N = 32, STEPS = 12", "M = 24, N = 16, STEPS = 3"),
-    ("m = 48, n = 32, steps = 12", "m = 24, n = 16, steps = 3"),
-    ("MX = 48, MY = 36, CREEPAGES = 7", "MX = 16, MY = 12, CREEPAGES = 7"),
-    ("MX = 48, MY = 48", "MX = 16, MY = 16"),
-    ("MX = 40, MY = 40", "MX = 12, MY = 12"),
-    ("{ M = 64", "{ M = 16"),
-    (":: M = 64", ":: M = 16"),
-    (" m = 64", " m = 16"),
-    ("M = 96", "M = 24"),
-    (" M = 80", " M = 20"),
-    (" m = 80", " m = 20"),
-];
-
-/// Laws of friction, whose elements have one size: the first creepage, and the first steps.
-const FEWER_STEPS: [(&str, &str); 2] = [("i < 6; i++", "i < 1; i++"), ("step = 1, 60", "step = 1, 10")];
-
-/// An example with smaller sizes, which valgrind runs some 50 times slower. The forces of one need its grid.
-pub fn smaller(name: &str, source: &str) -> String {
-    let sizes = match name {
-        "laws" => &FEWER_STEPS[..],
-        "pressure_limit" => &[][..],
-        _ => &SIZES[..],
-    };
-    sizes.iter().fold(source.to_owned(), |text, (of, by)| text.replace(of, by))
-}
-
 /// Runs a program that was linked with the library in `folder` under valgrind: no error, and nothing definitely lost. What is still
 /// reachable, or possibly lost, the run-time library of Fortran keeps for its units, and the library's threads for their transforms.
 /// Returns what it printed.

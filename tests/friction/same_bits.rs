@@ -1,4 +1,4 @@
-//! A solve that starts from nothing, or from a given guess, has the same bits whatever the handle solved before, and in a batch of any number of threads.
+//! A solve from nothing or from a given guess has the same bits on any handle, whatever it solved before, and in batches of any number of threads.
 
 use contact_normal::scene::{Bodies, Each, Friction, Load, Motion, Prescribed, PressureLimit, Previous, Scene};
 use contact_normal::solver::{solve, Guess, InitialGuess, Method, Options, Problem, Solver};
@@ -41,7 +41,7 @@ fn on_a_handle_that_solved_other_scenes() {
                 let mut new = Solver::new(&scene, &options).unwrap();
                 new.solve(&scene, &options, guess, None).unwrap();
                 let expected = bits(&new);
-                // What was solved before: other surfaces, loads, limits and motions, and steps in time.
+                // Earlier solves of the handle: other surfaces, loads, limits and motions, and steps in time.
                 let others = [
                     (Scene { friction: None, undeformed_distance: &rough, ..scene.clone() }, InitialGuess::None),
                     (
@@ -92,7 +92,7 @@ fn in_batches_of_any_number_of_threads() {
                 scenes.iter().map(|scene| Problem { scene: scene.clone(), guess: None }).collect();
             let found = solver.solve_batch(&problems, &options, |i, outcome, state| {
                 outcome.unwrap();
-                // Of the state: what a batch shows.
+                // A batch hands out the state, without tractions.
                 assert!(state.p.iter().zip(&alone[i]).all(|(p, bits)| p.to_bits() == *bits), "{i}, {threads} threads");
                 state
                     .p
@@ -106,7 +106,7 @@ fn in_batches_of_any_number_of_threads() {
     }
 }
 
-/// In a batch nobody knows which scene a worker has solved before.
+/// A batch does not define which scene a worker solved before.
 #[test]
 fn a_batch_refuses_friction_that_continues() {
     let (grid, h) = ball(20, 0.12);
@@ -117,7 +117,7 @@ fn a_batch_refuses_friction_that_continues() {
             let continues = Scene { friction: Some(goes_on), ..scene.clone() };
             let options = Options { threads: 2, ..Options::default() };
             let mut solver = Solver::new(&scene, &options).unwrap();
-            // The workers have tractions after that, and so has the solver itself.
+            // This gives the solver tractions to continue from; the first batch below gives its workers some.
             solver.solve(&scene, &options, None, None).unwrap();
             for scenes in [[&scene; 4], [&continues, &scene, &continues, &scene]] {
                 let problems: Vec<Problem<'_>> =
@@ -135,7 +135,7 @@ fn a_batch_refuses_friction_that_continues() {
                     }
                 }
             }
-            // Its own result is there to go on from.
+            // The solver itself continues from its own result.
             solver.solve(&continues, &options, None, None).unwrap();
         }
     }

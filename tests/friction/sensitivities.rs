@@ -1,4 +1,4 @@
-//! Derivatives of the forces by creepages and spin, against differences; warm starts through a series.
+//! Derivatives of the forces by creepages and spin, against differences; a series of steps, each from the last solution.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Coefficient, Friction, Motion, Prescribed, Previous};
@@ -32,7 +32,7 @@ fn derivatives_are_those_of_differences() {
             let (report, _) = run(&mut solver(&grid, NU), &g, &friction, 1e-8);
             let found = report.sensitivities.unwrap();
             let largest = found.iter().flatten().fold(0.0, |a: f64, b| a.max(b.abs()));
-            // So small a change that hardly an element begins to slip.
+            // The step is so small that hardly an element changes between stick and slip.
             let step = 1e-5;
             for by in 0..3 {
                 let mut change = [0.0; 3];
@@ -40,7 +40,7 @@ fn derivatives_are_those_of_differences() {
                 let (up, down) = (at(change), at(change.map(|c| -c)));
                 for k in 0..3 {
                     let difference = (up[k] - down[k]) / (2.0 * step);
-                    // An element that changes sides: some 1e-3 of the forces of its kind.
+                    // An element that changes between stick and slip changes a derivative by about 1e-3 of the largest.
                     assert!(
                         (found[k][by] - difference).abs() <= 3e-3 * largest,
                         "{motion:?} {creepage:?} {spin}: {k} by {by}: {} {difference} of {largest}",
@@ -52,7 +52,7 @@ fn derivatives_are_those_of_differences() {
     }
 }
 
-/// Without friction nothing is carried, and the spin about the centre of a single element moves nothing: derivatives of 0, not 0/0.
+/// Derivatives are 0, not 0/0, for a coefficient of 0, and by the spin about the centre of a single element.
 #[test]
 fn what_carries_nothing_or_moves_nothing_has_derivatives_of_zero() {
     let (disc, g) = ellipse(1.0, 16);
@@ -76,7 +76,7 @@ fn what_carries_nothing_or_moves_nothing_has_derivatives_of_zero() {
                     (_, Motion::TransientRolling) => -0.25 * 0.5 / own[k],
                     (_, Motion::SteadyRolling) => -0.25 * 0.5 / (own[k] - ahead[k]),
                 };
-                // The linear solves leave 1e-5.
+                // The tolerance of the linear systems is 1e-5.
                 assert!((found[k][by] - expected).abs() <= 1e-5 * expected.abs(), "{motion:?}: {found:?}");
             }
         }
@@ -101,12 +101,12 @@ fn a_series_goes_on_from_the_last_solution() {
             let (b, _) = run(&mut solver(&grid, NU), &g, &friction, 1e-6);
             (products, cold) = (products + a.products, cold + b.products);
             for i in 0..2 {
-                // Errors of the force at this residual (docs/friction.md), twice.
+                // Twice the errors at this residual (docs/friction.md).
                 assert!((a.force[i] - b.force[i]).abs() <= 1e-6 * carried, "{k}: {:?} {:?}", a.force, b.force);
                 assert!((a.creepage[i] - b.creepage[i]).abs() <= 1e-5, "{k}: {:?} {:?}", a.creepage, b.creepage);
             }
         }
-        // The start is nearer than what coarse grids give, and they cost nothing.
+        // The last solution is a better start than coarse grids give, and it saves their products.
         assert!(products < 0.9 * cold, "{products} {cold}");
     }
 }

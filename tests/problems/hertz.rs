@@ -1,4 +1,4 @@
-//! The exact Hertz solution, and the numerical one that converges to it.
+//! The exact Hertz solution against printed values, and the convergence of the numerical solution to it.
 
 use crate::paper as case;
 
@@ -36,7 +36,7 @@ fn a_sphere_is_johnsons_formula() {
     close(exact.semi_axis_y, 1.6134286460245437, 1e-14);
     close(exact.approach, 0.6507879989531481, 1e-14);
     close(exact.max_pressure, 1.2839257217043503, 1e-14);
-    // nearly a sphere, nearly a cylinder, and the axes exchanged
+    // Nearly a sphere; nearly a cylinder, with the axes exchanged.
     let near = hertz(0.125, 0.125 * (1.0 + 1e-9), 0.65, 0.2).unwrap();
     close(near.force, hertz(0.125, 0.125, 0.65, 0.2).unwrap().force, 1e-8);
     let (a, b) = (hertz(1.0, 1e4, 1e-3, 1.0).unwrap(), hertz(1e4, 1.0, 1e-3, 1.0).unwrap());
@@ -59,7 +59,7 @@ fn the_numerical_solution_converges_to_the_exact_one() {
         let (_, stop, report) = solve(&case::scene(m, &h), &Options::default()).unwrap();
         assert_eq!(stop, Outcome::Converged);
         let error = (report.measures.force / exact.force - 1.0).abs();
-        // At least first order in the element size: a factor 4 between these grids; the force is better than that.
+        // The elements shrink by 4 from grid to grid, so that a first-order error falls by 4. The error of the force falls faster.
         assert!(error <= last / 4.0, "{m} x {m}: force off by {error}, before {last}");
         last = error;
     }
@@ -75,7 +75,7 @@ fn prescribing_the_force_finds_the_approach_and_the_reverse() {
     let scene = Scene { load: Load::Force(report.measures.force), ..case::scene(m, &h) };
     let (by_force, stop, again) = solve(&scene, &tight).unwrap();
     assert_eq!(stop, Outcome::Converged);
-    // The residual, relative, is 1e-10; the approach and the force inherit it within a small factor.
+    // The relative residual is 1e-10. The relative errors of approach and force are a small multiple of it.
     close(again.measures.approach, case::APPROACH, 1e-9);
     close(again.measures.force, report.measures.force, 1e-12);
     assert_eq!(by_approach.state().contact, by_force.state().contact);

@@ -1,4 +1,4 @@
-//! Gauss-Seidel in rows of thousands of elements: the iterates of the sweep as its formula says, in less time.
+//! Gauss-Seidel on rows of thousands of elements: a sweep equals its formula, summed term by term.
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, Table};
@@ -22,7 +22,7 @@ fn sweeps_of_long_rows_are_those_of_the_formula() {
     for (mx, my) in [(4097, 1), (6001, 1), (9000, 1), (4500, 2)] {
         let grid = Grid::new(mx, my, 1.0, 1.0).unwrap();
         let influence = influence(&grid);
-        // All, some, and a piece that begins and ends within.
+        // Contact everywhere, on half of the elements, and on a piece inside the grid.
         for (fill, piece) in [(1.0, 0..grid.len()), (0.5, 0..grid.len()), (0.9, 700..grid.len() - 1234)] {
             let contact: Vec<bool> = (0..grid.len()).map(|i| random.next() < fill && piece.contains(&i)).collect();
             let b: Vec<f64> = (0..grid.len()).map(|_| random.next() - 0.4).collect();

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Rows and columns of both components are transformed by this crate's own stages, in lanes, on every machine. Without xy a component displaces in
-//! its own direction only. Then a zero component takes no time, and its displacements are exactly 0.
+//! its own direction only. Then a component of zeros costs nothing, and its displacements are exactly 0.
 
 use std::ops::Range;
 
@@ -25,7 +25,7 @@ use crate::workspace::{Memory, Piece, Room};
 use par::threads::Threads;
 use par::Result;
 
-/// The shortest periods that have stages: px/2 and py are longer than the longest radix, 5.
+/// The shortest periods with stages: px/2 and py exceed the longest radix, 5.
 const SHORTEST: (usize, usize) = (12, 6);
 
 /// Products of two components on a grid of `mx * my` elements.
@@ -70,12 +70,12 @@ impl<T: Real> VectorProduct<T> {
         VectorProduct::of(grid, period, transforms(period, threads)?.of_waves(is_coupled, of)?, threads)
     }
 
-    /// Gives the displacements `n` elements further on in x. The period must have room for `|n|` more offsets in x than those of the plain product.
+    /// The product for displacements `n` elements further on in x. Its period must hold `|n|` more offsets in x than that of the plain product.
     pub fn further_on(self, n: i64) -> Result<VectorProduct<T>> {
         self.at(Place::FurtherOn(n))
     }
 
-    /// The displacements minus those `n` elements further on in x, with the same condition.
+    /// The product for the displacements minus those `n` elements further on in x. Its period is that of [`further_on`](Self::further_on).
     pub fn less_further_on(self, n: i64) -> Result<VectorProduct<T>> {
         self.at(Place::LessFurtherOn(n))
     }
@@ -149,7 +149,7 @@ impl<T: Real> VectorProduct<T> {
         Memory::new(room, &self.threads)
     }
 
-    /// Rows of a block of bins. A group of rows that are transformed together may begin at the last row of the grid.
+    /// Rows of a block of bins: more than `my`, as a group of rows that are transformed together may begin at the last row.
     fn height(&self) -> usize {
         self.my + self.rows.at_a_time() - 1
     }
@@ -158,9 +158,8 @@ impl<T: Real> VectorProduct<T> {
         self.rows.blocks() * self.height() * BLOCK
     }
 
-    /// `u = A q`. q is zero outside the rows `loaded` of each component. `load(component, first row, rows)` writes some of these rows to `rows`.
-    /// `write(piece, first row, [ux, uy])` stores some rows of u in one of the `pieces`. There is one piece for each
-    /// [`rows_at_a_time`](Self::rows_at_a_time) rows.
+    /// `u = A q`. q is zero outside the rows `loaded` of each component. `load(component, first row, rows)` fills `rows` with rows of q.
+    /// `write(piece, first row, [ux, uy])` stores rows of u in one of the `pieces`, one for each [`rows_at_a_time`](Self::rows_at_a_time) rows.
     pub fn apply<P: Send>(
         &self,
         loaded: [Range<usize>; 2],
@@ -209,7 +208,7 @@ impl<T: Real> VectorProduct<T> {
         });
     }
 
-    /// The loaded rows of a component, in groups that are transformed together. The last group may extend beyond them.
+    /// These rows of a component, in groups that are transformed together. The last group may extend beyond them.
     fn some_rows<'a>(
         &self,
         bins: &'a mut [Complex<T>],

@@ -1,4 +1,4 @@
-//! A lack of memory while plans are made is an error: the FFT crate, which would end the process, is asked when there is room.
+//! A plan without enough memory is an error. The FFT crate would end the process, so it is called only when there is room.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -8,7 +8,7 @@ use toeplitz::fft::row_transform::RowTransform;
 use toeplitz::fft::{ColumnTransform, Real};
 use toeplitz::plan;
 
-/// The system's memory, of which a thread gets no more than its room.
+/// The system's allocator, with at most `ROOM` bytes for each thread.
 struct Limited;
 
 thread_local! {
@@ -16,7 +16,7 @@ thread_local! {
     static HELD: Cell<usize> = const { Cell::new(0) };
 }
 
-/// Messages and lists of a few values are not counted.
+/// Smaller allocations, messages and short lists, never fail.
 const SMALL: usize = 512;
 
 // SAFETY: the system's allocator, or null.
@@ -41,7 +41,7 @@ unsafe impl GlobalAlloc for Limited {
 #[global_allocator]
 static LIMITED: Limited = Limited;
 
-/// Makes plans with more and more room, until there is enough; how often there was not.
+/// Makes plans with more and more room until there is enough. Returns the number of failures.
 fn lacks<R>(n: usize, make: impl Fn() -> par::Result<R>) -> usize {
     for lacks in 0.. {
         plan::release();

@@ -1,4 +1,4 @@
-//! Products against the sum term by term, of all kinds of coefficients, grids, precisions, and any number of threads.
+//! Products by FFT against sums term by term: all kinds of coefficients and grids, both precisions, several numbers of threads.
 
 use par::threads::Threads;
 use toeplitz::{dense, Coefficients, Complex, Even, Product, Real, SetUp};
@@ -17,7 +17,7 @@ fn values<T: Real>((mx, my): (usize, usize)) -> Vec<T> {
 /// Coefficients that fall off from the centre; `skew` makes them uneven.
 #[derive(Clone, Copy)]
 struct FallOff {
-    /// Of what is `c(k) = c(-k)` and yet not even, and of what has no symmetry.
+    /// Amplitudes of two parts: one with `c(k) = c(-k)` that is not even, and one without symmetry.
     skew: [f64; 2],
 }
 
@@ -70,8 +70,8 @@ fn error<T: Real>(product: &Product<T>, c: FallOff) -> f64 {
     }
 }
 
-/// The terms of p all have one size and those of c fall off, so that no sum is much smaller than its terms: each of the log2 steps of both
-/// transforms, there and back, and S itself round once or twice.
+/// The largest error allowed: each of the log2 steps of both transforms, there and back, and the product with S round once or twice. The values of p
+/// are of one size and c falls off, so that no sum is much smaller than its terms.
 fn allowed<T: Real>(grid: (usize, usize)) -> f64 {
     let steps = ((4 * grid.0 * grid.1) as f64).log2() + 1.0;
     8.0 * steps * T::epsilon().to_double()
@@ -101,7 +101,7 @@ fn the_bits_do_not_depend_on_threads() {
                 let product = product::<f64>(FallOff { skew }, grid, threads);
                 let (p, mut memory) = (values(grid), product.memory().expect("memory"));
                 let mut u = vec![f64::NAN; p.len()];
-                // Twice: what a product leaves in its memory is no part of the next.
+                // Twice: the second product must not depend on what the first one left in memory.
                 product.apply(&p, &mut u, &mut memory);
                 product.apply(&p, &mut u, &mut memory);
                 u.into_iter().map(f64::to_bits).collect::<Vec<_>>()

@@ -1,11 +1,11 @@
-//! The offsets of a row to be computed.
+//! The range of offsets to compute in a row.
 
 use crate::grid::Grid;
 
 /// The name of this memory in messages.
 pub(super) const COATED: &str = "the coefficients of a coating";
 
-/// The first offset computed in a row: for square elements, earlier ones equal those of `(ky, kx)`.
+/// The first offset in x to compute in row ky. For square elements c(kx, ky) = c(ky, kx), so that earlier ones are known.
 pub(super) fn first_of_half(grid: &Grid, ky: usize) -> usize {
     if grid.dx == grid.dy && grid.my <= grid.mx {
         ky.min(grid.mx)
@@ -14,7 +14,7 @@ pub(super) fn first_of_half(grid: &Grid, ky: usize) -> usize {
     }
 }
 
-/// The first offset in a row at this distance or more, or the row's end.
+/// The first offset in x of row ky whose distance is at least `distance`; the end of the row if there is none.
 pub(super) fn first_beyond(distance: f64, grid: &Grid, ky: usize) -> usize {
     let y = ky as f64 * grid.dy;
     if y >= distance {

@@ -8,8 +8,8 @@
 //! B(s) = N/D,    N = 1 + 4 s kappa th - lambda kappa th^2,    D = 1 - (lambda + kappa + 4 kappa s^2) th + lambda kappa th^2
 //! ```
 //!
-//! B(0) = mu (1 - nu2)/(1 - nu1) is the substrate, B(infinity) = 1 the layer. N and D suffer from cancellation for small s, the more the stiffer the
-//! layer is. So they are written as sums without cancellation, with
+//! B(0) = mu (1 - nu2)/(1 - nu1) is the response of the substrate alone, B(infinity) = 1 that of the layer alone. For small s the terms of N and D
+//! cancel, more so for a stiffer layer. Therefore they are written as sums without cancellation, with
 //!
 //! ```text
 //! 1 - lambda kappa = B(0) (1 - lambda)(1 - kappa)
@@ -21,7 +21,7 @@
 use super::response::{quotient, Response, TERMS};
 use crate::powers::FADED;
 
-/// Beyond this s, `exp(-2 s)` has faded, so that nothing cancels.
+/// Above this s, `exp(-2 s)` is below round-off, and nothing cancels.
 pub(super) const NEGLIGIBLE_EXPONENTIALS: f64 = 0.5 * FADED;
 /// s above which exp(-2 s) is 0 in double precision.
 const ZERO_EXPONENTIALS: f64 = 373.0;
@@ -43,7 +43,7 @@ pub struct Transfer {
 }
 
 impl Transfer {
-    /// The function for a layer of `mu` times the substrate's shear modulus, with both Poisson ratios.
+    /// B of a layer of `mu` times the substrate's shear modulus; Poisson ratios of the layer, then of the substrate.
     pub fn new(mu: f64, [nu1, nu2]: [f64; 2]) -> Transfer {
         let (one, two) = (1.0 + mu * (3.0 - 4.0 * nu2), mu + 3.0 - 4.0 * nu1);
         let (less_lambda, less_kappa) = (4.0 * (1.0 - nu1) / one, 4.0 * (1.0 - nu1) / two);
@@ -60,7 +60,7 @@ impl Transfer {
         }
     }
 
-    /// The response less 1 beyond [`NEGLIGIBLE_EXPONENTIALS`]; `grows`: 1 + 2 s, or 1 - 2 s for tractions.
+    /// B(s) - 1 for s >= 1; `grows`: 1 + 2 s, or 1 - 2 s for tractions.
     pub(super) fn less_one_plain(&self, s: f64, grows: f64) -> f64 {
         if s > ZERO_EXPONENTIALS {
             return 0.0;

@@ -1,4 +1,4 @@
-//! Initial guesses: a bad one may cost time, never the answer.
+//! Initial guesses: a bad one may cost time, but the answer is the same.
 
 use contact_normal::scene::Load;
 
@@ -10,7 +10,7 @@ pub fn cases() -> Vec<Case> {
     [Load::Approach(0.12), Load::Force(0.3)].map(|load| Case::new("a guess", grid, h.clone(), load)).to_vec()
 }
 
-/// Pressures and contact areas that are no solution of `case`, by name.
+/// Wrong pressures and contact areas for `case`, by name.
 fn guesses(case: &Case) -> Vec<(&'static str, Vec<f64>, Vec<bool>)> {
     let n = case.grid.len();
     let mut random = Random(11);
@@ -61,10 +61,10 @@ mod promises {
                 let (stop, report) =
                     solver.solve(&case.scene(), &options, Some(Guess { pressure, contact }), None).expect("a solve");
                 let found = found(&solver, stop, report);
-                // At iteration 0 too.
+                // Also if no iteration was needed.
                 assert_certified(case, &format!("{method:?} from {name}"), &found, options.tolerance);
                 for (p, q) in found.p.iter().zip(&cold.p) {
-                    // Two residuals of 1e-9, times the condition of A on this grid (below 100).
+                    // Both residuals are at most 1e-9; the condition of A on this grid is below 100.
                     assert!((p - q).abs() <= 1e-7 * largest, "{method:?} from {name}: {p} and {q}");
                 }
             }
@@ -113,7 +113,7 @@ mod promises {
                     let again = from(&exact.p);
                     // UPDATE at 1e-8 leaves a residual of at most about that: A is well scaled on the solution.
                     assert_certified(&case, &format!("{method:?} from the solution"), &again, 1e-7);
-                    // A V-cycle or two to see that nothing changes; conjugate gradients see it from the residual.
+                    // Multigrid needs a V-cycle or two to measure the update; conjugate gradients measure the residual first.
                     assert!(again.report.count.cycles <= 4, "{method:?}: {} cycles", again.report.count.cycles);
                     let bent: Vec<f64> = exact.p.iter().enumerate().map(|(i, p)| p * [1.01, 0.99][i % 2]).collect();
                     let other = from(&bent);

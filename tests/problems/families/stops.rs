@@ -1,4 +1,4 @@
-//! Early stops: whatever ends a solve, what it returns is sound, and the status says why.
+//! Solves that stop early: the result is sound, and the status names the cause.
 
 use contact_normal::scene::Load;
 
@@ -29,8 +29,8 @@ mod promises {
                     let found = run_with(&case, &options).expect("a solve");
                     let what = format!("{method:?} {criterion:?}");
                     let measures = assert_sound(&case, &what, &found);
-                    // A product rounds to about 1e-15 of u; a few hundred of them, and p a hundred times more by the
-                    // condition of A.
+                    // The round-off of one product is about 1e-15 u, and that of p is up to a hundred times larger, by the
+                    // condition of A. A few hundred products add theirs.
                     assert!(measures.residual <= 1e-12, "{what}: {measures:?}");
                     let floor_or_exact = found.stop == Outcome::Stagnated
                         || criterion == Criterion::Update && found.stop == Outcome::Converged;
@@ -42,7 +42,7 @@ mod promises {
 
     #[test]
     fn norm_below_round_off_ends_with_the_contact_area_found() {
-        // Directions of mean zero lose that by round-off, and equations that are not symmetric are solved otherwise.
+        // Also periodic scenes, whose directions lose their mean of 0 by round-off, and tables that are not symmetric.
         let shaped = [super::super::surfaces::cases(), super::super::coefficients::cases()].concat();
         let shaped =
             shaped.into_iter().chain(super::super::contact_areas::cases()).filter(|case| case.grid.len() < 4000);
@@ -52,7 +52,7 @@ mod promises {
             let options = Options { method: Method::Norm, tolerance: 1e-30, max_cycles: 20_000, ..Options::default() };
             let found = run_with(&case, &options).expect("a solve");
             let measures = assert_sound(&case, "NORM below round-off", &found);
-            // Contacts of few elements are solved to the last bit.
+            // Contact areas of few elements are solved to the last bit: these converge.
             assert!(
                 [Outcome::Stagnated, Outcome::Converged].contains(&found.stop),
                 "{}: {:?}",
@@ -62,7 +62,7 @@ mod promises {
             stagnated += usize::from(found.stop == Outcome::Stagnated);
             assert!(measures.residual <= 1e-12 && measures.violation <= 1e-12, "{}: {measures:?}", case.name);
         }
-        // Most of them meet round-off, so that this is what is tested; which of the others do depends on how sums round.
+        // Most cases stagnate at round-off. Whether the others do depends on the order of sums.
         assert!(4 * stagnated > 3 * total, "{stagnated} of {total} stagnated");
     }
 
@@ -76,10 +76,11 @@ mod promises {
                 let options = Options { method: Method::ProjectedCg, max_cycles, ..Options::default() };
                 let found = run_with(&case, &options).expect("a solve");
                 let energy = recompute(&case, &found).energy;
-                // Sums of thousands of terms of one size differ by 1e-14 or so.
+                // The round-off of the energy, a sum of thousands of terms of similar size, is about 1e-14.
                 if energy - last > 1e-12 * energy.abs() {
-                    // By approach 1e-6 was measured: a truncated step may lose more than the line search gains, the next one makes up for it. By force
-                    // p carries it after each truncation: 3.5e-3 in one of the first iterations on a needle, which another preconditioner moves by a half.
+                    // By approach the largest increase measured is 1e-6: a truncation may cost more energy than its line search gains; the next
+                    // step regains it. By force p is scaled after each truncation: 3.5e-3 in an early iteration on the needle. With another
+                    // preconditioner that changes by half.
                     let is_force = matches!(case.load, Load::Force(_));
                     risen.push((case.name.clone(), is_force));
                     let most = if is_force { 4e-3 } else { 1e-5 };
@@ -92,7 +93,7 @@ mod promises {
             }
             count += 1;
         }
-        // By approach one was measured: once, by 1e-6 of the energy. By force three iterations on the needle, and nothing else.
+        // Measured: by approach one increase, of 1e-6 of the energy; by force three, all on the needle.
         let (by_force, by_approach): (Vec<_>, Vec<_>) = risen.into_iter().partition(|(_, is_force)| *is_force);
         assert!(count > 50 && by_approach.len() <= 2, "of {count}: {by_approach:?}");
         let is_needle = |name: &str| name.contains("needle");
@@ -141,7 +142,7 @@ mod promises {
                         solver.solve(&case.scene(), &options, None, Some(&mut cancel)).expect("a solve");
                     assert_eq!(calls, at, "{method:?}: called after the cancellation");
                     let (what, found) = (format!("{method:?}, cancelled at {at}"), found(&solver, stop, report));
-                    // What was all but done may turn out to be solved.
+                    // The iterate at the cancellation may satisfy the certificate already.
                     if stop == Outcome::Converged {
                         assert_certified(&case, &what, &found, options.tolerance);
                     } else {
@@ -149,7 +150,7 @@ mod promises {
                         assert_sound(&case, &what, &found);
                     }
                 }
-                // And the handle is as good as before.
+                // After cancellations the handle still solves.
                 let (stop, report) = solver.solve(&case.scene(), &options, None, None).expect("a solve");
                 assert_certified(&case, "after cancellations", &found(&solver, stop, report), options.tolerance);
             }

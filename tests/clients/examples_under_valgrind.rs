@@ -1,0 +1,134 @@
+//! All examples in C and in Fortran under valgrind, on small inputs: it is some 50 times slower. The examples of a language are joined to one
+//! program, because valgrind translates the library anew for each program: that takes longer than most examples.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::c::{self, gap_file};
+use crate::fortran;
+use crate::support::{root, run, run_under_valgrind, scratch};
+
+/// Sizes in the examples in C and in Fortran, and smaller ones.
+const SIZES: [(&str, &str); 19] = [
+    ("ROLLED = 32", "ROLLED = 10"),
+    (":: n = 32, reach", ":: n = 10, reach"),
+    ("COUNT = 200", "COUNT = 5"),
+    ("N = 32, M = 2 * N + 1, DEPTHS = 101", "N = 8, M = 2 * N + 1, DEPTHS = 3"),
+    ("N = 32, M = 2*N + 1, DEPTHS = 101", "N = 8, M = 2*N + 1, DEPTHS = 3"),
+    ("STEPS = 100", "STEPS = 4"),
+    ("M = 64, STEPS = 8", "M = 16, STEPS = 3"),
+    ("m = 64, steps = 8", "m = 16, steps = 3"),
+    ("M = 48, N = 32, STEPS = 12", "M = 24, N = 16, STEPS = 3"),
+    ("m = 48, n = 32, steps = 12", "m = 24, n = 16, steps = 3"),
+    ("MX = 48, MY = 36, CREEPAGES = 7", "MX = 16, MY = 12, CREEPAGES = 7"),
+    ("MX = 48, MY = 48", "MX = 16, MY = 16"),
+    ("MX = 40, MY = 40", "MX = 12, MY = 12"),
+    ("{ M = 64", "{ M = 16"),
+    (":: M = 64", ":: M = 16"),
+    (" m = 64", " m = 16"),
+    ("M = 96", "M = 24"),
+    (" M = 80", " M = 20"),
+    (" m = 80", " m = 20"),
+];
+
+/// Laws of friction, whose elements have one size: the first creepage, and the first steps.
+const FEWER_STEPS: [(&str, &str); 2] = [("i < 6; i++", "i < 1; i++"), ("step = 1, 60", "step = 1, 10")];
+
+/// An example with smaller sizes, which valgrind runs some 50 times slower. The forces of one need its grid.
+fn smaller(name: &str, source: &str) -> String {
+    let sizes = match name {
+        "laws" => &FEWER_STEPS[..],
+        "pressure_limit" => &[][..],
+        _ => &SIZES[..],
+    };
+    sizes.iter().fold(source.to_owned(), |text, (of, by)| text.replace(of, by))
+}
+
+/// An example that was compiled, and its arguments.
+struct Example {
+    name: String,
+    object: PathBuf,
+    arguments: Vec<String>,
+}
+
+/// Compiles the examples of a folder of the project, `compile`d each from a smaller source, in a scratch folder.
+fn examples(of: &str, extension: &str, folder: &Path, compile: impl Fn(&Path, &Path)) -> Vec<Example> {
+    let files = std::fs::read_dir(root().join(of)).expect("the examples").map(|file| file.expect("a file").path());
+    let mut sources: Vec<PathBuf> = files.filter(|file| file.extension().is_some_and(|e| e == extension)).collect();
+    sources.sort();
+    let one = |file: PathBuf| {
+        let name = file.file_stem().expect("a name").to_string_lossy().into_owned();
+        let (source, object) = (folder.join(format!("{name}.{extension}")), folder.join(format!("{name}.o")));
+        let text = std::fs::read_to_string(&file).expect("a source");
+        std::fs::write(&source, smaller(&name, &text)).expect("a smaller source");
+        compile(&source, &object);
+        let arguments = match name.as_str() {
+            "hertz" | "ledger" if extension == "c" => vec!["24".to_owned()],
+            "wheel_rail" => vec![root().join("data/wheel_rail/y4_82kN.txt").to_string_lossy().into_owned()],
+            "gap" if extension == "c" => vec![gap_file("ground"), "1.2288".to_owned()],
+            "gap" => vec![gap_file("wheel_rail"), "80000".to_owned()],
+            _ => Vec::new(),
+        };
+        Example { name, object, arguments }
+    };
+    sources.into_iter().map(one).collect()
+}
+
+/// A source in C whose `main` runs the examples in turn. The `main` of each gets its name in front.
+fn driver(examples: &[Example], folder: &Path) -> PathBuf {
+    let (mut declared, mut calls) = (String::new(), String::new());
+    for Example { name, object, arguments } in examples {
+        run(Command::new("objcopy").arg("--redefine-sym").arg(format!("main={name}_main")).arg(object));
+        let given: String = arguments.iter().map(|argument| format!(" \"{argument}\",")).collect();
+        writeln!(declared, "int {name}_main(int, char **);").expect("a text");
+        writeln!(calls, "    char *{name}[] = {{\"{name}\",{given} NULL}};").expect("a text");
+        writeln!(calls, "    puts(\"== {name}\");").expect("a text");
+        writeln!(calls, "    fflush(stdout);").expect("a text");
+        writeln!(calls, "    if ({name}_main({}, {name}) != 0) return 1;", 1 + arguments.len()).expect("a text");
+    }
+    let source = folder.join("all_examples.c");
+    let text = format!("#include <stdio.h>\n{declared}int main(void)\n{{\n{calls}    return 0;\n}}\n");
+    std::fs::write(&source, text).expect("a source");
+    source
+}
+
+/// Links the examples and runs them all; each must print something. `link`: the compiler, with what else their language needs.
+fn run_all(examples: &[Example], folder: &Path, mut link: Command) {
+    let (source, object, program) = (driver(examples, folder), folder.join("driver.o"), folder.join("all_examples"));
+    run(Command::new("cc").args(["-std=c99", "-c"]).arg(&source).arg("-o").arg(&object));
+    link.arg(&object).args(examples.iter().map(|example| &example.object)).arg("-o").arg(&program);
+    run(link.arg("-L").arg(folder).args(["-lcontact_normal", "-lm"]));
+    let printed = run_under_valgrind(&program, &[], folder);
+    let parts: Vec<(&str, &str)> = printed.split("== ").filter_map(|part| part.split_once('\n')).collect();
+    for Example { name, .. } in examples {
+        assert!(parts.iter().any(|(of, rest)| of == name && !rest.trim().is_empty()), "{name}\n{printed}");
+    }
+}
+
+#[test]
+fn the_examples_in_c() {
+    let folder = scratch("c_valgrind");
+    std::fs::copy(root().join("c_examples/example.h"), folder.join("example.h")).expect("a header");
+    let examples = examples("c_examples", "c", &folder, |source, object| {
+        run(c::compiler("cc", "c99").args(["-O2", "-c"]).arg(source).arg("-o").arg(object));
+    });
+    assert!(examples.len() >= 23, "{} examples", examples.len());
+    run_all(&examples, &folder, Command::new("cc"));
+}
+
+#[test]
+fn the_examples_in_fortran() {
+    let folder = scratch("fortran_valgrind");
+    let flags = ["-g", "-O1"];
+    let module = fortran::module(&flags);
+    let examples = examples("fortran_examples", "f90", &folder, |source, object| {
+        let mut gfortran = fortran::compiler(&flags);
+        gfortran.arg("-I").arg(&module).arg("-c").arg(source).arg("-o").arg(object);
+        run(gfortran.current_dir(&folder));
+    });
+    assert!(examples.len() >= 21, "{} examples", examples.len());
+    let mut link = Command::new("gfortran");
+    link.arg(module.join("contact_normal.o"));
+    run_all(&examples, &folder, link);
+}
