@@ -65,6 +65,11 @@ fn a_child_that_is_forked_beside_a_first_call_does_not_wait() {
 }
 
 #[test]
+fn signals_reach_the_threads_of_the_host() {
+    host_with_threads("signals");
+}
+
+#[test]
 fn calls_at_the_end_of_the_process_solve_and_have_messages() {
     host_with_threads("at_the_end");
 }

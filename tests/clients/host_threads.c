@@ -1,12 +1,14 @@
-/* A host with threads of its own: host_threads own_handles | openmp | first_calls | at_the_end. Built with -Ofast, which flushes denormals to zero. Prints nothing
+/* A host with threads of its own: host_threads own_handles | openmp | first_calls | at_the_end | signals. Built with -Ofast, which flushes denormals to zero. Prints nothing
  * but what goes wrong. */
 #define _POSIX_C_SOURCE 200809L
 #include <omp.h>
 #include <pthread.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "contact_normal.h"
@@ -170,6 +172,23 @@ static void last_step(void)
     }
 }
 
+/* A host that waits for a signal blocks it in its threads: it must not end an idle thread of the library, and the process with it. */
+static int signals(void)
+{
+    const struct timespec patience = {10, 0};
+    contact_normal_options options;
+    sigset_t ends;
+
+    contact_normal_options_init(&options);
+    options.threads = 2;
+    if (contact_normal_solve(&scenes[0], &options, NULL, NULL) != CONTACT_NORMAL_OK) return fail("a solve by two threads");
+    sigemptyset(&ends);
+    sigaddset(&ends, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &ends, NULL);
+    kill(getpid(), SIGTERM);
+    return sigtimedwait(&ends, NULL, &patience) == SIGTERM ? EXIT_SUCCESS : fail("no signal came");
+}
+
 int main(int argc, char **argv)
 {
     contact_normal_fields fields;
@@ -186,5 +205,6 @@ int main(int argc, char **argv)
     if (argc == 2 && strcmp(argv[1], "own_handles") == 0) return own_handles();
     if (argc == 2 && strcmp(argv[1], "openmp") == 0) return openmp();
     if (argc == 2 && strcmp(argv[1], "at_the_end") == 0) return EXIT_SUCCESS;
-    return fail("usage: host_threads own_handles | openmp | first_calls | at_the_end");
+    if (argc == 2 && strcmp(argv[1], "signals") == 0) return signals();
+    return fail("usage: host_threads own_handles | openmp | first_calls | at_the_end | signals");
 }

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use super::busy::Busy;
 use super::region::Region;
+use super::signals;
 use crate::error::{OutOfMemory, Result};
 
 /// Prefix of the names of our threads.
@@ -78,11 +79,9 @@ impl Crew {
         }
         let refused = |e| OutOfMemory(format!("threads is {}; the threads could not be started: {e}", workers + 1));
         let builder = rayon::ThreadPoolBuilder::new().num_threads(workers - known);
-        let more = builder
-            .thread_name(move |i| format!("{THREAD_NAME}{}", known + i))
-            .start_handler(|_| IS_WORKER.set(true))
-            .build()
-            .map_err(refused)?;
+        let builder =
+            builder.thread_name(move |i| format!("{THREAD_NAME}{}", known + i)).start_handler(|_| IS_WORKER.set(true));
+        let more = signals::blocked(|| builder.build()).map_err(refused)?;
         let shared = self.shared.clone();
         more.spawn_broadcast(move |_| shared.work());
         lent.push(more);

@@ -12,6 +12,8 @@ mod pool;
 #[allow(unsafe_code)] // lifetimes of work that workers share
 mod region;
 mod shared;
+#[allow(unsafe_code)] // masks of signals
+mod signals;
 
 use std::sync::{Mutex, PoisonError};
 

@@ -2868,32 +2868,32 @@ contact_normal_status contact_normal_solver_stiffness(struct contact_normal_solv
 /*
  Solves tangential problems of `scene->friction`: one, for programs that have a normal solver of their own, or a table of creep forces.
 
- `solver`: keeps coefficients, operators and the last tractions from call to call, for `friction->continues` and for `initial_guess`
- PREVIOUS; `scene` and `options` must be as at its set-up. NULL: nothing is kept.
+ `solver` holds coefficients, operators and the last tractions for the next call, for `friction->continues` and for `initial_guess`
+ PREVIOUS; `scene` and `options` must be those of its set-up. NULL: each call sets up its own.
 
- `pressure` `[my][mx]`: those that are not positive count as no contact; the undeformed distance and the load are then not looked at and
- may be left unset. Tractions do not change the pressures: of unlike bodies this is one turn of two. NULL, without a solver: the
- normal problem of the scene is solved first, once.
+ `pressure` `[my][mx]`: an element without a positive pressure is exterior. The undeformed distance and the load are not read and may be left
+ unset. Tractions do not change the pressures, also of unlike bodies. NULL, without a solver: the normal problem of the scene is solved
+ first, once.
 
- `entries` `[n][3]`: of each entry what is prescribed in x and in y (the creepage or, where `scene->friction->prescribed` says so, the force)
- and the spin. NULL, with n = 1: those of `scene->friction`. With pressures that are given this is one problem: all threads work on
- it, `progress` is called for each iteration, and where the call is refused `results` stays as it is.
+ `entries` `[n][3]`: for each entry the prescribed values in x and in y (creepages, or forces where `scene->friction->prescribed` says so) and the
+ spin. NULL, with n = 1: those of `scene->friction`. With given pressures this is one problem: all threads work on it, `progress` is
+ called for each iteration, and a refused call leaves `results` unchanged.
 
- `report` (NULL: not wanted) has the measures of the pressures and, of one problem, those of friction. Its `warnings` has LAW where that holds of
- the problem, or of an entry.
+ `report` (NULL: not wanted) has the measures of the pressures and, for one problem, those of friction. Its `warnings` has LAW if the
+ problem or one of the entries has this warning.
 
- `options->threads` entries are solved at a time. Neighbours in the table should be neighbours in the motion: 16 in
- a row are solved one after the other, each from the tractions of the one before if it differs little, and all meet the tolerance. Results
- have the same bits for any number of threads, and `continues` is refused. The last result of the solver stays as it is.
+ `options->threads` entries are solved at a time. Neighbours in the table should be neighbours in the motion: a run of 16 entries is solved
+ one after the other, each from the tractions of the one before if it differs little. All meet the tolerance. Results have the same bits
+ for any number of threads. `continues` is refused. The last result of the solver stays unchanged.
 
- An entry that is refused does not keep the others from being solved: its results stay as they are, and `results->status` holds its
- status. The call returns OK if the normal problem and all entries have that status, or else that of the first entry that was refused
- (< 0), or else that of the normal problem or of the first entry that stopped early (> 0). `contact_normal_last_error` then has a line
- "entry 3: ..." for each of them, counted from 0: 1000 lines at most.
+ The other entries are solved if one is refused: its results stay unchanged, and `results->status` holds its status. The call returns OK if
+ the normal problem and all entries are OK. Otherwise it returns the status of the first entry that was refused (< 0), or if there is
+ none, that of the normal problem or of the first entry that stopped early (> 0). `contact_normal_last_error` then has a line
+ "entry 3: ..." for each such entry, counted from 0: 1000 lines at most.
 
- `progress` is called on the calling thread: after the cycles of the normal problem, and then about once for each entry; `cycles` counts
- the entries that are done and `residual` is that of the last one. When it cancels, the results of
- entries that are not done stay as they are, with the status CANCELLED; by `max_seconds` with ITERATION_LIMIT. Since 0.2.
+ `progress` is called on the calling thread: after the cycles of the normal problem, and then about once for each entry; `cycles` is the
+ number of solved entries and `residual` that of the last one. When it cancels, the results of unsolved entries stay unchanged, with
+ the status CANCELLED, or ITERATION_LIMIT after `max_seconds`. Since 0.2.
  */
 contact_normal_status contact_normal_solve_tangential(struct contact_normal_solver *solver,
                                                       const struct contact_normal_scene *scene,
