@@ -95,7 +95,7 @@ pub fn wheel_rail(name: &str, refinement: usize) -> Case {
         name: format!("wheel-rail {name}{suffix}"),
         grid: Grid::new(mx * refinement, my * refinement, d(2), d(3)).expect("a valid grid"),
         bodies: Bodies::same(head[6], head[7]),
-        h: refine(&h, &given, (refinement, refinement)).expect("memory"),
+        h: refine(&h, &given, (refinement, refinement), (false, false)).expect("memory"),
         load: Load::Approach(head[4]),
     }
 }

@@ -24,7 +24,10 @@ def xarray(in_files: bool = True) -> Any:
 def write(path: str | os.PathLike[str], dataset: Any) -> None:
     """Writes NetCDF, whole or not at all."""
     xarray()
-    target = Path(path)
+    # A link stays; a device or a pipe would be replaced.
+    target = Path(path).resolve()
+    if target.exists() and not target.is_file():
+        raise FileExistsError(f"{target} is no file")
     if not target.parent.is_dir():
         raise FileNotFoundError(f"{target}: there is no folder {target.parent}")
     unfinished = target.with_name(target.name + ".unfinished")

@@ -21,7 +21,7 @@ def rough(n=64, seed=1):
     rng = np.random.default_rng(seed)
     waves = np.fft.fftfreq(n) * n
     k = np.hypot(waves[:, None], waves[None, :])
-    amplitudes = np.where((k >= 2) & (k <= n / 8), np.maximum(k, 1.0) ** -1.8, 0.0)
+    amplitudes = np.where((k >= 2) & (k <= max(n / 8, 2)), np.maximum(k, 1.0) ** -1.8, 0.0)
     z = np.fft.ifft2(np.fft.fft2(rng.normal(size=(n, n))) * amplitudes).real
     return z / z.std()
 

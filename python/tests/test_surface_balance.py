@@ -12,6 +12,13 @@ from contact_normal.surface._rest import resting
 
 
 class LightLoads(unittest.TestCase):
+    def test_elements_in_an_askew_line_are_balanced(self):
+        h = np.full((20, 18), np.inf)
+        h[15, 6], h[16, 7] = 0.0, 0.1
+        at = (0.25 * (6.5 - 8.5), 2.0 * (15.5 - 9.5))
+        found = surface.balance(surface.Gap(h, 0.25, 2.0), 1.0, at=at, e_star=1.0)
+        np.testing.assert_allclose(found.centre, at, atol=1e-3)
+
     def test_rough_bodies_are_balanced(self):
         for seed in range(6):
             made = surface.heights(0.2e-6 * rough(64, seed), 1e-6, 1e-6)

@@ -261,7 +261,7 @@ class Files(unittest.TestCase):
                     surface.read(self.folder / "points.txt", dx=1, dy=1)
 
     def test_coordinates_beside_the_heights_are_told(self):
-        heights = rough(12)
+        heights = rough(24)[:12, :12]
         for name, table, which in (
             ("both", np.block([[np.zeros((1, 1)), np.arange(12)[None] * 0.5], [np.arange(12)[:, None] * 0.3, heights]]), "line"),
             ("a line", np.vstack([np.arange(12) * 0.5, heights]), "line"), ("a column", np.column_stack([np.arange(12), heights]), "column"),
@@ -270,6 +270,14 @@ class Files(unittest.TestCase):
                 np.savetxt(self.folder / "table.txt", table)
                 with self.assertRaisesRegex(ValueError, f"has coordinates in its first {which}"):
                     surface.read(self.folder / "table.txt", dx=1, dy=1)
+        # A broken line of a scan is straight once the map is levelled.
+        broken = heights.copy()
+        broken[0] = np.linspace(-0.31, 0.42, heights.shape[1]) * np.ptp(heights)
+        np.savetxt(self.folder / "broken.txt", broken)
+        for name, table in (("line", broken), ("column", broken.T)):
+            with self.subTest(name), self.assertWarnsRegex(UserWarning, f"a straight first {name}, which is read as heights"):
+                np.savetxt(self.folder / "broken.txt", table)
+                self.assertEqual(surface.read(self.folder / "broken.txt", dx=1, dy=1).z.shape, table.shape)
         # A wedge rises evenly everywhere.
         np.savetxt(self.folder / "wedge.txt", np.add.outer(np.arange(12.0), np.arange(9.0)))
         self.assertEqual(surface.read(self.folder / "wedge.txt", dx=1, dy=1).z.shape, (12, 9))

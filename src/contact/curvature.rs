@@ -28,6 +28,8 @@ pub struct Curvature {
     pub pressure: f64,
     /// Jumps of h next to contact: the sum of `|J|` times the uncertain part of an element.
     pub jumps: f64,
+    /// The largest pressure beside a jump of h at which contact ends, or beyond which pressures are less than half: it is singular.
+    pub highest_at_jumps: f64,
 }
 
 /// Sums over some elements.
@@ -66,10 +68,11 @@ impl Curvature {
                 }
             }
         }
-        let (jumps, at_rim) = jumps(problem, state, repeats);
-        sums.without_jumps(at_rim.map(|sum| sum / (24 * stride) as f64));
+        let at_jumps = AtJumps::of(problem, state, repeats);
+        sums.without_jumps([at_jumps.bend, at_jumps.short].map(|sum| sum / (24 * stride) as f64));
         let of_area = area_weight(problem, state, outline);
-        Curvature { jumps, ..sums.curvature(state.approach, of_area) }
+        let of_elements = sums.curvature(state.approach, of_area);
+        Curvature { jumps: at_jumps.uncertain, highest_at_jumps: at_jumps.highest, ..of_elements }
     }
 
     /// The second differences of the pressures at their peak, over the peak: small if elements resolve it. None without pressures.
@@ -164,6 +167,7 @@ impl Sums {
             short: (1.0 - of_area) * self.rim_short / self.rim_count.max(1.0),
             pressure: if self.squares > 0.0 { (self.differences / self.squares).sqrt() } else { 0.0 },
             jumps: 0.0,
+            highest_at_jumps: 0.0,
         }
     }
 }
@@ -193,26 +197,43 @@ fn area_weight(problem: &Problem, state: &State, outline: &Outline) -> f64 {
     of_places + (1.0 - of_places) * (4.0 * of_strips - 3.0)
 }
 
-/// The jumps of h next to contact (see [`Curvature::jumps`]), and the sums of their contributions to the second
-/// differences of h at the rim: as they are, and over the squared elements of the run.
-fn jumps(problem: &Problem, state: &State, repeats: (bool, bool)) -> (f64, [f64; 2]) {
-    let (grid, contact, directions) = (&state.grid, &state.contact, Direction::both(&state.grid, repeats));
-    let (mut sum, mut bend, mut short) = (0.0, 0.0, 0.0);
-    let visit = |Jump { between: (i, j), height, uncertain, lines }: Jump| {
-        sum += lines * height.abs() * uncertain;
-        // Next to a jump within contact the second differences have opposite signs.
-        if contact[i] != contact[j] {
-            let (inside, up) = if contact[i] { (i, height) } else { (j, -height) };
-            let run = shortest_run(&directions, contact, inside, LONGEST_RUN);
-            bend += lines * up;
-            short += lines * up.abs() / (run * run) as f64;
+/// Sums over the jumps of h next to contact.
+#[derive(Default)]
+struct AtJumps {
+    /// See [`Curvature::jumps`].
+    uncertain: f64,
+    /// The contributions to the second differences of h at the rim: as they are, and over the squared elements of the run.
+    bend: f64,
+    short: f64,
+    /// See [`Curvature::highest_at_jumps`].
+    highest: f64,
+}
+
+impl AtJumps {
+    fn of(problem: &Problem, state: &State, repeats: (bool, bool)) -> AtJumps {
+        let (grid, contact, directions) = (&state.grid, &state.contact, Direction::both(&state.grid, repeats));
+        let mut sums = AtJumps::default();
+        let visit = |Jump { between: (i, j), height, uncertain, lines }: Jump| {
+            sums.uncertain += lines * height.abs() * uncertain;
+            let (less, more) =
+                if state.p[i] < state.p[j] { (state.p[i], state.p[j]) } else { (state.p[j], state.p[i]) };
+            if less < 0.5 * more {
+                sums.highest = sums.highest.max(more);
+            }
+            // Next to a jump within contact the second differences have opposite signs.
+            if contact[i] != contact[j] {
+                let (inside, up) = if contact[i] { (i, height) } else { (j, -height) };
+                let run = shortest_run(&directions, contact, inside, LONGEST_RUN);
+                sums.bend += lines * up;
+                sums.short += lines * up.abs() / (run * run) as f64;
+            }
+        };
+        let touching = Rectangle::around_values(contact, grid, &problem.threads, |row| row.contains(&true));
+        if let Some(part) = touching {
+            each_jump((grid, &part), repeats, (|i: usize| state.h[i], false), |i, j| contact[i] || contact[j], visit);
         }
-    };
-    let touching = Rectangle::around_values(contact, grid, &problem.threads, |row| row.contains(&true));
-    if let Some(part) = touching {
-        each_jump((grid, &part), repeats, (|i: usize| state.h[i], false), |i, j| contact[i] || contact[j], visit);
+        sums
     }
-    (sum, [bend, short])
 }
 
 /// The elements before and behind element `i` of `m`; none beyond an end without a period.

@@ -248,7 +248,7 @@ impl Regions {
 }
 
 /// Refuses arrays that do not begin at a multiple of what an element needs: elements of packed structs, or of a record in a file in memory.
-fn aligned<T>(name: &str, start: *const T, count: usize) -> Result<(), Refusal> {
+pub(super) fn aligned<T>(name: &str, start: *const T, count: usize) -> Result<(), Refusal> {
     if count == 0 || start.is_aligned() {
         return Ok(());
     }

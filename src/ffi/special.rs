@@ -1,6 +1,6 @@
 //! Closed forms and coefficient tables.
 
-use super::arguments::{count, required};
+use super::arguments::{aligned, count, required};
 use super::guard::guard;
 use super::influence::table_size;
 use super::scene::load_of;
@@ -103,6 +103,7 @@ pub unsafe extern "C" fn contact_normal_influence_half_space(
         if coefficients.is_null() {
             return Err(Refusal::null("coefficients"));
         }
+        aligned("coefficients", coefficients, 1)?;
         let half_space = HalfSpace::new(dx, dy, compliance);
         // The largest and the smallest one.
         for value in [half_space.at(0, 0), half_space.at(cx as i64, cy as i64)] {
@@ -206,6 +207,7 @@ unsafe fn write_rolling<const K: usize>(
         if coefficients.is_null() {
             return Err(Refusal::null("coefficients"));
         }
+        aligned("coefficients", coefficients, 1)?;
         let body = |b: usize, series| RollingBody { compliance: compliance(&bodies, b), series };
         let tables = make((cx, cy), bodies.poisson_ratio, &[body(0, one), body(1, other)])?;
         for (k, table) in tables.iter().enumerate() {

@@ -1,6 +1,7 @@
 //! Given tangential forces.
 
-use super::plane::{add, plus, square, Vector};
+use super::certificate::is_on_circle;
+use super::plane::{add, length, plus, Vector};
 use super::problem::Problem;
 use super::scales::Scales;
 use crate::effects::{Friction, Prescribed};
@@ -150,12 +151,22 @@ impl Forces {
         }
     }
 
-    /// The missing part of the forces, relative to the sum of g; 0 if no force is given.
+    /// The missing part of the forces, relative to the sum of g; 0 if no force is given. Where nothing slips tractions are linear in the forces,
+    /// however small these are: then it is relative to the forces, or to the tractions if these are larger.
     pub fn missing(&self, problem: &Problem, q: &[Vector]) -> f64 {
-        if self.any() {
-            square(self.less(|| sum_of(problem, q))).sqrt() / sum_of_bounds(problem)
-        } else {
-            0.0
+        if !self.any() {
+            return 0.0;
+        }
+        let terms = |i: usize| {
+            let ([x, y], g) = (problem.weighted(i, q[i]), problem.bound[i]);
+            [x, y, length([x, y]), f64::from(u8::from(g > 0.0 && is_on_circle(q[i], g)))]
+        };
+        let [x, y, carried, slips] = fields::sum(problem.threads(), q.len(), terms);
+        let missing = length(self.less(|| [x, y]));
+        match missing {
+            0.0 => 0.0,
+            _ if slips > 0.0 => missing / sum_of_bounds(problem),
+            _ => missing / carried.max(length(self.only_given(self.sum))),
         }
     }
 }

@@ -13,6 +13,7 @@
 //! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for given motions; their fields, on C alone |
 //! | `newton`, `step`, `system`, `sweep`, `forces`, `best` | semismooth Newton, for steady rolling, for given forces and if the gradients stall |
 //! | `downhill` | projected Newton, for given motions if the other methods cycle |
+//! | `glued` | bounds that no traction reaches |
 //! | `balance`, `corral`, `bracket` | creepages of given forces if Newton's method stalls |
 //! | `sensitivity`, `derivatives` | derivatives of the forces by creepages and spin |
 //! | [`cross`] | unlike bodies: the coupling of the normal and the tangential problem |
@@ -36,6 +37,7 @@ mod displaced;
 mod downhill;
 mod excess;
 mod forces;
+mod glued;
 mod half_space;
 mod interpolation;
 mod iterate_with_law;

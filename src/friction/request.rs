@@ -24,12 +24,14 @@ pub struct Request<'a> {
     pub estimates: bool,
     /// The yield limits of an ideal layer; empty without one.
     pub limits: &'a [f64],
+    /// The largest bound of an element: larger ones are out of reach of tractions.
+    pub largest_bound: f64,
 }
 
 impl<'a> Request<'a> {
     /// The traction bound of an element: mu p, or less where an ideal layer yields.
     pub fn bound(&self, i: usize) -> f64 {
-        let bound = self.friction.coefficient.at(i) * self.pressure[i].max(0.0);
+        let bound = (self.friction.coefficient.at(i) * self.pressure[i].max(0.0)).min(self.largest_bound);
         self.limits.get(i).map_or(bound, |limit| bound.min(*limit))
     }
 
@@ -45,6 +47,7 @@ impl<'a> Request<'a> {
             is_cancelled: false,
             estimates: false,
             limits: &[],
+            largest_bound: f64::INFINITY,
         }
     }
 }

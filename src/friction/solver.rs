@@ -166,8 +166,10 @@ impl Solver {
         if let Some(window) = &window {
             let by = if friction.motion == Motion::Shift { (0.0, 0.0) } else { friction.elements_rolled(&self.grid) };
             self.tangential.check_reach(&window.grid(&self.grid), by)?;
-            self.scales.fit(self.largest_bound(window, bound));
+            let largest_bound = self.largest_bound(request, window, &forces);
+            self.scales.fit(largest_bound);
             let forces = forces.in_units_of(&self.scales);
+            let request = &Request { largest_bound, ..*request };
             end = self.solve_in((window, rolling), request, forces, watch, &mut report)?;
             let Problem { bound, operators, .. } = &self.levels[0].problem;
             let [carried] = fields::sum(&operators.threads, bound.len(), |k| [bound[k]]);

@@ -3,8 +3,9 @@
 use super::certificate::is_on_circle;
 use super::displaced::displaced;
 use super::excess::Excess;
+use super::glued::NEGLIGIBLE_BOUND;
 use super::levels::Level;
-use super::plane::{add, square, Vector};
+use super::plane::{add, length, square, Vector};
 use super::problem::{Problem, Scale, State, FIELDS};
 use super::request::{before, Request, Start};
 use super::scales::Scales;
@@ -24,19 +25,7 @@ pub(super) const LARGEST_RATIO: f64 = 1e30;
 /// Least ratio: the round-off of sideways displacements by pressures is a slip as well.
 const LEAST_RATIO: f64 = 1e-60;
 
-/// Bounds below this fraction of the largest are round-off and make the system singular. Their elements are solved with the bound 0, and get their
-/// traction from the slip.
-const NEGLIGIBLE_BOUND: f64 = 1e-17;
-
 impl Solver {
-    /// The largest bound of the elements of a window.
-    pub(super) fn largest_bound(&self, window: &Rectangle, bound: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
-        let rows = window.grid(&self.grid).my;
-        let threads = self.threads.suited_to(self.grid.len());
-        let of_row = |iy: usize| window.row(&self.grid, iy).map(&bound).fold(0.0, f64::max);
-        fields::largest(&threads, rows, of_row)
-    }
-
     /// Allocates memory for the result.
     pub(super) fn make_room(&mut self) -> Result<()> {
         if self.solution.traction.is_empty() {
@@ -67,6 +56,7 @@ impl Solver {
         bound: impl Fn(usize) -> f64 + Sync + Send,
     ) -> Result<bool> {
         let had_slip = self.take_over(request, from_rest, window, bound)?;
+        self.leave_creepages_out_of_range();
         self.check_range()?;
         Ok(had_slip)
     }
@@ -172,6 +162,15 @@ impl Solver {
     pub fn full_displacement(&self) -> f64 {
         let displaced = self.levels.first().map_or(0.0, |level| level.problem.displaced_by_bounds());
         self.scales.own_displacement([displaced, 0.0])[0]
+    }
+
+    /// Creepages that are to be found begin at 0 if those of the start are out of range: these need not be the caller's.
+    fn leave_creepages_out_of_range(&mut self) {
+        let problem = &mut self.levels[0].problem;
+        let ratio = length(problem.offset) / problem.displaced_by_bounds();
+        if !(LEAST_RATIO < ratio && ratio < LARGEST_RATIO) {
+            problem.offset = [0.0; 2];
+        }
     }
 
     /// Rejects slips far above or below displacements by tractions, because products of their ratios overflow.

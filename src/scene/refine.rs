@@ -4,12 +4,18 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::zeros;
 
+/// A surface is rough at its end if the third difference there exceeds this part of the steps: a wave of 12 elements.
+const ROUGH: f64 = 0.25;
+
 /// The values `h` of `grid` at the centres of a grid with `parts` elements for each one in x and in y.
 ///
 /// By cubics through the four nearest centres in each direction (with fewer elements, the polynomial through all): exact for cubics,
-/// and without additional roughness. Parts of an element without surface (+infinity) have none. If one of the four has none, the line
-/// through the element and its neighbour with surface is used, on the side of the part if possible, else a constant.
-pub fn refine(h: &[f64], grid: &Grid, parts: (usize, usize)) -> Result<Vec<f64>> {
+/// and without additional roughness. In a direction that repeats itself the nearest centres may lie across its end. Beyond the outermost
+/// centres a rough surface keeps the last height: a cubic would leave the range of heights.
+///
+/// Parts of an element without surface (+infinity) have none. If one of the four has none, the line through the element and its neighbour
+/// with surface is used, on the side of the part if possible, else a constant.
+pub fn refine(h: &[f64], grid: &Grid, parts: (usize, usize), (repeats_x, repeats_y): (bool, bool)) -> Result<Vec<f64>> {
     let (mx, my) = (grid.mx, grid.my);
     let (fine_mx, fine_my) = (mx * parts.0, my * parts.1);
     let weights = |parts: usize| -> Vec<Part> { (0..parts).map(|part| Part::new(part, parts)).collect() };
@@ -18,16 +24,45 @@ pub fn refine(h: &[f64], grid: &Grid, parts: (usize, usize)) -> Result<Vec<f64>>
     let mut rows = zeros(fine_mx * my, "undeformed distances of a finer grid")?;
     for (row, refined) in h.chunks_exact(mx).zip(rows.chunks_exact_mut(fine_mx)) {
         for (i, value) in refined.iter_mut().enumerate() {
-            *value = in_x[i % parts.0].at(i / parts.0, mx, |j| row[j]);
+            *value = in_x[i % parts.0].at(i / parts.0, Along { m: mx, repeats: repeats_x }, |j| row[j]);
         }
     }
     let mut fine = zeros(fine_mx * fine_my, "undeformed distances of a finer grid")?;
     for (iy, refined) in fine.chunks_exact_mut(fine_mx).enumerate() {
         for (ix, value) in refined.iter_mut().enumerate() {
-            *value = in_y[iy % parts.1].at(iy / parts.1, my, |j| rows[j * fine_mx + ix]);
+            *value =
+                in_y[iy % parts.1].at(iy / parts.1, Along { m: my, repeats: repeats_y }, |j| rows[j * fine_mx + ix]);
         }
     }
     Ok(fine)
+}
+
+/// The elements along a direction.
+#[derive(Clone, Copy)]
+struct Along {
+    m: usize,
+    repeats: bool,
+}
+
+impl Along {
+    /// The element at a place, which may lie across the end of a direction that repeats itself.
+    fn element(&self, at: i64) -> Option<usize> {
+        let m = self.m as i64;
+        let inside = (0..m).contains(&at);
+        (inside || self.repeats).then(|| if inside { at } else { at.rem_euclid(m) } as usize)
+    }
+
+    /// Whether a point lies outside the centres of the first and the last element.
+    fn is_beyond_centres(&self, i: usize, offset: f64) -> bool {
+        !self.repeats && (i == 0 && offset < 0.0 || i + 1 == self.m && offset > 0.0)
+    }
+}
+
+/// Whether a surface with these heights at its end is smooth there.
+fn is_smooth(heights: [f64; 4]) -> bool {
+    let steps = [0, 1, 2].map(|k| heights[k + 1] - heights[k]);
+    let largest = steps.iter().fold(0.0, |largest: f64, step| largest.max(step.abs()));
+    (steps[0] - 2.0 * steps[1] + steps[2]).abs() <= ROUGH * largest
 }
 
 /// One of the parts of every element: its distance from the centre of the element, in elements, and the weights of the cubic
@@ -45,31 +80,32 @@ impl Part {
         Part { offset, weights }
     }
 
-    /// The value at this part of element `i` of `m`.
-    fn at(&self, i: usize, m: usize, value: impl Fn(usize) -> f64) -> f64 {
+    /// The value at this part of element `i`.
+    fn at(&self, i: usize, along: Along, value: impl Fn(usize) -> f64) -> f64 {
         if value(i).is_infinite() {
             return f64::INFINITY;
         }
-        let count = m.min(4);
         let wanted = i as i64 + first_node(self.offset);
-        let first = wanted.clamp(0, (m - count) as i64) as usize;
-        if (first..first + count).any(|j| value(j).is_infinite()) {
-            return self.beside_a_hole(i, m, value);
+        let count = if along.repeats { 4 } else { along.m.min(4) };
+        let first = if along.repeats { wanted } else { wanted.clamp(0, (along.m - count) as i64) };
+        let node = |k: usize| along.element(first + k as i64).map_or(f64::INFINITY, &value);
+        if (0..count).any(|k| node(k).is_infinite()) {
+            return self.beside_a_hole(i, along, value);
+        }
+        if count == 4 && along.is_beyond_centres(i, self.offset) && !is_smooth([node(0), node(1), node(2), node(3)]) {
+            return value(i);
         }
         // At the border of the grid the four nearest centres are not around the point.
         let mut weights = self.weights;
-        if first as i64 != wanted || count < 4 {
-            lagrange(i as f64 + self.offset - first as f64, &mut weights[..count]);
+        if first != wanted || count < 4 {
+            lagrange((i as i64 - first) as f64 + self.offset, &mut weights[..count]);
         }
-        weights[..count].iter().enumerate().map(|(k, weight)| weight * value(first + k)).sum()
+        weights[..count].iter().enumerate().map(|(k, weight)| weight * node(k)).sum()
     }
 
-    fn beside_a_hole(&self, i: usize, m: usize, value: impl Fn(usize) -> f64) -> f64 {
+    fn beside_a_hole(&self, i: usize, elements: Along, value: impl Fn(usize) -> f64) -> f64 {
         let here = value(i);
-        let side = |step: i64| {
-            let j = i as i64 + step;
-            (0..m as i64).contains(&j).then(|| value(j as usize)).filter(|there| there.is_finite())
-        };
+        let side = |step: i64| elements.element(i as i64 + step).map(&value).filter(|there| there.is_finite());
         let towards = if self.offset < 0.0 { -1 } else { 1 };
         let along = self.offset * towards as f64;
         match (side(towards), side(-towards)) {

@@ -133,8 +133,7 @@ pub struct Regridded {
 impl Regridded {
     /// A scene on the grid `to`. `surface`: the undeformed distance on it; none: that of the scene, [refined](refine) by a whole ratio or
     /// [sampled](sample). Compliances, limits, works of adhesion, coefficients of friction, weights and tractions are means over the elements.
-    /// A rigid slip scales with the length of the step. A step of rolling keeps its length, except a step of steady rolling without a given
-    /// length: it is one element long on each grid.
+    /// A rigid slip scales with the length of the step. A step of transient rolling keeps its length, and one of steady rolling its number of elements.
     ///
     /// # Errors
     /// `Unsupported`: effects that stand for one grid only, as own coefficients, or previous tractions kept by a solver.
@@ -144,8 +143,15 @@ impl Regridded {
         let regrid = Regrid { from, to };
         let friction = scene.friction.as_ref();
         let (before, rolling_distance) = friction.map_or((1.0, 0.0), |friction| {
-            let stays = friction.motion == Motion::TransientRolling;
-            (friction.distance(&from), if stays { friction.distance(&from) } else { friction.rolling_distance })
+            let step = friction.distance(&from);
+            let by_element = |grid: &Grid| Friction { rolling_distance: 0.0, ..*friction }.distance(grid);
+            let other = match friction.motion {
+                Motion::TransientRolling => step,
+                // The step is a part of the discretisation.
+                Motion::SteadyRolling => friction.rolling_distance * (by_element(&to) / by_element(&from)),
+                Motion::Shift => friction.rolling_distance,
+            };
+            (step, other)
         });
         let step = friction.map_or(1.0, |friction| Friction { rolling_distance, ..*friction }.distance(&to));
         let layer = regrid.each(scene.layer.map(|layer| layer.0))?;
@@ -153,7 +159,7 @@ impl Regridded {
         let works = regrid.each(scene.adhesion.map(|adhesion| adhesion.work))?;
         let mut undeformed_distance = match surface {
             Some(surface) => surface,
-            None => distance(scene.undeformed_distance, &from, &to)?,
+            None => distance(scene, &to)?,
         };
         let patches = scene.patches.map(|patches| regrid.at_centres(patches.patch)).transpose()?;
         // Without a patch there is no surface, also in a scene whose patches are left out.
@@ -216,11 +222,12 @@ impl Regridded {
     }
 }
 
-/// h on another grid: refined by cubics if each element becomes a whole number of elements, else sampled.
-fn distance(h: &[f64], from: &Grid, to: &Grid) -> Result<Vec<f64>> {
+/// The undeformed distance of a scene on another grid: refined by cubics if each element becomes a whole number of elements, else sampled.
+fn distance(scene: &Scene<'_>, to: &Grid) -> Result<Vec<f64>> {
+    let (h, from) = (scene.undeformed_distance, &scene.grid);
     let (x, y) = (to.mx / from.mx, to.my / from.my);
     if x >= 1 && y >= 1 && to.mx == x * from.mx && to.my == y * from.my {
-        return refine(h, from, (x, y));
+        return refine(h, from, (x, y), repeats(scene));
     }
     sample(h, from, to)
 }

@@ -77,7 +77,7 @@ pub struct Parts {
     pub stiffness: f64,
     /// The factor on errors of the approach.
     by: f64,
-    /// The largest pressure beside a border, a hole or a jump of the coefficients.
+    /// The largest pressure beside a border, a hole, or a jump of the coefficients or of h.
     pub highest_at_ends: f64,
     /// The mean of `smooth`, with its sign.
     likely: f64,
@@ -112,7 +112,8 @@ impl Parts {
         let of_runs = (curvature.bend.abs() / (chord * chord)).max(RUNS_FACTOR * curvature.short);
         let short = ERROR_BOUND * by * outline.scatter(count, repeats) * SHORT_CHORD * SHORT_CHORD * of_runs;
         let smooth = ERROR_BOUND * by * (curvature.bend.abs() + along_lines);
-        let (ends, highest_at_ends) = ends(problem, state, outline);
+        let (ends, highest) = ends(problem, state, outline);
+        let highest_at_ends = highest.max(curvature.highest_at_jumps);
         let ends = by * ends + one_element(problem, state) * found.abs();
         let jumps = if problem.exact_edges { 0.0 } else { JUMPS_FACTOR * by * curvature.jumps / count as f64 };
         let likely = sign * MEAN_ERROR * by * curvature.bend;

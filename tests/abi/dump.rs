@@ -181,6 +181,32 @@ fn a_file_that_cannot_be_written_changes_nothing_but_the_message() {
     assert_eq!(files(&folder), Vec::<String>::new());
 }
 
+/// A dump replaces a file, but nothing else: a link leads to its file, and a pipe or a device stays what it is.
+#[test]
+fn a_link_stays_and_a_pipe_is_not_replaced() {
+    use std::os::unix::fs::{symlink, FileTypeExt};
+    let folder = folder("links");
+    let (link, pipe, target) = (folder.join("latest"), folder.join("pipe"), folder.join("target"));
+    std::fs::write(&target, "before").expect("a file");
+    symlink(&target, &link).expect("a link");
+    let name = text(&pipe);
+    // SAFETY: a path that ends with 0.
+    assert_eq!(unsafe { libc::mkfifo(name.as_ptr(), 0o600) }, 0);
+    let mut scene = Everything::new("");
+    (scene.options.max_cycles, scene.options.tolerance) = (1, 1e-13);
+    let to_link = text(&link);
+    scene.options.dump = to_link.as_ptr();
+    scene.solve();
+    assert!(last_error().contains(target.to_str().expect("text")), "{}", last_error());
+    assert!(std::fs::symlink_metadata(&link).expect("a link").is_symlink());
+    assert!(Dump::read(&std::fs::read(&target).expect("a dump")).is_ok());
+    scene.options.dump = name.as_ptr();
+    scene.solve();
+    assert!(last_error().contains("pipe is no file"), "{}", last_error());
+    assert!(std::fs::symlink_metadata(&pipe).expect("a pipe").file_type().is_fifo());
+    assert_eq!(files(&folder), ["latest", "pipe", "target"]);
+}
+
 #[test]
 fn a_path_names_the_process_and_the_dump() {
     let folder = folder("names");

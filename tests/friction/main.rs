@@ -12,6 +12,7 @@ mod conditions;
 mod effects;
 mod estimates;
 mod forces;
+mod glued;
 #[allow(dead_code)] // what docs/reliability_friction.md has
 mod hard;
 mod ideal_layer;

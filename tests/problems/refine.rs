@@ -19,7 +19,7 @@ fn finer(grid: &Grid, parts: usize) -> Grid {
 /// Largest difference of the refined samples from the samples on the finer grid.
 fn error(mx: usize, my: usize, parts: usize, value: impl Fn(f64, f64) -> f64 + Copy) -> f64 {
     let grid = Grid::new(mx, my, 1.0 / mx as f64, 0.7 / my as f64).expect("a grid");
-    let refined = refine(&sampled(&grid, value), &grid, (parts, parts)).expect("memory");
+    let refined = refine(&sampled(&grid, value), &grid, (parts, parts), (false, false)).expect("memory");
     let exact = sampled(&finer(&grid, parts), value);
     refined.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
@@ -47,7 +47,7 @@ fn parts_of_a_hole_are_holes_and_lines_go_on_beside_it() {
     let mut h = sampled(&grid, line);
     let holes = [grid.index(0, 0), grid.index(2, 2), grid.index(3, 2), grid.index(5, 4)];
     holes.iter().for_each(|&i| h[i] = INF);
-    let refined = refine(&h, &grid, (4, 4)).expect("memory");
+    let refined = refine(&h, &grid, (4, 4), (false, false)).expect("memory");
     let fine = finer(&grid, 4);
     for (i, (found, exact)) in refined.iter().zip(sampled(&fine, line)).enumerate() {
         let (ix, iy) = (i % fine.mx, i / fine.mx);
@@ -64,6 +64,47 @@ fn an_element_alone_is_flat() {
     let grid = Grid::new(3, 3, 1.0, 1.0).expect("a grid");
     let mut h = vec![INF; 9];
     h[4] = 0.75;
-    let refined = refine(&h, &grid, (2, 2)).expect("memory");
+    let refined = refine(&h, &grid, (2, 2), (false, false)).expect("memory");
     assert_eq!(refined.iter().filter(|v| v.is_finite()).copied().collect::<Vec<f64>>(), [0.75; 4]);
+}
+
+/// The values of a grid, moved by some elements, where those beyond an end come in at the other.
+fn rolled(values: &[f64], grid: &Grid, (x, y): (usize, usize)) -> Vec<f64> {
+    let of = |i: usize| values[grid.index((i % grid.mx + x) % grid.mx, (i / grid.mx + y) % grid.my)];
+    (0..grid.len()).map(of).collect()
+}
+
+#[test]
+fn one_period_is_refined_alike_wherever_it_begins() {
+    for (mx, my) in [(9, 7), (5, 4), (3, 6), (2, 3), (1, 5)] {
+        let grid = Grid::new(mx, my, 1.0, 1.0).expect("a grid");
+        let mut h = sampled(&grid, |x, y| (3.1 * x + 5.7 * y * y).sin());
+        for holes in [0, 1] {
+            h.iter_mut().take(holes).for_each(|h| *h = INF);
+            let refined = refine(&h, &grid, (4, 2), (true, true)).expect("memory");
+            let fine = Grid::new(4 * mx, 2 * my, 0.25, 0.5).expect("a grid");
+            for by in [(1, 0), (0, 1), (mx / 2, my / 2)] {
+                let other = refine(&rolled(&h, &grid, by), &grid, (4, 2), (true, true)).expect("memory");
+                assert_eq!(other, rolled(&refined, &fine, (4 * by.0, 2 * by.1)), "{mx} x {my}, {by:?}, {holes} holes");
+            }
+        }
+    }
+}
+
+/// A cubic through rough heights is far outside their range half an element beyond the last one, and would carry the load.
+#[test]
+fn the_ends_of_a_rough_surface_stay_near_its_heights() {
+    let grid = Grid::new(16, 12, 1.0, 1.0).expect("a grid");
+    // Heights of 0 to 1 without order: the fractional parts of multiples of an irrational number.
+    let h: Vec<f64> = (0..grid.len()).map(|i| (0.754_877_666_246_69 * (i * i) as f64).fract()).collect();
+    let refined = refine(&h, &grid, (8, 8), (false, false)).expect("memory");
+    let fine = finer(&grid, 8);
+    let at_end = |i: usize| {
+        let (x, y) = (i % fine.mx, i / fine.mx);
+        x < 4 || y < 4 || x + 4 >= fine.mx || y + 4 >= fine.my
+    };
+    let (inside, ends): (Vec<usize>, Vec<usize>) = (0..fine.len()).partition(|i| !at_end(*i));
+    let lowest = |of: &[usize]| of.iter().map(|i| refined[*i]).fold(INF, f64::min);
+    // Four heights that happen to look smooth go on by half of their last step. Cubics everywhere reach -2.3.
+    assert!(lowest(&ends) > lowest(&inside) - 0.5, "{} and {}", lowest(&ends), lowest(&inside));
 }

@@ -16,6 +16,9 @@ _COLUMNS, _MANY, _LINES = 4, 8, 8
 # Ranges of columns of heights differ by less than this factor.
 _ALIKE = 3.0
 
+# Coordinates are multiples of half a step to this part of it.
+_MULTIPLE = 1e-3
+
 # Maps of few columns are strips; of so many times as many lines there are hardly any.
 _LONG = 25
 
@@ -40,17 +43,35 @@ def why(values: Any) -> str | None:
                 f"{_INSTEAD}")
     if min(lines, columns) > _COLUMNS:
         for name, rows in (("line", values), ("column", values.T)):
-            if rises_evenly(rows[0, 1:]) and not any(map(rises_evenly, rows[1:, 1:])):
+            if _has_first_even(rows) and not _lies_among(rows):
                 return f"has coordinates in its first {name}; it must hold heights alone: leave that {name} out, and give dx and dy"
     return None
 
 
 def doubt(values: Any) -> str | None:
-    """What may be wrong with a map of few columns, for a warning."""
+    """What may be wrong with a map, for a warning."""
     lines, columns = values.shape
+    if min(lines, columns) > _COLUMNS:
+        for name, rows in (("line", values), ("column", values.T)):
+            if _has_first_even(rows):
+                return f"has a straight first {name}, which is read as heights: if these are coordinates, leave it out"
     if lines >= _LINES and (columns <= _COLUMNS or (columns <= _MANY and lines >= 8 * columns)):
         return f"is read as a map of {lines} x {columns} heights, a row of the grid a line, and not as a list of points"
     return None
+
+
+def _has_first_even(rows: Any) -> bool:
+    """Whether the first row rises evenly and no other one does."""
+    return rises_evenly(rows[0, 1:]) and not any(map(rises_evenly, rows[1:, 1:]))
+
+
+def _lies_among(rows: Any) -> bool:
+    """Whether the first row has heights as the others have: a broken line of a scan, levelled with the map, is straight. Coordinates begin at a multiple of
+    half a step, or lie far off."""
+    first, (low, high) = rows[0, 1:], (np.nanmin(rows[1:, 1:]), np.nanmax(rows[1:, 1:]))
+    halves = 2.0 * first[0] / np.diff(first).mean()
+    among = low - (high - low) <= first.min() and first.max() <= high + (high - low)
+    return bool(among and abs(halves - round(halves)) > _MULTIPLE)
 
 
 def _is_strip(values: Any) -> bool:

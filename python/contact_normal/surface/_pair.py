@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 _STEPS = 60
 # A first change of the tilt lifts one side by this part of the approach.
 _TRIAL = 0.1
+# Changes of the centre by tilts are singular below this part of the largest.
+_SINGULAR = 1e-9
 # The shortest part of a step that is tried.
 _SHORTEST = 1.0 / 64.0
 
@@ -225,10 +227,8 @@ def _search(gap: Gap, aim: Doubles, tolerance: float, solved: Callable[[Doubles]
     for _ in range(_STEPS):
         if np.abs(off / sizes).max() <= tolerance:
             return _balanced(gap, tilt, result, off + aim), True
-        try:
-            step = -np.linalg.solve(slopes, off)
-        except np.linalg.LinAlgError:
-            break
+        # Of elements in one line askew to the grid one tilt does nothing.
+        step = -np.linalg.lstsq(slopes, off, rcond=_SINGULAR)[0]
         part = 1.0
         while True:
             moved, there = solved(tilt + part * step)

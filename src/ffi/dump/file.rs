@@ -17,15 +17,30 @@ pub(super) fn write(path: &[u8], head: &str, image: &Image) -> Result<String, St
     if image.lacks_memory {
         return Err("no memory for a copy of what the call was given".into());
     }
-    let mut name = path.file_name().ok_or_else(|| format!("{} names no file", path.display()))?.to_owned();
-    name.push(format!(".{}.{number}.part", std::process::id()));
-    let part = path.with_file_name(name);
+    let path = place(path)?;
+    let part = path.with_file_name(format!("contact_normal.{}.{number}.part", std::process::id()));
     let written = write_to(&part, head, image).and_then(|()| rename(&part, &path));
     written.map(|()| path.display().to_string()).map_err(|why| {
         // The unfinished file may not exist.
         let _ = remove_file(&part);
         format!("{} cannot be written: {why}", path.display())
     })
+}
+
+/// Where a link leads, else the path itself. Refuses what is there and is no file: a device or a pipe would be replaced.
+fn place(path: PathBuf) -> Result<PathBuf, String> {
+    if path.file_name().is_none() {
+        return Err(format!("{} names no file", path.display()));
+    }
+    let is_link = std::fs::symlink_metadata(&path).is_ok_and(|found| found.is_symlink());
+    let place = match is_link {
+        true => path.canonicalize().map_err(|why| format!("{} cannot be written: {why}", path.display()))?,
+        false => path,
+    };
+    match std::fs::metadata(&place) {
+        Ok(found) if !found.is_file() => Err(format!("{} is no file", place.display())),
+        _ => Ok(place),
+    }
 }
 
 fn write_to(path: &Path, head: &str, image: &Image) -> std::io::Result<()> {

@@ -1,0 +1,72 @@
+//! Steps of the undeformed distance: pressures beside them are singular. One period has none where it begins.
+
+use std::f64::consts::PI;
+
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Bodies, Load, Period, Scene};
+use contact_normal::solver::{solve, solve_to_accuracy, Accuracy, Options, Outcome, Quantity};
+
+const BODIES: Bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3; 2] };
+
+/// A ball of radius 10 on m x m elements, which lies `deep` lower beyond `edge`.
+fn ball(m: usize, edge: f64, deep: f64) -> (Grid, Vec<f64>) {
+    let d = 6.0 / m as f64;
+    let at = |k: usize| (k as f64 - 0.5 * (m as f64 - 1.0)) * d;
+    let of = |i: usize| {
+        let (x, y) = (at(i % m), at(i / m));
+        (x * x + y * y) / 20.0 + if x > edge { deep } else { 0.0 }
+    };
+    (Grid::new(m, m, d, d).expect("a grid"), (0..m * m).map(of).collect())
+}
+
+/// The estimated error of the largest pressure, and the pressure.
+fn largest((grid, h): &(Grid, Vec<f64>)) -> (f64, f64) {
+    let options = Options { estimates: true, ..Options::default() };
+    let scene = Scene::new(*grid, h, BODIES, Load::Force(0.5));
+    let (_, outcome, report) = solve(&scene, &options).expect("a solvable scene");
+    assert_eq!(outcome, Outcome::Converged);
+    (report.error.max_pressure, report.measures.max_pressure)
+}
+
+/// The peak of a ball in its middle was believed, though pressures at the edge grow without end on finer grids.
+#[test]
+fn the_largest_pressure_has_no_estimate_where_contact_ends_at_a_step() {
+    for edge in [1.1, 1.15, 1.2, 1.25] {
+        for deep in [0.05, f64::INFINITY] {
+            let (error, pressure) = largest(&ball(32, edge, deep));
+            assert!(error < 0.0, "edge {edge}, {deep} deep: {error} of {pressure}");
+        }
+    }
+    // The contact radius is 1.6: a step outside changes nothing.
+    let (plain, _) = largest(&ball(32, 10.0, 0.05));
+    let (outside, _) = largest(&ball(32, 2.0, 0.05));
+    assert!(plain > 0.0 && (outside / plain - 1.0).abs() < 0.1, "{outside} for {plain}");
+}
+
+/// The results of a search on one period, moved by some elements, are the same.
+#[test]
+fn a_search_does_not_depend_on_where_a_period_begins() {
+    let (mx, my) = (12, 10);
+    let grid = Grid::new(mx, my, 1.0, 1.0).expect("a grid");
+    let waves =
+        |x: f64, y: f64| (2.0 * PI * x / 12.0).cos() + 0.3 * (2.0 * PI * (3.0 * x / 12.0 + 2.0 * y / 10.0)).cos();
+    let of = |x: usize, y: usize| 0.01 * waves(x as f64, y as f64);
+    let searched = |by: (usize, usize)| {
+        let h: Vec<f64> = (0..mx * my).map(|i| of((i % mx + by.0) % mx, (i / mx + by.1) % my)).collect();
+        let period = Some(Period { x: true, y: true });
+        let scene = Scene { period, ..Scene::new(grid, &h, BODIES, Load::Force(0.05)) };
+        let accuracy = Accuracy::new(1e-2).with(Quantity::MaxPressure, 0.1);
+        let found = solve_to_accuracy(&scene, &Options::default(), &accuracy, None, None).expect("a solvable scene");
+        assert_eq!(found.stop, Outcome::Converged, "{by:?} {}", found.reason);
+        let solver = found.solver.expect("a solver");
+        (solver.grid().len(), found.report.measures.approach, found.report.measures.max_pressure)
+    };
+    let (elements, approach, pressure) = searched((0, 0));
+    for by in [(6, 0), (0, 5), (5, 3)] {
+        let (others, other_approach, other_pressure) = searched(by);
+        assert_eq!(others, elements, "{by:?}");
+        // The tolerance of these solves is at most 1e-4 of the pressures.
+        assert!((other_approach - approach).abs() < 1e-4 * 0.01, "{by:?}: {other_approach} for {approach}");
+        assert!((other_pressure / pressure - 1.0).abs() < 1e-3, "{by:?}: {other_pressure} for {pressure}");
+    }
+}
