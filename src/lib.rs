@@ -58,7 +58,7 @@
 //! | [`visco`] | Prony series of bodies that relax, and their step in time |
 //! | [`analytic`] | the Hertz solution |
 //! | `powers` | numbers as a power of two times a factor near 1, for products that would overflow or underflow |
-//! | `blocks`, `rectangle` | parallel, vectorised passes over a grid; a part of a grid |
+//! | `blocks`, `lanes`, `rectangle` | parallel, vectorised passes over a grid; formulas in SIMD vectors; a part of a grid |
 //! | [`threads`], and of the same crate, `par`, `memory` and `sums` | the pool, large arrays, sums in a fixed order |
 //! | [`ffi`] | the C ABI, translation only |
 
@@ -77,6 +77,7 @@ pub mod friction;
 pub mod grid;
 pub mod heat;
 pub mod influence;
+mod lanes;
 pub mod methods;
 pub mod operator;
 mod powers;

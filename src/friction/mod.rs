@@ -9,7 +9,7 @@
 //! | `tables`, `row_tables`, `row_product` | the caller's coefficients, also per loaded row, and products with these |
 //! | `rolling_tables` | tables of bodies that relax and roll steadily |
 //! | `excess` | a layer between the bodies that differs between elements |
-//! | `lanes`, `beside` | SIMD passes over fields by component, extension of residuals beyond C; fields of pairs: `methods::fields` |
+//! | `pairs`, `beside` | SIMD passes over fields by component, extension of residuals beyond C; fields of pairs: `methods::fields` |
 //! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for given motions; their fields, on C alone |
 //! | `newton`, `step`, `system`, `sweep`, `forces`, `best` | semismooth Newton, for steady rolling, for given forces and if the gradients stall |
 //! | `downhill` | projected Newton, for given motions if the other methods cycle |
@@ -39,7 +39,6 @@ mod forces;
 mod half_space;
 mod interpolation;
 mod iterate_with_law;
-mod lanes;
 mod last;
 pub mod law;
 mod levels;
@@ -47,6 +46,7 @@ mod near_element;
 mod nested;
 mod newton;
 mod operators;
+mod pairs;
 mod places;
 mod plane;
 mod problem;
