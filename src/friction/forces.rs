@@ -3,6 +3,7 @@
 use super::plane::{add, plus, square, Vector};
 use super::problem::Problem;
 use super::scales::Scales;
+use crate::bisection::bisect;
 use crate::effects::{Friction, Prescribed};
 use crate::error::{Error, Number, Result};
 use crate::grid::Grid;
@@ -37,9 +38,6 @@ impl Reach {
         )
     }
 }
-
-/// Halvings of an interval around a minimum, whose value is then exact to round-off.
-const HALVINGS: u32 = 60;
 
 impl Forces {
     /// No given forces.
@@ -192,15 +190,7 @@ fn reach([x, y]: [&[f64]; 2], [along, aside]: Vector, n: usize, bound: &impl Fn(
     // h(c) >= |c| h(n) - h(t), which exceeds h(0) beyond this c.
     let across = sum(&|gw| length(gw, [-aside, along]));
     let most = if across > 0.0 { 2.0 * h(0.0) / across } else { 0.0 };
-    let (mut low, mut high) = (-most, most);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if slope(middle) > 0.0 {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
+    let (low, high) = bisect((-most, most), |_, _| false, |c| !(slope(c) > 0.0));
     Ok(h(0.0).min(h(low)).min(h(high)))
 }
 
