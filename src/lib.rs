@@ -46,7 +46,7 @@
 //! | [`scene`] | the problem: bodies, undeformed distance, load, and effects |
 //! | [`effects`] | one file per effect, and the list of effects |
 //! | [`influence`] | kernels (half-space, periodic, the caller's tables) and their coefficients |
-//! | [`operator`] | u = A p by FFT (of the crate `toeplitz`), and by direct summation |
+//! | [`operator`] | u = A p by FFT (of the crate `toeplitz`) |
 //! | [`contact`] | the unknowns, steps (4.1) and (4.2) on an admissible set, the guard against cycling, the certificate |
 //! | [`progress`] | the goal of a loop, why it ended, its counts, the ledger |
 //! | [`methods`] | NORM (section 3), V-cycles (section 4.2), projected conjugate gradients, a projected Newton method, the direct solve: each a step |

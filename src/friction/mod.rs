@@ -3,7 +3,7 @@
 //! | module | contents |
 //! |---|---|
 //! | [`coefficients`], `half_space`, `compliance`, `near_element`, `series`, `quadrant` | influence coefficients of tangential tractions: their sources, near and far from an element; those kept for all operators |
-//! | [`Toeplitz`], [`dense`] | products of two components, by FFT and by direct summation |
+//! | [`Toeplitz`] | products of two components, by FFT |
 //! | `operators`, `displaced` | the operators of the box around C, and displacements between its centres |
 //! | `problem`, `plane`, `certificate`, `tangent` | the problem on one grid, its certificate, stick and slip |
 //! | `tables`, `row_tables`, `row_product` | the caller's coefficients, also per loaded row, and products with these |
@@ -28,7 +28,6 @@ pub mod coefficients;
 mod compliance;
 mod corral;
 pub mod cross;
-pub mod dense;
 mod derivatives;
 mod disc;
 mod discs;
