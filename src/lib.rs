@@ -46,7 +46,7 @@
 //! | [`scene`] | the problem: bodies, undeformed distance, load, and effects |
 //! | [`effects`] | one file per effect, and the list of effects |
 //! | [`influence`] | kernels (half-space, periodic, the caller's tables) and their coefficients |
-//! | [`operator`] | u = A p by FFT (of the crate `toeplitz`), and by direct summation |
+//! | [`operator`] | u = A p by FFT (of the crate `toeplitz`) |
 //! | [`contact`] | the unknowns, steps (4.1) and (4.2) on an admissible set, the guard against cycling, the certificate |
 //! | [`progress`] | the goal of a loop, why it ended, its counts, the ledger |
 //! | [`methods`] | NORM (section 3), V-cycles (section 4.2), projected conjugate gradients, a projected Newton method, the direct solve: each a step |
@@ -57,8 +57,9 @@
 //! | [`stress`] | stresses below the surface, from pressures and tractions |
 //! | [`visco`] | Prony series of bodies that relax, and their step in time |
 //! | [`analytic`] | the Hertz solution |
+//! | `bisection` | bisection of an interval |
 //! | `powers` | numbers as a power of two times a factor near 1, for products that would overflow or underflow |
-//! | `blocks`, `rectangle` | parallel, vectorised passes over a grid; a part of a grid |
+//! | `blocks`, `lanes`, `rectangle` | parallel, vectorised passes over a grid; formulas in SIMD vectors; a part of a grid |
 //! | [`threads`], and of the same crate, `par`, `memory` and `sums` | the pool, large arrays, sums in a fixed order |
 //! | [`ffi`] | the C ABI, translation only |
 
@@ -67,6 +68,7 @@
 
 pub mod adhesion;
 pub mod analytic;
+mod bisection;
 mod blocks;
 pub mod contact;
 pub mod effects;
@@ -77,6 +79,7 @@ pub mod friction;
 pub mod grid;
 pub mod heat;
 pub mod influence;
+mod lanes;
 pub mod methods;
 pub mod operator;
 mod powers;

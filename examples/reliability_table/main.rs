@@ -2,6 +2,8 @@
 //!
 //! `cargo run --release --locked --example reliability_table`; the second table alone: `... -- friction`
 
+#[path = "../../tests/problems/dense.rs"]
+mod dense;
 #[allow(dead_code)] // the tests' cases, of which this takes a part
 #[path = "../../tests/problems/families/mod.rs"]
 mod families;

@@ -12,6 +12,7 @@ use super::newton::stiffnesses;
 use super::parts::{solve_in_parts, Effort, Solution};
 use super::system::{Linearised, Short};
 use super::unknowns::One;
+use crate::bisection::bisect;
 use crate::error::Result;
 use crate::methods::fields::{self, Fields};
 use crate::progress::Monitor;
@@ -23,8 +24,6 @@ const LAMBDA_CHANGE: f64 = 1e-4;
 /// The effort of each linear system. The error of lambda, a Rayleigh quotient, is the square of the relative residual.
 /// On large grids a system keeps few directions, since the vectors of Lanczos' iteration need memory as well.
 const INNER: Effort = Effort { part: 1e-3, most: 60, at_once: 8 };
-/// Halvings of the interval around an eigenvalue.
-const HALVINGS: u32 = 60;
 
 /// `1 - lambda` of the present state.
 pub fn stability(level: &mut Level, monitor: &mut Monitor<'_>) -> Result<Option<f64>> {
@@ -102,21 +101,15 @@ fn largest_of_tridiagonal(diagonal: &[f64], beside: &[f64]) -> f64 {
         next(i.checked_sub(1)) + next(Some(i))
     };
     let bounds = diagonal.iter().enumerate().map(|(i, a)| (a - reach(i), a + reach(i)));
-    let (mut low, mut high) =
-        bounds.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (a, b)| (low.min(a), high.max(b)));
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
+    let ends = bounds.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (a, b)| (low.min(a), high.max(b)));
+    let has_above = |middle: f64| {
         let mut pivot = 1.0;
-        let has_above = diagonal.iter().enumerate().any(|(i, a)| {
+        diagonal.iter().enumerate().any(|(i, a)| {
             let b = i.checked_sub(1).map_or(0.0, |k| beside[k]);
             pivot = a - middle - b * b / pivot;
             pivot > 0.0
-        });
-        if has_above {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
+        })
+    };
+    let (low, high) = bisect(ends, |_, _| false, has_above);
     0.5 * (low + high)
 }

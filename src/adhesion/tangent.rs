@@ -28,8 +28,6 @@ use crate::progress::Monitor;
 const LOOSE_TOLERANCE: f64 = 1e-3;
 const FIRM_TOLERANCE: f64 = 1e-5;
 const DIRECTIONS: [usize; 2] = [MOST_DIRECTIONS, 3 * MOST_DIRECTIONS];
-/// A solve on a large grid keeps this many directions. y and its product use the memory of two more.
-const AT_ONCE: usize = IN_MEMORY - 2;
 /// Elements of a grid up to which a test of stability costs little.
 pub const CHEAP: usize = 1024;
 /// On larger grids, stability under a force is first computed roughly. The result is accepted if the sum of y is at least the fraction
@@ -74,8 +72,9 @@ fn tangent(level: &mut Level, (part, most): (f64, usize), monitor: &mut Monitor<
     stiffnesses(level, |_, e| e.max(0.0), &mut stiffness);
     let mut system = Linearised::new(level, &stiffness, false, &mut fields)?;
     let right = |system: &Linearised<'_>, i: usize| -system.column_at(i);
-    let Solution { y, product, is_solved } =
-        solve_in_parts(&mut system, right, Effort { part, most, at_once: AT_ONCE }, &mut fields)?;
+    // y and its product use the memory of two directions.
+    let effort = Effort { part, most, at_once: IN_MEMORY - 2 };
+    let Solution { y, product, is_solved } = solve_in_parts(&mut system, right, effort, &mut fields)?;
     // y times a0 is within the range of single precision in any units.
     let (contact, a0) = (&system.level.now.contact, system.level.self_influence());
     let [sum, all] = fields::sum(&threads, n, |i| {

@@ -13,6 +13,7 @@
 
 use std::f64::consts::PI;
 
+use crate::bisection::bisect;
 use crate::error::{invalid, positive, Number, Result};
 
 /// The exact solution.
@@ -91,18 +92,9 @@ impl Shape {
             let (_, d, b) = elliptic(k);
             b / d / (k * k)
         };
-        let (mut low, mut high) = (ratio.recip().min(1.0).ln() - 1.0, 0.0);
-        while high - low > f64::EPSILON * (1.0 - low) {
-            let middle = 0.5 * (low + high);
-            if curvature_ratio(middle.exp()) > ratio {
-                low = middle;
-            } else {
-                high = middle;
-            }
-            if middle == low && middle == high {
-                break;
-            }
-        }
+        let is_enough = |low: f64, high: f64| high - low <= f64::EPSILON * (1.0 - low);
+        let ends = (ratio.recip().min(1.0).ln() - 1.0, 0.0);
+        let (low, high) = bisect(ends, is_enough, |log| curvature_ratio(log.exp()) > ratio);
         let k = if ratio == 1.0 { 1.0 } else { (0.5 * (low + high)).exp() };
         let (first, d, _) = elliptic(k);
         Shape { k, first, approach_ratio: first / d }

@@ -2,6 +2,7 @@
 
 use super::values::lowest;
 use super::State;
+use crate::bisection::bisect;
 use crate::grid::Grid;
 use crate::scene::Load;
 
@@ -33,17 +34,7 @@ fn estimate_approach(grid: &Grid, h: &[f64], force: f64, self_influence: f64) ->
     };
     // At the upper end the lowest element alone carries `force`, so the answer lies below it.
     let alone = force / (2.0 * modulus * (grid.element_area() / std::f64::consts::PI).sqrt());
-    let (mut low, mut high) = (lowest, lowest + alone.min(2.0 * (highest - lowest) + alone));
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if carried(middle) < force {
-            low = middle;
-        } else {
-            high = middle;
-        }
-        if high - low <= 1e-3 * (high - lowest) {
-            break;
-        }
-    }
-    high
+    let ends = (lowest, lowest + alone.min(2.0 * (highest - lowest) + alone));
+    let is_enough = |low: f64, high: f64| high - low <= 1e-3 * (high - lowest);
+    bisect(ends, is_enough, |approach| carried(approach) < force).1
 }

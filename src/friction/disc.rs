@@ -3,8 +3,9 @@
 use pulp::Simd;
 
 use super::certificate::ON_THE_CIRCLE;
-use super::lanes::{Arithmetic, Pair};
+use super::pairs::{add, choose, dot, scaled, subtract, Pair};
 use super::tangent::{ALIGNED, CURVATURE_WEIGHT, NEAR_THE_CIRCLE};
+use crate::lanes::{Holds, Lanes};
 
 /// The units, and constants of the formulas in them.
 #[derive(Clone, Copy, Default)]
@@ -23,107 +24,94 @@ pub struct Prediction<S: Simd> {
     /// The normal n; 0 on stick.
     pub normal: Pair<S>,
     /// D.
-    pub curvature: S::f64s,
+    pub curvature: Lanes<S>,
     /// `P(-s)`.
     pub projected: Pair<S>,
     /// The square of the slip's residual.
-    pub rest: S::f64s,
+    pub rest: Lanes<S>,
 }
 
 /// The formulas, with their constants as vectors.
 #[derive(Clone, Copy)]
 pub struct Disc<S: Simd> {
-    pub a: Arithmetic<S>,
-    rho: S::f64s,
-    inverse_rho: S::f64s,
-    a0: S::f64s,
-    mixed: S::f64s,
-    zero: S::f64s,
-    one: S::f64s,
+    rho: Lanes<S>,
+    inverse_rho: Lanes<S>,
+    a0: Lanes<S>,
+    mixed: Lanes<S>,
+    zero: Lanes<S>,
 }
 
 impl<S: Simd> Disc<S> {
     #[inline(always)]
     pub fn new(simd: S, units: &Units) -> Disc<S> {
-        let a = Arithmetic(simd);
         Disc {
-            a,
-            rho: a.splat(units.rho),
-            inverse_rho: a.splat(1.0 / units.rho),
-            a0: a.splat(units.a0),
-            mixed: a.splat(CURVATURE_WEIGHT / units.a0),
-            zero: a.splat(0.0),
-            one: a.splat(1.0),
+            rho: Lanes::splat(simd, units.rho),
+            inverse_rho: Lanes::splat(simd, 1.0 / units.rho),
+            a0: Lanes::splat(simd, units.a0),
+            mixed: Lanes::splat(simd, CURVATURE_WEIGHT / units.a0),
+            zero: Lanes::splat(simd, 0.0),
         }
     }
 
     /// The prediction for elements of tractions q, slips s and bounds g.
     #[inline(always)]
-    pub fn predict(&self, q: Pair<S>, s: Pair<S>, g: S::f64s) -> Prediction<S> {
-        let Disc { a, zero, one, .. } = *self;
-        let tau = a.sub_pair(q, a.scale(self.rho, s));
-        let (square_q, square_tau) = (a.square(q), a.square(tau));
-        let slips = a.0.greater_than_f64s(square_tau, a.mul(g, g));
-        let (length, reach) = (a.sqrt(square_q), a.sqrt(square_tau));
+    pub fn predict(&self, q: Pair<S>, s: Pair<S>, g: Lanes<S>) -> Prediction<S> {
+        let tau = subtract(q, scaled(self.rho, s));
+        let (square_q, square_tau) = (dot(q, q), dot(tau, tau));
+        let slips = (g * g).is_below(square_tau);
+        let (length, reach) = (square_q.sqrt(), square_tau.sqrt());
         // q is near the circle, and its angle with tau is below that of ALIGNED.
-        let off = a.abs(a.sub(length, g));
-        let is_near = a.0.less_than_or_equal_f64s(off, a.mul(a.splat(NEAR_THE_CIRCLE), g));
-        let least = a.mul(a.splat(ALIGNED), a.mul(length, reach));
-        let is_near = a.0.and_m64s(is_near, a.0.greater_than_or_equal_f64s(a.dot(q, tau), least));
-        let inverse = a.div(one, a.select(is_near, length, reach));
-        let n = a.scale(inverse, a.select_pair(is_near, q, tau));
-        let bent = a.0.max_f64s(a.div(a.sub(zero, a.dot(n, s)), g), zero);
-        let turned = a.mul(a.sub(a.div(reach, g), one), self.inverse_rho);
-        let normal = a.select_pair(slips, n, [zero; 2]);
-        let curvature = a.select(slips, a.select(is_near, bent, turned), zero);
-        let projected = a.sub_pair(a.scale(a.dot(s, normal), normal), s);
+        let is_near =
+            (length - g).abs().is_at_most(NEAR_THE_CIRCLE * g) & (ALIGNED * (length * reach)).is_at_most(dot(q, tau));
+        let inverse = 1.0 / is_near.choose(length, reach);
+        let n = scaled(inverse, choose(is_near, q, tau));
+        let bent = ((0.0 - dot(n, s)) / g).max(self.zero);
+        let turned = (reach / g - 1.0) * self.inverse_rho;
+        let normal = choose(slips, n, [self.zero; 2]);
+        let curvature = slips.choose(is_near.choose(bent, turned), self.zero);
+        let projected = subtract(scaled(dot(s, normal), normal), s);
         Prediction { normal, curvature, projected, rest: self.rest(s, q, square_q, g) }
     }
 
     /// See [`rest`](super::certificate::rest).
     #[inline(always)]
-    fn rest(&self, s: Pair<S>, q: Pair<S>, square_q: S::f64s, g: S::f64s) -> S::f64s {
-        let a = self.a;
-        let circle = a.mul(g, a.splat(ON_THE_CIRCLE));
-        let is_on_circle = a.0.greater_than_or_equal_f64s(square_q, a.mul(circle, circle));
-        let is_across = a.0.and_m64s(a.0.less_than_f64s(a.dot(s, q), self.zero), is_on_circle);
-        let across = a.sub(a.mul(s[0], q[1]), a.mul(s[1], q[0]));
-        a.select(is_across, a.div(a.mul(across, across), square_q), a.square(s))
+    fn rest(&self, s: Pair<S>, q: Pair<S>, square_q: Lanes<S>, g: Lanes<S>) -> Lanes<S> {
+        let circle = g * ON_THE_CIRCLE;
+        let is_across = dot(s, q).is_below(self.zero) & (circle * circle).is_at_most(square_q);
+        let across = s[0] * q[1] - s[1] * q[0];
+        is_across.choose(across * across / square_q, dot(s, s))
     }
 
     /// E of the preconditioner.
     #[inline(always)]
-    pub fn mixing(&self, curvature: S::f64s) -> S::f64s {
-        let a = self.a;
-        a.div(self.one, a.add(self.one, a.mul(self.mixed, curvature)))
+    pub fn mixing(&self, curvature: Lanes<S>) -> Lanes<S> {
+        1.0 / (1.0 + self.mixed * curvature)
     }
 
     /// The diagonal part of the preconditioner, beside E: `(1 - E)/(D + a0)`.
     #[inline(always)]
-    pub fn own(&self, mixing: S::f64s, stiff: S::f64s) -> S::f64s {
-        self.a.div(self.a.sub(self.one, mixing), self.a.add(stiff, self.a0))
+    pub fn own(&self, mixing: Lanes<S>, stiff: Lanes<S>) -> Lanes<S> {
+        (1.0 - mixing) / (stiff + self.a0)
     }
 
     /// P v, with the normal n; n = 0: v.
     #[inline(always)]
     pub fn project(&self, n: Pair<S>, v: Pair<S>) -> Pair<S> {
-        self.a.sub_pair(v, self.a.scale(self.a.dot(v, n), n))
+        subtract(v, scaled(dot(v, n), n))
     }
 
     /// The slipping elements, whose normal is not 0.
     #[inline(always)]
-    pub fn slips(&self, [x, y]: Pair<S>) -> S::m64s {
-        let a = self.a;
-        a.0.greater_than_f64s(a.add(a.abs(x), a.abs(y)), self.zero)
+    pub fn slips(&self, [x, y]: Pair<S>) -> Holds<S> {
+        self.zero.is_below(x.abs() + y.abs())
     }
 
     /// The tractions after a step `way` from q: along the circle where elements slip, else straight and projected onto the disc.
     #[inline(always)]
-    pub fn moved(&self, (slips, n): (S::m64s, Pair<S>), g: S::f64s, q: Pair<S>, way: Pair<S>) -> Pair<S> {
-        let a = self.a;
-        let to = a.add_pair(a.select_pair(slips, a.scale(g, n), q), way);
-        let squared = a.square(to);
-        let onto = a.0.or_m64s(slips, a.0.greater_than_f64s(squared, a.mul(g, g)));
-        a.select_pair(onto, a.scale(a.div(g, a.sqrt(squared)), to), to)
+    pub fn moved(&self, (slips, n): (Holds<S>, Pair<S>), g: Lanes<S>, q: Pair<S>, way: Pair<S>) -> Pair<S> {
+        let to = add(choose(slips, scaled(g, n), q), way);
+        let squared = dot(to, to);
+        let onto = slips | (g * g).is_below(squared);
+        choose(onto, scaled(g / squared.sqrt(), to), to)
     }
 }

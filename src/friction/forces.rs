@@ -4,6 +4,7 @@ use super::certificate::is_on_circle;
 use super::plane::{add, length, plus, Vector};
 use super::problem::Problem;
 use super::scales::Scales;
+use crate::bisection::bisect;
 use crate::effects::{Friction, Prescribed};
 use crate::error::{Error, Number, Result};
 use crate::grid::Grid;
@@ -38,9 +39,6 @@ impl Reach {
         )
     }
 }
-
-/// Halvings of an interval around a minimum, whose value is then exact to round-off.
-const HALVINGS: u32 = 60;
 
 impl Forces {
     /// No given forces.
@@ -203,15 +201,7 @@ fn reach([x, y]: [&[f64]; 2], [along, aside]: Vector, n: usize, bound: &impl Fn(
     // h(c) >= |c| h(n) - h(t), which exceeds h(0) beyond this c.
     let across = sum(&|gw| length(gw, [-aside, along]));
     let most = if across > 0.0 { 2.0 * h(0.0) / across } else { 0.0 };
-    let (mut low, mut high) = (-most, most);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if slope(middle) > 0.0 {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
+    let (low, high) = bisect((-most, most), |_, _| false, |c| !(slope(c) > 0.0));
     Ok(h(0.0).min(h(low)).min(h(high)))
 }
 

@@ -3,13 +3,13 @@
 //! | module | contents |
 //! |---|---|
 //! | [`coefficients`], `half_space`, `compliance`, `near_element`, `series`, `quadrant` | influence coefficients of tangential tractions: their sources, near and far from an element; those kept for all operators |
-//! | [`Toeplitz`], [`dense`] | products of two components, by FFT and by direct summation |
+//! | [`Toeplitz`] | products of two components, by FFT |
 //! | `operators`, `displaced` | the operators of the box around C, and displacements between its centres |
 //! | `problem`, `plane`, `certificate`, `tangent` | the problem on one grid, its certificate, stick and slip |
 //! | `tables`, `row_tables`, `row_product` | the caller's coefficients, also per loaded row, and products with these |
 //! | `rolling_tables` | tables of bodies that relax and roll steadily |
 //! | `excess` | a layer between the bodies that differs between elements |
-//! | `lanes`, `beside` | SIMD passes over fields by component, extension of residuals beyond C; fields of pairs: `methods::fields` |
+//! | `pairs`, `beside` | SIMD passes over fields by component, extension of residuals beyond C; fields of pairs: `methods::fields` |
 //! | `shift`, `discs`, `disc`, `places` | projected conjugate gradients on discs, for given motions; their fields, on C alone |
 //! | `newton`, `step`, `system`, `sweep`, `forces`, `best` | semismooth Newton, for steady rolling, for given forces and if the gradients stall |
 //! | `downhill` | projected Newton, for given motions if the other methods cycle |
@@ -29,7 +29,6 @@ pub mod coefficients;
 mod compliance;
 mod corral;
 pub mod cross;
-pub mod dense;
 mod derivatives;
 mod disc;
 mod discs;
@@ -41,7 +40,6 @@ mod glued;
 mod half_space;
 mod interpolation;
 mod iterate_with_law;
-mod lanes;
 mod last;
 pub mod law;
 mod levels;
@@ -49,6 +47,7 @@ mod near_element;
 mod nested;
 mod newton;
 mod operators;
+mod pairs;
 mod places;
 mod plane;
 mod problem;

@@ -8,7 +8,7 @@ use super::row_tables::TABLES;
 use crate::error::{finite, require, Error, Result};
 use crate::memory::zeros;
 use crate::powers::{apart, times_power};
-use crate::visco::rolling::{check, finest, parts, rule, Row, OUT_OF_RANGE};
+use crate::visco::rolling::{check, finest, parts, Row, OUT_OF_RANGE};
 use crate::visco::RollingBody;
 
 /// Refuses bodies that pressures would displace sideways, at once or later. `compliance` is 1/(2 G).
@@ -45,7 +45,7 @@ pub fn rolling_tables(
         let at_once = Compliance { shear: 1.0, poisson: nu[b], unlike: 0.0 };
         Ok((Tangential::new(d, times_power(dy, -of_d), at_once), parts(b, &bodies[b], of_compliance, dx, speed)?))
     };
-    let (of_bodies, rule) = ([of_body(0)?, of_body(1)?], rule());
+    let of_bodies = [of_body(0)?, of_body(1)?];
     let table = || zeros(4 * cx * cy, TABLES);
     let mut tables: [Vec<f64>; 3] = [table()?, table()?, table()?];
     let mut row: Vec<Entry> = zeros(2 * cx + 1, TABLES)?;
@@ -53,7 +53,7 @@ pub fn rolling_tables(
         row.fill([0.0; 3]);
         for (tangential, parts) in &of_bodies {
             let at = |kx: f64| tangential.at(kx, ky as f64);
-            let of = Row { at: &at, finest: finest(ky, width), rule: &rule };
+            let of = Row { at: &at, finest: finest(ky, width) };
             parts.iter().for_each(|part| of.add(part, cx, &mut row));
         }
         for entry in &mut row {

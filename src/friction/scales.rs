@@ -6,8 +6,7 @@ use super::unit::unit_of;
 use super::Tangential;
 use crate::grid::Grid;
 
-/// The range of units of displacements, so that their inverses are finite.
-const SMALLEST_UNIT: f64 = 1e-290;
+/// The largest unit of displacements; the smallest is its inverse, so that inverses are finite.
 const LARGEST_UNIT: f64 = 1e290;
 
 /// The units of one grid and one step.
@@ -30,7 +29,7 @@ impl Scales {
     /// Fits the unit of tractions to a step, whose tractions are at most `largest`.
     pub fn fit(&mut self, largest: f64) {
         let traction = unit_of(largest);
-        let displacement = (traction * self.compliance).clamp(SMALLEST_UNIT, LARGEST_UNIT);
+        let displacement = (traction * self.compliance).clamp(1.0 / LARGEST_UNIT, LARGEST_UNIT);
         self.traction = unit_of(displacement / self.compliance);
     }
 

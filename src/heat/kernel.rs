@@ -20,6 +20,7 @@
 
 use std::f64::consts::PI;
 
+use crate::influence::rule;
 use crate::powers::FADED;
 
 /// Longest panel in t, on which the rule integrates exp(-a cosh t) to 1e-10.
@@ -35,15 +36,14 @@ const SHORTEST_PANEL: f64 = 1e-12;
 const FAR: f64 = 12.0;
 /// Largest change of the exponent over a far element: a rule of 6 nodes integrates the wake of a fast source to 1e-10 of the value.
 const FAR_EXPONENT: f64 = 1.0;
+/// Nodes of the rule on a panel.
+const NODES: usize = 20;
 /// Nodes of the rule on far elements, in each direction.
-pub const FAR_NODES: usize = 6;
-
-/// Nodes and weights on [0, 1].
-pub type Rule = [(f64, f64)];
+const FAR_NODES: usize = 6;
 
 /// The temperature rise at `(x, y)`, downstream of and beside the centre of an element `dx` by `dy`, by a unit flux into a half-space of unit
-/// conductivity: a length. `rule`: for near elements, and of [`FAR_NODES`] for far ones.
-pub fn of_element((x, y): (f64, f64), (dx, dy): (f64, f64), wave: f64, (rule, far): (&Rule, &Rule)) -> f64 {
+/// conductivity: a length.
+pub fn of_element((x, y): (f64, f64), (dx, dy): (f64, f64), wave: f64) -> f64 {
     if wave == 0.0 {
         return love((x, y), (dx, dy)) / (2.0 * PI);
     }
@@ -52,17 +52,16 @@ pub fn of_element((x, y): (f64, f64), (dx, dy): (f64, f64), wave: f64, (rule, fa
     let r = x.hypot(edge);
     let change = wave * (dx * lag(x, edge, r) + dy * edge) / r;
     if r >= FAR * dx.max(dy) && change <= FAR_EXPONENT {
-        return of_far_element((x, y), (dx, dy), wave, far);
+        return of_far_element((x, y), (dx, dy), wave);
     }
     let edges = (y.abs() - 0.5 * dy, y.abs() + 0.5 * dy);
     let (from, to) = (x - 0.5 * dx, x + 0.5 * dx);
     let near = (0.5 * dy).min(1.0 / wave).max(SHORTEST_PANEL * dx);
-    let behind =
-        |from: f64, to: f64| along((from, to), near, rule, |distance| strip(distance, edges, (wave, true), rule));
+    let behind = |from: f64, to: f64| along((from, to), near, |distance| strip(distance, edges, (wave, true)));
     let ahead = |from: f64, to: f64| {
         // Ahead, g decays as exp(-2 P x).
         let to = to.min(from + 0.5 * FADED / wave);
-        along((from, to), near, rule, |distance| strip(distance, edges, (wave, false), rule))
+        along((from, to), near, |distance| strip(distance, edges, (wave, false)))
     };
     match (from < 0.0, to > 0.0) {
         (true, true) => behind(0.0, to) + ahead(0.0, -from),
@@ -81,7 +80,8 @@ fn lag(x: f64, y: f64, r: f64) -> f64 {
 }
 
 /// The integral of T over a far element, by a rule in each direction.
-fn of_far_element((x, y): (f64, f64), (dx, dy): (f64, f64), wave: f64, rule: &Rule) -> f64 {
+fn of_far_element((x, y): (f64, f64), (dx, dy): (f64, f64), wave: f64) -> f64 {
+    let rule = rule(FAR_NODES);
     let at = |x: f64, y: f64| {
         let r = x.hypot(y);
         (-wave * lag(x, y, r)).exp() / r
@@ -100,8 +100,8 @@ fn love((x, y): (f64, f64), (dx, dy): (f64, f64)) -> f64 {
 }
 
 /// The integral of a function of the distance with a singularity `log x` or `x^(-1/2)` at 0, which changes on the scale `near`.
-fn along((from, to): (f64, f64), near: f64, rule: &Rule, f: impl Fn(f64) -> f64) -> f64 {
-    let (mut start, mut sum) = (from, 0.0);
+fn along((from, to): (f64, f64), near: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let (rule, mut start, mut sum) = (rule(NODES), from, 0.0);
     if !(from > 0.0) {
         start = to.min(near);
         sum = rule.iter().map(|(s, weight)| weight * 4.0 * start * s.powi(3) * f(start * s.powi(4))).sum();
@@ -116,22 +116,22 @@ fn along((from, to): (f64, f64), near: f64, rule: &Rule, f: impl Fn(f64) -> f64)
 }
 
 /// g of a strip between two edges in y, at a distance behind the source or ahead of it; the first edge may be negative.
-fn strip(distance: f64, (low, high): (f64, f64), (wave, behind): (f64, bool), rule: &Rule) -> f64 {
+fn strip(distance: f64, (low, high): (f64, f64), (wave, behind): (f64, bool)) -> f64 {
     let a = 2.0 * wave * distance;
     // -P (|x| cosh t - x) = -a sinh^2(t/2) behind, -a cosh^2(t/2) ahead.
     let most = (2.0 * (FADED / a).sqrt().asinh()).min(LONGEST);
     let end = (high / distance).asinh().min(most);
-    let of = |from: f64| if from < end { panels(from, end, a, rule) } else { 0.0 };
+    let of = |from: f64| if from < end { panels(from, end, a) } else { 0.0 };
     let begin = (low / distance).asinh();
-    let sum = if begin < 0.0 { of(0.0) + panels(0.0, (-begin).min(most), a, rule) } else { of(begin) };
+    let sum = if begin < 0.0 { of(0.0) + panels(0.0, (-begin).min(most), a) } else { of(begin) };
     let ahead = if behind { 1.0 } else { (-a).exp() };
     ahead * sum / (2.0 * PI)
 }
 
 /// The integral of `exp(-a sinh^2(t/2))`.
-fn panels(from: f64, to: f64, a: f64, rule: &Rule) -> f64 {
+fn panels(from: f64, to: f64, a: f64) -> f64 {
     let count = ((to - from) / PANEL).ceil().max(1.0);
-    let length = (to - from) / count;
+    let (rule, length) = (rule(NODES), (to - from) / count);
     let of_panel = |k: usize| {
         let start = from + k as f64 * length;
         let at = |s: f64| (-a * (0.5 * (start + length * s)).sinh().powi(2)).exp();

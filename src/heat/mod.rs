@@ -12,13 +12,11 @@ mod kernel;
 
 use crate::error::{finite, positive, require, Error, Result};
 use crate::grid::{check_values, Grid};
-use crate::influence::{gauss_legendre, Coefficients, Table};
+use crate::influence::{Coefficients, Table};
 use crate::memory::{copied, zeros};
 use crate::operator::Operator;
 use crate::threads::Threads;
 
-/// Nodes of the rule for the temperature by one element.
-const NODES: usize = 20;
 /// Rounding errors of a product by FFT, relative to its largest value: some 1e-16 times the logarithm of the grid's size.
 const NOISE: f64 = 1e-13;
 /// The name of this memory in messages.
@@ -78,7 +76,7 @@ impl Heat<'_> {
         let Grid { mx, my, dx, dy } = self.grid;
         let (speed, diffusivity) = (self.speed[b], self.diffusivity[b]);
         let reason = || format!("speed[{b}] is {speed:e} with diffusivity[{b}] of {diffusivity:e}");
-        let (wave, [near, far]) = (speed.abs() / (2.0 * diffusivity), [NODES, kernel::FAR_NODES].map(gauss_legendre));
+        let wave = speed.abs() / (2.0 * diffusivity);
         require_range(wave.is_finite(), reason)?;
         // x downstream.
         let sign = if self.speed[b] < 0.0 { -1.0 } else { 1.0 };
@@ -86,7 +84,7 @@ impl Heat<'_> {
         threads.for_each_plain_row(&mut values[2 * mx * my..], 2 * mx, |ky, row| {
             for (column, value) in row.iter_mut().enumerate() {
                 let x = sign * (column as f64 - mx as f64) * dx;
-                *value = kernel::of_element((x, ky as f64 * dy), (dx, dy), wave, (&near, &far));
+                *value = kernel::of_element((x, ky as f64 * dy), (dx, dy), wave);
             }
         });
         // Even in y; row -my is never read.

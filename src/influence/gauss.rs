@@ -1,13 +1,38 @@
 //! Gauss-Legendre over an interval.
 
-/// Nodes and weights of the 9-point Gauss-Legendre rule on [-1, 1], non-negative half (Abramowitz & Stegun 25.4).
-pub(super) const GAUSS: [(f64, f64); 5] = [
-    (0.0, 0.330_239_355_001_259_8),
-    (0.324_253_423_403_808_9, 0.312_347_077_040_002_84),
-    (0.613_371_432_700_590_4, 0.260_610_696_402_935_46),
-    (0.836_031_107_326_635_8, 0.180_648_160_694_857_4),
-    (0.968_160_239_507_626_1, 0.081_274_388_361_574_41),
-];
+use std::array::from_fn;
+use std::f64::consts::PI;
+use std::sync::OnceLock;
+
+use crate::threads::made_once;
+
+/// Most points of a rule.
+const MOST_POINTS: usize = 40;
+
+/// Nodes and weights of the n-point rule on [0, 1], computed once.
+pub(crate) fn rule(n: usize) -> &'static [(f64, f64)] {
+    static KNOWN: [OnceLock<Vec<(f64, f64)>>; MOST_POINTS + 1] = [const { OnceLock::new() }; MOST_POINTS + 1];
+    made_once(&KNOWN[n], || gauss_legendre(n)).as_slice()
+}
+
+/// The rule by Newton's method on the Legendre polynomial.
+fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
+    let node = |k: usize| {
+        let mut x = (PI * (k as f64 + 0.75) / (n as f64 + 0.5)).cos();
+        let mut slope = 1.0;
+        for _ in 0..8 {
+            let (mut before, mut p) = (1.0, x);
+            for j in 2..=n {
+                let j = j as f64;
+                (before, p) = (p, ((2.0 * j - 1.0) * x * p - (j - 1.0) * before) / j);
+            }
+            slope = n as f64 * (x * p - before) / (x * x - 1.0);
+            x -= p / slope;
+        }
+        (0.5 * (1.0 - x), 1.0 / ((1.0 - x * x) * slope * slope))
+    };
+    (0..n).map(node).collect()
+}
 
 /// Integral of `f` over an interval of length `d` about `centre`.
 pub(crate) fn gauss(centre: f64, d: f64, f: impl Fn(f64) -> f64) -> f64 {
@@ -15,13 +40,14 @@ pub(crate) fn gauss(centre: f64, d: f64, f: impl Fn(f64) -> f64) -> f64 {
     integral
 }
 
-/// The same of several functions at once.
+/// The same of several functions at once, by nine points in pairs about the centre.
 pub(crate) fn gauss_each<const N: usize>(centre: f64, d: f64, f: impl Fn(f64) -> [f64; N]) -> [f64; N] {
-    let mut pairs = [0.0; N];
-    for &(node, weight) in &GAUSS[1..] {
-        let (right, left) = (f(centre + 0.5 * d * node), f(centre - 0.5 * d * node));
-        pairs = std::array::from_fn(|k| pairs[k] + weight * (right[k] + left[k]));
+    let (rule, mut pairs) = (rule(9), [0.0; N]);
+    for &(node, weight) in &rule[..4] {
+        let way = d * (0.5 - node);
+        let (right, left) = (f(centre + way), f(centre - way));
+        pairs = from_fn(|k| pairs[k] + weight * (right[k] + left[k]));
     }
     let middle = f(centre);
-    std::array::from_fn(|k| 0.5 * d * (pairs[k] + GAUSS[0].1 * middle[k]))
+    from_fn(|k| d * (pairs[k] + rule[4].1 * middle[k]))
 }

@@ -10,7 +10,7 @@
 
 use std::f64::consts::PI;
 
-use super::gauss::GAUSS;
+use super::gauss::rule;
 use super::special::{hurwitz_zeta, EULER_GAMMA};
 use crate::grid::Grid;
 
@@ -191,9 +191,8 @@ impl Far {
 /// Means of `T_i(2 t^2 - 1)`, i < 12, over `|t - k d| <= d/2`.
 fn chebyshev_means(k: f64, d: f64) -> [f64; NODES] {
     let mut means = [0.0; NODES];
-    for (node, weight) in GAUSS.into_iter().flat_map(|(node, weight)| [(node, weight), (-node, weight)]) {
-        let weight = if node == 0.0 { 0.25 * weight } else { 0.5 * weight };
-        let s = 2.0 * ((k + 0.5 * node) * d).powi(2) - 1.0;
+    for (node, weight) in rule(9) {
+        let s = 2.0 * ((k + (node - 0.5)) * d).powi(2) - 1.0;
         let (mut before, mut now) = (s, 1.0); // T_-1 = T_1 and T_0
         for mean in &mut means {
             *mean += weight * now;

@@ -26,11 +26,10 @@ mod row_tables;
 pub mod special;
 mod table;
 
-pub(crate) use coated::gauss_legendre;
 pub use coated::{radial, Across, Along, Base, Coat, Coated, CoatedBody, CoatedPeriodic, Radial, Response, Transfer};
 pub use coefficients::Coefficients;
 pub use diagonal::Layer;
-pub(crate) use gauss::{gauss, gauss_each};
+pub(crate) use gauss::{gauss, gauss_each, rule};
 pub use half_space::HalfSpace;
 pub(crate) use half_space::{integral_at, MOST_TERMS, SERIES};
 pub use kernel::Kernel;

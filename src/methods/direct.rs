@@ -26,9 +26,6 @@ use crate::scene::Load;
 const MOST_IN_CONTACT: usize = 64;
 const LARGEST_GRID: usize = 32 * 32;
 
-/// In messages.
-const METHOD: &str = "the matrix of a direct solution";
-
 fn room<A>(n: usize) -> Result<Vec<A>> {
     let mut values = Vec::new();
     values.try_reserve_exact(n).map_err(|_| no_memory())?;
@@ -36,7 +33,7 @@ fn room<A>(n: usize) -> Result<Vec<A>> {
 }
 
 fn no_memory() -> Error {
-    Error::OutOfMemory(format!("no memory for {METHOD}"))
+    Error::OutOfMemory("no memory for the matrix of a direct solution".into())
 }
 
 /// Coefficients, and memory for the most elements in contact.

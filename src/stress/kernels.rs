@@ -14,17 +14,11 @@ use super::point_force::{self, Lanes, Values};
 use crate::blocks::LANES;
 use crate::error::Result;
 use crate::influence::means::{in_x, in_y, HALO, LEAST_DISTANCE, ROWS};
+use crate::influence::rule;
 use crate::memory::zeros;
 
 /// The closed form is used up to this distance.
 const CLOSED_FORM_DISTANCE: f64 = 12.0;
-/// Nodes and weights of the 4-point Gauss-Legendre rule on [-1/2, 1/2] (Abramowitz & Stegun 25.4).
-const GAUSS: [(f64, f64); 4] = [
-    (-0.430_568_155_797_026_3, 0.173_927_422_568_726_93),
-    (-0.169_990_521_792_428_1, 0.326_072_577_431_273_07),
-    (0.169_990_521_792_428_1, 0.326_072_577_431_273_07),
-    (0.430_568_155_797_026_3, 0.173_927_422_568_726_93),
-];
 
 /// Whether the kernel of a load and component is odd in x and in y.
 pub fn is_odd(load: usize, component: usize) -> (bool, bool) {
@@ -194,10 +188,10 @@ fn width(mx: usize) -> usize {
 pub(super) fn by_gauss(body: &Body, loaded: Loaded, (x, y, z): (f64, f64, f64)) -> Values {
     let (dx, dy) = body.element();
     let mut values: Values = [[[0.0; LANES]; 6]; 3];
-    for (sx, wx) in GAUSS {
-        let x: Lanes = std::array::from_fn(|i| x + (i as f64 - sx) * dx);
-        for (sy, wy) in GAUSS {
-            point_force::add(body, loaded, (&x, y - sy * dy, z), dx * dy * wx * wy, &mut values);
+    for (sx, wx) in rule(4) {
+        let x: Lanes = std::array::from_fn(|i| x + (i as f64 - (sx - 0.5)) * dx);
+        for (sy, wy) in rule(4) {
+            point_force::add(body, loaded, (&x, y - (sy - 0.5) * dy, z), dx * dy * wx * wy, &mut values);
         }
     }
     values

@@ -19,7 +19,7 @@ use super::modes::Mode;
 use super::series::Series;
 use crate::error::{invalid, not_negative, require, Error, Result};
 use crate::grid::Grid;
-use crate::influence::{gauss_legendre, integral_at};
+use crate::influence::{integral_at, rule};
 use crate::memory::zeros;
 use crate::powers::{apart, times_power, FADED};
 
@@ -63,8 +63,6 @@ pub struct Row<'a, const N: usize> {
     pub at: &'a dyn Fn(f64) -> [f64; N],
     /// The length of panels at the edges of the loaded element: [`finest`].
     pub finest: f64,
-    /// The quadrature rule of a panel.
-    pub rule: &'a [(f64, f64)],
 }
 
 /// The length of panels at the edges of the loaded element in a row ky away, for elements of width dy.
@@ -84,7 +82,7 @@ fn plus<const N: usize>(sum: [f64; N], weight: f64, value: [f64; N]) -> [f64; N]
 impl<const N: usize> Row<'_, N> {
     /// `1/L` times the integral from s to s + d of `exp(-s/L) a(kx + s)`.
     fn panel(&self, kx: f64, (s, d): (f64, f64), length: f64) -> [f64; N] {
-        let sum = self.rule.iter().fold([0.0; N], |sum, (node, weight)| {
+        let sum = rule(NODES).iter().fold([0.0; N], |sum, (node, weight)| {
             let at = s + node * d;
             plus(sum, weight * (-at / length).exp(), (self.at)(kx + at))
         });
@@ -199,11 +197,6 @@ pub fn check((cx, cy): (usize, usize), (dx, dy): (f64, f64), bodies: &[RollingBo
     Ok(most)
 }
 
-/// The quadrature rule of a panel.
-pub fn rule() -> Vec<(f64, f64)> {
-    gauss_legendre(NODES)
-}
-
 /// The reason that a message names for invalid coefficients.
 pub const OUT_OF_RANGE: &str = "element sizes, moduli and times take it out of the range of numbers";
 
@@ -224,12 +217,12 @@ pub fn rolling_table(
     let mut of_bodies = parts(0, &bodies[0], of_compliance, dx, speed)?;
     of_bodies.extend(parts(1, &bodies[1], of_compliance, dx, speed)?);
     let mut table: Vec<f64> = zeros(4 * cx * cy, WHAT)?;
-    let (mut row, rule): (Vec<[f64; 1]>, _) = (zeros(2 * cx + 1, WHAT)?, rule());
+    let mut row: Vec<[f64; 1]> = zeros(2 * cx + 1, WHAT)?;
     for ky in 0..=cy {
         row.fill([0.0]);
         let element = (d, times_power(dy, -of_d));
         let at = |kx: f64| [integral_at((kx.abs(), ky as f64), element)];
-        let of = Row { at: &at, finest: finest(ky, element.1 / d), rule: &rule };
+        let of = Row { at: &at, finest: finest(ky, element.1 / d) };
         of_bodies.iter().for_each(|part| of.add(part, cx, &mut row));
         if speed < 0.0 {
             row.reverse();

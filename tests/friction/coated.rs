@@ -1,7 +1,7 @@
 //! Friction of like coated bodies: motions, forces, derivatives, beside direct sums; closed forms of thin layers; what is refused.
 
 use contact_normal::error::Error;
-use contact_normal::friction::{dense, Compliance, Report, Solution, Solver, Tangential, Vector};
+use contact_normal::friction::{Compliance, Report, Solution, Solver, Tangential, Vector};
 use contact_normal::grid::Grid;
 use contact_normal::influence::Coat;
 use contact_normal::scene::{
@@ -10,6 +10,7 @@ use contact_normal::scene::{
 use contact_normal::solver::{solve, solve_tangential, Options, Outcome, Solver as SceneSolver};
 use contact_normal::threads::Threads;
 
+use super::dense;
 use super::steady_scenes::ellipse;
 use super::support::{ball, residual_by, run};
 

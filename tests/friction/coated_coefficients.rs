@@ -2,11 +2,12 @@
 
 use std::f64::consts::PI;
 
-use contact_normal::friction::{dense, Compliance, Tangential, Vector};
+use contact_normal::friction::{Compliance, Tangential, Vector};
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Across, Along, Coat, Response};
 
 use super::coefficients::rule;
+use super::dense;
 
 /// Both bodies the same: a layer with `1/G1 = 1` of thickness t, on one of `G2 = 1/mu`.
 fn coated((dx, dy): (f64, f64), t: f64, mu: f64, nu: [f64; 2]) -> Tangential {

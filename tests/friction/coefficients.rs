@@ -2,9 +2,11 @@
 
 use std::f64::consts::PI;
 
-use contact_normal::friction::{dense, Compliance, Tangential, Toeplitz, Vector};
+use contact_normal::friction::{Compliance, Tangential, Toeplitz, Vector};
 use contact_normal::grid::Grid;
 use contact_normal::threads::Threads;
+
+use super::dense;
 
 /// A generator of numbers in [-1, 1) (Knuth's MMIX).
 pub fn numbers(n: usize, mut seed: u64) -> Vec<f64> {

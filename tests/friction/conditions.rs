@@ -1,11 +1,12 @@
 //! The conditions of friction, recomputed by direct sums: random ellipses with motions and with forces; the hard cases.
 
 use contact_normal::error::Error;
-use contact_normal::friction::{dense, Request};
+use contact_normal::friction::Request;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Previous, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
+use super::dense;
 use super::scenes::Ellipse;
 use super::support::{residual, run, solver, tangential};
 

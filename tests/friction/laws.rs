@@ -1,11 +1,13 @@
 //! Laws of friction that fall, against what CONTACT printed (its examples tractcurv, series 2, and veldep_fric; eve70a/CONTACT), and against
 //! their own conditions by direct sums.
 
-use contact_normal::friction::{dense, Compliance, Report, Request, Solution, Solver, Tangential, SLIP, STICK};
+use contact_normal::friction::{Compliance, Report, Request, Solution, Solver, Tangential, SLIP, STICK};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Coefficient, Fall, Friction, FrictionLaw, Load, Motion, Prescribed, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 use contact_normal::threads::Threads;
+
+use super::dense;
 
 const STEEL: (f64, f64) = (82000.0, 0.28);
 

@@ -1,11 +1,12 @@
 //! Bounds that rise with the slip beside a law that falls: a layer that hardens, and memory of coefficients that differ between elements. Their
 //! conditions by direct sums and a march of its own, and single elements by bisection.
 
-use contact_normal::friction::{dense, Report, Request, Solution};
+use contact_normal::friction::{Report, Request, Solution};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Branch, Coefficient, Fall, Friction, FrictionLaw, Motion, PlasticLayer, Prescribed};
 use contact_normal::solver::Outcome;
 
+use super::dense;
 use super::laws_steep::Draw;
 use super::support::{solver, tangential};
 

@@ -9,6 +9,7 @@ mod coated;
 mod coated_coefficients;
 mod coefficients;
 mod conditions;
+mod dense;
 mod effects;
 mod estimates;
 mod forces;

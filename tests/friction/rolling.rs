@@ -2,10 +2,11 @@
 
 use std::f64::consts::PI;
 
-use contact_normal::friction::{dense, Request, Vector};
+use contact_normal::friction::{Request, Vector};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Friction, Motion, Prescribed, Previous};
 
+use super::dense;
 use super::support::{residual, run, solver, tangential};
 
 /// Hertz' ellipse with semi-axes 1 and b on m x m elements.

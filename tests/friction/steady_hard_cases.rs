@@ -2,12 +2,13 @@
 
 use std::f64::consts::PI;
 
-use contact_normal::friction::{dense, Request};
+use contact_normal::friction::Request;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Coefficient, Friction, Motion, Prescribed, Previous};
 use contact_normal::solver::Outcome;
 
 use super::conditions::disc;
+use super::dense;
 use super::steady::rolling;
 use super::steady_scenes::{ellipse, NU};
 use super::support::{residual, run, solver, tangential};

@@ -1,13 +1,14 @@
 //! Thin coatings far stiffer than what is below, in steady rolling: membranes. A circulant of coefficients that end at half a period is no inverse of theirs,
 //! and took up to three times the products; one of waves is as near as for other bodies.
 
-use contact_normal::friction::{dense, Solver, Vector};
+use contact_normal::friction::{Solver, Vector};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Coating, CoatingLayer, Friction, Load, Motion, Prescribed, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 use contact_normal::threads::Threads;
 
 use super::coated::coated;
+use super::dense;
 use super::steady_scenes::ellipse;
 use super::support::{residual_by, run};
 

@@ -1,10 +1,12 @@
 //! Tangential problems on pressures that are given, and their conditions recomputed by direct sums.
 
-use contact_normal::friction::{dense, Compliance, Report, Request, Solution, Solver, Tangential, Vector, SLIP, STICK};
+use contact_normal::friction::{Compliance, Report, Request, Solution, Solver, Tangential, Vector, SLIP, STICK};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Coefficient, Friction, Motion, Prescribed};
 use contact_normal::solver::Outcome;
 use contact_normal::threads::Threads;
+
+use super::dense;
 
 /// The distance of a ball of radius 50 from a plane, on m x m elements of side d.
 pub fn ball(m: usize, d: f64) -> (Grid, Vec<f64>) {

@@ -1,10 +1,11 @@
 //! Steps without a rigid slip in the contact: tractions of before relax, and slips beside the contact do not count.
 
-use contact_normal::friction::{dense, Compliance, Tangential, Vector};
+use contact_normal::friction::{Compliance, Tangential, Vector};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Previous, Scene};
 use contact_normal::solver::{solve, Options, Outcome, Solver};
 
+use super::dense;
 use crate::support::ball;
 
 const BODIES: Bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3; 2] };

@@ -1,12 +1,13 @@
 //! Frictional work and wear: balances of energy by direct sums, and closed forms.
 
 use contact_normal::error::Error;
-use contact_normal::friction::{dense, Solution};
+use contact_normal::friction::Solution;
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Coefficient, Friction, Load, Motion, Prescribed, Previous, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 use contact_normal::wear::{frictional_wear, Wear, Worn};
 
+use super::dense;
 use super::steady::rolling;
 use super::steady_scenes::ellipse;
 use super::support::{run, solver, tangential};

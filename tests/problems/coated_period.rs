@@ -6,10 +6,10 @@ use std::sync::Arc;
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{radial, CoatedBody, CoatedPeriodic, HalfSpace, Kernel, Periodic, Response, Transfer};
-use contact_normal::operator::dense;
 use contact_normal::scene::{Bodies, Coating, CoatingLayer, Each, Layer, Load, Period, Scene};
 use contact_normal::solver::{solve, ActiveSet, Guess, InitialGuess, Method, Options, Outcome, Problem, Solver};
 
+use super::dense;
 use crate::support::{assert_conditions, run};
 
 const METHODS: [Method; 3] = [Method::Auto, Method::Norm, Method::ProjectedCg];

@@ -8,11 +8,12 @@ use contact_normal::grid::Grid;
 use contact_normal::influence::{
     radial, Base, Coated, CoatedBody, Coefficients, HalfSpace, Kernel, Response, Transfer,
 };
-use contact_normal::operator::{dense, Operator};
+use contact_normal::operator::Operator;
 use contact_normal::scene::{Bodies, Coating, CoatingLayer, Each, Layer, Load, Patches, Period, PressureLimit, Scene};
 use contact_normal::solver::{Method, Options, Outcome, Solver};
 use contact_normal::threads::Threads;
 
+use super::dense;
 use crate::support::{assert_conditions, run};
 
 const RATIOS: [f64; 9] = [1e-4, 0.01, 0.1, 0.5, 0.999, 2.0, 10.0, 100.0, 1e4];

@@ -5,10 +5,10 @@ use std::f64::consts::PI;
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Kernel, Response, Transfer};
-use contact_normal::operator::dense;
 use contact_normal::scene::{Bodies, Coating, CoatingLayer, Friction, Load, Period, Scene};
 use contact_normal::solver::{solve, Method, Options};
 
+use super::dense;
 use crate::coating::{by_hankel_integrals, coated};
 use crate::support::{assert_conditions, run};
 

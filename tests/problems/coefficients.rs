@@ -6,9 +6,11 @@ use std::f64::consts::PI;
 use contact_normal::effects::Named;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace, Kernel, Periodic, RowTables, Table};
-use contact_normal::operator::{dense, Operator, SetUp};
+use contact_normal::operator::{Operator, SetUp};
 use contact_normal::scene::{Bodies, Each, Layer, Load, Patches, Period, Scene};
 use contact_normal::threads::Threads;
+
+use super::dense;
 
 const BODIES: Bodies = Bodies { shear_modulus: [1.0; 2], poisson_ratio: [0.3; 2] };
 

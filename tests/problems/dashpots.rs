@@ -1,10 +1,11 @@
 //! Bodies that relax by their dashpots, integrated in small steps, and paths of loads whose steps are certified by them.
 
-use contact_normal::operator::dense;
 use contact_normal::scene::Visco;
 use contact_normal::scene::{Branches, Load, Scene};
 use contact_normal::solver::{InitialGuess, Options, Outcome, Solver};
 use contact_normal::visco::Form;
+
+use super::dense;
 
 pub const MX: usize = 18;
 pub const MY: usize = 14;

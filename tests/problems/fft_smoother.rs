@@ -1,5 +1,6 @@
 //! V-cycles with the FFT smoother converge on contact areas of every shape, to the pressures that NORM finds.
 
+use super::dense;
 use crate::paper as case;
 use crate::rough;
 
@@ -9,7 +10,7 @@ use contact_normal::influence::{Coefficients, HalfSpace, Table};
 use contact_normal::methods::multigrid::smoother::{Smoother, SmootherKind};
 use contact_normal::methods::multigrid::{CycleShape, Multigrid};
 use contact_normal::operator::fft::good_length;
-use contact_normal::operator::{dense, Operator};
+use contact_normal::operator::Operator;
 use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{solve, ActiveSet, Guess, Method, Options, Outcome, Report, Solver};
 use contact_normal::threads::Threads;

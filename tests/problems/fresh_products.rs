@@ -1,9 +1,10 @@
 //! A step by force from the last solution that needs no iteration has a product of its own: u is not that of the step before, scaled.
 
 use contact_normal::grid::Grid;
-use contact_normal::operator::dense;
 use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{InitialGuess, Method, Options, Outcome, Solver};
+
+use super::dense;
 
 #[test]
 fn loads_that_only_scale_are_certified_by_a_product() {

@@ -247,7 +247,7 @@ fn a_table_without_symmetry_is_solved_as_it_is() {
         let state = solver.state();
         // independently: e by direct summation
         let mut u = vec![0.0; grid.len()];
-        contact_normal::operator::dense::apply(&Coefficients::from(influence.clone()), &grid, &state.p, &mut u);
+        super::dense::apply(&Coefficients::from(influence.clone()), &grid, &state.p, &mut u);
         for i in 0..grid.len() {
             let e = h[i] - 0.1 + u[i];
             assert!(if state.contact[i] { e.abs() <= 1e-9 } else { e > 0.0 }, "{method:?}");

@@ -1,10 +1,10 @@
 //! Effect `layer`: Winkler's foundation when it is soft, nothing when it is rigid, one compliance per element against the uniform one,
 //! and a count of products that does not grow.
 
+use super::dense;
 use crate::support::run;
 use contact_normal::contact::State;
 use contact_normal::grid::Grid;
-use contact_normal::operator::dense;
 use contact_normal::scene::{Bodies, Each, Layer, Load, Period, Scene};
 use contact_normal::solver::{solve, Method, Options, Solver};
 

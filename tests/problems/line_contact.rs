@@ -4,10 +4,12 @@ use std::f64::consts::PI;
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{HalfSpace, Kernel, Table};
-use contact_normal::operator::{dense, Operator};
+use contact_normal::operator::Operator;
 use contact_normal::scene::{Bodies, Load, Period, Scene};
 use contact_normal::solver::{quantities, solve, Lack, Options, Outcome, Quantity};
 use contact_normal::threads::Threads;
+
+use super::dense;
 
 fn grid(mx: usize, my: usize) -> Grid {
     Grid::new(mx, my, 0.1, 0.1).unwrap()

@@ -3,9 +3,9 @@
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, Table};
 use contact_normal::methods::multigrid::smoother::{Smoother, SmootherKind};
-use contact_normal::operator::dense;
 use contact_normal::threads::Threads;
 
+use super::dense;
 use crate::families::case::Random;
 
 /// A table that is not symmetric, falling off as 1/k.

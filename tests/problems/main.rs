@@ -33,6 +33,7 @@ mod coating_on_rigid;
 mod coefficients;
 mod counted_costs;
 mod dashpots;
+mod dense;
 mod effects;
 mod ends_of_range;
 mod estimates;

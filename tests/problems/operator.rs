@@ -2,9 +2,10 @@
 
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace, Table};
-use contact_normal::operator::{dense, Operator};
+use contact_normal::operator::Operator;
 use contact_normal::threads::Threads;
 
+use super::dense;
 use crate::families::case::Random;
 
 fn largest(values: &[f64]) -> f64 {

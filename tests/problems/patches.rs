@@ -1,9 +1,9 @@
 //! Effect `patches`: independent ones are scenes of their own, factors of 1 are none, and the equations hold with the direct sum.
 
+use super::dense;
 use crate::support::run;
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
-use contact_normal::operator::dense;
 use contact_normal::scene::{Bodies, Each, Layer, Load, Patches, PressureLimit, Scene};
 use contact_normal::solver::{solve, Method, Options, Solver};
 

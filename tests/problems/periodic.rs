@@ -5,11 +5,12 @@ use std::f64::consts::PI;
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace, Kernel, Periodic};
 use contact_normal::methods::multigrid::coarsen;
-use contact_normal::operator::{dense, Operator};
+use contact_normal::operator::Operator;
 use contact_normal::scene::{Bodies, Load, Period, Scene};
 use contact_normal::solver::{solve, Method, Options, Outcome, Solver};
 use contact_normal::threads::Threads;
 
+use super::dense;
 use crate::families::case::Random;
 
 /// 1/E* = 1: then c = 1/pi.

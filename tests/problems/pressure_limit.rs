@@ -1,9 +1,9 @@
 //! Effect `pressure_limit`: the conditions of both sides with a direct sum, nothing where the limit is not reached, forces that
 //! cannot be carried, and an independent method.
 
+use super::dense;
 use crate::support::run;
 use contact_normal::grid::Grid;
-use contact_normal::operator::dense;
 use contact_normal::scene::{Bodies, Coating, CoatingLayer, Each, Layer, Load, Period, PressureLimit, Scene};
 use contact_normal::solver::{solve, ActiveSet, Guess, InitialGuess, Method, Options, Outcome, Report, Solver};
 

@@ -2,9 +2,10 @@
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
-use contact_normal::operator::dense;
 use contact_normal::scene::{Bodies, Each, Layer, Load, Period, Scene};
 use contact_normal::solver::{solve, ActiveSet, Guess, InitialGuess, Method, Options, Outcome, Solver};
+
+use super::dense;
 
 fn fixed(method: Method) -> Options {
     Options { method, active_set: ActiveSet::Fixed, tolerance: 1e-9, estimates: true, ..Options::default() }

@@ -4,12 +4,13 @@
 //! a surface, so that nothing carries the force there.
 
 use contact_normal::grid::Grid;
-use contact_normal::operator::dense;
 use contact_normal::scene::{Bodies, Each, Friction, Layer, Load, Motion, Prescribed, Scene};
 use contact_normal::solver::{
     cost_of_accuracy, effects_bill, quantities, solve, solve_to_accuracy, Accuracy, BillOptions, Lack, Options,
     Outcome, Quantity,
 };
+
+use super::dense;
 
 const M: usize = 64;
 const FORCE: f64 = 1.0;

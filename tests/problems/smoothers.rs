@@ -3,9 +3,9 @@
 use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace, Table};
 use contact_normal::methods::multigrid::smoother::{Smoother, SmootherKind};
-use contact_normal::operator::dense;
 use contact_normal::threads::Threads;
 
+use super::dense;
 use crate::families::case::Random;
 
 /// The sweep as its formula says, in the order of `elements`.

@@ -1,4 +1,5 @@
 use super::*;
+use crate::lanes::{Holds, Lanes};
 
 const SIZES: [(usize, usize); 6] = [(130, 170), (1, 1), (3, 1), (7, 9), (33, 40), (8, 300)];
 
@@ -34,21 +35,21 @@ fn segments_are_the_vectors_with_an_element_in_contact() {
 struct Formula;
 
 impl Terms<1, 1, 3> for Formula {
-    fn of<S: pulp::Simd>(&self, [a]: [Vector<S>; 1], [b]: [Vector<S>; 1]) -> [Vector<S>; 3] {
+    fn of<S: pulp::Simd>(&self, [a]: [Lanes<S>; 1], [b]: [Lanes<S>; 1]) -> [Lanes<S>; 3] {
         [a.all(1.0), a, a * b]
     }
 }
 
 /// `value + a - 2 b`.
 impl Becomes<1, 1> for Formula {
-    fn of<S: pulp::Simd>(&self, value: Vector<S>, [a]: [Vector<S>; 1], [b]: [Vector<S>; 1]) -> Vector<S> {
+    fn of<S: pulp::Simd>(&self, value: Lanes<S>, [a]: [Lanes<S>; 1], [b]: [Lanes<S>; 1]) -> Lanes<S> {
         value + (a - 2.0 * b)
     }
 }
 
 /// The value is less than b, and the element no multiple of three.
 impl Wanted<1> for Formula {
-    fn of<S: pulp::Simd>(&self, first: usize, value: Vector<S>, [b]: [Vector<S>; 1]) -> Holds<S> {
+    fn of<S: pulp::Simd>(&self, first: usize, value: Lanes<S>, [b]: [Lanes<S>; 1]) -> Holds<S> {
         let divides = value.of_each(|lane| f64::from(u8::from((first + lane) % 3 == 0)));
         value.is_below(b) & divides.is_below(value.all(0.5))
     }

@@ -11,11 +11,12 @@
 use std::ops::Range;
 
 use crate::block::for_each_block;
-use crate::fft::any_length::ColumnTransform;
+use crate::coefficients::Parity;
 use crate::fft::row_transform::RowTransform;
 use crate::passes::Real;
 use crate::real::Complex;
 use crate::rows::Rows;
+use crate::set_up_columns::fill_period;
 use crate::workspace::{Memory, Room};
 use par::memory::{blank, computed, keep, zeros};
 use par::threads::Threads;
@@ -48,72 +49,13 @@ pub(crate) struct RowMatrices<T: Real> {
 impl<T: Real> RowMatrices<T> {
     /// The matrices of coefficients on a grid, with a period in x.
     pub fn new<F: Fn(usize, usize, &mut [f64]) + Sync + Send>(
-        grid: (usize, usize),
-        of: &OfRows<F>,
-        px: usize,
-        threads: &Threads,
-    ) -> Result<RowMatrices<T>> {
-        if of.are_even {
-            RowMatrices::even(grid, of, px, threads)
-        } else {
-            RowMatrices::uneven(grid.1, of, px, threads)
-        }
-    }
-
-    /// Even coefficients: two rows share a transform, as its real and imaginary parts.
-    fn even<F: Fn(usize, usize, &mut [f64]) + Sync + Send>(
         (mx, my): (usize, usize),
         of: &OfRows<F>,
         px: usize,
         threads: &Threads,
     ) -> Result<RowMatrices<T>> {
-        let transform = ColumnTransform::<f64>::new(px)?;
-        let mut values = matrices(my, 1, px / 2 + 1)?;
-        let nan = Complex::new(f64::NAN, f64::NAN);
-        let mut pairs = blank(my.div_ceil(2) * px, nan, MATRICES)?;
-        // Rows may be long, so that their scratch is as large as an array of the grid.
-        let piece = |_| Ok((zeros(2 * mx, MATRICES)?, zeros(transform.scratch_length(), MATRICES)?));
-        let mut pieces: Vec<(Vec<f64>, Vec<_>)> = (0..threads.count()).map(piece).collect::<Result<_>>()?;
-        let scale = of.factor / px as f64;
-        for jy in 0..my {
-            threads.for_each_row(&mut pairs, px, &mut pieces, |pair, period, (rows, scratch)| {
-                let iy = 2 * pair;
-                let (one, other) = rows.split_at_mut(mx);
-                (of.fill)(jy, iy, one);
-                (of.fill)(jy, (iy + 1).min(my - 1), other);
-                period.iter_mut().zip(one).zip(other).for_each(|((value, re), im)| *value = Complex::new(*re, *im));
-                let (given, rest) = period.split_at_mut(mx);
-                // In the shortest period, 2 mx - 2, the outermost offsets coincide.
-                let mirrored = (mx - 1).min(rest.len());
-                let zeros = rest.len() - mirrored;
-                rest[..zeros].fill(Complex::default());
-                rest[zeros..].copy_from_slice(&given[1..=mirrored]);
-                rest[zeros..].reverse();
-                transform.forward(period, scratch);
-            });
-            let pairs = &pairs[..];
-            threads.for_each_row(&mut values, my * my, &mut pieces, |bin, matrix, _| {
-                let column = pairs[bin..].iter().step_by(px);
-                for (two, value) in matrix[jy * my..][..my].chunks_mut(2).zip(column) {
-                    two[0] = T::of(scale * value.re);
-                    if let Some(second) = two.get_mut(1) {
-                        *second = T::of(scale * value.im);
-                    }
-                }
-            });
-        }
-        keep([&mut pairs]);
-        Ok(RowMatrices { my, planes: 1, values })
-    }
-
-    fn uneven<F: Fn(usize, usize, &mut [f64]) + Sync + Send>(
-        my: usize,
-        of: &OfRows<F>,
-        px: usize,
-        threads: &Threads,
-    ) -> Result<RowMatrices<T>> {
         let rows = RowTransform::<f64>::new(px)?;
-        let (nb, planes) = (rows.bins(), 2);
+        let (nb, planes) = (rows.bins(), if of.are_even { 1 } else { 2 });
         let mut values = matrices(my, planes, nb)?;
         let mut of_row: Vec<Complex<f64>> = zeros(my * nb, MATRICES)?;
         let piece = |_| Ok((zeros(px, MATRICES)?, rows.scratch()?));
@@ -121,17 +63,19 @@ impl<T: Real> RowMatrices<T> {
         let scale = of.factor / px as f64;
         for jy in 0..my {
             threads.for_each_row(&mut of_row, nb, &mut pieces, |iy, bins, (row, scratch)| {
-                (of.fill)(jy, iy, row);
+                match of.are_even {
+                    true => fill_period(0, mx, row, Parity::Even, |_, row| (of.fill)(jy, iy, row)),
+                    false => (of.fill)(jy, iy, row),
+                }
                 rows.forward(row, bins, scratch);
             });
             let of_row = &of_row[..];
             threads.for_each_row(&mut values, planes * my * my, &mut pieces, |bin, matrices, _| {
                 let column = of_row[bin..].iter().step_by(nb);
-                for (value, from) in matrices[jy * my..].iter_mut().zip(column.clone()) {
-                    *value = T::of(scale * from.re);
-                }
-                for (value, from) in matrices[(my + jy) * my..].iter_mut().zip(column) {
-                    *value = T::of(scale * from.im);
+                for plane in 0..planes {
+                    let parts = column.clone().map(|value| if plane == 0 { value.re } else { value.im });
+                    let row = &mut matrices[(plane * my + jy) * my..][..my];
+                    row.iter_mut().zip(parts).for_each(|(value, part)| *value = T::of(scale * part));
                 }
             });
         }

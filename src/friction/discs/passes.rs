@@ -3,8 +3,9 @@
 use pulp::{Simd, WithSimd};
 
 use super::super::disc::{Disc, Units};
-use super::super::lanes::{pass, Arithmetic};
+use super::super::pairs::{add, choose, dot, pass, plus, scaled, subtract};
 use super::fields::Fields;
+use crate::lanes::Lanes;
 
 /// Predicts the elements in slip. Returns the squares of the residual slip and of u. z becomes the input of the preconditioner.
 pub struct Predict<'a, 'b> {
@@ -18,21 +19,20 @@ impl WithSimd for Predict<'_, '_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [f64; 2] {
         let disc = Disc::new(simd, &self.units);
-        let a = disc.a;
         let Fields { bound, excess, slip: [wx, wy], q: [qx, qy], u: [ux, uy], .. } = self.fields;
         let Fields { curvature, normal: [nx, ny], projected: [rx, ry], z: [zx, zy], .. } = self.fields;
         pass(
-            a,
+            simd,
             [bound, excess, wx, wy, qx, qy, ux, uy],
             [curvature, nx, ny, rx, ry, zx, zy],
             #[inline(always)]
             |[g, excess, wx, wy, qx, qy, ux, uy], _| {
                 let u = [ux, uy];
-                let predicted = disc.predict([qx, qy], a.add_pair([wx, wy], u), g);
+                let predicted = disc.predict([qx, qy], add([wx, wy], u), g);
                 let [nx, ny] = predicted.normal;
                 let [rx, ry] = predicted.projected;
-                let [zx, zy] = a.scale(disc.mixing(a.add(predicted.curvature, excess)), predicted.projected);
-                ([predicted.curvature, nx, ny, rx, ry, zx, zy], [predicted.rest, a.square(u)])
+                let [zx, zy] = scaled(disc.mixing(predicted.curvature + excess), predicted.projected);
+                ([predicted.curvature, nx, ny, rx, ry, zx, zy], [predicted.rest, dot(u, u)])
             },
         )
     }
@@ -50,20 +50,19 @@ impl WithSimd for Precondition<'_, '_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [f64; 1] {
         let disc = Disc::new(simd, &self.units);
-        let a = disc.a;
         let Fields { curvature, excess, normal: [nx, ny], projected: [rx, ry], .. } = self.fields;
         let Fields { product: [px, py], direction: [tx, ty], z: [zx, zy], .. } = self.fields;
         pass(
-            a,
+            simd,
             [curvature, excess, nx, ny, rx, ry, px, py, tx, ty],
             [zx, zy],
             #[inline(always)]
             |[bend, excess, nx, ny, rx, ry, px, py, tx, ty], z| {
-                let stiff = a.add(bend, excess);
+                let stiff = bend + excess;
                 let mixing = disc.mixing(stiff);
-                let within = disc.project([nx, ny], a.scale(mixing, z));
-                let z = a.plus(within, disc.own(mixing, stiff), [rx, ry]);
-                (z, [a.dot(z, a.plus([px, py], bend, [tx, ty]))])
+                let within = disc.project([nx, ny], scaled(mixing, z));
+                let z = plus(within, disc.own(mixing, stiff), [rx, ry]);
+                (z, [dot(z, plus([px, py], bend, [tx, ty]))])
             },
         )
     }
@@ -83,21 +82,21 @@ impl WithSimd for Direct<'_, '_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [f64; 0] {
         let disc = Disc::new(simd, &self.units);
-        let a = disc.a;
-        let (beta, f, inverse) = (a.splat(self.beta), a.splat(self.f), a.splat(1.0 / self.f));
+        let (beta, f, inverse) =
+            (Lanes::splat(simd, self.beta), Lanes::splat(simd, self.f), Lanes::splat(simd, 1.0 / self.f));
         let Fields { bound, q: [qx, qy], normal: [nx, ny], deferred: [lx, ly], .. } = self.fields;
         let Fields { direction: [tx, ty], chord: [cx, cy], z: [zx, zy], .. } = self.fields;
         pass(
-            a,
+            simd,
             [bound, qx, qy, nx, ny, lx, ly],
             [tx, ty, cx, cy, zx, zy],
             #[inline(always)]
             |[g, qx, qy, nx, ny, lx, ly], [tx, ty, _, _, zx, zy]| {
                 let (q, n) = ([qx, qy], [nx, ny]);
-                let t = disc.project(n, a.plus([zx, zy], beta, [tx, ty]));
-                let moved = disc.moved((disc.slips(n), n), g, q, a.scale(f, t));
-                let chord = a.scale(inverse, a.sub_pair(moved, q));
-                let [zx, zy] = a.plus(chord, inverse, [lx, ly]);
+                let t = disc.project(n, plus([zx, zy], beta, [tx, ty]));
+                let moved = disc.moved((disc.slips(n), n), g, q, scaled(f, t));
+                let chord = scaled(inverse, subtract(moved, q));
+                let [zx, zy] = plus(chord, inverse, [lx, ly]);
                 ([t[0], t[1], chord[0], chord[1], zx, zy], [])
             },
         )
@@ -116,18 +115,17 @@ impl WithSimd for Energy<'_, '_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [f64; 2] {
         let disc = Disc::new(simd, &self.units);
-        let a = disc.a;
         let Fields { curvature, normal: [nx, ny], projected: [rx, ry], .. } = self.fields;
         let Fields { direction: [tx, ty], chord: [cx, cy], product: [px, py], .. } = self.fields;
         pass(
-            a,
+            simd,
             [curvature, nx, ny, rx, ry, tx, ty, cx, cy, px, py],
             [],
             #[inline(always)]
             |[bend, nx, ny, rx, ry, tx, ty, cx, cy, px, py], []| {
-                let along = a.select_pair(disc.slips([nx, ny]), [tx, ty], [cx, cy]);
-                let energy = a.add(a.dot(along, [px, py]), a.mul(bend, a.square(along)));
-                ([], [energy, a.dot([rx, ry], along)])
+                let along = choose(disc.slips([nx, ny]), [tx, ty], [cx, cy]);
+                let energy = dot(along, [px, py]) + bend * dot(along, along);
+                ([], [energy, dot([rx, ry], along)])
             },
         )
     }
@@ -148,27 +146,26 @@ impl WithSimd for Go<'_, '_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [f64; 4] {
         let disc = Disc::new(simd, &self.units);
-        let a = disc.a;
-        let (length, left) = (a.splat(self.length), a.splat(1.0 - self.length / self.f));
+        let (length, left) = (Lanes::splat(simd, self.length), Lanes::splat(simd, 1.0 - self.length / self.f));
         let Fields { bound, excess, slip: [wx, wy], chord: [cx, cy], product: [px, py], .. } = self.fields;
         let Fields { q: [qx, qy], u: [ux, uy], normal: [nx, ny], direction: [tx, ty], .. } = self.fields;
         let Fields { curvature, projected: [rx, ry], deferred: [lx, ly], z: [zx, zy], .. } = self.fields;
         pass(
-            a,
+            simd,
             [bound, excess, wx, wy, cx, cy, px, py],
             [qx, qy, ux, uy, nx, ny, tx, ty, lx, ly, curvature, rx, ry, zx, zy],
             #[inline(always)]
             |[g, excess, wx, wy, cx, cy, px, py], [qx, qy, ux, uy, nx, ny, tx, ty, lx, ly, ..]| {
                 let (q, n, chord) = ([qx, qy], [nx, ny], [cx, cy]);
                 let slips = disc.slips(n);
-                let t = a.select_pair(slips, [tx, ty], chord);
-                let new = disc.moved((slips, n), g, q, a.scale(length, t));
-                let straight = a.plus(q, length, chord);
-                let late = a.plus(a.sub_pair(new, straight), left, [lx, ly]);
-                let way = a.sub_pair(new, q);
-                let u = a.plus([ux, uy], length, [px, py]);
-                let predicted = disc.predict(new, a.add_pair([wx, wy], u), g);
-                let z = a.scale(disc.mixing(a.add(predicted.curvature, excess)), predicted.projected);
+                let t = choose(slips, [tx, ty], chord);
+                let new = disc.moved((slips, n), g, q, scaled(length, t));
+                let straight = plus(q, length, chord);
+                let late = plus(subtract(new, straight), left, [lx, ly]);
+                let way = subtract(new, q);
+                let u = plus([ux, uy], length, [px, py]);
+                let predicted = disc.predict(new, add([wx, wy], u), g);
+                let z = scaled(disc.mixing(predicted.curvature + excess), predicted.projected);
                 let ([nx, ny], [rx, ry]) = (predicted.normal, predicted.projected);
                 (
                     [
@@ -188,7 +185,7 @@ impl WithSimd for Go<'_, '_> {
                         z[0],
                         z[1],
                     ],
-                    [predicted.rest, a.square(u), a.square(late), a.square(way)],
+                    [predicted.rest, dot(u, u), dot(late, late), dot(way, way)],
                 )
             },
         )
@@ -205,14 +202,13 @@ impl WithSimd for AddProduct<'_, '_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [f64; 0] {
-        let a = Arithmetic(simd);
         let Fields { z: [zx, zy], u: [ux, uy], .. } = self.fields;
         pass(
-            a,
+            simd,
             [zx, zy],
             [ux, uy],
             #[inline(always)]
-            |z, u| (a.add_pair(u, z), []),
+            |z, u| (add(u, z), []),
         )
     }
 }

@@ -5,8 +5,9 @@
 //! rule beyond.
 
 use super::polynomial::{chebyshev, clenshaw, node};
-use super::quadrature::{gauss_legendre, hankel_rule};
+use super::quadrature::hankel_rule;
 use super::response::Response;
+use crate::influence::gauss;
 
 /// Nodes of a panel in v.
 const N: usize = 16;
@@ -74,11 +75,10 @@ fn far_value(transfer: &dyn Response, pole: f64, rho: f64) -> f64 {
 /// Nodes s, and weights times B - 1, for distances up to `rho_max`: composite 24-point Gauss-Legendre on panels of at most 30 radians of
 /// J0, with the error `(15 e/96)^48 = 2e-18`. The first panel ends at half the distance of the nearest pole, later ends grow up to fourfold.
 fn near_rule(transfer: &dyn Response, pole: f64, rho_max: f64) -> Vec<(f64, f64)> {
-    let gauss = gauss_legendre(24);
     let width = f64::min(1.5, 30.0 / rho_max);
     let (mut rule, mut low, mut high) = (Vec::new(), 0.0, f64::min(width, 0.5 / pole));
     while low < S_MAX {
-        for (x, w) in &gauss {
+        for (x, w) in gauss::rule(24) {
             let s = low + (high - low) * x;
             rule.push((s, (high - low) * w * transfer.less_one(s)));
         }

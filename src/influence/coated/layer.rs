@@ -13,10 +13,10 @@
 //! which is smooth for any ratio of element and thickness.
 
 use super::offsets::{first_beyond, first_of_half, COATED};
-use super::quadrature::gauss_legendre;
 use super::radial::{Base, Radial};
 use crate::error::Result;
 use crate::grid::Grid;
+use crate::influence::gauss::rule;
 use crate::influence::means::{self, LEAST_DISTANCE};
 use crate::influence::{HalfSpace, Kernel};
 use crate::memory::zeros;
@@ -25,6 +25,8 @@ use crate::memory::zeros;
 pub(super) const CORNERS: f64 = 2.5;
 /// Points a side of tensor Gauss below these distances.
 const POINTS: [(f64, usize); 2] = [(12.0, 7), (LEAST_DISTANCE, 4)];
+/// Points of the rule for lines.
+pub(super) const LINE_POINTS: usize = 40;
 
 /// The correction of one layer on a grid.
 pub struct Layer<'a> {
@@ -83,7 +85,6 @@ impl Layer<'_> {
         let by_corners = CORNERS * dx.hypot(dy);
         let base = if h < self.t { Base::Layer } else { Base::Substrate };
         let corners = Corners::new(self, base, (count(dx, by_corners, mx), count(dy, by_corners, my)))?;
-        let rules = POINTS.map(|(_, n)| gauss_legendre(n));
         for ky in 0..count(dy, LEAST_DISTANCE * h, my) {
             let first_of_substrate = first_beyond(self.t, &self.grid, ky);
             for kx in first_of_half(&self.grid, ky)..first_beyond(LEAST_DISTANCE * h, &self.grid, ky) {
@@ -92,8 +93,8 @@ impl Layer<'_> {
                 let here = if kx >= first_of_substrate { Base::Substrate } else { Base::Layer };
                 let value = &mut table[ky * mx + kx];
                 if r > by_corners {
-                    let rule = &rules[usize::from(r.max(self.t) > POINTS[0].0 * h)];
-                    *value += c * self.gauss(rule, (x, y), here);
+                    let (_, points) = POINTS[usize::from(r.max(self.t) > POINTS[0].0 * h)];
+                    *value += c * self.gauss(rule(points), (x, y), here);
                     continue;
                 }
                 // The half-space has the usual base at this offset.
@@ -129,7 +130,7 @@ struct Corners {
 
 impl Corners {
     fn new(layer: &Layer<'_>, base: Base, (columns, rows): (usize, usize)) -> Result<Corners> {
-        let rule = gauss_legendre(40);
+        let rule = rule(LINE_POINTS);
         let (dx, dy) = (layer.grid.dx / layer.t, layer.grid.dy / layer.t);
         let side = |a: f64, b: f64| {
             let end = (b / a).asinh();

@@ -35,6 +35,7 @@ pub use shear::{Across, Along};
 pub use tractions::Coat;
 pub use transfer::Transfer;
 
+use super::gauss::rule;
 use super::kernel::Kernel;
 use super::HalfSpace;
 use crate::error::Result;
@@ -42,7 +43,6 @@ use crate::grid::Grid;
 use crate::memory::zeros;
 use known::Known;
 use layer::Layer;
-pub(crate) use quadrature::gauss_legendre;
 
 /// One body: its coating, or none.
 #[derive(Clone, Debug, PartialEq)]
@@ -206,7 +206,7 @@ impl Coated {
             if let Some((t, radial)) = &body.layer {
                 let layer = Layer { radial, t: *t, grid, half_space: &self.half_space };
                 let base = if is_far(body) { Base::Substrate } else { Base::Layer };
-                sum += body.compliance * layer.gauss(&gauss_legendre(5), (x, y), base);
+                sum += body.compliance * layer.gauss(rule(5), (x, y), base);
             }
         }
         sum

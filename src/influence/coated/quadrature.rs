@@ -1,28 +1,9 @@
-//! Integrals of the radial functions: Gauss-Legendre, and Ogata's double-exponential rule for Hankel transforms.
+//! Integrals of the radial functions: Ogata's double-exponential rule for Hankel transforms.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::OnceLock;
 
 use crate::threads::made_once;
-
-/// Nodes and weights of the n-point Gauss-Legendre rule on [0, 1], by Newton's method on the Legendre polynomial.
-pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
-    let node = |k: usize| {
-        let mut x = (PI * (k as f64 + 0.75) / (n as f64 + 0.5)).cos();
-        let mut slope = 1.0;
-        for _ in 0..8 {
-            let (mut before, mut p) = (1.0, x);
-            for j in 2..=n {
-                let j = j as f64;
-                (before, p) = (p, ((2.0 * j - 1.0) * x * p - (j - 1.0) * before) / j);
-            }
-            slope = n as f64 * (x * p - before) / (x * x - 1.0);
-            x -= p / slope;
-        }
-        (0.5 * (1.0 - x), 1.0 / ((1.0 - x * x) * slope * slope))
-    };
-    (0..n).map(node).collect()
-}
 
 /// The mesh size h of the coarsest of Ogata's rules. Its nodes begin at `pi^2 h/3`; the integrand may vary on ten times this scale.
 const MESH: f64 = 0.004;

@@ -22,10 +22,10 @@
 
 use super::hankel::Hankel;
 use super::polynomial::{chebyshev, evaluate, integral, node, powers, terms};
-use super::quadrature::gauss_legendre;
 use super::response::{Response, TERMS};
 use super::transfer::Transfer;
 use crate::blocks::LANES;
+use crate::influence::gauss;
 
 /// Most coefficients of a polynomial in w, of degree 13.
 pub const P: usize = 14;
@@ -140,7 +140,7 @@ impl<R: Response> Radial<R> {
 
     /// `M_1/rho^2 = integral from 0 to 1 of F_1(rho sqrt(x)) dx/2` on the first panel, by the polynomial there, which the rule integrates exactly.
     fn mean(first: &Panel) -> [f64; P] {
-        let rule = gauss_legendre(P.div_ceil(2));
+        let rule = gauss::rule(P.div_ceil(2));
         let value = |place: f64| {
             // The part of the panel from w = 4, where rho^2 is 0.
             let way = 0.5 * (1.0 + place);

@@ -23,23 +23,20 @@
 //! coefficients (`layer.rs`). Z is a difference of Psi, whose differences along an edge are integrals of its slope. Beyond, and for layers
 //! much thicker than elements are long, tensor Gauss serves. Offsets need not be whole: steps of rolling end between the centres.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use super::known::Known;
-use super::layer::CORNERS;
-use super::quadrature::gauss_legendre;
+use super::layer::{CORNERS, LINE_POINTS};
 use super::radial::{Base, Radial};
 use super::response::Response;
 use super::tensor::Tensor;
-use crate::threads::made_once;
+use crate::influence::gauss::rule;
 
 /// Shear modulus of the layer over that of the substrate from which the layer spreads loads as a membrane.
 const MEMBRANE: f64 = 30.0;
 /// Points a side of tensor Gauss up to these distances, in longer sides of an element. The relative error on a function like 1/r,
 /// `(n!)^4/((2n + 1)((2n)!)^2) r^-2n`, is at most 3e-13 where a rule begins; the last rule begins at 400.
 const POINTS: [(f64, usize); 4] = [(12.0, 7), (40.0, 4), (400.0, 3), (f64::INFINITY, 2)];
-/// Points of the rule for lines.
-const LINE_POINTS: usize = 40;
 
 static KNOWN: Known<Tensor> = Known::new();
 
@@ -81,8 +78,8 @@ impl Coat {
             _ if (x < 0.0) == (y < 0.0) => 1.0,
             _ => -1.0,
         };
-        let [xx, yy, xy] = match place.rule {
-            Some(rule) => place.by_gauss(&self.tensor, rule_of(rule)),
+        let [xx, yy, xy] = match place.points {
+            Some(points) => place.by_gauss(&self.tensor, rule(points)),
             None => place.near(&self.tensor),
         };
         let sum = [xx, yy, sign * xy];
@@ -97,8 +94,8 @@ struct Place {
     /// The element's sides.
     size: [f64; 2],
     base: Base,
-    /// The rule of tensor Gauss; none: differences over the corners.
-    rule: Option<usize>,
+    /// Points a side of tensor Gauss; none: differences over the corners.
+    points: Option<usize>,
 }
 
 impl Place {
@@ -107,9 +104,9 @@ impl Place {
         // F and g are smooth on the scale t as well, which is 1 here.
         let smooth = distance.max(1.0) / longer;
         let is_near = smooth <= POINTS[0].0 && distance <= CORNERS * size[0].hypot(size[1]);
-        let rule = POINTS.iter().position(|(last, _)| smooth <= *last).unwrap_or(POINTS.len() - 1);
+        let points = POINTS.iter().find(|(last, _)| smooth <= *last).map(|(_, points)| *points);
         let base = if (if is_near { longer } else { distance }) < 1.0 { Base::Layer } else { Base::Substrate };
-        Place { at, size, base, rule: (!is_near).then_some(rule) }
+        Place { at, size, base, points: points.filter(|_| !is_near) }
     }
 
     fn by_gauss(&self, tensor: &Tensor, rule: &[(f64, f64)]) -> [f64; 3] {
@@ -159,7 +156,7 @@ fn side<R: Response>((radial, base): (&Radial<R>, Base), a: f64, b: f64) -> f64 
         };
         w * m
     };
-    let value = end * line().iter().map(at).sum::<f64>();
+    let value = end * rule(LINE_POINTS).iter().map(at).sum::<f64>();
     if (a < 0.0) == (b < 0.0) {
         value
     } else {
@@ -175,16 +172,5 @@ fn along_ray<R: Response>((radial, base): (&Radial<R>, Base), from: f64, to: f64
         let rho = 2.0 * v.sinh();
         w * radial.mean_at_square((rho * rho).max(f64::MIN_POSITIVE), base) * rho * 2.0 * v.cosh()
     };
-    (end - start) * line().iter().map(at).sum::<f64>()
-}
-
-fn line() -> &'static [(f64, f64)] {
-    static KNOWN: OnceLock<Vec<(f64, f64)>> = OnceLock::new();
-    made_once(&KNOWN, || gauss_legendre(LINE_POINTS)).as_slice()
-}
-
-/// The rules of tensor Gauss.
-fn rule_of(k: usize) -> &'static [(f64, f64)] {
-    static KNOWN: [OnceLock<Vec<(f64, f64)>>; POINTS.len()] = [const { OnceLock::new() }; POINTS.len()];
-    made_once(&KNOWN[k], || gauss_legendre(POINTS[k].1)).as_slice()
+    (end - start) * rule(LINE_POINTS).iter().map(at).sum::<f64>()
 }

@@ -2,9 +2,10 @@
 
 use pulp::Simd;
 
-use super::segments::{Becomes, Holds, Terms, Vector, Wanted};
+use super::segments::{Becomes, Terms, Wanted};
 use super::step_sums::Update;
 use crate::contact::AdmissibleSet;
+use crate::lanes::{Holds, Lanes};
 use crate::methods::fields::Stored;
 
 /// An element was clipped if the forecast step leaves at most this part of its pressure: round-off of single precision.
@@ -20,7 +21,7 @@ pub(super) struct Distance<'a> {
 
 impl Terms<2, 2, 1> for Distance<'_> {
     #[inline(always)]
-    fn of<S: Simd>(&self, [h, u]: [Vector<S>; 2], [q, z]: [Vector<S>; 2]) -> [Vector<S>; 1] {
+    fn of<S: Simd>(&self, [h, u]: [Lanes<S>; 2], [q, z]: [Lanes<S>; 2]) -> [Lanes<S>; 1] {
         let u = u + self.update.alpha * q;
         [h - self.approach + self.update.factor * if self.update.is_corrected { u + z } else { u }]
     }
@@ -34,14 +35,14 @@ pub(super) struct Residual {
 
 impl Becomes<2, 0> for Residual {
     #[inline(always)]
-    fn of<S: Simd>(&self, _: Vector<S>, [h, u]: [Vector<S>; 2], []: [Vector<S>; 0]) -> Vector<S> {
+    fn of<S: Simd>(&self, _: Lanes<S>, [h, u]: [Lanes<S>; 2], []: [Lanes<S>; 0]) -> Lanes<S> {
         -(h - self.approach + u)
     }
 }
 
 impl Terms<2, 0, 2> for Residual {
     #[inline(always)]
-    fn of<S: Simd>(&self, [h, u]: [Vector<S>; 2], []: [Vector<S>; 0]) -> [Vector<S>; 2] {
+    fn of<S: Simd>(&self, [h, u]: [Lanes<S>; 2], []: [Lanes<S>; 0]) -> [Lanes<S>; 2] {
         let distance = h - self.approach;
         let e = distance + u;
         [e * e, distance * distance]
@@ -51,7 +52,7 @@ impl Terms<2, 0, 2> for Residual {
 /// (r, d) of the deflation direction d, and (r, r).
 impl Terms<2, 1, 2> for Residual {
     #[inline(always)]
-    fn of<S: Simd>(&self, [h, u]: [Vector<S>; 2], [d]: [Vector<S>; 1]) -> [Vector<S>; 2] {
+    fn of<S: Simd>(&self, [h, u]: [Lanes<S>; 2], [d]: [Lanes<S>; 1]) -> [Lanes<S>; 2] {
         let r = self.approach - h - u;
         [r * d, r * r]
     }
@@ -63,7 +64,7 @@ pub(super) struct Conjugate;
 
 impl Terms<0, 3, 4> for Conjugate {
     #[inline(always)]
-    fn of<S: Simd>(&self, []: [Vector<S>; 0], [t, z, q]: [Vector<S>; 3]) -> [Vector<S>; 4] {
+    fn of<S: Simd>(&self, []: [Lanes<S>; 0], [t, z, q]: [Lanes<S>; 3]) -> [Lanes<S>; 4] {
         [t, z, q, z * q]
     }
 }
@@ -78,7 +79,7 @@ pub(super) struct Direction {
 
 impl Becomes<1, 1> for Direction {
     #[inline(always)]
-    fn of<S: Simd>(&self, t: Vector<S>, [p]: [Vector<S>; 1], [z]: [Vector<S>; 1]) -> Vector<S> {
+    fn of<S: Simd>(&self, t: Lanes<S>, [p]: [Lanes<S>; 1], [z]: [Lanes<S>; 1]) -> Lanes<S> {
         let t = z - self.mean + self.beta * t;
         match self.forecast {
             Some(forecast) => (p + forecast * t).is_below(p.all(0.0)).choose(-p / forecast, t),
@@ -96,7 +97,7 @@ pub(super) struct Lowered {
 
 impl Becomes<1, 0> for Lowered {
     #[inline(always)]
-    fn of<S: Simd>(&self, t: Vector<S>, [p]: [Vector<S>; 1], []: [Vector<S>; 0]) -> Vector<S> {
+    fn of<S: Simd>(&self, t: Lanes<S>, [p]: [Lanes<S>; 1], []: [Lanes<S>; 0]) -> Lanes<S> {
         let t = t - self.shift;
         (p + self.forecast * t).is_below(p.all(0.0)).choose(-p / self.forecast, t)
     }
@@ -110,7 +111,7 @@ pub(super) struct Free {
 
 impl Terms<1, 1, 3> for Free {
     #[inline(always)]
-    fn of<S: Simd>(&self, [p]: [Vector<S>; 1], [t]: [Vector<S>; 1]) -> [Vector<S>; 3] {
+    fn of<S: Simd>(&self, [p]: [Lanes<S>; 1], [t]: [Lanes<S>; 1]) -> [Lanes<S>; 3] {
         let held = (p + self.forecast * t).is_at_most(CLIPPED_SHARE * p);
         [t, t.abs(), held.choose(t.all(0.0), t.all(1.0))]
     }
@@ -124,7 +125,7 @@ pub(super) struct StepSums {
 
 impl Terms<3, 2, 5> for StepSums {
     #[inline(always)]
-    fn of<S: Simd>(&self, [h, u, p]: [Vector<S>; 3], [t, q]: [Vector<S>; 2]) -> [Vector<S>; 5] {
+    fn of<S: Simd>(&self, [h, u, p]: [Lanes<S>; 3], [t, q]: [Lanes<S>; 2]) -> [Lanes<S>; 5] {
         let e = h - self.approach + u;
         [-e * t, t * q, t * t, t.abs(), p * p]
     }
@@ -133,7 +134,7 @@ impl Terms<3, 2, 5> for StepSums {
 /// (r, t), (t, q), (t, t), the sum of |t|, (p, p); and with `d = approach - h` (p, d), (t, d), (p, u), (p, q).
 impl Terms<3, 2, 9> for StepSums {
     #[inline(always)]
-    fn of<S: Simd>(&self, [h, u, p]: [Vector<S>; 3], [t, q]: [Vector<S>; 2]) -> [Vector<S>; 9] {
+    fn of<S: Simd>(&self, [h, u, p]: [Lanes<S>; 3], [t, q]: [Lanes<S>; 2]) -> [Lanes<S>; 9] {
         let depth = self.approach - h;
         [(depth - u) * t, t * q, t * t, t.abs(), p * p, p * depth, t * depth, p * u, p * q]
     }
@@ -142,7 +143,7 @@ impl Terms<3, 2, 9> for StepSums {
 /// (r, t), (t, q), (t, t), the sum of |t|, (p, p); and with a deflation direction d (r, d), (q, d).
 impl Terms<3, 3, 7> for StepSums {
     #[inline(always)]
-    fn of<S: Simd>(&self, [h, u, p]: [Vector<S>; 3], [t, q, d]: [Vector<S>; 3]) -> [Vector<S>; 7] {
+    fn of<S: Simd>(&self, [h, u, p]: [Lanes<S>; 3], [t, q, d]: [Lanes<S>; 3]) -> [Lanes<S>; 7] {
         let r = self.approach - h - u;
         [r * t, t * q, t * t, t.abs(), p * p, r * d, q * d]
     }
@@ -157,7 +158,7 @@ pub(super) struct WorkAndEnergy<'a> {
 
 impl Terms<3, 3, 2> for WorkAndEnergy<'_> {
     #[inline(always)]
-    fn of<S: Simd>(&self, [h, u, p]: [Vector<S>; 3], [q, z, w]: [Vector<S>; 3]) -> [Vector<S>; 2] {
+    fn of<S: Simd>(&self, [h, u, p]: [Lanes<S>; 3], [q, z, w]: [Lanes<S>; 3]) -> [Lanes<S>; 2] {
         let u = u + (self.update.alpha * q + self.update.gamma * w);
         let u = if self.update.is_corrected { u + z } else { u };
         [p * (self.approach - h), p * u]
@@ -170,7 +171,7 @@ pub(super) struct Carried;
 
 impl Terms<1, 0, 1> for Carried {
     #[inline(always)]
-    fn of<S: Simd>(&self, p: [Vector<S>; 1], []: [Vector<S>; 0]) -> [Vector<S>; 1] {
+    fn of<S: Simd>(&self, p: [Lanes<S>; 1], []: [Lanes<S>; 0]) -> [Lanes<S>; 1] {
         p
     }
 }
@@ -183,7 +184,7 @@ pub(super) struct Scale {
 
 impl Becomes<0, 0> for Scale {
     #[inline(always)]
-    fn of<S: Simd>(&self, p: Vector<S>, []: [Vector<S>; 0], []: [Vector<S>; 0]) -> Vector<S> {
+    fn of<S: Simd>(&self, p: Lanes<S>, []: [Lanes<S>; 0], []: [Lanes<S>; 0]) -> Lanes<S> {
         self.factor * p
     }
 }
@@ -197,7 +198,7 @@ pub(super) struct Moved {
 
 impl Becomes<0, 2> for Moved {
     #[inline(always)]
-    fn of<S: Simd>(&self, p: Vector<S>, []: [Vector<S>; 0], [t, d]: [Vector<S>; 2]) -> Vector<S> {
+    fn of<S: Simd>(&self, p: Lanes<S>, []: [Lanes<S>; 0], [t, d]: [Lanes<S>; 2]) -> Lanes<S> {
         p + (self.alpha * t + self.gamma * d)
     }
 }
@@ -215,7 +216,7 @@ pub(super) struct Leaving<Set> {
 
 impl<Set: AdmissibleSet> Wanted<2> for Leaving<Set> {
     #[inline(always)]
-    fn of<S: Simd>(&self, first: usize, p: Vector<S>, [t, d]: [Vector<S>; 2]) -> Holds<S> {
+    fn of<S: Simd>(&self, first: usize, p: Lanes<S>, [t, d]: [Lanes<S>; 2]) -> Holds<S> {
         let Leaving { moved, forecast, set, elements } = self;
         let to = moved.of(p, [], [t, d]);
         let mut leaves = to.is_below(p.all(0.0));
@@ -241,14 +242,14 @@ pub(super) struct MovedU<'a>(pub(super) &'a Update);
 
 impl Becomes<1, 1> for MovedU<'_> {
     #[inline(always)]
-    fn of<S: Simd>(&self, u: Vector<S>, _: [Vector<S>; 1], [q]: [Vector<S>; 1]) -> Vector<S> {
+    fn of<S: Simd>(&self, u: Lanes<S>, _: [Lanes<S>; 1], [q]: [Lanes<S>; 1]) -> Lanes<S> {
         self.0.factor * (u + self.0.alpha * q)
     }
 }
 
 impl Becomes<1, 3> for MovedU<'_> {
     #[inline(always)]
-    fn of<S: Simd>(&self, u: Vector<S>, _: [Vector<S>; 1], [q, w, z]: [Vector<S>; 3]) -> Vector<S> {
+    fn of<S: Simd>(&self, u: Lanes<S>, _: [Lanes<S>; 1], [q, w, z]: [Lanes<S>; 3]) -> Lanes<S> {
         let u = u + (self.0.alpha * q + self.0.gamma * w);
         self.0.factor * if self.0.is_corrected { u + z } else { u }
     }
@@ -266,7 +267,7 @@ pub(super) struct Entering<'a> {
 
 impl Wanted<1> for Entering<'_> {
     #[inline(always)]
-    fn of<S: Simd>(&self, first: usize, u: Vector<S>, [h]: [Vector<S>; 1]) -> Holds<S> {
+    fn of<S: Simd>(&self, first: usize, u: Lanes<S>, [h]: [Lanes<S>; 1]) -> Holds<S> {
         let (e, zero) = (h - self.approach + u, u.all(0.0));
         if self.is_fixed {
             return zero.is_below(zero);

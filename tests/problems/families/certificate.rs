@@ -3,12 +3,13 @@
 use contact_normal::contact::State;
 use contact_normal::error::Result;
 use contact_normal::influence::Coefficients;
-use contact_normal::operator::{dense, Operator};
+use contact_normal::operator::Operator;
 use contact_normal::scene::Load;
 use contact_normal::solver::{solve, Method, Options, Outcome, Report, Solver};
 use contact_normal::threads::Threads;
 
 use super::case::Case;
+use crate::dense;
 
 /// Grids up to this size are summed directly, larger ones go by an FFT in double precision (tests/problems/operator.rs compares both).
 const SUMMED: usize = 1600;

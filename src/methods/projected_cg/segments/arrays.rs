@@ -5,8 +5,8 @@ use std::array::from_fn;
 use pulp::Simd;
 
 use super::block::Block;
-use super::vector::{Holds, Vector};
 use crate::blocks::LANES;
+use crate::lanes::{Holds, Lanes};
 use crate::operator::fft::Real;
 use crate::sums::Value;
 
@@ -98,8 +98,8 @@ impl<'a, const A: usize, const B: usize> Segment<'a, A, B> {
 
     /// Vector number `part` of the segment: values of a and of b, and the lanes in contact.
     #[inline(always)]
-    pub(super) fn part<S: Simd>(&self, simd: S, part: usize) -> ([Vector<S>; A], [Vector<S>; B], Holds<S>) {
-        let of = |values: &Eight<f64>| Vector::new(simd, S::as_simd_f64s(values).0[part]);
+    pub(super) fn part<S: Simd>(&self, simd: S, part: usize) -> ([Lanes<S>; A], [Lanes<S>; B], Holds<S>) {
+        let of = |values: &Eight<f64>| Lanes::new(simd, S::as_simd_f64s(values).0[part]);
         let inside = Holds::of_ones(simd, S::as_simd_u64s(&self.contact).0[part]);
         (from_fn(|i| of(self.a[i])), from_fn(|i| of(&self.b[i])), inside)
     }

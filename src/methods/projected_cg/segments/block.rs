@@ -4,23 +4,23 @@ use std::ops::Range;
 
 use pulp::Simd;
 
-use super::vector::{Holds, Vector};
 use crate::blocks::LANES;
+use crate::lanes::{Holds, Lanes};
 
 /// K sums of a pass over A arrays in double precision and B arrays of the iteration's precision.
 pub trait Terms<const A: usize, const B: usize, const K: usize> {
-    fn of<S: Simd>(&self, a: [Vector<S>; A], b: [Vector<S>; B]) -> [Vector<S>; K];
+    fn of<S: Simd>(&self, a: [Lanes<S>; A], b: [Lanes<S>; B]) -> [Lanes<S>; K];
 }
 
 /// A new value per element, from A arrays in double precision and B arrays of the iteration's precision.
 pub trait Becomes<const A: usize, const B: usize> {
-    fn of<S: Simd>(&self, value: Vector<S>, a: [Vector<S>; A], b: [Vector<S>; B]) -> Vector<S>;
+    fn of<S: Simd>(&self, value: Lanes<S>, a: [Lanes<S>; A], b: [Lanes<S>; B]) -> Lanes<S>;
 }
 
 /// The elements that a pass lists, by their values and those of N other arrays.
 pub trait Wanted<const N: usize> {
     /// `first`: the element of the first value.
-    fn of<S: Simd>(&self, first: usize, value: Vector<S>, others: [Vector<S>; N]) -> Holds<S>;
+    fn of<S: Simd>(&self, first: usize, value: Lanes<S>, others: [Lanes<S>; N]) -> Holds<S>;
 }
 
 /// A block of the grid.

@@ -4,8 +4,8 @@ use pulp::{Simd, WithSimd};
 
 use super::arrays::{eights, parts, rest, whole, Arrays, Eight, Segment};
 use super::block::{Becomes, Block, Wanted};
-use super::vector::{Holds, Vector};
 use crate::blocks::LANES;
+use crate::lanes::{Holds, Lanes};
 use crate::operator::fft::Real;
 
 /// The elements of [`Block::list`].
@@ -45,7 +45,7 @@ fn list_segment<S: Simd, const B: usize>(
 ) {
     for part in 0..parts::<S>() {
         let first = first + part * LANES / parts::<S>();
-        let value = Vector::new(simd, S::as_simd_f64s(values).0[part]);
+        let value = Lanes::new(simd, S::as_simd_f64s(values).0[part]);
         let ([], b, inside) = segment.part(simd, part);
         append(simd, first, inside & wanted.of(first, value, b), list);
     }
@@ -56,7 +56,7 @@ fn list_segment<S: Simd, const B: usize>(
 fn append<S: Simd>(simd: S, first: usize, wanted: Holds<S>, list: &mut Vec<u32>) {
     if wanted.anywhere() {
         let mut ones = [0.0; LANES];
-        let some = wanted.choose(Vector::splat(simd, 1.0), Vector::splat(simd, 0.0));
+        let some = wanted.choose(Lanes::splat(simd, 1.0), Lanes::splat(simd, 0.0));
         S::as_mut_simd_f64s(&mut ones).0[0] = some.values();
         list.extend((first as u32..).zip(ones).filter(|(_, one)| *one > 0.0).map(|(i, _)| i));
     }
@@ -109,7 +109,7 @@ fn everywhere<S: Simd, const A: usize, const B: usize>(
         let (a, b, _) = segment.part(simd, part);
         let outside = Holds::of_zeros(simd, S::as_simd_u64s(&segment.contact).0[part]);
         let to = &mut S::as_mut_simd_f64s(values).0[part];
-        let value = change.of(Vector::new(simd, *to), a, b);
+        let value = change.of(Lanes::new(simd, *to), a, b);
         *to = value.values();
         append(simd, first, outside & wanted.of(first, value, a), list);
     }

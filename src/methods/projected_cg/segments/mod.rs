@@ -12,14 +12,12 @@ mod block;
 mod lists;
 mod over;
 mod passes;
-mod vector;
 
 use std::mem::take;
 use std::ops::Range;
 
 use arrays::{eights, rest};
 pub use block::{Becomes, Block, Terms, Wanted};
-pub use vector::{Holds, Vector};
 
 use crate::blocks::{BLOCK, BLOCKS, LANES};
 use crate::error::Result;

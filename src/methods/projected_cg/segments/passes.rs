@@ -5,8 +5,8 @@ use pulp::{Simd, WithSimd};
 
 use super::arrays::{convert, parts, rest, whole, Arrays, Eight, Segment};
 use super::block::{Becomes, Block, Terms};
-use super::vector::Vector;
 use crate::blocks::LANES;
+use crate::lanes::Lanes;
 use crate::operator::fft::Real;
 use crate::sums::Value;
 
@@ -46,7 +46,7 @@ fn add<S: Simd, const A: usize, const B: usize, const K: usize>(
         let (a, b, inside) = segment.part(simd, part);
         for (sums, term) in sums.iter_mut().zip(terms.of(a, b)) {
             let sum = &mut S::as_mut_simd_f64s(sums).0[part];
-            *sum = (Vector::new(simd, *sum) + inside.choose(term, Vector::splat(simd, 0.0))).values();
+            *sum = (Lanes::new(simd, *sum) + inside.choose(term, Lanes::splat(simd, 0.0))).values();
         }
     }
 }
@@ -90,7 +90,7 @@ fn change_segment<D: Real, S: Simd, const A: usize, const B: usize>(
     for part in 0..parts::<S>() {
         let (a, b, inside) = segment.part(simd, part);
         let value = &mut S::as_mut_simd_f64s(&mut doubles).0[part];
-        let before = Vector::new(simd, *value);
+        let before = Lanes::new(simd, *value);
         *value = inside.choose(change.of(before, a, b), before).values();
     }
     convert(&doubles, values, D::of);

@@ -1,8 +1,7 @@
-//! `u = A q` by direct summation, as the reference in tests of [`Toeplitz`](super::Toeplitz).
+//! `u = A q` by direct summation, as the reference in tests of `Toeplitz`.
 
-use super::coefficients::Tangential;
-use super::plane::Vector;
-use crate::grid::Grid;
+use contact_normal::friction::{Tangential, Vector};
+use contact_normal::grid::Grid;
 
 /// `u_I = sum_J A(I - J + by) q_J`, term by term: displacements at `by` from each centre, in elements.
 pub fn apply(tangential: &Tangential, grid: &Grid, by: (f64, f64), q: &[Vector], u: &mut [Vector]) {

@@ -1,4 +1,4 @@
-//! Formulas in SIMD vectors. Each value has the bits of the scalar formula, as no operations are contracted.
+//! Formulas in the lanes of SIMD vectors. Each value has the bits of the scalar formula, as no operations are contracted.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
@@ -6,7 +6,7 @@ use pulp::Simd;
 
 /// Values in the lanes of one vector.
 #[derive(Clone, Copy)]
-pub struct Vector<S: Simd> {
+pub struct Lanes<S: Simd> {
     simd: S,
     values: S::f64s,
 }
@@ -18,26 +18,26 @@ pub struct Holds<S: Simd> {
     mask: S::m64s,
 }
 
-impl<S: Simd> Vector<S> {
+impl<S: Simd> Lanes<S> {
     #[inline(always)]
-    pub fn new(simd: S, values: S::f64s) -> Vector<S> {
-        Vector { simd, values }
+    pub fn new(simd: S, values: S::f64s) -> Lanes<S> {
+        Lanes { simd, values }
     }
 
     #[inline(always)]
-    pub fn splat(simd: S, value: f64) -> Vector<S> {
-        Vector { simd, values: simd.splat_f64s(value) }
+    pub fn splat(simd: S, value: f64) -> Lanes<S> {
+        Lanes { simd, values: simd.splat_f64s(value) }
     }
 
     /// One value in all lanes.
     #[inline(always)]
-    pub fn all(self, value: f64) -> Vector<S> {
-        Vector::splat(self.simd, value)
+    pub fn all(self, value: f64) -> Lanes<S> {
+        Lanes::splat(self.simd, value)
     }
 
     /// `value(lane)` in each lane.
     #[inline(always)]
-    pub fn of_each(self, value: impl Fn(usize) -> f64) -> Vector<S> {
+    pub fn of_each(self, value: impl Fn(usize) -> f64) -> Lanes<S> {
         let mut vector = self;
         let values = pulp::bytemuck::cast_slice_mut::<S::f64s, f64>(std::slice::from_mut(&mut vector.values));
         values.iter_mut().enumerate().for_each(|(lane, to)| *to = value(lane));
@@ -51,17 +51,27 @@ impl<S: Simd> Vector<S> {
     }
 
     #[inline(always)]
-    pub fn abs(self) -> Vector<S> {
-        Vector { values: self.simd.abs_f64s(self.values), ..self }
+    pub fn abs(self) -> Lanes<S> {
+        Lanes { values: self.simd.abs_f64s(self.values), ..self }
     }
 
     #[inline(always)]
-    pub fn is_below(self, other: Vector<S>) -> Holds<S> {
+    pub fn sqrt(self) -> Lanes<S> {
+        Lanes { values: self.simd.sqrt_f64s(self.values), ..self }
+    }
+
+    #[inline(always)]
+    pub fn max(self, other: Lanes<S>) -> Lanes<S> {
+        Lanes { values: self.simd.max_f64s(self.values, other.values), ..self }
+    }
+
+    #[inline(always)]
+    pub fn is_below(self, other: Lanes<S>) -> Holds<S> {
         Holds { simd: self.simd, mask: self.simd.less_than_f64s(self.values, other.values) }
     }
 
     #[inline(always)]
-    pub fn is_at_most(self, other: Vector<S>) -> Holds<S> {
+    pub fn is_at_most(self, other: Lanes<S>) -> Holds<S> {
         Holds { simd: self.simd, mask: self.simd.less_than_or_equal_f64s(self.values, other.values) }
     }
 }
@@ -81,8 +91,8 @@ impl<S: Simd> Holds<S> {
 
     /// `yes` in lanes where the condition holds, `no` in the others.
     #[inline(always)]
-    pub fn choose(self, yes: Vector<S>, no: Vector<S>) -> Vector<S> {
-        Vector { values: self.simd.select_f64s(self.mask, yes.values, no.values), ..yes }
+    pub fn choose(self, yes: Lanes<S>, no: Lanes<S>) -> Lanes<S> {
+        Lanes { values: self.simd.select_f64s(self.mask, yes.values, no.values), ..yes }
     }
 
     /// Whether the condition holds in any lane.
@@ -94,30 +104,30 @@ impl<S: Simd> Holds<S> {
 
 macro_rules! operation {
     ($name:ident, $method:ident, $of_machine:ident) => {
-        impl<S: Simd> $name for Vector<S> {
-            type Output = Vector<S>;
+        impl<S: Simd> $name for Lanes<S> {
+            type Output = Lanes<S>;
 
             #[inline(always)]
-            fn $method(self, other: Vector<S>) -> Vector<S> {
-                Vector { values: self.simd.$of_machine(self.values, other.values), ..self }
+            fn $method(self, other: Lanes<S>) -> Lanes<S> {
+                Lanes { values: self.simd.$of_machine(self.values, other.values), ..self }
             }
         }
 
-        impl<S: Simd> $name<Vector<S>> for f64 {
-            type Output = Vector<S>;
+        impl<S: Simd> $name<Lanes<S>> for f64 {
+            type Output = Lanes<S>;
 
             #[inline(always)]
-            fn $method(self, other: Vector<S>) -> Vector<S> {
-                Vector::splat(other.simd, self).$method(other)
+            fn $method(self, other: Lanes<S>) -> Lanes<S> {
+                Lanes::splat(other.simd, self).$method(other)
             }
         }
 
-        impl<S: Simd> $name<f64> for Vector<S> {
-            type Output = Vector<S>;
+        impl<S: Simd> $name<f64> for Lanes<S> {
+            type Output = Lanes<S>;
 
             #[inline(always)]
-            fn $method(self, other: f64) -> Vector<S> {
-                self.$method(Vector::splat(self.simd, other))
+            fn $method(self, other: f64) -> Lanes<S> {
+                self.$method(Lanes::splat(self.simd, other))
             }
         }
     };
@@ -127,12 +137,12 @@ operation!(Sub, sub, sub_f64s);
 operation!(Mul, mul, mul_f64s);
 operation!(Div, div, div_f64s);
 
-impl<S: Simd> Neg for Vector<S> {
-    type Output = Vector<S>;
+impl<S: Simd> Neg for Lanes<S> {
+    type Output = Lanes<S>;
 
     #[inline(always)]
-    fn neg(self) -> Vector<S> {
-        Vector { values: self.simd.neg_f64s(self.values), ..self }
+    fn neg(self) -> Lanes<S> {
+        Lanes { values: self.simd.neg_f64s(self.values), ..self }
     }
 }
 
