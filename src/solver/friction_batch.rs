@@ -4,7 +4,7 @@ use super::adhesive_friction::bounded;
 use super::friction_table::Table;
 pub use super::friction_table::{Ended, Entry, RUN};
 use super::tangential_calls::{measures, positive};
-use super::{Options, Outcome, ProgressCallback, Report, Solver};
+use super::{Asked, Options, Outcome, ProgressCallback, Report, Solver};
 use crate::effects::Previous;
 use crate::error::{invalid, Result};
 use crate::friction::Solution;
@@ -44,7 +44,7 @@ pub fn solve_friction_batch(
             let normal = Scene { friction: None, ..scene.clone() };
             let (mut new, lowest) = Solver::for_scene(&normal, options)?;
             let watch = progress.as_mut().map(|progress| &mut **progress as ProgressCallback<'_>);
-            let (stop, report) = new.solve_checked((&normal, lowest), options, None, watch)?;
+            let (stop, report) = new.solve_checked(Asked::new((&normal, lowest), options), watch)?;
             let split = new.adhesion();
             let q = |i: usize| split.as_ref().map_or(new.state().p[i], |split| split(i).0);
             contact = collected((0..scene.grid.len()).map(q), "the contact pressures of a table")?;

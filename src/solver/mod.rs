@@ -5,6 +5,7 @@
 
 mod adhesion;
 mod adhesive_friction;
+mod asked;
 mod batch;
 mod beside;
 mod best;
@@ -54,6 +55,7 @@ pub use crate::operator::Precision;
 pub use crate::progress::{
     Counters, Criterion, DiscretisationError, LedgerRow, Measures, Outcome, Progress, ProgressCallback,
 };
+pub(crate) use asked::Asked;
 pub use batch::Problem;
 pub use bill::{effects_bill, BillOptions, BillRow, Neglected, Omission, Verdict};
 pub use falling::Falling;
@@ -142,7 +144,7 @@ struct SetUp {
 /// Solves one scene.
 pub fn solve(scene: &Scene<'_>, options: &Options) -> Result<(Solver, Outcome, Report)> {
     let (mut solver, lowest) = Solver::for_scene(scene, options)?;
-    let (stop, report) = solver.solve_checked((scene, lowest), options, None, None)?;
+    let (stop, report) = solver.solve_checked(Asked::new((scene, lowest), options), None)?;
     Ok((solver, stop, report))
 }
 
@@ -223,53 +225,37 @@ impl Solver {
         let own = self.own_tables.clone();
         let scene = &*self.with_own_tables(scene, own.as_deref())?;
         let lowest = scene.check_distance_and_load(&self.problem.threads)?;
-        self.solve_checked((scene, lowest), options, guess, progress)
+        self.solve_checked(Asked { scene, lowest, options, guess }, progress)
     }
 
-    /// [`Solver::solve`] for a scene whose distance and load are checked, with its least distance.
+    /// [`Solver::solve`] for a scene whose distance and load are checked.
     pub(crate) fn solve_checked(
         &mut self,
-        (scene, lowest): (&Scene<'_>, f64),
-        options: &Options,
-        guess: Option<Guess<'_>>,
+        asked: Asked<'_>,
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
-        self.set_up.check(scene, options, &self.problem)?;
-        self.on_surface((scene, lowest), |solver, scene| solver.solve_step_in_time(scene, options, guess, progress))
-    }
-
-    /// Solves with the undeformed distance after the scene's effects on it.
-    fn on_surface<R>(
-        &mut self,
-        (scene, lowest): (&Scene<'_>, f64),
-        solve: impl FnOnce(&mut Solver, (&Scene<'_>, f64)) -> Result<R>,
-    ) -> Result<R> {
-        let Some(h) = effects::surface(scene)? else { return solve(self, (scene, lowest)) };
-        let scene = &Scene { undeformed_distance: &h, ..scene.clone() };
-        let lowest = scene.check_distance_and_load(&self.problem.threads)?;
-        solve(self, (scene, lowest))
-    }
-
-    /// Solves a checked scene of bodies without memory, or whose distances contain the memory.
-    fn solve_surface(
-        &mut self,
-        (scene, lowest): (&Scene<'_>, f64),
-        options: &Options,
-        guess: Option<Guess<'_>>,
-        progress: Option<ProgressCallback<'_>>,
-    ) -> Result<(Outcome, Report)> {
-        check::guess(scene, options, guess)?;
-        if let Some(adhesion) = scene.attraction() {
-            return self.solve_adhesive((scene, lowest), (adhesion, false), options, guess, progress);
+        self.set_up.check(asked.scene, asked.options, &self.problem)?;
+        let surface = effects::surface(asked.scene)?;
+        let changed = surface.as_deref().map(|h| Scene { undeformed_distance: h, ..asked.scene.clone() });
+        let asked = asked.on(changed.as_ref(), &self.problem.threads)?;
+        match (effects::memory(asked.scene, &mut self.beside.histories)?, asked.scene.attraction()) {
+            (Some((k, memory)), _) => self.solve_with_memory(asked, (k, &*memory), progress),
+            (None, Some(adhesion)) => self.solve_adhesive(asked, (adhesion, false), progress),
+            (None, None) => self.solve_at_once(asked, progress),
         }
+    }
+
+    /// Solves a checked scene of bodies that do not attract each other. They have no memory, or the distances contain it.
+    fn solve_at_once(&mut self, asked: Asked<'_>, progress: Option<ProgressCallback<'_>>) -> Result<(Outcome, Report)> {
+        let Asked { scene, options, .. } = asked;
+        check::guess(asked)?;
         self.suit(scene.load)?;
-        let given_contact = guess.filter(|_| options.is_fixed());
-        check::range((scene, lowest), &self.problem, self.set_up.largest_influence, given_contact)?;
+        check::range(asked, &self.problem, self.set_up.largest_influence)?;
         self.check_continues(scene)?;
         let kept = self.kept(scene)?;
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), options.estimates);
-        let outcome = self.solve_normal((scene, lowest), options, guess, &mut monitor).and_then(|(stop, tolerance)| {
-            let stop = self.meet_compressed((scene, lowest), options, guess, &mut monitor, stop)?;
+        let outcome = self.solve_normal(asked, &mut monitor).and_then(|(stop, tolerance)| {
+            let stop = self.meet_compressed(asked, &mut monitor, stop)?;
             let (stop, found) = self.solve_beside(scene, options, stop, &mut monitor)?;
             let mut report = Report { friction: found, ..Report::of(&monitor, tolerance) };
             if options.estimates {

@@ -2,41 +2,34 @@
 
 use super::stages;
 use super::take_over;
-use super::{Guess, InitialGuess, Options, Solver};
+use super::{Asked, InitialGuess, Solver};
 use crate::contact::{AdmissibleSet, Fixed, NonNegative, Survey};
 use crate::effects;
 use crate::error::Result;
 use crate::memory::{reserve, zeros};
 use crate::methods::Task;
 use crate::progress::{Monitor, Outcome};
-use crate::scene::{Each, PressureLimit, Scene};
+use crate::scene::{Each, PressureLimit};
 
 impl Solver {
-    /// Solves the normal problem on the scene's admissible set. `lowest`: the least distance.
-    pub(super) fn solve_normal(
-        &mut self,
-        (scene, lowest): (&Scene<'_>, f64),
-        options: &Options,
-        guess: Option<Guess<'_>>,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<(Outcome, f64)> {
-        take_over::take_distance(&mut self.state, scene.undeformed_distance, &self.problem.threads);
-        match effects::limits(scene) {
-            _ if options.is_fixed() => self.run((scene, lowest), Fixed, options, guess, monitor),
-            None => self.run((scene, lowest), NonNegative, options, guess, monitor),
-            Some(limit) => self.run_limited((scene, lowest), limit, options, guess, monitor),
+    /// Solves the normal problem on the scene's admissible set.
+    pub(super) fn solve_normal(&mut self, asked: Asked<'_>, monitor: &mut Monitor<'_>) -> Result<(Outcome, f64)> {
+        take_over::take_distance(&mut self.state, asked.scene.undeformed_distance, &self.problem.threads);
+        match effects::limits(asked.scene) {
+            _ if asked.options.is_fixed() => self.run(asked, Fixed, monitor),
+            None => self.run(asked, NonNegative, monitor),
+            Some(limit) => self.run_limited(asked, limit, monitor),
         }
     }
 
     /// Solves with limits, which are copied, as a callback may change the caller's.
     fn run_limited(
         &mut self,
-        (scene, lowest): (&Scene<'_>, f64),
+        asked: Asked<'_>,
         limit: PressureLimit<'_>,
-        options: &Options,
-        guess: Option<Guess<'_>>,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, f64)> {
+        let options = asked.options;
         let n = self.state.p.len();
         if self.state.at_limit.is_empty() {
             self.state.at_limit = zeros(n, "elements at their limit")?;
@@ -51,7 +44,7 @@ impl Solver {
                 PressureLimit(Each::PerElement(&limits))
             }
         };
-        let mut outcome = self.run((scene, lowest), set, options, guess, monitor);
+        let mut outcome = self.run(asked, set, monitor);
         // An element at its limit with e near 0 is there by round-off of an equal pressure.
         let on_the_way = self.state.reached_limit && {
             let scale = Survey::of(&self.state).scale;
@@ -66,7 +59,7 @@ impl Solver {
             monitor.ledger.estimates = found.1.estimates;
             monitor.enter_grid();
             self.methods.forget_iterates();
-            let without = self.run((scene, lowest), NonNegative, options, guess, monitor);
+            let without = self.run(asked, NonNegative, monitor);
             let exceeds = self.state.p.iter().enumerate().any(|(i, p)| *p > set.limit(i));
             if matches!(without, Ok((Outcome::Converged, _))) && !exceeds {
                 outcome = without;
@@ -88,14 +81,8 @@ impl Solver {
     }
 
     /// Solves on an admissible set, with the distances of the state. Returns the outcome and the tolerance used.
-    fn run<S: AdmissibleSet>(
-        &mut self,
-        (scene, lowest): (&Scene<'_>, f64),
-        set: S,
-        options: &Options,
-        guess: Option<Guess<'_>>,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<(Outcome, f64)> {
+    fn run<S: AdmissibleSet>(&mut self, asked: Asked<'_>, set: S, monitor: &mut Monitor<'_>) -> Result<(Outcome, f64)> {
+        let Asked { lowest, options, .. } = asked;
         let Solver { problem, state, methods, set_up, has_result, .. } = self;
         let multigrid = set_up.without_multigrid.is_none();
         let stages = stages::stages::<S>(options.method, problem.symmetric, multigrid);
@@ -107,7 +94,7 @@ impl Solver {
         if !solved {
             methods.projected_cg.forget_solutions();
         }
-        let (from, survey) = take_over::take_over(problem, state, set, scene, (options, guess, solved), monitor)?;
+        let (from, survey) = take_over::take_over(problem, state, set, (asked, solved), monitor)?;
         let mut task = Task { problem, state, lowest, set, goal: options.goal(), monitor };
         let is_unloaded = take_over::is_without_contact(task.state, lowest, S::FIXED)
             || take_over::is_even_without_force::<S>(task.state);

@@ -15,7 +15,7 @@ pub(super) use accuracy::LEAST_TOLERANCE;
 pub use price_list::{cost_of_accuracy, Obstacle, Price};
 
 use super::quantities::{values, Quantity};
-use super::{Options, Outcome, Progress, ProgressCallback, Report, Solver};
+use super::{Asked, Options, Outcome, Progress, ProgressCallback, Report, Solver};
 use crate::effects;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
@@ -222,7 +222,7 @@ fn solve_on(
         is_late = late(told);
         is_late || progress.as_mut().is_some_and(|progress| progress(told))
     };
-    let (stop, report) = solver.solve_checked((scene, lowest), options, None, Some(&mut watch))?;
+    let (stop, report) = solver.solve_checked(Asked::new((scene, lowest), options), Some(&mut watch))?;
     let outlook = Outlook::of(&solver, &report, scene.load);
     let of = if stop == Outcome::Cancelled { vec![] } else { values(&mut solver, scene, &report, wanted)? };
     // Later scenes of this solver may have other surfaces.

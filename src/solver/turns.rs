@@ -5,7 +5,7 @@ use super::beside::Distances;
 use super::extrapolation::Extrapolation;
 use super::take_over::take_distance;
 use super::tangential_turn::TangentialTurn;
-use super::{InitialGuess, Options, Solver};
+use super::{Asked, InitialGuess, Options, Solver};
 use crate::contact::{lowest, Fixed, NonNegative, State, Survey};
 use crate::effects::{self, Coupled};
 use crate::error::Result;
@@ -157,9 +157,10 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
         monitor.ledger.rows.pop();
         monitor.enter_grid();
         let distance = &self.turns.distances.displaced[..];
-        let displaced = (&Scene { undeformed_distance: distance, ..self.scene.clone() }, lowest(distance));
-        let (stop, _) = solver.solve_normal(displaced, options, None, monitor)?;
-        let stop = solver.meet_compressed(displaced, options, None, monitor, stop)?;
+        let scene = &Scene { undeformed_distance: distance, ..self.scene.clone() };
+        let asked = Asked::new((scene, lowest(distance)), options);
+        let (stop, _) = solver.solve_normal(asked, monitor)?;
+        let stop = solver.meet_compressed(asked, monitor, stop)?;
         self.cycles += monitor.count.cycles as usize;
         Ok(stop)
     }

@@ -6,7 +6,7 @@ use super::{values, Course, Lack, Quantity, Value};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::scene::{scaled, Regridded, Scene};
-use crate::solver::{Options, Outcome, ProgressCallback, Report, Solver};
+use crate::solver::{Asked, Options, Outcome, ProgressCallback, Report, Solver};
 
 /// One quantity on one grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,7 +63,7 @@ impl OnGrid {
     ) -> Result<OnGrid> {
         let began = Instant::now();
         let (mut solver, lowest) = Solver::for_scene(scene, options)?;
-        let (outcome, report) = solver.solve_checked((scene, lowest), options, None, progress)?;
+        let (outcome, report) = solver.solve_checked(Asked::new((scene, lowest), options), progress)?;
         let seconds = began.elapsed().as_secs_f64();
         let values = match outcome {
             Outcome::Converged => values(&mut solver, scene, &report, wanted)?,
