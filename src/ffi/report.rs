@@ -13,6 +13,7 @@ pub const CONTACT_NORMAL_LIMITED_BY_UNKNOWN: i32 = 0;
 pub const CONTACT_NORMAL_LIMITED_BY_GRID: i32 = 1;
 /// `limited_by`: the tolerance; it allows a larger error than that of the grid.
 pub const CONTACT_NORMAL_LIMITED_BY_TOLERANCE: i32 = 2;
+const _: () = assert!(Limit::Tolerance as i32 == CONTACT_NORMAL_LIMITED_BY_TOLERANCE);
 
 /// The results of the normal problem: a group of `contact_normal_report`.
 #[repr(C)]
@@ -241,10 +242,6 @@ impl contact_normal_report_accuracy {
     fn set(&mut self, report: &Report) {
         set_errors!(self, report.error);
         (self.halved_seconds, self.halved_error_force) = (report.halving.seconds, report.halving.force());
-        self.limited_by = match report.limit {
-            Limit::Unknown => CONTACT_NORMAL_LIMITED_BY_UNKNOWN,
-            Limit::Grid => CONTACT_NORMAL_LIMITED_BY_GRID,
-            Limit::Tolerance => CONTACT_NORMAL_LIMITED_BY_TOLERANCE,
-        };
+        self.limited_by = report.limit as i32;
     }
 }

@@ -8,7 +8,7 @@ use crate::grid::Grid;
 use crate::progress::{Counters, DiscretisationError, Measures, Monitor, Outcome};
 use crate::visco;
 
-/// The limit of the accuracy of a solution.
+/// The limit of the accuracy of a solution; numbered as in the C ABI.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Limit {
     /// Not known.

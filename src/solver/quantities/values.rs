@@ -16,11 +16,11 @@ use crate::sums::in_blocks;
 /// errors of up to 0.25 of their value over this root.
 const OUTLINE: f64 = 0.3;
 
-/// Why a quantity has no value, or its value no error.
+/// Why a quantity has no value, or its value no error; numbered as in the C ABI.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lack {
     /// The scene has no friction.
-    NoFriction,
+    NoFriction = 1,
     /// The scene prescribes the quantity.
     Prescribed,
     /// An effect of the scene excludes it.

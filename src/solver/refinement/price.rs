@@ -17,12 +17,12 @@ const PRODUCTS_GROWTH: f64 = 1.1;
 /// The fewest elements across the contact of a sample that can be extrapolated.
 pub(super) const FEWEST_ACROSS: usize = 12;
 
-/// The reason why an accuracy cannot be reached.
+/// The reason why an accuracy cannot be reached; numbered as in the C ABI.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Obstacle {
     /// No sufficient grid is known: the quantity is singular, contact is on few elements, or there is none and the quantity is not 0 then; or no grid was
     /// solved.
-    Singular,
+    Singular = 1,
     /// The target is below round-off.
     RoundOff,
     /// It takes more elements than `max_elements`.
