@@ -8,7 +8,7 @@ use super::majorise::Descent;
 use super::newton::{newton, End, Goal, Pace};
 use super::place::Walk;
 use super::report::{close_grid, Report};
-use super::request::{Request, Start, State};
+use super::request::{Request, State};
 use super::robust;
 use super::split::Split;
 use super::stability::stability;
