@@ -172,17 +172,17 @@ impl Solver {
             lowest
         };
         let threads = threads?;
-        let (influence, compressible) = Compressible::of(scene.coefficients()?, scene.load);
+        let (coefficients, compressible) = Compressible::of(scene.coefficients()?, scene.load);
         let set_up = SetUp {
             named: Named::new(scene),
             own_coefficients: effects::own_coefficients(scene),
             lacks_table: false,
             without_multigrid: effects::excluded_method(scene),
-            largest_influence: influence.largest(&scene.grid),
+            largest_influence: coefficients.largest(&scene.grid),
             compressible,
             options: *options,
         };
-        let mut solver = Solver::of(scene.grid, influence, set_up, &threads)?;
+        let mut solver = Solver::of(scene.grid, coefficients, set_up, &threads)?;
         if let Some(given) = scene.friction.as_ref().and_then(|friction| friction.influence) {
             solver.own_tables = Some(Arc::new(KeptInfluence::new(&given)?));
         }
@@ -190,8 +190,8 @@ impl Solver {
         Ok((solver, lowest))
     }
 
-    fn of(grid: Grid, influence: Coefficients, set_up: SetUp, threads: &Threads) -> Result<Solver> {
-        let mut problem = contact::Problem::new(grid, influence, threads)?;
+    fn of(grid: Grid, coefficients: Coefficients, set_up: SetUp, threads: &Threads) -> Result<Solver> {
+        let mut problem = contact::Problem::new(grid, coefficients, threads)?;
         problem.given = set_up.own_coefficients.is_some();
         Ok(Solver {
             methods: Methods::new(&problem, &set_up.options)?,

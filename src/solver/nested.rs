@@ -32,7 +32,7 @@ impl FullMultigrid {
         for level in &multigrid.levels[1..] {
             let (operator, work) = (level.operator.clone(), level.work);
             let threads = &problem.threads;
-            let own = Problem::with_operator(level.grid, level.influence.clone(), operator, work, threads)?;
+            let own = Problem::with_operator(level.grid, level.coefficients.clone(), operator, work, threads)?;
             coarser.push((own, State::new(level.grid, (Load::Approach(0.0), 0.0), threads)?));
         }
         Ok(FullMultigrid { multigrid, workspace: Workspace::default(), coarser, best: Best::default() })
