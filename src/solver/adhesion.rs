@@ -126,16 +126,16 @@ impl Solver {
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), false);
         self.has_result = false;
         take_distance(&mut self.state, scene.undeformed_distance, &self.problem.threads);
-        let outcome = self.run_adhesive(asked, (adhesion, pull_off), goes_on, &mut monitor);
+        let solved = self.run_adhesive(asked, (adhesion, pull_off), goes_on, &mut monitor);
         self.ledger = std::mem::take(&mut monitor.ledger.rows);
-        let outcome = outcome.and_then(|(stop, found, split)| {
-            let (stop, friction) = self.rub(scene, (adhesion, &split), options, stop, &mut monitor)?;
-            Ok((stop, found, friction, split))
+        let solved = solved.and_then(|(outcome, found, split)| {
+            let (outcome, friction) = self.rub(scene, (adhesion, &split), options, outcome, &mut monitor)?;
+            Ok((outcome, found, friction, split))
         });
-        if outcome.is_err() {
+        if solved.is_err() {
             self.go_back(kept);
         }
-        let (stop, found, friction, split) = outcome?;
+        let (outcome, found, friction, split) = solved?;
         (self.has_result, self.split, self.compliance) = (true, Some(split), 1.0);
         effects::keep(scene, &mut self.beside.histories);
         let mut report = Report { adhesion: Some(found), friction, ..Report::of(&monitor, options.tolerance) };
@@ -144,8 +144,8 @@ impl Solver {
         report.solve_seconds = monitor.seconds();
         report.setup_seconds = std::mem::take(&mut self.setup_seconds);
         report.bytes = self.bytes() as u64;
-        report.log(options.method, &self.problem.grid, stop);
-        Ok((stop, report))
+        report.log(options.method, &self.problem.grid, outcome);
+        Ok((outcome, report))
     }
 
     fn run_adhesive(
@@ -193,18 +193,18 @@ impl Solver {
         let make = |problem: &contact::Problem| -> Result<Box<dyn Frozen>> {
             Ok(Box::new(Plain(Methods::new(problem, options)?)))
         };
-        let outcome = lent.solver.solve(&request, &make, monitor);
+        let solved = lent.solver.solve(&request, &make, monitor);
         drop(lent);
-        if outcome.is_ok() {
+        if solved.is_ok() {
             let (state, found) = (&mut self.state, solver.finest());
             state.contact.copy_from_slice(&found.now.contact);
             state.at_limit.fill(false);
             (state.load, state.approach, state.reached_limit) = (scene.load, found.now.approach(), false);
             (state.round_off, state.u_is) = (self.problem.round_off(), Freshness::Exact);
         }
-        let outcome = outcome.and_then(|(stop, found)| Ok((stop, found, solver.split()?)));
+        let solved = solved.and_then(|(outcome, found)| Ok((outcome, found, solver.split()?)));
         self.adhesion = Some(solver);
-        outcome
+        solved
     }
 }
 

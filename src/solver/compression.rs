@@ -40,15 +40,15 @@ impl Solver {
         &mut self,
         asked: Asked<'_>,
         monitor: &mut Monitor<'_>,
-        stop: Outcome,
+        outcome: Outcome,
     ) -> Result<Outcome> {
         let Asked { scene, options, .. } = asked;
         let (by, goal) = (self.compression(scene.load), options.goal());
         if by == 0.0 || goal.by_update() {
-            return Ok(stop);
+            return Ok(outcome);
         }
         let (holds, part) = self.holds_compressed(by, options);
-        match stop {
+        match outcome {
             Outcome::Stagnated if holds => Ok(Outcome::Converged),
             Outcome::Converged if !holds => {
                 let tolerance = SAFETY * part * options.tolerance;
@@ -58,7 +58,7 @@ impl Solver {
                 let is_met = again == Outcome::Stagnated && self.holds_compressed(by, options).0;
                 Ok(if is_met { Outcome::Converged } else { again })
             }
-            _ => Ok(stop),
+            _ => Ok(outcome),
         }
     }
 

@@ -75,11 +75,11 @@ impl Solver {
             estimates: false,
             ..set_up.options
         };
-        let (stop, found) = match &mut workers[0] {
+        let (outcome, found) = match &mut workers[0] {
             Some(worker) => worker.stiffness_of(&state.contact, &options)?,
             None => unreachable!("it was set up"),
         };
-        Ok((stop, Stiffness { value: found.value / self.compliance, ..found }))
+        Ok((outcome, Stiffness { value: found.value / self.compliance, ..found }))
     }
 
     /// The stiffness of a contact area. This solver's own result is lost.
@@ -99,11 +99,11 @@ impl Solver {
         // Only grid, distance and load are used: the coefficients contain effects and bodies.
         let scene = &Scene::new(grid, &h, Bodies::same(1.0, 0.0), load);
         let mut monitor = Monitor::new(None, Vec::new(), false);
-        let (stop, _) = self.solve_normal(Asked { scene, lowest: 0.0, options, guess }, &mut monitor)?;
+        let (outcome, _) = self.solve_normal(Asked { scene, lowest: 0.0, options, guess }, &mut monitor)?;
         let sum = in_blocks(self.state.p.iter().copied());
         let residual = Survey::of(&self.state).certificate().residual;
         let stiffness = Stiffness { value: sum * grid.element_area() / unit, residual };
-        let stop = if residual <= SUFFICIENT_RESIDUAL { Outcome::Converged } else { stop };
-        Ok((stop, stiffness))
+        let outcome = if residual <= SUFFICIENT_RESIDUAL { Outcome::Converged } else { outcome };
+        Ok((outcome, stiffness))
     }
 }

@@ -144,8 +144,8 @@ struct SetUp {
 /// Solves one scene.
 pub fn solve(scene: &Scene<'_>, options: &Options) -> Result<(Solver, Outcome, Report)> {
     let (mut solver, lowest) = Solver::for_scene(scene, options)?;
-    let (stop, report) = solver.solve_checked(Asked::new((scene, lowest), options), None)?;
-    Ok((solver, stop, report))
+    let (outcome, report) = solver.solve_checked(Asked::new((scene, lowest), options), None)?;
+    Ok((solver, outcome, report))
 }
 
 impl Solver {
@@ -254,9 +254,9 @@ impl Solver {
         self.check_continues(scene)?;
         let kept = self.kept(scene)?;
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), options.estimates);
-        let outcome = self.solve_normal(asked, &mut monitor).and_then(|(stop, tolerance)| {
-            let stop = self.meet_compressed(asked, &mut monitor, stop)?;
-            let (stop, found) = self.solve_beside(scene, options, stop, &mut monitor)?;
+        let solved = self.solve_normal(asked, &mut monitor).and_then(|(outcome, tolerance)| {
+            let outcome = self.meet_compressed(asked, &mut monitor, outcome)?;
+            let (outcome, found) = self.solve_beside(scene, options, outcome, &mut monitor)?;
             let mut report = Report { friction: found, ..Report::of(&monitor, tolerance) };
             if options.estimates {
                 self.estimate(scene, options, &mut monitor, &mut report);
@@ -265,17 +265,17 @@ impl Solver {
                 report.measures = measures;
             }
             (report.solve_seconds, report.coarse_seconds) = (monitor.seconds(), monitor.coarse_seconds);
-            Ok((stop, report))
+            Ok((outcome, report))
         });
         self.ledger = monitor.ledger.rows;
-        if outcome.is_err() {
+        if solved.is_err() {
             self.go_back(kept);
         }
-        let (stop, mut report) = outcome?;
+        let (outcome, mut report) = solved?;
         (self.split, self.compliance) = (None, 1.0);
         report.setup_seconds = std::mem::take(&mut self.setup_seconds);
         report.bytes = self.bytes() as u64;
-        report.log(options.method, &self.problem.grid, stop);
-        Ok((stop, report))
+        report.log(options.method, &self.problem.grid, outcome);
+        Ok((outcome, report))
     }
 }

@@ -106,13 +106,13 @@ impl FullMultigrid {
         let goal = Goal { max_cycles: cycles, ..*goal };
         let lowest = lowest(&state.h);
         let mut task = Task { problem, state, lowest, set: NonNegative, goal, monitor };
-        let stop = if coarsest {
+        let outcome = if coarsest {
             task.state.start(task.problem.self_influence());
             iterate(norm, &mut task, best)?
         } else {
             iterate(&mut Cycles { multigrid, level: l + 1, workspace }, &mut task, best)?
         };
-        if stop != Outcome::Converged {
+        if outcome != Outcome::Converged {
             best.restore(&mut task)?;
         }
         Ok(())

@@ -44,14 +44,14 @@ impl Solver {
                 PressureLimit(Each::PerElement(&limits))
             }
         };
-        let mut outcome = self.run(asked, set, monitor);
+        let mut solved = self.run(asked, set, monitor);
         // An element at its limit with e near 0 is there by round-off of an equal pressure.
         let on_the_way = self.state.reached_limit && {
             let scale = Survey::of(&self.state).scale;
             let held = |i: usize| self.state.deformed_distance(i) < -options.tolerance * scale;
             !(0..n).any(|i| self.state.at_limit[i] && held(i))
         };
-        let converged = matches!(outcome, Ok((Outcome::Converged, _)));
+        let converged = matches!(solved, Ok((Outcome::Converged, _)));
         if on_the_way && converged && options.initial_guess != InitialGuess::Previous {
             // Only iterates reached a limit: the result has the bits of the scene without limits, if there is still time for it.
             let window = self.methods.projected_cg.current_window();
@@ -62,7 +62,7 @@ impl Solver {
             let without = self.run(asked, NonNegative, monitor);
             let exceeds = self.state.p.iter().enumerate().any(|(i, p)| *p > set.limit(i));
             if matches!(without, Ok((Outcome::Converged, _))) && !exceeds {
-                outcome = without;
+                solved = without;
             } else {
                 let work_units = monitor.count.work_units;
                 (self.state, monitor.ledger, monitor.count) = found;
@@ -71,13 +71,13 @@ impl Solver {
                 self.methods.forget_iterates();
                 self.methods.projected_cg.forget_solutions();
                 self.methods.projected_cg.go_back_to(window);
-                if let (Ok((stop, _)), true) = (&mut outcome, monitor.is_cancelled()) {
-                    *stop = Outcome::Cancelled;
+                if let (Ok((outcome, _)), true) = (&mut solved, monitor.is_cancelled()) {
+                    *outcome = Outcome::Cancelled;
                 }
             }
         }
         self.limits = limits;
-        outcome
+        solved
     }
 
     /// Solves on an admissible set, with the distances of the state. Returns the outcome and the tolerance used.
@@ -98,7 +98,7 @@ impl Solver {
         let mut task = Task { problem, state, lowest, set, goal: options.goal(), monitor };
         let is_unloaded = take_over::is_without_contact(task.state, lowest, S::FIXED)
             || take_over::is_even_without_force::<S>(task.state);
-        let stop = if is_unloaded {
+        let outcome = if is_unloaded {
             Outcome::Converged
         } else if take_over::fills_limits(task.problem, task.state, set)? {
             task.count_products();
@@ -106,14 +106,14 @@ impl Solver {
         } else {
             methods.solve(&mut task, (from, survey), stages, options.error_ratio)?
         };
-        let stop = match stop {
-            Outcome::Stagnated | Outcome::IterationLimit => look_at_full_limits(&mut task)?.unwrap_or(stop),
-            stop => stop,
+        let outcome = match outcome {
+            Outcome::Stagnated | Outcome::IterationLimit => look_at_full_limits(&mut task)?.unwrap_or(outcome),
+            outcome => outcome,
         };
-        let stop = if task.monitor.is_cancelled() { Outcome::Cancelled } else { stop };
+        let outcome = if task.monitor.is_cancelled() { Outcome::Cancelled } else { outcome };
         *has_result = true;
         task.monitor.close_grid(task.state);
-        Ok((stop, task.goal.tolerance))
+        Ok((outcome, task.goal.tolerance))
     }
 }
 

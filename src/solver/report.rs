@@ -93,11 +93,11 @@ impl Report {
     }
 
     /// Logs the summary of a solve.
-    pub(super) fn log(&self, method: Method, grid: &Grid, stop: Outcome) {
+    pub(super) fn log(&self, method: Method, grid: &Grid, outcome: Outcome) {
         let (Grid { mx, my, .. }, residual) = (grid, self.measures.certificate.residual);
         let Counters { cycles, work_units, .. } = self.count;
         log::info!(
-            "{method:?} on {mx} x {my}: {stop:?} after {cycles} cycles and {work_units:.1} work units, residual {residual:e}"
+            "{method:?} on {mx} x {my}: {outcome:?} after {cycles} cycles and {work_units:.1} work units, residual {residual:e}"
         );
         if log::log_enabled!(log::Level::Info) {
             self.advice().iter().for_each(|advice| log::info!("{advice}"));

@@ -33,8 +33,8 @@ impl Solver {
             force => force,
         };
         let step = Scene { undeformed_distance: distance, load, ..scene.clone() };
-        let outcome = self.solve_at_once(Asked { scene: &step, lowest: lowest(distance), ..asked }, progress);
-        let outcome = outcome.map(|(stop, mut report)| {
+        let solved = self.solve_at_once(Asked { scene: &step, lowest: lowest(distance), ..asked }, progress);
+        let solved = solved.map(|(outcome, mut report)| {
             report.visco = Some(memory.step_done(&mut self.beside.histories[k], &self.state));
             self.lengthen(s, scene.load, &mut report);
             let state = &mut self.state;
@@ -45,10 +45,10 @@ impl Solver {
             state.u_is = Freshness::Stale;
             state.load = scene.load;
             self.compliance = s;
-            (stop, report)
+            (outcome, report)
         });
         self.remembered = remembered;
-        outcome
+        solved
     }
 
     /// Scales the lengths of the result, the report and the ledger from those of the problem solved.
