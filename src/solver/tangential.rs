@@ -153,8 +153,8 @@ impl Tangent {
         self.solver.solve(&request, &mut |grid, residual| monitor.uncounted_done(grid, residual))
     }
 
-    /// Solves with the pressures of a normal problem that ended with `outcome`. If it did not converge, or is to be solved again for unlike bodies, its
-    /// pressures may be too small for the forces. Then the forces are [a little less](IN_REACH) than the pressures carry, and the refusal is returned
+    /// Solves with the pressures of a normal problem that ended with `outcome`. If it did not converge, or is to be solved again for unlike bodies,
+    /// its pressures may be too small for the forces. Then the forces are [a little less](IN_REACH) than the pressures carry, and the refusal is returned
     /// as well.
     pub fn solve_after(
         &mut self,

@@ -118,11 +118,11 @@ impl Terms<1, 1, 3> for Free {
 
 /// (r, t), (t, q), (t, t), the sum of |t|, (p, p).
 #[derive(Clone, Copy)]
-pub(super) struct StepSums {
+pub(super) struct StepTerms {
     pub(super) approach: f64,
 }
 
-impl Terms<3, 2, 5> for StepSums {
+impl Terms<3, 2, 5> for StepTerms {
     #[inline(always)]
     fn of<S: Simd>(&self, [h, u, p]: [Vector<S>; 3], [t, q]: [Vector<S>; 2]) -> [Vector<S>; 5] {
         let e = h - self.approach + u;
@@ -131,7 +131,7 @@ impl Terms<3, 2, 5> for StepSums {
 }
 
 /// (r, t), (t, q), (t, t), the sum of |t|, (p, p); and with `d = approach - h` (p, d), (t, d), (p, u), (p, q).
-impl Terms<3, 2, 9> for StepSums {
+impl Terms<3, 2, 9> for StepTerms {
     #[inline(always)]
     fn of<S: Simd>(&self, [h, u, p]: [Vector<S>; 3], [t, q]: [Vector<S>; 2]) -> [Vector<S>; 9] {
         let depth = self.approach - h;
@@ -140,7 +140,7 @@ impl Terms<3, 2, 9> for StepSums {
 }
 
 /// (r, t), (t, q), (t, t), the sum of |t|, (p, p); and with a deflation direction d (r, d), (q, d).
-impl Terms<3, 3, 7> for StepSums {
+impl Terms<3, 3, 7> for StepTerms {
     #[inline(always)]
     fn of<S: Simd>(&self, [h, u, p]: [Vector<S>; 3], [t, q, d]: [Vector<S>; 3]) -> [Vector<S>; 7] {
         let r = self.approach - h - u;
