@@ -37,7 +37,7 @@ mod each;
 mod effect;
 mod friction;
 mod friction_bounds;
-mod friction_checks;
+mod friction_effect;
 mod friction_law;
 mod layer;
 pub(crate) mod list;
