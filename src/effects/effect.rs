@@ -89,6 +89,11 @@ pub trait Effect {
         Ok(coefficients)
     }
 
+    /// Refuses the caller's `coefficients` of pressures, which are not symmetric, if they do not suit the effect.
+    fn check_coefficients(&self, _grid: &Grid, _coefficients: &Coefficients) -> Result<()> {
+        Ok(())
+    }
+
     /// The undeformed distance changed from `h`; none: unchanged.
     fn surface(&self, _h: &[f64]) -> Result<Option<Vec<f64>>> {
         Ok(None)

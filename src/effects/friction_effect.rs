@@ -9,6 +9,7 @@ use super::properties::{Continues, Properties, Stresses};
 use super::rolled_towards;
 use crate::error::{finite, require, Error, Result, Rounded};
 use crate::grid::{check_values, Grid};
+use crate::influence::Coefficients;
 use crate::powers::LARGEST;
 use crate::scene::Plain;
 
@@ -97,6 +98,10 @@ impl Effect for Friction<'_> {
             )));
         }
         Ok(())
+    }
+
+    fn check_coefficients(&self, grid: &Grid, coefficients: &Coefficients) -> Result<()> {
+        rolled_towards::check_pressures(self, grid, coefficients)
     }
 
     // Friction may differ in each solve; the solver itself keeps the tangential tables.

@@ -52,12 +52,9 @@ impl SetUp {
         }
         self.check_table()?;
         self.named.check(scene)?;
-        let is_uneven = problem.given && !problem.symmetric;
-        let Some(friction) = scene.friction.as_ref().filter(|_| is_uneven) else { return Ok(()) };
-        let (grid, coefficients) = (&problem.grid, &problem.coefficients);
-        match coefficients.row_tables() {
-            Some((rows, _)) => friction.check_rows_rolled(grid, &|row, kx| rows.coefficient(row, row, kx)),
-            None => friction.check_pressures_rolled(grid, &|kx, ky| coefficients.at(kx, ky)),
+        match problem.given && !problem.symmetric {
+            true => effects::check_coefficients(scene, &problem.coefficients),
+            false => Ok(()),
         }
     }
 

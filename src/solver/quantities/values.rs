@@ -3,6 +3,7 @@
 use super::deepest::{Peak, Stress, Surface};
 use super::{Quantity, Value};
 use crate::contact::{beyond_ends, Outline};
+use crate::effects;
 use crate::error::{invalid, Error, Result};
 use crate::friction::STICK;
 use crate::grid::Grid;
@@ -85,9 +86,9 @@ impl Quantity {
 
 /// Whether stresses near the surface are not computed: with two periods and very slender elements, other than those of a line.
 fn is_too_slender(scene: &Scene<'_>) -> bool {
-    let (Grid { mx, my, dx, dy }, period) = (scene.grid, scene.period);
+    let Grid { mx, my, dx, dy } = scene.grid;
     let is_line = mx == 1 || my == 1;
-    period.is_some_and(|period| period.x && period.y) && !is_line && dx.max(dy) > MOST_SLENDER * dx.min(dy)
+    effects::repeats(scene) == (true, true) && !is_line && dx.max(dy) > MOST_SLENDER * dx.min(dy)
 }
 
 /// The values of `wanted` after a solve of `scene`. Stiffness and stresses are computed here, which may cost more than the solve.

@@ -1,6 +1,7 @@
 //! Forecasts for finer grids from a solution.
 
 use crate::contact::{touching, State};
+use crate::effects;
 use crate::grid::Grid;
 use crate::rectangle::Rectangle;
 use crate::scene::{Load, Scene};
@@ -69,7 +70,7 @@ impl History {
 
     /// Least elements in the shorter direction of the first grid: fewer if only stresses below the surface need three grids.
     pub fn least(&self, scene: &Scene<'_>) -> usize {
-        let is_steep = scene.friction.is_some() || scene.pressure_limit.is_some();
+        let is_steep = effects::limits(scene).is_some() || effects::beside(scene).next().is_some();
         let of_several = || self.courses.iter().map(Course::quantity).filter(|quantity| !quantity.has_estimate());
         if is_steep && of_several().all(Quantity::is_stress) {
             LEAST_ELEMENTS / 2
