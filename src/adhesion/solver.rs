@@ -12,6 +12,7 @@ use super::request::{Request, State};
 use super::robust;
 use super::split::Split;
 use super::stability::stability;
+use super::start::Start;
 use super::tangent::stiffness_of_contact;
 use super::way::count_contact;
 use crate::error::Result;
