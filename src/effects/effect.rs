@@ -109,7 +109,8 @@ pub trait Effect {
         Ok(None)
     }
 
-    /// The problem solved in turns with the normal one; `history`: that of earlier steps.
+    /// The problem solved in turns with the normal one; `history`: that of earlier steps. The solver holds the problem of friction itself;
+    /// `tests/unit/foundation.rs` is an example.
     fn coupled<'s>(&'s self, _scene: &Plain<'_>, _history: &'s mut History) -> Result<Option<Box<dyn Coupled + 's>>> {
         Ok(None)
     }

@@ -150,7 +150,7 @@ pub(super) fn run(
     let options = &outputs.options(options);
     let guess = outputs.guess(options, n, buffers)?;
     let (stop, report) = match lowest {
-        Some(lowest) => solver.solve_checked(Asked { scene, lowest, options, guess }, progress)?,
+        Some(lowest) => solver.solve_checked(Asked { guess, ..Asked::new((scene, lowest), options) }, progress)?,
         None => solver.solve(scene, options, guess, progress)?,
     };
     let warnings = outputs.warnings(scene, options, &report, solver.state());

@@ -16,12 +16,14 @@ pub(crate) struct Asked<'a> {
     pub options: &'a Options,
     /// The caller's pressures and contact area.
     pub guess: Option<Guess<'a>>,
+    /// Whether the surface ends and jumps between elements only, for estimates.
+    pub exact_edges: bool,
 }
 
 impl<'a> Asked<'a> {
-    /// A solve without a guess.
+    /// A solve without a guess, of a surface that may end anywhere.
     pub fn new((scene, lowest): (&'a Scene<'a>, f64), options: &'a Options) -> Asked<'a> {
-        Asked { scene, lowest, options, guess: None }
+        Asked { scene, lowest, options, guess: None, exact_edges: false }
     }
 
     /// The guess, if it gives the contact area.

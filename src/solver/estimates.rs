@@ -24,9 +24,18 @@
 //! of the corrected area. Straight pieces and straight ends of the surface have an error of half an element. Ends in steps have the square root of
 //! their number.
 
+mod curvature;
+mod direction;
+mod ends;
+mod jumps;
+
+pub use curvature::Curvature;
+pub use ends::{at_ends, beyond_ends, pressures_at_ends};
+pub use jumps::at_jumps;
+
 use super::falling::Falling;
 use super::report::{Halving, Limit};
-use crate::contact::{pressures_at_ends, Curvature, Outline, Problem, State};
+use crate::contact::{Outline, Problem, State};
 use crate::grid::doubling;
 use crate::progress::{DiscretisationError, LedgerRow};
 use crate::scene::Load;

@@ -99,7 +99,7 @@ impl Solver {
         // Only grid, distance and load are used: the coefficients contain effects and bodies.
         let scene = &Scene::new(grid, &h, Bodies::same(1.0, 0.0), load);
         let mut monitor = Monitor::new(None, Vec::new(), false);
-        let (outcome, _) = self.solve_normal(Asked { scene, lowest: 0.0, options, guess }, &mut monitor)?;
+        let (outcome, _) = self.solve_normal(Asked { guess, ..Asked::new((scene, 0.0), options) }, &mut monitor)?;
         let sum = in_blocks(self.state.p.iter().copied());
         let residual = Survey::of(&self.state).certificate().residual;
         let stiffness = Stiffness { value: sum * grid.element_area() / unit, residual };

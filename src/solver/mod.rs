@@ -1,7 +1,8 @@
 //! The solve of a scene: the options, the loop (`iterate`), the methods and their order, the report.
 //!
 //! A [`Solver`] is set up once for a grid and a pair of bodies (operators, transforms, grids) and then solves any number of
-//! undeformed distances and loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call.
+//! undeformed distances and loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call. The methods of a solver
+//! stand in the files of this folder, one subject in each.
 
 mod adhesion;
 mod adhesive_friction;
@@ -225,7 +226,7 @@ impl Solver {
         let own = self.own_tables.clone();
         let scene = &*self.with_own_tables(scene, own.as_deref())?;
         let lowest = scene.check_distance_and_load(&self.problem.threads)?;
-        self.solve_checked(Asked { scene, lowest, options, guess }, progress)
+        self.solve_checked(Asked { guess, ..Asked::new((scene, lowest), options) }, progress)
     }
 
     /// [`Solver::solve`] for a scene whose distance and load are checked.
@@ -235,6 +236,7 @@ impl Solver {
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
         self.set_up.check(asked.scene, asked.options, &self.problem)?;
+        self.problem.exact_edges = asked.exact_edges;
         let surface = effects::surface(asked.scene)?;
         let changed = surface.as_deref().map(|h| Scene { undeformed_distance: h, ..asked.scene.clone() });
         let asked = asked.on(changed.as_ref(), &self.problem.threads)?;

@@ -28,8 +28,8 @@
 //!
 //! [`estimates`]: super::estimates
 
-use super::estimates::{Parts, LEAST_CHORD};
-use crate::contact::{at_ends, at_jumps, Curvature, Outline, Problem, State};
+use super::estimates::{at_ends, at_jumps, Curvature, Parts, LEAST_CHORD};
+use crate::contact::{Outline, Problem, State};
 use crate::effects::Coefficient;
 use crate::friction::{Report, Solution, Vector, SLIP};
 use crate::rectangle::Rectangle;

@@ -2,12 +2,13 @@
 
 use super::deepest::{Peak, Stress, Surface};
 use super::{Quantity, Value};
-use crate::contact::{beyond_ends, Outline};
+use crate::contact::Outline;
 use crate::effects;
 use crate::error::{invalid, Error, Result};
 use crate::friction::STICK;
 use crate::grid::Grid;
 use crate::scene::Scene;
+use crate::solver::estimates::beyond_ends;
 use crate::solver::{Outcome, Report, Solver};
 use crate::stress::{of_scene, MOST_SLENDER};
 use crate::sums::in_blocks;
