@@ -62,16 +62,14 @@ impl Solver {
         let approach = state.approach;
         // With a given force the error is that of the approach.
         let of_found = if matches!(load, Load::Force(_)) { s } else { 1.0 };
-        // Negative: unknown.
-        let lengthened = |value: f64| if value > 0.0 { value * of_found } else { value };
         for row in &mut self.ledger {
             row.measures.approach *= s;
             row.measures.certificate.violation *= s;
-            row.error.force = lengthened(row.error.force);
+            row.error.force = row.error.force.map(|error| error * of_found);
         }
         report.measures.approach = approach;
         report.measures.certificate.violation *= s;
-        report.error.force = lengthened(report.error.force);
+        report.error.force = report.error.force.map(|error| error * of_found);
         report.halving.error = report.halving.error.map(|error| error.times(of_found));
     }
 }

@@ -112,13 +112,12 @@ impl OnGrid {
 
 /// The error of a quantity in a report.
 fn estimate(report: &Report, quantity: Quantity) -> Option<f64> {
-    let error = match quantity {
+    match quantity {
         Quantity::Force => report.error.force,
         Quantity::MaxPressure => report.error.max_pressure,
         Quantity::ContactArea => report.error.corrected_area,
-        _ => -1.0,
-    };
-    Some(error).filter(|error| *error >= 0.0)
+        _ => None,
+    }
 }
 
 /// The values of `wanted` on the grid of the scene and on `coarser` grids with half the elements each, coarsest first, one row for each grid
