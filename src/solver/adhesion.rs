@@ -150,7 +150,7 @@ impl Solver {
 
     fn run_adhesive(
         &mut self,
-        Asked { scene, lowest, options, guess }: Asked<'_>,
+        Asked { scene, lowest, options, guess, .. }: Asked<'_>,
         (adhesion, pull_off): (&Adhesion<'_>, bool),
         goes_on: bool,
         monitor: &mut Monitor<'_>,

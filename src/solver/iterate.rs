@@ -25,8 +25,7 @@ pub fn iterate<S: AdmissibleSet>(
     task: &mut Task<'_, '_, S>,
     best: &mut Best,
 ) -> Result<Outcome> {
-    let policy = method.policy();
-    let (set, goal) = (task.set, task.goal);
+    let (policy, set, goal) = (method.policy(), task.set, task.goal);
     method.begin(task.state)?;
     let (mut chatter, mut least, mut since) = (0, f64::INFINITY, 0);
     // Not every step counts as a cycle, but `max_cycles` bounds the number of steps as well.

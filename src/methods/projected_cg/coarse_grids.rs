@@ -66,15 +66,10 @@ pub struct CoarseGrids {
 
 impl CoarseGrids {
     /// The grids below `grid`. Their operators are set up when needed.
-    pub fn new(
-        grid: &Grid,
-        coefficients: &Coefficients,
-        precision: Precision,
-        threads: &Threads,
-    ) -> Result<CoarseGrids> {
+    pub fn new(grid: &Grid, of_grid: &Coefficients, precision: Precision, threads: &Threads) -> Result<CoarseGrids> {
         let below = || successors(coarsen(grid, COARSEST), |grid| coarsen(grid, COARSEST));
         let mut grids = sparse(below().count(), "coarser grids")?;
-        let (mut fine, mut coefficients) = (*grid, coefficients.clone());
+        let (mut fine, mut coefficients) = (*grid, of_grid.clone());
         for coarse in below() {
             coefficients = coefficients.coarsen(&fine, &coarse)?;
             fine = coarse;
