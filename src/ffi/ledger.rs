@@ -59,9 +59,9 @@ pub struct contact_normal_ledger_row {
 
 versioned! { contact_normal_ledger_row, contact_normal_ledger_row_init, 144 }
 
-/// An error as C has it: negative where it is not known.
-pub(super) fn known(error: Option<f64>) -> f64 {
-    error.unwrap_or(-1.0)
+/// An error or seconds as C has them: negative where they are not known.
+pub(super) fn known(value: Option<f64>) -> f64 {
+    value.unwrap_or(-1.0)
 }
 
 /// Copies members of the same name, converted as C has them.

@@ -7,6 +7,7 @@ use super::arguments::{count, required, Regions};
 use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
 use super::guard::guard;
+use super::ledger::known;
 use super::options::{self, contact_normal_options, Translated};
 use super::scene::{contact_normal_scene, Named};
 use super::status::{contact_normal_status, Refusal};
@@ -104,10 +105,10 @@ impl From<&Price> for contact_normal_price {
         contact_normal_price {
             struct_size: size_of::<contact_normal_price>() as i64,
             target: price.target,
-            error: price.error,
+            error: known(price.error),
             tolerance: price.tolerance,
-            seconds: price.seconds,
-            seconds_one_thread: price.seconds_one_thread,
+            seconds: known(price.seconds),
+            seconds_one_thread: known(price.seconds_one_thread),
             bytes: i64::try_from(price.bytes).unwrap_or(i64::MAX),
             mx: price.grid.map_or(0, |grid| count(grid.mx)),
             my: price.grid.map_or(0, |grid| count(grid.my)),

@@ -58,12 +58,12 @@ pub struct Price {
     pub grid: Option<Grid>,
     /// The largest sufficient tolerance.
     pub tolerance: f64,
-    /// The larger of the predicted relative error of the grid and the tolerance. Negative if not known.
-    pub error: f64,
-    /// Seconds of set-up and solve with the threads of the options; negative: not known.
-    pub seconds: f64,
-    /// Seconds with one thread; negative: not known.
-    pub seconds_one_thread: f64,
+    /// The larger of the predicted relative error of the grid and the tolerance, if it is known.
+    pub error: Option<f64>,
+    /// Seconds of set-up and solve with the threads of the options, if they are known.
+    pub seconds: Option<f64>,
+    /// Seconds with one thread, if they are known.
+    pub seconds_one_thread: Option<f64>,
     /// Products that the solve takes, in products on its grid; 0: not known.
     pub work_units: f64,
     /// Bytes held by the solver; 0: not known.
@@ -129,9 +129,9 @@ pub(super) fn price(
         target,
         grid: None,
         tolerance,
-        error: -1.0,
-        seconds: -1.0,
-        seconds_one_thread: -1.0,
+        error: None,
+        seconds: None,
+        seconds_one_thread: None,
         work_units: 0.0,
         bytes: 0,
         obstacle: Some(Obstacle::Singular),
@@ -164,9 +164,9 @@ pub(super) fn price(
     let obstacle = obstacles.into_iter().find(|(is_in_the_way, _)| *is_in_the_way).map(|(_, obstacle)| obstacle);
     Price {
         grid: Some(grid),
-        error: if last.is_exact() { 0.0 } else { falling.after(k).max(tolerance) },
-        seconds: seconds / speed_up,
-        seconds_one_thread: seconds,
+        error: Some(if last.is_exact() { 0.0 } else { falling.after(k).max(tolerance) }),
+        seconds: Some(seconds / speed_up),
+        seconds_one_thread: Some(seconds),
         work_units,
         bytes: bytes as u64,
         obstacle,
