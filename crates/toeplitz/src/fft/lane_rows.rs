@@ -64,7 +64,7 @@ impl<T: Real> LaneRows<T> {
         self.lanes
     }
 
-    /// Rows of a block of bins of a grid of `my` rows: a group of rows transformed together may begin at the last row of the grid, and is always whole.
+    /// Rows of a block of bins of a grid of `my` rows: a group of rows transformed together may begin at the last row, and is always whole.
     pub fn height(&self, my: usize) -> usize {
         my + self.lanes - 1
     }
