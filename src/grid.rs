@@ -80,6 +80,12 @@ impl Grid {
         self.mx * self.my
     }
 
+    /// Whether element `i` lies on the first or last row or column, in directions that do not repeat.
+    pub(crate) fn is_at_end(&self, i: usize, (repeats_x, repeats_y): (bool, bool)) -> bool {
+        let (x, y) = (i % self.mx, i / self.mx);
+        !repeats_x && (x == 0 || x + 1 == self.mx) || !repeats_y && (y == 0 || y + 1 == self.my)
+    }
+
     /// Never: a grid has at least one element.
     pub fn is_empty(&self) -> bool {
         false

@@ -39,7 +39,8 @@
 //!
 //! # Map of the modules
 //!
-//! Arrows point one way: `ffi -> solver -> methods -> contact, progress -> operator -> influence -> grid, error`.
+//! Arrows point one way: `ffi -> solver -> friction, adhesion -> methods -> progress -> contact -> operator -> influence -> grid, error`.
+//! `scene` and `effects` know no method.
 //!
 //! | module | contents |
 //! |---|---|
@@ -49,7 +50,7 @@
 //! | [`operator`] | u = A p by FFT (of the crate `toeplitz`) |
 //! | [`contact`] | the unknowns, steps (4.1) and (4.2) on an admissible set, the guard against cycling, the certificate |
 //! | [`progress`] | the goal of a loop, why it ended, its counts, the ledger |
-//! | [`methods`] | NORM (section 3), V-cycles (section 4.2), projected conjugate gradients, a projected Newton method, the direct solve: each a step |
+//! | [`methods`] | NORM (section 3), V-cycles (section 4.2), projected conjugate gradients, a projected Newton method, the direct solve: each a step; and what they share |
 //! | [`solver`] | the loop (section 4.1), nested iteration (section 4.3), the choice of methods, the report |
 //! | [`friction`], [`adhesion`] | the tangential problem; attraction across the gap |
 //! | [`heat`] | flash temperature, from a flux of heat |

@@ -39,12 +39,12 @@ pub struct Estimates {
 }
 
 impl Estimates {
-    fn count(&mut self, found: f64, exact: Option<f64>, error: f64) {
+    fn count(&mut self, found: f64, exact: Option<f64>, error: Option<f64>) {
         self.runs += 1;
-        match exact {
-            None => self.trusted_infinite += usize::from(error >= 0.0),
-            Some(_) if error < 0.0 => self.unknown += 1,
-            Some(exact) => self.ratios.push(error / (found - exact).abs().max(f64::MIN_POSITIVE)),
+        match (exact, error) {
+            (None, _) => self.trusted_infinite += usize::from(error.is_some()),
+            (Some(_), None) => self.unknown += 1,
+            (Some(exact), Some(error)) => self.ratios.push(error / (found - exact).abs().max(f64::MIN_POSITIVE)),
         }
     }
 

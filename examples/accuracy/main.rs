@@ -100,8 +100,11 @@ fn searches(set: &str, surfaces: judge::Surfaces, seeds: u64) {
 
 fn prices(set: &str, surfaces: judge::Surfaces, seeds: u64) {
     let all = judge::prices(surfaces, 0..seeds, 1024);
-    let mut ratios: Vec<f64> =
-        all.iter().filter(|paid| paid.seconds > 0.0).map(|paid| paid.price.seconds_one_thread / paid.seconds).collect();
+    let mut ratios: Vec<f64> = all
+        .iter()
+        .filter(|paid| paid.seconds > 0.0)
+        .filter_map(|paid| Some(paid.price.seconds_one_thread? / paid.seconds))
+        .collect();
     ratios.sort_by(f64::total_cmp);
     let known = all
         .iter()
@@ -123,6 +126,7 @@ fn prices(set: &str, surfaces: judge::Surfaces, seeds: u64) {
     lists.sort_by(f64::total_cmp);
     println!("seconds of a price list: median {:.3}, most {:.3}", lists[lists.len() / 2], lists[lists.len() - 1]);
     println!("\n| surface | load | target | grid | tolerance | predicted | paid | predicted error | true error | |\n|---|---|---|---|---|---|---|---|---|---|");
+    let known = |value: Option<f64>| value.unwrap_or(-1.0);
     for paid in &all {
         let grid = paid.price.grid.map_or("".into(), |grid| format!("{} x {}", grid.mx, grid.my));
         let load = if paid.by_force { "force" } else { "approach" };
@@ -130,7 +134,13 @@ fn prices(set: &str, surfaces: judge::Surfaces, seeds: u64) {
             (&paid.price, paid.price.obstacle.map_or(String::new(), |obstacle| format!("{obstacle:?}")));
         println!(
             "| {} | {load} | {:.0e} | {grid} | {:.0e} | {:.2e} | {:.2e} | {:.1e} | {:.1e} | {obstacle} |",
-            paid.family, price.target, price.tolerance, price.seconds_one_thread, paid.seconds, price.error, paid.error
+            paid.family,
+            price.target,
+            price.tolerance,
+            known(price.seconds_one_thread),
+            paid.seconds,
+            known(price.error),
+            paid.error
         );
     }
 }

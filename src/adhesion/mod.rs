@@ -16,7 +16,7 @@
 //! | `nested` | nested iteration; the starts from contact and from apart |
 //! | `pull`, `way`, `place`, `held` | continuation to the pull-off, its steps, and states on it; the stable state of a force |
 //! | `stability`, `tangent` | the distance of a state from a snap; dF/dapproach of a state, and its stability |
-//! | `begin` | the starts without a previous state |
+//! | `start`, `begin` | the starts without a previous state |
 //! | `request`, `solver`, `report` | the whole solve |
 
 mod begin;
@@ -36,6 +36,7 @@ mod robust;
 mod solver;
 mod split;
 mod stability;
+mod start;
 mod system;
 mod tangent;
 mod unknowns;
@@ -45,6 +46,7 @@ pub use law::{Attraction, Law};
 pub use level::Frozen;
 pub use levels::Surfaces;
 pub use report::{Report, LARGEST_BORDER_SHARE, RESOLVED, UNSTABLE_KAPPA};
-pub use request::{Request, Start, State};
+pub use request::{Request, State};
 pub use solver::Solver;
 pub use split::Split;
+pub use start::Start;

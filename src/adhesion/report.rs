@@ -1,9 +1,8 @@
 //! The results of adhesion and their measures.
 
 use super::level::Level;
-use super::unknowns::{energies, Measured, Unknowns};
+use super::unknowns::{energies, Measured};
 use crate::contact::{largest, Certificate};
-use crate::grid::Grid;
 use crate::methods::fields;
 use crate::progress::{DiscretisationError, Measures, Monitor};
 
@@ -50,10 +49,7 @@ impl Report {
         let (surface, now, grid) = (&level.surface, &level.now, level.problem.grid);
         let threads = &level.problem.threads;
         let (in_x, in_y) = level.problem.coefficients.repeats(&grid);
-        let is_border = |i: usize| {
-            let (x, y) = (i % grid.mx, i / grid.mx);
-            !in_x && grid.mx > 1 && (x == 0 || x + 1 == grid.mx) || !in_y && grid.my > 1 && (y == 0 || y + 1 == grid.my)
-        };
+        let is_border = |i: usize| grid.is_at_end(i, (in_x || grid.mx == 1, in_y || grid.my == 1));
         let [q, sigma, at_border] = fields::sum(threads, now.u.len(), |i| {
             let sigma = surface.traction(i, surface.distance(i, now));
             let q = if now.contact[i] { now.p.field[i][0] + sigma } else { 0.0 };
@@ -135,19 +131,10 @@ pub fn measures(level: &Level, measured: &Measured) -> Measures {
         force: measured.pressures * area,
         max_pressure: most,
         contact_count: measured.count,
-        edge_count: edge_count(&grid, now),
+        edge_count: (0..grid.len()).filter(|&i| now.contact[i] && grid.is_at_end(i, (false, false))).count(),
         contact_area: measured.count as f64 * area,
         corrected_area: -1.0,
     }
-}
-
-/// Elements in contact on the first or last row or column.
-fn edge_count(grid: &Grid, now: &Unknowns) -> usize {
-    let is_edge = |i: usize| {
-        let (x, y) = (i % grid.mx, i / grid.mx);
-        x == 0 || x + 1 == grid.mx || y == 0 || y + 1 == grid.my
-    };
-    (0..grid.len()).filter(|&i| now.contact[i] && is_edge(i)).count()
 }
 
 /// Writes the ledger row of a grid.

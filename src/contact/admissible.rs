@@ -10,7 +10,7 @@
 //! An element is free (in C, with e = 0), exterior (p = 0, e >= 0), or at its limit (p = p_max, e <= 0). A half-line has no limit:
 //! [`AdmissibleSet::LIMITED`] is a constant, and code for limits is not compiled.
 
-use crate::scene::{Each, PressureLimit};
+use crate::effects::{Each, PressureLimit};
 
 /// The pressures that each element may have.
 pub trait AdmissibleSet: Copy + Send + Sync {

@@ -23,7 +23,7 @@ use crate::memory::collected;
 /// Part of an element by which each change overestimates the area.
 const EXCESS_PER_CHANGE: f64 = (PI - 1.0 + LN_2) / 24.0;
 /// Least elements of a straight piece.
-pub(super) const STRAIGHT: usize = 8;
+pub(crate) const STRAIGHT: usize = 8;
 
 /// The outline of a contact area.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -28,7 +28,7 @@ pub struct Problem {
     pub symmetric: bool,
     /// Whether the coefficients are the caller's, which need not be those of an elastic body.
     pub given: bool,
-    /// Whether the surface ends and jumps between elements only, for estimates.
+    /// Whether the surface of the last solve ends and jumps between elements only, for estimates.
     pub exact_edges: bool,
     /// Work units of one product.
     pub work: f64,

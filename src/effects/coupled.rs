@@ -16,8 +16,8 @@ use crate::progress::{Monitor, Outcome};
 /// step_done
 /// ```
 pub trait Coupled {
-    /// Solves the problem with the pressures of a normal problem that ended with `stop`. Returns the outcome.
-    fn solve(&mut self, stop: Outcome, state: &State, monitor: &mut Monitor<'_>) -> Result<Outcome>;
+    /// Solves the problem with the pressures of a normal problem that ended with `outcome`. Returns its own.
+    fn solve(&mut self, outcome: Outcome, state: &State, monitor: &mut Monitor<'_>) -> Result<Outcome>;
 
     /// Whether the problem displaces the undeformed distance; if not, there is one turn.
     fn displaces(&self) -> bool;

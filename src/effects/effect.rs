@@ -89,6 +89,11 @@ pub trait Effect {
         Ok(coefficients)
     }
 
+    /// Refuses the caller's `coefficients` of pressures, which are not symmetric, if they do not suit the effect.
+    fn check_coefficients(&self, _grid: &Grid, _coefficients: &Coefficients) -> Result<()> {
+        Ok(())
+    }
+
     /// The undeformed distance changed from `h`; none: unchanged.
     fn surface(&self, _h: &[f64]) -> Result<Option<Vec<f64>>> {
         Ok(None)
@@ -104,7 +109,8 @@ pub trait Effect {
         Ok(None)
     }
 
-    /// The problem solved in turns with the normal one; `history`: that of earlier steps.
+    /// The problem solved in turns with the normal one; `history`: that of earlier steps. The solver holds the problem of friction itself;
+    /// `tests/unit/foundation.rs` is an example.
     fn coupled<'s>(&'s self, _scene: &Plain<'_>, _history: &'s mut History) -> Result<Option<Box<dyn Coupled + 's>>> {
         Ok(None)
     }

@@ -4,30 +4,15 @@
 //! are alike; it is solved first.
 
 use super::each::Each;
-use super::effect::{Effect, Value, NOT_TOGETHER};
 use super::friction_law::{Branch, FrictionLaw, PlasticLayer};
-use super::properties::{Continues, Properties, Stresses};
 use super::tangential_influence::TangentialInfluence;
-use crate::error::{Error, Result};
 use crate::grid::Grid;
-use crate::scene::Plain;
 
 /// A coefficient of friction or of wear, or a compliance.
 pub type Coefficient<'a> = Each<'a>;
 
 /// Relative round-off of `distance * cosine / dx`: below 1e-15 from the angle (at most 2 pi), cosine, product and quotient; ten times that.
 const ROUND_OFF: f64 = 1e-14;
-
-/// Why refinement to an accuracy is refused.
-const OWN_COEFFICIENTS: &str =
-    "friction->influence and friction->row_tables are those of one grid, and this asks for several";
-const KEPT: &str = "friction->continues begins with what a handle found on its own grid, and this asks for several: give previous_traction";
-
-const HISTORY: &str =
-    "friction->previous_coefficient and friction->previous_yield_limit are those of one grid, and this asks for several";
-
-const CONTINUES: Continues =
-    Continues { member: "friction->continues", from: "tractions", instead: "give previous_traction" };
 
 /// How the bodies move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -200,88 +185,5 @@ impl Friction<'_> {
             k => unit.prescribed[k] = Prescribed::Creepage(1.0),
         }
         unit.rigid_slip_at(grid, i)
-    }
-}
-
-impl Effect for Friction<'_> {
-    fn name(&self) -> &'static str {
-        Friction::NAME
-    }
-
-    fn properties(&self) -> Properties<'_> {
-        let has_particles = self.law.is_some() || self.layer.is_some();
-        // The library has no tangential coefficients for these effects; the caller may give them.
-        let excludes: &[&str] = match self.influence {
-            Some(influence) if influence.cross.is_none() => &["adhesion", "period", "patches"],
-            // A given coupling is a table of offsets, which these effects do not have.
-            Some(_) => &["adhesion", "row_tables", "period", "patches", "coating"],
-            None => &["adhesion", "influence", "row_tables", "period", "patches"],
-        };
-        // Laws and layers need pressures; adhesion gives only bounds.
-        let excludes = if has_particles { excludes } else { &excludes[1..] };
-        let continues = (self.previous == Previous::Kept).then_some(CONTINUES);
-        let has_history = has_particles && (self.coefficients_before.is_some() || self.yield_limits.is_some());
-        let one_grid =
-            self.influence.map(|_| OWN_COEFFICIENTS).or(continues.map(|_| KEPT)).or(has_history.then_some(HISTORY));
-        Properties {
-            excludes,
-            without_multigrid: None,
-            with_given_area: true,
-            one_grid,
-            own_coefficients: None,
-            repeats: (false, false),
-            limits: None,
-            // The solver holds the tangential problem itself instead of `coupled`.
-            is_beside: true,
-            continues,
-        }
-    }
-
-    fn why_excluded(&self, other: &str) -> &'static str {
-        match other {
-            "influence" if self.influence.is_none() => "they are solved together with friction->influence",
-            "row_tables" if self.influence.is_none() => "they are solved together with friction->row_tables",
-            _ => NOT_TOGETHER,
-        }
-    }
-
-    fn check(&self, grid: &Grid) -> Result<()> {
-        self.check_numbers()?;
-        self.check_coefficients(grid)?;
-        self.check_step(grid)?;
-        self.check_range(grid)?;
-        self.check_influence(grid)?;
-        self.check_law(grid)
-    }
-
-    fn check_load(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>]) -> Result<()> {
-        self.check_bodies_of_law(&scene.bodies)?;
-        if self.influence.is_none() {
-            others.iter().flatten().try_for_each(|other| other.check_tractions(scene))?;
-        }
-        let has_bodies = others.iter().flatten().all(|other| other.properties().own_coefficients.is_none());
-        let lacks_cross = self.influence.is_some_and(|influence| influence.cross.is_none());
-        if lacks_cross && has_bodies && scene.bodies.unlike() != 0.0 {
-            let by_row = self.influence.is_some_and(|influence| influence.by_row);
-            let (name, rule) = match by_row {
-                true => ("friction->row_tables", "those of tables per row are not solved"),
-                false => ("friction->influence", "influence_cross is not given"),
-            };
-            return Err(Error::Unsupported(format!(
-                "{name} has no coefficients of what couples the normal and the tangential problem of unlike bodies: {rule}"
-            )));
-        }
-        Ok(())
-    }
-
-    // Friction may differ in each solve; the solver itself keeps the tangential tables.
-    fn values(&self, _tell: &mut dyn FnMut(&'static str, Value<'_>)) {}
-
-    fn gives_way(&self, _scene: &Plain<'_>) -> bool {
-        false
-    }
-
-    fn stresses(&self, _b: usize, _scene: &Plain<'_>) -> Stresses<'_> {
-        Stresses::Same
     }
 }

@@ -41,52 +41,54 @@ impl Friction<'_> {
     pub(crate) fn yield_limits_read(&self) -> Option<&[f64]> {
         self.yield_limits.filter(|_| self.layer.is_some())
     }
+}
 
-    /// Refuses invalid laws, layers and histories, and those that are not solved with the rest.
-    pub(super) fn check_law(&self, grid: &Grid) -> Result<()> {
-        if let Some(law) = &self.law {
-            law.check(self.motion == Motion::Shift)?;
-        }
-        if let Some(layer) = &self.layer {
-            ordinary("friction->yield_limit", layer.yield_limit)?;
-            let rule = "it must be below 1e140: choose other units";
-            require(layer.hardening.abs() < LARGEST, "friction->hardening", layer.hardening, rule)?;
-        }
-        self.coefficients_read()
-            .map_or(Ok(()), |values| check_values("friction->previous_coefficient", values, grid, zero_or_ordinary))?;
-        self.yield_limits_read()
-            .map_or(Ok(()), |values| check_values("friction->previous_yield_limit", values, grid, kept_limit))?;
-        if !self.has_law() {
-            return Ok(());
-        }
-        let refused = |rule: &str| {
-            let name = if self.law.is_some() { "friction->law" } else { "friction->hardening" };
-            Err(Error::Unsupported(format!("{name} is given: {rule}")))
-        };
-        if self.branch != Branch::Near && self.has_forces() != [false; 2] {
-            return refused("with a branch creepages must be prescribed in both directions");
-        }
-        if self.sensitivities {
-            return refused("friction->sensitivities must be 0");
-        }
-        let (x, y) = self.elements_rolled(grid);
-        let is_whole = x.fract() == 0.0 && y.fract() == 0.0 && (x == 0.0 || y == 0.0);
-        if self.motion == Motion::SteadyRolling && self.has_memory() && !is_whole {
-            return refused("with memory a step of steady rolling must be of whole elements along x or along y");
-        }
-        Ok(())
+/// Refuses invalid laws, layers and histories, and those that are not solved with the rest.
+pub(super) fn check_law(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
+    if let Some(law) = &friction.law {
+        law.check(friction.motion == Motion::Shift)?;
     }
+    if let Some(layer) = &friction.layer {
+        ordinary("friction->yield_limit", layer.yield_limit)?;
+        let rule = "it must be below 1e140: choose other units";
+        require(layer.hardening.abs() < LARGEST, "friction->hardening", layer.hardening, rule)?;
+    }
+    friction
+        .coefficients_read()
+        .map_or(Ok(()), |values| check_values("friction->previous_coefficient", values, grid, zero_or_ordinary))?;
+    friction
+        .yield_limits_read()
+        .map_or(Ok(()), |values| check_values("friction->previous_yield_limit", values, grid, kept_limit))?;
+    if !friction.has_law() {
+        return Ok(());
+    }
+    let refused = |rule: &str| {
+        let name = if friction.law.is_some() { "friction->law" } else { "friction->hardening" };
+        Err(Error::Unsupported(format!("{name} is given: {rule}")))
+    };
+    if friction.branch != Branch::Near && friction.has_forces() != [false; 2] {
+        return refused("with a branch creepages must be prescribed in both directions");
+    }
+    if friction.sensitivities {
+        return refused("friction->sensitivities must be 0");
+    }
+    let (x, y) = friction.elements_rolled(grid);
+    let is_whole = x.fract() == 0.0 && y.fract() == 0.0 && (x == 0.0 || y == 0.0);
+    if friction.motion == Motion::SteadyRolling && friction.has_memory() && !is_whole {
+        return refused("with memory a step of steady rolling must be of whole elements along x or along y");
+    }
+    Ok(())
+}
 
-    /// Refuses unlike bodies with a law.
-    pub(super) fn check_bodies_of_law(&self, bodies: &Bodies) -> Result<()> {
-        let has_cross = self.influence.is_some_and(|influence| influence.cross.is_some());
-        let is_unlike = self.influence.is_none() && bodies.unlike() != 0.0;
-        if self.has_law() && (has_cross || is_unlike) {
-            let name = if self.law.is_some() { "friction->law" } else { "friction->hardening" };
-            return Err(Error::Unsupported(format!("{name} is given: bodies must be alike")));
-        }
-        Ok(())
+/// Refuses unlike bodies with a law.
+pub(super) fn check_bodies_of_law(friction: &Friction<'_>, bodies: &Bodies) -> Result<()> {
+    let has_cross = friction.influence.is_some_and(|influence| influence.cross.is_some());
+    let is_unlike = friction.influence.is_none() && bodies.unlike() != 0.0;
+    if friction.has_law() && (has_cross || is_unlike) {
+        let name = if friction.law.is_some() { "friction->law" } else { "friction->hardening" };
+        return Err(Error::Unsupported(format!("{name} is given: bodies must be alike")));
     }
+    Ok(())
 }
 
 /// A limit may have fallen to a thousandth of what it was.

@@ -37,7 +37,7 @@ mod each;
 mod effect;
 mod friction;
 mod friction_bounds;
-mod friction_checks;
+mod friction_effect;
 mod friction_law;
 mod layer;
 pub(crate) mod list;
@@ -70,8 +70,9 @@ pub use period::Period;
 pub use properties::{Continues, Layout, PressureLimit, Properties, Stresses};
 pub use tangential_influence::{KeptInfluence, TangentialInfluence, TangentialTables};
 pub use together::{
-    beside, check_bodies, check_effects, check_other_grids, continuing, coupled, effects, excluded_method, keep,
-    limits, memory, own_coefficients, place, repeats, replace_bodies, surface, without_given_area, COUNT,
+    beside, check_bodies, check_coefficients, check_effects, check_other_grids, continuing, coupled, effects,
+    excluded_method, keep, limits, memory, own_coefficients, place, repeats, replace_bodies, surface,
+    without_given_area, COUNT,
 };
 pub use visco::{Branches, Visco};
 

@@ -6,6 +6,7 @@ use toeplitz::coefficients::SYMMETRY;
 use super::friction::{Friction, Motion};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
+use crate::influence::Coefficients;
 
 const INSTEAD: &str = "give coefficients of bodies that roll as the step goes: of contact_normal_influence_rolling those with a speed below 0 for \
      rolling towards -x; for rolling along y a grid whose x goes along that";
@@ -53,39 +54,36 @@ fn check(name: &str, lines: [Line<'_>; 2], step: (f64, f64)) -> Result<()> {
     ))
 }
 
-impl Friction<'_> {
-    /// Refuses tangential coefficients of another direction of rolling.
-    pub(super) fn check_rolled(&self, grid: &Grid) -> Result<()> {
-        let Some(own) = self.influence.filter(|own| self.motion != Motion::Shift && !own.by_row) else { return Ok(()) };
-        for component in 0..2 {
-            let in_x = |k: i64| own.at(k, 0)[component];
-            let in_y = |k: i64| own.at(0, k)[component];
-            let lines = [Line { name: "x", count: own.cx, at: &in_x }, Line { name: "y", count: own.cy, at: &in_y }];
-            let name = ["friction->influence[0] (xx)", "friction->influence[1] (yy)"][component];
-            check(name, lines, self.elements_rolled(grid))?;
-        }
-        Ok(())
+/// Refuses tangential coefficients of another direction of rolling.
+pub(super) fn check_tangential(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
+    let Some(own) = friction.influence.filter(|own| friction.motion != Motion::Shift && !own.by_row) else {
+        return Ok(());
+    };
+    for component in 0..2 {
+        let in_x = |k: i64| own.at(k, 0)[component];
+        let in_y = |k: i64| own.at(0, k)[component];
+        let lines = [Line { name: "x", count: own.cx, at: &in_x }, Line { name: "y", count: own.cy, at: &in_y }];
+        let name = ["friction->influence[0] (xx)", "friction->influence[1] (yy)"][component];
+        check(name, lines, friction.elements_rolled(grid))?;
     }
+    Ok(())
+}
 
-    /// Refuses a table of coefficients of pressures of another direction of rolling.
-    pub fn check_pressures_rolled(&self, grid: &Grid, at: &dyn Fn(i64, i64) -> f64) -> Result<()> {
-        if self.motion == Motion::Shift {
-            return Ok(());
-        }
-        let (in_x, in_y) = (|k: i64| at(k, 0), |k: i64| at(0, k));
+/// Refuses coefficients of pressures of another direction of rolling. Of tables per loaded row those of a row on itself are compared, which are even
+/// if the operator is symmetric.
+pub(super) fn check_pressures(friction: &Friction<'_>, grid: &Grid, coefficients: &Coefficients) -> Result<()> {
+    if friction.motion == Motion::Shift {
+        return Ok(());
+    }
+    let step = friction.elements_rolled(grid);
+    let Some((rows, _)) = coefficients.row_tables() else {
+        let (in_x, in_y) = (|k: i64| coefficients.at(k, 0), |k: i64| coefficients.at(0, k));
         let lines = [Line { name: "x", count: grid.mx, at: &in_x }, Line { name: "y", count: grid.my, at: &in_y }];
-        check("influence", lines, self.elements_rolled(grid))
-    }
-
-    /// Refuses tables per loaded row of another direction: `at` has the coefficients of a row on itself, which are even if the operator is symmetric.
-    pub fn check_rows_rolled(&self, grid: &Grid, at: &dyn Fn(usize, i64) -> f64) -> Result<()> {
-        if self.motion == Motion::Shift {
-            return Ok(());
-        }
-        (0..grid.my).try_for_each(|row| {
-            let (in_x, own) = (|k: i64| at(row, k), |_: i64| at(row, 0));
-            let lines = [Line { name: "x", count: grid.mx, at: &in_x }, Line { name: "y", count: 1, at: &own }];
-            check(&format!("row_tables of row {row} on itself"), lines, self.elements_rolled(grid))
-        })
-    }
+        return check("influence", lines, step);
+    };
+    (0..grid.my).try_for_each(|row| {
+        let (in_x, own) = (|k: i64| rows.coefficient(row, row, k), |_: i64| rows.coefficient(row, row, 0));
+        let lines = [Line { name: "x", count: grid.mx, at: &in_x }, Line { name: "y", count: 1, at: &own }];
+        check(&format!("row_tables of row {row} on itself"), lines, step)
+    })
 }

@@ -123,6 +123,14 @@ impl TangentialInfluence<'_> {
         tables().try_for_each(|(values, symmetry)| self.check_symmetry(values, (symmetry, in_x_too), largest))
     }
 
+    /// Refuses tables that suit no motion on the grid: each solve refuses those that do not suit its own.
+    pub fn check_for_any_motion(&self, grid: &Grid) -> Result<()> {
+        if self.by_row {
+            return self.check_rows(grid);
+        }
+        self.check(grid, true)
+    }
+
     /// Compares the values of one component at each offset and at its mirror images: in y, and if `in_x_too` in x.
     fn check_symmetry(&self, values: &[f64], (symmetry, in_x_too): (Symmetry, bool), largest: f64) -> Result<()> {
         let Symmetry { in_x, in_y, .. } = symmetry;

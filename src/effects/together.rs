@@ -70,6 +70,11 @@ pub(super) fn refuse_together(
     }
 }
 
+/// Refuses the caller's coefficients of pressures, which are not symmetric, if an effect of the scene does not suit them.
+pub fn check_coefficients(scene: &Scene<'_>, coefficients: &Coefficients) -> Result<()> {
+    effects(scene).try_for_each(|effect| effect.check_coefficients(&scene.grid, coefficients))
+}
+
 /// The effect with the caller's coefficients, and their layout. With these the bodies are not used.
 pub fn own_coefficients(scene: &Scene<'_>) -> Option<(&'static str, Layout)> {
     first(scene, |properties| properties.own_coefficients)

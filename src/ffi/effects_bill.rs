@@ -4,7 +4,7 @@ use super::arguments::{count, not_negative, required, switch, Regions};
 use super::conclusion::Conclusion;
 use super::guard::guard;
 use super::options::{self, contact_normal_options};
-use super::quantities::{lack_of, quantities_of};
+use super::quantities::{quantities_of, CONTACT_NORMAL_LACK_NONE};
 use super::scene::{contact_normal_scene, Named};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{versioned, Rows};
@@ -50,6 +50,7 @@ pub const CONTACT_NORMAL_VERDICT_NOT_DECIDED: i32 = 0;
 pub const CONTACT_NORMAL_VERDICT_NEGLIGIBLE: i32 = 1;
 /// `verdict`: it changes by more than the target.
 pub const CONTACT_NORMAL_VERDICT_NEEDED: i32 = 2;
+const _: () = assert!(Verdict::Needed as i32 == CONTACT_NORMAL_VERDICT_NEEDED);
 
 /// The change of a quantity without an effect, or without two, and the cost that this saves.
 #[repr(C)]
@@ -94,12 +95,8 @@ impl From<&BillRow> for contact_normal_effects_row {
             omitted: row.omission.number() as i32,
             also_omitted: row.other.map_or(CONTACT_NORMAL_OMIT_NONE, |other| other.number() as i32),
             quantity: row.quantity.number() as i32,
-            verdict: match row.verdict {
-                Verdict::NotDecided => CONTACT_NORMAL_VERDICT_NOT_DECIDED,
-                Verdict::Negligible => CONTACT_NORMAL_VERDICT_NEGLIGIBLE,
-                Verdict::Needed => CONTACT_NORMAL_VERDICT_NEEDED,
-            },
-            lack: lack_of(row.lack),
+            verdict: row.verdict as i32,
+            lack: row.lack.map_or(CONTACT_NORMAL_LACK_NONE, |lack| lack as i32),
             reserved: 0,
             value: row.value.unwrap_or(f64::NAN),
             change: row.change.unwrap_or(f64::NAN),

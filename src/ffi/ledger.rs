@@ -59,6 +59,11 @@ pub struct contact_normal_ledger_row {
 
 versioned! { contact_normal_ledger_row, contact_normal_ledger_row_init, 144 }
 
+/// An error or seconds as C has them: negative where they are not known.
+pub(super) fn known(value: Option<f64>) -> f64 {
+    value.unwrap_or(-1.0)
+}
+
 /// Copies members of the same name, converted as C has them.
 macro_rules! copy {
     ($from:expr => $to:ident: $($member:ident),+) => { $($to.$member = $from.$member as _;)+ };
@@ -78,9 +83,10 @@ pub(super) use set_measures;
 macro_rules! set_errors {
     ($to:ident, $error:expr) => {
         copy!($error => $to: untrusted);
-        ($to.error_force, $to.error_max_pressure) = ($error.force, $error.max_pressure);
-        ($to.error_contact_area, $to.error_corrected_area) = ($error.contact_area, $error.corrected_area);
-        $to.error_pressure = $error.pressure;
+        ($to.error_force, $to.error_max_pressure) = (known($error.force), known($error.max_pressure));
+        ($to.error_contact_area, $to.error_corrected_area) =
+            (known($error.contact_area), known($error.corrected_area));
+        $to.error_pressure = known($error.pressure);
     };
 }
 pub(super) use set_errors;

@@ -7,6 +7,7 @@ use super::arguments::{count, required, Regions};
 use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
 use super::guard::guard;
+use super::ledger::known;
 use super::options::{self, contact_normal_options, Translated};
 use super::scene::{contact_normal_scene, Named};
 use super::status::{contact_normal_status, Refusal};
@@ -56,6 +57,7 @@ pub const CONTACT_NORMAL_OBSTACLE_MEMORY: i32 = 4;
 pub const CONTACT_NORMAL_OBSTACLE_TIME: i32 = 5;
 /// `obstacle`: bodies relax, and the length of the step alone leaves more than `target`: `time_error` says how much.
 pub const CONTACT_NORMAL_OBSTACLE_STEP: i32 = 6;
+const _: () = assert!(Obstacle::Step as i32 == CONTACT_NORMAL_OBSTACLE_STEP);
 
 /// One row of the price list: the predicted cost of one accuracy.
 #[repr(C)]
@@ -103,24 +105,16 @@ impl From<&Price> for contact_normal_price {
         contact_normal_price {
             struct_size: size_of::<contact_normal_price>() as i64,
             target: price.target,
-            error: price.error,
+            error: known(price.error),
             tolerance: price.tolerance,
-            seconds: price.seconds,
-            seconds_one_thread: price.seconds_one_thread,
+            seconds: known(price.seconds),
+            seconds_one_thread: known(price.seconds_one_thread),
             bytes: i64::try_from(price.bytes).unwrap_or(i64::MAX),
             mx: price.grid.map_or(0, |grid| count(grid.mx)),
             my: price.grid.map_or(0, |grid| count(grid.my)),
             dx: price.grid.map_or(0.0, |grid| grid.dx),
             dy: price.grid.map_or(0.0, |grid| grid.dy),
-            obstacle: match price.obstacle {
-                None => CONTACT_NORMAL_OBSTACLE_NONE,
-                Some(Obstacle::Singular) => CONTACT_NORMAL_OBSTACLE_SINGULAR,
-                Some(Obstacle::RoundOff) => CONTACT_NORMAL_OBSTACLE_ROUND_OFF,
-                Some(Obstacle::Elements) => CONTACT_NORMAL_OBSTACLE_ELEMENTS,
-                Some(Obstacle::Memory) => CONTACT_NORMAL_OBSTACLE_MEMORY,
-                Some(Obstacle::Time) => CONTACT_NORMAL_OBSTACLE_TIME,
-                Some(Obstacle::Step) => CONTACT_NORMAL_OBSTACLE_STEP,
-            },
+            obstacle: price.obstacle.map_or(CONTACT_NORMAL_OBSTACLE_NONE, |obstacle| obstacle as i32),
             reserved: 0,
             time_error: price.time_error,
             work_units: price.work_units,

@@ -29,6 +29,7 @@ pub const CONTACT_NORMAL_LACK_ONE_GRID: i32 = 6;
 pub const CONTACT_NORMAL_LACK_UNSOLVED: i32 = 7;
 /// `lack`: there is no error, since the changes from grid to grid do not fall yet: one more grid tells whether the value converges.
 pub const CONTACT_NORMAL_LACK_UNSETTLED: i32 = 8;
+const _: () = assert!(Lack::Unsettled as i32 == CONTACT_NORMAL_LACK_UNSETTLED);
 
 /// A quantity on one grid.
 #[repr(C)]
@@ -56,27 +57,12 @@ pub struct contact_normal_quantity_row {
 
 versioned! { contact_normal_quantity_row, contact_normal_quantity_row_init, 56, error: -1.0 }
 
-/// The number of what is missing.
-pub(super) fn lack_of(lack: Option<Lack>) -> i32 {
-    match lack {
-        None => CONTACT_NORMAL_LACK_NONE,
-        Some(Lack::NoFriction) => CONTACT_NORMAL_LACK_NO_FRICTION,
-        Some(Lack::Prescribed) => CONTACT_NORMAL_LACK_PRESCRIBED,
-        Some(Lack::Effect) => CONTACT_NORMAL_LACK_EFFECT,
-        Some(Lack::NoContact) => CONTACT_NORMAL_LACK_NO_CONTACT,
-        Some(Lack::Singular) => CONTACT_NORMAL_LACK_SINGULAR,
-        Some(Lack::OneGrid) => CONTACT_NORMAL_LACK_ONE_GRID,
-        Some(Lack::Unsolved) => CONTACT_NORMAL_LACK_UNSOLVED,
-        Some(Lack::Unsettled) => CONTACT_NORMAL_LACK_UNSETTLED,
-    }
-}
-
 impl From<&QuantityRow> for contact_normal_quantity_row {
     fn from(row: &QuantityRow) -> Self {
         contact_normal_quantity_row {
             struct_size: size_of::<contact_normal_quantity_row>() as i64,
             quantity: row.quantity.number() as i32,
-            lack: lack_of(row.lack),
+            lack: row.lack.map_or(CONTACT_NORMAL_LACK_NONE, |lack| lack as i32),
             mx: row.grid.mx as i32,
             my: row.grid.my as i32,
             value: row.value.unwrap_or(f64::NAN),

@@ -1,7 +1,7 @@
 //! `contact_normal_report`: the results of a solve, their estimated errors, and their cost.
 
 use super::adhesion::contact_normal_report_adhesion;
-use super::ledger::{contact_normal_ledger_row, copy, set_errors, set_measures};
+use super::ledger::{contact_normal_ledger_row, copy, known, set_errors, set_measures};
 use super::structs::{versioned, Versioned};
 use super::visco::contact_normal_report_visco;
 use crate::friction;
@@ -13,6 +13,7 @@ pub const CONTACT_NORMAL_LIMITED_BY_UNKNOWN: i32 = 0;
 pub const CONTACT_NORMAL_LIMITED_BY_GRID: i32 = 1;
 /// `limited_by`: the tolerance; it allows a larger error than that of the grid.
 pub const CONTACT_NORMAL_LIMITED_BY_TOLERANCE: i32 = 2;
+const _: () = assert!(Limit::Tolerance as i32 == CONTACT_NORMAL_LIMITED_BY_TOLERANCE);
 
 /// The results of the normal problem: a group of `contact_normal_report`.
 #[repr(C)]
@@ -211,7 +212,7 @@ impl contact_normal_report {
         }
         if let Some(found) = &report.friction {
             (statistics.tangential_products, statistics.tangential_seconds) = (found.products, found.seconds);
-            to.accuracy.error_tangential = found.error;
+            to.accuracy.error_tangential = found.error.map(known);
             to.tangential.set(found);
         }
         to
@@ -240,11 +241,7 @@ impl contact_normal_report_tangential {
 impl contact_normal_report_accuracy {
     fn set(&mut self, report: &Report) {
         set_errors!(self, report.error);
-        (self.halved_seconds, self.halved_error_force) = (report.halving.seconds, report.halving.force());
-        self.limited_by = match report.limit {
-            Limit::Unknown => CONTACT_NORMAL_LIMITED_BY_UNKNOWN,
-            Limit::Grid => CONTACT_NORMAL_LIMITED_BY_GRID,
-            Limit::Tolerance => CONTACT_NORMAL_LIMITED_BY_TOLERANCE,
-        };
+        (self.halved_seconds, self.halved_error_force) = (known(report.halving.seconds), known(report.halving.force()));
+        self.limited_by = report.limit as i32;
     }
 }

@@ -11,12 +11,14 @@ use super::report::contact_normal_report;
 use super::scene::{contact_normal_scene, Named};
 use super::status::{contact_normal_status, Refusal};
 use super::warnings::advice_on_law;
-use super::watcher::{told_to, watched, why, Watcher};
+use super::watcher::{watched, why, Watcher};
 use crate::contact::{Certificate, State};
 use crate::effects;
 use crate::error::Rounded;
 use crate::scene::{Load, Scene};
-use crate::solver::{ActiveSet, InitialGuess, Method, Neglected, Options, Outcome, ProgressCallback, Report, Solver};
+use crate::solver::{
+    ActiveSet, Asked, InitialGuess, Method, Neglected, Options, Outcome, ProgressCallback, Report, Solver,
+};
 
 /// Solves one scene. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.1.
 #[no_mangle]
@@ -36,15 +38,18 @@ pub unsafe extern "C" fn contact_normal_solve(
         let Request { mut scene, options, mut outputs } = request?;
         // Before the set-up: a refusal should not cost one.
         outputs.check_inputs(&options.options, scene.grid.len())?;
-        let mut watcher = Watcher::of(&options);
-        if options.given.neglect_below > 0.0 {
-            let target = options.given.neglect_below;
-            let neglected = told_to(&mut watcher, |told| Neglected::of(&scene, &options.options, target, told))?;
-            scene = neglected.leave_out(&scene);
-            outputs.neglected = Some(neglected);
-        }
-        let (mut solver, lowest) = Solver::for_scene(&scene, &options.options)?;
-        run_watched(&mut solver, (&scene, Some(lowest)), (&options, watcher), &outputs, &mut buffers)
+        let solve = |mut progress: Option<ProgressCallback<'_>>| {
+            if options.given.neglect_below > 0.0 {
+                let target = options.given.neglect_below;
+                let told = progress.as_mut().map(|progress| &mut **progress as ProgressCallback<'_>);
+                let neglected = Neglected::of(&scene, &options.options, target, told)?;
+                scene = neglected.leave_out(&scene);
+                outputs.neglected = Some(neglected);
+            }
+            let (mut solver, lowest) = Solver::for_scene(&scene, &options.options)?;
+            run(&mut solver, (&scene, Some(lowest)), &options.options, progress, &outputs, &mut buffers)
+        };
+        watched(Watcher::of(&options), solve)?.conclude()
     };
     // SAFETY: as above.
     guard(|| unsafe { recorded("contact_normal_solve", options, arguments, solve) })
@@ -131,20 +136,7 @@ impl Request<'_> {
     }
 }
 
-/// Solves with a solver that is set up, and writes the outputs; the watcher is told of it. A scene that is checked has its least distance.
-pub(super) fn run_watched(
-    solver: &mut Solver,
-    scene: (&Scene<'_>, Option<f64>),
-    (options, watcher): (&Translated, Option<Watcher>),
-    outputs: &Outputs,
-    buffers: &mut Buffers,
-) -> Result<contact_normal_status, Refusal> {
-    let solve =
-        |progress: Option<ProgressCallback<'_>>| run(solver, scene, &options.options, progress, outputs, buffers);
-    watched(watcher, solve)?.conclude()
-}
-
-/// Solves with a solver that is set up, and writes the outputs.
+/// Solves with a solver that is set up, and writes the outputs. A scene that is checked has its least distance.
 pub(super) fn run(
     solver: &mut Solver,
     (scene, lowest): (&Scene<'_>, Option<f64>),
@@ -158,7 +150,7 @@ pub(super) fn run(
     let options = &outputs.options(options);
     let guess = outputs.guess(options, n, buffers)?;
     let (stop, report) = match lowest {
-        Some(lowest) => solver.solve_checked((scene, lowest), options, guess, progress)?,
+        Some(lowest) => solver.solve_checked(Asked { guess, ..Asked::new((scene, lowest), options) }, progress)?,
         None => solver.solve(scene, options, guess, progress)?,
     };
     let warnings = outputs.warnings(scene, options, &report, solver.state());

@@ -14,10 +14,10 @@ use super::options::contact_normal_options;
 use super::outputs::{Buffers, Outputs};
 use super::report::contact_normal_report;
 use super::scene::contact_normal_scene;
-use super::solve::{run_watched, Needs, Request};
+use super::solve::{run, Needs, Request};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{self, versioned, Versioned};
-use super::watcher::Watcher;
+use super::watcher::{watched, Watcher};
 use crate::solver::Solver;
 
 /// Operators, transforms, grids and workspace, built once. One thread at a time may use a handle; different handles may be
@@ -128,7 +128,10 @@ pub unsafe extern "C" fn contact_normal_solver_solve(
         let request = unsafe { Request::read(scene, options, fields, report, buffers, |_, _| Ok(())) };
         recording.keep_with(&buffers.regions, solver, request.as_ref().is_ok_and(Request::goes_on));
         let Request { scene, options, outputs } = request?;
-        run_watched(solver, (&scene, None), (&options, Watcher::of(&options)), &outputs, buffers)
+        watched(Watcher::of(&options), |progress| {
+            run(solver, (&scene, None), &options.options, progress, &outputs, buffers)
+        })?
+        .conclude()
     };
     // SAFETY: as above.
     guard(|| unsafe { recorded("contact_normal_solver_solve", options, arguments, solve) })

@@ -79,7 +79,7 @@ pub(super) fn of(scene: &Scene<'_>, options: &Options, report: &Report, state: &
         (CONTACT_NORMAL_WARNING_BORDER, is_free && measures.edge_count > 0 && is_at_border(scene, state)),
         (CONTACT_NORMAL_WARNING_ONE_ELEMENT, measures.contact_count == 1),
         (CONTACT_NORMAL_WARNING_SPIKE, measures.contact_count > 1 && is_spike),
-        (CONTACT_NORMAL_WARNING_ERROR_UNKNOWN, is_free && options.estimates && report.error.force < 0.0),
+        (CONTACT_NORMAL_WARNING_ERROR_UNKNOWN, is_free && options.estimates && report.error.force.is_none()),
     ];
     effects | found.into_iter().filter(|(_, holds)| *holds).map(|(bit, _)| bit).sum::<i32>()
 }

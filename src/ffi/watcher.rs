@@ -105,18 +105,13 @@ pub(super) fn why(outcome: Outcome) -> &'static str {
     }
 }
 
-/// Tells a watcher, if there is one, of the cycles of this work.
-pub(super) fn told_to<T>(watcher: &mut Option<Watcher>, work: impl FnOnce(Option<ProgressCallback<'_>>) -> T) -> T {
-    let mut told = watcher.as_mut().map(|watcher| |progress: &Progress| watcher.told(progress));
-    work(told.as_mut().map(|told| told as ProgressCallback<'_>))
-}
-
 /// The conclusion of a solve that a watcher, if there is one, is told of.
 pub(super) fn watched(
     mut watcher: Option<Watcher>,
     solve: impl FnOnce(Option<ProgressCallback<'_>>) -> Result<Conclusion, Refusal>,
 ) -> Result<Conclusion, Refusal> {
-    let found = told_to(&mut watcher, solve)?;
+    let mut told = watcher.as_mut().map(|watcher| |progress: &Progress| watcher.told(progress));
+    let found = solve(told.as_mut().map(|told| told as ProgressCallback<'_>))?;
     Ok(match watcher {
         Some(watcher) => watcher.conclusion(found),
         None => found,

@@ -29,7 +29,7 @@ pub struct Solution {
 }
 
 /// The measures of a result, and its cost.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Report {
     /// How well the conditions of friction hold.
     pub certificate: Certificate,
@@ -52,8 +52,8 @@ pub struct Report {
     pub from_rest: bool,
     /// Force and creepages of the next coarser grid, in steady rolling from rest.
     pub coarser: Option<(Vector, Vector)>,
-    /// Estimated errors of the force in each direction, or of the creepage if the force is prescribed; negative: unknown.
-    pub error: Vector,
+    /// Estimated errors of the force in each direction, or of the creepage if the force is prescribed; none: unknown.
+    pub error: [Option<f64>; 2],
     /// The largest slope with which bounds fall with the slip, times an element's influence on itself; 0 without a law. From .5 on the iteration may
     /// stagnate; from 1 on a single element has several solutions.
     pub law_slope: f64,
@@ -61,27 +61,6 @@ pub struct Report {
     pub products: f64,
     /// Seconds, with the set-up of operators.
     pub seconds: f64,
-}
-
-impl Default for Report {
-    fn default() -> Report {
-        Report {
-            certificate: Certificate::default(),
-            force: [0.0; 2],
-            moment: 0.0,
-            creepage: [0.0; 2],
-            sensitivities: None,
-            carried: 0.0,
-            update: 0.0,
-            missing: 0.0,
-            from_rest: false,
-            coarser: None,
-            error: [-1.0; 2],
-            law_slope: 0.0,
-            products: 0.0,
-            seconds: 0.0,
-        }
-    }
 }
 
 /// The force of tractions, and their moment about `centre`, relative to the middle of the grid. `row(iy)` gives the tractions of a row, each with

@@ -39,7 +39,7 @@ fn no_memory() -> Error {
 /// Coefficients, and memory for the most elements in contact.
 pub struct Direct {
     grid: Grid,
-    influence: Coefficients,
+    coefficients: Coefficients,
     /// Coefficients at offsets `1 - mx..mx` and `0..my`, x fastest. Filled when first needed.
     table: Vec<f64>,
     is_filled: bool,
@@ -54,15 +54,15 @@ pub struct Direct {
 
 impl Direct {
     /// The method on a small grid with even coefficients and an inverse. None on other grids.
-    pub fn new(influence: &Coefficients, grid: &Grid) -> Result<Option<Direct>> {
-        let suits = influence.is_even(grid) && !influence.depends_on_place() && !influence.is_mean_free();
+    pub fn new(coefficients: &Coefficients, grid: &Grid) -> Result<Option<Direct>> {
+        let suits = coefficients.is_even(grid) && !coefficients.depends_on_place() && !coefficients.is_mean_free();
         if grid.len() > LARGEST_GRID || !suits {
             return Ok(None);
         }
         let scratch = factor::cholesky_in_place_scratch::<f64>(MOST_IN_CONTACT, Par::Seq, Default::default());
         Ok(Some(Direct {
             grid: *grid,
-            influence: influence.clone(),
+            coefficients: coefficients.clone(),
             table: blank(grid.my * (2 * grid.mx - 1), f64::NAN, "influence coefficients")?,
             is_filled: false,
             elements: room(MOST_IN_CONTACT + 1)?,
@@ -81,7 +81,7 @@ impl Direct {
     fn fill_table(&mut self) {
         let mx = self.grid.mx;
         for (row, ky) in self.table.chunks_exact_mut(2 * mx - 1).zip(0..) {
-            self.influence.fill_row(0, ky, &mut row[mx - 1..]);
+            self.coefficients.fill_row(0, ky, &mut row[mx - 1..]);
             (1..mx).for_each(|kx| row[mx - 1 - kx] = row[mx - 1 + kx]);
         }
         self.is_filled = true;

@@ -53,20 +53,20 @@ impl Measures {
     }
 }
 
-/// Estimated errors (module `estimates`). Negative: unknown, because no estimates were requested, or, with its bit in
+/// Estimated errors (module `estimates`). None: unknown, because no estimates were requested, or, with its bit in
 /// `untrusted`, as the grid does not resolve the contact, or the peak is singular.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DiscretisationError {
     /// The error of the force (of the approach, when the force is prescribed).
-    pub force: f64,
+    pub force: Option<f64>,
     /// The error of the largest pressure.
-    pub max_pressure: f64,
+    pub max_pressure: Option<f64>,
     /// The error of the contact area by counting elements.
-    pub contact_area: f64,
+    pub contact_area: Option<f64>,
     /// The error of the corrected contact area.
-    pub corrected_area: f64,
+    pub corrected_area: Option<f64>,
     /// The error of the pressures: rms of the error over rms of p.
-    pub pressure: f64,
+    pub pressure: Option<f64>,
     /// Bits: see [`DiscretisationError::FORCE`] and the following.
     pub untrusted: u32,
 }
@@ -78,20 +78,6 @@ impl DiscretisationError {
     pub const MAX_PRESSURE: u32 = 2;
     /// Bit of `untrusted`: the error of the pressures.
     pub const PRESSURE: u32 = 4;
-}
-
-impl Default for DiscretisationError {
-    fn default() -> DiscretisationError {
-        let unknown = -1.0;
-        DiscretisationError {
-            force: unknown,
-            max_pressure: unknown,
-            contact_area: unknown,
-            corrected_area: unknown,
-            pressure: unknown,
-            untrusted: 0,
-        }
-    }
 }
 
 /// One row of the ledger: the measures of one grid, and the cost up to its end.

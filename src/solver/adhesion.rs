@@ -7,7 +7,7 @@ use super::adhesive_friction::check_alike;
 use super::methods::Methods;
 use super::stages;
 use super::take_over::{is_without_contact, take_distance};
-use super::{check, Criterion, Guess, InitialGuess, Method, Options, ProgressCallback, Report, Solver};
+use super::{check, Asked, Criterion, Guess, InitialGuess, Method, Options, ProgressCallback, Report, Solver};
 use crate::adhesion::{self, Frozen, Request, Surfaces};
 use crate::contact::{self, lowest, Freshness, NonNegative, Problem, State, Survey};
 use crate::effects::{self, Adhesion, Work};
@@ -89,28 +89,30 @@ impl Solver {
     ) -> Result<(Outcome, Report)> {
         let lowest = scene.check_distance_and_load(&self.problem.threads)?;
         self.set_up.check(scene, options, &self.problem)?;
-        check::guess(scene, options, None)?;
-        self.on_surface((scene, lowest), |solver, (scene, lowest)| {
-            let Some(adhesion) = scene.attraction() else {
-                return invalid("adhesion is not given, or its work is 0: nothing holds the bodies together".into());
-            };
-            solver.solve_adhesive((scene, lowest), (adhesion, true), options, None, progress)
-        })
+        let asked = Asked::new((scene, lowest), options);
+        check::guess(asked)?;
+        let surface = effects::surface(scene)?;
+        let changed = surface.as_deref().map(|h| Scene { undeformed_distance: h, ..scene.clone() });
+        let asked = asked.on(changed.as_ref(), &self.problem.threads)?;
+        let Some(adhesion) = scene.attraction() else {
+            return invalid("adhesion is not given, or its work is 0: nothing holds the bodies together".into());
+        };
+        self.solve_adhesive(asked, (adhesion, true), progress)
     }
 
-    /// Solves a checked scene with adhesion. `lowest`: the least distance.
+    /// Solves a checked scene with adhesion.
     pub(super) fn solve_adhesive(
         &mut self,
-        (scene, lowest): (&Scene<'_>, f64),
+        asked: Asked<'_>,
         (adhesion, pull_off): (&Adhesion<'_>, bool),
-        options: &Options,
-        guess: Option<Guess<'_>>,
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
+        let Asked { scene, options, .. } = asked;
+        check::guess(asked)?;
         check_options(options)?;
         // Here the approach contains the compression by the mean pressure, for any load.
         self.suit(Load::Approach(0.0))?;
-        check::range((scene, lowest), &self.problem, self.set_up.largest_influence, None)?;
+        check::range(asked, &self.problem, self.set_up.largest_influence)?;
         if !self.problem.symmetric {
             let message = "adhesion is given, and the influence coefficients are not symmetric; this version does not solve them together";
             return Err(Error::Unsupported(message.into()));
@@ -124,16 +126,16 @@ impl Solver {
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), false);
         self.has_result = false;
         take_distance(&mut self.state, scene.undeformed_distance, &self.problem.threads);
-        let outcome = self.run_adhesive((scene, lowest), (adhesion, pull_off), (options, guess, goes_on), &mut monitor);
+        let solved = self.run_adhesive(asked, (adhesion, pull_off), goes_on, &mut monitor);
         self.ledger = std::mem::take(&mut monitor.ledger.rows);
-        let outcome = outcome.and_then(|(stop, found, split)| {
-            let (stop, friction) = self.rub(scene, (adhesion, &split), options, stop, &mut monitor)?;
-            Ok((stop, found, friction, split))
+        let solved = solved.and_then(|(outcome, found, split)| {
+            let (outcome, friction) = self.rub(scene, (adhesion, &split), options, outcome, &mut monitor)?;
+            Ok((outcome, found, friction, split))
         });
-        if outcome.is_err() {
+        if solved.is_err() {
             self.go_back(kept);
         }
-        let (stop, found, friction, split) = outcome?;
+        let (outcome, found, friction, split) = solved?;
         (self.has_result, self.split, self.compliance) = (true, Some(split), 1.0);
         effects::keep(scene, &mut self.beside.histories);
         let mut report = Report { adhesion: Some(found), friction, ..Report::of(&monitor, options.tolerance) };
@@ -142,15 +144,15 @@ impl Solver {
         report.solve_seconds = monitor.seconds();
         report.setup_seconds = std::mem::take(&mut self.setup_seconds);
         report.bytes = self.bytes() as u64;
-        report.log(options.method, &self.problem.grid, stop);
-        Ok((stop, report))
+        report.log(options.method, &self.problem.grid, outcome);
+        Ok((outcome, report))
     }
 
     fn run_adhesive(
         &mut self,
-        (scene, lowest): (&Scene<'_>, f64),
+        Asked { scene, lowest, options, guess, .. }: Asked<'_>,
         (adhesion, pull_off): (&Adhesion<'_>, bool),
-        (options, guess, goes_on): (&Options, Option<Guess<'_>>, bool),
+        goes_on: bool,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, adhesion::Report, adhesion::Split)> {
         let mut solver = match self.adhesion.take() {
@@ -191,18 +193,18 @@ impl Solver {
         let make = |problem: &contact::Problem| -> Result<Box<dyn Frozen>> {
             Ok(Box::new(Plain(Methods::new(problem, options)?)))
         };
-        let outcome = lent.solver.solve(&request, &make, monitor);
+        let solved = lent.solver.solve(&request, &make, monitor);
         drop(lent);
-        if outcome.is_ok() {
+        if solved.is_ok() {
             let (state, found) = (&mut self.state, solver.finest());
             state.contact.copy_from_slice(&found.now.contact);
             state.at_limit.fill(false);
             (state.load, state.approach, state.reached_limit) = (scene.load, found.now.approach(), false);
             (state.round_off, state.u_is) = (self.problem.round_off(), Freshness::Exact);
         }
-        let outcome = outcome.and_then(|(stop, found)| Ok((stop, found, solver.split()?)));
+        let solved = solved.and_then(|(outcome, found)| Ok((outcome, found, solver.split()?)));
         self.adhesion = Some(solver);
-        outcome
+        solved
     }
 }
 

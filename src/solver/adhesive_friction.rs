@@ -66,27 +66,27 @@ pub fn check_alike(scene: &Scene<'_>) -> Result<()> {
 }
 
 impl Solver {
-    /// The tangential problem of a scene with adhesion, whose normal problem ended with `stop`.
+    /// The tangential problem of a scene with adhesion, whose normal problem ended with `outcome`.
     pub(super) fn rub(
         &mut self,
         scene: &Scene<'_>,
         (adhesion, split): (&Adhesion<'_>, &Split),
         options: &Options,
-        stop: Outcome,
+        outcome: Outcome,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, Option<Report>)> {
         let Some(friction) = &scene.friction else {
             self.friction.iter_mut().for_each(|before| before.pass_over());
-            return Ok((stop, None));
+            return Ok((outcome, None));
         };
         let of_element = |i: usize| split.at(&self.state, i).0;
         let bound = Bound::new(friction, adhesion.shear_strength, scene.grid.len(), of_element)?;
         let threads = self.problem.threads.clone();
         let mut tangent = self.take_tangent(scene, options)?;
         let turn = Turn { scene, friction: &bound.of(friction), options, threads: &threads };
-        let solved = tangent.solve_after(stop, &turn, &bound.pressing, turn.start(), monitor);
+        let solved = tangent.solve_after(outcome, &turn, &bound.pressing, turn.start(), monitor);
         self.friction = Some(tangent);
         let (ended, report, _) = solved?;
-        Ok((if stop == Outcome::Converged { ended } else { stop }, Some(report)))
+        Ok((if outcome == Outcome::Converged { ended } else { outcome }, Some(report)))
     }
 }

@@ -21,8 +21,8 @@ pub struct Problem<'a> {
 
 impl Solver {
     /// Solves many problems with the same options, as many at a time as the solver was set up with threads. Each solve runs on
-    /// one thread. `found(i, outcome, state)` is called for each problem i, in any order, on the thread that solved it. `outcome` is
-    /// that of [`solve`](Self::solve). `state` is the result, unless `outcome` is an error. Element i of the returned list is the
+    /// one thread. `found(i, solved, state)` is called for each problem i, in any order, on the thread that solved it. `solved` is
+    /// that of [`solve`](Self::solve). `state` is the result, unless `solved` is an error. Element i of the returned list is the
     /// value of this call.
     ///
     /// A refused problem does not affect the others. Results have the same bits as those of one solve
@@ -38,8 +38,8 @@ impl Solver {
         let results: Vec<Mutex<Option<R>>> = problems.iter().map(|_| Mutex::new(None)).collect();
         self.distribute(problems.len(), |i, worker| {
             let Problem { scene, guess } = &problems[i];
-            let outcome = Solver::check_problem(scene).and_then(|()| worker.solve(scene, options, *guess, None));
-            let result = found(i, outcome, worker.state());
+            let solved = Solver::check_problem(scene).and_then(|()| worker.solve(scene, options, *guess, None));
+            let result = found(i, solved, worker.state());
             *results[i].lock().unwrap_or_else(PoisonError::into_inner) = Some(result);
         })?;
         let results = results.into_iter().map(|result| result.into_inner().unwrap_or_else(PoisonError::into_inner));

@@ -42,28 +42,29 @@ fn given(scene: &Scene<'_>) -> [bool; 2] {
 }
 
 impl InTurns<'_, '_, '_> {
-    /// Continues turns by force, which ended with `stop`, by turns with creepages if needed.
-    pub(super) fn meet_by_creepages(&mut self, stop: Outcome) -> Result<Outcome> {
-        let tried =
-            |friction: &&mut TangentialTurn<'_>| friction.is_near() || stop == Outcome::Stagnated && friction.by_force;
-        let Some(friction) = self.turns.friction.as_mut().filter(tried) else { return Ok(stop) };
+    /// Continues turns by force, which ended with `outcome`, by turns with creepages if needed.
+    pub(super) fn meet_by_creepages(&mut self, outcome: Outcome) -> Result<Outcome> {
+        let tried = |friction: &&mut TangentialTurn<'_>| {
+            friction.is_near() || outcome == Outcome::Stagnated && friction.by_force
+        };
+        let Some(friction) = self.turns.friction.as_mut().filter(tried) else { return Ok(outcome) };
         let is_refused = friction.is_refused();
-        if stop == Outcome::Cancelled
-            || stop == Outcome::Converged && !is_refused
+        if outcome == Outcome::Cancelled
+            || outcome == Outcome::Converged && !is_refused
             || is_refused && carries_always(self.scene)
         {
-            return Ok(stop);
+            return Ok(outcome);
         }
-        let Some(from) = place(friction) else { return Ok(stop) };
+        let Some(from) = place(friction) else { return Ok(outcome) };
         let normal = self.monitor.survey.as_ref().map_or(f64::INFINITY, Survey::relative_residual);
-        let is_done = stop == Outcome::IterationLimit || normal < ROUND_OFF;
-        if stop != Outcome::Converged && friction.is_at_round_off() && is_done {
-            return Ok(stop);
+        let is_done = outcome == Outcome::IterationLimit || normal < ROUND_OFF;
+        if outcome != Outcome::Converged && friction.is_at_round_off() && is_done {
+            return Ok(outcome);
         }
         friction.by_force = false;
-        if stop == Outcome::Converged && from.missing() <= self.options.tolerance {
+        if outcome == Outcome::Converged && from.missing() <= self.options.tolerance {
             friction.accept(from.missing());
-            return Ok(stop);
+            return Ok(outcome);
         }
         log::info!("turns by force leave {:e} of mu N, turns with creepages go on", from.missing());
         let mut refusal = friction.take_refusal();

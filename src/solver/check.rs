@@ -1,6 +1,6 @@
 //! Checks before a solve: scenes that differ from the set-up, invalid guesses, units out of range.
 
-use super::{Guess, InitialGuess, Method, Options, SetUp};
+use super::{Asked, Guess, InitialGuess, Method, Options, SetUp};
 use crate::contact::Problem;
 use crate::effects;
 use crate::error::{invalid, Error, Result};
@@ -52,12 +52,9 @@ impl SetUp {
         }
         self.check_table()?;
         self.named.check(scene)?;
-        let is_uneven = problem.given && !problem.symmetric;
-        let Some(friction) = scene.friction.as_ref().filter(|_| is_uneven) else { return Ok(()) };
-        let (grid, coefficients) = (&problem.grid, &problem.coefficients);
-        match coefficients.row_tables() {
-            Some((rows, _)) => friction.check_rows_rolled(grid, &|row, kx| rows.coefficient(row, row, kx)),
-            None => friction.check_pressures_rolled(grid, &|kx, ky| coefficients.at(kx, ky)),
+        match problem.given && !problem.symmetric {
+            true => effects::check_coefficients(scene, &problem.coefficients),
+            false => Ok(()),
         }
     }
 
@@ -87,7 +84,7 @@ impl SetUp {
 }
 
 /// Rejects a guess that is missing, too short or not finite.
-pub fn guess(scene: &Scene<'_>, options: &Options, guess: Option<Guess<'_>>) -> Result<()> {
+pub fn guess(Asked { scene, options, guess, .. }: Asked<'_>) -> Result<()> {
     let grid = &scene.grid;
     let fixed = options.is_fixed();
     let Some(guess) = guess else {
@@ -121,14 +118,9 @@ pub fn guess(scene: &Scene<'_>, options: &Options, guess: Option<Guess<'_>>) -> 
     }
 }
 
-/// Rejects units in which pressures, displacements or their squares leave the range of double precision. `lowest` is the least distance, `fixed` a
-/// given contact area.
-pub fn range(
-    (scene, lowest): (&Scene<'_>, f64),
-    problem: &Problem,
-    largest: f64,
-    fixed: Option<Guess<'_>>,
-) -> Result<()> {
+/// Rejects units in which pressures, displacements or their squares leave the range of double precision. `largest`: the largest absolute coefficient.
+pub fn range(asked: Asked<'_>, problem: &Problem, largest: f64) -> Result<()> {
+    let (Asked { scene, lowest, .. }, fixed) = (asked, asked.area());
     let influence = problem.self_influence();
     let h = scene.undeformed_distance;
     // The largest absolute value on the given contact area.

@@ -3,11 +3,11 @@
 //! A constant changes no pressure of a given force, but it hides their errors: residuals are relative to the approach. So a given force is
 //! solved without the constant, which is added to the result. A given approach is solved with it.
 
-use super::{Guess, InitialGuess, Options, Solver};
+use super::{Asked, InitialGuess, Options, Solver};
 use crate::contact::{Fixed, Freshness, NonNegative, Survey};
 use crate::error::Result;
 use crate::progress::{Measures, Monitor, Outcome};
-use crate::scene::{Load, Scene};
+use crate::scene::Load;
 
 /// Factor on the tolerance of a second solve.
 const SAFETY: f64 = 0.5;
@@ -38,28 +38,27 @@ impl Solver {
     /// residual. A negative compression lessens the norm of the distances `h - approach`, a positive one may dominate it.
     pub(super) fn meet_compressed(
         &mut self,
-        (scene, lowest): (&Scene<'_>, f64),
-        options: &Options,
-        guess: Option<Guess<'_>>,
+        asked: Asked<'_>,
         monitor: &mut Monitor<'_>,
-        stop: Outcome,
+        outcome: Outcome,
     ) -> Result<Outcome> {
+        let Asked { scene, options, .. } = asked;
         let (by, goal) = (self.compression(scene.load), options.goal());
         if by == 0.0 || goal.by_update() {
-            return Ok(stop);
+            return Ok(outcome);
         }
         let (holds, part) = self.holds_compressed(by, options);
-        match stop {
+        match outcome {
             Outcome::Stagnated if holds => Ok(Outcome::Converged),
             Outcome::Converged if !holds => {
                 let tolerance = SAFETY * part * options.tolerance;
                 let more = Options { tolerance, initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*options };
                 monitor.ledger.rows.pop();
-                let (again, _) = self.solve_normal((scene, lowest), &more, guess, monitor)?;
+                let (again, _) = self.solve_normal(Asked { options: &more, ..asked }, monitor)?;
                 let is_met = again == Outcome::Stagnated && self.holds_compressed(by, options).0;
                 Ok(if is_met { Outcome::Converged } else { again })
             }
-            _ => Ok(stop),
+            _ => Ok(outcome),
         }
     }
 

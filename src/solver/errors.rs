@@ -1,11 +1,10 @@
 //! The errors of a solve: of its normal problem, and of its friction.
 
-use super::estimates::{self, Parts};
+use super::estimates::{self, Curvature, Parts};
 use super::options::Options;
 use super::report::Report;
 use super::tangential_estimates::{self, Solved};
 use super::Solver;
-use crate::contact::Curvature;
 use crate::progress::Monitor;
 use crate::scene::Scene;
 

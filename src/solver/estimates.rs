@@ -24,9 +24,18 @@
 //! of the corrected area. Straight pieces and straight ends of the surface have an error of half an element. Ends in steps have the square root of
 //! their number.
 
+mod curvature;
+mod direction;
+mod ends;
+mod jumps;
+
+pub use curvature::Curvature;
+pub use ends::{at_ends, beyond_ends, pressures_at_ends};
+pub use jumps::at_jumps;
+
 use super::falling::Falling;
 use super::report::{Halving, Limit};
-use crate::contact::{pressures_at_ends, Curvature, Outline, Problem, State};
+use crate::contact::{Outline, Problem, State};
 use crate::grid::doubling;
 use crate::progress::{DiscretisationError, LedgerRow};
 use crate::scene::Load;
@@ -213,7 +222,7 @@ pub fn estimate(
     let lines = outline_off(problem, outline) * finest.grid.element_area() + carried * measures.contact_area;
     // Before pressures carry a force, `carried` is infinite.
     let whole = finest.grid.len() as f64 * finest.grid.element_area();
-    let area = |error: f64| if error.is_finite() { error.min(whole) } else { -1.0 };
+    let area = |error: f64| error.is_finite().then_some(error.min(whole));
     let count = ledger.len();
     for (i, row) in ledger.iter_mut().enumerate() {
         let is_last = i + 1 == count;
@@ -231,11 +240,11 @@ pub fn estimate(
         let off = if is_last { correction } else { (row.measures.contact_area - measures.corrected_area).abs() };
         let hidden = |value: f64| residual * value.abs();
         row.error = DiscretisationError {
-            force: force.map_or(-1.0, |error| error + hidden(found)),
-            max_pressure: highest.map_or(-1.0, |error| error + hidden(measures.max_pressure)),
+            force: force.map(|error| error + hidden(found)),
+            max_pressure: highest.map(|error| error + hidden(measures.max_pressure)),
             contact_area: area(off + lines * size),
             corrected_area: area(CORRECTION_OFF * correction + lines * size),
-            pressure: pressure.map_or(-1.0, |error| error * size + residual),
+            pressure: pressure.map(|error| error * size + residual),
             untrusted,
         };
     }
@@ -243,7 +252,7 @@ pub fn estimate(
     let hidden = residual * found.abs();
     let falling = Falling { by_sixteen: parts.short, by_four: parts.smooth, by_two: parts.of_first_order(), hidden };
     let more = doubling(finest.grid.refines(problem.coefficients.repeats(&finest.grid)));
-    let halving = Halving { seconds: more.powf(SECONDS_EXPONENT) * seconds, error: Some(falling) };
+    let halving = Halving { seconds: Some(more.powf(SECONDS_EXPONENT) * seconds), error: Some(falling) };
     let limit = if parts.error() >= hidden { Limit::Grid } else { Limit::Tolerance };
     (limit, halving)
 }

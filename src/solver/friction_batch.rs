@@ -4,7 +4,7 @@ use super::adhesive_friction::bounded;
 use super::friction_table::Table;
 pub use super::friction_table::{Ended, Entry, RUN};
 use super::tangential_calls::{measures, positive};
-use super::{Options, Outcome, ProgressCallback, Report, Solver};
+use super::{Asked, Options, Outcome, ProgressCallback, Report, Solver};
 use crate::effects::Previous;
 use crate::error::{invalid, Result};
 use crate::friction::Solution;
@@ -29,7 +29,7 @@ pub fn solve_friction_batch(
     found: impl Fn(usize, Ended, Option<&Solution>) + Sync + Send,
 ) -> Result<(Outcome, Report)> {
     let (given, contact);
-    let (stop, mut report, pressure) = match pressure {
+    let (outcome, mut report, pressure) = match pressure {
         Some(pressure) => {
             scene.check_tangential()?;
             options.check()?;
@@ -44,20 +44,20 @@ pub fn solve_friction_batch(
             let normal = Scene { friction: None, ..scene.clone() };
             let (mut new, lowest) = Solver::for_scene(&normal, options)?;
             let watch = progress.as_mut().map(|progress| &mut **progress as ProgressCallback<'_>);
-            let (stop, report) = new.solve_checked((&normal, lowest), options, None, watch)?;
+            let (outcome, report) = new.solve_checked(Asked::new((&normal, lowest), options), watch)?;
             let split = new.adhesion();
             let q = |i: usize| split.as_ref().map_or(new.state().p[i], |split| split(i).0);
             contact = collected((0..scene.grid.len()).map(q), "the contact pressures of a table")?;
-            (stop, report, &contact[..])
+            (outcome, report, &contact[..])
         }
     };
     let threads = Threads::new(options.threads)?;
-    let (stop, seconds) = bounded(scene, friction_of_table(scene)?, pressure, |friction, pressing| {
+    let (outcome, seconds) = bounded(scene, friction_of_table(scene)?, pressure, |friction, pressing| {
         let table = Table::new(scene, friction, pressing, entries, options);
-        table.solve(stop, (&mut Vec::new(), &threads), progress, &found)
+        table.solve(outcome, (&mut Vec::new(), &threads), progress, &found)
     })?;
     report.solve_seconds += seconds;
-    Ok((stop, report))
+    Ok((outcome, report))
 }
 
 impl Solver {
@@ -76,11 +76,11 @@ impl Solver {
         self.check_tangential(scene, options)?;
         let (friction, pressure) = (friction_of_table(scene)?, &*positive(&scene.grid, pressure)?);
         let threads = self.problem.threads.clone();
-        let (stop, solve_seconds) = bounded(scene, friction, pressure, |friction, pressing| {
+        let (outcome, solve_seconds) = bounded(scene, friction, pressure, |friction, pressing| {
             let table = Table::new(scene, friction, pressing, entries, options);
             table.solve(Outcome::Converged, (&mut self.crew, &threads), progress, &found)
         })?;
-        Ok((stop, Report { solve_seconds, ..of_pressures(&scene.grid, pressure, options) }))
+        Ok((outcome, Report { solve_seconds, ..of_pressures(&scene.grid, pressure, options) }))
     }
 }
 

@@ -104,17 +104,17 @@ impl<'a> Table<'a> {
         Table { scene, friction, pressure, entries, options, near_force, radius, done: Done::default() }
     }
 
-    /// Solves all entries, unless `stop` of the normal problem is CANCELLED. `crew`: workers of one thread; missing ones are made. Returns the
+    /// Solves all entries, unless `outcome` of the normal problem is CANCELLED. `crew`: workers of one thread; missing ones are made. Returns the
     /// outcome and the seconds.
     pub(super) fn solve(
         self,
-        stop: Outcome,
+        outcome: Outcome,
         (crew, threads): (&mut Vec<Tangent>, &Threads),
         mut progress: Option<ProgressCallback<'_>>,
         found: &(impl Fn(usize, Ended, Option<&Solution>) + Sync + Send),
     ) -> Result<(Outcome, f64)> {
         let began = std::time::Instant::now();
-        self.done.cancelled.store(stop == Outcome::Cancelled, Ordering::Relaxed);
+        self.done.cancelled.store(outcome == Outcome::Cancelled, Ordering::Relaxed);
         let runs = self.entries.len().div_ceil(RUN);
         let workers = threads.count().min(runs).max(1);
         // Set up before any entry is solved, so that lack of memory loses no entry.
@@ -139,8 +139,8 @@ impl<'a> Table<'a> {
             },
             |tangent| self.work(tangent, &mut |_| (), found),
         );
-        let stop = if self.is_cancelled() { Outcome::Cancelled } else { stop };
-        Ok((stop, began.elapsed().as_secs_f64()))
+        let outcome = if self.is_cancelled() { Outcome::Cancelled } else { outcome };
+        Ok((outcome, began.elapsed().as_secs_f64()))
     }
 
     /// Takes runs until there are none left; `told` gets the residual of each entry.
@@ -169,7 +169,7 @@ impl<'a> Table<'a> {
             let ended = self.entry(i, tangent, warm && self.is_near(i));
             warm = matches!(ended, Ok((Outcome::Converged, _)));
             let residual = ended.as_ref().map_or(-1.0, |(_, report)| report.certificate.residual);
-            let has_solution = matches!(ended, Ok((stop, _)) if stop != Outcome::Cancelled);
+            let has_solution = matches!(ended, Ok((outcome, _)) if outcome != Outcome::Cancelled);
             if let Ok((_, report)) = &ended {
                 *self.done.products.lock().unwrap_or_else(PoisonError::into_inner) += report.products;
             }
@@ -216,16 +216,16 @@ impl<'a> Table<'a> {
         let mut watch = |_: &Progress| self.is_cancelled();
         let mut spent = 0.0;
         if warm {
-            if let Ok((stop, report)) = self.step(tangent, &turn, true, &mut watch) {
-                if stop == Outcome::Converged || stop == Outcome::Cancelled {
-                    return Ok((stop, report));
+            if let Ok((outcome, report)) = self.step(tangent, &turn, true, &mut watch) {
+                if outcome == Outcome::Converged || outcome == Outcome::Cancelled {
+                    return Ok((outcome, report));
                 }
                 spent = report.products;
             }
         }
-        let (stop, mut report) = self.step(tangent, &turn, false, &mut watch)?;
+        let (outcome, mut report) = self.step(tangent, &turn, false, &mut watch)?;
         report.products += spent;
-        Ok((stop, report))
+        Ok((outcome, report))
     }
 
     fn step(&self, tangent: &mut Tangent, turn: &Turn<'_>, again: bool, watch: ProgressCallback<'_>) -> Ended {

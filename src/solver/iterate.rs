@@ -25,8 +25,7 @@ pub fn iterate<S: AdmissibleSet>(
     task: &mut Task<'_, '_, S>,
     best: &mut Best,
 ) -> Result<Outcome> {
-    let policy = method.policy();
-    let (set, goal) = (task.set, task.goal);
+    let (policy, set, goal) = (method.policy(), task.set, task.goal);
     method.begin(task.state)?;
     let (mut chatter, mut least, mut since) = (0, f64::INFINITY, 0);
     // Not every step counts as a cycle, but `max_cycles` bounds the number of steps as well.
@@ -36,7 +35,9 @@ pub fn iterate<S: AdmissibleSet>(
         }
         // 2. p = 0 in E. 3. A step of the method on C.
         let products = task.monitor.count.matrix_products;
-        let change = step(method, task)?;
+        let change = method.step(task).or_else(|error| given_up(error, method.name(), task));
+        task.count_products();
+        let change = change?;
         // Only a fresh product certifies: without one, u may be a linear combination of earlier displacements.
         let is_certain = task.state.u_is == Freshness::Exact && task.monitor.count.matrix_products > products;
         if change.gives_up && !is_certain {
@@ -80,19 +81,17 @@ pub fn iterate<S: AdmissibleSet>(
     Ok(task.monitor.interrupted())
 }
 
-/// Does a step and counts its products. The operator of an elastic body is positive definite. If a step finds that it
-/// is not, round-off is the cause, and the method gives up. A caller's table is refused in this case.
-fn step<S: AdmissibleSet>(method: &mut dyn Step<S>, task: &mut Task<'_, '_, S>) -> Result<Change> {
-    let change = match method.step(task) {
-        Err(Error::NotPositiveDefinite(message)) if !task.problem.given => {
-            log::info!("{}: {message}", method.name());
+/// A step that failed. The operator of an elastic body is positive definite. If a step finds that it is not, round-off is
+/// the cause, and the method gives up. A caller's table is refused in this case.
+fn given_up<S: AdmissibleSet>(error: Error, method: &str, task: &mut Task<'_, '_, S>) -> Result<Change> {
+    match error {
+        Error::NotPositiveDefinite(message) if !task.problem.given => {
+            log::info!("{method}: {message}");
             task.state.u_is = Freshness::Stale;
             Ok(Change { gives_up: true, ..Change::default() })
         }
-        change => change,
-    };
-    task.count_products();
-    change
+        error => Err(error),
+    }
 }
 
 /// Surveys the state, by a fresh product if u is stale or the criterion seems met: only a fresh product certifies.

@@ -1,7 +1,7 @@
 //! Products with the caller's pressures, and the stiffness of a result.
 
 use super::tangential_calls::finite;
-use super::{ActiveSet, Guess, InitialGuess, Method, Options, Outcome, Solver};
+use super::{ActiveSet, Asked, Guess, InitialGuess, Method, Options, Outcome, Solver};
 use crate::contact::Survey;
 use crate::error::{invalid, Error, Result};
 use crate::memory::zeros;
@@ -75,11 +75,11 @@ impl Solver {
             estimates: false,
             ..set_up.options
         };
-        let (stop, found) = match &mut workers[0] {
+        let (outcome, found) = match &mut workers[0] {
             Some(worker) => worker.stiffness_of(&state.contact, &options)?,
             None => unreachable!("it was set up"),
         };
-        Ok((stop, Stiffness { value: found.value / self.compliance, ..found }))
+        Ok((outcome, Stiffness { value: found.value / self.compliance, ..found }))
     }
 
     /// The stiffness of a contact area. This solver's own result is lost.
@@ -97,13 +97,13 @@ impl Solver {
         let p: Vec<f64> = zeros(grid.len(), "pressures of a stiffness")?;
         let guess = Some(Guess { pressure: &p, contact });
         // Only grid, distance and load are used: the coefficients contain effects and bodies.
-        let scene = Scene::new(grid, &h, Bodies::same(1.0, 0.0), load);
+        let scene = &Scene::new(grid, &h, Bodies::same(1.0, 0.0), load);
         let mut monitor = Monitor::new(None, Vec::new(), false);
-        let (stop, _) = self.solve_normal((&scene, 0.0), options, guess, &mut monitor)?;
+        let (outcome, _) = self.solve_normal(Asked { guess, ..Asked::new((scene, 0.0), options) }, &mut monitor)?;
         let sum = in_blocks(self.state.p.iter().copied());
         let residual = Survey::of(&self.state).certificate().residual;
         let stiffness = Stiffness { value: sum * grid.element_area() / unit, residual };
-        let stop = if residual <= SUFFICIENT_RESIDUAL { Outcome::Converged } else { stop };
-        Ok((stop, stiffness))
+        let outcome = if residual <= SUFFICIENT_RESIDUAL { Outcome::Converged } else { outcome };
+        Ok((outcome, stiffness))
     }
 }

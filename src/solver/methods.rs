@@ -69,7 +69,7 @@ impl Methods {
         self.best.forget();
         self.projected_cg.begin_anew();
         let has_direct = self.direct.is_some();
-        let (mut stop, most) = (Outcome::Stagnated, task.goal.max_cycles);
+        let (mut outcome, most) = (Outcome::Stagnated, task.goal.max_cycles);
         for (i, &stage) in stages.iter().filter(|stage| **stage != Stage::Direct || has_direct).enumerate() {
             if i > 0 {
                 self.hand_over(stage, task)?;
@@ -84,27 +84,27 @@ impl Methods {
             }
             let is_last = Some(&stage) == stages.last();
             task.goal.max_cycles = if is_last { most } else { share::<S>(stage, task.monitor.count.cycles, most) };
-            stop = self.run(stage, task)?;
+            outcome = self.run(stage, task)?;
             let has_more = task.monitor.count.cycles < most && !is_last;
             task.goal.max_cycles = most;
-            if stop != Outcome::Stagnated && !(stop == Outcome::IterationLimit && has_more) {
+            if outcome != Outcome::Stagnated && !(outcome == Outcome::IterationLimit && has_more) {
                 break;
             }
         }
-        if stop != Outcome::Converged {
+        if outcome != Outcome::Converged {
             let indefinite =
-                stop == Outcome::Stagnated && task.problem.given && has_negative_energy(task.problem, task.state)?;
+                outcome == Outcome::Stagnated && task.problem.given && has_negative_energy(task.problem, task.state)?;
             let survey = self.best.restore(task)?;
             if indefinite {
                 return Err(Error::NotPositiveDefinite(
                     "influence coefficients: p'Ap is negative for some pressures p; it must be positive".into(),
                 ));
             }
-            if stop != Outcome::Cancelled && !task.goal.by_update() && is_solved(task, survey) {
+            if outcome != Outcome::Cancelled && !task.goal.by_update() && is_solved(task, survey) {
                 return Ok(Outcome::Converged);
             }
         }
-        Ok(stop)
+        Ok(outcome)
     }
 
     /// Judges the start.

@@ -1,10 +1,12 @@
 //! The solve of a scene: the options, the loop (`iterate`), the methods and their order, the report.
 //!
 //! A [`Solver`] is set up once for a grid and a pair of bodies (operators, transforms, grids) and then solves any number of
-//! undeformed distances and loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call.
+//! undeformed distances and loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call. The methods of a solver
+//! stand in the files of this folder, one subject in each.
 
 mod adhesion;
 mod adhesive_friction;
+mod asked;
 mod batch;
 mod beside;
 mod best;
@@ -54,6 +56,7 @@ pub use crate::operator::Precision;
 pub use crate::progress::{
     Counters, Criterion, DiscretisationError, LedgerRow, Measures, Outcome, Progress, ProgressCallback,
 };
+pub(crate) use asked::Asked;
 pub use batch::Problem;
 pub use bill::{effects_bill, BillOptions, BillRow, Neglected, Omission, Verdict};
 pub use falling::Falling;
@@ -142,8 +145,8 @@ struct SetUp {
 /// Solves one scene.
 pub fn solve(scene: &Scene<'_>, options: &Options) -> Result<(Solver, Outcome, Report)> {
     let (mut solver, lowest) = Solver::for_scene(scene, options)?;
-    let (stop, report) = solver.solve_checked((scene, lowest), options, None, None)?;
-    Ok((solver, stop, report))
+    let (outcome, report) = solver.solve_checked(Asked::new((scene, lowest), options), None)?;
+    Ok((solver, outcome, report))
 }
 
 impl Solver {
@@ -170,17 +173,17 @@ impl Solver {
             lowest
         };
         let threads = threads?;
-        let (influence, compressible) = Compressible::of(scene.coefficients()?, scene.load);
+        let (coefficients, compressible) = Compressible::of(scene.coefficients()?, scene.load);
         let set_up = SetUp {
             named: Named::new(scene),
             own_coefficients: effects::own_coefficients(scene),
             lacks_table: false,
             without_multigrid: effects::excluded_method(scene),
-            largest_influence: influence.largest(&scene.grid),
+            largest_influence: coefficients.largest(&scene.grid),
             compressible,
             options: *options,
         };
-        let mut solver = Solver::of(scene.grid, influence, set_up, &threads)?;
+        let mut solver = Solver::of(scene.grid, coefficients, set_up, &threads)?;
         if let Some(given) = scene.friction.as_ref().and_then(|friction| friction.influence) {
             solver.own_tables = Some(Arc::new(KeptInfluence::new(&given)?));
         }
@@ -188,8 +191,8 @@ impl Solver {
         Ok((solver, lowest))
     }
 
-    fn of(grid: Grid, influence: Coefficients, set_up: SetUp, threads: &Threads) -> Result<Solver> {
-        let mut problem = contact::Problem::new(grid, influence, threads)?;
+    fn of(grid: Grid, coefficients: Coefficients, set_up: SetUp, threads: &Threads) -> Result<Solver> {
+        let mut problem = contact::Problem::new(grid, coefficients, threads)?;
         problem.given = set_up.own_coefficients.is_some();
         Ok(Solver {
             methods: Methods::new(&problem, &set_up.options)?,
@@ -223,54 +226,39 @@ impl Solver {
         let own = self.own_tables.clone();
         let scene = &*self.with_own_tables(scene, own.as_deref())?;
         let lowest = scene.check_distance_and_load(&self.problem.threads)?;
-        self.solve_checked((scene, lowest), options, guess, progress)
+        self.solve_checked(Asked { guess, ..Asked::new((scene, lowest), options) }, progress)
     }
 
-    /// [`Solver::solve`] for a scene whose distance and load are checked, with its least distance.
+    /// [`Solver::solve`] for a scene whose distance and load are checked.
     pub(crate) fn solve_checked(
         &mut self,
-        (scene, lowest): (&Scene<'_>, f64),
-        options: &Options,
-        guess: Option<Guess<'_>>,
+        asked: Asked<'_>,
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
-        self.set_up.check(scene, options, &self.problem)?;
-        self.on_surface((scene, lowest), |solver, scene| solver.solve_step_in_time(scene, options, guess, progress))
-    }
-
-    /// Solves with the undeformed distance after the scene's effects on it.
-    fn on_surface<R>(
-        &mut self,
-        (scene, lowest): (&Scene<'_>, f64),
-        solve: impl FnOnce(&mut Solver, (&Scene<'_>, f64)) -> Result<R>,
-    ) -> Result<R> {
-        let Some(h) = effects::surface(scene)? else { return solve(self, (scene, lowest)) };
-        let scene = &Scene { undeformed_distance: &h, ..scene.clone() };
-        let lowest = scene.check_distance_and_load(&self.problem.threads)?;
-        solve(self, (scene, lowest))
-    }
-
-    /// Solves a checked scene of bodies without memory, or whose distances contain the memory.
-    fn solve_surface(
-        &mut self,
-        (scene, lowest): (&Scene<'_>, f64),
-        options: &Options,
-        guess: Option<Guess<'_>>,
-        progress: Option<ProgressCallback<'_>>,
-    ) -> Result<(Outcome, Report)> {
-        check::guess(scene, options, guess)?;
-        if let Some(adhesion) = scene.attraction() {
-            return self.solve_adhesive((scene, lowest), (adhesion, false), options, guess, progress);
+        self.set_up.check(asked.scene, asked.options, &self.problem)?;
+        self.problem.exact_edges = asked.exact_edges;
+        let surface = effects::surface(asked.scene)?;
+        let changed = surface.as_deref().map(|h| Scene { undeformed_distance: h, ..asked.scene.clone() });
+        let asked = asked.on(changed.as_ref(), &self.problem.threads)?;
+        match (effects::memory(asked.scene, &mut self.beside.histories)?, asked.scene.attraction()) {
+            (Some((k, memory)), _) => self.solve_with_memory(asked, (k, &*memory), progress),
+            (None, Some(adhesion)) => self.solve_adhesive(asked, (adhesion, false), progress),
+            (None, None) => self.solve_at_once(asked, progress),
         }
+    }
+
+    /// Solves a checked scene of bodies that do not attract each other. They have no memory, or the distances contain it.
+    fn solve_at_once(&mut self, asked: Asked<'_>, progress: Option<ProgressCallback<'_>>) -> Result<(Outcome, Report)> {
+        let Asked { scene, options, .. } = asked;
+        check::guess(asked)?;
         self.suit(scene.load)?;
-        let given_contact = guess.filter(|_| options.is_fixed());
-        check::range((scene, lowest), &self.problem, self.set_up.largest_influence, given_contact)?;
+        check::range(asked, &self.problem, self.set_up.largest_influence)?;
         self.check_continues(scene)?;
         let kept = self.kept(scene)?;
         let mut monitor = Monitor::new(progress, std::mem::take(&mut self.ledger), options.estimates);
-        let outcome = self.solve_normal((scene, lowest), options, guess, &mut monitor).and_then(|(stop, tolerance)| {
-            let stop = self.meet_compressed((scene, lowest), options, guess, &mut monitor, stop)?;
-            let (stop, found) = self.solve_beside(scene, options, stop, &mut monitor)?;
+        let solved = self.solve_normal(asked, &mut monitor).and_then(|(outcome, tolerance)| {
+            let outcome = self.meet_compressed(asked, &mut monitor, outcome)?;
+            let (outcome, found) = self.solve_beside(scene, options, outcome, &mut monitor)?;
             let mut report = Report { friction: found, ..Report::of(&monitor, tolerance) };
             if options.estimates {
                 self.estimate(scene, options, &mut monitor, &mut report);
@@ -279,17 +267,17 @@ impl Solver {
                 report.measures = measures;
             }
             (report.solve_seconds, report.coarse_seconds) = (monitor.seconds(), monitor.coarse_seconds);
-            Ok((stop, report))
+            Ok((outcome, report))
         });
         self.ledger = monitor.ledger.rows;
-        if outcome.is_err() {
+        if solved.is_err() {
             self.go_back(kept);
         }
-        let (stop, mut report) = outcome?;
+        let (outcome, mut report) = solved?;
         (self.split, self.compliance) = (None, 1.0);
         report.setup_seconds = std::mem::take(&mut self.setup_seconds);
         report.bytes = self.bytes() as u64;
-        report.log(options.method, &self.problem.grid, stop);
-        Ok((stop, report))
+        report.log(options.method, &self.problem.grid, outcome);
+        Ok((outcome, report))
     }
 }

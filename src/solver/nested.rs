@@ -32,7 +32,7 @@ impl FullMultigrid {
         for level in &multigrid.levels[1..] {
             let (operator, work) = (level.operator.clone(), level.work);
             let threads = &problem.threads;
-            let own = Problem::with_operator(level.grid, level.influence.clone(), operator, work, threads)?;
+            let own = Problem::with_operator(level.grid, level.coefficients.clone(), operator, work, threads)?;
             coarser.push((own, State::new(level.grid, (Load::Approach(0.0), 0.0), threads)?));
         }
         Ok(FullMultigrid { multigrid, workspace: Workspace::default(), coarser, best: Best::default() })
@@ -106,13 +106,13 @@ impl FullMultigrid {
         let goal = Goal { max_cycles: cycles, ..*goal };
         let lowest = lowest(&state.h);
         let mut task = Task { problem, state, lowest, set: NonNegative, goal, monitor };
-        let stop = if coarsest {
+        let outcome = if coarsest {
             task.state.start(task.problem.self_influence());
             iterate(norm, &mut task, best)?
         } else {
             iterate(&mut Cycles { multigrid, level: l + 1, workspace }, &mut task, best)?
         };
-        if stop != Outcome::Converged {
+        if outcome != Outcome::Converged {
             best.restore(&mut task)?;
         }
         Ok(())

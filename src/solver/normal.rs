@@ -2,41 +2,34 @@
 
 use super::stages;
 use super::take_over;
-use super::{Guess, InitialGuess, Options, Solver};
+use super::{Asked, InitialGuess, Solver};
 use crate::contact::{AdmissibleSet, Fixed, NonNegative, Survey};
 use crate::effects;
 use crate::error::Result;
 use crate::memory::{reserve, zeros};
 use crate::methods::Task;
 use crate::progress::{Monitor, Outcome};
-use crate::scene::{Each, PressureLimit, Scene};
+use crate::scene::{Each, PressureLimit};
 
 impl Solver {
-    /// Solves the normal problem on the scene's admissible set. `lowest`: the least distance.
-    pub(super) fn solve_normal(
-        &mut self,
-        (scene, lowest): (&Scene<'_>, f64),
-        options: &Options,
-        guess: Option<Guess<'_>>,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<(Outcome, f64)> {
-        take_over::take_distance(&mut self.state, scene.undeformed_distance, &self.problem.threads);
-        match effects::limits(scene) {
-            _ if options.is_fixed() => self.run((scene, lowest), Fixed, options, guess, monitor),
-            None => self.run((scene, lowest), NonNegative, options, guess, monitor),
-            Some(limit) => self.run_limited((scene, lowest), limit, options, guess, monitor),
+    /// Solves the normal problem on the scene's admissible set.
+    pub(super) fn solve_normal(&mut self, asked: Asked<'_>, monitor: &mut Monitor<'_>) -> Result<(Outcome, f64)> {
+        take_over::take_distance(&mut self.state, asked.scene.undeformed_distance, &self.problem.threads);
+        match effects::limits(asked.scene) {
+            _ if asked.options.is_fixed() => self.run(asked, Fixed, monitor),
+            None => self.run(asked, NonNegative, monitor),
+            Some(limit) => self.run_limited(asked, limit, monitor),
         }
     }
 
     /// Solves with limits, which are copied, as a callback may change the caller's.
     fn run_limited(
         &mut self,
-        (scene, lowest): (&Scene<'_>, f64),
+        asked: Asked<'_>,
         limit: PressureLimit<'_>,
-        options: &Options,
-        guess: Option<Guess<'_>>,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, f64)> {
+        let options = asked.options;
         let n = self.state.p.len();
         if self.state.at_limit.is_empty() {
             self.state.at_limit = zeros(n, "elements at their limit")?;
@@ -51,14 +44,14 @@ impl Solver {
                 PressureLimit(Each::PerElement(&limits))
             }
         };
-        let mut outcome = self.run((scene, lowest), set, options, guess, monitor);
+        let mut solved = self.run(asked, set, monitor);
         // An element at its limit with e near 0 is there by round-off of an equal pressure.
         let on_the_way = self.state.reached_limit && {
             let scale = Survey::of(&self.state).scale;
             let held = |i: usize| self.state.deformed_distance(i) < -options.tolerance * scale;
             !(0..n).any(|i| self.state.at_limit[i] && held(i))
         };
-        let converged = matches!(outcome, Ok((Outcome::Converged, _)));
+        let converged = matches!(solved, Ok((Outcome::Converged, _)));
         if on_the_way && converged && options.initial_guess != InitialGuess::Previous {
             // Only iterates reached a limit: the result has the bits of the scene without limits, if there is still time for it.
             let window = self.methods.projected_cg.current_window();
@@ -66,10 +59,10 @@ impl Solver {
             monitor.ledger.estimates = found.1.estimates;
             monitor.enter_grid();
             self.methods.forget_iterates();
-            let without = self.run((scene, lowest), NonNegative, options, guess, monitor);
+            let without = self.run(asked, NonNegative, monitor);
             let exceeds = self.state.p.iter().enumerate().any(|(i, p)| *p > set.limit(i));
             if matches!(without, Ok((Outcome::Converged, _))) && !exceeds {
-                outcome = without;
+                solved = without;
             } else {
                 let work_units = monitor.count.work_units;
                 (self.state, monitor.ledger, monitor.count) = found;
@@ -78,24 +71,18 @@ impl Solver {
                 self.methods.forget_iterates();
                 self.methods.projected_cg.forget_solutions();
                 self.methods.projected_cg.go_back_to(window);
-                if let (Ok((stop, _)), true) = (&mut outcome, monitor.is_cancelled()) {
-                    *stop = Outcome::Cancelled;
+                if let (Ok((outcome, _)), true) = (&mut solved, monitor.is_cancelled()) {
+                    *outcome = Outcome::Cancelled;
                 }
             }
         }
         self.limits = limits;
-        outcome
+        solved
     }
 
     /// Solves on an admissible set, with the distances of the state. Returns the outcome and the tolerance used.
-    fn run<S: AdmissibleSet>(
-        &mut self,
-        (scene, lowest): (&Scene<'_>, f64),
-        set: S,
-        options: &Options,
-        guess: Option<Guess<'_>>,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<(Outcome, f64)> {
+    fn run<S: AdmissibleSet>(&mut self, asked: Asked<'_>, set: S, monitor: &mut Monitor<'_>) -> Result<(Outcome, f64)> {
+        let Asked { lowest, options, .. } = asked;
         let Solver { problem, state, methods, set_up, has_result, .. } = self;
         let multigrid = set_up.without_multigrid.is_none();
         let stages = stages::stages::<S>(options.method, problem.symmetric, multigrid);
@@ -107,11 +94,11 @@ impl Solver {
         if !solved {
             methods.projected_cg.forget_solutions();
         }
-        let (from, survey) = take_over::take_over(problem, state, set, scene, (options, guess, solved), monitor)?;
+        let (from, survey) = take_over::take_over(problem, state, set, (asked, solved), monitor)?;
         let mut task = Task { problem, state, lowest, set, goal: options.goal(), monitor };
         let is_unloaded = take_over::is_without_contact(task.state, lowest, S::FIXED)
             || take_over::is_even_without_force::<S>(task.state);
-        let stop = if is_unloaded {
+        let outcome = if is_unloaded {
             Outcome::Converged
         } else if take_over::fills_limits(task.problem, task.state, set)? {
             task.count_products();
@@ -119,14 +106,14 @@ impl Solver {
         } else {
             methods.solve(&mut task, (from, survey), stages, options.error_ratio)?
         };
-        let stop = match stop {
-            Outcome::Stagnated | Outcome::IterationLimit => look_at_full_limits(&mut task)?.unwrap_or(stop),
-            stop => stop,
+        let outcome = match outcome {
+            Outcome::Stagnated | Outcome::IterationLimit => look_at_full_limits(&mut task)?.unwrap_or(outcome),
+            outcome => outcome,
         };
-        let stop = if task.monitor.is_cancelled() { Outcome::Cancelled } else { stop };
+        let outcome = if task.monitor.is_cancelled() { Outcome::Cancelled } else { outcome };
         *has_result = true;
         task.monitor.close_grid(task.state);
-        Ok((stop, task.goal.tolerance))
+        Ok((outcome, task.goal.tolerance))
     }
 }
 

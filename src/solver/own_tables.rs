@@ -54,7 +54,7 @@ impl Solver {
             let (now, before) = if given.cross.is_some() { ("given", "without") } else { ("not given", "with it") };
             return invalid(format!("friction->influence_cross is {now}, but this solver was set up {before}"));
         }
-        friction.check_tables(&self.problem.grid)
+        given.check_for_any_motion(&self.problem.grid)
     }
 
     /// Sets the tables of all later solves with friction. The last result stays.

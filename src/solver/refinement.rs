@@ -15,7 +15,7 @@ pub(super) use accuracy::LEAST_TOLERANCE;
 pub use price_list::{cost_of_accuracy, Obstacle, Price};
 
 use super::quantities::{values, Quantity};
-use super::{Options, Outcome, Progress, ProgressCallback, Report, Solver};
+use super::{Asked, Options, Outcome, Progress, ProgressCallback, Report, Solver};
 use crate::effects;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
@@ -215,18 +215,16 @@ fn solve_on(
         other => other,
     };
     let (mut solver, lowest) = Solver::for_scene(scene, options).map_err(said)?;
-    // Without a callback the surface jumps between the given elements only.
-    solver.problem.exact_edges = surface.is_none() && doublings >= 0;
     let mut is_late = false;
     let mut watch = |told: &Progress| {
         is_late = late(told);
         is_late || progress.as_mut().is_some_and(|progress| progress(told))
     };
-    let (stop, report) = solver.solve_checked((scene, lowest), options, None, Some(&mut watch))?;
+    // Without a callback the surface jumps between the given elements only.
+    let asked = Asked { exact_edges: surface.is_none() && doublings >= 0, ..Asked::new((scene, lowest), options) };
+    let (stop, report) = solver.solve_checked(asked, Some(&mut watch))?;
     let outlook = Outlook::of(&solver, &report, scene.load);
     let of = if stop == Outcome::Cancelled { vec![] } else { values(&mut solver, scene, &report, wanted)? };
-    // Later scenes of this solver may have other surfaces.
-    solver.problem.exact_edges = false;
     let values = Values { of, residual: report.residual(), lack_estimates: solver.lacks_estimates() };
     let solved = Solved { solver, report, outlook, values };
     Ok(match stop {

@@ -8,7 +8,7 @@ use crate::grid::Grid;
 use crate::progress::{Counters, DiscretisationError, Measures, Monitor, Outcome};
 use crate::visco;
 
-/// The limit of the accuracy of a solution.
+/// The limit of the accuracy of a solution; numbered as in the C ABI.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Limit {
     /// Not known.
@@ -20,25 +20,19 @@ pub enum Limit {
     Tolerance,
 }
 
-/// Cost and error with elements of half the size.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Cost and error with elements of half the size, where they are known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Halving {
     /// Seconds of a solve, with the measured growth n^1.13 in the number of elements (docs/performance.md).
-    pub seconds: f64,
-    /// The error of the force (or the approach) on this and finer grids, if it is known.
+    pub seconds: Option<f64>,
+    /// The error of the force (or the approach) on this and finer grids.
     pub error: Option<Falling>,
 }
 
 impl Halving {
-    /// The error of the force (or the approach) after halving. Negative if not known.
-    pub fn force(&self) -> f64 {
-        self.error.map_or(-1.0, |error| error.after(1))
-    }
-}
-
-impl Default for Halving {
-    fn default() -> Halving {
-        Halving { seconds: -1.0, error: None }
+    /// The error of the force (or the approach) after halving.
+    pub fn force(&self) -> Option<f64> {
+        self.error.map(|error| error.after(1))
     }
 }
 
@@ -55,7 +49,7 @@ pub struct Report {
     pub tolerance: f64,
     /// The limit of the accuracy.
     pub limit: Limit,
-    /// Cost and error of the next finer grid. Negative values are not known.
+    /// Cost and error of the next finer grid.
     pub halving: Halving,
     /// Seconds of set-up. 0 if the solver was set up before.
     pub setup_seconds: f64,
@@ -93,11 +87,11 @@ impl Report {
     }
 
     /// Logs the summary of a solve.
-    pub(super) fn log(&self, method: Method, grid: &Grid, stop: Outcome) {
+    pub(super) fn log(&self, method: Method, grid: &Grid, outcome: Outcome) {
         let (Grid { mx, my, .. }, residual) = (grid, self.measures.certificate.residual);
         let Counters { cycles, work_units, .. } = self.count;
         log::info!(
-            "{method:?} on {mx} x {my}: {stop:?} after {cycles} cycles and {work_units:.1} work units, residual {residual:e}"
+            "{method:?} on {mx} x {my}: {outcome:?} after {cycles} cycles and {work_units:.1} work units, residual {residual:e}"
         );
         if log::log_enabled!(log::Level::Info) {
             self.advice().iter().for_each(|advice| log::info!("{advice}"));
@@ -111,7 +105,7 @@ impl Report {
             Limit::Grid => "the grid, not the tolerance,",
             Limit::Tolerance => "the tolerance, not the grid,",
         };
-        let (seconds, force, error) = (self.halving.seconds, self.halving.force(), self.error.force);
+        let (seconds, force, error) = (self.halving.seconds?, self.halving.force()?, self.error.force?);
         Some(format!(
             "{what} limits this answer: halving the elements would cost about {seconds:.2e} s and bring the error of the force or \
              approach from {error:.2e} to {force:.2e}"

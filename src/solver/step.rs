@@ -30,12 +30,12 @@ impl Solver {
         Ok(())
     }
 
-    /// Solves the further problems of a scene, after the normal problem ended with `stop`. The report includes friction.
+    /// Solves the further problems of a scene, after the normal problem ended with `outcome`. The report includes friction.
     pub(super) fn solve_beside(
         &mut self,
         scene: &Scene<'_>,
         options: &Options,
-        stop: Outcome,
+        outcome: Outcome,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, Option<Report>)> {
         let mut tangent = match scene.friction {
@@ -43,20 +43,20 @@ impl Solver {
             None => None,
         };
         let mut beside = std::mem::take(&mut self.beside);
-        let outcome = match effects::beside(scene).next() {
-            Some(_) => self.solve_step(tangent.as_deref_mut(), &mut beside, (scene, options), stop, monitor),
-            None => Ok((stop, None)),
+        let solved = match effects::beside(scene).next() {
+            Some(_) => self.solve_step(tangent.as_deref_mut(), &mut beside, (scene, options), outcome, monitor),
+            None => Ok((outcome, None)),
         };
-        if outcome.is_ok() {
+        if solved.is_ok() {
             effects::keep(scene, &mut beside.histories);
         }
         self.beside = beside;
-        match (tangent, &outcome) {
+        match (tangent, &solved) {
             (Some(tangent), _) => self.friction = Some(tangent),
             (None, Ok(_)) => self.friction.iter_mut().for_each(|before| before.pass_over()),
             (None, Err(_)) => {}
         }
-        outcome
+        solved
     }
 
     /// Solves the further problems, with the requested derivatives. An error restores the last tractions. A cancelled
@@ -66,7 +66,7 @@ impl Solver {
         tangent: Option<&mut Tangent>,
         beside: &mut Beside,
         (scene, options): (&Scene<'_>, &Options),
-        stop: Outcome,
+        outcome: Outcome,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, Option<Report>)> {
         let threads = self.problem.threads.clone();
@@ -81,15 +81,15 @@ impl Solver {
         });
         let others = effects::coupled(scene, &mut beside.histories)?;
         let mut turns = Turns { friction, others, distances: &mut beside.distances };
-        let solved = InTurns::new(self, &mut turns, (scene, options), monitor).solve(stop).and_then(|stop| {
+        let solved = InTurns::new(self, &mut turns, (scene, options), monitor).solve(outcome).and_then(|outcome| {
             self.add_derivatives(&mut turns, scene, monitor)?;
-            Ok(stop)
+            Ok(outcome)
         });
         match solved {
-            Ok(stop) => {
+            Ok(outcome) => {
                 turns.all().for_each(|coupled| coupled.step_done(&self.state));
-                let stop = if monitor.is_cancelled() { Outcome::Cancelled } else { stop };
-                Ok((stop, turns.friction.and_then(|friction| friction.found)))
+                let outcome = if monitor.is_cancelled() { Outcome::Cancelled } else { outcome };
+                Ok((outcome, turns.friction.and_then(|friction| friction.found)))
             }
             Err(error) => {
                 if let Some(friction) = turns.friction {

@@ -2,13 +2,13 @@
 
 use std::ops::Range;
 
-use super::{Guess, InitialGuess, Options};
+use super::{Asked, InitialGuess};
 use crate::blocks;
 use crate::contact::{AdmissibleSet, Freshness, Problem, State, Survey};
 use crate::error::Result;
 use crate::methods::Start;
 use crate::progress::{Goal, Monitor};
-use crate::scene::{Load, Scene};
+use crate::scene::Load;
 use crate::sums::ROUND_OFF;
 use crate::threads::Threads;
 
@@ -29,12 +29,12 @@ pub fn take_over<S: AdmissibleSet>(
     problem: &mut Problem,
     state: &mut State,
     set: S,
-    scene: &Scene<'_>,
-    (options, guess, solved): (&Options, Option<Guess<'_>>, bool),
+    (asked, solved): (Asked<'_>, bool),
     monitor: &mut Monitor<'_>,
 ) -> Result<(Start, Option<Survey>)> {
+    let Asked { scene, options, .. } = asked;
     let nothing = (Start::Nothing, None);
-    let from = take_pressures(state, options, guess, solved);
+    let from = take_pressures(state, asked, solved);
     state.load = scene.load;
     state.round_off = problem.round_off();
     state.reached_limit = false;
@@ -80,13 +80,13 @@ pub fn take_over<S: AdmissibleSet>(
 }
 
 /// The pressures and the contact area to start from.
-fn take_pressures(state: &mut State, options: &Options, guess: Option<Guess<'_>>, solved: bool) -> Start {
-    let fixed = options.is_fixed();
+fn take_pressures(state: &mut State, asked: Asked<'_>, solved: bool) -> Start {
+    let fixed = asked.options.is_fixed();
     // Elements at their limit were in contact.
     for (inside, at_limit) in state.contact.iter_mut().zip(&mut state.at_limit) {
         *inside |= std::mem::take(at_limit);
     }
-    match (options.initial_guess, guess) {
+    match (asked.options.initial_guess, asked.guess) {
         (InitialGuess::Given, Some(guess)) => {
             state.p.copy_from_slice(guess.pressure);
             state.contact.copy_from_slice(guess.contact);

@@ -153,19 +153,19 @@ impl Tangent {
         self.solver.solve(&request, &mut |grid, residual| monitor.uncounted_done(grid, residual))
     }
 
-    /// Solves with the pressures of a normal problem that ended with `stop`. If it did not converge, or is to be solved again for unlike bodies, its
-    /// pressures may be too small for the forces. Then the forces are [a little less](IN_REACH) than the pressures carry, and the refusal is returned
+    /// Solves with the pressures of a normal problem that ended with `outcome`. If it did not converge, or is to be solved again for unlike bodies,
+    /// its pressures may be too small for the forces. Then the forces are [a little less](IN_REACH) than the pressures carry, and the refusal is returned
     /// as well.
     pub fn solve_after(
         &mut self,
-        stop: Outcome,
+        outcome: Outcome,
         turn: &Turn<'_>,
         pressure: &[f64],
         start: Start<'_>,
         monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, Report, Option<Error>)> {
         match self.solve_from(start, turn, pressure, monitor) {
-            Err(refusal @ Error::Infeasible(_)) if stop != Outcome::Converged || self.unlike.is_some() => {
+            Err(refusal @ Error::Infeasible(_)) if outcome != Outcome::Converged || self.unlike.is_some() => {
                 let request = Request { start, ..Request::new(pressure, turn.friction, turn.options.tolerance) };
                 let part = IN_REACH * self.solver.part_in_reach(&request)?;
                 let in_reach = |prescribed: Prescribed| match prescribed {
@@ -174,10 +174,10 @@ impl Tangent {
                 };
                 let friction = Friction { prescribed: turn.friction.prescribed.map(in_reach), ..*turn.friction };
                 let turn = Turn { friction: &friction, ..*turn };
-                let (outcome, report) = self.solve_from(start, &turn, pressure, monitor)?;
-                Ok((outcome, report, Some(refusal)))
+                let (ended, report) = self.solve_from(start, &turn, pressure, monitor)?;
+                Ok((ended, report, Some(refusal)))
             }
-            found => found.map(|(outcome, report)| (outcome, report, None)),
+            found => found.map(|(ended, report)| (ended, report, None)),
         }
     }
 

@@ -40,10 +40,10 @@ impl Solver {
         let turn = Turn { scene, friction, options, threads: &threads };
         let solved = alone(&mut tangent, &turn, pressure, progress);
         let tangent = &*self.friction.insert(tangent);
-        let (stop, report) = solved?;
+        let (outcome, report) = solved?;
         // A completed solve has a result.
         let Some(solution) = tangent.solution() else { return invalid("there is no result".into()) };
-        Ok((stop, solution, report))
+        Ok((outcome, solution, report))
     }
 
     /// The friction of a scene, which must be that of the set-up. Its distance and its load are not used.
@@ -75,8 +75,8 @@ pub fn solve_tangential(
     let threads = Threads::new(options.threads)?;
     let mut tangent = Tangent::new(scene, options, &threads)?;
     let turn = Turn { scene, friction, options, threads: &threads };
-    let (stop, report) = alone(&mut tangent, &turn, pressure, progress)?;
-    Ok((stop, tangent.into_solution(), report))
+    let (outcome, report) = alone(&mut tangent, &turn, pressure, progress)?;
+    Ok((outcome, tangent.into_solution(), report))
 }
 
 /// One step with given pressures.
@@ -91,13 +91,13 @@ fn alone(
         InitialGuess::Previous if tangent.last_step().is_some() => Start::Last,
         _ => turn.start(),
     };
-    let (stop, found) = bounded(turn.scene, turn.friction, pressure, |friction, pressing| {
+    let (outcome, found) = bounded(turn.scene, turn.friction, pressure, |friction, pressing| {
         tangent.solve_from(start, &Turn { friction, ..*turn }, pressing, &mut monitor)
     })?;
     tangent.keep_pressures(pressure);
     let measures = measures(&turn.scene.grid, pressure);
     let (friction, tolerance, solve_seconds) = (Some(found), turn.options.tolerance, monitor.seconds());
-    Ok((stop, Report { measures, friction, tolerance, solve_seconds, ..Report::default() }))
+    Ok((outcome, Report { measures, friction, tolerance, solve_seconds, ..Report::default() }))
 }
 
 /// The pressures with negative ones set to 0. Refuses all but one finite value per element.

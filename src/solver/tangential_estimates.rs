@@ -28,8 +28,8 @@
 //!
 //! [`estimates`]: super::estimates
 
-use super::estimates::{Parts, LEAST_CHORD};
-use crate::contact::{at_ends, at_jumps, Curvature, Outline, Problem, State};
+use super::estimates::{at_ends, at_jumps, Curvature, Parts, LEAST_CHORD};
+use crate::contact::{Outline, Problem, State};
 use crate::effects::Coefficient;
 use crate::friction::{Report, Solution, Vector, SLIP};
 use crate::rectangle::Rectangle;
@@ -68,9 +68,9 @@ pub struct Solved<'a> {
     pub coated: bool,
 }
 
-/// Errors of the tangential force in each direction, or of the creepage where the force is prescribed; negative: not known.
-pub fn estimate(solved: &Solved<'_>, found: &Report) -> Vector {
-    let unknown = [-1.0; 2];
+/// Errors of the tangential force in each direction, or of the creepage where the force is prescribed; none: not known.
+pub fn estimate(solved: &Solved<'_>, found: &Report) -> [Option<f64>; 2] {
+    let unknown = [None; 2];
     let &Solved { state, outline, curvature, friction, alike, coated, .. } = solved;
     let count = state.contact_count();
     let chord = outline.chord(count, solved.problem.coefficients.repeats(&state.grid));
@@ -112,11 +112,7 @@ pub fn estimate(solved: &Solved<'_>, found: &Report) -> Vector {
             Prescribed::Creepage(_) => ROLLING_FACTOR * at_least(differences[0]) + of_surface + hidden,
             Prescribed::Force(_) => ROLLING_FACTOR * at_least(differences[1]) + (of_surface + hidden) * compliance,
         };
-        if error.is_finite() {
-            error
-        } else {
-            -1.0
-        }
+        error.is_finite().then_some(error)
     })
 }
 

@@ -135,7 +135,7 @@ impl<'a> TangentialTurn<'a> {
 }
 
 impl Coupled for TangentialTurn<'_> {
-    fn solve(&mut self, stop: Outcome, state: &State, monitor: &mut Monitor<'_>) -> Result<Outcome> {
+    fn solve(&mut self, outcome: Outcome, state: &State, monitor: &mut Monitor<'_>) -> Result<Outcome> {
         let rest = Options { max_cycles: self.left().min(self.most), ..*self.turn.options };
         let rest = if self.held.is_some() { sharper(&rest) } else { rest };
         let turn = Turn { options: &rest, ..self.turn };
@@ -144,15 +144,15 @@ impl Coupled for TangentialTurn<'_> {
             None if self.found.is_some() => Start::Again,
             None => turn.start(),
         };
-        let (outcome, mut found, refusal) = self.tangent.solve_after(stop, &turn, &state.p, start, monitor)?;
+        let (ended, mut found, refusal) = self.tangent.solve_after(outcome, &turn, &state.p, start, monitor)?;
         // Pressures of an unsolved normal problem refuse nothing.
-        self.refusal = refusal.filter(|_| stop == Outcome::Converged);
+        self.refusal = refusal.filter(|_| outcome == Outcome::Converged);
         if let Some(before) = &self.found {
             (found.products, found.seconds) = (found.products + before.products, found.seconds + before.seconds);
         }
         self.found = Some(found);
         // Refused tractions only serve to find the next pressures: the turn counts as converged.
-        Ok(if self.refusal.is_some() && outcome != Outcome::Cancelled { Outcome::Converged } else { outcome })
+        Ok(if self.refusal.is_some() && ended != Outcome::Cancelled { Outcome::Converged } else { ended })
     }
 
     // Tractions of like bodies displace nothing along the normal.

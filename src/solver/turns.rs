@@ -5,7 +5,7 @@ use super::beside::Distances;
 use super::extrapolation::Extrapolation;
 use super::take_over::take_distance;
 use super::tangential_turn::TangentialTurn;
-use super::{InitialGuess, Options, Solver};
+use super::{Asked, InitialGuess, Options, Solver};
 use crate::contact::{lowest, Fixed, NonNegative, State, Survey};
 use crate::effects::{self, Coupled};
 use crate::error::Result;
@@ -42,16 +42,17 @@ impl<'a> Turns<'a> {
         self.that(true).next().is_some()
     }
 
-    /// Solves the problems that displace, or those that do not, with the pressures of a normal problem that ended with `stop`. Returns the worst
+    /// Solves the problems that displace, or those that do not, with the pressures of a normal problem that ended with `outcome`. Returns the worst
     /// outcome.
     pub(super) fn solve(
         &mut self,
         displace: bool,
-        stop: Outcome,
+        outcome: Outcome,
         state: &State,
         monitor: &mut Monitor<'_>,
     ) -> Result<Outcome> {
-        self.that(displace).try_fold(stop, |so_far, coupled| Ok(worse(so_far, coupled.solve(stop, state, monitor)?)))
+        self.that(displace)
+            .try_fold(outcome, |so_far, coupled| Ok(worse(so_far, coupled.solve(outcome, state, monitor)?)))
     }
 
     /// The undeformed distance with all displacements, and its change where pressures act (in C and at a limit), as rms relative to
@@ -98,36 +99,36 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
     }
 
     /// Solves all problems that displace the undeformed distance in turns with the normal one, until the certificate of the normal problem holds
-    /// with the last displacements (Panagiotopoulos 1975). Then solves the problems that displace nothing. The normal problem ended with `stop`.
-    pub(super) fn solve(mut self, stop: Outcome) -> Result<Outcome> {
+    /// with the last displacements (Panagiotopoulos 1975). Then solves the problems that displace nothing. The normal problem ended with `outcome`.
+    pub(super) fn solve(mut self, outcome: Outcome) -> Result<Outcome> {
         if self.options.initial_guess != InitialGuess::Previous {
             // Each turn starts from the one before, not from earlier solves.
             self.solver.methods.projected_cg.forget_solutions();
         }
-        let stop = match self.turns.displace() {
-            true => self.meet(stop)?,
-            false => stop,
+        let outcome = match self.turns.displace() {
+            true => self.meet(outcome)?,
+            false => outcome,
         };
-        let stop = self.turns.solve(false, stop, &self.solver.state, self.monitor)?;
+        let outcome = self.turns.solve(false, outcome, &self.solver.state, self.monitor)?;
         self.turns.all().try_for_each(|coupled| coupled.refuse())?;
-        Ok(stop)
+        Ok(outcome)
     }
 
     /// The turns with the problems that displace.
-    fn meet(&mut self, stop: Outcome) -> Result<Outcome> {
+    fn meet(&mut self, outcome: Outcome) -> Result<Outcome> {
         self.turns.distances.take(&self.solver.state.h)?;
-        let stop = self.turn_about(self.options, (stop, true))?;
-        self.meet_by_creepages(stop)
+        let outcome = self.turn_about(self.options, (outcome, true))?;
+        self.meet_by_creepages(outcome)
     }
 
-    /// One series of turns, by force or with held creepages. The normal problem ended with `stop`; `is_met` tells whether it was solved with the
+    /// One series of turns, by force or with held creepages. The normal problem ended with `outcome`; `is_met` tells whether it was solved with the
     /// distances of the state.
-    pub(super) fn turn_about(&mut self, options: &Options, (mut stop, is_met): (Outcome, bool)) -> Result<Outcome> {
+    pub(super) fn turn_about(&mut self, options: &Options, (mut outcome, is_met): (Outcome, bool)) -> Result<Outcome> {
         let again = Options { initial_guess: InitialGuess::Previous, error_ratio: 0.0, ..*options };
         let mut extrapolation = Extrapolation::default();
         for solved in 0..=MOST_TURNS {
             let InTurns { solver, turns, .. } = self;
-            let so_far = turns.solve(true, stop, &solver.state, self.monitor)?;
+            let so_far = turns.solve(true, outcome, &solver.state, self.monitor)?;
             let (distance, change) = turns.distance(&solver.state);
             // Without a change the normal problem stays solved.
             let Some(change) = change.or((solved == 0 && !is_met).then_some(0.0)) else { return Ok(so_far) };
@@ -145,7 +146,7 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
                 return Ok(Outcome::IterationLimit);
             }
             extrapolation.extrapolate(&mut turns.distances.displaced);
-            stop = self.solve_displaced(&Options { max_cycles: left, ..again })?;
+            outcome = self.solve_displaced(&Options { max_cycles: left, ..again })?;
         }
         log::info!("the normal problem and what displaces its distance do not agree after {MOST_TURNS} turns");
         Ok(Outcome::Stagnated)
@@ -157,11 +158,12 @@ impl<'s, 't, 'm> InTurns<'s, 't, 'm> {
         monitor.ledger.rows.pop();
         monitor.enter_grid();
         let distance = &self.turns.distances.displaced[..];
-        let displaced = (&Scene { undeformed_distance: distance, ..self.scene.clone() }, lowest(distance));
-        let (stop, _) = solver.solve_normal(displaced, options, None, monitor)?;
-        let stop = solver.meet_compressed(displaced, options, None, monitor, stop)?;
+        let scene = &Scene { undeformed_distance: distance, ..self.scene.clone() };
+        let asked = Asked::new((scene, lowest(distance)), options);
+        let (outcome, _) = solver.solve_normal(asked, monitor)?;
+        let outcome = solver.meet_compressed(asked, monitor, outcome)?;
         self.cycles += monitor.count.cycles as usize;
-        Ok(stop)
+        Ok(outcome)
     }
 }
 

@@ -1,36 +1,22 @@
 //! Steps of bodies with memory: see [`Memory`].
 
-use super::{Guess, Options, Outcome, ProgressCallback, Report, Solver};
+use super::{Asked, Outcome, ProgressCallback, Report, Solver};
 use crate::contact::{lowest, Freshness};
-use crate::effects::{self, Memory};
+use crate::effects::Memory;
 use crate::error::Result;
 use crate::memory::zeros;
 use crate::scene::{Load, Scene};
 
 impl Solver {
-    /// Solves a checked scene, whose undeformed distance contains its effects. Bodies may have a memory of earlier steps.
-    pub(super) fn solve_step_in_time(
-        &mut self,
-        (scene, lowest): (&Scene<'_>, f64),
-        options: &Options,
-        guess: Option<Guess<'_>>,
-        progress: Option<ProgressCallback<'_>>,
-    ) -> Result<(Outcome, Report)> {
-        match effects::memory(scene, &mut self.beside.histories)? {
-            Some((k, memory)) => self.solve_with_memory((scene, k, &*memory), options, guess, progress),
-            None => self.solve_surface((scene, lowest), options, guess, progress),
-        }
-    }
-
     /// Solves a step of a checked scene as a problem of scaled lengths; `k`: the effect. A step that is refused or fails leaves the memory of
     /// the bodies unchanged. A step that stops early, by a limit or a callback, is a step of that memory.
-    fn solve_with_memory(
+    pub(super) fn solve_with_memory(
         &mut self,
-        (scene, k, memory): (&Scene<'_>, usize, &dyn Memory),
-        options: &Options,
-        guess: Option<Guess<'_>>,
+        asked: Asked<'_>,
+        (k, memory): (usize, &dyn Memory),
         progress: Option<ProgressCallback<'_>>,
     ) -> Result<(Outcome, Report)> {
+        let scene = asked.scene;
         self.check_continues(scene)?;
         let s = memory.compliance();
         let mut remembered = std::mem::take(&mut self.remembered);
@@ -47,8 +33,8 @@ impl Solver {
             force => force,
         };
         let step = Scene { undeformed_distance: distance, load, ..scene.clone() };
-        let outcome = self.solve_surface((&step, lowest(distance)), options, guess, progress);
-        let outcome = outcome.map(|(stop, mut report)| {
+        let solved = self.solve_at_once(Asked { scene: &step, lowest: lowest(distance), ..asked }, progress);
+        let solved = solved.map(|(outcome, mut report)| {
             report.visco = Some(memory.step_done(&mut self.beside.histories[k], &self.state));
             self.lengthen(s, scene.load, &mut report);
             let state = &mut self.state;
@@ -59,10 +45,10 @@ impl Solver {
             state.u_is = Freshness::Stale;
             state.load = scene.load;
             self.compliance = s;
-            (stop, report)
+            (outcome, report)
         });
         self.remembered = remembered;
-        outcome
+        solved
     }
 
     /// Scales the lengths of the result, the report and the ledger from those of the problem solved.
@@ -76,16 +62,14 @@ impl Solver {
         let approach = state.approach;
         // With a given force the error is that of the approach.
         let of_found = if matches!(load, Load::Force(_)) { s } else { 1.0 };
-        // Negative: unknown.
-        let lengthened = |value: f64| if value > 0.0 { value * of_found } else { value };
         for row in &mut self.ledger {
             row.measures.approach *= s;
             row.measures.certificate.violation *= s;
-            row.error.force = lengthened(row.error.force);
+            row.error.force = row.error.force.map(|error| error * of_found);
         }
         report.measures.approach = approach;
         report.measures.certificate.violation *= s;
-        report.error.force = lengthened(report.error.force);
+        report.error.force = report.error.force.map(|error| error * of_found);
         report.halving.error = report.halving.error.map(|error| error.times(of_found));
     }
 }

@@ -1,11 +1,11 @@
 //! The loads on the surface of a body.
 
 use super::body::Loaded;
+use crate::effects::Patches;
 use crate::effects::{Effect, NO_PATCH};
 use crate::error::{finite, invalid, require, Result};
 use crate::grid::{check_values, Grid};
 use crate::memory::collected;
-use crate::scene::Patches;
 
 /// Loads below this have stresses in the range of numbers: of a load of 1 they are below the 2^11 of the logarithms at edges.
 const LARGEST: f64 = 1e304;

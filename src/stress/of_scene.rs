@@ -1,9 +1,10 @@
 //! The half-space and the loads for the stresses of a scene, with its effects.
 
 use super::{Body, Loads};
+use crate::effects::Patches;
 use crate::effects::{self, Stresses};
 use crate::error::{invalid, Error, Result};
-use crate::scene::{Patches, Scene};
+use crate::scene::Scene;
 
 /// The half-space that is `body` 1 or 2 of a scene, with pressures and tractions on it, `[my][mx]`; none: not there.
 /// Refuses effects with which stresses are not known. The distance and the load of the scene are not used.

@@ -12,9 +12,9 @@ use super::body::Body;
 use super::kernels::{is_odd, Asked, Kernels};
 use super::loads::{Loads, Part};
 use super::periodic::Waves;
+use crate::effects::Patches;
 use crate::error::Result;
 use crate::memory::zeros;
-use crate::scene::Patches;
 
 /// The name of this memory in messages.
 const STRESS: &str = "the stresses of a depth";

@@ -74,7 +74,7 @@ fn sharp_peaks_among_shallow_contacts_are_covered() {
         for (load, exact) in [(Load::Approach(APPROACH), force), (Load::Force(force), APPROACH)] {
             let patches = Patches { patch: &patch, count, factors: &alone };
             let report = report(&Scene { patches: Some(patches), ..Scene::new(grid(1.0), &h, UNIT, load) });
-            let ratio = report.error.force / (report.measures.found(load) - exact).abs();
+            let ratio = report.error.force.expect("an estimate") / (report.measures.found(load) - exact).abs();
             // Forces are off by 0.5 of the bend, within a third (docs/notes): 0.58/0.67 is 0.87, on few elements less.
             assert!(ratio >= 0.75, "{sharp} {radius} {depth} {off} {load:?}: {ratio}");
             ratios.push(ratio);
@@ -93,7 +93,8 @@ fn errors_of_a_flat_punch_are_the_same_by_force_and_by_approach() {
     let by_approach = report(&Scene::new(grid, &h, UNIT, Load::Approach(APPROACH)));
     let force = by_approach.measures.force;
     let by_force = report(&Scene::new(grid, &h, UNIT, Load::Force(force)));
-    let (of_force, of_approach) = (by_approach.error.force / force, by_force.error.force / by_force.measures.approach);
+    let [of_force, of_approach] = [(&by_approach, force), (&by_force, by_force.measures.approach)]
+        .map(|(report, value)| report.error.force.expect("an estimate") / value);
     // The weights of a flat punch's pressures are those of constants here: all of h is the same.
     assert!((of_force / of_approach - 1.0).abs() < 1e-3, "{of_force} {of_approach}");
 }
@@ -105,7 +106,7 @@ fn a_peak_beside_a_cut_contact_is_not_trusted() {
     for (off, is_known) in [(0.25, false), (0.0, true)] {
         let h = at_centres(&grid, |x, y| 0.5 * ((x - off) * (x - off) + y * y));
         let error = report(&Scene::new(grid, &h, UNIT, Load::Approach(0.08))).error;
-        assert_eq!(error.max_pressure >= 0.0, is_known, "{off}: {error:?}");
+        assert_eq!(error.max_pressure.is_some(), is_known, "{off}: {error:?}");
     }
 }
 
@@ -135,7 +136,7 @@ fn errors_of_a_wave_are_covered_up_to_full_contact() {
             for (load, exact) in [(Load::Approach(approach), pressure), (Load::Force(pressure), approach)] {
                 let of = |turned, place| of_wave((mx, my), turned, place, load);
                 let report = of(false, 0.0);
-                let ratio = report.error.force / (report.measures.found(load) - exact).abs();
+                let ratio = report.error.force.expect("an estimate") / (report.measures.found(load) - exact).abs();
                 // The error is half of the bend, within a third (docs/notes), and 0.58 of it is estimated: 0.58/0.67 is 0.87; less on few
                 // elements, as for balls above. By approach it was 0.16 from 0.7 of the wave on.
                 assert!(ratio >= 0.75, "{part} of {mx} x {my}, {load:?}: {ratio}");
@@ -144,7 +145,8 @@ fn errors_of_a_wave_are_covered_up_to_full_contact() {
                 // contact and more only some are looked at.
                 let along_y = (part * mx as f64 + 1.0 < 64.0).then(|| of(true, 0.0));
                 for other in [of(false, 0.5)].into_iter().chain(along_y) {
-                    let off = (other.error.force / report.error.force - 1.0).abs();
+                    let [other, own] = [&other, &report].map(|report| report.error.force.expect("an estimate"));
+                    let off = (other / own - 1.0).abs();
                     assert!(off < 1e-3, "{part} of {mx} x {my}, {load:?}: {off}");
                 }
             }
@@ -169,7 +171,8 @@ fn errors_beside_a_step_fall_with_the_elements() {
         let found = [32, 64, 128, 256].map(|m| of_grid(m, slope, load));
         let value = |k: usize| found[k].measures.found(load);
         for k in 0..2 {
-            let (ratio, error) = (found[k + 1].error.force / found[k].error.force, found[k].error.force);
+            let [finer, error] = [k + 1, k].map(|k| found[k].error.force.expect("an estimate"));
+            let ratio = finer / error;
             // A half and a quarter in turn, and what steps of the outline make of it.
             assert!((0.2..0.6).contains(&ratio), "{slope} {load:?}: {ratio}");
             // The finest grid is off itself, by a quarter of the error of that one or less.
@@ -183,7 +186,7 @@ fn errors_beside_a_step_fall_with_the_elements() {
 }
 
 /// With two periods the mean of all displacements is 0: near full contact it tells no stiffness, with a layer not even its sign. An error is known then,
-/// or it is said not to be, by -1.
+/// or it is said not to be.
 #[test]
 fn errors_near_full_contact_of_two_periods_are_numbers_or_unknown() {
     let grid = grid(1.0);
@@ -203,7 +206,7 @@ fn errors_near_full_contact_of_two_periods_are_numbers_or_unknown() {
             let layer = (layer > 0.0).then_some(Layer(Each::Uniform(layer)));
             let error = report(&Scene { period: Some(Period { x: true, y: true }), layer, ..plain }).error;
             for value in [error.force, error.max_pressure, error.contact_area, error.corrected_area, error.pressure] {
-                assert!(value >= 0.0 || value == -1.0, "{load:?}, layer {layer:?}: {error:?}");
+                assert!(value.is_none_or(|value| value >= 0.0), "{load:?}, layer {layer:?}: {error:?}");
             }
         }
     }

@@ -229,7 +229,7 @@ fn accuracies_and_prices_of_every_quantity_are_kept() {
         assert_eq!(stop, Outcome::Converged);
         for price in &list {
             assert!(
-                price.obstacle.is_none() && price.error <= price.target + price.tolerance,
+                price.obstacle.is_none() && price.error.is_some_and(|error| error <= price.target + price.tolerance),
                 "{quantity:?}: {price:?}"
             );
         }

@@ -158,7 +158,7 @@ fn the_solver_of_a_search_has_the_errors_of_a_new_one() {
     let options = Options { estimates: true, ..Options::default() };
     let (_, again) = solver.solve(&stepped, &options, None, None).expect("a scene");
     let (_, _, new) = solve(&stepped, &options).expect("a scene");
-    assert!(new.error.force > 0.0 && again.error.force == new.error.force, "{:?} {:?}", again.error, new.error);
+    assert!(new.error.force > Some(0.0) && again.error.force == new.error.force, "{:?} {:?}", again.error, new.error);
 }
 
 /// A roller that ends at |y| = 0.38, anywhere between the elements, with its pressures at their limit beside the ends.

@@ -7,9 +7,9 @@ fn row(seconds: f64, obstacle: Option<Obstacle>) -> Price {
         target: 1e-3,
         grid: None,
         tolerance: 1e-4,
-        error: 1e-3,
-        seconds,
-        seconds_one_thread: seconds,
+        error: Some(1e-3),
+        seconds: Some(seconds),
+        seconds_one_thread: Some(seconds),
         work_units: 0.0,
         bytes: 0,
         obstacle,
@@ -25,6 +25,7 @@ fn the_dearest_row_pays_for_the_samples_at_its_least() {
     assert_eq!(budget.after(&[row(10.0, None), row(1e3, None), row(1e9, Some(Obstacle::Memory))]), SAMPLES_SHARE * 1e3);
     assert_eq!(budget.after(&[row(300.0, None)]), SAMPLES_SHARE * 300.0);
     assert_eq!(budget.after(&[row(2e3, None)]), SAMPLES_SHARE * 300.0);
-    assert_eq!(budget.after(&[row(-1.0, Some(Obstacle::Singular))]), SAMPLES_SHARE * 300.0);
+    let unknown = Price { seconds: None, seconds_one_thread: None, ..row(0.0, Some(Obstacle::Singular)) };
+    assert_eq!(budget.after(&[unknown]), SAMPLES_SHARE * 300.0);
     assert_eq!(budget.after(&[row(1.0, None)]), SAMPLES_SECONDS);
 }

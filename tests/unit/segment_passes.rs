@@ -48,7 +48,7 @@ fn sums<const A: usize, const B: usize, const K: usize>(
 /// What all passes leave with the vectors of a machine, as bits.
 fn by(arch: pulp::Arch, n: usize) -> Vec<Vec<u64>> {
     let Given { contact, segments, doubles: [h, u, p], singles: [t, q, z] } = &given(n);
-    let (block, terms) = (Block::new(0, contact, n, segments), StepSums { approach: 0.1 });
+    let (block, terms) = (Block::new(0, contact, n, segments), StepTerms { approach: 0.1 });
     let (residual, work) = (Residual { approach: 0.1 }, |update| WorkAndEnergy { approach: 0.1, update });
     let mut found = vec![
         sums::<3, 2, 5>(arch, block, ([h, u, p], [t, q]), terms),
@@ -231,7 +231,7 @@ fn sums_of_a_step_are_what_they_say() {
     let [t, q, d] = [0, 1, 2].map(|k| move |i: usize| f64::from(singles[k][i]));
     let (r, depth) = (|i: usize| 0.1 - h[i] - u[i], |i: usize| 0.1 - h[i]);
     let step = |i: usize| [r(i) * t(i), t(i) * q(i), t(i) * t(i), t(i).abs(), p[i] * p[i]];
-    let terms = StepSums { approach: 0.1 };
+    let terms = StepTerms { approach: 0.1 };
     let ([a, b, c], [of_t, of_q, of_d]) = ([&h[..], u, p], [&singles[0][..], &singles[1], &singles[2]]);
     check(block.sum([a, b, c], [of_t, of_q], terms), plain(contact, step), "a step");
     let scaled = |i: usize| {

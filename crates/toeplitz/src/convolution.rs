@@ -72,7 +72,7 @@ impl<T: Real> Convolution<T> {
     pub fn apply(&self, rows: &Rows<T>, loaded: Range<usize>, memory: &mut Memory<T>) {
         if let (Some((in_x, even)), Symbol::Even(symbol)) = (&self.by_lanes, &self.symbol) {
             let (bins, pieces) = rows.blocks_of_bins(in_x, memory);
-            let (length, kept) = (rows.height(in_x) * BLOCK, BLOCK * even.kept_rows());
+            let (length, kept) = (in_x.height(rows.my) * BLOCK, BLOCK * even.kept_rows());
             assert_eq!(symbol.len(), in_x.blocks() * kept, "a symbol that was not set up");
             let blocks = bins.chunks_exact_mut(length).zip(symbol.chunks_exact(kept)).enumerate();
             return rows.threads.share(blocks, pieces, |(b, (block, symbol)), piece| {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::block::{blocks_of, room_of_column, Block, BLOCK};
+use crate::block::{room_of_column, BLOCK};
 use crate::fft::lane_rows::LaneRows;
 use crate::fft::row_transform::RowTransform;
 use crate::fft::stages::{before_a_line, from_a_line};
@@ -52,11 +52,6 @@ impl<T: Real> Rows<T> {
         lanes.map_or(self.transform.at_a_time(), LaneRows::at_a_time)
     }
 
-    /// Rows of a block of bins in lanes: a group of rows transformed together may begin at the last row of the grid, and is always whole.
-    pub(crate) fn height(&self, lanes: &LaneRows<T>) -> usize {
-        self.my + lanes.at_a_time() - 1
-    }
-
     /// The blocks of bins in lanes, which begin at a line of the cache, and the buffers of the threads.
     pub(crate) fn blocks_of_bins<'a>(
         &self,
@@ -64,13 +59,13 @@ impl<T: Real> Rows<T> {
         memory: &'a mut Memory<T>,
     ) -> (&'a mut [Complex<T>], &'a mut [Piece<T>]) {
         let bins = from_a_line(&mut memory.bins);
-        (&mut bins[..lanes.blocks() * self.height(lanes) * BLOCK], &mut memory.pieces)
+        (&mut bins[..lanes.bins_of(self.my)], &mut memory.pieces)
     }
 
     /// Number of bins of all rows, with transforms in lanes or without.
     fn bins(&self, lanes: Option<&LaneRows<T>>) -> usize {
-        let in_vectors = |lanes: &LaneRows<T>| lanes.blocks() * self.height(lanes) * BLOCK + before_a_line::<T>();
-        lanes.map_or(0, in_vectors).max(self.my * self.transform.bins())
+        let in_vectors = lanes.map_or(0, |lanes| lanes.bins_of(self.my) + before_a_line::<T>());
+        in_vectors.max(self.my * self.transform.bins())
     }
 
     /// Length of the transforms' scratch, in lanes or without.
@@ -84,7 +79,7 @@ impl<T: Real> Rows<T> {
         if let Some(lanes) = lanes {
             let rows = p[loaded.start * mx..loaded.end * mx].chunks(together * mx);
             let (bins, pieces) = self.blocks_of_bins(lanes, memory);
-            let bins = self.some_rows(lanes, bins, loaded.clone());
+            let bins = lanes.groups(self.my, bins, loaded.clone());
             self.threads.share(rows.zip(bins), pieces, |(rows, mut bins), piece| {
                 lanes.forward(rows, mx, &mut bins, &mut piece.scratch);
             });
@@ -97,18 +92,6 @@ impl<T: Real> Rows<T> {
             });
         }
         loaded
-    }
-
-    /// These rows of blocks, in groups that are transformed together: the last group may end beyond `rows`.
-    fn some_rows<'a>(
-        &self,
-        lanes: &LaneRows<T>,
-        bins: &'a mut [Complex<T>],
-        rows: Range<usize>,
-    ) -> impl DoubleEndedIterator<Item = Block<'a, T>> + ExactSizeIterator + Send {
-        let together = lanes.at_a_time();
-        let end = rows.start + rows.len().next_multiple_of(together);
-        blocks_of(bins, self.height(lanes) * BLOCK, rows.start * BLOCK..end * BLOCK, together * BLOCK)
     }
 
     /// Transforms all rows back to u, in lanes or without.
@@ -144,7 +127,7 @@ impl<T: Real> Rows<T> {
         if let Some(lanes) = lanes {
             let u = u.chunks_mut(together * mx).enumerate();
             let (bins, pieces) = self.blocks_of_bins(lanes, memory);
-            let bins = self.some_rows(lanes, bins, 0..self.my);
+            let bins = lanes.groups(self.my, bins, 0..self.my);
             return self.threads.share(u.zip(bins), pieces, |((i, u), bins), piece| {
                 work(i, u, piece, &mut |rows, scratch| lanes.inverse(&bins, rows, mx, scratch));
             });

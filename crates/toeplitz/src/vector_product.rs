@@ -9,7 +9,7 @@
 
 use std::ops::Range;
 
-use crate::block::{blocks_of, Block, BLOCK};
+use crate::block::BLOCK;
 use crate::coefficients::EvenMatrix;
 use crate::fft::column_pass::Blocks;
 use crate::fft::lane_columns::LaneColumns;
@@ -140,22 +140,13 @@ impl<T: Real> VectorProduct<T> {
     /// Memory for its products.
     pub fn memory(&self) -> Result<Memory<T>> {
         let room = Room {
-            bins: 2 * self.bins_of_component() + before_a_line::<T>(),
+            bins: 2 * self.rows.bins_of(self.my) + before_a_line::<T>(),
             row: 2 * self.rows.at_a_time() * self.mx,
             columns: 2 * self.rows.at_a_time() * self.columns.length() + before_a_line::<T>(),
             scratch: self.rows.scratch_length(),
             pieces: self.threads.count(),
         };
         Memory::new(room, &self.threads)
-    }
-
-    /// Rows of a block of bins: more than `my`, as a group of rows that are transformed together may begin at the last row.
-    fn height(&self) -> usize {
-        self.my + self.rows.at_a_time() - 1
-    }
-
-    fn bins_of_component(&self) -> usize {
-        self.rows.blocks() * self.height() * BLOCK
     }
 
     /// `u = A q`. q is zero outside the rows `loaded` of each component. `load(component, first row, rows)` fills `rows` with rows of q.
@@ -170,15 +161,16 @@ impl<T: Real> VectorProduct<T> {
         ),
         memory: &mut Memory<T>,
     ) {
-        memory.wake(2 * self.bins_of_component() + before_a_line::<T>(), &self.threads);
+        let of_component = self.rows.bins_of(self.my);
+        memory.wake(2 * of_component + before_a_line::<T>(), &self.threads);
         let Memory { bins, pieces: scratch, .. } = memory;
-        let (x, y) = from_a_line(bins)[..2 * self.bins_of_component()].split_at_mut(self.bins_of_component());
+        let (x, y) = from_a_line(bins)[..2 * of_component].split_at_mut(of_component);
         let mut bins = [x, y];
         let alone = self.is_uncoupled();
         let is_zero = [0, 1].map(|component| alone && loaded[component].is_empty());
         for component in (0..2).filter(|component| !is_zero[*component]) {
             let (rows, first) = (loaded[component].clone(), loaded[component].start);
-            let groups = self.some_rows(bins[component], rows.clone()).enumerate();
+            let groups = self.rows.groups(self.my, bins[component], rows.clone()).enumerate();
             self.threads.share(groups, scratch, |(i, mut bins), piece| {
                 let first = first + i * self.rows.at_a_time();
                 let count = self.rows.at_a_time().min(rows.end - first);
@@ -193,7 +185,7 @@ impl<T: Real> VectorProduct<T> {
                 .filter(|component| !is_zero[*component])
                 .for_each(|component| self.multiply_one(component, bins[component], &loaded[component], scratch)),
         }
-        let [x, y] = bins.map(|bins| self.some_rows(bins, 0..self.my));
+        let [x, y] = bins.map(|bins| self.rows.groups(self.my, bins, 0..self.my));
         self.threads.share(x.zip(y).zip(pieces).enumerate(), scratch, |(i, ((x, y), to)), piece| {
             let first = i * self.rows.at_a_time();
             let count = self.rows.at_a_time().min(self.my - first);
@@ -208,44 +200,42 @@ impl<T: Real> VectorProduct<T> {
         });
     }
 
-    /// These rows of a component, in groups that are transformed together. The last group may extend beyond them.
-    fn some_rows<'a>(
-        &self,
-        bins: &'a mut [Complex<T>],
-        rows: Range<usize>,
-    ) -> impl DoubleEndedIterator<Item = Block<'a, T>> + ExactSizeIterator + Send {
-        let together = self.rows.at_a_time();
-        let end = rows.start + rows.len().next_multiple_of(together);
-        blocks_of(bins, self.height() * BLOCK, rows.start * BLOCK..end * BLOCK, together * BLOCK)
-    }
-
     /// Transforms both components in y, multiplies them by the symbol and transforms them back.
     fn multiply(&self, bins: &mut [&mut [Complex<T>]; 2], loaded: &[Range<usize>; 2], scratch: &mut [Piece<T>]) {
-        let length = self.height() * BLOCK;
+        let length = self.rows.height(self.my) * BLOCK;
         let [x, y] = bins.each_mut().map(|bins| bins.chunks_exact_mut(length));
-        self.threads.share(x.zip(y).enumerate(), scratch, |(b, (x, y)), piece| {
-            #[cfg(feature = "test-panics")]
-            crate::panics::at_a_block();
-            let next = [x.as_ptr(), y.as_ptr()].map(|block| piece.next_block(block, b, length, self.rows.blocks()));
-            piece.block = b;
-            let blocks = [x, y].map(|block| &mut block[..self.my * BLOCK]);
-            let blocks = Blocks { blocks, columns: self.rows.bins() - b * BLOCK, next, loaded: loaded.clone() };
-            self.symbol.multiply(&self.columns, b, blocks, &mut piece.columns);
+        self.each_block(x.zip(y).map(|(x, y)| [x, y]), loaded.clone(), scratch, |b, blocks, memory| {
+            self.symbol.multiply(&self.columns, b, blocks, memory);
         });
     }
 
     /// Transforms one component in y, multiplies it by its symbol and transforms it back.
     fn multiply_one(&self, component: usize, bins: &mut [Complex<T>], loaded: &Range<usize>, scratch: &mut [Piece<T>]) {
-        let length = self.height() * BLOCK;
-        self.threads.share(bins.chunks_exact_mut(length).enumerate(), scratch, |(b, block), piece| {
+        let blocks = bins.chunks_exact_mut(self.rows.height(self.my) * BLOCK).map(|block| [block]);
+        self.each_block(blocks, [loaded.clone()], scratch, |b, blocks, memory| {
+            self.symbol.multiply_one(&self.columns, (b, component), blocks, memory);
+        });
+    }
+
+    /// Calls `work(number, blocks, memory)` for each block of columns, of K components.
+    fn each_block<'a, const K: usize>(
+        &self,
+        blocks: impl DoubleEndedIterator<Item = [&'a mut [Complex<T>]; K]> + ExactSizeIterator + Send,
+        loaded: [Range<usize>; K],
+        scratch: &mut [Piece<T>],
+        work: impl Fn(usize, Blocks<'_, T, K>, &mut [Complex<T>]) + Sync,
+    ) where
+        T: 'a,
+    {
+        let length = self.rows.height(self.my) * BLOCK;
+        self.threads.share(blocks.enumerate(), scratch, |(b, blocks), piece| {
             #[cfg(feature = "test-panics")]
             crate::panics::at_a_block();
-            let next = [piece.next_block(block.as_ptr(), b, length, self.rows.blocks())];
+            let next = blocks.each_ref().map(|block| piece.next_block(block.as_ptr(), b, length, self.rows.blocks()));
             piece.block = b;
-            let blocks = [&mut block[..self.my * BLOCK]];
-            let columns = self.rows.bins() - b * BLOCK;
-            let blocks = Blocks { blocks, columns, next, loaded: [loaded.clone()] };
-            self.symbol.multiply_one(&self.columns, (b, component), blocks, &mut piece.columns);
+            let blocks = blocks.map(|block| &mut block[..self.my * BLOCK]);
+            let blocks = Blocks { blocks, columns: self.rows.bins() - b * BLOCK, next, loaded: loaded.clone() };
+            work(b, blocks, &mut piece.columns);
         });
     }
 }

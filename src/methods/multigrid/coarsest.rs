@@ -41,7 +41,7 @@ impl Coarsest {
     }
 
     /// Solves `A x = b` on the elements in contact; `x = 0` elsewhere.
-    pub fn solve(&mut self, influence: &Coefficients, grid: &Grid, contact: &[bool], b: &[f64], x: &mut [f64]) {
+    pub fn solve(&mut self, coefficients: &Coefficients, grid: &Grid, contact: &[bool], b: &[f64], x: &mut [f64]) {
         x.fill(0.0);
         self.elements.clear();
         self.elements.extend((0..grid.len()).filter(|&i| contact[i]));
@@ -50,7 +50,7 @@ impl Coarsest {
             return;
         }
         self.multiplications += (n as f64).powi(3) / 3.0;
-        dense::fill_matrix(grid, &self.elements, |x, y| influence.at(x, y), &mut self.matrix);
+        dense::fill_matrix(grid, &self.elements, |x, y| coefficients.at(x, y), &mut self.matrix);
         self.right.clear();
         self.right.extend(self.elements.iter().map(|&i| b[i]));
         if self.permutation.len() < n {

@@ -115,8 +115,8 @@ impl Multigrid {
         let (finer, coarser) = levels.split_at_mut(l + 1);
         let level = &mut finer[l];
         let Some(coarse) = coarser.first_mut() else {
-            let Level { grid, influence, correction, defect, contact, .. } = level;
-            coarsest.solve(influence, grid, contact, defect, correction);
+            let Level { grid, coefficients, correction, defect, contact, .. } = level;
+            coarsest.solve(coefficients, grid, contact, defect, correction);
             return;
         };
 
@@ -152,7 +152,7 @@ impl Multigrid {
     pub fn bytes(&self) -> usize {
         let elements: usize = self.levels.iter().map(|level| level.grid.len()).sum();
         let coarser: usize =
-            self.levels[1..].iter().map(|level| level.influence.bytes() + level.operator.bytes()).sum();
+            self.levels[1..].iter().map(|level| level.coefficients.bytes() + level.operator.bytes()).sum();
         coarser + elements * (3 * size_of::<f64>() + 1)
     }
 }

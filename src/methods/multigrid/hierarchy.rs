@@ -20,7 +20,7 @@ pub struct Level {
     /// The grid.
     pub grid: Grid,
     /// Its coefficients.
-    pub influence: Coefficients,
+    pub coefficients: Coefficients,
     /// `u = A p` on it.
     pub operator: Arc<Operator<f64>>,
     /// The work of one product, in work units: products on the finest grid.
@@ -35,17 +35,17 @@ pub struct Level {
 }
 
 impl Level {
-    fn new(problem: &mut Problem, grid: Grid, influence: Coefficients, kind: SmootherKind) -> Result<Level> {
+    fn new(problem: &mut Problem, grid: Grid, coefficients: Coefficients, kind: SmootherKind) -> Result<Level> {
         let (n, finest) = (grid.len(), problem.grid.len());
         let operator = match grid == problem.grid {
             true => problem.operator()?.clone(),
-            false => Arc::new(Operator::new(&influence, &grid, &problem.threads.suited_to(n))?),
+            false => Arc::new(Operator::new(&coefficients, &grid, &problem.threads.suited_to(n))?),
         };
         let array = || zeros(n, "the multigrid levels");
         Ok(Level {
-            smoother: Smoother::new(kind, &influence, &grid, &problem.threads)?,
+            smoother: Smoother::new(kind, &coefficients, &grid, &problem.threads)?,
             grid,
-            influence,
+            coefficients,
             operator,
             work: n as f64 / finest as f64,
             correction: array()?,
@@ -105,8 +105,8 @@ pub(super) fn levels(problem: &mut Problem, kind: SmootherKind, coarsest: usize)
     let mut levels = vec![Level::new(problem, grid, coefficients, kind)?];
     while let Some(coarse) = levels.last().and_then(|finer| coarsen(&finer.grid, coarsest)) {
         let finer = &levels[levels.len() - 1];
-        let influence = finer.influence.coarsen(&finer.grid, &coarse)?;
-        levels.push(Level::new(problem, coarse, influence, kind)?);
+        let coefficients = finer.coefficients.coarsen(&finer.grid, &coarse)?;
+        levels.push(Level::new(problem, coarse, coefficients, kind)?);
     }
     Ok(levels)
 }

@@ -9,9 +9,9 @@
 
 use super::deflation::{Deflation, Last};
 use super::deflation_passes::{Change, Restrict, Subtract};
-use super::formulas::{Moved, Residual, StepSums};
+use super::formulas::{Moved, Residual, StepTerms};
 use super::scaling::Scaling;
-use super::step_sums::Step;
+use super::step_sums::StepSums;
 use super::vectors::Iteration;
 use crate::contact::State;
 use crate::error::Result;
@@ -92,19 +92,19 @@ impl<T: Real> Iteration<T> {
     }
 
     /// The sums of a step, and those of gamma.
-    pub(super) fn step_beside_deflation(&mut self, state: &State) -> Step {
-        let (State { h, u, p, .. }, formula) = (state, StepSums { approach: state.approach });
+    pub(super) fn step_sums_beside_deflation(&mut self, state: &State) -> StepSums {
+        let (State { h, u, p, .. }, formula) = (state, StepTerms { approach: state.approach });
         let arrays = [&self.t[..], &self.q, &self.deflation.d];
         let [rt, tq, tt, t1, pp, rd, qd] = self.segments.sum(
             &state.contact,
             #[inline(always)]
             |block| block.sum([h, u, p], arrays, formula),
         );
-        Step { rt, tq, tt, t1, pp, rd, qd, energy: None }
+        StepSums { rt, tq, tt, t1, pp, rd, qd, energy: None }
     }
 
     /// gamma for a step of length alpha along t; 0 without a deflation direction.
-    pub(super) fn gamma(&self, step: &Step, alpha: f64) -> f64 {
+    pub(super) fn gamma(&self, step: &StepSums, alpha: f64) -> f64 {
         let gamma = (step.rd - alpha * step.qd) / self.deflation.energy;
         if self.deflation.is_there() && gamma.is_finite() {
             gamma

@@ -66,15 +66,15 @@ pub struct CoarseGrids {
 
 impl CoarseGrids {
     /// The grids below `grid`. Their operators are set up when needed.
-    pub fn new(grid: &Grid, influence: &Coefficients, precision: Precision, threads: &Threads) -> Result<CoarseGrids> {
+    pub fn new(grid: &Grid, of_grid: &Coefficients, precision: Precision, threads: &Threads) -> Result<CoarseGrids> {
         let below = || successors(coarsen(grid, COARSEST), |grid| coarsen(grid, COARSEST));
         let mut grids = sparse(below().count(), "coarser grids")?;
-        let (mut fine, mut influence) = (*grid, influence.clone());
+        let (mut fine, mut coefficients) = (*grid, of_grid.clone());
         for coarse in below() {
-            influence = influence.coarsen(&fine, &coarse)?;
+            coefficients = coefficients.coarsen(&fine, &coarse)?;
             fine = coarse;
             grids.push(Coarse {
-                level: Level::new(fine, influence.clone(), precision, threads),
+                level: Level::new(fine, coefficients.clone(), precision, threads),
                 state: State::new(fine, (Load::Approach(0.0), 0.0), threads)?,
                 limits: Vec::new(),
             });
@@ -90,15 +90,15 @@ impl CoarseGrids {
     }
 
     /// Takes the coefficients of the finest grid, `grid`, if they changed.
-    pub fn renew(&mut self, grid: &Grid, influence: &Coefficients) -> Result<()> {
+    pub fn renew(&mut self, grid: &Grid, coefficients: &Coefficients) -> Result<()> {
         if self.are_current {
             return Ok(());
         }
-        let (mut fine, mut influence) = (*grid, influence.clone());
+        let (mut fine, mut coefficients) = (*grid, coefficients.clone());
         for coarse in &mut self.grids {
-            influence = influence.coarsen(&fine, &coarse.state.grid)?;
+            coefficients = coefficients.coarsen(&fine, &coarse.state.grid)?;
             fine = coarse.state.grid;
-            coarse.level.renew(influence.clone());
+            coarse.level.renew(coefficients.clone());
         }
         self.are_current = true;
         Ok(())
@@ -177,7 +177,7 @@ impl CoarseGrids {
             transfer::restrict_distance(&from.grid, &to.state.grid, &from.h, highest, &mut to.state.h, &threads);
             to.state.reached_limit = false;
             to.state.at_limit.clear();
-            if to.level.influence().is_mean_free() {
+            if to.level.coefficients().is_mean_free() {
                 shift_to_mean(&from.h, &mut to.state.h);
             }
             (to.state.load, to.state.approach) = (from.load, from.approach);

@@ -119,11 +119,11 @@ impl Terms<1, 1, 3> for Free {
 
 /// (r, t), (t, q), (t, t), the sum of |t|, (p, p).
 #[derive(Clone, Copy)]
-pub(super) struct StepSums {
+pub(super) struct StepTerms {
     pub(super) approach: f64,
 }
 
-impl Terms<3, 2, 5> for StepSums {
+impl Terms<3, 2, 5> for StepTerms {
     #[inline(always)]
     fn of<S: Simd>(&self, [h, u, p]: [Lanes<S>; 3], [t, q]: [Lanes<S>; 2]) -> [Lanes<S>; 5] {
         let e = h - self.approach + u;
@@ -132,7 +132,7 @@ impl Terms<3, 2, 5> for StepSums {
 }
 
 /// (r, t), (t, q), (t, t), the sum of |t|, (p, p); and with `d = approach - h` (p, d), (t, d), (p, u), (p, q).
-impl Terms<3, 2, 9> for StepSums {
+impl Terms<3, 2, 9> for StepTerms {
     #[inline(always)]
     fn of<S: Simd>(&self, [h, u, p]: [Lanes<S>; 3], [t, q]: [Lanes<S>; 2]) -> [Lanes<S>; 9] {
         let depth = self.approach - h;
@@ -141,7 +141,7 @@ impl Terms<3, 2, 9> for StepSums {
 }
 
 /// (r, t), (t, q), (t, t), the sum of |t|, (p, p); and with a deflation direction d (r, d), (q, d).
-impl Terms<3, 3, 7> for StepSums {
+impl Terms<3, 3, 7> for StepTerms {
     #[inline(always)]
     fn of<S: Simd>(&self, [h, u, p]: [Lanes<S>; 3], [t, q, d]: [Lanes<S>; 3]) -> [Lanes<S>; 7] {
         let r = self.approach - h - u;

@@ -22,7 +22,7 @@ pub(super) enum Inner {
 /// The inputs of the operators of a window: the coefficients, a factor on them, and the operator in double precision if the window is the whole grid.
 #[derive(Clone, Copy)]
 pub(super) struct MadeOf<'a> {
-    pub(super) influence: &'a Coefficients,
+    pub(super) coefficients: &'a Coefficients,
     pub(super) factor: f64,
     pub(super) whole: Option<&'a Operator<f64>>,
     pub(super) threads: &'a Threads,
@@ -30,12 +30,12 @@ pub(super) struct MadeOf<'a> {
 
 impl MadeOf<'_> {
     fn operators<T: Real>(&self, grid: &Grid) -> Result<Operators<T>> {
-        let MadeOf { influence, factor, whole, threads } = *self;
+        let MadeOf { coefficients, factor, whole, threads } = *self;
         let operator = match whole {
             Some(operator) => operator.in_precision(factor)?,
-            None => Operator::scaled(influence, factor, grid, threads)?,
+            None => Operator::scaled(coefficients, factor, grid, threads)?,
         };
-        Operators::new(operator, influence, factor, grid, threads)
+        Operators::new(operator, coefficients, factor, grid, threads)
     }
 
     fn iteration<T: Real>(&self, grid: &Grid) -> Result<Iteration<T>> {
@@ -86,15 +86,15 @@ impl Inner {
 
     /// Takes other coefficients on the same grid. After an error the iteration must not be used.
     pub fn renew(&mut self, made_of: MadeOf<'_>, grid: &Grid) -> Result<()> {
-        let MadeOf { influence, factor, whole, .. } = made_of;
+        let MadeOf { coefficients, factor, whole, .. } = made_of;
         match self {
             Inner::Single(iteration, kept) => {
                 kept.clear();
-                iteration.renew(influence, factor, grid, whole)
+                iteration.renew(coefficients, factor, grid, whole)
             }
             Inner::Double(iteration, kept) => {
                 kept.clear();
-                iteration.renew(influence, factor, grid, whole)
+                iteration.renew(coefficients, factor, grid, whole)
             }
         }
     }

@@ -43,7 +43,7 @@
 //! So directions in single precision lead to a solution in double precision.
 
 use super::search::{Search, FIRST_FORECAST};
-use super::step_sums::{Step, Update};
+use super::step_sums::{StepSums, Update};
 use super::vectors::Iteration;
 use crate::contact::{AdmissibleSet, NonNegative, State};
 use crate::operator::fft::Real;
@@ -212,7 +212,7 @@ impl<T: Real> Iteration<T> {
 
         // q = A t, alpha = (r, t)/(t, q)
         self.operator.apply(&self.t, &mut self.q, &mut self.workspace);
-        let (mut step, count) = (self.step(state), self.segments.count() as f64);
+        let (mut step, count) = (self.step_sums(state), self.segments.count() as f64);
         if !(step.tq > 0.0 && step.rt.is_finite()) {
             return None;
         }
@@ -263,7 +263,7 @@ impl<T: Real> Iteration<T> {
     }
 
     /// alpha. It is the forecast if the product includes a large correction: in the first step, and while elements are at their limit.
-    fn step_length(&self, step: &Step, search: &mut Search, limited: bool) -> f64 {
+    fn step_length(&self, step: &StepSums, search: &mut Search, limited: bool) -> f64 {
         let alpha = step.rt / step.tq;
         search.tq = step.tq;
         let includes = std::mem::take(&mut search.is_first) || limited;

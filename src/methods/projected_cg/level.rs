@@ -29,7 +29,7 @@ struct Windowed {
 /// One grid.
 pub struct Level {
     grid: Grid,
-    influence: Coefficients,
+    coefficients: Coefficients,
     precision: Precision,
     threads: Threads,
     /// None before the first iteration.
@@ -42,10 +42,10 @@ pub struct Level {
 
 impl Level {
     /// A level without operators, which are set up when needed.
-    pub fn new(grid: Grid, influence: Coefficients, precision: Precision, threads: &Threads) -> Level {
+    pub fn new(grid: Grid, coefficients: Coefficients, precision: Precision, threads: &Threads) -> Level {
         Level {
             grid,
-            influence,
+            coefficients,
             precision,
             threads: threads.clone(),
             windowed: None,
@@ -60,8 +60,8 @@ impl Level {
     }
 
     /// Takes other coefficients on the same grid. The window's operators are kept, and updated when needed.
-    pub fn renew(&mut self, influence: Coefficients) {
-        self.influence = influence;
+    pub fn renew(&mut self, coefficients: Coefficients) {
+        self.coefficients = coefficients;
         if let Some(windowed) = &mut self.windowed {
             windowed.is_current = false;
         }
@@ -69,7 +69,7 @@ impl Level {
 
     /// The influence of an element on itself.
     pub fn self_influence(&self) -> f64 {
-        self.influence.self_influence()
+        self.coefficients.self_influence()
     }
 
     /// The threads of the passes.
@@ -78,13 +78,13 @@ impl Level {
     }
 
     /// The coefficients of this grid.
-    pub fn influence(&self) -> &Coefficients {
-        &self.influence
+    pub fn coefficients(&self) -> &Coefficients {
+        &self.coefficients
     }
 
     /// Whether the grid is a line in plane strain on which a uniform pressure displaces nothing.
     pub(super) fn is_mean_free_line(&self) -> bool {
-        self.influence.is_mean_free() && Punches::serve(&self.influence, &self.grid)
+        self.coefficients.is_mean_free() && Punches::serve(&self.coefficients, &self.grid)
     }
 
     /// Forgets the window, so that the bits of the next result do not depend on the solve before.
@@ -105,7 +105,7 @@ impl Level {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let windowed = |w: &Windowed| w.inner.bytes() + w.part.as_ref().map_or(0, State::bytes);
-        self.influence.bytes() + self.windowed.as_ref().map_or(0, windowed)
+        self.coefficients.bytes() + self.windowed.as_ref().map_or(0, windowed)
     }
 
     /// Works on the part of `state` in the window around the contact area, then copies p, C and the approach back. `whole`: the operator of the whole
@@ -159,8 +159,8 @@ impl Level {
 
     /// The window of an iteration from `state`.
     pub fn window(&self, state: &State) -> Rectangle {
-        match self.influence.depends_on_place() {
-            false => window::around(state, self.current.as_ref(), self.influence.is_even(&self.grid), &self.threads),
+        match self.coefficients.depends_on_place() {
+            false => window::around(state, self.current.as_ref(), self.coefficients.is_even(&self.grid), &self.threads),
             true => Rectangle::full(&self.grid),
         }
     }
@@ -187,7 +187,7 @@ impl Level {
         // The operator of a window depends on its size only.
         let whole = whole.filter(|_| window.is_full(&self.grid));
         let threads = &self.threads.suited_to(grid.len());
-        let made_of = MadeOf { influence: &self.influence, factor: units.influence, whole, threads };
+        let made_of = MadeOf { coefficients: &self.coefficients, factor: units.influence, whole, threads };
         let serves = |windowed: &Windowed| {
             let before = windowed.window.grid(&self.grid);
             before == grid || windowed.is_current && Inner::keeps(&before) && Inner::keeps(&grid)

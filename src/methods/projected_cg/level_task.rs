@@ -32,7 +32,7 @@ impl<S: AdmissibleSet> LevelTask<'_, '_, S> {
                 displacement = Freshness::Stale;
             }
         }
-        let (grid, is_mean_free) = (state.grid, level.influence().is_mean_free());
+        let (grid, is_mean_free) = (state.grid, level.coefficients().is_mean_free());
         level.on_window((state, *set), displacement, *whole, |inner, window, units, state, set| {
             let work = state.grid.len() as f64 / *finest as f64;
             if displacement == Freshness::Near {

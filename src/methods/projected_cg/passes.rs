@@ -1,7 +1,7 @@
 //! The passes over the segments of the contact area; their formulas are in `formulas`.
 
-use super::formulas::{Conjugate, Direction, Distance, Free, Lowered, Residual, Scale, StepSums};
-use super::step_sums::{Energy, Step, Update};
+use super::formulas::{Conjugate, Direction, Distance, Free, Lowered, Residual, Scale, StepTerms};
+use super::step_sums::{Energy, StepSums, Update};
 use super::vectors::Iteration;
 use crate::contact::State;
 use crate::operator::fft::Real;
@@ -158,19 +158,19 @@ impl<T: Real> Iteration<T> {
     }
 
     /// The sums over C for the step length, and those of the energy if p is scaled.
-    pub(super) fn step(&mut self, state: &State) -> Step {
+    pub(super) fn step_sums(&mut self, state: &State) -> StepSums {
         if self.deflation.is_there() {
-            return self.step_beside_deflation(state);
+            return self.step_sums_beside_deflation(state);
         }
         let State { h, u, p, contact, .. } = state;
-        let (tq, formula) = ([&self.t[..], &self.q], StepSums { approach: state.approach });
+        let (tq, formula) = ([&self.t[..], &self.q], StepTerms { approach: state.approach });
         if !self.is_scaled {
             let [rt, tq, tt, t1, pp] = self.segments.sum(
                 contact,
                 #[inline(always)]
                 |block| block.sum([h, u, p], tq, formula),
             );
-            return Step { rt, tq, tt, t1, pp, rd: 0.0, qd: 0.0, energy: None };
+            return StepSums { rt, tq, tt, t1, pp, rd: 0.0, qd: 0.0, energy: None };
         }
         let [rt, tq, tt, t1, pp, pd, td, pu, pq] = self.segments.sum(
             contact,
@@ -178,7 +178,7 @@ impl<T: Real> Iteration<T> {
             |block| block.sum([h, u, p], tq, formula),
         );
         let energy = Energy { pd, td, pu, pq_tu: pq + td - rt, tq };
-        Step { rt, tq, tt, t1, pp, rd: 0.0, qd: 0.0, energy: Some(energy) }
+        StepSums { rt, tq, tt, t1, pp, rd: 0.0, qd: 0.0, energy: Some(energy) }
     }
 
     /// p = factor p on C, and the deferred corrections likewise.

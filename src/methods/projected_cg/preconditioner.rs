@@ -41,23 +41,23 @@ pub struct Preconditioner<T: Real> {
 impl<T: Real> Preconditioner<T> {
     /// The preconditioner of an operator whose coefficients are multiplied by `factor`. None if the circulant is not positive.
     pub fn new(
-        influence: &Coefficients,
+        coefficients: &Coefficients,
         factor: f64,
         grid: &Grid,
         threads: &Threads,
     ) -> Result<Option<Preconditioner<T>>> {
         let mut parts = Vec::new();
-        for (influence, weights) in influence.levels()? {
-            let period = Operator::<T>::circulant_period(&influence, grid);
-            let Some(inverse) = Operator::scaled_inverse(&influence, factor, grid, period, threads)? else {
+        for (coefficients, weights) in coefficients.levels()? {
+            let period = Operator::<T>::circulant_period(&coefficients, grid);
+            let Some(inverse) = Operator::scaled_inverse(&coefficients, factor, grid, period, threads)? else {
                 return Ok(None);
             };
             let weights = computed(weights.into_iter().map(T::of), "the preconditioner")?;
-            parts.push(Part { inverse, weights, compliance: influence.typical_compliance() });
+            parts.push(Part { inverse, weights, compliance: coefficients.typical_compliance() });
         }
         let mixed = if parts[0].weights.is_empty() { 0 } else { grid.len() };
         let memory = || zeros(mixed, "the preconditioner");
-        let punches = if mixed == 0 { Punches::if_plane_strain(influence, factor, grid)? } else { None };
+        let punches = if mixed == 0 { Punches::if_plane_strain(coefficients, factor, grid)? } else { None };
         Ok(Some(Preconditioner {
             right: memory()?,
             term: memory()?,

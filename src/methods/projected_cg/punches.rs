@@ -36,11 +36,11 @@ const FORCES_FACTOR: f64 = 2.0;
 const WHAT: &str = "the pieces of a line";
 
 /// The coefficient at an offset along a line.
-fn along(influence: &Coefficients, grid: &Grid, k: usize) -> f64 {
+fn along(coefficients: &Coefficients, grid: &Grid, k: usize) -> f64 {
     if grid.my == 1 {
-        influence.at(k as i64, 0)
+        coefficients.at(k as i64, 0)
     } else {
-        influence.at(0, k as i64)
+        coefficients.at(0, k as i64)
     }
 }
 
@@ -87,24 +87,24 @@ pub(super) struct Punches {
 impl Punches {
     /// Whether a grid is a line in plane strain, with a logarithmic kernel: this falls by the same amount over each doubling of the distance, the
     /// kernel 1/r of short elements by half as much each time.
-    pub(super) fn serve(influence: &Coefficients, grid: &Grid) -> bool {
+    pub(super) fn serve(coefficients: &Coefficients, grid: &Grid) -> bool {
         let n = grid.len();
-        let fall = |k: usize| along(influence, grid, k) - along(influence, grid, 2 * k);
+        let fall = |k: usize| along(coefficients, grid, k) - along(coefficients, grid, 2 * k);
         let is_line = n == grid.mx.max(grid.my) && n >= LEAST_ELEMENTS;
-        is_line && !influence.depends_on_place() && fall(n / 8) > 0.5 * fall(1)
+        is_line && !coefficients.depends_on_place() && fall(n / 8) > 0.5 * fall(1)
     }
 
     /// The punches of a line in plane strain, for coefficients times `factor`; none for other grids.
-    pub(super) fn if_plane_strain(influence: &Coefficients, factor: f64, grid: &Grid) -> Result<Option<Punches>> {
-        if !Punches::serve(influence, grid) {
+    pub(super) fn if_plane_strain(coefficients: &Coefficients, factor: f64, grid: &Grid) -> Result<Option<Punches>> {
+        if !Punches::serve(coefficients, grid) {
             return Ok(None);
         }
         let n = grid.len();
-        let (x, y) = influence.repeats(grid);
+        let (x, y) = coefficients.repeats(grid);
         let mut kernel = zeros(n, WHAT)?;
-        kernel.iter_mut().enumerate().for_each(|(k, value)| *value = factor * along(influence, grid, k));
+        kernel.iter_mut().enumerate().for_each(|(k, value)| *value = factor * along(coefficients, grid, k));
         let punches = Punches::new(kernel, (if grid.my == 1 { x } else { y }).then_some(n as f64))?;
-        Ok(Some(Punches { is_mean_free: influence.is_mean_free(), ..punches }))
+        Ok(Some(Punches { is_mean_free: coefficients.is_mean_free(), ..punches }))
     }
 
     /// Punches from coefficients at offsets 0, 1, ... along the line, and its period in elements.

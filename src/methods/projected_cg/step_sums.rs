@@ -17,7 +17,7 @@ impl Default for Update {
 }
 
 /// Sums over C: (r, t), (t, q), (t, t), the sum of |t|, (p, p); and (r, d), (q, d), 0 without a deflation direction.
-pub(super) struct Step {
+pub(super) struct StepSums {
     pub(super) rt: f64,
     pub(super) tq: f64,
     pub(super) tt: f64,
@@ -28,7 +28,7 @@ pub(super) struct Step {
     pub(super) energy: Option<Energy>,
 }
 
-impl Step {
+impl StepSums {
     /// An upper bound on the 2-norm of the change of p. It is the sum of three changes: by the step along t, by the
     /// step along d (`along_d`), and by the scaling.
     pub(super) fn change(&self, alpha: f64, along_d: f64, factor: f64) -> f64 {

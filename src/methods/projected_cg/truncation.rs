@@ -7,7 +7,7 @@
 //!   `A d`. If alpha differs from alpha', the rest `d (1 - alpha/alpha')` remains to be corrected. It shrinks by this factor at each iteration.
 //!   At the end the fresh product of the certificate corrects the remainder.
 
-use super::step_sums::Step;
+use super::step_sums::StepSums;
 use crate::contact::State;
 use crate::error::Result;
 use crate::memory::{keep, reserve};
@@ -86,7 +86,7 @@ impl Truncation {
         (t, q): (&mut [T], &[T]),
         state: &State,
         (forecast, alpha): (f64, f64),
-        step: &mut Step,
+        step: &mut StepSums,
     ) {
         for gain in &mut self.gains {
             let (i, included) = (gain.0, T::of(gain.1 / forecast));

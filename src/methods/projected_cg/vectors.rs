@@ -50,12 +50,12 @@ impl<T: Real> Operators<T> {
     /// A and M on `grid`; `operator` is that of the coefficients times `factor`. Without M if the circulant is not positive.
     pub fn new(
         operator: Operator<T>,
-        influence: &Coefficients,
+        coefficients: &Coefficients,
         factor: f64,
         grid: &Grid,
         threads: &Threads,
     ) -> Result<Operators<T>> {
-        Ok(Operators { operator, preconditioner: preconditioner(influence, factor, grid, threads)? })
+        Ok(Operators { operator, preconditioner: preconditioner(coefficients, factor, grid, threads)? })
     }
 
     /// Bytes held.
@@ -146,7 +146,7 @@ impl<T: Real> Iteration<T> {
     /// precision, if known. After an error the iteration must not be used.
     pub fn renew(
         &mut self,
-        influence: &Coefficients,
+        coefficients: &Coefficients,
         factor: f64,
         grid: &Grid,
         whole: Option<&Operator<f64>>,
@@ -154,11 +154,11 @@ impl<T: Real> Iteration<T> {
         let before = self.needs();
         match whole {
             Some(whole) => self.operator = whole.in_precision(factor)?,
-            None => self.operator.renew(influence, factor, grid, &mut SetUp::default())?,
+            None => self.operator.renew(coefficients, factor, grid, &mut SetUp::default())?,
         }
         // The next iteration takes over its memory.
         self.preconditioner = None;
-        self.preconditioner = preconditioner(influence, factor, grid, self.operator.threads())?;
+        self.preconditioner = preconditioner(coefficients, factor, grid, self.operator.threads())?;
         self.counted = None;
         if self.needs() != before {
             self.workspace = workspace(&self.operator, &self.preconditioner)?;
@@ -225,12 +225,12 @@ fn workspace<T: Real>(operator: &Operator<T>, preconditioner: &Option<Preconditi
 }
 
 fn preconditioner<T: Real>(
-    influence: &Coefficients,
+    coefficients: &Coefficients,
     factor: f64,
     grid: &Grid,
     threads: &Threads,
 ) -> Result<Option<Preconditioner<T>>> {
-    let preconditioner = Preconditioner::new(influence, factor, grid, threads)?;
+    let preconditioner = Preconditioner::new(coefficients, factor, grid, threads)?;
     if preconditioner.is_none() {
         log::info!("the circulant of the influence coefficients is not positive: no preconditioner");
     }

@@ -1,7 +1,9 @@
 //! Omissions: the named effects of a scene, and refinements that it has without naming them.
 
+use std::mem::{replace, take};
+
 use crate::effects::replace_bodies;
-use crate::scene::{Bodies, Coefficient, Each, Friction, Layer, Scene};
+use crate::scene::{Bodies, Coefficient, Each, Layer, Scene};
 use crate::solver::numbered::numbered;
 
 numbered! {
@@ -52,30 +54,7 @@ impl Omission {
 
     /// The omissions that a scene allows.
     pub fn of(scene: &Scene<'_>) -> Vec<Omission> {
-        Omission::ALL.into_iter().filter(|omission| omission.is_in(scene)).collect()
-    }
-
-    fn is_in(self, scene: &Scene<'_>) -> bool {
-        let friction = scene.friction.as_ref();
-        match self {
-            // Rigid bodies without coatings have no compliance, and coatings on them may be all that relaxes.
-            Omission::Coating => may_lose_coating(scene),
-            Omission::CoatingAsLayer => may_lose_coating(scene) && as_layer(scene).is_some(),
-            Omission::Period => scene.period.is_some_and(|period| period.x || period.y),
-            Omission::Patches => scene.patches.is_some(),
-            Omission::Layer => scene.layer.is_some(),
-            Omission::Adhesion => scene.attraction().is_some(),
-            Omission::PressureLimit => scene.pressure_limit.is_some(),
-            Omission::Friction => friction.is_some(),
-            Omission::Coupling => friction.is_some() && !replace_bodies(scene) && scene.bodies.unlike() != 0.0,
-            Omission::Spin => friction.is_some_and(|friction| friction.spin != 0.0),
-            Omission::FrictionCompliance => {
-                friction.is_some_and(|friction| friction.compliance != Coefficient::Uniform(0.0))
-            }
-            Omission::FrictionLaw => friction.is_some_and(|friction| friction.law.is_some()),
-            Omission::FrictionLayer => friction.is_some_and(|friction| friction.layer.is_some()),
-            Omission::Visco => relaxes(scene),
-        }
+        Omission::ALL.into_iter().filter(|omission| omission.without(scene).0).collect()
     }
 
     /// Whether leaving out both differs from leaving out one of them.
@@ -92,43 +71,50 @@ impl Omission {
 
     /// The scene without the effect.
     pub fn leave_out<'a>(self, scene: &Scene<'a>) -> Scene<'a> {
+        self.without(scene).1
+    }
+
+    /// Whether the scene has the effect, and the scene without it.
+    fn without<'a>(self, scene: &Scene<'a>) -> (bool, Scene<'a>) {
         let mut left = scene.clone();
-        match self {
-            Omission::Coating => left.coating = None,
-            Omission::CoatingAsLayer => {
-                left.layer = as_layer(scene);
+        let none = Coefficient::Uniform(0.0);
+        let is_in = match self {
+            Omission::Coating => {
                 left.coating = None;
+                may_lose_coating(scene)
             }
-            Omission::Period => left.period = None,
+            Omission::CoatingAsLayer => {
+                (left.coating, left.layer) = (None, as_layer(scene));
+                may_lose_coating(scene) && left.layer.is_some()
+            }
+            Omission::Period => left.period.take().is_some_and(|period| period.x || period.y),
             // Elements in no patch still have no surface.
-            Omission::Patches => left.patches = None,
-            Omission::Layer => left.layer = None,
-            Omission::Adhesion => left.adhesion = None,
-            Omission::PressureLimit => left.pressure_limit = None,
-            Omission::Friction => left.friction = None,
-            Omission::Coupling => left.bodies = alike(&scene.bodies),
-            Omission::Spin => left.friction = scene.friction.map(|friction| Friction { spin: 0.0, ..friction }),
+            Omission::Patches => left.patches.take().is_some(),
+            Omission::Layer => left.layer.take().is_some(),
+            Omission::Adhesion => left.adhesion.take().is_some_and(|adhesion| adhesion.attracts()),
+            Omission::PressureLimit => left.pressure_limit.take().is_some(),
+            Omission::Friction => left.friction.take().is_some(),
+            Omission::Coupling => {
+                left.bodies = alike(&scene.bodies);
+                scene.friction.is_some() && !replace_bodies(scene) && scene.bodies.unlike() != 0.0
+            }
+            Omission::Spin => left.friction.as_mut().is_some_and(|friction| take(&mut friction.spin) != 0.0),
             Omission::FrictionCompliance => {
-                let without = |friction| Friction { compliance: Coefficient::Uniform(0.0), ..friction };
-                left.friction = scene.friction.map(without);
+                left.friction.as_mut().is_some_and(|friction| replace(&mut friction.compliance, none) != none)
             }
-            Omission::FrictionLaw => left.friction = scene.friction.map(|friction| Friction { law: None, ..friction }),
-            Omission::FrictionLayer => {
-                left.friction = scene.friction.map(|friction| Friction { layer: None, ..friction });
-            }
-            Omission::Visco => left.visco = None,
-        }
-        left
+            Omission::FrictionLaw => left.friction.as_mut().is_some_and(|friction| friction.law.take().is_some()),
+            Omission::FrictionLayer => left.friction.as_mut().is_some_and(|friction| friction.layer.take().is_some()),
+            Omission::Visco => left.visco.take().is_some_and(|visco| visco.relaxes()),
+        };
+        (is_in, left)
     }
 }
 
-fn relaxes(scene: &Scene<'_>) -> bool {
-    scene.visco.is_some_and(|visco| visco.relaxes())
-}
-
+/// Rigid bodies without coatings have no compliance, and coatings on them may be all that relaxes.
 fn may_lose_coating(scene: &Scene<'_>) -> bool {
     let plain = scene.plain();
-    let is_left = scene.bodies.check().is_ok() && !relaxes(scene);
+    let relaxes = scene.visco.is_some_and(|visco| visco.relaxes());
+    let is_left = scene.bodies.check().is_ok() && !relaxes;
     is_left && scene.coating.is_some_and(|coating| (0..2).any(|body| coating.in_effect(body, &plain).is_some()))
 }
 

@@ -10,15 +10,15 @@ pub const MOST_MOVED: f64 = 3.0;
 /// Bound on the relative error of single pressures over the residual (docs/accuracy.md: a hundredth of the target for these).
 const ERROR_PER_RESIDUAL: f64 = 100.0;
 
-/// The verdict of a row.
+/// The verdict of a row; numbered as in the C ABI.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
+    /// The change is too near to the target, or its error is unknown: finer grids, that is more time, decide.
+    NotDecided,
     /// The quantity changes by less than the target, its error included.
     Negligible,
     /// The quantity changes by more than the target, even less its error.
     Needed,
-    /// The change is too near to the target, or its error is unknown: finer grids, that is more time, decide.
-    NotDecided,
 }
 
 /// The change of a quantity by leaving out one thing, or two, and the savings.

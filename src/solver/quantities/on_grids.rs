@@ -6,7 +6,7 @@ use super::{values, Course, Lack, Quantity, Value};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::scene::{scaled, Regridded, Scene};
-use crate::solver::{Options, Outcome, ProgressCallback, Report, Solver};
+use crate::solver::{Asked, Options, Outcome, ProgressCallback, Report, Solver};
 
 /// One quantity on one grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,7 +63,7 @@ impl OnGrid {
     ) -> Result<OnGrid> {
         let began = Instant::now();
         let (mut solver, lowest) = Solver::for_scene(scene, options)?;
-        let (outcome, report) = solver.solve_checked((scene, lowest), options, None, progress)?;
+        let (outcome, report) = solver.solve_checked(Asked::new((scene, lowest), options), progress)?;
         let seconds = began.elapsed().as_secs_f64();
         let values = match outcome {
             Outcome::Converged => values(&mut solver, scene, &report, wanted)?,
@@ -112,13 +112,12 @@ impl OnGrid {
 
 /// The error of a quantity in a report.
 fn estimate(report: &Report, quantity: Quantity) -> Option<f64> {
-    let error = match quantity {
+    match quantity {
         Quantity::Force => report.error.force,
         Quantity::MaxPressure => report.error.max_pressure,
         Quantity::ContactArea => report.error.corrected_area,
-        _ => -1.0,
-    };
-    Some(error).filter(|error| *error >= 0.0)
+        _ => None,
+    }
 }
 
 /// The values of `wanted` on the grid of the scene and on `coarser` grids with half the elements each, coarsest first, one row for each grid

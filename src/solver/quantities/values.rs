@@ -2,11 +2,13 @@
 
 use super::deepest::{Peak, Stress, Surface};
 use super::{Quantity, Value};
-use crate::contact::{beyond_ends, Outline};
+use crate::contact::Outline;
+use crate::effects;
 use crate::error::{invalid, Error, Result};
 use crate::friction::STICK;
 use crate::grid::Grid;
 use crate::scene::Scene;
+use crate::solver::estimates::beyond_ends;
 use crate::solver::{Outcome, Report, Solver};
 use crate::stress::{of_scene, MOST_SLENDER};
 use crate::sums::in_blocks;
@@ -16,11 +18,11 @@ use crate::sums::in_blocks;
 /// errors of up to 0.25 of their value over this root.
 const OUTLINE: f64 = 0.3;
 
-/// Why a quantity has no value, or its value no error.
+/// Why a quantity has no value, or its value no error; numbered as in the C ABI.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lack {
     /// The scene has no friction.
-    NoFriction,
+    NoFriction = 1,
     /// The scene prescribes the quantity.
     Prescribed,
     /// An effect of the scene excludes it.
@@ -85,9 +87,9 @@ impl Quantity {
 
 /// Whether stresses near the surface are not computed: with two periods and very slender elements, other than those of a line.
 fn is_too_slender(scene: &Scene<'_>) -> bool {
-    let (Grid { mx, my, dx, dy }, period) = (scene.grid, scene.period);
+    let Grid { mx, my, dx, dy } = scene.grid;
     let is_line = mx == 1 || my == 1;
-    period.is_some_and(|period| period.x && period.y) && !is_line && dx.max(dy) > MOST_SLENDER * dx.min(dy)
+    effects::repeats(scene) == (true, true) && !is_line && dx.max(dy) > MOST_SLENDER * dx.min(dy)
 }
 
 /// The values of `wanted` after a solve of `scene`. Stiffness and stresses are computed here, which may cost more than the solve.

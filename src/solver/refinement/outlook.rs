@@ -1,6 +1,7 @@
 //! Forecasts for finer grids from a solution.
 
 use crate::contact::{touching, State};
+use crate::effects;
 use crate::grid::Grid;
 use crate::rectangle::Rectangle;
 use crate::scene::{Load, Scene};
@@ -23,15 +24,13 @@ impl Outlook {
     pub fn of(solver: &Solver, report: &Report, load: Load) -> Outlook {
         let (error, measures) = (&report.error, &report.measures);
         let found = measures.found(load);
-        let force = report.halving.error.filter(|_| error.force >= 0.0 && solver.has_solved());
-        let peak = Falling { by_four: error.max_pressure, ..Falling::default() };
-        let area = Falling { by_two: error.corrected_area, ..Falling::default() };
+        let force = report.halving.error.filter(|_| error.force.is_some() && solver.has_solved());
+        let peak = error.max_pressure.map(|by_four| Falling { by_four, ..Falling::default() });
+        let area = error.corrected_area.map(|by_two| Falling { by_two, ..Falling::default() });
         let mut outlook = Outlook::default();
         outlook.set(Quantity::Force, force.and_then(|falling| falling.over(found)));
-        let peak = if error.max_pressure >= 0.0 { peak.over(measures.max_pressure) } else { None };
-        outlook.set(Quantity::MaxPressure, peak);
-        let area = if error.corrected_area >= 0.0 { area.over(measures.corrected_area) } else { None };
-        outlook.set(Quantity::ContactArea, area);
+        outlook.set(Quantity::MaxPressure, peak.and_then(|falling| falling.over(measures.max_pressure)));
+        outlook.set(Quantity::ContactArea, area.and_then(|falling| falling.over(measures.corrected_area)));
         outlook
     }
 
@@ -69,7 +68,7 @@ impl History {
 
     /// Least elements in the shorter direction of the first grid: fewer if only stresses below the surface need three grids.
     pub fn least(&self, scene: &Scene<'_>) -> usize {
-        let is_steep = scene.friction.is_some() || scene.pressure_limit.is_some();
+        let is_steep = effects::limits(scene).is_some() || effects::beside(scene).next().is_some();
         let of_several = || self.courses.iter().map(Course::quantity).filter(|quantity| !quantity.has_estimate());
         if is_steep && of_several().all(Quantity::is_stress) {
             LEAST_ELEMENTS / 2

@@ -17,12 +17,12 @@ const PRODUCTS_GROWTH: f64 = 1.1;
 /// The fewest elements across the contact of a sample that can be extrapolated.
 pub(super) const FEWEST_ACROSS: usize = 12;
 
-/// The reason why an accuracy cannot be reached.
+/// The reason why an accuracy cannot be reached; numbered as in the C ABI.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Obstacle {
     /// No sufficient grid is known: the quantity is singular, contact is on few elements, or there is none and the quantity is not 0 then; or no grid was
     /// solved.
-    Singular,
+    Singular = 1,
     /// The target is below round-off.
     RoundOff,
     /// It takes more elements than `max_elements`.
@@ -58,12 +58,12 @@ pub struct Price {
     pub grid: Option<Grid>,
     /// The largest sufficient tolerance.
     pub tolerance: f64,
-    /// The larger of the predicted relative error of the grid and the tolerance. Negative if not known.
-    pub error: f64,
-    /// Seconds of set-up and solve with the threads of the options; negative: not known.
-    pub seconds: f64,
-    /// Seconds with one thread; negative: not known.
-    pub seconds_one_thread: f64,
+    /// The larger of the predicted relative error of the grid and the tolerance, if it is known.
+    pub error: Option<f64>,
+    /// Seconds of set-up and solve with the threads of the options, if they are known.
+    pub seconds: Option<f64>,
+    /// Seconds with one thread, if they are known.
+    pub seconds_one_thread: Option<f64>,
     /// Products that the solve takes, in products on its grid; 0: not known.
     pub work_units: f64,
     /// Bytes held by the solver; 0: not known.
@@ -129,9 +129,9 @@ pub(super) fn price(
         target,
         grid: None,
         tolerance,
-        error: -1.0,
-        seconds: -1.0,
-        seconds_one_thread: -1.0,
+        error: None,
+        seconds: None,
+        seconds_one_thread: None,
         work_units: 0.0,
         bytes: 0,
         obstacle: Some(Obstacle::Singular),
@@ -164,9 +164,9 @@ pub(super) fn price(
     let obstacle = obstacles.into_iter().find(|(is_in_the_way, _)| *is_in_the_way).map(|(_, obstacle)| obstacle);
     Price {
         grid: Some(grid),
-        error: if last.is_exact() { 0.0 } else { falling.after(k).max(tolerance) },
-        seconds: seconds / speed_up,
-        seconds_one_thread: seconds,
+        error: Some(if last.is_exact() { 0.0 } else { falling.after(k).max(tolerance) }),
+        seconds: Some(seconds / speed_up),
+        seconds_one_thread: Some(seconds),
         work_units,
         bytes: bytes as u64,
         obstacle,

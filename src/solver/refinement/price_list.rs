@@ -122,7 +122,7 @@ struct Budget {
 impl Budget {
     /// Most seconds of all samples, after a sample with these rows.
     fn after(&mut self, rows: &[Price]) -> f64 {
-        let had = rows.iter().filter(|price| price.obstacle.is_none()).map(|price| price.seconds);
+        let had = rows.iter().filter(|price| price.obstacle.is_none()).filter_map(|price| price.seconds);
         let dearest = had.reduce(f64::max);
         self.least = self.least.into_iter().chain(dearest).reduce(f64::min);
         SAMPLES_SECONDS.max(SAMPLES_SHARE * self.least.unwrap_or(0.0))

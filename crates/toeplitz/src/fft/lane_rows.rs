@@ -10,11 +10,12 @@
 //! transforms, which follow, find a block in one piece, and a group of rows is a group of columns of the matrix whose rows are blocks. Values
 //! are transposed to vectors and back four columns at a time.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use par::Result;
 
-use crate::block::{Block, BLOCK};
+use crate::block::{blocks_of, Block, BLOCK};
 use crate::fft::row_pass::{Forward, Inverse, LaneCount};
 use crate::fft::row_plan::RowPlan;
 use crate::fft::stages::before_a_line;
@@ -61,6 +62,27 @@ impl<T: Real> LaneRows<T> {
     /// Rows that are transformed together.
     pub fn at_a_time(&self) -> usize {
         self.lanes
+    }
+
+    /// Rows of a block of bins of a grid of `my` rows: a group of rows transformed together may begin at the last row, and is always whole.
+    pub fn height(&self, my: usize) -> usize {
+        my + self.lanes - 1
+    }
+
+    /// Number of bins in the blocks of a grid of `my` rows.
+    pub fn bins_of(&self, my: usize) -> usize {
+        self.blocks() * self.height(my) * BLOCK
+    }
+
+    /// These rows of the blocks of a grid of `my` rows, in groups that are transformed together: the last group may end beyond `rows`.
+    pub fn groups<'a>(
+        &self,
+        my: usize,
+        bins: &'a mut [Complex<T>],
+        rows: Range<usize>,
+    ) -> impl DoubleEndedIterator<Item = Block<'a, T>> + ExactSizeIterator + Send {
+        let end = rows.start + rows.len().next_multiple_of(self.lanes);
+        blocks_of(bins, self.height(my) * BLOCK, rows.start * BLOCK..end * BLOCK, self.lanes * BLOCK)
     }
 
     /// Length of the scratch of both directions.

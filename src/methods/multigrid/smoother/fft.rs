@@ -53,9 +53,9 @@ pub struct Fft {
 
 impl Fft {
     /// Sets up the smoother on `grid`.
-    pub fn new(influence: &Coefficients, grid: &Grid, threads: &Threads) -> Result<Fft> {
-        let period = Operator::<f64>::circulant_period(influence, grid);
-        let inverse_circulant = match Operator::inverse_circulant(influence, grid, period, threads)? {
+    pub fn new(coefficients: &Coefficients, grid: &Grid, threads: &Threads) -> Result<Fft> {
+        let period = Operator::<f64>::circulant_period(coefficients, grid);
+        let inverse_circulant = match Operator::inverse_circulant(coefficients, grid, period, threads)? {
             Some(inverse) => {
                 let workspace = inverse.workspace()?;
                 Some((inverse, workspace))
@@ -68,7 +68,7 @@ impl Fft {
         let array = || zeros(grid.len(), "the smoother");
         Ok(Fft {
             inverse_circulant,
-            symmetric: influence.is_symmetric(grid),
+            symmetric: coefficients.is_symmetric(grid),
             direction: array()?,
             displacement: array()?,
             product: array()?,

@@ -55,7 +55,7 @@ struct Half {
 
 impl GaussSeidel {
     /// Sets up sweeps on `grid`.
-    pub fn new(influence: &Coefficients, grid: &Grid) -> Result<GaussSeidel> {
+    pub fn new(coefficients: &Coefficients, grid: &Grid) -> Result<GaussSeidel> {
         let (mx, my) = (grid.mx, grid.my);
         let px = good_length(2 * mx - 1);
         let rows = RowTransform::new(px)?;
@@ -69,7 +69,7 @@ impl GaussSeidel {
         for (d, bins) in kernels.chunks_exact_mut(nb).enumerate() {
             row.fill(0.0);
             for kx in 1 - mx as i64..mx as i64 {
-                row[kx.rem_euclid(px as i64) as usize] = normalisation * influence.at(kx, d as i64);
+                row[kx.rem_euclid(px as i64) as usize] = normalisation * coefficients.at(kx, d as i64);
             }
             rows.forward(&row, bins, &mut scratch);
         }
@@ -92,7 +92,7 @@ impl GaussSeidel {
         kernels.truncate(STRIP * nb);
         let longest = halves.last().map_or(0, |half| half.transform.length());
         let mut within_row = zeros(mx, "the smoother")?;
-        influence.fill_row(0, 0, &mut within_row);
+        coefficients.fill_row(0, 0, &mut within_row);
         Ok(GaussSeidel {
             mx,
             my,

@@ -53,15 +53,15 @@ pub enum Smoother {
 
 impl Smoother {
     /// Sets up a smoother.
-    pub fn new(kind: SmootherKind, influence: &Coefficients, grid: &Grid, threads: &Threads) -> Result<Smoother> {
+    pub fn new(kind: SmootherKind, coefficients: &Coefficients, grid: &Grid, threads: &Threads) -> Result<Smoother> {
         Ok(match kind {
-            SmootherKind::GaussSeidel => Smoother::GaussSeidel(GaussSeidel::new(influence, grid)?),
+            SmootherKind::GaussSeidel => Smoother::GaussSeidel(GaussSeidel::new(coefficients, grid)?),
             SmootherKind::RedBlack => {
                 let array = || zeros(grid.len(), "the smoother");
-                Smoother::RedBlack(GaussSeidel::new(influence, grid)?, array()?, array()?)
+                Smoother::RedBlack(GaussSeidel::new(coefficients, grid)?, array()?, array()?)
             }
-            SmootherKind::Jacobi => Smoother::Jacobi(influence.at(0, 0)),
-            SmootherKind::Fft => Smoother::Fft(Box::new(Fft::new(influence, grid, threads)?)),
+            SmootherKind::Jacobi => Smoother::Jacobi(coefficients.at(0, 0)),
+            SmootherKind::Fft => Smoother::Fft(Box::new(Fft::new(coefficients, grid, threads)?)),
         })
     }
 

@@ -27,8 +27,7 @@
 use std::f64::consts::PI;
 
 use super::direction::Direction;
-use super::outline::STRAIGHT;
-use super::{Problem, State};
+use crate::contact::{Problem, State, STRAIGHT};
 use crate::sums::in_blocks;
 
 /// t in elements: at a straight edge, at an edge with steps, and where the edge lies on edges of elements.
