@@ -33,9 +33,6 @@ pub const SERIES: [(f64, usize); 4] = [(6.0, 8), (12.0, 6), (40.0, 4), (300.0, 2
 /// Most terms of the multipole series (degree `2 * 8 = 16`).
 pub const MOST_TERMS: usize = SERIES[0].1;
 
-/// The most kept coefficients of one quadrant at offsets nearer than the series.
-const MOST_KEPT: usize = 1024;
-
 /// Sizes of quadrants of coefficients that are kept once a grid of this size needs them. Computing them takes as long as a product or more, and
 /// operators of the grid, its windows and coarser grids, preconditioners and the next solver need the same ones. At most 4.4 MB for a shape; a
 /// quadrant within a kept one is not computed.
@@ -63,9 +60,6 @@ struct Shape {
     dy: f64,
     /// `q_k(t) = sum_j series[k][j] t^j`.
     series: [[f64; MOST_TERMS + 1]; MOST_TERMS + 1],
-    /// The coefficients at all offsets nearer than the series, `[ky][kx]`, `near_x` in a row. Empty if there are too many.
-    near: Vec<f64>,
-    near_x: usize,
     /// The [`QUADRANTS`] computed so far, row by row.
     quadrants: [OnceLock<Vec<f64>>; QUADRANTS.len()],
 }
@@ -95,15 +89,7 @@ impl Shape {
     }
 
     fn new(dx: f64, dy: f64) -> Shape {
-        let reach = SERIES[0].0 * 0.5 * dx.hypot(dy);
-        // Very slender elements have more near offsets than usize counts.
-        let count = |d: f64| ((reach / d) as usize).saturating_add(2);
-        let (near_x, near_y) = (count(dx), count(dy));
-        let few = near_x.saturating_mul(near_y) <= MOST_KEPT;
-        let (near_x, near_y) = if few { (near_x, near_y) } else { (0, 0) };
-        let offsets = (0..near_y).flat_map(|ky| (0..near_x).map(move |kx| (kx as f64, ky as f64)));
-        let near = offsets.map(|(kx, ky)| integral_at((kx, ky), (dx, dy)) / dx).collect();
-        Shape { dx, dy, series: multipole_series(dx, dy), near, near_x, quadrants: Default::default() }
+        Shape { dx, dy, series: multipole_series(dx, dy), quadrants: Default::default() }
     }
 
     /// The coefficients at the offsets `(..end, ky)`, if they are kept.
@@ -142,7 +128,7 @@ impl Shape {
         let starts = SERIES.map(|(distance, _)| first_beyond(distance));
         let (near, far) = out.split_at_mut(starts[0]);
         for (value, kx) in near.iter_mut().zip(kx..) {
-            *value = self.near(kx, ky);
+            *value = integral_at((kx as f64, ky as f64), (self.dx, self.dy)) / self.dx;
         }
         let [s8, s6, s4, s2] = starts;
         let (far8, rest) = far.split_at_mut(s6 - s8);
@@ -154,12 +140,6 @@ impl Shape {
         arch.dispatch(Far::<6> { shape: self, kx: at(s6), y, out: far6 });
         arch.dispatch(Far::<4> { shape: self, kx: at(s4), y, out: far4 });
         arch.dispatch(Far::<2> { shape: self, kx: at(s2), y, out: far2 });
-    }
-
-    /// The coefficient at an offset nearer than the series.
-    fn near(&self, kx: usize, ky: usize) -> f64 {
-        let kept = if kx < self.near_x { self.near.get(ky * self.near_x + kx) } else { None };
-        kept.copied().unwrap_or_else(|| integral_at((kx as f64, ky as f64), (self.dx, self.dy)) / self.dx)
     }
 }
 

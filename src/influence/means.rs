@@ -18,11 +18,6 @@ pub const ROWS: usize = 2 * HALO + 1;
 
 /// Distance from a singularity, in longer sides of an element, from which means follow from the values at centres.
 pub const LEAST_DISTANCE: f64 = 32.0;
-/// Distance, in longer sides, from which differences up to the fourth suffice: the sixth is 2e-12 of 1/r^3.
-const FOURTH_DIFFERENCES: f64 = 128.0;
-/// Neighbours on either side in a mean beyond this distance.
-const FAR_HALO: usize = 2;
-
 /// `1/24, -17/5760, ..`
 const SERIES: [f64; HALO] = [1.0 / 24.0, -17.0 / 5760.0, 367.0 / 967_680.0, -27859.0 / 464_486_400.0];
 
@@ -36,12 +31,6 @@ const MEAN: [f64; HALO + 1] = {
         c - 8.0 * d,
         d,
     ]
-};
-
-/// The weights of a mean to the fourth difference.
-const FAR_MEAN: [f64; FAR_HALO + 1] = {
-    let [a, b, ..] = SERIES;
-    [1.0 - 2.0 * a + 6.0 * b, a - 4.0 * b, b]
 };
 
 /// Means along a row: `out[k]` is the mean about `points[k + HALO]`.
@@ -85,20 +74,10 @@ impl pulp::NullaryFnOnce for Combine<'_> {
     }
 }
 
-/// `combine` to the fourth difference.
-fn combine_few([a, b, c, d, e]: [&[f64]; 2 * FAR_HALO + 1], out: &mut [f64]) {
-    let n = out.len();
-    let (a, b, c, d, e) = (&a[..n], &b[..n], &c[..n], &d[..n], &e[..n]);
-    for (k, out) in out.iter_mut().enumerate() {
-        *out = FAR_MEAN[0] * c[k] + FAR_MEAN[1] * (b[k] + d[k]) + FAR_MEAN[2] * (a[k] + e[k]);
-    }
-}
-
 /// Means of an even function at offsets `0.., 0..` below `columns` and `rows`, in row ky from `first(ky)` on, which grows with ky. `fill(ky, from,
-/// row)` gives the function at `(from.., ky)`; `each(ky, means)` gets the means row by row. Rows are `row_distance` apart, in longer sides.
+/// row)` gives the function at `(from.., ky)`; `each(ky, means)` gets the means row by row.
 pub fn means(
     (columns, rows): (usize, usize),
-    row_distance: f64,
     first: impl Fn(usize) -> usize,
     fill: impl Fn(usize, usize, &mut [f64]),
     mut each: impl FnMut(usize, &[f64]),
@@ -107,7 +86,6 @@ pub fn means(
     let mut points = zeros(columns + 2 * HALO, what)?;
     let mut last = zeros(ROWS * columns, what)?;
     let mut out = zeros(columns, what)?;
-    let is_far = |ky: usize| ky as f64 * row_distance >= FOURTH_DIFFERENCES;
     for row in 0..rows + 2 * HALO {
         let ky = row.abs_diff(HALO);
         // The values for the rows around, with their neighbours.
@@ -119,18 +97,12 @@ pub fn means(
         }
         let slot = row % ROWS;
         let of_row = &mut last[slot * columns + start..(slot + 1) * columns];
-        match is_far(ky) {
-            true => combine_few(std::array::from_fn(|k| &points[start + HALO - FAR_HALO + k..]), of_row),
-            false => in_x(&points[start..], of_row),
-        }
+        in_x(&points[start..], of_row);
         if row >= 2 * HALO {
             let (ky, middle) = (row - 2 * HALO, row - HALO);
             let start = first(ky);
-            let rows = |distance: usize, k: usize| &last[(middle - distance + k) % ROWS * columns + start..];
-            match is_far(ky) {
-                true => combine_few(std::array::from_fn(|k| rows(FAR_HALO, k)), &mut out[start..]),
-                false => combine(std::array::from_fn(|k| rows(HALO, k)), &mut out[start..]),
-            }
+            let row = |k: usize| &last[(middle - HALO + k) % ROWS * columns + start..];
+            combine(std::array::from_fn(row), &mut out[start..]);
             each(ky, &out);
         }
     }

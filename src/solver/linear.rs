@@ -5,7 +5,7 @@ use super::{ActiveSet, Asked, Guess, InitialGuess, Method, Options, Outcome, Sol
 use crate::contact::Survey;
 use crate::error::{invalid, Error, Result};
 use crate::memory::zeros;
-use crate::progress::Monitor;
+use crate::progress::{Monitor, ProgressCallback};
 use crate::scene::{Bodies, Load, Scene};
 use crate::sums::in_blocks;
 
@@ -48,6 +48,11 @@ impl Solver {
     /// bodies that relax. `A s = 1` is solved on the contact area, and the value is the sum of `s dx dy`. It is 0 without contact. The outcome says
     /// why a value could not be computed. The last result stays valid. The first call sets up another solver of one thread and keeps it.
     pub fn stiffness(&mut self) -> Result<(Outcome, Stiffness)> {
+        self.watched_stiffness(None)
+    }
+
+    /// [`stiffness`](Solver::stiffness), with a callback that may cancel it.
+    pub(super) fn watched_stiffness(&mut self, progress: Option<ProgressCallback<'_>>) -> Result<(Outcome, Stiffness)> {
         if !self.has_result {
             return invalid("solver has no result: there was no solve, or the last one found none".into());
         }
@@ -76,14 +81,19 @@ impl Solver {
             ..set_up.options
         };
         let (outcome, found) = match &mut workers[0] {
-            Some(worker) => worker.stiffness_of(&state.contact, &options)?,
+            Some(worker) => worker.stiffness_of(&state.contact, &options, progress)?,
             None => unreachable!("it was set up"),
         };
         Ok((outcome, Stiffness { value: found.value / self.compliance, ..found }))
     }
 
     /// The stiffness of a contact area. This solver's own result is lost.
-    fn stiffness_of(&mut self, contact: &[bool], options: &Options) -> Result<(Outcome, Stiffness)> {
+    fn stiffness_of(
+        &mut self,
+        contact: &[bool],
+        options: &Options,
+        progress: Option<ProgressCallback<'_>>,
+    ) -> Result<(Outcome, Stiffness)> {
         let (grid, own) = (self.problem.grid, self.problem.self_influence());
         // Pressures of order 1 in any units; a power of two loses no digit.
         let unit = if own > 0.0 { own.log2().floor().exp2() } else { 1.0 };
@@ -98,7 +108,7 @@ impl Solver {
         let guess = Some(Guess { pressure: &p, contact });
         // Only grid, distance and load are used: the coefficients contain effects and bodies.
         let scene = &Scene::new(grid, &h, Bodies::same(1.0, 0.0), load);
-        let mut monitor = Monitor::new(None, Vec::new(), false);
+        let mut monitor = Monitor::new(progress, Vec::new(), false);
         let (outcome, _) = self.solve_normal(Asked { guess, ..Asked::new((scene, 0.0), options) }, &mut monitor)?;
         let sum = in_blocks(self.state.p.iter().copied());
         let residual = Survey::of(&self.state).certificate().residual;

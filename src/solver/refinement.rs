@@ -222,9 +222,16 @@ fn solve_on(
     };
     // Without a callback the surface jumps between the given elements only.
     let asked = Asked { exact_edges: surface.is_none() && doublings >= 0, ..Asked::new((scene, lowest), options) };
-    let (stop, report) = solver.solve_checked(asked, Some(&mut watch))?;
+    let (mut stop, report) = solver.solve_checked(asked, Some(&mut watch))?;
     let outlook = Outlook::of(&solver, &report, scene.load);
-    let of = if stop == Outcome::Cancelled { vec![] } else { values(&mut solver, scene, &report, wanted)? };
+    let of = match stop {
+        Outcome::Cancelled => None,
+        _ => values(&mut solver, scene, &report, wanted, &mut watch)?,
+    };
+    let of = of.unwrap_or_else(|| {
+        stop = Outcome::Cancelled;
+        vec![]
+    });
     let values = Values { of, residual: report.residual(), lack_estimates: solver.lacks_estimates() };
     let solved = Solved { solver, report, outlook, values };
     Ok(match stop {

@@ -1,10 +1,11 @@
 //! Bounds that no traction reaches, on all elements or beside ordinary ones: as glued surfaces have them.
 
-use contact_normal::friction::{dense, Report, Request, Solution, Start};
+use contact_normal::friction::{Report, Request, Solution, Start};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Friction, Motion, Prescribed};
 use contact_normal::solver::Outcome;
 
+use crate::dense;
 use crate::support::{run, solver, tangential};
 
 const MOTIONS: [Motion; 3] = [Motion::Shift, Motion::TransientRolling, Motion::SteadyRolling];

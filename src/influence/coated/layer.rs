@@ -41,7 +41,7 @@ impl Layer<'_> {
     /// Adds `(c/t) integral of F`, with the base of each offset, from [`first_of_half`] on in each row.
     pub fn add(&self, c: f64, table: &mut [f64]) -> Result<()> {
         let Grid { mx, my, dx, dy } = self.grid;
-        let (far, row_distance) = (LEAST_DISTANCE * dx.max(dy), dy / dx.max(dy));
+        let far = LEAST_DISTANCE * dx.max(dy);
         let first = |ky: usize| first_of_half(&self.grid, ky);
         let scale = c * dx * dy / self.t;
         let fill = |base: Base| {
@@ -62,12 +62,12 @@ impl Layer<'_> {
         if self.t >= far {
             // Offsets nearer than t lie in this box.
             let count = |d: f64, m: usize| ((self.t / d) as usize).saturating_add(1).min(m);
-            means::means((count(dx, mx), count(dy, my)), row_distance, first, fill(Base::Layer), |ky, means| {
+            means::means((count(dx, mx), count(dy, my)), first, fill(Base::Layer), |ky, means| {
                 add_row(ky, means, 0, first_beyond(self.t, &self.grid, ky));
             })?;
         }
         if last >= self.t {
-            means::means((mx, my), row_distance, first, fill(Base::Substrate), |ky, means| {
+            means::means((mx, my), first, fill(Base::Substrate), |ky, means| {
                 add_row(ky, means, first_beyond(self.t.max(far), &self.grid, ky), mx);
             })?;
         }

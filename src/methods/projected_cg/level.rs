@@ -188,16 +188,10 @@ impl Level {
         let whole = whole.filter(|_| window.is_full(&self.grid));
         let threads = &self.threads.suited_to(grid.len());
         let made_of = MadeOf { coefficients: &self.coefficients, factor: units.influence, whole, threads };
-        let serves = |windowed: &Windowed| {
-            let before = windowed.window.grid(&self.grid);
-            before == grid || windowed.is_current && Inner::keeps(&before) && Inner::keeps(&grid)
-        };
+        let serves = |windowed: &Windowed| windowed.window.grid(&self.grid) == grid;
         let windowed = match self.windowed.take().filter(serves) {
             Some(mut windowed) => {
-                let before = windowed.window.grid(&self.grid);
-                if before != grid {
-                    windowed.inner.turn_to(made_of, (&before, &grid))?;
-                } else if !windowed.is_current {
+                if !windowed.is_current {
                     windowed.inner.renew(made_of, &grid)?;
                 }
                 windowed.part = windowed.part.filter(|part| part.grid == grid);

@@ -1,7 +1,6 @@
 //! The fields and the state of the iteration on one grid.
 
 use std::iter::once;
-use std::mem::replace;
 
 use super::deflation::Deflation;
 use super::preconditioner::Preconditioner;
@@ -40,30 +39,6 @@ impl WithLimits {
     }
 }
 
-/// A and M on one grid.
-pub struct Operators<T: Real> {
-    pub(super) operator: Operator<T>,
-    pub(super) preconditioner: Option<Preconditioner<T>>,
-}
-
-impl<T: Real> Operators<T> {
-    /// A and M on `grid`; `operator` is that of the coefficients times `factor`. Without M if the circulant is not positive.
-    pub fn new(
-        operator: Operator<T>,
-        coefficients: &Coefficients,
-        factor: f64,
-        grid: &Grid,
-        threads: &Threads,
-    ) -> Result<Operators<T>> {
-        Ok(Operators { operator, preconditioner: preconditioner(coefficients, factor, grid, threads)? })
-    }
-
-    /// Bytes held.
-    pub fn bytes(&self) -> usize {
-        self.operator.bytes() + self.preconditioner.as_ref().map_or(0, Preconditioner::bytes)
-    }
-}
-
 /// The name of this memory in messages.
 const DIRECTIONS: &str = "search directions";
 
@@ -93,9 +68,14 @@ pub struct Iteration<T: Real> {
 }
 
 impl<T: Real> Iteration<T> {
-    /// Sets up the iteration on `grid`.
-    pub fn new(operators: Operators<T>, grid: &Grid, threads: &Threads) -> Result<Iteration<T>> {
-        let Operators { operator, preconditioner } = operators;
+    /// Sets up the iteration on `grid`; `operator` is that of the coefficients times `factor`. Without M if the circulant is not positive.
+    pub fn new(
+        operator: Operator<T>,
+        (coefficients, factor): (&Coefficients, f64),
+        grid: &Grid,
+        threads: &Threads,
+    ) -> Result<Iteration<T>> {
+        let preconditioner = preconditioner(coefficients, factor, grid, threads)?;
         let n = grid.len();
         let threads = &threads.for_a_pass(n);
         let directions = || {
@@ -121,25 +101,6 @@ impl<T: Real> Iteration<T> {
             limits: WithLimits::default(),
             threads: threads.clone(),
         })
-    }
-
-    /// Moves to another grid. Returns the operators of the previous grid. After an error the iteration must not be used.
-    pub fn turn_to(&mut self, operators: Operators<T>, grid: &Grid, threads: &Threads) -> Result<Operators<T>> {
-        let n = grid.len();
-        let left = Operators {
-            operator: replace(&mut self.operator, operators.operator),
-            preconditioner: replace(&mut self.preconditioner, operators.preconditioner),
-        };
-        self.threads = threads.for_a_pass(n);
-        self.workspace = workspace(&self.operator, &self.preconditioner)?;
-        self.extension = Extension::if_worthwhile(grid, &self.threads)?;
-        self.counted = None;
-        self.segments = Segments::new(grid, &self.threads)?;
-        for values in [&mut self.t, &mut self.q, &mut self.z] {
-            asleep(values, n, T::nan(), DIRECTIONS, &self.threads)?;
-        }
-        self.truncation.reserve(n)?;
-        Ok(left)
     }
 
     /// Takes other coefficients, times `factor`, on the same grid, and keeps plans and memory if they fit. `whole` is the operator in double

@@ -9,6 +9,7 @@ use crate::error::Result;
 use crate::friction::Vector;
 use crate::grid::Grid;
 use crate::memory::collected;
+use crate::progress::ProgressCallback;
 use crate::rectangle::Rectangle;
 use crate::scene::Patches;
 use crate::stress::{side, subsurface_stress, Body, Depth, Loads, Wanted};
@@ -129,8 +130,14 @@ impl<'a> Surface<'a> {
         self.tractions.is_none()
     }
 
-    /// The largest stress over all depths, and its depth, in a body of this Poisson ratio.
-    pub fn peak(&self, stress: Stress, poisson_ratio: f64, threads: &Threads) -> Result<Peak> {
+    /// The largest stress over all depths, and its depth, in a body of this Poisson ratio. None: `watch` cancelled.
+    pub fn peak(
+        &self,
+        stress: Stress,
+        poisson_ratio: f64,
+        threads: &Threads,
+        watch: ProgressCallback<'_>,
+    ) -> Result<Option<Peak>> {
         let (short, first) = (self.grid.dx.min(self.grid.dy), FIRST_DEPTH * self.side);
         let extent = (self.grid.mx as f64 * self.grid.dx).max(self.grid.my as f64 * self.grid.dy);
         // Between the shorter side and that of `CLOSE`.
@@ -143,8 +150,8 @@ impl<'a> Surface<'a> {
         depths.extend(
             std::iter::successors(Some(first), |z| Some(z * DEPTH_RATIO)).take_while(|z| *z < DEPTH_RATIO * extent),
         );
-        let of = |depths: &[f64]| self.largest(stress, poisson_ratio, depths, threads);
-        let mut known = of(&depths)?;
+        let mut of = |depths: &[f64]| self.largest((stress, poisson_ratio), depths, threads, watch);
+        let Some(mut known) = of(&depths)? else { return Ok(None) };
         let at = |k: usize| {
             let k = if k == 0 { 0 } else { between + k };
             known.get(k).or(known.last()).map_or(0.0, |peak| peak.value)
@@ -166,13 +173,20 @@ impl<'a> Surface<'a> {
                 break;
             }
             let at = if z < known[best].depth { best } else { best + 1 };
-            known.insert(at, of(&[z])?[0]);
+            let Some(next) = of(&[z])? else { return Ok(None) };
+            known.insert(at, next[0]);
         }
         let largest = known.iter().copied().fold(Peak::default(), Peak::or);
-        Ok(Peak { elements: largest.depth / self.side, close, ..largest })
+        Ok(Some(Peak { elements: largest.depth / self.side, close, ..largest }))
     }
 
-    fn largest(&self, stress: Stress, poisson_ratio: f64, depths: &[f64], threads: &Threads) -> Result<Vec<Peak>> {
+    fn largest(
+        &self,
+        (stress, poisson_ratio): (Stress, f64),
+        depths: &[f64],
+        threads: &Threads,
+        watch: ProgressCallback<'_>,
+    ) -> Result<Option<Vec<Peak>>> {
         let body = Body { grid: self.grid, poisson_ratio, periodic: self.periodic };
         let [x, y] = match &self.tractions {
             Some([x, y]) => [Some(&x[..]), Some(&y[..])],
@@ -183,8 +197,8 @@ impl<'a> Surface<'a> {
         let each = |k: usize, depth: &Depth| {
             peaks.push(Peak { value: stress.largest(depth, &loads), depth: depths[k], ..Peak::default() });
         };
-        subsurface_stress(&body, &loads, depths, &stress.wanted(), threads, None, each)?;
-        Ok(peaks)
+        let is_whole = subsurface_stress(&body, &loads, depths, &stress.wanted(), threads, Some(watch), each)?;
+        Ok(is_whole.then_some(peaks))
     }
 }
 

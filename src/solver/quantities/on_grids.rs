@@ -6,7 +6,7 @@ use super::{values, Course, Lack, Quantity, Value};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::scene::{scaled, Regridded, Scene};
-use crate::solver::{Asked, Options, Outcome, ProgressCallback, Report, Solver};
+use crate::solver::{Asked, Options, Outcome, Progress, ProgressCallback, Report, Solver};
 
 /// One quantity on one grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,16 +59,21 @@ impl OnGrid {
         scene: &Scene<'_>,
         options: &Options,
         wanted: &[Quantity],
-        progress: Option<ProgressCallback<'_>>,
+        mut progress: Option<ProgressCallback<'_>>,
     ) -> Result<OnGrid> {
         let began = Instant::now();
+        let mut watch = |told: &Progress| progress.as_mut().is_some_and(|progress| progress(told));
         let (mut solver, lowest) = Solver::for_scene(scene, options)?;
-        let (outcome, report) = solver.solve_checked(Asked::new((scene, lowest), options), progress)?;
+        let (mut outcome, report) = solver.solve_checked(Asked::new((scene, lowest), options), Some(&mut watch))?;
         let seconds = began.elapsed().as_secs_f64();
         let values = match outcome {
-            Outcome::Converged => values(&mut solver, scene, &report, wanted)?,
-            _ => vec![Err(Lack::Unsolved); wanted.len()],
+            Outcome::Converged => values(&mut solver, scene, &report, wanted, &mut watch)?,
+            _ => Some(vec![Err(Lack::Unsolved); wanted.len()]),
         };
+        let values = values.unwrap_or_else(|| {
+            outcome = Outcome::Cancelled;
+            vec![Err(Lack::Unsolved); wanted.len()]
+        });
         Ok(OnGrid {
             grid: scene.grid,
             outcome,

@@ -1,5 +1,7 @@
 //! The values of quantities on one grid.
 
+use std::time::Instant;
+
 use super::deepest::{Peak, Stress, Surface};
 use super::{Quantity, Value};
 use crate::contact::Outline;
@@ -7,6 +9,7 @@ use crate::effects;
 use crate::error::{invalid, Error, Result};
 use crate::friction::STICK;
 use crate::grid::Grid;
+use crate::progress::{Progress, ProgressCallback};
 use crate::scene::Scene;
 use crate::solver::estimates::beyond_ends;
 use crate::solver::{Outcome, Report, Solver};
@@ -92,13 +95,19 @@ fn is_too_slender(scene: &Scene<'_>) -> bool {
     effects::repeats(scene) == (true, true) && !is_line && dx.max(dy) > MOST_SLENDER * dx.min(dy)
 }
 
-/// The values of `wanted` after a solve of `scene`. Stiffness and stresses are computed here, which may cost more than the solve.
+/// The values of `wanted` after a solve of `scene`. Stiffness and stresses are computed here, which may cost more than the solve: `watch` is told
+/// of their steps. None: it cancelled.
 pub fn values(
     solver: &mut Solver,
     scene: &Scene<'_>,
     report: &Report,
     wanted: &[Quantity],
-) -> Result<Vec<std::result::Result<Value, Lack>>> {
+    watch: ProgressCallback<'_>,
+) -> Result<Option<Vec<std::result::Result<Value, Lack>>>> {
+    let began = Instant::now();
+    // Not as cycles of the solve: without work units.
+    let watch =
+        &mut |told: &Progress| watch(&Progress::of_part(&scene.grid, told.cycles, began.elapsed().as_secs_f64()));
     let (mut stresses, mut values) = ([None, None], Vec::new());
     let at_ends = beyond_ends(&solver.problem, solver.state());
     for quantity in wanted {
@@ -118,7 +127,8 @@ pub fn values(
                 peak: Some(peak),
                 least: 0.0,
             };
-            values.push(peak(solver, scene, &mut stresses, stress)?.map(value));
+            let Some(peak) = peak((solver, scene), &mut stresses, stress, watch)? else { return Ok(None) };
+            values.push(peak.map(value));
             continue;
         }
         let number = match quantity {
@@ -126,7 +136,10 @@ pub fn values(
             Quantity::MaxPressure => Ok(report.measures.max_pressure),
             Quantity::ContactArea => Ok(area(solver, report)),
             Quantity::MeanGap => Ok(mean_gap(solver)),
-            Quantity::Stiffness => stiffness(solver, report.measures.contact_count)?,
+            Quantity::Stiffness => match stiffness(solver, report.measures.contact_count, watch)? {
+                Some(stiffness) => stiffness,
+                None => return Ok(None),
+            },
             _ => tangential(solver, scene, report, *quantity),
         };
         let counted = |value: f64| match quantity {
@@ -136,7 +149,7 @@ pub fn values(
         };
         values.push(number.map(|value| Value { least: counted(value).max(at_ends), ..Value::from(value) }));
     }
-    Ok(values)
+    Ok(Some(values))
 }
 
 /// The corrected area, from the report or from the outline.
@@ -150,23 +163,30 @@ fn area(solver: &Solver, report: &Report) -> f64 {
     }
 }
 
+/// The mean of the deformed distance. In contact it is 0 but for the residual.
 fn mean_gap(solver: &Solver) -> f64 {
     let state = solver.state();
     let finite = |i: &usize| state.h[*i].is_finite();
     let count = (0..state.h.len()).filter(finite).count();
-    in_blocks((0..state.h.len()).filter(finite).map(|i| state.deformed_distance(i))) / count.max(1) as f64
+    let of = |i: usize| if state.contact[i] { 0.0 } else { state.deformed_distance(i) };
+    in_blocks((0..state.h.len()).filter(finite).map(of)) / count.max(1) as f64
 }
 
 #[inline(never)]
-fn stiffness(solver: &mut Solver, contacts: usize) -> Result<std::result::Result<f64, Lack>> {
-    match solver.stiffness() {
+fn stiffness(
+    solver: &mut Solver,
+    contacts: usize,
+    watch: ProgressCallback<'_>,
+) -> Result<Option<std::result::Result<f64, Lack>>> {
+    Ok(Some(match solver.watched_stiffness(Some(watch)) {
+        Ok((Outcome::Cancelled, _)) => return Ok(None),
         // With all pressures at their limit the stiffness is 0.
-        Ok((Outcome::Converged, _)) if contacts == 0 => Ok(Err(Lack::NoContact)),
-        Ok((Outcome::Converged, stiffness)) => Ok(Ok(stiffness.value)),
-        Ok(_) => Ok(Err(Lack::Unsolved)),
-        Err(Error::Infeasible(_)) => Ok(Err(Lack::Singular)),
-        Err(error) => Err(error),
-    }
+        Ok((Outcome::Converged, _)) if contacts == 0 => Err(Lack::NoContact),
+        Ok((Outcome::Converged, stiffness)) => Ok(stiffness.value),
+        Ok(_) => Err(Lack::Unsolved),
+        Err(Error::Infeasible(_)) => Err(Lack::Singular),
+        Err(error) => return Err(error),
+    }))
 }
 
 #[inline(never)]
@@ -196,33 +216,39 @@ fn tangential(
 /// The largest stress in both bodies, computed once.
 #[inline(never)]
 fn peak(
-    solver: &Solver,
-    scene: &Scene<'_>,
+    of: (&Solver, &Scene<'_>),
     known: &mut [Option<std::result::Result<Peak, Lack>>; 2],
     stress: Stress,
-) -> Result<std::result::Result<Peak, Lack>> {
+    watch: ProgressCallback<'_>,
+) -> Result<Option<std::result::Result<Peak, Lack>>> {
     let place = &mut known[usize::from(stress == Stress::Shear)];
-    match place {
-        Some(known) => Ok(*known),
-        None => Ok(*place.insert(peak_of(solver, scene, stress)?)),
+    if place.is_none() {
+        *place = peak_of(of, stress, watch)?;
     }
+    Ok(*place)
 }
 
 #[inline(never)]
-fn peak_of(solver: &Solver, scene: &Scene<'_>, stress: Stress) -> Result<std::result::Result<Peak, Lack>> {
+fn peak_of(
+    (solver, scene): (&Solver, &Scene<'_>),
+    stress: Stress,
+    watch: ProgressCallback<'_>,
+) -> Result<Option<std::result::Result<Peak, Lack>>> {
     let (body, loads) = of_scene(scene, 1, [None; 3])?;
     let tractions = solver.friction().map(|solution| &solution.traction[..]);
     let threads = &solver.problem.threads;
     let grid = (*solver.grid(), body.periodic);
     let surface = Surface::of(grid, &solver.state().p, tractions, loads.patches, threads)?;
-    let Some(surface) = surface else { return Ok(Err(Lack::NoContact)) };
+    let Some(surface) = surface else { return Ok(Some(Err(Lack::NoContact))) };
     let bodies = &scene.bodies;
     let elastic = |b: usize| bodies.shear_modulus[b].is_finite();
     let alike = surface.is_the_same_for_both() && bodies.poisson_ratio[0] == bodies.poisson_ratio[1];
-    let of = |surface: &Surface<'_>, b: usize| surface.peak(stress, bodies.poisson_ratio[b], threads);
-    let mut largest = if elastic(0) { of(&surface, 0)? } else { Peak::default() };
+    let mut of = |surface: &Surface<'_>, b: usize| surface.peak(stress, bodies.poisson_ratio[b], threads, watch);
+    let largest = if elastic(0) { of(&surface, 0)? } else { Some(Peak::default()) };
+    let Some(mut largest) = largest else { return Ok(None) };
     if elastic(1) && !(alike && elastic(0)) {
-        largest = largest.or(of(&surface.of_body_2(), 1)?);
+        let Some(other) = of(&surface.of_body_2(), 1)? else { return Ok(None) };
+        largest = largest.or(other);
     }
-    Ok(Ok(largest))
+    Ok(Some(Ok(largest)))
 }
