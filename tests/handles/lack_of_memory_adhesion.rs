@@ -7,8 +7,8 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Adhesion, Bodies, Load, Scene, Work};
 use contact_normal::solver::{Options, Outcome, Solver};
 
-use super::lack_of_memory::release;
-use super::{alone, limited_memory};
+use super::alone;
+use super::limited_memory::{self, release};
 
 /// A sphere of radius 1 on a square of this half-width.
 const HALF_WIDTH: f64 = 3.0;
