@@ -7,6 +7,8 @@ use contact_normal::scene::{Bodies, Coefficient, Fall, Friction, FrictionLaw, Lo
 use contact_normal::solver::{solve, Options, Outcome};
 use contact_normal::threads::Threads;
 
+use super::hard::case::distance;
+
 const STEEL: (f64, f64) = (82000.0, 0.28);
 
 /// The pressures of a surface pressed by a force, to 1e-9.
@@ -57,10 +59,7 @@ impl Wheel {
     pub fn of(mx: usize, my: usize) -> Wheel {
         let (a, b, curvature) = (6.3036, 12.6072, [8e-4, 2.8142e-4]);
         let grid = Grid::new(mx, my, 2.2 * a / mx as f64, 2.2 * b / my as f64).unwrap();
-        let at = |k: usize, m: usize, d: f64| (k as f64 - 0.5 * (m as f64 - 1.0)) * d;
-        let of =
-            |i: usize| curvature[0] * at(i % mx, mx, grid.dx).powi(2) + curvature[1] * at(i / mx, my, grid.dy).powi(2);
-        let h: Vec<f64> = (0..grid.len()).map(of).collect();
+        let h = distance(&grid, |x, y| curvature[0] * x.powi(2) + curvature[1] * y.powi(2));
         Wheel { grid, pressure: pressures(grid, &h, FORCE) }
     }
 

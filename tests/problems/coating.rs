@@ -13,6 +13,7 @@ use contact_normal::scene::{Bodies, Coating, CoatingLayer, Each, Layer, Load, Pa
 use contact_normal::solver::{Method, Options, Outcome, Solver};
 use contact_normal::threads::Threads;
 
+use crate::families::case::paraboloid;
 use crate::support::{assert_conditions, run};
 
 const RATIOS: [f64; 9] = [1e-4, 0.01, 0.1, 0.5, 0.999, 2.0, 10.0, 100.0, 1e4];
@@ -220,8 +221,7 @@ fn ball(mu: f64, t: f64, radius: f64, elements: usize) -> (Grid, Vec<f64>, Bodie
     let m = 2 * (elements + elements / 5) + 1;
     let d = radius / elements as f64;
     let grid = Grid::new(m, m, d, d).unwrap();
-    let place = |k: usize| (k as f64 - (m / 2) as f64) * d;
-    let h = (0..grid.len()).map(|i| 0.5 * (place(i % m).powi(2) + place(i / m).powi(2))).collect();
+    let h = paraboloid(&grid, 0.5);
     let bodies = Bodies { shear_modulus: [f64::INFINITY, 0.35], poisson_ratio: [0.0, 0.3] };
     let layer = CoatingLayer { thickness: t, shear_modulus: 0.35 * mu, poisson_ratio: 0.3 };
     (grid, h, bodies, Coating { layers: [None, Some(layer)] })
