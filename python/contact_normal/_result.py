@@ -82,9 +82,9 @@ class Result(Solved):
     mean_gap : float
         The mean of the deformed distance, over the elements that have a surface.
     warnings : tuple of str
-        What to look at, even where the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN", "STRAIN", where the largest pressure is more
-        than a fifth of E*, "MODULUS", where units are named in which E* is that of no solid, and "NARROW", where all of the contact is within two
-        columns or rows of more.
+        What to look at, even where the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN", "RANGE", "ATTRACTION", "LAW", "STRAIN", where the
+        largest pressure is more than a fifth of E*, "MODULUS", where units are named in which E* is that of no solid, and "NARROW", where all of the
+        contact is within two columns or rows of more.
     tangential_force : (float, float)
         With friction: on body 1, in x and y; else zeros.
     units : (str, str) or None

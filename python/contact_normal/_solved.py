@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._constants import WARNING_ATTRACTION, WARNING_BORDER, WARNING_ERROR_UNKNOWN, WARNING_LAW, WARNING_ONE_ELEMENT, WARNING_RANGE, WARNING_SPIKE
 from ._grid import centres
 from ._library import library
+from ._numbered import names_of
 from ._structs import names
 from ._units import WithUnits, with_unit
 
@@ -26,15 +26,7 @@ if TYPE_CHECKING:
 
 # The groups of a report.
 _GROUPS = ("normal", "tangential", "accuracy", "statistics", "adhesion", "visco")
-_WARNINGS = {
-    "BORDER": WARNING_BORDER,
-    "ONE_ELEMENT": WARNING_ONE_ELEMENT,
-    "SPIKE": WARNING_SPIKE,
-    "ERROR_UNKNOWN": WARNING_ERROR_UNKNOWN,
-    "RANGE": WARNING_RANGE,
-    "ATTRACTION": WARNING_ATTRACTION,
-    "LAW": WARNING_LAW,
-}
+_WARNINGS = names_of("WARNING_")
 # Members of the tangential group that have the name of one of the normal problem.
 _ALSO_NORMAL = ("force", "moment", "residual", "gap", "update")
 
@@ -180,7 +172,7 @@ class Solved(WithUnits):
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """Names of the warnings, also if the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN", "RANGE", "ATTRACTION", "LAW"."""
-        return tuple(name for name, bit in _WARNINGS.items() if self.report["warnings"] & bit)
+        return tuple(name.upper() for bit, name in _WARNINGS.items() if self.report["warnings"] & bit)
 
     def __repr__(self) -> str:
         my, mx = self.pressure.shape
