@@ -133,18 +133,7 @@ class Bill(list[BillRow]):
         return "\n".join(lines)
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """Draws for each effect the largest relative change without it, beside the seconds that leaving it out saves.
-
-        Parameters
-        ----------
-        axes : matplotlib.axes.Axes, optional
-            Where to draw; by default the axes of a new figure.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes.
-        """
+        """Draws for each effect the largest relative change without it, beside the seconds that leaving it out saves; `axes` as for `Result.plot`."""
         from ._plot_accuracy import plot_bill
 
         return plot_bill(self, axes)

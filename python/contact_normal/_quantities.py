@@ -106,18 +106,7 @@ class Quantities(list[Quantity]):
         return "\n".join(lines)
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """Draws the relative error of each quantity against the seconds of each grid.
-
-        Parameters
-        ----------
-        axes : matplotlib.axes.Axes, optional
-            Where to draw; by default the axes of a new figure.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes.
-        """
+        """Draws the relative error of each quantity against the seconds of each grid; `axes` as for `Result.plot`."""
         from ._plot_accuracy import plot_quantities
 
         return plot_quantities(self, axes)

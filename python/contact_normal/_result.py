@@ -199,17 +199,7 @@ class Result(Solved):
     def plot_section(self, x: float | None = None, y: float | None = None, axes: Axes | None = None) -> Axes:
         """Draws the pressures along a line across the contact, with dotted lines at the edge of the contact area.
 
-        Parameters
-        ----------
-        x, y : float, optional
-            The line: one of them. Neither: the y of the middle of the grid.
-        axes : matplotlib.axes.Axes, optional
-            Where to draw; by default the axes of a new figure.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes, to add to or to save.
+        The line is at `x` or at `y`, by default at the y of the middle of the grid; `axes` as for `Result.plot`.
         """
         from ._plot_lines import plot_section
 

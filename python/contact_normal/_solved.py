@@ -186,37 +186,13 @@ class Solved(WithUnits):
         return f"<{type(self).__name__}: {status}; {mx} x {my} elements{told}{warned}{message}>"
 
     def plot_traction(self, axes: Axes | None = None) -> Axes:
-        """Draws the tractions as arrows over the stick and slip areas, seen from above.
-
-        Parameters
-        ----------
-        axes : matplotlib.axes.Axes, optional
-            Where to draw; by default the axes of a new figure.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes, to add to or to save.
-        """
+        """Draws the tractions as arrows over the stick and slip areas, seen from above; `axes` as for `Result.plot`."""
         from ._plot_above import plot_traction
 
         return plot_traction(self, axes)
 
     def plot_histogram(self, bins: int = 40, axes: Axes | None = None) -> Axes:
-        """Draws which share of the contact area has which pressure.
-
-        Parameters
-        ----------
-        bins : int
-            Ranges of pressure.
-        axes : matplotlib.axes.Axes, optional
-            Where to draw; by default the axes of a new figure.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes, to add to or to save.
-        """
+        """Draws which share of the contact area has which pressure, in `bins` ranges of pressure; `axes` as for `Result.plot`."""
         from ._plot_lines import plot_histogram
 
         return plot_histogram(self, bins, axes)
