@@ -4,7 +4,7 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Prescribed, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
-use super::hard::case::distance;
+use super::case::distance;
 use super::scenes::Cattaneo;
 use super::support::{run, solver};
 

@@ -4,7 +4,7 @@ use contact_normal::friction::{Request, Solution};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Friction, FrictionLaw, Motion, PlasticLayer, Prescribed, Previous};
 
-use super::hard::case::{distance, grid};
+use super::case::{distance, grid};
 use super::laws::{pressures, solver, RUNNING};
 use super::support::run;
 

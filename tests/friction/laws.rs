@@ -7,7 +7,7 @@ use contact_normal::scene::{Bodies, Coefficient, Fall, Friction, FrictionLaw, Lo
 use contact_normal::solver::{solve, Options, Outcome};
 use contact_normal::threads::Threads;
 
-use super::hard::case::distance;
+use super::case::distance;
 
 const STEEL: (f64, f64) = (82000.0, 0.28);
 

@@ -5,7 +5,7 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Previous, Scene};
 use contact_normal::solver::{solve, Options, Outcome, Report, Solver};
 
-use super::hard::case::{grid, paraboloid};
+use super::case::{grid, paraboloid};
 
 const M: usize = 33;
 const FORCE: f64 = 0.4705;

@@ -10,7 +10,7 @@ use contact_normal::scene::{
 use contact_normal::solver::{self, solve, solve_tangential, Options};
 use contact_normal::threads::Threads;
 
-use super::hard::case::paraboloid;
+use super::case::paraboloid;
 use super::support::{residual_by, run, tangential};
 
 /// Columns of the tables beyond those of the grid.

@@ -13,7 +13,7 @@ use contact_normal::scene::{
 };
 use contact_normal::solver::{solve, solve_tangential, Options, Outcome, Solver};
 
-use super::hard::case::{distance, grid};
+use super::case::{distance, grid};
 
 const STEEL: Bodies = Bodies { shear_modulus: [82000.0; 2], poisson_ratio: [0.28; 2] };
 /// Columns and rows of the tables beyond those of the grid.

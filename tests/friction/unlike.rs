@@ -8,8 +8,8 @@ use contact_normal::influence::{HalfSpace, Kernel};
 use contact_normal::scene::{Bodies, Friction, Load, Prescribed, Previous, Scene};
 use contact_normal::solver::{solve, Options, Outcome, Solver};
 
+use super::case::{distance, grid};
 use super::coefficients::{panels, rule};
-use super::hard::case::{distance, grid};
 
 /// The integrals of `x/r^2` and `y/r^2` over an element: in y by the rule on panels that are graded towards the singular point, in x in
 /// closed form, `[ln(x^2 + y^2)]/2` and `[atan(x/y)]`.

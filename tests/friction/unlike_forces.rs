@@ -6,7 +6,7 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Scene};
 use contact_normal::solver::{solve, Options, Outcome, Solver};
 
-use super::hard::case::{distance, grid};
+use super::case::{distance, grid};
 use super::near_full_slip::ellipse;
 use super::unlike::RIGID_ON_SOFT;
 

@@ -3,7 +3,7 @@
 use contact_normal::scene::{Bodies, Each, Friction, Load, Motion, Prescribed, PressureLimit, Previous, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
-use super::hard::case::paraboloid;
+use super::case::paraboloid;
 use super::unlike::RIGID_ON_SOFT;
 
 /// Half the step of a difference, in parts of a motion that all slips by: hardly an element changes sides.

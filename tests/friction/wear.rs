@@ -7,7 +7,7 @@ use contact_normal::scene::{Bodies, Coefficient, Friction, Load, Motion, Prescri
 use contact_normal::solver::{solve, Options, Outcome};
 use contact_normal::wear::{frictional_wear, Wear, Worn};
 
-use super::hard::case::distance;
+use super::case::distance;
 use super::steady::rolling;
 use super::steady_scenes::ellipse;
 use super::support::{run, solver, tangential};

@@ -306,9 +306,12 @@ fn preconditioners_are_positive_and_as_good_as_they_were_measured() {
     }
 }
 
-/// F_1 by 30 digits (mpmath: composite quadrature of `(B - 1) J0`): `G1/G2`, `(nu1, nu2)`, `(rho, F)`.
+/// `G1/G2`, `(nu1, nu2)`, and `(rho, F)`.
+type Radial = (f64, [f64; 2], &'static [(f64, f64)]);
+
+/// F_1 by 30 digits (mpmath: composite quadrature of `(B - 1) J0`).
 #[rustfmt::skip]
-const RADIAL: [(f64, [f64; 2], &[(f64, f64)]); 4] = [
+const RADIAL: [Radial; 4] = [
     (1e-4, [0.3, 0.3], &[
         (0.0, -1.3766917667552365), (0.01, -1.3766290230613736), (0.7, -1.1230244283336073),
         (1.9, -0.538762588539679), (2.1, -0.4851459620968778), (5.0, -0.20011773076526435),

@@ -3,7 +3,7 @@
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Coefficient, Friction, Load, Motion, Prescribed, Previous, Scene};
 
-use super::case::{distance, grid, paraboloid};
+use crate::case::{distance, grid, paraboloid};
 
 /// Each case is solved in all of them; steps of rolling are of one element along x.
 pub const MOTIONS: [(&str, Motion); 3] = [

@@ -1,8 +1,5 @@
 //! The hard cases of friction, for docs/reliability_friction.md as well, and what is promised of them.
 
-#[path = "../../problems/families/case.rs"]
-#[allow(dead_code)] // the shapes alone
-pub mod case;
 pub mod cases;
 pub mod certificate;
 
