@@ -27,6 +27,30 @@ impl Ends {
     }
 }
 
+/// What was excused: how often, and in which seed first.
+#[derive(Default)]
+pub struct Excuses(BTreeMap<&'static str, (usize, u64)>);
+
+impl Excuses {
+    /// Adds those of a seed.
+    pub fn add(&mut self, excuses: &[&'static str], seed: u64) {
+        for why in excuses {
+            self.0.entry(why).or_insert((0, seed)).0 += 1;
+        }
+    }
+}
+
+impl Display for Excuses {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        writeln!(f, "| excused | calls | first seed |")?;
+        writeln!(f, "|---|---:|---:|")?;
+        for (why, (calls, seed)) in &self.0 {
+            writeln!(f, "| {why} | {calls} | {seed} |")?;
+        }
+        Ok(())
+    }
+}
+
 /// The account of a campaign.
 #[derive(Default)]
 pub struct Account {
@@ -39,8 +63,7 @@ pub struct Account {
     beside: BTreeMap<String, Ends>,
     /// Products of AUTO, and the seed, by surface.
     products: BTreeMap<String, Vec<(f64, u64)>>,
-    /// Per reason: how many, and the first seed.
-    excuses: BTreeMap<&'static str, (usize, u64)>,
+    excuses: Excuses,
     /// Per promise: seed and what happened.
     failures: BTreeMap<&'static str, Vec<(u64, String)>>,
 }
@@ -67,20 +90,13 @@ impl Account {
         if let Some(products) = run.products {
             self.products.entry(surface).or_default().push((products, run.case.seed));
         }
-        self.excuse(&run.verdict.excuses, run.case.seed);
+        self.excuses.add(&run.verdict.excuses, run.case.seed);
         for failure in &run.verdict.failures {
             let text = match failure.details.strip_prefix(BESIDE) {
                 Some(details) => details.to_string(),
                 None => format!("{}: {}", run.case.describe(), failure.details),
             };
             self.failures.entry(failure.promise).or_default().push((run.case.seed, text));
-        }
-    }
-
-    /// Counts what was excused in a seed.
-    pub fn excuse(&mut self, excuses: &[&'static str], seed: u64) {
-        for why in excuses {
-            self.excuses.entry(why).or_insert((0, seed)).0 += 1;
         }
     }
 
@@ -139,11 +155,7 @@ impl Display for Account {
         table(f, "surface", &self.by_surface)?;
         table(f, "asked beside", &self.beside)?;
         table_of_products(f, &self.products)?;
-        writeln!(f, "| excused | calls | first seed |")?;
-        writeln!(f, "|---|---:|---:|")?;
-        for (why, (calls, seed)) in &self.excuses {
-            writeln!(f, "| {why} | {calls} | {seed} |")?;
-        }
+        write!(f, "{}", self.excuses)?;
         let (seconds, seed) = self.longest;
         writeln!(
             f,

@@ -15,9 +15,10 @@
 //! ```
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::process::ExitCode;
 
-use campaign::account::Account;
+use campaign::account::{Account, Excuses};
 use campaign::random::Random;
 use campaign::run::{measured, ordinary, Run};
 use campaign::verdict::Verdict;
@@ -40,20 +41,21 @@ fn main() -> ExitCode {
         return replay(&run(number(0).expect("--seed N: a number")));
     }
     let (count, first) = (number(0).unwrap_or(1000), number(1).unwrap_or(0));
+    let seeds = first..first + count;
     if is_friction {
-        return friction(count, first, is_measured);
+        return ends_of(seeds, |seed| friction(seed, is_measured));
     }
     if is_adhesive {
-        return adhesion(count, first);
+        return ends_of(seeds, adhesion);
     }
     if is_law {
-        return laws(count, first);
+        return ends_of(seeds, laws);
     }
     if is_relaxing {
-        return relaxing(count, first);
+        return ends_of(seeds, relaxing);
     }
     let mut account = Account::default();
-    for seed in first..first + count {
+    for seed in seeds {
         let run = run(seed);
         // At once, for whoever stops a long campaign.
         run.verdict.failures.iter().for_each(|failure| eprintln!("seed {seed}: {}", failure.promise));
@@ -98,91 +100,67 @@ fn replay(run: &Run) -> ExitCode {
     end(run.verdict.failures.is_empty())
 }
 
-/// Cases with friction: how the calls of each motion ended, and what was not kept.
-fn friction(count: u64, first: u64, is_measured: bool) -> ExitCode {
-    let mut calls = Calls::default();
-    for seed in first..first + count {
-        let run = campaign::friction::run(&mut Random::new(seed ^ 0x00f1_c710), is_measured);
-        calls.add(seed, run.statuses.into_iter().map(|status| (run.case.kind(), status)), run.verdict);
-    }
-    calls.print()
-}
-
-/// Steps of bodies that relax: how they ended, and what was not kept.
-fn relaxing(count: u64, first: u64) -> ExitCode {
-    let mut calls = Calls::default();
-    for seed in first..first + count {
-        let run = campaign::relaxing::run(seed);
-        let kind = format!("{}, {}", run.case.method(), run.case.effects.name());
-        calls.add(seed, run.statuses.into_iter().map(|status| (kind.clone(), status)), run.verdict);
-    }
-    calls.print()
-}
-
-/// Ends of the calls of many cases: how many ended how, and how often each excuse was taken, first by which seed.
-#[derive(Default)]
+/// The calls of a case.
 struct Calls {
-    ends: BTreeMap<(String, i32), u64>,
-    excuses: BTreeMap<&'static str, (u64, u64)>,
-    failed: bool,
+    /// Kind and status of each.
+    ends: Vec<(String, i32)>,
+    /// Products of a call of AUTO that are counted.
+    products: Option<f64>,
+    verdict: Verdict,
 }
 
-impl Calls {
-    /// Adds the calls of a case, by kind and status; prints its failures.
-    fn add(&mut self, seed: u64, ends: impl Iterator<Item = (String, i32)>, verdict: Verdict) {
-        for end in ends {
-            *self.ends.entry(end).or_insert(0) += 1;
-        }
-        for why in verdict.excuses {
-            self.excuses.entry(why).or_insert((0, seed)).0 += 1;
-        }
-        for failure in verdict.failures {
-            self.failed = true;
-            println!("seed {seed}: {}: {}", failure.promise, failure.details);
-        }
-    }
-
-    fn print(self) -> ExitCode {
-        println!("| motion | status | calls |");
-        println!("|---|---:|---:|");
-        for ((kind, status), calls) in self.ends {
-            println!("| {kind} | {status} | {calls} |");
-        }
-        println!("\n| excused | calls | first seed |");
-        println!("|---|---:|---:|");
-        for (why, (calls, seed)) in self.excuses {
-            println!("| {why} | {calls} | {seed} |");
-        }
-        end(!self.failed)
-    }
+/// A case with friction, by its motion.
+fn friction(seed: u64, is_measured: bool) -> Calls {
+    let run = campaign::friction::run(&mut Random::new(seed ^ 0x00f1_c710), is_measured);
+    let ends = run.statuses.iter().map(|status| (run.case.kind(), *status)).collect();
+    Calls { ends, products: None, verdict: run.verdict }
 }
 
-/// Cases with laws of friction: how the calls ended, and what was not kept.
-fn laws(count: u64, first: u64) -> ExitCode {
-    let mut calls = Calls::default();
-    for seed in first..first + count {
-        let run = campaign::laws::run(&mut Random::new(seed ^ 0x001a_a5e5));
-        calls.add(seed, run.ends.iter().map(|(slope, status)| (run.kind(*slope), *status)), run.verdict.clone());
-    }
-    calls.print()
+/// Steps of bodies that relax, by method and effects.
+fn relaxing(seed: u64) -> Calls {
+    let run = campaign::relaxing::run(seed);
+    let kind = format!("{}, {}", run.case.method(), run.case.effects.name());
+    let ends = run.statuses.iter().map(|status| (kind.clone(), *status)).collect();
+    Calls { ends, products: None, verdict: run.verdict }
 }
 
-/// Cases with adhesion: how the calls ended, their products, and what was not kept.
-fn adhesion(count: u64, first: u64) -> ExitCode {
-    let (mut ends, mut excuses, mut failed, mut products) = (BTreeMap::new(), BTreeMap::new(), false, Vec::new());
-    for seed in first..first + count {
-        let run = campaign::adhesion::run(&mut Random::new(seed ^ 0x00ad_4e51));
-        run.statuses.iter().for_each(|status| *ends.entry(*status).or_insert(0) += 1);
-        run.verdict.excuses.iter().for_each(|why| excuses.entry(*why).or_insert((0, seed)).0 += 1);
-        products.extend(run.products);
-        for failure in run.verdict.failures {
+/// A case with a law of friction, by its motion and the slope of the law.
+fn laws(seed: u64) -> Calls {
+    let run = campaign::laws::run(&mut Random::new(seed ^ 0x001a_a5e5));
+    let ends = run.ends.iter().map(|(slope, status)| (run.kind(*slope), *status)).collect();
+    Calls { ends, products: None, verdict: run.verdict }
+}
+
+/// A case with adhesion, and its products.
+fn adhesion(seed: u64) -> Calls {
+    let run = campaign::adhesion::run(&mut Random::new(seed ^ 0x00ad_4e51));
+    let ends = run.statuses.iter().map(|status| ("adhesion".to_string(), *status)).collect();
+    Calls { ends, products: run.products, verdict: run.verdict }
+}
+
+/// Runs the cases of these seeds, and prints how their calls ended, their products, and what was not kept.
+fn ends_of(seeds: Range<u64>, run: impl Fn(u64) -> Calls) -> ExitCode {
+    let (mut ends, mut excuses, mut products, mut failed) = (BTreeMap::new(), Excuses::default(), Vec::new(), false);
+    for seed in seeds {
+        let calls = run(seed);
+        calls.ends.into_iter().for_each(|end| *ends.entry(end).or_insert(0) += 1);
+        products.extend(calls.products);
+        excuses.add(&calls.verdict.excuses, seed);
+        for failure in calls.verdict.failures {
             failed = true;
             println!("seed {seed}: {}: {}", failure.promise, failure.details);
         }
     }
+    println!("| kind | status | calls |");
+    println!("|---|---:|---:|");
+    for ((kind, status), calls) in ends {
+        println!("| {kind} | {status} | {calls} |");
+    }
+    print!("\n{excuses}");
     products.sort_by(f64::total_cmp);
-    let part = |of: f64| products.get((of * products.len() as f64) as usize).copied().unwrap_or_default();
-    println!("statuses {ends:?}; products: median {:.1}, 90 % {:.1}, 99 % {:.1}", part(0.5), part(0.9), part(0.99));
-    println!("excused: {excuses:?}");
+    let part = |of: f64| products.get((of * products.len() as f64) as usize);
+    if let (Some(half), Some(most), Some(all)) = (part(0.5), part(0.9), part(0.99)) {
+        println!("\nproducts: median {half:.1}, 90 % {most:.1}, 99 % {all:.1}");
+    }
     end(!failed)
 }

@@ -13,7 +13,7 @@ use contact_normal::error::Error;
 use contact_normal::scene::Load;
 use contact_normal::solver::{Method, Options, Outcome};
 use families::certificate::{recompute, run, Found};
-use families::{all, Case};
+use families::{all, case, Case};
 
 const METHODS: [(&str, Method); 4] = [
     ("AUTO", Method::Auto),

@@ -6,13 +6,12 @@ import ctypes
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from . import _constants
 from ._arguments import flag, relative
 from ._calls import called
 from ._given import SceneArguments, scene_and_options
 from ._library import check, initialised, library
-from ._numbered import name_of
-from ._quantities import LACKS, QUANTITIES, estimated, numbers
+from ._numbered import name_of, names_of
+from ._quantities import LACKS, QUANTITY_NAMES, estimated, numbers
 from ._structs import EffectsRow
 
 if TYPE_CHECKING:
@@ -20,12 +19,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from typing_extensions import Unpack
 
-_PREFIX = "OMIT_"
-OMISSIONS: dict[int, str] = {
-    value: name[len(_PREFIX):].lower() for name, value in vars(_constants).items() if name.startswith(_PREFIX) and value
-}
+OMISSIONS = {number: name for number, name in names_of("OMIT_").items() if number}
 VERDICTS = ("not decided", "negligible", "needed")
-_QUANTITY = {number: name for name, number in QUANTITIES.items()}
 
 
 def omissions(bits: int) -> tuple[str, ...]:
@@ -73,7 +68,7 @@ class BillRow(NamedTuple):
         """The row of the library."""
         omitted = tuple(name_of(OMISSIONS, number) for number in (row.omitted, row.also_omitted) if number)
         return cls(
-            omitted, name_of(_QUANTITY, row.quantity), name_of(VERDICTS, row.verdict), row.value, row.change, row.change_error, row.seconds,
+            omitted, name_of(QUANTITY_NAMES, row.quantity), name_of(VERDICTS, row.verdict), row.value, row.change, row.change_error, row.seconds,
             row.seconds_without, row.bytes, row.bytes_without, name_of(LACKS, row.lack),
         )
 
@@ -138,18 +133,7 @@ class Bill(list[BillRow]):
         return "\n".join(lines)
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """Draws for each effect the largest relative change without it, beside the seconds that leaving it out saves.
-
-        Parameters
-        ----------
-        axes : matplotlib.axes.Axes, optional
-            Where to draw; by default the axes of a new figure.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes.
-        """
+        """Draws for each effect the largest relative change without it, beside the seconds that leaving it out saves; `axes` as for `Result.plot`."""
         from ._plot_accuracy import plot_bill
 
         return plot_bill(self, axes)

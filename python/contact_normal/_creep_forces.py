@@ -142,13 +142,8 @@ class CreepForceTable:
             "force_x", "force_y" or "moment".
         eta, axis_ratio, poisson_ratio : float
             As for `forces`.
-        axes : matplotlib.axes.Axes, optional
-            Where to draw; by default the axes of a new figure.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes, to add to or to save.
+        axes
+            As for `Result.plot`, which returns the axes likewise.
         """
         from ._plot_lines import plot_creep_forces
 

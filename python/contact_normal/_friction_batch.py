@@ -82,20 +82,7 @@ class FrictionBatch(WithUnits):
         return f"<FrictionBatch: {solved} of {len(self.status)} entries solved{largest}{message}>"
 
     def plot(self, over: str | None = None, axes: Axes | None = None) -> Axes:
-        """Draws the tangential forces over the creepages: a creep curve.
-
-        Parameters
-        ----------
-        over : {"x", "y"}, optional
-            Which creepage; by default the one that changes more.
-        axes : matplotlib.axes.Axes, optional
-            Where to draw; by default the axes of a new figure.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes, to add to or to save.
-        """
+        """Draws the tangential forces over the creepage `over`, "x" or "y", by default the one that changes more; `axes` as for `Result.plot`."""
         from ._plot_lines import plot_creep_curve
 
         return plot_creep_curve(self, over, axes)

@@ -25,15 +25,7 @@ class Ledger(list[dict[str, float]]):
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draws the estimated relative errors of every grid against the seconds until it was solved, as the pictures of prices do.
 
-        Parameters
-        ----------
-        axes : matplotlib.axes.Axes, optional
-            Where to draw; by default the axes of a new figure.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes, to add to or to save: `axes.figure.savefig("ledger.png")`.
+        `axes` as for `Result.plot`.
         """
         from ._plot_accuracy import plot_ledger
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ctypes import c_int32
+from ctypes import Array, c_double, c_int32
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,16 +25,8 @@ _ROWS = LedgerRow * LEDGER_ROOM
 class Outputs:
     """New arrays for one problem and the structs that point to them; `pressure` and `contact` are the initial guess.
 
-    Those of friction only where there is friction: to clear and write them takes some .25 ms of 10 on 256 x 256 elements.
+    `of_effects` has those of the scene's effects alone: to clear and write those of friction takes some .25 ms of 10 on 256 x 256 elements.
     """
-
-    traction: Doubles | None = None
-    slip: Doubles | None = None
-    stick_slip: npt.NDArray[np.int32] | None = None
-    contact_pressure: Doubles | None = None
-    attraction: Doubles | None = None
-    friction_coefficient: Doubles | None = None
-    yield_limit: Doubles | None = None
 
     def __init__(
         self, shape: tuple[int, int], pressure: Any = None, contact: Any = None, options: Any = None, has_friction: bool = False,
@@ -46,14 +38,14 @@ class Outputs:
         self.fields, self.report = initialised("fields"), initialised("report")
         self.fields.pressure, self.fields.deformed_distance, self.fields.displacement = map(pointer, self.doubles)
         self.fields.contact = pointer(self.contact, c_int32)
+        self.of_effects: dict[str, npt.NDArray[Any]] = {}
         if has_friction:
-            self._hold_friction()
+            self.of_effects.update(traction=np.zeros((2, *shape)), slip=np.zeros((2, *shape)), stick_slip=np.zeros(shape, dtype=np.int32))
         if scene is not None and scene.has_particles:
-            self.friction_coefficient, self.yield_limit = np.zeros(shape), np.zeros(shape)
-            self.fields.friction_coefficient, self.fields.yield_limit = pointer(self.friction_coefficient), pointer(self.yield_limit)
+            self.of_effects.update(friction_coefficient=np.zeros(shape), yield_limit=np.zeros(shape))
         if has_adhesion:
-            self.contact_pressure, self.attraction = np.zeros(shape), np.zeros(shape)
-            self.fields.contact_pressure, self.fields.attraction = pointer(self.contact_pressure), pointer(self.attraction)
+            self.of_effects.update(contact_pressure=np.zeros(shape), attraction=np.zeros(shape))
+        self.lend(self.fields)
         self.rows = _ROWS(initialised("ledger_row"))
         self.report.ledger, self.report.ledger_capacity = self.rows, LEDGER_ROOM
         if pressure is not None or contact is not None:
@@ -74,10 +66,10 @@ class Outputs:
         if options.initial_guess == INITIAL_GUESS_NONE:
             options.initial_guess = INITIAL_GUESS_GIVEN
 
-    def _hold_friction(self) -> None:
-        """Arrays of what friction finds."""
-        self.traction, self.slip = np.zeros((2, *self._shape)), np.zeros((2, *self._shape))
-        self.stick_slip = np.zeros(self._shape, dtype=np.int32)
-        for k in range(2):
-            self.fields.traction[k], self.fields.slip[k] = pointer(self.traction[k]), pointer(self.slip[k])
-        self.fields.stick_slip = pointer(self.stick_slip, c_int32)
+    def lend(self, struct: Any) -> None:
+        """Lets a struct point to the arrays of effects, by its members of their names."""
+        for name, array in self.of_effects.items():
+            if isinstance(getattr(struct, name), Array):
+                getattr(struct, name)[:] = [pointer(part) for part in array]
+            else:
+                setattr(struct, name, pointer(array, c_int32 if array.dtype == np.int32 else c_double))

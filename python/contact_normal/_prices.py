@@ -91,20 +91,7 @@ class Prices(list[Price]):
         return "\n".join([head, *(_line(price) for price in self), *([self.message] if self.message else [])])
 
     def plot(self, axes: Axes | None = None, measured: Sequence[tuple[float, float]] = ()) -> Axes:
-        """Draws error against seconds, with the elements of each grid.
-
-        Parameters
-        ----------
-        axes : matplotlib.axes.Axes, optional
-            Where to draw; by default the axes of a new figure.
-        measured : sequence of (seconds, error)
-            Points of solves that were made, to be drawn beside.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes.
-        """
+        """Draws error against seconds, with the elements of each grid, and `measured` points (seconds, error) beside; `axes` as for `Result.plot`."""
         from ._plot_accuracy import plot_prices
 
         return plot_prices(self, axes, measured)

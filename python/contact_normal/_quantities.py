@@ -6,13 +6,12 @@ import ctypes
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from . import _constants
 from ._arguments import integer
 from ._calls import called
 from ._constants import OK, PRESCRIBED_APPROACH
 from ._given import SceneArguments, scene_and_options
 from ._library import ContactNormalError, check, initialised, library
-from ._numbered import name_of
+from ._numbered import name_of, names_of
 from ._structs import QuantityRow
 
 if TYPE_CHECKING:
@@ -22,14 +21,11 @@ if TYPE_CHECKING:
 
     from ._scene import Scene
 
-_PREFIX = "QUANTITY_"
 # So many coarser grids the library takes.
 _MOST_COARSER = 12
+QUANTITY_NAMES = names_of("QUANTITY_")
 # The numbers of the library, by name.
-QUANTITIES: dict[str, int] = {
-    name[len(_PREFIX):].lower(): value for name, value in vars(_constants).items() if name.startswith(_PREFIX)
-}
-_NAMES = {number: name for name, number in QUANTITIES.items()}
+QUANTITIES = {name: number for number, name in QUANTITY_NAMES.items()}
 LACKS = ("", "no friction", "prescribed", "not with an effect of the scene", "no contact", "singular", "one grid", "unsolved", "not falling yet")
 
 
@@ -80,7 +76,7 @@ class Quantity(NamedTuple):
     def of(cls, row: QuantityRow) -> Quantity:
         """The row of the library."""
         return cls(
-            name_of(_NAMES, row.quantity), (row.my, row.mx), row.value, row.error, row.seconds, row.work_units, name_of(LACKS, row.lack),
+            name_of(QUANTITY_NAMES, row.quantity), (row.my, row.mx), row.value, row.error, row.seconds, row.work_units, name_of(LACKS, row.lack),
         )
 
 
@@ -110,18 +106,7 @@ class Quantities(list[Quantity]):
         return "\n".join(lines)
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """Draws the relative error of each quantity against the seconds of each grid.
-
-        Parameters
-        ----------
-        axes : matplotlib.axes.Axes, optional
-            Where to draw; by default the axes of a new figure.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes.
-        """
+        """Draws the relative error of each quantity against the seconds of each grid; `axes` as for `Result.plot`."""
         from ._plot_accuracy import plot_quantities
 
         return plot_quantities(self, axes)

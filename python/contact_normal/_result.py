@@ -82,9 +82,9 @@ class Result(Solved):
     mean_gap : float
         The mean of the deformed distance, over the elements that have a surface.
     warnings : tuple of str
-        What to look at, even where the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN", "STRAIN", where the largest pressure is more
-        than a fifth of E*, "MODULUS", where units are named in which E* is that of no solid, and "NARROW", where all of the contact is within two
-        columns or rows of more.
+        What to look at, even where the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN", "RANGE", "ATTRACTION", "LAW", "STRAIN", where the
+        largest pressure is more than a fifth of E*, "MODULUS", where units are named in which E* is that of no solid, and "NARROW", where all of the
+        contact is within two columns or rows of more.
     tangential_force : (float, float)
         With friction: on body 1, in x and y; else zeros.
     units : (str, str) or None
@@ -199,17 +199,7 @@ class Result(Solved):
     def plot_section(self, x: float | None = None, y: float | None = None, axes: Axes | None = None) -> Axes:
         """Draws the pressures along a line across the contact, with dotted lines at the edge of the contact area.
 
-        Parameters
-        ----------
-        x, y : float, optional
-            The line: one of them. Neither: the y of the middle of the grid.
-        axes : matplotlib.axes.Axes, optional
-            Where to draw; by default the axes of a new figure.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes, to add to or to save.
+        The line is at `x` or at `y`, by default at the y of the middle of the grid; `axes` as for `Result.plot`.
         """
         from ._plot_lines import plot_section
 

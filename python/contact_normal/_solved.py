@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._constants import WARNING_ATTRACTION, WARNING_BORDER, WARNING_ERROR_UNKNOWN, WARNING_LAW, WARNING_ONE_ELEMENT, WARNING_RANGE, WARNING_SPIKE
 from ._grid import centres
 from ._library import library
+from ._numbered import names_of
 from ._structs import names
 from ._units import WithUnits, with_unit
 
@@ -26,15 +26,7 @@ if TYPE_CHECKING:
 
 # The groups of a report.
 _GROUPS = ("normal", "tangential", "accuracy", "statistics", "adhesion", "visco")
-_WARNINGS = {
-    "BORDER": WARNING_BORDER,
-    "ONE_ELEMENT": WARNING_ONE_ELEMENT,
-    "SPIKE": WARNING_SPIKE,
-    "ERROR_UNKNOWN": WARNING_ERROR_UNKNOWN,
-    "RANGE": WARNING_RANGE,
-    "ATTRACTION": WARNING_ATTRACTION,
-    "LAW": WARNING_LAW,
-}
+_WARNINGS = names_of("WARNING_")
 # Members of the tangential group that have the name of one of the normal problem.
 _ALSO_NORMAL = ("force", "moment", "residual", "gap", "update")
 
@@ -63,9 +55,7 @@ class Solved(WithUnits):
         self.status, self.message = status, "\n".join(text for text in (message, scene.remark) if text)
         self.pressure = outputs.doubles[0]
         self._contact, self._report, self._scene = outputs.contact, report, scene
-        self._traction, self._slip, self._stick_slip = outputs.traction, outputs.slip, outputs.stick_slip
-        self._contact_pressure, self._attraction = outputs.contact_pressure, outputs.attraction
-        self._friction_coefficient, self._yield_limit = outputs.friction_coefficient, outputs.yield_limit
+        self._of_effects = outputs.of_effects
         self.dx: float = scene.struct.dx
         self.dy: float = scene.struct.dy
         self._centre = 0.0, 0.0
@@ -82,40 +72,45 @@ class Solved(WithUnits):
         of_any_kind: npt.NDArray[np.bool_] = self._contact != 0
         return of_any_kind
 
+    def _field(self, name: str, *pair: int, kind: Any = float) -> npt.NDArray[Any]:
+        """The array that an effect wrote; zeros without it."""
+        written = self._of_effects.get(name)
+        return np.zeros((*pair, *self.pressure.shape), kind) if written is None else written
+
     @cached_property
     def traction(self) -> Doubles:
         """q on body 1, in x and y; zeros without friction."""
-        return self._traction if self._traction is not None else np.zeros((2, *self.pressure.shape))
+        return self._field("traction", 2)
 
     @cached_property
     def slip(self) -> Doubles:
         """The slip of body 1 over body 2 in the step, in x and y; zeros without friction."""
-        return self._slip if self._slip is not None else np.zeros((2, *self.pressure.shape))
+        return self._field("slip", 2)
 
     @cached_property
     def stick_slip(self) -> npt.NDArray[np.int32]:
         """0 exterior, 1 stick, 2 slip, 3 in a layer that yields; zeros without friction."""
-        return self._stick_slip if self._stick_slip is not None else np.zeros(self.pressure.shape, dtype=np.int32)
+        return self._field("stick_slip", kind=np.int32)
 
     @cached_property
     def friction_coefficient(self) -> Doubles:
         """With a law of friction or a layer that yields: mu that particles of the interface carry after the step; else zeros."""
-        return self._friction_coefficient if self._friction_coefficient is not None else np.zeros(self.pressure.shape)
+        return self._field("friction_coefficient")
 
     @cached_property
     def yield_limit(self) -> Doubles:
         """With a layer that yields: the limits that particles carry after the step; else zeros."""
-        return self._yield_limit if self._yield_limit is not None else np.zeros(self.pressure.shape)
+        return self._field("yield_limit")
 
     @cached_property
     def contact_pressure(self) -> Doubles:
         """q: with adhesion p + sigma in contact, 0 outside; without adhesion p."""
-        return self._contact_pressure if self._contact_pressure is not None else self.pressure
+        return self._of_effects.get("contact_pressure", self.pressure)
 
     @cached_property
     def attraction(self) -> Doubles:
         """sigma(e) of adhesion; zeros without."""
-        return self._attraction if self._attraction is not None else np.zeros(self.pressure.shape)
+        return self._field("attraction")
 
     @cached_property
     def report(self) -> dict[str, Any]:
@@ -155,7 +150,7 @@ class Solved(WithUnits):
     @property
     def has_friction(self) -> bool:
         """Whether the scene has friction."""
-        return self._traction is not None
+        return "traction" in self._of_effects
 
     @property
     def tangential_force(self) -> tuple[float, float]:
@@ -180,7 +175,7 @@ class Solved(WithUnits):
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """Names of the warnings, also if the status is OK: "BORDER", "ONE_ELEMENT", "SPIKE", "ERROR_UNKNOWN", "RANGE", "ATTRACTION", "LAW"."""
-        return tuple(name for name, bit in _WARNINGS.items() if self.report["warnings"] & bit)
+        return tuple(name.upper() for bit, name in _WARNINGS.items() if self.report["warnings"] & bit)
 
     def __repr__(self) -> str:
         my, mx = self.pressure.shape
@@ -191,37 +186,13 @@ class Solved(WithUnits):
         return f"<{type(self).__name__}: {status}; {mx} x {my} elements{told}{warned}{message}>"
 
     def plot_traction(self, axes: Axes | None = None) -> Axes:
-        """Draws the tractions as arrows over the stick and slip areas, seen from above.
-
-        Parameters
-        ----------
-        axes : matplotlib.axes.Axes, optional
-            Where to draw; by default the axes of a new figure.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes, to add to or to save.
-        """
+        """Draws the tractions as arrows over the stick and slip areas, seen from above; `axes` as for `Result.plot`."""
         from ._plot_above import plot_traction
 
         return plot_traction(self, axes)
 
     def plot_histogram(self, bins: int = 40, axes: Axes | None = None) -> Axes:
-        """Draws which share of the contact area has which pressure.
-
-        Parameters
-        ----------
-        bins : int
-            Ranges of pressure.
-        axes : matplotlib.axes.Axes, optional
-            Where to draw; by default the axes of a new figure.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes, to add to or to save.
-        """
+        """Draws which share of the contact area has which pressure, in `bins` ranges of pressure; `axes` as for `Result.plot`."""
         from ._plot_lines import plot_histogram
 
         return plot_histogram(self, bins, axes)

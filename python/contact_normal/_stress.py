@@ -101,33 +101,15 @@ class SubsurfaceStress(WithUnits):
             The plane: one of them. Neither: the y of the middle of the grid.
         of : str
             "von_mises", "maximum_shear", or a component: "zz".
-        axes : matplotlib.axes.Axes, optional
-            Where to draw; by default the axes of a new figure.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes, to add to or to save.
+        axes
+            As for `Result.plot`, which returns the axes likewise.
         """
         from ._plot_stress import plot_stress_section
 
         return plot_stress_section(self, x, y, of, axes)
 
     def plot_depth(self, x: float | None = None, y: float | None = None, axes: Axes | None = None) -> Axes:
-        """Draws stresses over the depth, below one element.
-
-        Parameters
-        ----------
-        x, y : float, optional
-            The place, by default the middle of the grid.
-        axes : matplotlib.axes.Axes, optional
-            Where to draw; by default the axes of a new figure.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            The axes, to add to or to save.
-        """
+        """Draws stresses over the depth, below the element at `x` and `y`, by default in the middle of the grid; `axes` as for `Result.plot`."""
         from ._plot_stress import plot_depth
 
         return plot_depth(self, x, y, axes)

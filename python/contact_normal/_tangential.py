@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Mapping
-from ctypes import c_int32
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -110,15 +109,10 @@ def of_pressures(
     handle: Handle | None,
 ) -> TangentialResult:
     """Solves the tangential problem of a scene, with a handle or without."""
-    outputs, results = Outputs(scene.shape, has_friction=True), initialised("friction_results")
+    outputs, results = Outputs(scene.shape, has_friction=True, scene=scene), initialised("friction_results")
     outputs.doubles[0][:] = np.where(pressures > 0.0, pressures, 0.0)
     outputs.contact[:] = outputs.doubles[0] > 0.0
-    assert outputs.traction is not None and outputs.slip is not None and outputs.stick_slip is not None
-    results.traction, results.slip = pointer(outputs.traction), pointer(outputs.slip)
-    results.stick_slip = pointer(outputs.stick_slip, c_int32)
-    if scene.has_particles:
-        outputs.friction_coefficient, outputs.yield_limit = np.zeros(scene.shape), np.zeros(scene.shape)
-        results.friction_coefficient, results.yield_limit = pointer(outputs.friction_coefficient), pointer(outputs.yield_limit)
+    outputs.lend(results)
     watched = Watched(progress, struct, scene)
     no_handle = [] if handle else [None]
     status, message = watched.call(

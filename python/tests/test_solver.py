@@ -27,7 +27,7 @@ def resident_bytes():
 class Results(unittest.TestCase):
     def test_friction_takes_arrays_only_where_it_is(self):
         plain = cn.solve(ball(20), 0.1, 0.1, force=100.0, **STEEL)
-        self.assertTrue(plain._traction is None and plain._slip is None and plain._stick_slip is None)
+        self.assertEqual(plain._of_effects, {})
         friction = {"coefficient": 0.3, "force": (10.0, 0.0)}
         slid = cn.solve(ball(20), 0.1, 0.1, force=100.0, friction=friction, **STEEL)
         for result in (plain, slid):

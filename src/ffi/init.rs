@@ -2,32 +2,8 @@
 
 use libc::c_void;
 
-use super::accuracy::contact_normal_accuracy;
-use super::adhesion::contact_normal_adhesion;
-use super::coating::contact_normal_coating;
-use super::effects::{
-    contact_normal_layer, contact_normal_patches, contact_normal_period, contact_normal_pressure_limit,
-};
-use super::effects_bill::contact_normal_effects_row;
-use super::fields::contact_normal_fields;
-use super::friction::contact_normal_friction;
-use super::friction_results::contact_normal_friction_results;
 use super::guard::guard;
-use super::heat::{contact_normal_flash, contact_normal_heat};
-use super::influence::{contact_normal_influence, contact_normal_row_tables};
-use super::ledger::contact_normal_ledger_row;
-use super::options::{contact_normal_cycle, contact_normal_options};
-use super::price_list::contact_normal_price;
-use super::quantities::contact_normal_quantity_row;
-use super::report::contact_normal_report;
-use super::scene::contact_normal_scene;
-use super::solver::contact_normal_solver_info;
-use super::special::contact_normal_hertz_solution;
-use super::status::CONTACT_NORMAL_OK;
-use super::stress_outputs::{contact_normal_stress_maximum, contact_normal_stress_outputs};
-use super::structs;
-use super::visco::contact_normal_visco;
-use super::wear::{contact_normal_wear, contact_normal_worn};
+use super::*;
 
 /// `kind`: `contact_normal_scene`. Since 0.1.
 pub const CONTACT_NORMAL_KIND_SCENE: i32 = 1;

@@ -5,7 +5,7 @@ use std::ptr::{null, null_mut};
 
 use contact_normal::ffi::*;
 
-use crate::dump_scene::last_error;
+use crate::call::last_error;
 
 fn set(options: &mut contact_normal_options, name: &str, value: &str) -> i32 {
     let (name, value) = (CString::new(name).expect("text"), CString::new(value).expect("text"));

@@ -7,7 +7,8 @@ use std::ptr::null;
 use contact_normal::ffi::dump::Dump;
 use contact_normal::ffi::*;
 
-use crate::dump_scene::{last_error, Everything};
+use crate::call::last_error;
+use crate::dump_scene::Everything;
 
 /// An empty folder of one test.
 pub fn folder(test: &str) -> PathBuf {

@@ -7,8 +7,9 @@ use std::ptr::{null, null_mut};
 use contact_normal::ffi::dump::Dump;
 use contact_normal::ffi::*;
 
+use crate::call::last_error;
 use crate::dump::{folder, text};
-use crate::dump_scene::{last_error, Everything};
+use crate::dump_scene::Everything;
 
 /// The status of a dumped call, which its replay has, too.
 fn reproduced(path: &Path, call: &str) -> i32 {

@@ -5,8 +5,9 @@ use std::ptr::{null, null_mut};
 use contact_normal::ffi::dump::Dump;
 use contact_normal::ffi::*;
 
+use crate::call::last_error;
 use crate::dump::{files, folder, text};
-use crate::dump_scene::{last_error, Everything};
+use crate::dump_scene::Everything;
 
 #[test]
 fn a_handle_goes_on_from_what_is_in_the_file() {

@@ -1,6 +1,5 @@
 //! A small scene with any effects, for the tests of dumps.
 
-use std::ffi::CStr;
 use std::ptr::{null, null_mut};
 
 use contact_normal::ffi::*;
@@ -11,12 +10,6 @@ const N: usize = MX * MY;
 /// Offsets of tables: more than the grid has.
 const CX: usize = 8;
 const CY: usize = 7;
-
-/// What the last call of this thread said.
-pub fn last_error() -> String {
-    // SAFETY: never NULL, valid until the next call.
-    unsafe { CStr::from_ptr(contact_normal_last_error()) }.to_string_lossy().into_owned()
-}
 
 /// The structs and arrays of a call; the structs are boxed, for they point to each other.
 pub struct Everything {

@@ -1,9 +1,8 @@
 //! `contact_normal_solve_tangential`: results, entries that are refused, cancelling, memory that overlaps.
 
-use std::ffi::CStr;
 use std::ptr::{null, null_mut};
 
-use crate::call::initialised;
+use crate::call::{initialised, last_error};
 use contact_normal::ffi::*;
 
 const M: usize = 8;
@@ -82,8 +81,7 @@ impl Call {
                 &mut self.results,
                 &mut self.report,
             );
-            let message = CStr::from_ptr(contact_normal_last_error()).to_str().unwrap();
-            (status, if status == CONTACT_NORMAL_OK { String::new() } else { message.into() })
+            (status, if status == CONTACT_NORMAL_OK { String::new() } else { last_error() })
         }
     }
 

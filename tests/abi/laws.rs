@@ -1,9 +1,8 @@
 //! Laws of friction and layers that yield, through the C ABI: what is refused by which name, and what particles carry from call to call.
 
-use std::ffi::CStr;
 use std::ptr::{null, null_mut};
 
-use crate::call::{Call, Through, MX, MY};
+use crate::call::{last_error, Call, Through, MX, MY};
 use contact_normal::ffi::*;
 
 fn falling(friction: &mut contact_normal_friction) {
@@ -218,7 +217,7 @@ fn a_steep_law_warns_of_pressures_that_are_given() {
                 let options = &raw const call.options.known;
                 let status =
                     contact_normal_solve_tangential(solver, scene, given, options, n, table, null_mut(), report);
-                (status, CStr::from_ptr(contact_normal_last_error()).to_string_lossy())
+                (status, last_error())
             };
             assert!(status >= CONTACT_NORMAL_OK, "{message}");
             let report = &call.report.known;

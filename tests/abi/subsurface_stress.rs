@@ -1,9 +1,9 @@
 //! `contact_normal_subsurface_stress` and `contact_normal_stress_at_points`: outputs, refusals, bodies, cancelling.
 
-use std::ffi::{c_void, CStr};
+use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
-use crate::call::initialised;
+use crate::call::{initialised, last_error};
 use contact_normal::ffi::*;
 
 const MX: usize = 4;
@@ -77,7 +77,7 @@ impl Call {
                 &mut self.outputs,
             )
         };
-        (status, last_error(status))
+        (status, message(status))
     }
 
     /// The number of values that were written.
@@ -88,11 +88,10 @@ impl Call {
     }
 }
 
-fn last_error(status: i32) -> String {
+fn message(status: i32) -> String {
     match status {
         CONTACT_NORMAL_OK => String::new(),
-        // SAFETY: static until the next call.
-        _ => unsafe { CStr::from_ptr(contact_normal_last_error()) }.to_str().unwrap().into(),
+        _ => last_error(),
     }
 }
 
@@ -210,7 +209,7 @@ fn bodies_that_are_no_half_spaces_are_refused_by_name() {
             let (points, to) = (points.as_ptr(), stress.as_mut_ptr());
             contact_normal_stress_at_points(&call.scene, 1, p, null(), null(), points, 1, null(), to)
         };
-        let at_points = (status, last_error(status));
+        let at_points = (status, message(status));
         assert!(status == CONTACT_NORMAL_OK || stress == [SENTINEL; 6]);
         (found, at_points)
     };
@@ -248,7 +247,7 @@ fn null_pointers_are_refused() {
         // SAFETY: NULL, or as the call says.
         let status =
             unsafe { contact_normal_subsurface_stress(scene, 1, p, null(), null(), depths, 1, null(), outputs) };
-        (status, last_error(status))
+        (status, message(status))
     };
     for (got, name) in [
         (ask(null(), p, outputs), "scene"),
@@ -302,7 +301,7 @@ fn points_at_the_centres_have_the_stresses_of_the_grid() {
                 stress.cast(),
             )
         };
-        (status, last_error(status))
+        (status, message(status))
     };
     assert_eq!(at(points.as_ptr(), stress.as_mut_ptr()), (CONTACT_NORMAL_OK, String::new()));
     for (i, stress) in stress.iter().enumerate() {
@@ -383,7 +382,7 @@ fn points_keep_to_a_limit_of_time() {
         let (first, last) = (stress[0][2], stress[points.len() - 1][2]);
         assert!(first < 0.0, "{first}");
         if max_seconds > 0.0 {
-            let message = last_error(status);
+            let message = message(status);
             assert!(status == CONTACT_NORMAL_ITERATION_LIMIT && message.contains("max_seconds"), "{status} {message}");
             assert_eq!(last, 0.0);
         } else {

@@ -1,9 +1,8 @@
 //! `contact_normal_solve_tangential` with a handle: what it keeps, what it refuses, where it starts.
 
-use std::ffi::CStr;
 use std::ptr::{null, null_mut};
 
-use crate::call::initialised;
+use crate::call::{initialised, last_error};
 use contact_normal::ffi::*;
 
 const M: usize = 16;
@@ -77,8 +76,7 @@ impl Call {
             let (scene, p, options) = (&raw const self.scene, self.pressure.as_ptr(), &raw const self.options);
             let report = &raw mut self.report;
             let status = contact_normal_solve_tangential(solver, scene, p, options, 1, null(), &mut results, report);
-            let message = CStr::from_ptr(contact_normal_last_error()).to_str().unwrap();
-            (status, if status == CONTACT_NORMAL_OK { String::new() } else { message.into() })
+            (status, if status == CONTACT_NORMAL_OK { String::new() } else { last_error() })
         }
     }
 
@@ -344,7 +342,7 @@ fn what_a_handle_needs_is_said() {
         let status =
             contact_normal_solve_tangential(handle.0, scene, null(), options, 1, null(), null_mut(), null_mut());
         assert_eq!(status, CONTACT_NORMAL_NULL_POINTER);
-        assert!(CStr::from_ptr(contact_normal_last_error()).to_str().unwrap().contains("pressure"));
+        assert!(last_error().contains("pressure"));
     }
     call.scene.mx = 8;
     assert_eq!(call.run(handle.0).0, CONTACT_NORMAL_INVALID_ARGUMENT);

@@ -157,30 +157,6 @@ from ctypes import CFUNCTYPE, POINTER, c_char_p, c_double, c_int32, c_int64, c_v
     text + "}\n"
 }
 
-fn rust_layout(described: &Description) -> String {
-    let mut text = "\
-//! The sizes of the structs, and the offsets of their members, as Rust has them. Made from include/contact_normal.h; do not edit.
-
-use std::mem::offset_of;
-
-use contact_normal::ffi::*;
-
-/// \"struct\" and its size, then \"struct.member\" and its offset.
-#[rustfmt::skip]
-pub fn layout() -> Vec<(&'static str, usize)> {
-    vec![
-"
-    .to_owned();
-    for each in &described.structs {
-        let name = &each.name;
-        writeln!(text, "        (\"{name}\", size_of::<{name}>()),").expect("text");
-        for member in each.members.iter().map(|member| &member.name) {
-            writeln!(text, "        (\"{name}.{member}\", offset_of!({name}, {member})),").expect("text");
-        }
-    }
-    text + "    ]\n}\n"
-}
-
 /// The members of a struct, and those of structs within it: "normal.force".
 fn members(described: &Description, each: &Struct) -> Vec<String> {
     let of = |member: &Member| match &member.kind {
@@ -228,6 +204,48 @@ fn fill(text: &mut String, indent: &str, items: impl Iterator<Item = String>) {
     *text += "\n";
 }
 
+/// Adds structs to the text, each with the names of its members.
+fn add_structs<'a>(
+    text: &mut String,
+    structs: impl Iterator<Item = &'a Struct>,
+    members: impl Fn(&Struct) -> Vec<String>,
+) {
+    for each in structs {
+        writeln!(text, "    {} {{", each.name).expect("text");
+        fill(text, "        ", members(each).into_iter());
+        *text += "    }\n";
+    }
+}
+
+fn rust_layout(described: &Description) -> String {
+    let mut text = "\
+//! The sizes of the structs, and the offsets of their members, as Rust has them. Made from include/contact_normal.h; do not edit.
+
+use std::mem::offset_of;
+
+use contact_normal::ffi::*;
+
+macro_rules! layout {
+    ($($struct:ident { $($member:ident)* })*) => {
+        /// \"struct\" and its size, then \"struct.member\" and its offset.
+        pub fn layout() -> Vec<(&'static str, usize)> {
+            vec![$(
+                (stringify!($struct), size_of::<$struct>()),
+                $((concat!(stringify!($struct), \".\", stringify!($member)), offset_of!($struct, $member)),)*
+            )*]
+        }
+    };
+}
+
+layout! {
+"
+    .to_owned();
+    add_structs(&mut text, described.structs.iter(), |each| {
+        each.members.iter().map(|member| member.name.clone()).collect()
+    });
+    text + "}\n"
+}
+
 fn rust_members(described: &Description) -> String {
     let mut text = "\
 //! The constants, the structs and their members by name. Made from include/contact_normal.h; do not edit.
@@ -242,11 +260,7 @@ pub(super) const CONSTANTS: &[(&str, i32)] = constants! {
     .to_owned();
     fill(&mut text, "    ", described.constants.iter().map(|each| format!("CONTACT_NORMAL_{}", each.name)));
     text += "};\n\n/// Those that a dump may hold.\n#[rustfmt::skip]\nconst STRUCTS: &[Struct] = structs! {\n";
-    for each in dumped(described) {
-        writeln!(text, "    {} {{", each.name).expect("text");
-        fill(&mut text, "        ", members(described, each).into_iter());
-        text += "    }\n";
-    }
+    add_structs(&mut text, dumped(described).into_iter(), |each| members(described, each));
     text + "\
 };
 

@@ -4,440 +4,139 @@ use std::mem::offset_of;
 
 use contact_normal::ffi::*;
 
-/// "struct" and its size, then "struct.member" and its offset.
-#[rustfmt::skip]
-pub fn layout() -> Vec<(&'static str, usize)> {
-    vec![
-        ("contact_normal_coating", size_of::<contact_normal_coating>()),
-        ("contact_normal_coating.struct_size", offset_of!(contact_normal_coating, struct_size)),
-        ("contact_normal_coating.thickness", offset_of!(contact_normal_coating, thickness)),
-        ("contact_normal_coating.shear_modulus", offset_of!(contact_normal_coating, shear_modulus)),
-        ("contact_normal_coating.poisson_ratio", offset_of!(contact_normal_coating, poisson_ratio)),
-        ("contact_normal_influence", size_of::<contact_normal_influence>()),
-        ("contact_normal_influence.struct_size", offset_of!(contact_normal_influence, struct_size)),
-        ("contact_normal_influence.cx", offset_of!(contact_normal_influence, cx)),
-        ("contact_normal_influence.cy", offset_of!(contact_normal_influence, cy)),
-        ("contact_normal_influence.coefficients", offset_of!(contact_normal_influence, coefficients)),
-        ("contact_normal_influence.scale", offset_of!(contact_normal_influence, scale)),
-        ("contact_normal_layer", size_of::<contact_normal_layer>()),
-        ("contact_normal_layer.struct_size", offset_of!(contact_normal_layer, struct_size)),
-        ("contact_normal_layer.compliance", offset_of!(contact_normal_layer, compliance)),
-        ("contact_normal_layer.compliances", offset_of!(contact_normal_layer, compliances)),
-        ("contact_normal_pressure_limit", size_of::<contact_normal_pressure_limit>()),
-        ("contact_normal_pressure_limit.struct_size", offset_of!(contact_normal_pressure_limit, struct_size)),
-        ("contact_normal_pressure_limit.limit", offset_of!(contact_normal_pressure_limit, limit)),
-        ("contact_normal_pressure_limit.limits", offset_of!(contact_normal_pressure_limit, limits)),
-        ("contact_normal_period", size_of::<contact_normal_period>()),
-        ("contact_normal_period.struct_size", offset_of!(contact_normal_period, struct_size)),
-        ("contact_normal_period.x", offset_of!(contact_normal_period, x)),
-        ("contact_normal_period.y", offset_of!(contact_normal_period, y)),
-        ("contact_normal_patches", size_of::<contact_normal_patches>()),
-        ("contact_normal_patches.struct_size", offset_of!(contact_normal_patches, struct_size)),
-        ("contact_normal_patches.count", offset_of!(contact_normal_patches, count)),
-        ("contact_normal_patches.reserved", offset_of!(contact_normal_patches, reserved)),
-        ("contact_normal_patches.patch", offset_of!(contact_normal_patches, patch)),
-        ("contact_normal_patches.factors", offset_of!(contact_normal_patches, factors)),
-        ("contact_normal_row_tables", size_of::<contact_normal_row_tables>()),
-        ("contact_normal_row_tables.struct_size", offset_of!(contact_normal_row_tables, struct_size)),
-        ("contact_normal_row_tables.cx", offset_of!(contact_normal_row_tables, cx)),
-        ("contact_normal_row_tables.rows", offset_of!(contact_normal_row_tables, rows)),
-        ("contact_normal_row_tables.coefficients", offset_of!(contact_normal_row_tables, coefficients)),
-        ("contact_normal_row_tables.scale", offset_of!(contact_normal_row_tables, scale)),
-        ("contact_normal_friction", size_of::<contact_normal_friction>()),
-        ("contact_normal_friction.struct_size", offset_of!(contact_normal_friction, struct_size)),
-        ("contact_normal_friction.coefficient", offset_of!(contact_normal_friction, coefficient)),
-        ("contact_normal_friction.coefficients", offset_of!(contact_normal_friction, coefficients)),
-        ("contact_normal_friction.motion", offset_of!(contact_normal_friction, motion)),
-        ("contact_normal_friction.continues", offset_of!(contact_normal_friction, continues)),
-        ("contact_normal_friction.prescribed", offset_of!(contact_normal_friction, prescribed)),
-        ("contact_normal_friction.creepage", offset_of!(contact_normal_friction, creepage)),
-        ("contact_normal_friction.spin", offset_of!(contact_normal_friction, spin)),
-        ("contact_normal_friction.spin_centre", offset_of!(contact_normal_friction, spin_centre)),
-        ("contact_normal_friction.force", offset_of!(contact_normal_friction, force)),
-        ("contact_normal_friction.rolling_distance", offset_of!(contact_normal_friction, rolling_distance)),
-        ("contact_normal_friction.rolling_direction", offset_of!(contact_normal_friction, rolling_direction)),
-        ("contact_normal_friction.spin_offset", offset_of!(contact_normal_friction, spin_offset)),
-        ("contact_normal_friction.previous_traction", offset_of!(contact_normal_friction, previous_traction)),
-        ("contact_normal_friction.rigid_slip", offset_of!(contact_normal_friction, rigid_slip)),
-        ("contact_normal_friction.influence", offset_of!(contact_normal_friction, influence)),
-        ("contact_normal_friction.influence_cross", offset_of!(contact_normal_friction, influence_cross)),
-        ("contact_normal_friction.sensitivities", offset_of!(contact_normal_friction, sensitivities)),
-        ("contact_normal_friction.reserved", offset_of!(contact_normal_friction, reserved)),
-        ("contact_normal_friction.initial_traction", offset_of!(contact_normal_friction, initial_traction)),
-        ("contact_normal_friction.compliance", offset_of!(contact_normal_friction, compliance)),
-        ("contact_normal_friction.compliances", offset_of!(contact_normal_friction, compliances)),
-        ("contact_normal_friction.creepage_weight", offset_of!(contact_normal_friction, creepage_weight)),
-        ("contact_normal_friction.row_tables", offset_of!(contact_normal_friction, row_tables)),
-        ("contact_normal_friction.law", offset_of!(contact_normal_friction, law)),
-        ("contact_normal_friction.reserved_for_law", offset_of!(contact_normal_friction, reserved_for_law)),
-        ("contact_normal_friction.kinetic", offset_of!(contact_normal_friction, kinetic)),
-        ("contact_normal_friction.falling", offset_of!(contact_normal_friction, falling)),
-        ("contact_normal_friction.half_speed", offset_of!(contact_normal_friction, half_speed)),
-        ("contact_normal_friction.speed", offset_of!(contact_normal_friction, speed)),
-        ("contact_normal_friction.time_step", offset_of!(contact_normal_friction, time_step)),
-        ("contact_normal_friction.memory_distance", offset_of!(contact_normal_friction, memory_distance)),
-        ("contact_normal_friction.memory_speed", offset_of!(contact_normal_friction, memory_speed)),
-        ("contact_normal_friction.yield_limit", offset_of!(contact_normal_friction, yield_limit)),
-        ("contact_normal_friction.hardening", offset_of!(contact_normal_friction, hardening)),
-        ("contact_normal_friction.previous_coefficient", offset_of!(contact_normal_friction, previous_coefficient)),
-        ("contact_normal_friction.previous_yield_limit", offset_of!(contact_normal_friction, previous_yield_limit)),
-        ("contact_normal_friction.branch", offset_of!(contact_normal_friction, branch)),
-        ("contact_normal_friction.reserved_for_branch", offset_of!(contact_normal_friction, reserved_for_branch)),
-        ("contact_normal_adhesion", size_of::<contact_normal_adhesion>()),
-        ("contact_normal_adhesion.struct_size", offset_of!(contact_normal_adhesion, struct_size)),
-        ("contact_normal_adhesion.law", offset_of!(contact_normal_adhesion, law)),
-        ("contact_normal_adhesion.start", offset_of!(contact_normal_adhesion, start)),
-        ("contact_normal_adhesion.work_of_adhesion", offset_of!(contact_normal_adhesion, work_of_adhesion)),
-        ("contact_normal_adhesion.works_of_adhesion", offset_of!(contact_normal_adhesion, works_of_adhesion)),
-        ("contact_normal_adhesion.range", offset_of!(contact_normal_adhesion, range)),
-        ("contact_normal_adhesion.smear", offset_of!(contact_normal_adhesion, smear)),
-        ("contact_normal_adhesion.stiffness", offset_of!(contact_normal_adhesion, stiffness)),
-        ("contact_normal_adhesion.stability", offset_of!(contact_normal_adhesion, stability)),
-        ("contact_normal_adhesion.shear_strength", offset_of!(contact_normal_adhesion, shear_strength)),
-        ("contact_normal_visco", size_of::<contact_normal_visco>()),
-        ("contact_normal_visco.struct_size", offset_of!(contact_normal_visco, struct_size)),
-        ("contact_normal_visco.branches", offset_of!(contact_normal_visco, branches)),
-        ("contact_normal_visco.modulus", offset_of!(contact_normal_visco, modulus)),
-        ("contact_normal_visco.time", offset_of!(contact_normal_visco, time)),
-        ("contact_normal_visco.time_step", offset_of!(contact_normal_visco, time_step)),
-        ("contact_normal_visco.form", offset_of!(contact_normal_visco, form)),
-        ("contact_normal_visco.continues", offset_of!(contact_normal_visco, continues)),
-        ("contact_normal_scene", size_of::<contact_normal_scene>()),
-        ("contact_normal_scene.struct_size", offset_of!(contact_normal_scene, struct_size)),
-        ("contact_normal_scene.mx", offset_of!(contact_normal_scene, mx)),
-        ("contact_normal_scene.my", offset_of!(contact_normal_scene, my)),
-        ("contact_normal_scene.dx", offset_of!(contact_normal_scene, dx)),
-        ("contact_normal_scene.dy", offset_of!(contact_normal_scene, dy)),
-        ("contact_normal_scene.undeformed_distance", offset_of!(contact_normal_scene, undeformed_distance)),
-        ("contact_normal_scene.shear_modulus", offset_of!(contact_normal_scene, shear_modulus)),
-        ("contact_normal_scene.poisson_ratio", offset_of!(contact_normal_scene, poisson_ratio)),
-        ("contact_normal_scene.load", offset_of!(contact_normal_scene, load)),
-        ("contact_normal_scene.reserved", offset_of!(contact_normal_scene, reserved)),
-        ("contact_normal_scene.approach", offset_of!(contact_normal_scene, approach)),
-        ("contact_normal_scene.force", offset_of!(contact_normal_scene, force)),
-        ("contact_normal_scene.influence", offset_of!(contact_normal_scene, influence)),
-        ("contact_normal_scene.layer", offset_of!(contact_normal_scene, layer)),
-        ("contact_normal_scene.pressure_limit", offset_of!(contact_normal_scene, pressure_limit)),
-        ("contact_normal_scene.period", offset_of!(contact_normal_scene, period)),
-        ("contact_normal_scene.patches", offset_of!(contact_normal_scene, patches)),
-        ("contact_normal_scene.row_tables", offset_of!(contact_normal_scene, row_tables)),
-        ("contact_normal_scene.coating", offset_of!(contact_normal_scene, coating)),
-        ("contact_normal_scene.friction", offset_of!(contact_normal_scene, friction)),
-        ("contact_normal_scene.adhesion", offset_of!(contact_normal_scene, adhesion)),
-        ("contact_normal_scene.visco", offset_of!(contact_normal_scene, visco)),
-        ("contact_normal_progress", size_of::<contact_normal_progress>()),
-        ("contact_normal_progress.struct_size", offset_of!(contact_normal_progress, struct_size)),
-        ("contact_normal_progress.mx", offset_of!(contact_normal_progress, mx)),
-        ("contact_normal_progress.my", offset_of!(contact_normal_progress, my)),
-        ("contact_normal_progress.cycles", offset_of!(contact_normal_progress, cycles)),
-        ("contact_normal_progress.active_set_changes", offset_of!(contact_normal_progress, active_set_changes)),
-        ("contact_normal_progress.seconds", offset_of!(contact_normal_progress, seconds)),
-        ("contact_normal_progress.work_units", offset_of!(contact_normal_progress, work_units)),
-        ("contact_normal_progress.update", offset_of!(contact_normal_progress, update)),
-        ("contact_normal_progress.residual", offset_of!(contact_normal_progress, residual)),
-        ("contact_normal_cycle", size_of::<contact_normal_cycle>()),
-        ("contact_normal_cycle.struct_size", offset_of!(contact_normal_cycle, struct_size)),
-        ("contact_normal_cycle.smoother", offset_of!(contact_normal_cycle, smoother)),
-        ("contact_normal_cycle.pre_sweeps", offset_of!(contact_normal_cycle, pre_sweeps)),
-        ("contact_normal_cycle.post_sweeps", offset_of!(contact_normal_cycle, post_sweeps)),
-        ("contact_normal_cycle.coarsest", offset_of!(contact_normal_cycle, coarsest)),
-        ("contact_normal_cycle.relaxation", offset_of!(contact_normal_cycle, relaxation)),
-        ("contact_normal_options", size_of::<contact_normal_options>()),
-        ("contact_normal_options.struct_size", offset_of!(contact_normal_options, struct_size)),
-        ("contact_normal_options.method", offset_of!(contact_normal_options, method)),
-        ("contact_normal_options.active_set", offset_of!(contact_normal_options, active_set)),
-        ("contact_normal_options.initial_guess", offset_of!(contact_normal_options, initial_guess)),
-        ("contact_normal_options.criterion", offset_of!(contact_normal_options, criterion)),
-        ("contact_normal_options.tolerance", offset_of!(contact_normal_options, tolerance)),
-        ("contact_normal_options.error_ratio", offset_of!(contact_normal_options, error_ratio)),
-        ("contact_normal_options.max_cycles", offset_of!(contact_normal_options, max_cycles)),
-        ("contact_normal_options.threads", offset_of!(contact_normal_options, threads)),
-        ("contact_normal_options.precision", offset_of!(contact_normal_options, precision)),
-        ("contact_normal_options.reserved", offset_of!(contact_normal_options, reserved)),
-        ("contact_normal_options.progress", offset_of!(contact_normal_options, progress)),
-        ("contact_normal_options.user", offset_of!(contact_normal_options, user)),
-        ("contact_normal_options.cycle", offset_of!(contact_normal_options, cycle)),
-        ("contact_normal_options.max_seconds", offset_of!(contact_normal_options, max_seconds)),
-        ("contact_normal_options.stop", offset_of!(contact_normal_options, stop)),
-        ("contact_normal_options.dump", offset_of!(contact_normal_options, dump)),
-        ("contact_normal_options.neglect_below", offset_of!(contact_normal_options, neglect_below)),
-        ("contact_normal_fields", size_of::<contact_normal_fields>()),
-        ("contact_normal_fields.struct_size", offset_of!(contact_normal_fields, struct_size)),
-        ("contact_normal_fields.pressure", offset_of!(contact_normal_fields, pressure)),
-        ("contact_normal_fields.deformed_distance", offset_of!(contact_normal_fields, deformed_distance)),
-        ("contact_normal_fields.displacement", offset_of!(contact_normal_fields, displacement)),
-        ("contact_normal_fields.contact", offset_of!(contact_normal_fields, contact)),
-        ("contact_normal_fields.traction", offset_of!(contact_normal_fields, traction)),
-        ("contact_normal_fields.slip", offset_of!(contact_normal_fields, slip)),
-        ("contact_normal_fields.stick_slip", offset_of!(contact_normal_fields, stick_slip)),
-        ("contact_normal_fields.contact_pressure", offset_of!(contact_normal_fields, contact_pressure)),
-        ("contact_normal_fields.attraction", offset_of!(contact_normal_fields, attraction)),
-        ("contact_normal_fields.friction_coefficient", offset_of!(contact_normal_fields, friction_coefficient)),
-        ("contact_normal_fields.yield_limit", offset_of!(contact_normal_fields, yield_limit)),
-        ("contact_normal_ledger_row", size_of::<contact_normal_ledger_row>()),
-        ("contact_normal_ledger_row.struct_size", offset_of!(contact_normal_ledger_row, struct_size)),
-        ("contact_normal_ledger_row.mx", offset_of!(contact_normal_ledger_row, mx)),
-        ("contact_normal_ledger_row.my", offset_of!(contact_normal_ledger_row, my)),
-        ("contact_normal_ledger_row.cycles", offset_of!(contact_normal_ledger_row, cycles)),
-        ("contact_normal_ledger_row.seconds", offset_of!(contact_normal_ledger_row, seconds)),
-        ("contact_normal_ledger_row.work_units", offset_of!(contact_normal_ledger_row, work_units)),
-        ("contact_normal_ledger_row.residual", offset_of!(contact_normal_ledger_row, residual)),
-        ("contact_normal_ledger_row.approach", offset_of!(contact_normal_ledger_row, approach)),
-        ("contact_normal_ledger_row.force", offset_of!(contact_normal_ledger_row, force)),
-        ("contact_normal_ledger_row.max_pressure", offset_of!(contact_normal_ledger_row, max_pressure)),
-        ("contact_normal_ledger_row.contact_area", offset_of!(contact_normal_ledger_row, contact_area)),
-        ("contact_normal_ledger_row.corrected_area", offset_of!(contact_normal_ledger_row, corrected_area)),
-        ("contact_normal_ledger_row.error_force", offset_of!(contact_normal_ledger_row, error_force)),
-        ("contact_normal_ledger_row.error_max_pressure", offset_of!(contact_normal_ledger_row, error_max_pressure)),
-        ("contact_normal_ledger_row.error_contact_area", offset_of!(contact_normal_ledger_row, error_contact_area)),
-        ("contact_normal_ledger_row.error_corrected_area", offset_of!(contact_normal_ledger_row, error_corrected_area)),
-        ("contact_normal_ledger_row.error_pressure", offset_of!(contact_normal_ledger_row, error_pressure)),
-        ("contact_normal_ledger_row.contact_count", offset_of!(contact_normal_ledger_row, contact_count)),
-        ("contact_normal_ledger_row.untrusted", offset_of!(contact_normal_ledger_row, untrusted)),
-        ("contact_normal_ledger_row.reserved", offset_of!(contact_normal_ledger_row, reserved)),
-        ("contact_normal_report_normal", size_of::<contact_normal_report_normal>()),
-        ("contact_normal_report_normal.approach", offset_of!(contact_normal_report_normal, approach)),
-        ("contact_normal_report_normal.force", offset_of!(contact_normal_report_normal, force)),
-        ("contact_normal_report_normal.max_pressure", offset_of!(contact_normal_report_normal, max_pressure)),
-        ("contact_normal_report_normal.min_pressure", offset_of!(contact_normal_report_normal, min_pressure)),
-        ("contact_normal_report_normal.contact_area", offset_of!(contact_normal_report_normal, contact_area)),
-        ("contact_normal_report_normal.corrected_area", offset_of!(contact_normal_report_normal, corrected_area)),
-        ("contact_normal_report_normal.contact_count", offset_of!(contact_normal_report_normal, contact_count)),
-        ("contact_normal_report_normal.edge_count", offset_of!(contact_normal_report_normal, edge_count)),
-        ("contact_normal_report_normal.tolerance", offset_of!(contact_normal_report_normal, tolerance)),
-        ("contact_normal_report_normal.residual", offset_of!(contact_normal_report_normal, residual)),
-        ("contact_normal_report_normal.violation", offset_of!(contact_normal_report_normal, violation)),
-        ("contact_normal_report_normal.complementarity", offset_of!(contact_normal_report_normal, complementarity)),
-        ("contact_normal_report_normal.update", offset_of!(contact_normal_report_normal, update)),
-        ("contact_normal_report_normal.reserved", offset_of!(contact_normal_report_normal, reserved)),
-        ("contact_normal_report_tangential", size_of::<contact_normal_report_tangential>()),
-        ("contact_normal_report_tangential.force", offset_of!(contact_normal_report_tangential, force)),
-        ("contact_normal_report_tangential.moment", offset_of!(contact_normal_report_tangential, moment)),
-        ("contact_normal_report_tangential.creepage", offset_of!(contact_normal_report_tangential, creepage)),
-        ("contact_normal_report_tangential.residual", offset_of!(contact_normal_report_tangential, residual)),
-        ("contact_normal_report_tangential.gap", offset_of!(contact_normal_report_tangential, gap)),
-        ("contact_normal_report_tangential.stick_count", offset_of!(contact_normal_report_tangential, stick_count)),
-        ("contact_normal_report_tangential.slip_count", offset_of!(contact_normal_report_tangential, slip_count)),
-        ("contact_normal_report_tangential.sensitivities", offset_of!(contact_normal_report_tangential, sensitivities)),
-        ("contact_normal_report_tangential.update", offset_of!(contact_normal_report_tangential, update)),
-        ("contact_normal_report_tangential.law_slope", offset_of!(contact_normal_report_tangential, law_slope)),
-        ("contact_normal_report_tangential.reserved", offset_of!(contact_normal_report_tangential, reserved)),
-        ("contact_normal_report_accuracy", size_of::<contact_normal_report_accuracy>()),
-        ("contact_normal_report_accuracy.error_force", offset_of!(contact_normal_report_accuracy, error_force)),
-        ("contact_normal_report_accuracy.error_max_pressure", offset_of!(contact_normal_report_accuracy, error_max_pressure)),
-        ("contact_normal_report_accuracy.error_contact_area", offset_of!(contact_normal_report_accuracy, error_contact_area)),
-        ("contact_normal_report_accuracy.error_corrected_area", offset_of!(contact_normal_report_accuracy, error_corrected_area)),
-        ("contact_normal_report_accuracy.error_pressure", offset_of!(contact_normal_report_accuracy, error_pressure)),
-        ("contact_normal_report_accuracy.error_tangential", offset_of!(contact_normal_report_accuracy, error_tangential)),
-        ("contact_normal_report_accuracy.untrusted", offset_of!(contact_normal_report_accuracy, untrusted)),
-        ("contact_normal_report_accuracy.limited_by", offset_of!(contact_normal_report_accuracy, limited_by)),
-        ("contact_normal_report_accuracy.halved_seconds", offset_of!(contact_normal_report_accuracy, halved_seconds)),
-        ("contact_normal_report_accuracy.halved_error_force", offset_of!(contact_normal_report_accuracy, halved_error_force)),
-        ("contact_normal_report_accuracy.neglected", offset_of!(contact_normal_report_accuracy, neglected)),
-        ("contact_normal_report_accuracy.neglected_error", offset_of!(contact_normal_report_accuracy, neglected_error)),
-        ("contact_normal_report_accuracy.reserved", offset_of!(contact_normal_report_accuracy, reserved)),
-        ("contact_normal_report_statistics", size_of::<contact_normal_report_statistics>()),
-        ("contact_normal_report_statistics.cycles", offset_of!(contact_normal_report_statistics, cycles)),
-        ("contact_normal_report_statistics.active_set_steps", offset_of!(contact_normal_report_statistics, active_set_steps)),
-        ("contact_normal_report_statistics.active_set_changes", offset_of!(contact_normal_report_statistics, active_set_changes)),
-        ("contact_normal_report_statistics.matrix_products", offset_of!(contact_normal_report_statistics, matrix_products)),
-        ("contact_normal_report_statistics.work_units", offset_of!(contact_normal_report_statistics, work_units)),
-        ("contact_normal_report_statistics.tangential_products", offset_of!(contact_normal_report_statistics, tangential_products)),
-        ("contact_normal_report_statistics.setup_seconds", offset_of!(contact_normal_report_statistics, setup_seconds)),
-        ("contact_normal_report_statistics.solve_seconds", offset_of!(contact_normal_report_statistics, solve_seconds)),
-        ("contact_normal_report_statistics.tangential_seconds", offset_of!(contact_normal_report_statistics, tangential_seconds)),
-        ("contact_normal_report_statistics.bytes", offset_of!(contact_normal_report_statistics, bytes)),
-        ("contact_normal_report_statistics.reserved", offset_of!(contact_normal_report_statistics, reserved)),
-        ("contact_normal_report_adhesion", size_of::<contact_normal_report_adhesion>()),
-        ("contact_normal_report_adhesion.repulsive_force", offset_of!(contact_normal_report_adhesion, repulsive_force)),
-        ("contact_normal_report_adhesion.adhesive_force", offset_of!(contact_normal_report_adhesion, adhesive_force)),
-        ("contact_normal_report_adhesion.elastic_energy", offset_of!(contact_normal_report_adhesion, elastic_energy)),
-        ("contact_normal_report_adhesion.adhesive_energy", offset_of!(contact_normal_report_adhesion, adhesive_energy)),
-        ("contact_normal_report_adhesion.law_residual", offset_of!(contact_normal_report_adhesion, law_residual)),
-        ("contact_normal_report_adhesion.range", offset_of!(contact_normal_report_adhesion, range)),
-        ("contact_normal_report_adhesion.resolution", offset_of!(contact_normal_report_adhesion, resolution)),
-        ("contact_normal_report_adhesion.border_share", offset_of!(contact_normal_report_adhesion, border_share)),
-        ("contact_normal_report_adhesion.stiffness", offset_of!(contact_normal_report_adhesion, stiffness)),
-        ("contact_normal_report_adhesion.stability", offset_of!(contact_normal_report_adhesion, stability)),
-        ("contact_normal_report_adhesion.jumped", offset_of!(contact_normal_report_adhesion, jumped)),
-        ("contact_normal_report_adhesion.reserved_integer", offset_of!(contact_normal_report_adhesion, reserved_integer)),
-        ("contact_normal_report_adhesion.reserved", offset_of!(contact_normal_report_adhesion, reserved)),
-        ("contact_normal_report_visco", size_of::<contact_normal_report_visco>()),
-        ("contact_normal_report_visco.time", offset_of!(contact_normal_report_visco, time)),
-        ("contact_normal_report_visco.step_error", offset_of!(contact_normal_report_visco, step_error)),
-        ("contact_normal_report_visco.time_error", offset_of!(contact_normal_report_visco, time_error)),
-        ("contact_normal_report_visco.compliance", offset_of!(contact_normal_report_visco, compliance)),
-        ("contact_normal_report_visco.reserved", offset_of!(contact_normal_report_visco, reserved)),
-        ("contact_normal_report", size_of::<contact_normal_report>()),
-        ("contact_normal_report.struct_size", offset_of!(contact_normal_report, struct_size)),
-        ("contact_normal_report.ledger_rows", offset_of!(contact_normal_report, ledger_rows)),
-        ("contact_normal_report.ledger_capacity", offset_of!(contact_normal_report, ledger_capacity)),
-        ("contact_normal_report.ledger", offset_of!(contact_normal_report, ledger)),
-        ("contact_normal_report.warnings", offset_of!(contact_normal_report, warnings)),
-        ("contact_normal_report.reserved", offset_of!(contact_normal_report, reserved)),
-        ("contact_normal_report.normal", offset_of!(contact_normal_report, normal)),
-        ("contact_normal_report.tangential", offset_of!(contact_normal_report, tangential)),
-        ("contact_normal_report.accuracy", offset_of!(contact_normal_report, accuracy)),
-        ("contact_normal_report.statistics", offset_of!(contact_normal_report, statistics)),
-        ("contact_normal_report.adhesion", offset_of!(contact_normal_report, adhesion)),
-        ("contact_normal_report.visco", offset_of!(contact_normal_report, visco)),
-        ("contact_normal_solver_info", size_of::<contact_normal_solver_info>()),
-        ("contact_normal_solver_info.struct_size", offset_of!(contact_normal_solver_info, struct_size)),
-        ("contact_normal_solver_info.mx", offset_of!(contact_normal_solver_info, mx)),
-        ("contact_normal_solver_info.my", offset_of!(contact_normal_solver_info, my)),
-        ("contact_normal_solver_info.dx", offset_of!(contact_normal_solver_info, dx)),
-        ("contact_normal_solver_info.dy", offset_of!(contact_normal_solver_info, dy)),
-        ("contact_normal_solver_info.threads", offset_of!(contact_normal_solver_info, threads)),
-        ("contact_normal_solver_info.has_result", offset_of!(contact_normal_solver_info, has_result)),
-        ("contact_normal_solver_info.bytes", offset_of!(contact_normal_solver_info, bytes)),
-        ("contact_normal_friction_results", size_of::<contact_normal_friction_results>()),
-        ("contact_normal_friction_results.struct_size", offset_of!(contact_normal_friction_results, struct_size)),
-        ("contact_normal_friction_results.force", offset_of!(contact_normal_friction_results, force)),
-        ("contact_normal_friction_results.moment", offset_of!(contact_normal_friction_results, moment)),
-        ("contact_normal_friction_results.creepage", offset_of!(contact_normal_friction_results, creepage)),
-        ("contact_normal_friction_results.residual", offset_of!(contact_normal_friction_results, residual)),
-        ("contact_normal_friction_results.gap", offset_of!(contact_normal_friction_results, gap)),
-        ("contact_normal_friction_results.products", offset_of!(contact_normal_friction_results, products)),
-        ("contact_normal_friction_results.stick_count", offset_of!(contact_normal_friction_results, stick_count)),
-        ("contact_normal_friction_results.slip_count", offset_of!(contact_normal_friction_results, slip_count)),
-        ("contact_normal_friction_results.status", offset_of!(contact_normal_friction_results, status)),
-        ("contact_normal_friction_results.traction", offset_of!(contact_normal_friction_results, traction)),
-        ("contact_normal_friction_results.slip", offset_of!(contact_normal_friction_results, slip)),
-        ("contact_normal_friction_results.stick_slip", offset_of!(contact_normal_friction_results, stick_slip)),
-        ("contact_normal_friction_results.friction_coefficient", offset_of!(contact_normal_friction_results, friction_coefficient)),
-        ("contact_normal_friction_results.yield_limit", offset_of!(contact_normal_friction_results, yield_limit)),
-        ("contact_normal_accuracy", size_of::<contact_normal_accuracy>()),
-        ("contact_normal_accuracy.struct_size", offset_of!(contact_normal_accuracy, struct_size)),
-        ("contact_normal_accuracy.target", offset_of!(contact_normal_accuracy, target)),
-        ("contact_normal_accuracy.max_seconds", offset_of!(contact_normal_accuracy, max_seconds)),
-        ("contact_normal_accuracy.max_bytes", offset_of!(contact_normal_accuracy, max_bytes)),
-        ("contact_normal_accuracy.max_elements", offset_of!(contact_normal_accuracy, max_elements)),
-        ("contact_normal_accuracy.surface", offset_of!(contact_normal_accuracy, surface)),
-        ("contact_normal_accuracy.user", offset_of!(contact_normal_accuracy, user)),
-        ("contact_normal_accuracy.mx", offset_of!(contact_normal_accuracy, mx)),
-        ("contact_normal_accuracy.my", offset_of!(contact_normal_accuracy, my)),
-        ("contact_normal_accuracy.dx", offset_of!(contact_normal_accuracy, dx)),
-        ("contact_normal_accuracy.dy", offset_of!(contact_normal_accuracy, dy)),
-        ("contact_normal_accuracy.reached", offset_of!(contact_normal_accuracy, reached)),
-        ("contact_normal_accuracy.seconds", offset_of!(contact_normal_accuracy, seconds)),
-        ("contact_normal_accuracy.max_pressure_target", offset_of!(contact_normal_accuracy, max_pressure_target)),
-        ("contact_normal_accuracy.contact_area_target", offset_of!(contact_normal_accuracy, contact_area_target)),
-        ("contact_normal_accuracy.mean_gap_target", offset_of!(contact_normal_accuracy, mean_gap_target)),
-        ("contact_normal_accuracy.stiffness_target", offset_of!(contact_normal_accuracy, stiffness_target)),
-        ("contact_normal_accuracy.tangential_force_target", offset_of!(contact_normal_accuracy, tangential_force_target)),
-        ("contact_normal_accuracy.creepage_target", offset_of!(contact_normal_accuracy, creepage_target)),
-        ("contact_normal_accuracy.spin_moment_target", offset_of!(contact_normal_accuracy, spin_moment_target)),
-        ("contact_normal_accuracy.stick_area_target", offset_of!(contact_normal_accuracy, stick_area_target)),
-        ("contact_normal_accuracy.max_von_mises_target", offset_of!(contact_normal_accuracy, max_von_mises_target)),
-        ("contact_normal_accuracy.von_mises_depth_target", offset_of!(contact_normal_accuracy, von_mises_depth_target)),
-        ("contact_normal_accuracy.max_shear_target", offset_of!(contact_normal_accuracy, max_shear_target)),
-        ("contact_normal_price", size_of::<contact_normal_price>()),
-        ("contact_normal_price.struct_size", offset_of!(contact_normal_price, struct_size)),
-        ("contact_normal_price.target", offset_of!(contact_normal_price, target)),
-        ("contact_normal_price.error", offset_of!(contact_normal_price, error)),
-        ("contact_normal_price.tolerance", offset_of!(contact_normal_price, tolerance)),
-        ("contact_normal_price.seconds", offset_of!(contact_normal_price, seconds)),
-        ("contact_normal_price.seconds_one_thread", offset_of!(contact_normal_price, seconds_one_thread)),
-        ("contact_normal_price.bytes", offset_of!(contact_normal_price, bytes)),
-        ("contact_normal_price.mx", offset_of!(contact_normal_price, mx)),
-        ("contact_normal_price.my", offset_of!(contact_normal_price, my)),
-        ("contact_normal_price.dx", offset_of!(contact_normal_price, dx)),
-        ("contact_normal_price.dy", offset_of!(contact_normal_price, dy)),
-        ("contact_normal_price.obstacle", offset_of!(contact_normal_price, obstacle)),
-        ("contact_normal_price.reserved", offset_of!(contact_normal_price, reserved)),
-        ("contact_normal_price.time_error", offset_of!(contact_normal_price, time_error)),
-        ("contact_normal_price.work_units", offset_of!(contact_normal_price, work_units)),
-        ("contact_normal_quantity_row", size_of::<contact_normal_quantity_row>()),
-        ("contact_normal_quantity_row.struct_size", offset_of!(contact_normal_quantity_row, struct_size)),
-        ("contact_normal_quantity_row.quantity", offset_of!(contact_normal_quantity_row, quantity)),
-        ("contact_normal_quantity_row.lack", offset_of!(contact_normal_quantity_row, lack)),
-        ("contact_normal_quantity_row.mx", offset_of!(contact_normal_quantity_row, mx)),
-        ("contact_normal_quantity_row.my", offset_of!(contact_normal_quantity_row, my)),
-        ("contact_normal_quantity_row.value", offset_of!(contact_normal_quantity_row, value)),
-        ("contact_normal_quantity_row.error", offset_of!(contact_normal_quantity_row, error)),
-        ("contact_normal_quantity_row.seconds", offset_of!(contact_normal_quantity_row, seconds)),
-        ("contact_normal_quantity_row.work_units", offset_of!(contact_normal_quantity_row, work_units)),
-        ("contact_normal_effects_row", size_of::<contact_normal_effects_row>()),
-        ("contact_normal_effects_row.struct_size", offset_of!(contact_normal_effects_row, struct_size)),
-        ("contact_normal_effects_row.omitted", offset_of!(contact_normal_effects_row, omitted)),
-        ("contact_normal_effects_row.also_omitted", offset_of!(contact_normal_effects_row, also_omitted)),
-        ("contact_normal_effects_row.quantity", offset_of!(contact_normal_effects_row, quantity)),
-        ("contact_normal_effects_row.verdict", offset_of!(contact_normal_effects_row, verdict)),
-        ("contact_normal_effects_row.lack", offset_of!(contact_normal_effects_row, lack)),
-        ("contact_normal_effects_row.reserved", offset_of!(contact_normal_effects_row, reserved)),
-        ("contact_normal_effects_row.value", offset_of!(contact_normal_effects_row, value)),
-        ("contact_normal_effects_row.change", offset_of!(contact_normal_effects_row, change)),
-        ("contact_normal_effects_row.change_error", offset_of!(contact_normal_effects_row, change_error)),
-        ("contact_normal_effects_row.seconds", offset_of!(contact_normal_effects_row, seconds)),
-        ("contact_normal_effects_row.seconds_without", offset_of!(contact_normal_effects_row, seconds_without)),
-        ("contact_normal_effects_row.bytes", offset_of!(contact_normal_effects_row, bytes)),
-        ("contact_normal_effects_row.bytes_without", offset_of!(contact_normal_effects_row, bytes_without)),
-        ("contact_normal_hertz_solution", size_of::<contact_normal_hertz_solution>()),
-        ("contact_normal_hertz_solution.struct_size", offset_of!(contact_normal_hertz_solution, struct_size)),
-        ("contact_normal_hertz_solution.semi_axis_x", offset_of!(contact_normal_hertz_solution, semi_axis_x)),
-        ("contact_normal_hertz_solution.semi_axis_y", offset_of!(contact_normal_hertz_solution, semi_axis_y)),
-        ("contact_normal_hertz_solution.max_pressure", offset_of!(contact_normal_hertz_solution, max_pressure)),
-        ("contact_normal_hertz_solution.approach", offset_of!(contact_normal_hertz_solution, approach)),
-        ("contact_normal_hertz_solution.force", offset_of!(contact_normal_hertz_solution, force)),
-        ("contact_normal_hertz_solution.area", offset_of!(contact_normal_hertz_solution, area)),
-        ("contact_normal_stress_maximum", size_of::<contact_normal_stress_maximum>()),
-        ("contact_normal_stress_maximum.struct_size", offset_of!(contact_normal_stress_maximum, struct_size)),
-        ("contact_normal_stress_maximum.value", offset_of!(contact_normal_stress_maximum, value)),
-        ("contact_normal_stress_maximum.x", offset_of!(contact_normal_stress_maximum, x)),
-        ("contact_normal_stress_maximum.y", offset_of!(contact_normal_stress_maximum, y)),
-        ("contact_normal_stress_maximum.z", offset_of!(contact_normal_stress_maximum, z)),
-        ("contact_normal_stress_maximum.ix", offset_of!(contact_normal_stress_maximum, ix)),
-        ("contact_normal_stress_maximum.iy", offset_of!(contact_normal_stress_maximum, iy)),
-        ("contact_normal_stress_maximum.depth", offset_of!(contact_normal_stress_maximum, depth)),
-        ("contact_normal_stress_maximum.reserved", offset_of!(contact_normal_stress_maximum, reserved)),
-        ("contact_normal_stress_outputs", size_of::<contact_normal_stress_outputs>()),
-        ("contact_normal_stress_outputs.struct_size", offset_of!(contact_normal_stress_outputs, struct_size)),
-        ("contact_normal_stress_outputs.stress", offset_of!(contact_normal_stress_outputs, stress)),
-        ("contact_normal_stress_outputs.von_mises", offset_of!(contact_normal_stress_outputs, von_mises)),
-        ("contact_normal_stress_outputs.maximum_shear", offset_of!(contact_normal_stress_outputs, maximum_shear)),
-        ("contact_normal_stress_outputs.principal", offset_of!(contact_normal_stress_outputs, principal)),
-        ("contact_normal_stress_outputs.directions", offset_of!(contact_normal_stress_outputs, directions)),
-        ("contact_normal_stress_outputs.largest_von_mises", offset_of!(contact_normal_stress_outputs, largest_von_mises)),
-        ("contact_normal_stress_outputs.largest_shear", offset_of!(contact_normal_stress_outputs, largest_shear)),
-        ("contact_normal_heat", size_of::<contact_normal_heat>()),
-        ("contact_normal_heat.struct_size", offset_of!(contact_normal_heat, struct_size)),
-        ("contact_normal_heat.mx", offset_of!(contact_normal_heat, mx)),
-        ("contact_normal_heat.my", offset_of!(contact_normal_heat, my)),
-        ("contact_normal_heat.dx", offset_of!(contact_normal_heat, dx)),
-        ("contact_normal_heat.dy", offset_of!(contact_normal_heat, dy)),
-        ("contact_normal_heat.heat_flux", offset_of!(contact_normal_heat, heat_flux)),
-        ("contact_normal_heat.conductivity", offset_of!(contact_normal_heat, conductivity)),
-        ("contact_normal_heat.diffusivity", offset_of!(contact_normal_heat, diffusivity)),
-        ("contact_normal_heat.speed", offset_of!(contact_normal_heat, speed)),
-        ("contact_normal_heat.share", offset_of!(contact_normal_heat, share)),
-        ("contact_normal_heat.threads", offset_of!(contact_normal_heat, threads)),
-        ("contact_normal_heat.reserved", offset_of!(contact_normal_heat, reserved)),
-        ("contact_normal_flash", size_of::<contact_normal_flash>()),
-        ("contact_normal_flash.struct_size", offset_of!(contact_normal_flash, struct_size)),
-        ("contact_normal_flash.share", offset_of!(contact_normal_flash, share)),
-        ("contact_normal_flash.largest", offset_of!(contact_normal_flash, largest)),
-        ("contact_normal_flash.x", offset_of!(contact_normal_flash, x)),
-        ("contact_normal_flash.y", offset_of!(contact_normal_flash, y)),
-        ("contact_normal_wear", size_of::<contact_normal_wear>()),
-        ("contact_normal_wear.struct_size", offset_of!(contact_normal_wear, struct_size)),
-        ("contact_normal_wear.mx", offset_of!(contact_normal_wear, mx)),
-        ("contact_normal_wear.my", offset_of!(contact_normal_wear, my)),
-        ("contact_normal_wear.dx", offset_of!(contact_normal_wear, dx)),
-        ("contact_normal_wear.dy", offset_of!(contact_normal_wear, dy)),
-        ("contact_normal_wear.traction", offset_of!(contact_normal_wear, traction)),
-        ("contact_normal_wear.slip", offset_of!(contact_normal_wear, slip)),
-        ("contact_normal_wear.pressure", offset_of!(contact_normal_wear, pressure)),
-        ("contact_normal_wear.coefficient", offset_of!(contact_normal_wear, coefficient)),
-        ("contact_normal_wear.coefficients", offset_of!(contact_normal_wear, coefficients)),
-        ("contact_normal_wear.hardness", offset_of!(contact_normal_wear, hardness)),
-        ("contact_normal_wear.steps", offset_of!(contact_normal_wear, steps)),
-        ("contact_normal_wear.rolling_distance", offset_of!(contact_normal_wear, rolling_distance)),
-        ("contact_normal_worn", size_of::<contact_normal_worn>()),
-        ("contact_normal_worn.struct_size", offset_of!(contact_normal_worn, struct_size)),
-        ("contact_normal_worn.work", offset_of!(contact_normal_worn, work)),
-        ("contact_normal_worn.volume", offset_of!(contact_normal_worn, volume)),
-        ("contact_normal_worn.largest_depth", offset_of!(contact_normal_worn, largest_depth)),
-        ("contact_normal_worn.x", offset_of!(contact_normal_worn, x)),
-        ("contact_normal_worn.y", offset_of!(contact_normal_worn, y)),
-    ]
+macro_rules! layout {
+    ($($struct:ident { $($member:ident)* })*) => {
+        /// "struct" and its size, then "struct.member" and its offset.
+        pub fn layout() -> Vec<(&'static str, usize)> {
+            vec![$(
+                (stringify!($struct), size_of::<$struct>()),
+                $((concat!(stringify!($struct), ".", stringify!($member)), offset_of!($struct, $member)),)*
+            )*]
+        }
+    };
+}
+
+layout! {
+    contact_normal_coating {
+        struct_size thickness shear_modulus poisson_ratio
+    }
+    contact_normal_influence {
+        struct_size cx cy coefficients scale
+    }
+    contact_normal_layer {
+        struct_size compliance compliances
+    }
+    contact_normal_pressure_limit {
+        struct_size limit limits
+    }
+    contact_normal_period {
+        struct_size x y
+    }
+    contact_normal_patches {
+        struct_size count reserved patch factors
+    }
+    contact_normal_row_tables {
+        struct_size cx rows coefficients scale
+    }
+    contact_normal_friction {
+        struct_size coefficient coefficients motion continues prescribed creepage spin spin_centre force rolling_distance rolling_direction
+        spin_offset previous_traction rigid_slip influence influence_cross sensitivities reserved initial_traction compliance compliances
+        creepage_weight row_tables law reserved_for_law kinetic falling half_speed speed time_step memory_distance memory_speed yield_limit hardening
+        previous_coefficient previous_yield_limit branch reserved_for_branch
+    }
+    contact_normal_adhesion {
+        struct_size law start work_of_adhesion works_of_adhesion range smear stiffness stability shear_strength
+    }
+    contact_normal_visco {
+        struct_size branches modulus time time_step form continues
+    }
+    contact_normal_scene {
+        struct_size mx my dx dy undeformed_distance shear_modulus poisson_ratio load reserved approach force influence layer pressure_limit period
+        patches row_tables coating friction adhesion visco
+    }
+    contact_normal_progress {
+        struct_size mx my cycles active_set_changes seconds work_units update residual
+    }
+    contact_normal_cycle {
+        struct_size smoother pre_sweeps post_sweeps coarsest relaxation
+    }
+    contact_normal_options {
+        struct_size method active_set initial_guess criterion tolerance error_ratio max_cycles threads precision reserved progress user cycle
+        max_seconds stop dump neglect_below
+    }
+    contact_normal_fields {
+        struct_size pressure deformed_distance displacement contact traction slip stick_slip contact_pressure attraction friction_coefficient
+        yield_limit
+    }
+    contact_normal_ledger_row {
+        struct_size mx my cycles seconds work_units residual approach force max_pressure contact_area corrected_area error_force error_max_pressure
+        error_contact_area error_corrected_area error_pressure contact_count untrusted reserved
+    }
+    contact_normal_report_normal {
+        approach force max_pressure min_pressure contact_area corrected_area contact_count edge_count tolerance residual violation complementarity
+        update reserved
+    }
+    contact_normal_report_tangential {
+        force moment creepage residual gap stick_count slip_count sensitivities update law_slope reserved
+    }
+    contact_normal_report_accuracy {
+        error_force error_max_pressure error_contact_area error_corrected_area error_pressure error_tangential untrusted limited_by halved_seconds
+        halved_error_force neglected neglected_error reserved
+    }
+    contact_normal_report_statistics {
+        cycles active_set_steps active_set_changes matrix_products work_units tangential_products setup_seconds solve_seconds tangential_seconds bytes
+        reserved
+    }
+    contact_normal_report_adhesion {
+        repulsive_force adhesive_force elastic_energy adhesive_energy law_residual range resolution border_share stiffness stability jumped
+        reserved_integer reserved
+    }
+    contact_normal_report_visco {
+        time step_error time_error compliance reserved
+    }
+    contact_normal_report {
+        struct_size ledger_rows ledger_capacity ledger warnings reserved normal tangential accuracy statistics adhesion visco
+    }
+    contact_normal_solver_info {
+        struct_size mx my dx dy threads has_result bytes
+    }
+    contact_normal_friction_results {
+        struct_size force moment creepage residual gap products stick_count slip_count status traction slip stick_slip friction_coefficient
+        yield_limit
+    }
+    contact_normal_accuracy {
+        struct_size target max_seconds max_bytes max_elements surface user mx my dx dy reached seconds max_pressure_target contact_area_target
+        mean_gap_target stiffness_target tangential_force_target creepage_target spin_moment_target stick_area_target max_von_mises_target
+        von_mises_depth_target max_shear_target
+    }
+    contact_normal_price {
+        struct_size target error tolerance seconds seconds_one_thread bytes mx my dx dy obstacle reserved time_error work_units
+    }
+    contact_normal_quantity_row {
+        struct_size quantity lack mx my value error seconds work_units
+    }
+    contact_normal_effects_row {
+        struct_size omitted also_omitted quantity verdict lack reserved value change change_error seconds seconds_without bytes bytes_without
+    }
+    contact_normal_hertz_solution {
+        struct_size semi_axis_x semi_axis_y max_pressure approach force area
+    }
+    contact_normal_stress_maximum {
+        struct_size value x y z ix iy depth reserved
+    }
+    contact_normal_stress_outputs {
+        struct_size stress von_mises maximum_shear principal directions largest_von_mises largest_shear
+    }
+    contact_normal_heat {
+        struct_size mx my dx dy heat_flux conductivity diffusivity speed share threads reserved
+    }
+    contact_normal_flash {
+        struct_size share largest x y
+    }
+    contact_normal_wear {
+        struct_size mx my dx dy traction slip pressure coefficient coefficients hardness steps rolling_distance
+    }
+    contact_normal_worn {
+        struct_size work volume largest_depth x y
+    }
 }

@@ -4,6 +4,7 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Prescribed, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
+use super::case::distance;
 use super::scenes::Cattaneo;
 use super::support::{run, solver};
 
@@ -35,12 +36,7 @@ fn contacts_cattaneo_is_met() {
     // R = 50 mm, G = 200 N/mm2, nu = 0.42, a = 1 mm, 19 x 19 elements of 2/15 mm, mu = 0.4, Fx = -.875 mu N.
     let d = 2.0 / 15.0;
     let grid = Grid::new(19, 19, d, d).unwrap();
-    let h: Vec<f64> = (0..grid.len())
-        .map(|i| {
-            let (x, y) = (((i % 19) as f64 - 9.0) * d, ((i / 19) as f64 - 9.0) * d);
-            (x * x + y * y) / 100.0
-        })
-        .collect();
+    let h = distance(&grid, |x, y| (x * x + y * y) / 100.0);
     let force = 4.0 / 3.0 * (200.0 / 0.58) / 50.0;
     let mu = 0.4;
     let friction =

@@ -4,6 +4,7 @@ use contact_normal::friction::{Request, Solution};
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Friction, FrictionLaw, Motion, PlasticLayer, Prescribed, Previous};
 
+use super::case::{distance, grid};
 use super::laws::{pressures, solver, RUNNING};
 use super::support::run;
 
@@ -12,9 +13,8 @@ const FORCE: f64 = 1e4;
 
 /// A ball on 24 x 24 elements, and its pressures.
 fn ball() -> (Grid, Vec<f64>) {
-    let grid = Grid::new(24, 24, 0.2, 0.2).unwrap();
-    let at = |k: usize| (k as f64 - 11.5) * 0.2;
-    let h: Vec<f64> = (0..grid.len()).map(|i| (at(i % 24).powi(2) + at(i / 24).powi(2)) / 600.0).collect();
+    let grid = grid(24, 24, 0.2, 0.2);
+    let h = distance(&grid, |x, y| (x * x + y * y) / 600.0);
     (grid, pressures(grid, &h, FORCE))
 }
 

@@ -4,6 +4,9 @@ mod batch;
 mod bounds_of_laws;
 mod branches;
 mod cancelling;
+#[path = "../problems/families/case.rs"]
+#[allow(dead_code)] // of it, the shapes
+mod case;
 mod cattaneo;
 mod coated;
 mod coated_coefficients;

@@ -9,7 +9,7 @@ const MOTIONS: [Motion; 3] = [Motion::Shift, Motion::TransientRolling, Motion::S
 const NEARLY_RIGID: Bodies = Bodies { shear_modulus: [1.0, 1e4], poisson_ratio: [0.0, 0.3] };
 
 /// An ellipse whose centre lies `shift` elements from the middle.
-fn ellipse(m: usize, shift: f64) -> (Grid, Vec<f64>) {
+pub fn ellipse(m: usize, shift: f64) -> (Grid, Vec<f64>) {
     let at = |k: usize| k as f64 - 0.5 * (m as f64 - 1.0) + shift;
     let of = |i: usize| (2.0 * at(i % m).powi(2) + at(i / m).powi(2)) / (m * m) as f64;
     (Grid::new(m, m, 1.0, 1.0).unwrap(), (0..m * m).map(of).collect())

@@ -5,16 +5,16 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Previous, Scene};
 use contact_normal::solver::{solve, Options, Outcome, Report, Solver};
 
+use super::case::{grid, paraboloid};
+
 const M: usize = 33;
 const FORCE: f64 = 0.4705;
 const MU: f64 = 0.4013;
 
 /// 33 x 33 elements of 0.25 (CONTACT has a 34th column, which is never in contact), h = .002963 r^2.
 fn ball() -> (Grid, Vec<f64>) {
-    let grid = Grid::new(M, M, 0.25, 0.25).unwrap();
-    let place = |i: usize| (i as f64 - 16.0) * 0.25;
-    let h = (0..grid.len()).map(|i| 0.002963 * (place(i % M).powi(2) + place(i / M).powi(2))).collect();
-    (grid, h)
+    let grid = grid(M, M, 0.25, 0.25);
+    (grid, paraboloid(&grid, 0.002963))
 }
 
 fn scene<'a>((grid, h): &'a (Grid, Vec<f64>), motion: Motion, previous: Previous<'a>, distance: f64) -> Scene<'a> {

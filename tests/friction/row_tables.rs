@@ -10,6 +10,7 @@ use contact_normal::scene::{
 use contact_normal::solver::{self, solve, solve_tangential, Options};
 use contact_normal::threads::Threads;
 
+use super::case::paraboloid;
 use super::support::{residual_by, run, tangential};
 
 /// Columns of the tables beyond those of the grid.
@@ -250,8 +251,7 @@ fn what_is_no_symmetric_operator_or_does_not_fit_is_refused_by_name() {
 #[test]
 fn a_handle_keeps_them_beside_row_tables_of_pressures() {
     let grid = Grid::new(20, 14, 0.1, 0.1).unwrap();
-    let place = |k: usize, m: usize| (k as f64 - 0.5 * (m as f64 - 1.0)) * 0.1;
-    let h: Vec<f64> = (0..grid.len()).map(|i| 0.05 * (place(i % 20, 20).powi(2) + place(i / 20, 14).powi(2))).collect();
+    let h = paraboloid(&grid, 0.05);
     let tables = tables(&grid, &uneven);
     // Pressures displace as tractions in x do.
     let normal = RowTables::new(20 + BEYOND, 14, &tables[0], &grid).unwrap();

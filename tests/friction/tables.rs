@@ -13,15 +13,15 @@ use contact_normal::scene::{
 };
 use contact_normal::solver::{solve, solve_tangential, Options, Outcome, Solver};
 
+use super::case::{distance, grid};
+
 const STEEL: Bodies = Bodies { shear_modulus: [82000.0; 2], poisson_ratio: [0.28; 2] };
 /// Columns and rows of the tables beyond those of the grid.
 const BEYOND: usize = 2;
 
 fn ball(mx: usize, my: usize) -> (Grid, Vec<f64>) {
-    let grid = Grid::new(mx, my, 0.06, 0.05).unwrap();
-    let place = |k: usize, m: usize, d: f64| (k as f64 - 0.5 * (m as f64 - 1.0)) * d;
-    let h = (0..grid.len()).map(|i| place(i % mx, mx, 0.06).powi(2) + place(i / mx, my, 0.05).powi(2));
-    (grid, h.map(|squared| squared / 100.0).collect())
+    let grid = grid(mx, my, 0.06, 0.05);
+    (grid, distance(&grid, |x, y| (x * x + y * y) / 100.0))
 }
 
 /// Three tables, divided by `scale`, which is a power of two.

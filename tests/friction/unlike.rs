@@ -8,6 +8,7 @@ use contact_normal::influence::{HalfSpace, Kernel};
 use contact_normal::scene::{Bodies, Friction, Load, Prescribed, Previous, Scene};
 use contact_normal::solver::{solve, Options, Outcome, Solver};
 
+use super::case::{distance, grid};
 use super::coefficients::{panels, rule};
 
 /// The integrals of `x/r^2` and `y/r^2` over an element: in y by the rule on panels that are graded towards the singular point, in x in
@@ -57,15 +58,8 @@ fn coupling_coefficients_are_those_of_quadrature() {
 
 /// A ball of radius 100 on m x m elements of 0.25.
 pub fn ball(m: usize) -> (Grid, Vec<f64>) {
-    let grid = Grid::new(m, m, 0.25, 0.25).unwrap();
-    let centre = 0.5 * (m as f64 - 1.0);
-    let h = (0..grid.len())
-        .map(|i| {
-            let (x, y) = (((i % m) as f64 - centre) * 0.25, ((i / m) as f64 - centre) * 0.25);
-            (x * x + y * y) / 200.0
-        })
-        .collect();
-    (grid, h)
+    let grid = grid(m, m, 0.25, 0.25);
+    (grid, distance(&grid, |x, y| (x * x + y * y) / 200.0))
 }
 
 pub const RIGID_ON_SOFT: Bodies = Bodies { shear_modulus: [1.0, f64::INFINITY], poisson_ratio: [0.0, 0.0] };

@@ -6,11 +6,13 @@ use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Scene};
 use contact_normal::solver::{solve, Options, Outcome, Solver};
 
+use super::case::{distance, grid};
+use super::near_full_slip::ellipse;
 use super::unlike::RIGID_ON_SOFT;
 
 fn ball() -> (Grid, Vec<f64>) {
-    let at = |k: usize| (k as f64 - 7.5).powi(2);
-    (Grid::new(16, 16, 1.0, 1.0).unwrap(), (0..256).map(|i| (at(i % 16) + at(i / 16)) / 50.0).collect())
+    let grid = grid(16, 16, 1.0, 1.0);
+    (grid, distance(&grid, |x, y| (x * x + y * y) / 50.0))
 }
 
 /// Creepages that are given bracket the answer, so the force that each of them gives is no force that cannot be: it gives the creepage back. The
@@ -88,9 +90,7 @@ fn forces_beyond_full_slip_are_refused() {
 fn below_round_off_the_best_is_returned() {
     for (m, mu) in [(35, 1.3e-4), (34, 1.5e-2), (22, 8.9e-3), (16, 1.4e-4), (29, 3.2e-3)] {
         for shift in [0.0, 0.3] {
-            let at = |k: usize| k as f64 - 0.5 * (m as f64 - 1.0) + shift;
-            let of = |i: usize| (2.0 * at(i % m).powi(2) + at(i / m).powi(2)) / (m * m) as f64;
-            let (grid, h) = (Grid::new(m, m, 1.0, 1.0).unwrap(), (0..m * m).map(of).collect::<Vec<f64>>());
+            let (grid, h) = ellipse(m, shift);
             let forces = [1.8 * mu, 0.21 * mu].map(Prescribed::Force);
             let friction = Friction { motion: Motion::SteadyRolling, prescribed: forces, ..Friction::new(mu) };
             for bodies in [Bodies { shear_modulus: [1.0, 5.0], poisson_ratio: [0.1, 0.3] }, Bodies::same(1.0, 0.3)] {

@@ -3,6 +3,7 @@
 use contact_normal::scene::{Bodies, Each, Friction, Load, Motion, Prescribed, PressureLimit, Previous, Scene};
 use contact_normal::solver::{solve, Options, Outcome};
 
+use super::case::paraboloid;
 use super::unlike::RIGID_ON_SOFT;
 
 /// Half the step of a difference, in parts of a motion that all slips by: hardly an element changes sides.
@@ -82,8 +83,7 @@ fn derivatives_are_those_of_whole_solves() {
 fn the_ends_of_the_way() {
     let m = 12;
     let grid = contact_normal::grid::Grid::new(m, m, 0.5, 0.5).unwrap();
-    let place = |i: usize| ((i % m) as f64 - 5.5, (i / m) as f64 - 5.5);
-    let h: Vec<f64> = (0..grid.len()).map(|i| 0.01 * (place(i).0.powi(2) + place(i).1.powi(2))).collect();
+    let h = paraboloid(&grid, 0.04);
     for motion in [Motion::Shift, Motion::TransientRolling, Motion::SteadyRolling] {
         for load in [Load::Approach(0.1), Load::Force(0.4), Load::Approach(-1.0), Load::Force(0.0)] {
             for mu in [0.0, 0.5, 0.9] {

@@ -7,6 +7,7 @@ use contact_normal::scene::{Bodies, Coefficient, Friction, Load, Motion, Prescri
 use contact_normal::solver::{solve, Options, Outcome};
 use contact_normal::wear::{frictional_wear, Wear, Worn};
 
+use super::case::distance;
 use super::dense;
 use super::steady::rolling;
 use super::steady_scenes::ellipse;
@@ -96,8 +97,7 @@ fn the_work_of_all_elements_is_what_the_motion_puts_in_less_what_is_stored() {
 fn a_hertzian_contact_that_slides_on_loses_mu_f_s() {
     let (mu, n, d, radius, force) = (0.3, 48, 0.25, 500.0, 1000.0);
     let grid = Grid::new(n, n, d, d).unwrap();
-    let at = |k: usize| (k as f64 - 0.5 * (n as f64 - 1.0)) * d;
-    let h: Vec<f64> = (0..n * n).map(|i| (at(i % n).powi(2) + at(i / n).powi(2)) / (2.0 * radius)).collect();
+    let h = distance(&grid, |x, y| (x * x + y * y) / (2.0 * radius));
     let slide = [-0.12, 0.09];
     let steel = Bodies::same(82000.0, NU);
     let solved = |before: Option<&[Vec<f64>; 2]>| {

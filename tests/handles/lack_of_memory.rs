@@ -3,7 +3,8 @@
 use std::ptr::{null, null_mut};
 
 use super::call::initialised;
-use super::{alone, limited_memory, Handle};
+use super::limited_memory::{self, release, until_enough};
+use super::{alone, Handle};
 use contact_normal::ffi::*;
 
 /// Elements in each direction: an array of single precision is large then, and none of a row is.
@@ -128,18 +129,11 @@ fn held(handle: &Handle) -> Option<Vec<f64>> {
     (status == CONTACT_NORMAL_OK).then_some(p)
 }
 
-/// What is kept of solves before would serve in the place of allocations: gives it back.
-pub fn release() {
-    // SAFETY: NULL is nothing to free.
-    contact_normal_release();
-}
-
 /// One failure after the other until a solve by `method` has all that it needs; whatever was solved before by `first`.
 fn fails_everywhere(ball: &Ball, first: Option<i32>, method: i32, what: &str) {
     let expected = ball.solve(&ball.new_handle(), method);
     assert_eq!(expected.0, CONTACT_NORMAL_OK, "{what}");
-    let mut failures = 0;
-    for allowed in 0.. {
+    until_enough(what, |allowed| {
         let handle = ball.new_handle();
         if let Some(first) = first {
             assert_eq!(ball.solve(&handle, first).0, CONTACT_NORMAL_OK, "{what}");
@@ -150,16 +144,13 @@ fn fails_everywhere(ball: &Ball, first: Option<i32>, method: i32, what: &str) {
         // The arrays of the test itself are the first that are allowed. Windows are smaller than the grid, so arrays of half its elements count;
         // with those of all, nothing of AUTO after NORM did.
         let (status, _) = limited_memory::with(2 * N, 1 + allowed, || ball.solve(&handle, method));
-        if status == CONTACT_NORMAL_OK {
-            break;
+        if status != CONTACT_NORMAL_OK {
+            let after = held(&handle);
+            assert!(after.is_none() || after == before, "{what}, {allowed} allocations: half of a result");
+            assert!(ball.solve(&handle, method) == expected, "{what}, {allowed} allocations: the next call");
         }
-        assert_eq!(status, CONTACT_NORMAL_OUT_OF_MEMORY, "{what}, {allowed} allocations");
-        failures += 1;
-        let after = held(&handle);
-        assert!(after.is_none() || after == before, "{what}, {allowed} allocations: half of a result");
-        assert!(ball.solve(&handle, method) == expected, "{what}, {allowed} allocations: the next call");
-    }
-    assert!(failures > 0, "{what}: nothing was allocated");
+        status
+    });
 }
 
 #[test]
@@ -186,21 +177,18 @@ fn a_set_up_without_memory_makes_no_handle() {
         ball.name(effect);
         let expected = ball.solve(&ball.new_handle(), 0);
         assert_eq!(expected.0, CONTACT_NORMAL_OK, "{effect}");
-        let mut failures = 0;
-        for allowed in 0.. {
+        until_enough(effect, |allowed| {
             let mut handle = null_mut();
             // SAFETY: structs with their arrays.
             let new = || unsafe { contact_normal_solver_new(&ball.scene, null(), &mut handle) };
-            release();
             let status = limited_memory::with(4 * N, allowed, new);
             if status == CONTACT_NORMAL_OK {
-                assert!(ball.solve(&Handle(handle), 0) == expected, "{effect} after {failures} failures");
-                break;
+                assert!(ball.solve(&Handle(handle), 0) == expected, "{effect} after {allowed} failures");
+            } else {
+                assert!(handle.is_null(), "{effect}, {allowed} allocations");
             }
-            assert_eq!((status, handle), (CONTACT_NORMAL_OUT_OF_MEMORY, null_mut()), "{effect}, {allowed} allocations");
-            failures += 1;
-        }
-        assert!(failures > 0, "{effect}: nothing was allocated");
+            status
+        });
     }
 }
 
@@ -226,25 +214,21 @@ fn after_a_lack_of_memory_in_a_step_that_continues_the_handle_works() {
             step(&mut ball, &handle, 1)
         };
         assert_eq!(expected.0, CONTACT_NORMAL_OK, "{effect}");
-        let mut failures = 0;
-        for allowed in 0.. {
+        until_enough(effect, |allowed| {
             ball.friction.continues = 0;
             let handle = ball.new_handle();
             assert_eq!(step(&mut ball, &handle, 0).0, CONTACT_NORMAL_OK, "{effect}");
             release();
             let (status, _) = limited_memory::with(4 * N, 1 + allowed, || step(&mut ball, &handle, 1));
-            if status == CONTACT_NORMAL_OK {
-                break;
+            if status != CONTACT_NORMAL_OK {
+                // From the tractions before the step that failed, which the handle still holds.
+                assert!(held(&handle).is_some(), "{effect}, {allowed} allocations: the result before is lost");
+                let next = step(&mut ball, &handle, 1);
+                assert!(next == expected, "{effect}, {allowed} allocations: {}", next.0);
             }
-            assert_eq!(status, CONTACT_NORMAL_OUT_OF_MEMORY, "{effect}, {allowed} allocations");
-            failures += 1;
-            // From the tractions before the step that failed, which the handle still holds.
-            assert!(held(&handle).is_some(), "{effect}, {allowed} allocations: the result before is lost");
-            let next = step(&mut ball, &handle, 1);
-            assert!(next == expected, "{effect}, {allowed} allocations: {}", next.0);
-        }
+            status
+        });
         ball.friction.continues = 0;
-        assert!(failures > 0, "{effect}: nothing was allocated");
     }
 }
 
@@ -257,19 +241,15 @@ fn a_tangential_solve_without_memory_is_refused() {
         let (_, pressure) = ball.solve(&ball.new_handle(), 1);
         let expected = solve_tangential(&ball, &pressure);
         assert_eq!(expected.0, CONTACT_NORMAL_OK, "{effect}");
-        let mut failures = 0;
-        for allowed in 0.. {
-            release();
+        until_enough(effect, |allowed| {
             // The array of the test itself is the first that is allowed.
             let (status, q) = limited_memory::with(4 * N, 1 + allowed, || solve_tangential(&ball, &pressure));
             if status == CONTACT_NORMAL_OK {
-                assert!((status, q) == expected, "{effect} after {failures} failures");
-                break;
+                assert!(q == expected.1, "{effect} after {allowed} failures");
+            } else {
+                assert!(q.iter().all(|value| *value == -7.0), "{effect}, {allowed} allocations: outputs were written");
             }
-            assert_eq!(status, CONTACT_NORMAL_OUT_OF_MEMORY, "{effect}, {allowed} allocations");
-            assert!(q.iter().all(|value| *value == -7.0), "{effect}, {allowed} allocations: outputs were written");
-            failures += 1;
-        }
-        assert!(failures > 0, "{effect}: nothing was allocated");
+            status
+        });
     }
 }

@@ -1,14 +1,14 @@
 //! After a lack of memory at any allocation of a solve with adhesion the next solve of the same solver is that of a new one: on small grids, and on large
 //! ones, which keep fewer vectors.
 
-use contact_normal::adhesion::{Law, Start};
+use contact_normal::adhesion::Law;
 use contact_normal::error::Error;
-use contact_normal::grid::Grid;
-use contact_normal::scene::{Adhesion, Bodies, Load, Scene, Work};
+use contact_normal::scene::{Adhesion, Load, Scene, Work};
 use contact_normal::solver::{Options, Outcome, Solver};
 
-use super::lack_of_memory::release;
-use super::{alone, limited_memory};
+use super::alone;
+use super::limited_memory::{self, release};
+use super::spheres::Sphere;
 
 /// A sphere of radius 1 on a square of this half-width.
 const HALF_WIDTH: f64 = 3.0;
@@ -16,34 +16,11 @@ const HALF_WIDTH: f64 = 3.0;
 /// Bytes of an allocation that counts, or one an element if that is more: what has the same size on any grid is less.
 const LARGE: usize = 33_000;
 
-struct Sphere {
-    grid: Grid,
-    h: Vec<f64>,
-}
-
-impl Sphere {
-    /// On m x m elements.
-    fn new(m: usize) -> Sphere {
-        let d = 2.0 * HALF_WIDTH / m as f64;
-        let at = |i: usize| (i as f64 + 0.5) * d - HALF_WIDTH;
-        let h = (0..m * m).map(|i| 0.5 * (at(i % m).powi(2) + at(i / m).powi(2))).collect();
-        Sphere { grid: Grid::new(m, m, d, d).expect("a grid"), h }
-    }
-
-    /// Tabor's parameter is 1.2.
-    fn scene(&self, load: Load) -> Scene<'_> {
-        let adhesion = Adhesion {
-            law: Law::Exponential,
-            work: Work::Uniform(0.32),
-            range: 0.5,
-            start: Start::Auto,
-            stiffness: true,
-            stability: true,
-            shear_strength: 0.0,
-        };
-        let bodies = Bodies { shear_modulus: [0.375, f64::INFINITY], poisson_ratio: [0.0; 2] };
-        Scene { adhesion: Some(adhesion), ..Scene::new(self.grid, &self.h, bodies, load) }
-    }
+/// A sphere on m x m elements. Tabor's parameter is 1.2.
+fn sphere(m: usize) -> Sphere {
+    let of = Sphere::new(m, HALF_WIDTH, Law::Exponential, 0.5);
+    let adhesion = Adhesion { work: Work::Uniform(0.32), stiffness: true, stability: true, ..of.adhesion };
+    Sphere { adhesion, ..of }
 }
 
 /// The pressures of a solve.
@@ -55,7 +32,7 @@ fn solve(solver: &mut Solver, scene: &Scene<'_>, options: &Options) -> Result<Ve
 
 /// One failure after the other until a solve has all that it needs; of many every so many only.
 fn fails_everywhere(m: usize, load: Load, all: usize) {
-    let (sphere, options) = (Sphere::new(m), Options { threads: 1, ..Options::default() });
+    let (sphere, options) = (sphere(m), Options { threads: 1, ..Options::default() });
     let scene = sphere.scene(load);
     let expected = solve(&mut Solver::new(&scene, &options).unwrap(), &scene, &options).unwrap();
     let (mut failures, mut allowed) = (0, 0);

@@ -2,9 +2,9 @@
 
 use std::ptr::{null, null_mut};
 
+use super::alone;
 use super::call::initialised;
-use super::lack_of_memory::release;
-use super::{alone, limited_memory};
+use super::limited_memory::{self, release};
 use contact_normal::ffi::*;
 
 /// Elements of a line.

@@ -4,6 +4,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::ptr::null_mut;
 
+use contact_normal::ffi::{contact_normal_release, CONTACT_NORMAL_OK, CONTACT_NORMAL_OUT_OF_MEMORY};
+
 struct Limited;
 
 thread_local! {
@@ -74,6 +76,26 @@ pub fn with<R>(large: usize, allowed: u64, run: impl FnOnce() -> R) -> R {
     LARGE.set(usize::MAX);
     ALLOWED.set(u64::MAX);
     result
+}
+
+/// What is kept of solves before would serve in the place of allocations: gives it back.
+pub fn release() {
+    // SAFETY: NULL is nothing to free.
+    contact_normal_release();
+}
+
+/// Attempts a call with 0, 1, 2, ... large allocations until it has enough. Returns how often it lacked memory, which is a status.
+pub fn until_enough(what: &str, mut attempt: impl FnMut(u64) -> i32) -> u64 {
+    for allowed in 0.. {
+        release();
+        let status = attempt(allowed);
+        if status == CONTACT_NORMAL_OK {
+            assert!(allowed > 0, "{what}: nothing was allocated");
+            return allowed;
+        }
+        assert_eq!(status, CONTACT_NORMAL_OUT_OF_MEMORY, "{what}, {allowed} allocations");
+    }
+    unreachable!("no limit of allocations")
 }
 
 /// Calls `run` with room for so many bytes more: allocations of `large` bytes or more beyond it fail.

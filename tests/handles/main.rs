@@ -10,6 +10,9 @@ mod lack_of_memory_stress;
 mod limited_memory;
 mod panics;
 mod panics_with_effects;
+#[path = "../adhesion/support.rs"]
+#[allow(dead_code)] // of all, the sphere
+mod spheres;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

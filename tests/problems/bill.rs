@@ -11,6 +11,7 @@ use contact_normal::solver::{
     effects_bill, quantities, solve, BillOptions, BillRow, Neglected, Omission, Options, Outcome, Quantity, Verdict,
 };
 
+use crate::families::case::distance;
 use crate::random::Random;
 
 const M: usize = 64;
@@ -21,8 +22,7 @@ fn grid() -> Grid {
 }
 
 pub fn ball() -> Vec<f64> {
-    let at = |k: usize| (k as f64 - 0.5 * (M as f64 - 1.0)) * 0.05;
-    (0..M * M).map(|i| (at(i % M).powi(2) + at(i / M).powi(2)) / 100.0).collect()
+    distance(&grid(), |x, y| (x * x + y * y) / 100.0)
 }
 
 pub fn plain(h: &[f64]) -> Scene<'_> {

@@ -10,23 +10,10 @@ use contact_normal::solver::{
 };
 use contact_normal::threads::Threads;
 
+use crate::families::case::{paraboloid, rigid_on};
+
 const METHODS: [Method; 5] =
     [Method::Auto, Method::Norm, Method::Multigrid, Method::FullMultigrid, Method::ProjectedCg];
-
-fn rigid_on(modulus: f64) -> Bodies {
-    // E* = 2 G/(1 - nu) against a rigid body
-    Bodies { shear_modulus: [0.5 * modulus, f64::INFINITY], poisson_ratio: [0.0, 0.0] }
-}
-
-fn paraboloid(grid: &Grid, curvature: f64) -> Vec<f64> {
-    let centre = |i: usize, m: usize, d: f64| (i as f64 + 0.5 - 0.5 * m as f64) * d;
-    (0..grid.len())
-        .map(|i| {
-            let (x, y) = (centre(i % grid.mx, grid.mx, grid.dx), centre(i / grid.mx, grid.my, grid.dy));
-            curvature * (x * x + y * y)
-        })
-        .collect()
-}
 
 fn certified(scene: &Scene<'_>, options: &Options) -> Solver {
     let (solver, stop, report) = solve(scene, options).unwrap();

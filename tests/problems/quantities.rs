@@ -14,6 +14,8 @@ use contact_normal::solver::{
     cost_of_accuracy, quantities, solve_to_accuracy, Accuracy, Lack, Options, Outcome, Quantity, QuantityRow,
 };
 
+use crate::families::case::distance;
+
 const RADIUS: f64 = 50.0;
 const APPROACH: f64 = 0.02;
 const G: f64 = 8e4;
@@ -36,9 +38,7 @@ fn force() -> f64 {
 fn ball(m: usize) -> (Grid, Vec<f64>) {
     let d = 3.3 * radius_of_contact() / m as f64;
     let grid = Grid::new(m, m, d, d).expect("a grid");
-    let at = |k: usize| (k as f64 - 0.5 * (m as f64 - 1.0)) * d;
-    let h = (0..grid.len()).map(|i| (at(i % m).powi(2) + at(i / m).powi(2)) / (2.0 * RADIUS)).collect();
-    (grid, h)
+    (grid, distance(&grid, |x, y| (x * x + y * y) / (2.0 * RADIUS)))
 }
 
 fn scene<'a>(grid: Grid, h: &'a [f64]) -> Scene<'a> {

@@ -9,6 +9,7 @@ use contact_normal::solver::{
 };
 
 use crate::bill::{ball, bill, plain, WANTED};
+use crate::families::case::distance;
 use crate::visco::{G, MODULI, TIMES};
 
 /// What the forms RELAXATION and CREEP of a step of dt from rest differ by, relative to the first: in contact A p is h - approach over the compliance of
@@ -46,8 +47,7 @@ fn by_hand(dt: f64) -> f64 {
 fn prices_of_a_step_from_rest_have_the_error_of_the_step() {
     let (m, side) = (48, 0.05);
     let grid = Grid::new(m, m, side, side).unwrap();
-    let at = |k: usize| (k as f64 - 0.5 * (m as f64 - 1.0)) * side;
-    let h: Vec<f64> = (0..m * m).map(|i| 0.5 * (at(i % m).powi(2) + at(i / m).powi(2)) / 10.0).collect();
+    let h = distance(&grid, |x, y| 0.5 * (x * x + y * y) / 10.0);
     let solid = Branches { modulus: &MODULI, time: &TIMES };
     let step = Visco { bodies: [solid, solid], time_step: 0.4, ..Visco::default() };
     let bodies = Bodies::same(G, 0.4);

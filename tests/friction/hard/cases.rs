@@ -3,6 +3,8 @@
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Coefficient, Friction, Load, Motion, Prescribed, Previous, Scene};
 
+use crate::case::{distance, grid, paraboloid};
+
 /// Each case is solved in all of them; steps of rolling are of one element along x.
 pub const MOTIONS: [(&str, Motion); 3] = [
     ("SHIFT", Motion::Shift),
@@ -67,19 +69,6 @@ impl Case {
         };
         Scene { friction: Some(friction), ..Scene::new(self.grid, &self.h, self.bodies(), self.load) }
     }
-}
-
-fn grid(mx: usize, my: usize, dx: f64, dy: f64) -> Grid {
-    Grid::new(mx, my, dx, dy).expect("a grid")
-}
-
-fn distance(grid: &Grid, h: impl Fn(f64, f64) -> f64) -> Vec<f64> {
-    let centre = |k: usize, m: usize, d: f64| (k as f64 - 0.5 * (m as f64 - 1.0)) * d;
-    (0..grid.len()).map(|i| h(centre(i % grid.mx, grid.mx, grid.dx), centre(i / grid.mx, grid.my, grid.dy))).collect()
-}
-
-fn paraboloid(grid: &Grid, curvature: f64) -> Vec<f64> {
-    distance(grid, |x, y| curvature * (x * x + y * y))
 }
 
 fn creepages(x: f64, y: f64) -> [Prescribed; 2] {
