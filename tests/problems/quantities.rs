@@ -289,3 +289,21 @@ fn errors_of_tangential_forces_follow_from_the_grids() {
     assert!((error / (0.5 * before) - 1.0).abs() < 1e-3, "{found:?}");
     assert!((found[1].error.expect("an error") / before - 1.0).abs() < 1e-3, "{found:?}");
 }
+
+/// In full contact the residual alone is left of the gap. Searches took it for a number, and refined to their limit.
+#[test]
+fn full_contact_has_no_gap() {
+    let (m, d) = (16, 1.0);
+    let grid = Grid::new(m, m, d, d).unwrap();
+    let wave = |k: usize| (2.0 * std::f64::consts::PI * k as f64 / m as f64).cos();
+    let h: Vec<f64> = (0..m * m).map(|i| 0.01 * (wave(i % m) + wave(i / m))).collect();
+    let period = Some(Period { x: true, y: true });
+    let scene = Scene { period, ..Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(5.0)) };
+    let (_, rows) = quantities(&scene, &Options::default(), &[Quantity::MeanGap], 2, None).unwrap();
+    for row in &rows {
+        assert_eq!(row.value, Some(0.0), "{row:?}");
+    }
+    let accuracy = Accuracy::new(1e-2).with(Quantity::MeanGap, 1e-2);
+    let found = solve_to_accuracy(&scene, &Options::default(), &accuracy, None, None).unwrap();
+    assert_eq!(found.stop, Outcome::Converged, "{}", found.reason);
+}

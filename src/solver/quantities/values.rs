@@ -163,13 +163,15 @@ fn area(solver: &Solver, report: &Report) -> f64 {
     }
 }
 
-/// The mean of the deformed distance. In contact it is 0 but for the residual.
+/// The mean of the deformed distance; 0 in full contact, where nothing but the residual is left.
 fn mean_gap(solver: &Solver) -> f64 {
     let state = solver.state();
     let finite = |i: &usize| state.h[*i].is_finite();
     let count = (0..state.h.len()).filter(finite).count();
-    let of = |i: usize| if state.contact[i] { 0.0 } else { state.deformed_distance(i) };
-    in_blocks((0..state.h.len()).filter(finite).map(of)) / count.max(1) as f64
+    if state.contact_count() == count {
+        return 0.0;
+    }
+    in_blocks((0..state.h.len()).filter(finite).map(|i| state.deformed_distance(i))) / count.max(1) as f64
 }
 
 #[inline(never)]
