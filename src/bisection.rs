@@ -1,7 +1,7 @@
 //! Bisection of an interval.
 
-/// Halves an interval until it is short enough, at most 60 times: then its ends are the same to round-off. `is_below`: whether a number lies below
-/// the one looked for.
+/// Halves an interval until it is short enough, or 60 times: then it has 1e-18 of its first length. `is_below`: whether a number lies below the one
+/// looked for.
 pub fn bisect(
     (mut low, mut high): (f64, f64),
     is_enough: impl Fn(f64, f64) -> bool,

@@ -89,7 +89,7 @@ pub trait Effect {
         Ok(coefficients)
     }
 
-    /// Refuses the caller's `coefficients` of pressures, which are not symmetric, if they do not suit the effect.
+    /// Called for the caller's `coefficients` of pressures if these are not symmetric: refuses those that do not suit the effect.
     fn check_coefficients(&self, _grid: &Grid, _coefficients: &Coefficients) -> Result<()> {
         Ok(())
     }

@@ -50,6 +50,8 @@ pub const CONTACT_NORMAL_VERDICT_NOT_DECIDED: i32 = 0;
 pub const CONTACT_NORMAL_VERDICT_NEGLIGIBLE: i32 = 1;
 /// `verdict`: it changes by more than the target.
 pub const CONTACT_NORMAL_VERDICT_NEEDED: i32 = 2;
+const _: () = assert!(Verdict::NotDecided as i32 == CONTACT_NORMAL_VERDICT_NOT_DECIDED);
+const _: () = assert!(Verdict::Negligible as i32 == CONTACT_NORMAL_VERDICT_NEGLIGIBLE);
 const _: () = assert!(Verdict::Needed as i32 == CONTACT_NORMAL_VERDICT_NEEDED);
 
 /// The change of a quantity without an effect, or without two, and the cost that this saves.

@@ -57,6 +57,11 @@ pub const CONTACT_NORMAL_OBSTACLE_MEMORY: i32 = 4;
 pub const CONTACT_NORMAL_OBSTACLE_TIME: i32 = 5;
 /// `obstacle`: bodies relax, and the length of the step alone leaves more than `target`: `time_error` says how much.
 pub const CONTACT_NORMAL_OBSTACLE_STEP: i32 = 6;
+const _: () = assert!(Obstacle::Singular as i32 == CONTACT_NORMAL_OBSTACLE_SINGULAR);
+const _: () = assert!(Obstacle::RoundOff as i32 == CONTACT_NORMAL_OBSTACLE_ROUND_OFF);
+const _: () = assert!(Obstacle::Elements as i32 == CONTACT_NORMAL_OBSTACLE_ELEMENTS);
+const _: () = assert!(Obstacle::Memory as i32 == CONTACT_NORMAL_OBSTACLE_MEMORY);
+const _: () = assert!(Obstacle::Time as i32 == CONTACT_NORMAL_OBSTACLE_TIME);
 const _: () = assert!(Obstacle::Step as i32 == CONTACT_NORMAL_OBSTACLE_STEP);
 
 /// One row of the price list: the predicted cost of one accuracy.

@@ -29,6 +29,13 @@ pub const CONTACT_NORMAL_LACK_ONE_GRID: i32 = 6;
 pub const CONTACT_NORMAL_LACK_UNSOLVED: i32 = 7;
 /// `lack`: there is no error, since the changes from grid to grid do not fall yet: one more grid tells whether the value converges.
 pub const CONTACT_NORMAL_LACK_UNSETTLED: i32 = 8;
+const _: () = assert!(Lack::NoFriction as i32 == CONTACT_NORMAL_LACK_NO_FRICTION);
+const _: () = assert!(Lack::Prescribed as i32 == CONTACT_NORMAL_LACK_PRESCRIBED);
+const _: () = assert!(Lack::Effect as i32 == CONTACT_NORMAL_LACK_EFFECT);
+const _: () = assert!(Lack::NoContact as i32 == CONTACT_NORMAL_LACK_NO_CONTACT);
+const _: () = assert!(Lack::Singular as i32 == CONTACT_NORMAL_LACK_SINGULAR);
+const _: () = assert!(Lack::OneGrid as i32 == CONTACT_NORMAL_LACK_ONE_GRID);
+const _: () = assert!(Lack::Unsolved as i32 == CONTACT_NORMAL_LACK_UNSOLVED);
 const _: () = assert!(Lack::Unsettled as i32 == CONTACT_NORMAL_LACK_UNSETTLED);
 
 /// A quantity on one grid.

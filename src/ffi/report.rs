@@ -13,6 +13,8 @@ pub const CONTACT_NORMAL_LIMITED_BY_UNKNOWN: i32 = 0;
 pub const CONTACT_NORMAL_LIMITED_BY_GRID: i32 = 1;
 /// `limited_by`: the tolerance; it allows a larger error than that of the grid.
 pub const CONTACT_NORMAL_LIMITED_BY_TOLERANCE: i32 = 2;
+const _: () = assert!(Limit::Unknown as i32 == CONTACT_NORMAL_LIMITED_BY_UNKNOWN);
+const _: () = assert!(Limit::Grid as i32 == CONTACT_NORMAL_LIMITED_BY_GRID);
 const _: () = assert!(Limit::Tolerance as i32 == CONTACT_NORMAL_LIMITED_BY_TOLERANCE);
 
 /// The results of the normal problem: a group of `contact_normal_report`.

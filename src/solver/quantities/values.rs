@@ -105,7 +105,7 @@ pub fn values(
     watch: ProgressCallback<'_>,
 ) -> Result<Option<Vec<std::result::Result<Value, Lack>>>> {
     let began = Instant::now();
-    // Not as cycles of the solve: without work units.
+    // Told without work units, so that nobody takes these steps for cycles of the solve.
     let watch =
         &mut |told: &Progress| watch(&Progress::of_part(&scene.grid, told.cycles, began.elapsed().as_secs_f64()));
     let (mut stresses, mut values) = ([None, None], Vec::new());
