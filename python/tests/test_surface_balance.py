@@ -18,6 +18,12 @@ class LightLoads(unittest.TestCase):
         at = (0.25 * (6.5 - 8.5), 2.0 * (15.5 - 9.5))
         found = surface.balance(surface.Gap(h, 0.25, 2.0), 1.0, at=at, e_star=1.0)
         np.testing.assert_allclose(found.centre, at, atol=1e-3)
+        # As are balls on elements of any sides.
+        for dy in (1e-6, 1e6):
+            y, x = np.indices((9, 9)) - 4.0
+            ball = surface.Gap(0.01 * (x**2 + y**2) + 0.002 * x, 1.0, dy)
+            centre = surface.balance(ball, 1.0, e_star=1.0 / dy, at=(0.3, 0.2 * dy)).centre
+            np.testing.assert_allclose(centre / np.array([1.0, dy]), [0.3, 0.2], atol=1e-2)
 
     def test_rough_bodies_are_balanced(self):
         for seed in range(6):

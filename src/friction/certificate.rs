@@ -41,6 +41,11 @@ pub fn scale(problem: &Problem, state: &State) -> f64 {
 }
 
 impl Certificate {
+    /// The gap relative to the work of the rigid slip; to `least` without a rigid slip, or with one that found creepages cancel.
+    pub fn relative_gap(gap: f64, work: f64, least: f64) -> f64 {
+        relative(gap.max(0.0), if work > NO_SLIP * least { work } else { least })
+    }
+
     /// The certificate of a state with u = A q.
     pub fn of(problem: &Problem, state: &State) -> Certificate {
         let blocks = (0..problem.bound.len()).step_by(BLOCK);
@@ -66,8 +71,7 @@ impl Certificate {
         let least = bounds * scale;
         Certificate {
             residual: relative(rms, scale),
-            // Without a rigid slip, or with one that found creepages cancel.
-            gap: relative(gap.max(0.0), if work > NO_SLIP * least { work } else { least }),
+            gap: Certificate::relative_gap(gap, work, least),
             stick_count: problem.count() - slips as usize,
             slip_count: slips as usize,
         }

@@ -7,7 +7,6 @@ use super::law::Particle;
 use super::levels::{levels, Level};
 use super::nested::{self, Work, COARSE_TOLERANCE, COUNTED_TOLERANCE};
 use super::plane::Vector;
-use super::problem::Problem;
 use super::request::{before, Request, Start};
 use super::scales::Scales;
 use super::solution::{Report, Solution};
@@ -17,7 +16,6 @@ use crate::effects::{Coefficient, Friction, Motion, Previous};
 use crate::error::{invalid, Result};
 use crate::grid::Grid;
 use crate::memory::keep;
-use crate::methods::fields;
 use crate::progress::Outcome;
 use crate::rectangle::Rectangle;
 use crate::threads::Threads;
@@ -162,18 +160,17 @@ impl Solver {
         let counts = |i: usize| pressure[i] > 0.0 || rolling.is_none() && before(friction, kept, i) != [0.0; 2];
         let window = Rectangle::around(&self.grid, &self.threads, |mut elements| elements.any(counts));
         let mut end = Outcome::Converged;
-        let mut report = Report { from_rest, ..Report::default() };
+        let (mut report, mut is_lowered) = (Report { from_rest, ..Report::default() }, false);
         if let Some(window) = &window {
             let by = if friction.motion == Motion::Shift { (0.0, 0.0) } else { friction.elements_rolled(&self.grid) };
             self.tangential.check_reach(&window.grid(&self.grid), by)?;
-            let largest_bound = self.largest_bound(request, window, &forces);
+            let (largest, largest_bound) = self.largest_bounds(request, window, &forces);
             self.scales.fit(largest_bound);
             let forces = forces.in_units_of(&self.scales);
-            let request = &Request { largest_bound, ..*request };
-            end = self.solve_in((window, rolling), request, forces, watch, &mut report)?;
-            let Problem { bound, operators, .. } = &self.levels[0].problem;
-            let [carried] = fields::sum(&operators.threads, bound.len(), |k| [bound[k]]);
-            [report.carried, _] = self.scales.own_traction([carried * self.grid.element_area(), 0.0]);
+            let lowered = &Request { largest_bound, ..*request };
+            end = self.solve_in((window, rolling), lowered, forces, watch, &mut report)?;
+            is_lowered = largest_bound < largest;
+            report.carried = self.carried(request, is_lowered);
         }
         self.window = window;
         // Derivatives come before the result is written, so that a failure leaves the last result.
@@ -184,6 +181,9 @@ impl Solver {
         report.products += self.take_products();
         let march = self.march(friction, pressure)?;
         self.write(request, &mut report);
+        if is_lowered {
+            report.certificate.gap = self.gap_of_bounds(request);
+        }
         self.write_particles(march);
         report.missing = self.missing(friction, &report);
         (self.has_solution, self.is_last) = (true, true);

@@ -79,7 +79,7 @@ fn a_small_force_is_carried_where_nothing_slips() {
             for motion in MOTIONS {
                 let (grid, g) = pressures(m, |_| large);
                 let carried: f64 = 0.3 * g.iter().sum::<f64>();
-                for force in [1e-9 * carried, 1e-12 * carried] {
+                for force in [1e-9 * carried, 1e-14 * carried, 1e-24 * carried] {
                     let prescribed = [Prescribed::Force(force), Prescribed::Force(-0.5 * force)];
                     let friction = Friction { motion, prescribed, ..Friction::new(0.3) };
                     for start in [Start::Before, Start::Given([&vec![0.0; g.len()], &vec![0.0; g.len()]])] {
@@ -89,6 +89,7 @@ fn a_small_force_is_carried_where_nothing_slips() {
                         assert_eq!(outcome, Outcome::Converged);
                         let off = (report.force[0] - force).hypot(report.force[1] + 0.5 * force);
                         assert!(off <= 1e-6 * force, "{m} {large:e} {motion:?}: {:?} for {force:e}", report.force);
+                        assert!(report.products < 100.0, "{m} {large:e} {motion:?}: {} products", report.products);
                         assert!(report.creepage[0] * force < 0.0, "{m} {large:e} {motion:?}: {:?}", report.creepage);
                     }
                 }
@@ -118,5 +119,22 @@ fn a_start_of_tiny_tractions_is_no_motion() {
                 expected.creepage
             );
         }
+    }
+}
+
+/// Forces are sums of weighted tractions: with small weights tractions are as much larger.
+#[test]
+fn weights_do_not_lower_the_reach_of_glued_elements() {
+    for weight in [1e-2, 1e-6, 1e-8] {
+        let (grid, g) = pressures(12, |i| if i % 12 < 6 { 1e20 } else { 1.0 });
+        let weights = vec![weight; g.len()];
+        let friction = Friction {
+            prescribed: [Prescribed::Force(1.0), Prescribed::Creepage(0.0)],
+            weights: Some([&weights, &weights]),
+            ..Friction::new(0.3)
+        };
+        let (_, solution) = run(&mut solver(&grid, NU), &g, &friction, 1e-6);
+        let force: f64 = solution.traction.iter().map(|q| weight * q[0]).sum();
+        assert!((force - 1.0).abs() <= 1e-5, "{weight:e}: {force}");
     }
 }

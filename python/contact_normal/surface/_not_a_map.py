@@ -67,11 +67,14 @@ def _has_first_even(rows: Any) -> bool:
 
 def _lies_among(rows: Any) -> bool:
     """Whether the first row has heights as the others have: a broken line of a scan, levelled with the map, is straight. Coordinates begin at a multiple of
-    half a step, or lie far off."""
+    half a step, or lie far off; heights of a line that was levelled alone have the mean 0."""
+    if not np.isfinite(rows[1:, 1:]).any():
+        return False
     first, (low, high) = rows[0, 1:], (np.nanmin(rows[1:, 1:]), np.nanmax(rows[1:, 1:]))
     halves = 2.0 * first[0] / np.diff(first).mean()
     among = low - (high - low) <= first.min() and first.max() <= high + (high - low)
-    return bool(among and abs(halves - round(halves)) > _MULTIPLE)
+    is_level = abs(first.mean()) <= _MULTIPLE * np.ptp(first)
+    return bool(among and (is_level or abs(halves - round(halves)) > _MULTIPLE))
 
 
 def _is_strip(values: Any) -> bool:

@@ -227,8 +227,14 @@ def _search(gap: Gap, aim: Doubles, tolerance: float, solved: Callable[[Doubles]
     for _ in range(_STEPS):
         if np.abs(off / sizes).max() <= tolerance:
             return _balanced(gap, tilt, result, off + aim), True
-        # Of elements in one line askew to the grid one tilt does nothing.
-        step = -np.linalg.lstsq(slopes, off, rcond=_SINGULAR)[0]
+        # Of elements in one line askew to the grid one tilt does nothing. Lengths are relative, so that no side of an element is round-off.
+        relative = slopes / np.outer(sizes, sizes)
+        unit = np.abs(relative).max()
+        if not (np.isfinite(unit) and unit > 0.0):
+            break
+        step = -np.linalg.lstsq(relative / unit, off / sizes, rcond=_SINGULAR)[0] / sizes / unit
+        if not (np.isfinite(step).all() and step.any()):
+            break
         part = 1.0
         while True:
             moved, there = solved(tilt + part * step)

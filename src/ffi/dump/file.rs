@@ -34,13 +34,23 @@ fn place(path: PathBuf) -> Result<PathBuf, String> {
     }
     let is_link = std::fs::symlink_metadata(&path).is_ok_and(|found| found.is_symlink());
     let place = match is_link {
-        true => path.canonicalize().map_err(|why| format!("{} cannot be written: {why}", path.display()))?,
+        true => target(&path).map_err(|why| format!("{} cannot be written: {why}", path.display()))?,
         false => path,
     };
     match std::fs::metadata(&place) {
         Ok(found) if !found.is_file() => Err(format!("{} is no file", place.display())),
         _ => Ok(place),
     }
+}
+
+/// Where a link leads; its file need not exist yet.
+fn target(link: &Path) -> std::io::Result<PathBuf> {
+    link.canonicalize().or_else(|why| match why.kind() {
+        std::io::ErrorKind::NotFound => {
+            std::fs::read_link(link).map(|to| link.parent().map_or(to.clone(), |folder| folder.join(&to)))
+        }
+        _ => Err(why),
+    })
 }
 
 fn write_to(path: &Path, head: &str, image: &Image) -> std::io::Result<()> {
