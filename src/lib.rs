@@ -58,7 +58,8 @@
 //! | [`stress`] | stresses below the surface, from pressures and tractions |
 //! | [`visco`] | Prony series of bodies that relax, and their step in time |
 //! | [`analytic`] | the Hertz solution |
-//! | `bisection` | bisection of an interval |
+//! | `bisection` | zeros of monotone functions |
+//! | `direction` | the two directions of a grid, and steps along them |
 //! | `powers` | numbers as a power of two times a factor near 1, for products that would overflow or underflow |
 //! | `blocks`, `lanes`, `rectangle` | parallel, vectorised passes over a grid; formulas in SIMD vectors; a part of a grid |
 //! | [`threads`], and of the same crate, `par`, `memory` and `sums` | the pool, large arrays, sums in a fixed order |
@@ -72,6 +73,7 @@ pub mod analytic;
 mod bisection;
 mod blocks;
 pub mod contact;
+mod direction;
 pub mod effects;
 pub mod error;
 #[allow(unsafe_code)]

@@ -27,7 +27,7 @@ impl Ends {
     }
 }
 
-/// What was excused: how often, and in which seed first.
+/// The excuses of calls: the number of each, and the first seed that has it.
 #[derive(Default)]
 pub struct Excuses(BTreeMap<&'static str, (usize, u64)>);
 

@@ -43,16 +43,16 @@ fn main() -> ExitCode {
     let (count, first) = (number(0).unwrap_or(1000), number(1).unwrap_or(0));
     let seeds = first..first + count;
     if is_friction {
-        return ends_of(seeds, |seed| friction(seed, is_measured));
+        return report(seeds, |seed| friction(seed, is_measured));
     }
     if is_adhesive {
-        return ends_of(seeds, adhesion);
+        return report(seeds, adhesion);
     }
     if is_law {
-        return ends_of(seeds, laws);
+        return report(seeds, laws);
     }
     if is_relaxing {
-        return ends_of(seeds, relaxing);
+        return report(seeds, relaxing);
     }
     let mut account = Account::default();
     for seed in seeds {
@@ -139,7 +139,7 @@ fn adhesion(seed: u64) -> Calls {
 }
 
 /// Runs the cases of these seeds, and prints how their calls ended, their products, and what was not kept.
-fn ends_of(seeds: Range<u64>, run: impl Fn(u64) -> Calls) -> ExitCode {
+fn report(seeds: Range<u64>, run: impl Fn(u64) -> Calls) -> ExitCode {
     let (mut ends, mut excuses, mut products, mut failed) = (BTreeMap::new(), Excuses::default(), Vec::new(), false);
     for seed in seeds {
         let calls = run(seed);

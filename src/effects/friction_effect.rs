@@ -116,7 +116,7 @@ impl Effect for Friction<'_> {
     }
 }
 
-/// Refuses all that is wrong with friction but for its law.
+/// Checks friction, without its law.
 fn check(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
     check_numbers(friction)?;
     check_coefficients(friction, grid)?;

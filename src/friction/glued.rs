@@ -7,9 +7,14 @@ use super::levels::Level;
 use super::plane::{add, dot, length};
 use super::problem::Problem;
 use super::request::{before, Request, Start};
+use super::solution::Report;
 use super::solver::Solver;
+use super::sweep::Rolling;
 use crate::effects::{Motion, Previous};
+use crate::error::Result;
+use crate::grid::Grid;
 use crate::methods::fields;
+use crate::progress::Outcome;
 use crate::rectangle::Rectangle;
 use crate::sums::in_blocks;
 
@@ -29,21 +34,41 @@ impl Solver {
         fields::largest(&threads, rows, of_row)
     }
 
-    /// The largest bound, and the largest one to solve with. Laws have bounds of their own, which are not lowered.
-    pub(super) fn largest_bounds(&self, request: &Request<'_>, window: &Rectangle, forces: &Forces) -> (f64, f64) {
+    /// Solves in a window with bounds within reach. Returns the outcome, and whether bounds were lowered.
+    pub(super) fn solve_within_reach(
+        &mut self,
+        (window, rolling): (&Rectangle, Option<Rolling>),
+        request: &Request<'_>,
+        forces: Forces,
+        watch: &mut dyn FnMut(&Grid, f64) -> bool,
+        report: &mut Report,
+    ) -> Result<(Outcome, bool)> {
         let largest = self.largest(window, |i| request.bound(i));
-        let inverse = self.largest(window, |i| if request.bound(i) > 0.0 { inverse(request.bound(i)) } else { 0.0 });
+        let largest_bound = self.reached((largest, request), window, &forces).unwrap_or(largest);
+        self.scales.fit(largest_bound);
+        let (lowered, forces) = (&Request { largest_bound, ..*request }, forces.in_units_of(&self.scales));
+        let end = self.solve_in((window, rolling), lowered, forces, watch, report)?;
+        let is_lowered = largest_bound < largest;
+        report.carried = self.carried(request, is_lowered);
+        Ok((end, is_lowered))
+    }
+
+    /// The largest bound to solve with, if bounds are to be lowered. Laws have bounds of their own, which are not.
+    fn reached(&self, (largest, request): (f64, &Request<'_>), window: &Rectangle, forces: &Forces) -> Option<f64> {
         // By creepages alone small slips are solved beside any bounds that are alike.
-        if !(forces.any() || inverse * (NEGLIGIBLE_BOUND * largest) > 1.0) {
-            return (largest, largest);
+        let are_alike = || {
+            let inverses = self.largest(window, |i| inverse(request.bound(i)));
+            !(inverses * (NEGLIGIBLE_BOUND * largest) > 1.0)
+        };
+        if request.friction.has_law() || !forces.any() && are_alike() {
+            return None;
         }
         let reached = REACH * self.estimated_traction(request, window, forces);
-        let is_lowered = !request.friction.has_law() && reached > 0.0 && reached < largest;
-        (largest, if is_lowered { reached } else { largest })
+        (reached > 0.0 && reached < largest).then_some(reached)
     }
 
     /// The most that friction carries: the sum of the bounds times the area of an element.
-    pub(super) fn carried(&self, request: &Request<'_>, is_lowered: bool) -> f64 {
+    fn carried(&self, request: &Request<'_>, is_lowered: bool) -> f64 {
         let area = self.grid.element_area();
         if is_lowered {
             return area * in_blocks((0..self.grid.len()).map(|i| request.bound(i)));
@@ -62,8 +87,7 @@ impl Solver {
         let terms = |i: usize| {
             let (g, s, weight) = (request.bound(i), solution.slip[i], friction.weight_at(i));
             let by_creepages = [0, 1].map(|k| if found[k] { weight[k] * self.offset[k] } else { 0.0 });
-            let sideways = request.sideways.map_or([0.0; 2], |sideways| sideways[i]);
-            let rigid = add(add(friction.rigid_slip_at(grid, i), sideways), by_creepages);
+            let rigid = add(request.rigid_slip(grid, i), by_creepages);
             [dot(s, solution.traction[i]) + g * length(s), g * length(rigid), g * scale]
         };
         let [gap, work, least] = fields::sum(&self.threads.suited_to(grid.len()), grid.len(), terms);
@@ -95,8 +119,7 @@ impl Solver {
     /// The largest rigid slip of the elements of a window. Without arrays it is linear in the place.
     fn largest_slip(&self, request: &Request<'_>, window: &Rectangle) -> f64 {
         let (friction, grid) = (request.friction, &self.grid);
-        let sideways = |i: usize| request.sideways.map_or([0.0; 2], |sideways| sideways[i]);
-        let slip = |i: usize| length(add(friction.rigid_slip_at(grid, i), sideways(i)));
+        let slip = |i: usize| length(request.rigid_slip(grid, i));
         if request.sideways.is_some() || friction.rigid_slip.is_some() || friction.weights.is_some() {
             return self.largest(window, slip);
         }
@@ -107,11 +130,11 @@ impl Solver {
     }
 }
 
-/// The inverse of a weight; 0 of a weight that carries nothing.
-fn inverse(weight: f64) -> f64 {
-    if weight == 0.0 {
+/// The inverse of a bound or of a weight; 0 of one that carries nothing.
+fn inverse(of: f64) -> f64 {
+    if of == 0.0 {
         0.0
     } else {
-        1.0 / weight.abs()
+        1.0 / of.abs()
     }
 }

@@ -1,7 +1,8 @@
 //! The request of a tangential solve.
 
-use super::plane::Vector;
+use super::plane::{add, Vector};
 use crate::effects::{Friction, Previous};
+use crate::grid::Grid;
 
 /// The request of a solve.
 #[derive(Clone, Copy)]
@@ -33,6 +34,11 @@ impl<'a> Request<'a> {
     pub fn bound(&self, i: usize) -> f64 {
         let bound = (self.friction.coefficient.at(i) * self.pressure[i].max(0.0)).min(self.largest_bound);
         self.limits.get(i).map_or(bound, |limit| bound.min(*limit))
+    }
+
+    /// The rigid slip of element i over a step, with the sideways displacements by pressures.
+    pub(super) fn rigid_slip(&self, grid: &Grid, i: usize) -> Vector {
+        add(self.friction.rigid_slip_at(grid, i), self.sideways.map_or([0.0; 2], |sideways| sideways[i]))
     }
 
     /// A request from the tractions before the step, for like bodies, with at most 1000 iterations and no estimates.

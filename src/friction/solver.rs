@@ -159,18 +159,12 @@ impl Solver {
         let rolling = self.steady_rolling(friction);
         let counts = |i: usize| pressure[i] > 0.0 || rolling.is_none() && before(friction, kept, i) != [0.0; 2];
         let window = Rectangle::around(&self.grid, &self.threads, |mut elements| elements.any(counts));
-        let mut end = Outcome::Converged;
-        let (mut report, mut is_lowered) = (Report { from_rest, ..Report::default() }, false);
+        let (mut end, mut is_lowered) = (Outcome::Converged, false);
+        let mut report = Report { from_rest, ..Report::default() };
         if let Some(window) = &window {
             let by = if friction.motion == Motion::Shift { (0.0, 0.0) } else { friction.elements_rolled(&self.grid) };
             self.tangential.check_reach(&window.grid(&self.grid), by)?;
-            let (largest, largest_bound) = self.largest_bounds(request, window, &forces);
-            self.scales.fit(largest_bound);
-            let forces = forces.in_units_of(&self.scales);
-            let lowered = &Request { largest_bound, ..*request };
-            end = self.solve_in((window, rolling), lowered, forces, watch, &mut report)?;
-            is_lowered = largest_bound < largest;
-            report.carried = self.carried(request, is_lowered);
+            (end, is_lowered) = self.solve_within_reach((window, rolling), request, forces, watch, &mut report)?;
         }
         self.window = window;
         // Derivatives come before the result is written, so that a failure leaves the last result.
@@ -200,7 +194,7 @@ impl Solver {
     }
 
     /// Solves in a window, in the solver's units. Writes the certificate and the products to the report.
-    fn solve_in(
+    pub(super) fn solve_in(
         &mut self,
         (window, rolling): (&Rectangle, Option<Rolling>),
         request: &Request<'_>,

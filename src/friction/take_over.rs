@@ -78,8 +78,7 @@ impl Solver {
             for ((g, rigid), i) in bounds.iter_mut().zip(rigid).zip(places) {
                 let traction = scales.traction(bound(i));
                 *g = if traction < NEGLIGIBLE_BOUND { 0.0 } else { traction };
-                let sideways = request.sideways.map_or([0.0; 2], |sideways| sideways[i]);
-                *rigid = scales.displacement(add(friction.rigid_slip_at(grid, i), sideways));
+                *rigid = scales.displacement(request.rigid_slip(grid, i));
             }
         });
         take_weights_and_layer(problem, friction, (grid, window), &scales)?;

@@ -1,5 +1,6 @@
 //! The undeformed distance on a finer grid over the same rectangle, from the given one.
 
+use crate::direction::Direction;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::memory::zeros;
@@ -15,47 +16,26 @@ const ROUGH: f64 = 0.25;
 ///
 /// Parts of an element without surface (+infinity) have none. If one of the four has none, the line through the element and its neighbour
 /// with surface is used, on the side of the part if possible, else a constant.
-pub fn refine(h: &[f64], grid: &Grid, parts: (usize, usize), (repeats_x, repeats_y): (bool, bool)) -> Result<Vec<f64>> {
+pub fn refine(h: &[f64], grid: &Grid, parts: (usize, usize), repeats: (bool, bool)) -> Result<Vec<f64>> {
     let (mx, my) = (grid.mx, grid.my);
     let (fine_mx, fine_my) = (mx * parts.0, my * parts.1);
     let weights = |parts: usize| -> Vec<Part> { (0..parts).map(|part| Part::new(part, parts)).collect() };
     let (in_x, in_y) = (weights(parts.0), weights(parts.1));
+    let [x, y] = Direction::both(grid, repeats);
 
     let mut rows = zeros(fine_mx * my, "undeformed distances of a finer grid")?;
     for (row, refined) in h.chunks_exact(mx).zip(rows.chunks_exact_mut(fine_mx)) {
         for (i, value) in refined.iter_mut().enumerate() {
-            *value = in_x[i % parts.0].at(i / parts.0, Along { m: mx, repeats: repeats_x }, |j| row[j]);
+            *value = in_x[i % parts.0].at(i / parts.0, x, |j| row[j]);
         }
     }
     let mut fine = zeros(fine_mx * fine_my, "undeformed distances of a finer grid")?;
     for (iy, refined) in fine.chunks_exact_mut(fine_mx).enumerate() {
         for (ix, value) in refined.iter_mut().enumerate() {
-            *value =
-                in_y[iy % parts.1].at(iy / parts.1, Along { m: my, repeats: repeats_y }, |j| rows[j * fine_mx + ix]);
+            *value = in_y[iy % parts.1].at(iy / parts.1, y, |j| rows[j * fine_mx + ix]);
         }
     }
     Ok(fine)
-}
-
-/// The elements along a direction.
-#[derive(Clone, Copy)]
-struct Along {
-    m: usize,
-    repeats: bool,
-}
-
-impl Along {
-    /// The element at a place, which may lie across the end of a direction that repeats itself.
-    fn element(&self, at: i64) -> Option<usize> {
-        let m = self.m as i64;
-        let inside = (0..m).contains(&at);
-        (inside || self.repeats).then(|| if inside { at } else { at.rem_euclid(m) } as usize)
-    }
-
-    /// Whether a point lies outside the centres of the first and the last element.
-    fn is_beyond_centres(&self, i: usize, offset: f64) -> bool {
-        !self.repeats && (i == 0 && offset < 0.0 || i + 1 == self.m && offset > 0.0)
-    }
 }
 
 /// Whether a surface with these heights at its end is smooth there.
@@ -81,31 +61,36 @@ impl Part {
     }
 
     /// The value at this part of element `i`.
-    fn at(&self, i: usize, along: Along, value: impl Fn(usize) -> f64) -> f64 {
+    fn at(&self, i: usize, along: Direction, value: impl Fn(usize) -> f64) -> f64 {
         if value(i).is_infinite() {
             return f64::INFINITY;
         }
-        let wanted = i as i64 + first_node(self.offset);
+        let wanted = i as isize + first_node(self.offset);
         let count = if along.repeats { 4 } else { along.m.min(4) };
-        let first = if along.repeats { wanted } else { wanted.clamp(0, (along.m - count) as i64) };
-        let node = |k: usize| along.element(first + k as i64).map_or(f64::INFINITY, &value);
+        let first = if along.repeats { wanted } else { wanted.clamp(0, (along.m - count) as isize) };
+        let node = |k: usize| along.place(first + k as isize).map_or(f64::INFINITY, &value);
         if (0..count).any(|k| node(k).is_infinite()) {
             return self.beside_a_hole(i, along, value);
         }
-        if count == 4 && along.is_beyond_centres(i, self.offset) && !is_smooth([node(0), node(1), node(2), node(3)]) {
+        if count == 4 && self.is_beyond_centres(i, along) && !is_smooth([node(0), node(1), node(2), node(3)]) {
             return value(i);
         }
         // At the border of the grid the four nearest centres are not around the point.
         let mut weights = self.weights;
         if first != wanted || count < 4 {
-            lagrange((i as i64 - first) as f64 + self.offset, &mut weights[..count]);
+            lagrange((i as isize - first) as f64 + self.offset, &mut weights[..count]);
         }
         weights[..count].iter().enumerate().map(|(k, weight)| weight * node(k)).sum()
     }
 
-    fn beside_a_hole(&self, i: usize, elements: Along, value: impl Fn(usize) -> f64) -> f64 {
+    /// Whether it lies outside the centres of the first and the last element.
+    fn is_beyond_centres(&self, i: usize, along: Direction) -> bool {
+        !along.repeats && (i == 0 && self.offset < 0.0 || i + 1 == along.m && self.offset > 0.0)
+    }
+
+    fn beside_a_hole(&self, i: usize, elements: Direction, value: impl Fn(usize) -> f64) -> f64 {
         let here = value(i);
-        let side = |step: i64| elements.element(i as i64 + step).map(&value).filter(|there| there.is_finite());
+        let side = |step: isize| elements.place(i as isize + step).map(&value).filter(|there| there.is_finite());
         let towards = if self.offset < 0.0 { -1 } else { 1 };
         let along = self.offset * towards as f64;
         match (side(towards), side(-towards)) {
@@ -117,7 +102,7 @@ impl Part {
 }
 
 /// The first of the four nearest centres, relative to the element of the point.
-fn first_node(offset: f64) -> i64 {
+fn first_node(offset: f64) -> isize {
     if offset < 0.0 {
         -2
     } else {

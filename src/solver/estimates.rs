@@ -25,7 +25,6 @@
 //! their number.
 
 mod curvature;
-mod direction;
 mod ends;
 mod jumps;
 

@@ -78,9 +78,8 @@ pub fn with<R>(large: usize, allowed: u64, run: impl FnOnce() -> R) -> R {
     result
 }
 
-/// What is kept of solves before would serve in the place of allocations: gives it back.
+/// Returns the memory that earlier solves left, which calls would use in place of allocations.
 pub fn release() {
-    // SAFETY: NULL is nothing to free.
     contact_normal_release();
 }
 

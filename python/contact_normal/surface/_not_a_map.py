@@ -41,28 +41,28 @@ def why(values: Any) -> str | None:
     if 1 < columns <= _COLUMNS and lines >= _LONG * columns and not _is_strip(values):
         return (f"has {lines} lines of {columns} numbers: a list of points, it seems. Lists are read where their points are {_PLACES}; "
                 f"{_INSTEAD}")
-    if min(lines, columns) > _COLUMNS:
-        for name, rows in (("line", values), ("column", values.T)):
-            if _has_first_even(rows) and not _lies_among(rows):
-                return f"has coordinates in its first {name}; it must hold heights alone: leave that {name} out, and give dx and dy"
+    for name, rows in _straight_firsts(values):
+        if not _lies_among(rows):
+            return f"has coordinates in its first {name}; it must hold heights alone: leave that {name} out, and give dx and dy"
     return None
 
 
 def doubt(values: Any) -> str | None:
     """What may be wrong with a map, for a warning."""
     lines, columns = values.shape
-    if min(lines, columns) > _COLUMNS:
-        for name, rows in (("line", values), ("column", values.T)):
-            if _has_first_even(rows):
-                return f"has a straight first {name}, which is read as heights: if these are coordinates, leave it out"
+    for name, _ in _straight_firsts(values):
+        return f"has a straight first {name}, which is read as heights: if these are coordinates, leave it out"
     if lines >= _LINES and (columns <= _COLUMNS or (columns <= _MANY and lines >= 8 * columns)):
         return f"is read as a map of {lines} x {columns} heights, a row of the grid a line, and not as a list of points"
     return None
 
 
-def _has_first_even(rows: Any) -> bool:
-    """Whether the first row rises evenly and no other one does."""
-    return rises_evenly(rows[0, 1:]) and not any(map(rises_evenly, rows[1:, 1:]))
+def _straight_firsts(values: Any) -> list[tuple[str, Any]]:
+    """The line or the column that rises evenly as the first, where no other one does; each with the rows that it is the first of."""
+    if min(values.shape) <= _COLUMNS:
+        return []
+    both = (("line", values), ("column", values.T))
+    return [(name, rows) for name, rows in both if rises_evenly(rows[0, 1:]) and not any(map(rises_evenly, rows[1:, 1:]))]
 
 
 def _lies_among(rows: Any) -> bool:

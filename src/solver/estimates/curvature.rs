@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
-use super::direction::{shortest_run, Direction};
 use super::jumps::{each_jump, Jump};
 use crate::contact::{Outline, Problem, State};
+use crate::direction::{shortest_run, Direction};
 use crate::rectangle::Rectangle;
 
 /// Least rows of the contact area that are sampled. Means over more rows hardly differ.

@@ -26,8 +26,8 @@
 
 use std::f64::consts::PI;
 
-use super::direction::Direction;
 use crate::contact::{Problem, State, STRAIGHT};
+use crate::direction::Direction;
 use crate::sums::in_blocks;
 
 /// t in elements: at a straight edge, at an edge with steps, and where the edge lies on edges of elements.

@@ -7,7 +7,7 @@
 
 use std::ops::Range;
 
-use super::direction::Direction;
+use crate::direction::Direction;
 use crate::grid::Grid;
 use crate::rectangle::Rectangle;
 

@@ -1,8 +1,8 @@
 //! The host's signals, which stay with the host's threads: a signal to a process goes to any thread that does not block it. A host that waits for
 //! one blocks it in its own threads, and a handler may count on data of its thread.
 
-/// Calls `start` while this thread blocks signals; threads that it starts block them, too. Signals of faults go to the thread at fault, and
-/// profilers ask each thread.
+/// Calls `start` while this thread blocks signals. The threads that it starts inherit the mask. Signals of faults and of profilers stay open: a
+/// fault signals its own thread, and a profiler asks every thread.
 #[cfg(unix)]
 pub(super) fn blocked<R>(start: impl FnOnce() -> R) -> R {
     let _blocked = Blocked::new();

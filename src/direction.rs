@@ -4,7 +4,7 @@ use crate::grid::Grid;
 
 /// One direction of a grid.
 #[derive(Clone, Copy)]
-pub(super) struct Direction {
+pub struct Direction {
     /// Elements of a line along the direction.
     pub m: usize,
     /// The distance in memory from one element to the next.
@@ -25,8 +25,10 @@ impl Direction {
     /// The number, within its line, of the element at `place`. Periodic lines go on beyond their ends; other lines have none there.
     pub fn place(&self, place: isize) -> Option<usize> {
         let m = self.m as isize;
-        let place = if self.repeats { place.rem_euclid(m) } else { place };
-        (0..m).contains(&place).then_some(place as usize)
+        match (0..m).contains(&place) {
+            true => Some(place as usize),
+            false => self.repeats.then(|| place.rem_euclid(m) as usize),
+        }
     }
 
     /// The distance in memory from the first element of a line to the one at `place`; none beyond the ends.
@@ -45,7 +47,7 @@ impl Direction {
 }
 
 /// The shorter one of the runs along x and along y, or `most` if both are longer. A line of one element has no run.
-pub(super) fn shortest_run(directions: &[Direction; 2], marked: &[bool], at: usize, most: usize) -> usize {
+pub fn shortest_run(directions: &[Direction; 2], marked: &[bool], at: usize, most: usize) -> usize {
     let mx = directions[0].m;
     let lines = directions.iter().zip([at % mx, at / mx]).filter(|(direction, _)| direction.m > 1);
     lines.fold(most, |least, (direction, place)| direction.run(marked, (at, place), least))
