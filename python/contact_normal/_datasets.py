@@ -68,7 +68,7 @@ def of_result(result: Solved) -> Any:
         dimensions = ("component", "y", "x") if values.ndim == 3 else ("y", "x")
         variables[name] = (dimensions, values, _told(what, kind, units))
     for name, (what, kind) in _OF_EFFECTS.items():
-        if getattr(result, "_" + name) is not None:
+        if name in result._of_effects:
             variables[name] = (("y", "x"), getattr(result, name), _told(what, kind, units))
     if result.has_friction:
         coordinates["component"] = ("component", ["x", "y"])

@@ -14,7 +14,7 @@ import contact_normal as cn
 STEEL = {"shear_modulus": 82000.0, "poisson_ratio": 0.28}
 X = (np.arange(24) - 11.5) * 0.1
 Y = (np.arange(18) - 8.5) * 0.12
-H = 0.02 * ((X[None, :] - 0.2) ** 2 + Y[:, None] ** 2)
+H = 0.02 * ((X[None, :] - 0.22) ** 2 + Y[:, None] ** 2)
 FRICTION = {"coefficient": 0.3, "force": (10.0, 0.0)}
 
 
