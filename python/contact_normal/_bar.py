@@ -80,8 +80,8 @@ class SolveBar:
         """The progress callback."""
         self._part = max(self._part, self._part_of(told))
         self._text = f"{told.mx} x {told.my}, cycle {told.cycles}, residual {told.residual:.1e}"
-        if told.seconds >= self._due:
-            self._due = told.seconds + 0.1
+        if time.monotonic() >= self._due:
+            self._due = time.monotonic() + 0.1
             self._bar.draw(self._part, self._text)
 
     def _part_of(self, told: Progress) -> float:

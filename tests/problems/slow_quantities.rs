@@ -1,6 +1,7 @@
 //! Errors of what converges slowly, against a finer grid: stresses at the surface that overtake those below, forces of steady rolling.
 
 use contact_normal::grid::Grid;
+use contact_normal::progress::Progress;
 use contact_normal::scene::{Bodies, Each, Friction, Load, Motion, Prescribed, PressureLimit, Scene};
 use contact_normal::solver::{
     quantities, solve, solve_to_accuracy, Accuracy, Lack, Options, Outcome, Quantity, QuantityRow,
@@ -197,4 +198,26 @@ fn a_limit_beside_ends_between_elements() {
         }
     }
     assert!(met >= 5, "{met}");
+}
+
+/// Steps of stresses and of the stiffness are told after the cycles of their grid, by one clock and one count, with the residual of the solve.
+#[test]
+fn steps_of_values_are_told_after_cycles() {
+    let (grid, h) = on(24, ellipse);
+    let scene = Scene { grid, undeformed_distance: &h, ..scene(Bodies::same(0.5, 0.3), Load::Approach(0.03)) };
+    let mut told: Vec<Progress> = vec![];
+    let mut progress = |progress: &Progress| {
+        told.push(*progress);
+        false
+    };
+    let wanted = [Quantity::MaxShear, Quantity::Stiffness, Quantity::MaxVonMises];
+    let options = Options::default();
+    quantities(&scene, &options, &wanted, 0, Some(&mut progress)).expect("a solvable scene");
+    let cycles = told.iter().take_while(|told| told.work_units > 0.0).count();
+    assert!(cycles > 0 && told.len() > cycles + 10, "{cycles} of {}", told.len());
+    assert!(told.windows(2).all(|pair| pair[0].seconds <= pair[1].seconds));
+    for (k, step) in told[cycles..].iter().enumerate() {
+        assert_eq!((step.cycles, step.work_units), (k as u64 + 1, 0.0));
+        assert!(step.residual > 0.0 && step.residual <= options.tolerance, "{}", step.residual);
+    }
 }

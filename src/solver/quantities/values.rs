@@ -105,9 +105,13 @@ pub fn values(
     watch: ProgressCallback<'_>,
 ) -> Result<Option<Vec<std::result::Result<Value, Lack>>>> {
     let began = Instant::now();
-    // Told without work units, so that nobody takes these steps for cycles of the solve.
-    let watch =
-        &mut |told: &Progress| watch(&Progress::of_part(&scene.grid, told.cycles, began.elapsed().as_secs_f64()));
+    // Told without work units, so that nobody takes these steps for cycles of the solve. They are counted over all quantities.
+    let (solved, residual, mut steps) = (report.solve_seconds, report.residual(), 0);
+    let watch = &mut |_: &Progress| {
+        steps += 1;
+        let seconds = solved + began.elapsed().as_secs_f64();
+        watch(&Progress { residual, ..Progress::of_part(&scene.grid, steps, seconds) })
+    };
     let (mut stresses, mut values) = ([None, None], Vec::new());
     let at_ends = beyond_ends(&solver.problem, solver.state());
     for quantity in wanted {
