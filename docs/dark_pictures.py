@@ -1,4 +1,4 @@
-"""On the site, a picture that has a dark one, of the same name in pictures/dark, is shown on light pages only, and that on dark pages."""
+"""On dark pages of the site, shows the picture of the same name in `dark/`, a folder beside the picture, if there is one."""
 
 from pathlib import Path
 

@@ -1,7 +1,7 @@
 //! Numbers split into a mantissa and a power of two, so that no intermediate result leaves the range of double precision. A normal result
 //! has the same bits as without the split.
 
-/// Splits a number > 0 into one near 1 and a power of two.
+/// Splits a number > 0 into a factor near 1 and a power of two.
 pub(crate) fn apart(value: f64) -> (f64, i32) {
     let power = value.log2().floor() as i32;
     (times_power(value, -power), power)
@@ -12,7 +12,7 @@ pub(crate) fn times_power(value: f64, power: i32) -> f64 {
     PowerOfTwo::new(power).times(value)
 }
 
-/// A number times a power of two: products have any size.
+/// A number times a power of two. Its products can have any size.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Scaled(pub f64, pub i32);
 
@@ -33,7 +33,7 @@ impl Scaled {
         Scaled(self.0 / other.0, self.1 - other.1)
     }
 
-    /// A homogeneous function f of degree 1 of two numbers: their sum, or the root of their squares.
+    /// f of two numbers, homogeneous of degree 1: for example their sum, or the root of the sum of their squares.
     pub(crate) fn with(self, other: Scaled, f: impl Fn(f64, f64) -> f64) -> Scaled {
         let power = [self, other].into_iter().filter(|one| one.0 != 0.0).map(|one| one.1).max().unwrap_or(0);
         Scaled(f(self.at(power), other.at(power)), power)
@@ -50,7 +50,7 @@ impl Scaled {
     }
 }
 
-/// Exponents beyond this are dropped, because e^-40 = 4e-18 is round-off.
+/// Terms like e^-x are dropped for x beyond this, because e^-40 = 4e-18 is round-off.
 pub(crate) const FADED: f64 = 40.0;
 
 /// Upper limit on lengths and tractions: sums of their squares are finite.
@@ -60,7 +60,7 @@ pub(crate) const LARGEST: f64 = 1e140;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PowerOfTwo([f64; 3]);
 
-/// Largest power: numbers are 2^-1074 to 2^1024, so that 2^2200 times any is infinite, and 2^-2200 times any is 0.
+/// The largest power: numbers are 2^-1074 to 2^1024, so that 2^2200 times any of them is infinite, and 2^-2200 times any is 0.
 const MOST: i32 = 2200;
 
 impl PowerOfTwo {

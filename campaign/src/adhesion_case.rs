@@ -1,4 +1,4 @@
-//! Random scenes with adhesion: balls, rough surfaces, waves and what people bring, all laws, approaches, forces and pulls.
+//! Random scenes with adhesion: balls, rough surfaces, waves and measured surfaces; all laws; approaches, and forces that press or pull.
 
 use contact_normal::ffi::*;
 
@@ -22,14 +22,14 @@ pub struct Case {
     pub law: i32,
     pub smear: f64,
     pub work: Values,
-    /// 0: the shortest that the elements carry.
+    /// The range of the attraction; 0: the shortest that the elements resolve.
     pub range: f64,
-    /// The stiffest attraction times what an element displaces itself by.
+    /// The largest slope of the attraction times the influence of an element on itself.
     pub kappa: f64,
     pub start: i32,
-    /// Friction of like bodies: mu, tau0, and a shift in ranges.
+    /// Friction of like bodies: mu, tau0, and the creepage of a shift divided by the range.
     pub friction: Option<(f64, f64, f64)>,
-    /// The next approach of a handle, that far from the first one.
+    /// The change of the approach in a second step with the same handle, if there is one.
     pub step: Option<f64>,
 }
 
@@ -43,7 +43,7 @@ fn steepness(law: i32, smear: f64) -> f64 {
     }
 }
 
-/// sigma(e) of a work and a range.
+/// sigma(e) of element i, for the range `range`.
 pub fn traction(case: &Case, range: f64, i: usize, e: f64) -> f64 {
     let t = e.max(0.0) / range;
     case.work.at(i) / range
@@ -55,7 +55,7 @@ pub fn traction(case: &Case, range: f64, i: usize, e: f64) -> f64 {
         }
 }
 
-/// Elements: squares and slender ones, a few to 150 x 150, lines among them.
+/// A grid of 4 to 150 elements a side, or one row. Elements are square or slender.
 fn grid(random: &mut Random) -> Grid {
     let dx = 10f64.powf(random.between(-7.0, 1.0));
     if random.chance(0.06) {
@@ -67,16 +67,18 @@ fn grid(random: &mut Random) -> Grid {
     Grid { mx, my, dx, dy: dx * if random.chance(0.7) { 1.0 } else { random.decades(0.3, 3.0) } }
 }
 
-/// Surfaces, a work of adhesion that goes with them, and the force of the contact that it makes by itself.
+/// A surface, with a work of adhesion that suits it.
 struct Surface {
     name: String,
     h: Vec<f64>,
     work: f64,
+    /// The scale of forces; of balls the pull that separates one.
     force: f64,
+    /// The scale of approaches: the depth of contact of balls, or the height of the roughness.
     height: f64,
 }
 
-/// One or two balls whose contact without a load has a part of the grid as its radius.
+/// One or two balls. Without a load the radius of contact is .15 to .6 of half the grid.
 fn balls(random: &mut Random, grid: &Grid, modulus: f64) -> Surface {
     let half = 0.5 * (grid.mx as f64 * grid.dx).min(grid.my.max(2) as f64 * grid.dy);
     let (a, radius) = (half * random.between(0.15, 0.6), half * random.decades(2.0, 1e4));
@@ -94,7 +96,7 @@ fn balls(random: &mut Random, grid: &Grid, modulus: f64) -> Surface {
     Surface { name: "balls".into(), h: h.collect(), work, force, height: a * a / radius }
 }
 
-/// Rough surfaces, punches, waves: the work of adhesion is a part of the energy that flattens them.
+/// A rough surface, a punch or a wave. The work of adhesion is a part of the energy that flattens it.
 fn rough(random: &mut Random, grid: &Grid, modulus: f64) -> Surface {
     let (name, mut h) = measured::surface(random, grid);
     let height = grid.dx * random.decades(1e-3, 0.3);
@@ -106,7 +108,7 @@ fn rough(random: &mut Random, grid: &Grid, modulus: f64) -> Surface {
 }
 
 impl Case {
-    /// Of random numbers.
+    /// A random case.
     pub fn random(random: &mut Random) -> Case {
         let grid = grid(random);
         let modulus = 10f64.powf(random.between(-3.0, 12.0));
@@ -152,7 +154,7 @@ impl Case {
         }
     }
 
-    /// In a few words.
+    /// The case in one line.
     pub fn describe(&self) -> String {
         let Grid { mx, my, dx, dy } = self.grid;
         let work = match &self.work {
@@ -166,7 +168,7 @@ impl Case {
     }
 }
 
-/// The same everywhere, or different ones, some of them 0.
+/// The works of adhesion: uniform, or one for each element, some of them 0.
 fn works(random: &mut Random, work: f64, grid: &Grid) -> Values {
     if random.chance(0.75) {
         return Values::Uniform(work);
@@ -174,7 +176,7 @@ fn works(random: &mut Random, work: f64, grid: &Grid) -> Values {
     let bare = random.pick(&[0.0, 0.3]);
     let mut of = |_| if random.chance(bare) { 0.0 } else { work * random.uniform() };
     let mut works: Vec<f64> = (0..grid.len()).map(&mut of).collect();
-    // The largest is the one that kappa is made of.
+    // kappa is computed from the largest work.
     works[0] = work;
     Values::PerElement(works)
 }
@@ -188,8 +190,8 @@ fn load(random: &mut Random, surface: &Surface, range: f64) -> Load {
     }
 }
 
-/// With two periods some approaches lie on the way from the first touch to the mean distance, which waves leave. Numbers of their own: other scenes stay
-/// the same.
+/// For two periods: replaces some loads by approaches from just before the first touch to just below the mean distance. Its random numbers are its
+/// own, so that all other scenes stay the same.
 fn below_mean(h: &[f64], load: Load) -> Load {
     let mut random = Random::new(h.iter().fold(h.len() as u64, |seed, h| seed.rotate_left(5) ^ h.to_bits()));
     let (mean, lowest) = (h.iter().sum::<f64>() / h.len() as f64, h.iter().copied().fold(f64::INFINITY, f64::min));
@@ -199,7 +201,7 @@ fn below_mean(h: &[f64], load: Load) -> Load {
     }
 }
 
-/// Effects that are solved together with adhesion.
+/// Random effects that are solved together with adhesion.
 fn effects(random: &mut Random, grid: &Grid, bodies: ([f64; 2], [f64; 2])) -> Effects {
     let mut effects = Effects::default();
     let own = free(1, 1, grid.dx, grid.dy, compliance(bodies.0, bodies.1)).at(0, 0);
@@ -224,7 +226,7 @@ fn effects(random: &mut Random, grid: &Grid, bodies: ([f64; 2], [f64; 2])) -> Ef
     effects
 }
 
-/// Friction of coated bodies is solved where both have the same coating; here they seldom have.
+/// Whether friction may be added. Of coated bodies it is solved only if both have the same coating, which is rare here.
 fn friction_goes(effects: &Effects) -> bool {
     effects.period.is_none() && effects.patches.is_none() && effects.coating.is_none()
 }

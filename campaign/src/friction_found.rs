@@ -1,21 +1,23 @@
-//! What a call with friction returns, and what it starts from.
+//! The results of a call with friction, and the loads before the step.
 
 use contact_normal::ffi::contact_normal_report;
 
-/// What a body carried before a step.
+/// The loads on the bodies before a step.
 pub struct Before {
+    /// Tractions.
     pub q: Vec<[f64; 2]>,
-    /// Of unlike bodies.
+    /// Pressures; they matter for unlike bodies only.
     pub p: Vec<f64>,
 }
 
-/// What a call returned.
+/// The results of a call.
 pub struct Found {
     pub status: i32,
     pub message: String,
     pub p: Vec<f64>,
-    /// Distances after deformation, and 1 in contact, 2 at a limit.
+    /// Deformed distances.
     pub e: Vec<f64>,
+    /// 0: exterior, 1: in contact, 2: at a pressure limit.
     pub contact: Vec<i32>,
     /// Displacements along the normal.
     pub u: Vec<f64>,
@@ -23,14 +25,14 @@ pub struct Found {
     pub slip: Vec<[f64; 2]>,
     pub stick_slip: Vec<i32>,
     pub report: contact_normal_report,
-    /// Callbacks after the one that cancelled, if one did.
+    /// The number of callbacks after the one that cancelled, if one did.
     pub overrun: Option<u32>,
-    /// Whether something was written.
+    /// Whether the call wrote any output.
     pub written: bool,
 }
 
 impl Found {
-    /// Bits that have to be the same where the same is asked for twice.
+    /// The bits of the status and the fields. Two equal calls must have the same.
     pub fn bits(&self) -> Vec<u64> {
         let vectors = self.q.iter().chain(&self.slip).flatten();
         let numbers = self.p.iter().chain(&self.u).chain(&self.e).chain(vectors).map(|value| value.to_bits());

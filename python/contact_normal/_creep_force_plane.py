@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 AXES = ("axis_ratio", "poisson_ratio", "phi", "eta", "xi")
 _MOTION = "STEADY_ROLLING"
-# Along each side of an element the pressures of an ellipse are averaged over so many places.
+# The pressure of an element of an ellipse is a mean over this number of points along each side.
 _PLACES = 4
-# What a surface must have, beside a load, and may have.
+# The names that a surface must have, beside a load, and those that it may have.
 _NEEDED = ("h", "dx", "dy", "shear_modulus", "poisson_ratio", "coefficient")
 _MAY = ("rolling_direction", "spin_centre", "spin_offset")
 _KNOWN = (*_NEEDED, *_MAY, "force", "approach")
@@ -28,9 +28,9 @@ _KNOWN = (*_NEEDED, *_MAY, "force", "approach")
 
 @dataclass(frozen=True)
 class Plan:
-    """What a table is computed from: the same on every machine that computes a part of it.
+    """The axes and settings of a table. They are the same on every machine that computes a part of it.
 
-    `surface` is None for ellipses; else what `prepared` has made of it.
+    `surface` is None for ellipses, otherwise the result of `prepared`.
     """
 
     axis_ratio: tuple[float, ...]
@@ -50,17 +50,17 @@ class Plan:
 
     @property
     def planes(self) -> int:
-        """How many planes there are."""
+        """The number of planes."""
         return len(self.axis_ratio) * len(self.poisson_ratio) * len(self.phi)
 
     @property
     def coarse_elements(self) -> int:
-        """Along each side of the grid that the errors are estimated from."""
+        """Elements along each side of the coarse grid, for estimates of errors."""
         return (self.elements + 1) // 2
 
 
 def ellipse(elements: int, axis_ratio: float) -> tuple[Doubles, float, float]:
-    """Pressures on an ellipse with sqrt(a b) = 1 and a force of 1, means over each element, and the element sizes."""
+    """Pressures on an ellipse with sqrt(a b) = 1 and a force of 1, as means over elements, and the element sizes."""
     a, b = np.sqrt(axis_ratio), 1.0 / np.sqrt(axis_ratio)
     places = (np.arange(elements * _PLACES) + 0.5) * 2.0 / (elements * _PLACES) - 1.0
     fine = np.sqrt(np.maximum(0.0, 1.0 - places[None, :] ** 2 - places[:, None] ** 2))
@@ -70,13 +70,13 @@ def ellipse(elements: int, axis_ratio: float) -> tuple[Doubles, float, float]:
 
 
 def _halves(h: Doubles) -> tuple[int, int]:
-    """By how much elements grow in y and x: a body of one row keeps its width."""
+    """The factors by which elements grow in y and in x: 2, or 1 in a direction with one element."""
     by_y, by_x = (2 if m > 1 else 1 for m in h.shape)
     return by_y, by_x
 
 
 def halved(h: Doubles) -> Doubles:
-    """A surface on elements twice as large, in directions with several elements: the mean of those of its four that have a surface."""
+    """A surface on elements twice as large, in directions with several elements. Each is the mean of its smaller elements that have a surface."""
     by_y, by_x = _halves(h)
     padded = np.pad(h, [(0, m % by) for m, by in zip(h.shape, (by_y, by_x))], constant_values=np.inf)
     my, mx = padded.shape
@@ -89,7 +89,7 @@ def halved(h: Doubles) -> Doubles:
 
 
 def prepared(surface: Mapping[str, Any], tolerance: float) -> dict[str, dict[str, Any]]:
-    """What `friction_batch` needs of a surface on its own and on a coarser grid: the normal problems are solved here, for all planes."""
+    """The arguments of `friction_batch` for a surface, on its own grid and on a coarser one. Solves the normal problems, once for all planes."""
     unknown, missing = sorted(set(surface) - set(_KNOWN)), [name for name in _NEEDED if name not in surface]
     if unknown or missing or ("force" in surface) == ("approach" in surface):
         raise ValueError(f"surface has {', '.join(surface)}; it must have {', '.join(_NEEDED)}, either force or approach, "
@@ -105,13 +105,13 @@ def prepared(surface: Mapping[str, Any], tolerance: float) -> dict[str, dict[str
     coarse = {**fine, "h": halved(h), "dx": by_x * dx, "dy": by_y * dy, "spin_centre": centre,
               "coefficient": halved(mu) if mu.ndim else mu}
     if by_y > by_x:
-        # The step of rolling is dx by default, which a column keeps.
+        # By default the step of rolling is dx, which does not grow in a grid of one column.
         coarse["rolling_distance"] = by_y * dx
     return {"fine": _pressed(fine, tolerance), "coarse": _pressed(coarse, tolerance)}
 
 
 def _pressed(surface: Mapping[str, Any], tolerance: float) -> dict[str, Any]:
-    """The arguments of `friction_batch` with the pressures of a surface."""
+    """The arguments of `friction_batch` for a surface on one grid, with the pressures of its normal problem."""
     given = {name: surface[name] for name in ("dx", "dy", "shear_modulus", "poisson_ratio")}
     load = {name: surface[name] for name in ("force", "approach") if name in surface}
     result = solve(surface["h"], **given, **load, tolerance=min(tolerance, 1e-6))
@@ -143,24 +143,25 @@ def _scales(grid: dict[str, Any]) -> tuple[float, float]:
 def plane(plan: Plan, index: int) -> dict[str, Any]:
     """Solves plane `index` of a table, on one thread: arrays (eta, xi) by name.
 
-    "force_x", "force_y", "moment", "residual", "products" and "status" are those of the fine grid; "difference" is by how much forces and
-    moment would change on infinitely fine elements if they converged with first order, relative to mu N and to mu N times the radius of
-    the contact area: the root of the sum of squares.
+    "force_x", "force_y", "moment" and "residual" are those of the fine grid. "products" counts those of both grids, in products of the fine
+    one. "status" is that of the fine grid, or if that is OK of the coarse one. "difference" estimates the change of forces and moment on
+    infinitely fine elements, for convergence of first order: the root of the sum of squares, forces relative to mu N, the moment relative to
+    mu N times the radius of the contact area.
     """
     ratios, nus, phis, rows, columns = plan.shape
     ratio, nu, spin = np.unravel_index(index, (ratios, nus, phis))
     eta, xi = (np.asarray(axis) for axis in (plan.eta, plan.xi))
     entries = np.empty((rows, columns, 3))
     entries[..., 0], entries[..., 1], entries[..., 2] = xi[None, :], eta[:, None], plan.phi[spin]
-    # There and back: neighbours in the list are neighbours in the plane.
+    # Every other row runs backwards, so that neighbours in the list are neighbours in the plane.
     entries[1::2] = entries[1::2, ::-1]
     grids = _grids(plan, int(ratio), int(nu))
     fine, coarse = (_solved(grid, entries.reshape(-1, 3), plan.tolerance) for grid in grids)
     force, radius = _scales(grids[0])
-    # One element alone is on both grids, and has no change.
+    # A grid of one element is the same as its coarse grid: there is no change, and no growth.
     growth = max(grids[1][d] / grids[0][d] for d in ("dx", "dy")) - 1.0 or 1.0
     changes = np.column_stack([fine.force - coarse.force, (fine.moment - coarse.moment) / radius])
-    # Without friction there is no force that could be wrong.
+    # Without friction all changes are 0.
     changes /= force * growth if force > 0.0 else 1.0
     found = {"force_x": fine.force[:, 0], "force_y": fine.force[:, 1], "moment": fine.moment, "residual": fine.residual,
              "products": fine.products + coarse.products * (grids[1]["pressure"].size / grids[0]["pressure"].size),

@@ -29,16 +29,14 @@ if TYPE_CHECKING:
     # Drop of the surface of a roller below its cylinder, at places along its axis.
     Drop = Callable[[Doubles], Doubles]
 
-# Drops of logarithmic profiles are of smaller parts of the length.
+# The factor of a logarithmic drop divided by the length is some 1e-4 for rollers of steel. Outside these limits the units are probably mixed.
+_FLAT = 1e-6
 _DEEP = 0.02
 
-# Those of steel have some ten thousandths of the length, and those of smaller parts are flat.
-_FLAT = 1e-6
-
-# Contact is at places where the drop is less than this part of the undeformed distance at the sides of a grid that holds the contact.
+# The end of a grid may touch if its drop is less than this part of the undeformed distance at the sides of the grid.
 _TOUCHED = 0.25
 
-# Relief of ISO/TS 16281:2008 by the diameter of the roller.
+# The factor of the drop of ISO/TS 16281:2008, divided by the diameter of the roller.
 _ISO = 0.00035
 
 __all__ = ["crown", "gap", "iso_16281", "logarithmic", "no_drop"]
@@ -84,13 +82,13 @@ def _dropped(drop: Drop, y: Doubles) -> Doubles:
     return found
 
 
-# Axes that are further from parallel are no rollers': the gap grows by tilt y.
+# The largest tilt, in rad. The gap grows by tilt y, which holds for small angles only.
 _STEEPEST = 0.3
 
 
 def circle(x: Any, radius: float) -> Doubles:
-    """How far a circle of a radius has left its tangent at a distance x: exact, not a parabola; inf beyond the radius. A negative radius is a
-    hollow."""
+    """The distance of a circle from its tangent, at x from the point where they touch: exact, not a parabola; inf beyond the radius. A negative
+    radius is a hollow."""
     x, r = np.asarray(x, dtype=np.float64), abs(radius)
     if np.isinf(r):
         return np.zeros_like(x)
@@ -102,7 +100,7 @@ def circle(x: Any, radius: float) -> Doubles:
 
 @dataclass(frozen=True)
 class _OfRoller:
-    """A drop along a roller, which knows half of its length, and can be pickled."""
+    """The drop along a roller of length 2 half. It can be pickled."""
 
     half: float
     shape: Callable[..., Doubles]
@@ -137,9 +135,9 @@ def crown(length: float, radius: float, straight: float = 0.0) -> Drop:
     Parameters
     ----------
     length : float
-        Of the roller.
+        Length of the roller.
     radius : float
-        Of the crown, along the axis.
+        Radius of the crown, along the axis.
     straight : float
         Length of the cylindrical part in the middle.
     """
@@ -153,16 +151,16 @@ def crown(length: float, radius: float, straight: float = 0.0) -> Drop:
 
 
 def logarithmic(length: float, force: float, e_star: float) -> Drop:
-    """The logarithmic profile of Lundberg (1939), whose pressures under the force it is made for are nearly the same all along.
+    """The logarithmic profile of Lundberg (1939). Under the force it is made for, the pressure is nearly the same all along the roller.
 
     drop(y) = force/(pi length E*) ln(1/(1 - (2 y/length)^2))
 
     Parameters
     ----------
     length : float
-        Of the roller.
+        Length of the roller.
     force : float
-        The force that it is made for.
+        The force that the profile is made for.
     e_star : float
         E* of both bodies.
     """
@@ -175,9 +173,9 @@ def logarithmic(length: float, force: float, e_star: float) -> Drop:
 
 
 def iso_16281(length: float, diameter: float) -> Drop:
-    """The profile that ISO/TS 16281:2008 takes for rollers that are at most 2.5 times as long as thick.
+    """The profile that ISO/TS 16281:2008 assumes for rollers at most 2.5 times as long as thick.
 
-    drop(y) = 0.00035 diameter ln(1/(1 - (2 y/length)^2)): Lundberg's for a largest pressure of some 3000 N/mm2 between bodies of steel.
+    drop(y) = 0.00035 diameter ln(1/(1 - (2 y/length)^2)). It is Lundberg's profile for a largest pressure of some 3000 N/mm2 between bodies of steel.
     """
     whole, thick = _positive("length", length), _positive("diameter", diameter)
     if whole > 2.5 * thick:
@@ -186,7 +184,7 @@ def iso_16281(length: float, diameter: float) -> Drop:
 
 
 def _warn_of_ends(along: Doubles, cut: float | None, half: float, across: Doubles) -> None:
-    """Warns of a grid that ends, at `cut`, within a roller where it may touch, and of one whose both ends stand up."""
+    """Warns if the grid ends inside the roller, at y = +-`cut`, where it may touch; and if the gap is smaller at both ends than in the middle."""
     middle = along[(len(along) - 1) // 2 : len(along) // 2 + 1].min()
     if cut is not None and min(along[0], along[-1]) - middle < _TOUCHED * across.max():
         warnings.warn(f"the grid is {2.0 * cut:g} long in y, and the roller {2.0 * half:g}: nothing touches beyond the grid, whose ends are those of a shorter roller with sharp ends. "
@@ -206,7 +204,7 @@ def gap(
     tilt: float = 0.0,
     units: Units = None,
 ) -> Gap:
-    """The gap of two rollers, or of a roller and a raceway, on a grid around their first touch.
+    """The gap of two rollers, or of a roller and a raceway, on a grid around the point where they touch first.
 
     Parameters
     ----------
@@ -217,8 +215,8 @@ def gap(
     radii : sequence of float
         Radius of each body in the direction of rolling; negative: a hollow, as an outer raceway; inf: flat.
     drop : function of an array, or sequence of them
-        Drop of the surface below its cylinder, at places y, of one roller or of each: `crown`, `logarithmic`, `iso_16281`, or one of your own. inf: no
-        surface.
+        Drop of the surface below its cylinder, at places y, of one roller or of each: from `crown`, `logarithmic`, `iso_16281` or `no_drop`, or a
+        function of your own. inf: no surface.
     crown_radii : sequence of float
         Radii of the bodies along the axis, in place of `drop`; negative: a hollow.
     tilt : float

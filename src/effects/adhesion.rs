@@ -1,4 +1,4 @@
-//! Effect: attractive forces across the gap, by a law: `p = q - sigma(e)` with contact pressures `q >= 0`.
+//! Effect: attraction sigma across the gap, by a law: `p = q - sigma(e)` with contact pressures `q >= 0`.
 //!
 //! See [`adhesion`](crate::adhesion) for the problem that is solved.
 
@@ -11,9 +11,9 @@ use crate::grid::Grid;
 use crate::powers::LARGEST;
 use crate::scene::{Load, Plain};
 
-/// Limits on work and range: their squares, and quotients of these, are finite.
+/// Limits on work and range: their squares, and quotients of these squares, are finite.
 const RANGE: (f64, f64) = (1e-70, 1e70);
-/// Least part of the range over which the edge of a law is smeared: no grid resolves less.
+/// The edge of a law is smeared over at least this part of the range: no grid resolves less.
 const LEAST_SMEAR: f64 = 1e-6;
 
 /// w, a force per length (an energy per area).
@@ -28,13 +28,13 @@ pub struct Adhesion<'a> {
     pub work: Work<'a>,
     /// The range rho, a length; 0: the shortest that the elements resolve.
     pub range: f64,
-    /// Which of several states is found without a state to start from.
+    /// Which of several states is found if no previous state is given.
     pub start: Start,
     /// Whether dF/dapproach is computed.
     pub stiffness: bool,
     /// Whether the distance of the state from a snap is computed.
     pub stability: bool,
-    /// tau0 >= 0, a traction: with friction the bound in contact is `mu q + tau0`.
+    /// tau0 >= 0, a traction. With friction, tractions in contact are at most `mu q + tau0`, q the contact pressure.
     pub shear_strength: f64,
 }
 
@@ -65,7 +65,7 @@ impl Effect for Adhesion<'_> {
         }
     }
 
-    // Invalid values count as adhesion, so that the scene refuses them.
+    // Adhesion with invalid values counts as well, so that the scene refuses it.
     fn is_one(&self, scene: &Plain<'_>) -> bool {
         self.attracts() || self.check(&scene.grid).is_err()
     }
@@ -112,7 +112,7 @@ impl Effect for Adhesion<'_> {
         Ok(())
     }
 
-    // Adhesion may differ in each solve.
+    // No set-up depends on adhesion: it may differ in each solve.
     fn values(&self, _tell: &mut dyn FnMut(&'static str, Value<'_>)) {}
 
     fn gives_way(&self, _scene: &Plain<'_>) -> bool {

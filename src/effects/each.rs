@@ -1,19 +1,19 @@
-//! Numbers of elements.
+//! A value for each element, uniform or not.
 
 use crate::error::Result;
 use crate::grid::{check_values, Grid};
 
-/// A number of each element.
+/// A value for each element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Each<'a> {
-    /// The same everywhere.
+    /// One value for all elements.
     Uniform(f64),
     /// One per element, `[my][mx]`.
     PerElement(&'a [f64]),
 }
 
 impl<'a> Each<'a> {
-    /// One per element, or else the same everywhere.
+    /// The values `each` if they are given, otherwise `uniform`.
     pub fn of(each: Option<&'a [f64]>, uniform: f64) -> Each<'a> {
         each.map_or(Each::Uniform(uniform), Each::PerElement)
     }
@@ -43,7 +43,7 @@ impl<'a> Each<'a> {
         }
     }
 
-    /// Checks the value or each of the values. `one` and `each` are their names in messages.
+    /// Checks all values by `require`. `one` and `each` are the names in messages of the uniform value and of the values per element.
     pub(crate) fn check(
         &self,
         [one, each]: [&str; 2],

@@ -1,4 +1,4 @@
-//! Friction as an effect: what it goes with, and its checks: steps, tables and numbers.
+//! Friction as an effect: the effects that it excludes, and the checks of its steps, tables and numbers.
 
 use std::f64::consts::PI;
 
@@ -19,16 +19,15 @@ const LONGEST_STEP: f64 = 1e6;
 const SHORTEST_STEADY_STEP: f64 = 0.1;
 const OTHER_UNITS: &str = "friction needs numbers below 1e140: choose other units";
 
-/// Distance from a whole number of elements at which a step of rolling counts as whole.
+/// Distance from a whole number of elements up to which a step of rolling counts as whole.
 const WHOLE_STEP: f64 = 1e-9;
 
-/// Why refinement to an accuracy is refused.
+/// Why a solve on several grids is refused.
 const OWN_COEFFICIENTS: &str =
-    "friction->influence and friction->row_tables are those of one grid, and this asks for several";
-const KEPT: &str = "friction->continues begins with what a handle found on its own grid, and this asks for several: give previous_traction";
-
+    "friction->influence and friction->row_tables are those of one grid, and this call needs others";
+const KEPT: &str = "friction->continues begins with tractions on the handle's own grid, and this call needs others: give previous_traction";
 const HISTORY: &str =
-    "friction->previous_coefficient and friction->previous_yield_limit are those of one grid, and this asks for several";
+    "friction->previous_coefficient and friction->previous_yield_limit are those of one grid, and this call needs others";
 
 const CONTINUES: Continues =
     Continues { member: "friction->continues", from: "tractions", instead: "give previous_traction" };
@@ -43,7 +42,7 @@ impl Effect for Friction<'_> {
         // The library has no tangential coefficients for these effects; the caller may give them.
         let excludes: &[&str] = match self.influence {
             Some(influence) if influence.cross.is_none() => &["adhesion", "period", "patches"],
-            // A given coupling is a table of offsets, which these effects do not have.
+            // The coupling that a caller gives is not solved together with these effects.
             Some(_) => &["adhesion", "row_tables", "period", "patches", "coating"],
             None => &["adhesion", "influence", "row_tables", "period", "patches"],
         };
@@ -90,11 +89,11 @@ impl Effect for Friction<'_> {
         if lacks_cross && has_bodies && scene.bodies.unlike() != 0.0 {
             let by_row = self.influence.is_some_and(|influence| influence.by_row);
             let (name, rule) = match by_row {
-                true => ("friction->row_tables", "those of tables per row are not solved"),
+                true => ("friction->row_tables", "tables per row are for like bodies only"),
                 false => ("friction->influence", "influence_cross is not given"),
             };
             return Err(Error::Unsupported(format!(
-                "{name} has no coefficients of what couples the normal and the tangential problem of unlike bodies: {rule}"
+                "{name} has no coefficients for the coupling of the normal and the tangential problem of unlike bodies: {rule}"
             )));
         }
         Ok(())
@@ -104,7 +103,7 @@ impl Effect for Friction<'_> {
         rolled_towards::check_pressures(self, grid, coefficients)
     }
 
-    // Friction may differ in each solve; the solver itself keeps the tangential tables.
+    // No set-up depends on friction: it may differ in each solve. The solver itself keeps the tangential tables.
     fn values(&self, _tell: &mut dyn FnMut(&'static str, Value<'_>)) {}
 
     fn gives_way(&self, _scene: &Plain<'_>) -> bool {
@@ -116,7 +115,7 @@ impl Effect for Friction<'_> {
     }
 }
 
-/// Checks friction, without its law.
+/// Checks friction except its law.
 fn check(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
     check_numbers(friction)?;
     check_coefficients(friction, grid)?;
@@ -125,7 +124,7 @@ fn check(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
     check_influence(friction, grid)
 }
 
-/// Refuses steps beyond all grids, and steps of steady rolling that elements do not resolve.
+/// Refuses steps longer than any grid, and steps of steady rolling that are too short for the elements.
 fn check_step(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
     let (name, distance) = ("friction->rolling_distance", friction.distance(grid));
     let (x, y) = friction.elements_rolled(grid);
@@ -144,13 +143,13 @@ fn check_step(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
     }
 }
 
-/// Refuses slips and tractions that are no numbers, or whose squares leave the range of double precision.
+/// Refuses slips, weights and tractions that are not finite, or whose squares leave the range of double precision.
 fn check_range(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
     let small = |name: &str, value: f64| {
         finite(name, value)?;
         require(value.abs() < LARGEST, name, value, OTHER_UNITS)
     };
-    // Slips by creepages and spin are largest in a corner.
+    // The slip due to creepages and spin is largest in a corner of the grid.
     let corners = [0, grid.mx - 1, grid.len() - grid.mx, grid.len() - 1];
     for slip in
         corners.iter().flat_map(|&i| Friction { rigid_slip: None, weights: None, ..*friction }.rigid_slip_at(grid, i))

@@ -1,40 +1,42 @@
-//! Friction beyond a constant coefficient: a law by which the coefficient falls with the slip velocity, and a yielding layer
-//! between the bodies. See [`friction::law`](crate::friction::law) for the problem.
+//! Friction with a coefficient that falls with the slip velocity, and a layer between the bodies that yields. See
+//! [`friction::law`](crate::friction::law) for the problem.
 
 use crate::error::{not_negative, positive, require, Result};
 use crate::powers::LARGEST;
 
-/// How a coefficient of friction falls with the slip velocity v, each of two parts with its own half speed h.
+/// How a coefficient of friction falls with the slip velocity v. It has two falling parts, each with its own half speed h.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fall {
-    /// `max(0, 1 - v/(2 h))`, both parts.
+    /// `max(0, 1 - v/(2 h))` for both parts.
     Linear,
-    /// `1/(1 + v/h)`, and of the second part `1/(1 + (v/h)^2)`.
+    /// `1/(1 + v/h)` for the first part, `1/(1 + (v/h)^2)` for the second.
     Rational,
-    /// `2^(-v/h)`, both parts.
+    /// `2^(-v/h)` for both parts.
     Exponential,
 }
 
-/// The wanted solution. Bounds that fall with the slip may have several.
+/// The wanted solution: there may be several if the traction bounds fall with the slip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Branch {
-    /// The solution near the start, the fastest to find; if none is found, that of `Low`.
+    /// The solution near the start, the fastest to find. If the iteration finds none and no force is given, turns of `Low` give it another
+    /// start.
     #[default]
     Near,
-    /// The solution reached from the bounds of no slip.
+    /// The solution reached from the traction bounds of no slip.
     Low,
-    /// The solution reached from the bounds of unlimited slip.
+    /// The solution reached from the traction bounds of unlimited slip.
     High,
 }
 
 /// A coefficient of friction that depends on the slip velocity:
 ///
 /// ```text
-/// mu_s(v) = mu (kinetic + falling_1 f_1(v) + falling_2 f_2(v))/(kinetic + falling_1 + falling_2)       mu: the coefficient at rest
-/// mu      = t mu_v + (1 - t) mu_s(v),    t = c/(c + dt max(v, v0))        c: memory_distance, v0: memory_speed, mu_v: mu before the step
+/// mu_s(v) = mu_0 (kinetic + falling_1 f_1(v) + falling_2 f_2(v))/(kinetic + falling_1 + falling_2)     mu_0: the coefficient at rest
+/// mu      = t mu_v + (1 - t) mu_s(v),    t = c/(c + dt max(v, v0))      c: memory_distance, v0: memory_speed, mu_v: mu before the step
 /// ```
 ///
-/// The kinds are those of CONTACT (L = 2, 3, 4); Polach's law is `Exponential` with kinetic A, falling 1 - A and half speed ln 2/B.
+/// dt is the duration of the step. The kinds of fall are those of CONTACT (L = 2, 3, 4). Polach's law is `Exponential` with kinetic A,
+/// falling 1 - A and half speed ln 2/B.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionLaw {
     /// How the coefficient falls.
@@ -43,15 +45,15 @@ pub struct FrictionLaw {
     pub kinetic: f64,
     /// The part that falls, in two terms.
     pub falling: [f64; 2],
-    /// The slip velocities at which each part has fallen to a half.
+    /// The slip velocity at which each part has fallen to a half.
     pub half_speed: [f64; 2],
-    /// V: the speed of rolling. A step takes dq/V.
+    /// The speed of rolling. A step lasts for the distance rolled divided by this speed.
     pub speed: f64,
     /// The duration of a shift.
     pub time_step: f64,
-    /// The distance of slip over which the coefficient follows; 0: at once.
+    /// The distance of slip over which mu approaches mu_s; 0: at once.
     pub memory_distance: f64,
-    /// The least slip velocity in the memory's rate.
+    /// v0: below this slip velocity mu approaches mu_s as fast as at v0.
     pub memory_speed: f64,
 }
 
@@ -60,7 +62,7 @@ pub struct FrictionLaw {
 pub struct PlasticLayer {
     /// The yield limit of fresh material, a traction.
     pub yield_limit: f64,
-    /// The gain of the limit per plastic slip, a traction per length; negative: it softens, down to a thousandth of `yield_limit`.
+    /// The change of the limit per plastic slip, a traction per length. Negative: the layer softens, down to a thousandth of `yield_limit`.
     pub hardening: f64,
 }
 
@@ -80,7 +82,7 @@ impl FrictionLaw {
         }
     }
 
-    /// `mu_s(v)` relative to that at rest, and its derivative by v.
+    /// `mu_s(v)/mu_0` and its derivative by v.
     pub fn at(&self, v: f64) -> (f64, f64) {
         let (mut value, mut slope) = (self.kinetic, 0.0);
         for (k, (part, h)) in self.falling.into_iter().zip(self.half_speed).enumerate() {
@@ -106,7 +108,7 @@ impl FrictionLaw {
         (value / at_rest, slope / at_rest)
     }
 
-    /// Refuses invalid numbers; `is_shift`: the time of a step is `time_step`.
+    /// Refuses invalid numbers. The step lasts for `time_step` if it `is_shift`; otherwise `speed` determines its duration.
     pub(super) fn check(&self, is_shift: bool) -> Result<()> {
         not_negative("friction->kinetic", self.kinetic)?;
         for k in 0..2 {
@@ -131,7 +133,7 @@ pub(super) fn ordinary(name: &str, value: f64) -> Result<()> {
     require((1.0 / LARGEST..=LARGEST).contains(&value), name, value, rule)
 }
 
-/// The same for a number that may be 0.
+/// As [`ordinary`], but allows 0.
 pub(super) fn zero_or_ordinary(name: &str, value: f64) -> Result<()> {
     let rule = "it must be 0, or from 1e-140 to 1e140: choose other units";
     require(value == 0.0 || (1.0 / LARGEST..=LARGEST).contains(&value), name, value, rule)

@@ -1,6 +1,7 @@
 //! The one list of effects: a line for each.
 
-/// Hands the list to the macro `$then`: those with a kernel first, the others in the order in which they act on coefficients.
+/// Passes the list to the macro `$then`. The first effect with a kernel determines the kernel. The effects after those with a kernel change its
+/// coefficients in the order of the list.
 macro_rules! with_effects {
     ($then:ident) => {
         $then! {

@@ -8,7 +8,7 @@ use crate::influence::{self, Coefficients};
 use crate::memory::collected;
 use crate::scene::Plain;
 
-/// Most patches. Each patch takes one product.
+/// The largest number of patches. Each patch adds one product by FFT.
 pub const MOST_PATCHES: usize = 64;
 
 /// Marks an element without a patch, which has no surface.
@@ -26,12 +26,12 @@ pub struct Patches<'a> {
 }
 
 impl Patches<'_> {
-    /// The patch of element i in the coefficients: the first one for elements without a patch.
+    /// The patch that element i has in the coefficients. An element without a patch has the first one.
     pub fn of(&self, i: usize) -> usize {
         self.patch[i].max(0) as usize
     }
 
-    /// The factor between a patch and that of element i.
+    /// The factor between `patch` and the patch of element i.
     pub fn factor(&self, patch: usize, i: usize) -> f64 {
         self.factors[patch * self.count + self.of(i)]
     }

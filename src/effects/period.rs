@@ -12,11 +12,11 @@ use crate::influence::{HalfSpace, Kernel, Periodic};
 use crate::scene::{Load, Plain};
 use crate::sums::mean;
 
-/// Why an approach is refused if the given contact area is full.
+/// The message for an approach on a given contact area that is the whole grid.
 const FULL: &str = "active_set is FIXED and all elements are in contact; with two periods the approach is relative to the mean plane, \
      and any force fits: prescribe the force";
 
-/// The directions in which the scene repeats, after `mx dx` and `my dy`.
+/// The directions in which the scene repeats: after `mx dx` in x, after `my dy` in y.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Period {
     /// In x.
@@ -46,13 +46,13 @@ impl Effect for Period {
 
     fn check(&self, _grid: &Grid) -> Result<()> {
         if !self.x && !self.y {
-            return invalid("period->x and period->y are 0; at least one of them must be 1: no period is NULL".into());
+            return invalid("period->x and period->y are 0; at least one must be 1. For no period, give NULL".into());
         }
         Ok(())
     }
 
-    // With two periods the mean displacement is zero, so that the mean deformed distance does not depend on the force. If it is zero,
-    // contact is full and any force satisfies the conditions. Such an approach is rejected.
+    // With two periods the mean displacement is zero. So the mean deformed distance is mean(h) - approach, whatever the force. If it is zero,
+    // contact is full and any force satisfies the conditions; it cannot be negative. Such approaches are refused.
     fn check_area(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>], given: Option<&[bool]>) -> Result<()> {
         let (Load::Approach(approach), true, true) = (scene.load, self.x, self.y) else { return Ok(()) };
         if others.iter().flatten().any(|other| other.gives_way(scene)) {
@@ -92,7 +92,7 @@ impl Effect for Period {
     fn stresses(&self, _b: usize, _scene: &Plain<'_>) -> Stresses<'_> {
         match self {
             Period { x: true, y: true } => Stresses::Repeat,
-            _ => Stresses::Unknown("repeats in one direction; subsurface stresses know both or none"),
+            _ => Stresses::Unknown("repeats in one direction; subsurface stresses need two periods or none"),
         }
     }
 }

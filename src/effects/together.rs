@@ -12,7 +12,7 @@ use crate::influence::{Coefficients, HalfSpace};
 use crate::scene::{Friction, Plain, Scene};
 use crate::threads::Threads;
 
-/// The effects that a scene names, in the order of the [list](super::list).
+/// The functions that need the whole [list](super::list) of effects.
 macro_rules! define_list {
     ($($(#[doc = $doc:literal])+ $(#[cfg($when:meta)])? $name:ident: $effect:ty,)+) => {
         /// Number of effects.
@@ -23,7 +23,7 @@ macro_rules! define_list {
             [$($(#[cfg($when)])? stringify!($name)),+].iter().position(|known| *known == name)
         }
 
-        /// The named effects of a scene that are in effect, see [`Effect::is_one`].
+        /// The effects of a scene in the order of the list; none where the scene does not name the effect or it [has no effect](Effect::is_one).
         pub(super) fn list<'s>(scene: &'s Scene<'_>) -> [Option<&'s dyn Effect>; COUNT] {
             let plain = &scene.plain();
             [$($(#[cfg($when)])? of(&scene.$name, plain)),+]
@@ -37,7 +37,7 @@ fn of<'s, E: Effect>(effect: &'s Option<E>, scene: &Plain<'_>) -> Option<&'s (dy
     effect.as_ref().filter(|effect| effect.is_one(scene)).map(|effect| effect as &dyn Effect)
 }
 
-/// The effects that a scene names.
+/// The effects of a scene, in the order of the list.
 pub fn effects<'s>(scene: &'s Scene<'_>) -> impl Iterator<Item = &'s dyn Effect> {
     list(scene).into_iter().flatten()
 }
@@ -58,7 +58,7 @@ pub fn check_effects(scene: &Scene<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Refuses an effect if one that it excludes is present; `say(other)` begins the message.
+/// Refuses an effect if `is_there` holds for one that it excludes. `say(other)` begins the message.
 pub(super) fn refuse_together(
     effect: &dyn Effect,
     is_there: impl Fn(&str) -> bool,
@@ -70,12 +70,12 @@ pub(super) fn refuse_together(
     }
 }
 
-/// Refuses the caller's coefficients of pressures, which are not symmetric, if an effect of the scene does not suit them.
+/// Checks the caller's `coefficients` of pressures, which are not symmetric: refuses them if they do not suit an effect of the scene.
 pub fn check_coefficients(scene: &Scene<'_>, coefficients: &Coefficients) -> Result<()> {
     effects(scene).try_for_each(|effect| effect.check_coefficients(&scene.grid, coefficients))
 }
 
-/// The effect with the caller's coefficients, and their layout. With these the bodies are not used.
+/// The effect that has the caller's coefficients, and their layout. With such coefficients the bodies are not used.
 pub fn own_coefficients(scene: &Scene<'_>) -> Option<(&'static str, Layout)> {
     first(scene, |properties| properties.own_coefficients)
 }
@@ -96,12 +96,12 @@ pub fn without_given_area(scene: &Scene<'_>) -> Option<&'static str> {
     effects(scene).find(|effect| !effect.properties().with_given_area).map(Effect::name)
 }
 
-/// The first effect that stands for one grid only, and why.
+/// The first effect that is given for one grid only, and why.
 fn one_grid(scene: &Scene<'_>) -> Option<(&'static str, &'static str)> {
     first(scene, |properties| properties.one_grid)
 }
 
-/// Refuses effects that stand for one grid only if several are solved.
+/// Refuses effects that are given for one grid only; called before a solve on several grids.
 pub fn check_other_grids(scene: &Scene<'_>) -> Result<()> {
     match one_grid(scene) {
         Some((name, why)) => Err(Error::Unsupported(format!("{name} is given; {why}"))),
@@ -121,12 +121,12 @@ pub fn limits<'s>(scene: &'s Scene<'_>) -> Option<PressureLimit<'s>> {
     first(scene, |properties| properties.limits).map(|(_, limits)| limits)
 }
 
-/// The effects with a problem beside the normal one.
+/// The effects with a further problem after the normal one.
 pub fn beside<'s>(scene: &'s Scene<'_>) -> impl Iterator<Item = &'static str> + 's {
     effects(scene).filter(|effect| effect.properties().is_beside).map(Effect::name)
 }
 
-/// The effects whose step begins at the end of the last one: the place in the list, and the name.
+/// The effects whose step begins where the last one ended: place in the list, name, and how they continue.
 pub fn continuing<'s>(scene: &'s Scene<'_>) -> impl Iterator<Item = (usize, &'static str, Continues)> + 's {
     let named = list(scene).into_iter().enumerate();
     named.filter_map(|(k, effect)| effect.and_then(|effect| Some((k, effect.name(), effect.properties().continues?))))
@@ -143,7 +143,7 @@ pub fn coupled<'s>(scene: &'s Scene<'_>, histories: &'s mut [History; COUNT]) ->
     Ok(coupled)
 }
 
-/// The memory of the bodies, and the effect of the list that has it.
+/// The memory of the bodies, and the place in the list of the effect that has it.
 pub fn memory(scene: &Scene<'_>, histories: &mut [History; COUNT]) -> Result<Option<(usize, Box<dyn Memory>)>> {
     let (plain, list) = (scene.plain(), list(scene));
     for (k, (effect, history)) in list.iter().zip(histories).enumerate() {
@@ -164,7 +164,7 @@ pub fn keep(scene: &Scene<'_>, histories: &mut [History; COUNT]) {
     }
 }
 
-/// The undeformed distance of a scene changed by its effects; none if they do not change it.
+/// The undeformed distance as changed by the effects of a scene; none if they do not change it.
 pub fn surface(scene: &Scene<'_>) -> Result<Option<Vec<f64>>> {
     effects(scene).try_fold(None, |changed: Option<Vec<f64>>, effect| {
         let new = effect.surface(changed.as_deref().unwrap_or(scene.undeformed_distance))?;
@@ -209,7 +209,7 @@ impl Scene<'_> {
         Ok(())
     }
 
-    /// The friction of a scene with given pressures; refuses tables without `cross` for unlike bodies.
+    /// The friction of a scene whose pressures are given, with the checks of [`Effect::check_load`] for friction alone.
     pub fn tangential(&self) -> Result<&Friction<'_>> {
         self.grid.check()?;
         let Some(friction) = &self.friction else {

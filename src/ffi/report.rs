@@ -197,7 +197,7 @@ versioned! {
 }
 
 impl contact_normal_report {
-    /// The values of a report, and the ledger of the one `given`.
+    /// The values of `report`, with the ledger and its capacity from `given`.
     pub(super) fn of(report: &Report, ledger_rows: usize, given: &Self) -> Self {
         let mut to = Self { ledger_rows: ledger_rows as i64, ..Self::defaults() };
         (to.ledger, to.ledger_capacity) = (given.ledger, given.ledger_capacity);

@@ -1,4 +1,4 @@
-//! The projected gradients on one SIMD vector of elements: slip prediction and step.
+//! The formulas of projected gradients on one SIMD vector of elements: the prediction of stick and slip, the preconditioner, and the step.
 
 use pulp::Simd;
 
@@ -7,19 +7,20 @@ use super::pairs::{add, choose, dot, scaled, subtract, Pair};
 use super::tangent::{ALIGNED, CURVATURE_WEIGHT, NEAR_THE_CIRCLE};
 use crate::lanes::{Holds, Lanes};
 
-/// The units, and constants of the formulas in them.
+/// The units of the fields, and two constants of the formulas in these units.
 #[derive(Clone, Copy, Default)]
 pub struct Units {
-    /// The unit of tractions, the unit of displacements.
+    /// The unit of tractions.
     pub traction: f64,
+    /// The unit of displacements.
     pub displacement: f64,
     /// The influence of an element on itself.
     pub a0: f64,
-    /// rho of the natural map.
+    /// rho of the natural map, `tau = q - rho s`.
     pub rho: f64,
 }
 
-/// The prediction of the natural map on an element of C: see [`Tangent::predict`](super::tangent::Tangent::predict).
+/// The prediction of the natural map on an element of C. For n, D and P see [`tangent`](super::tangent).
 pub struct Prediction<S: Simd> {
     /// The normal n; 0 on stick.
     pub normal: Pair<S>,
@@ -53,14 +54,14 @@ impl<S: Simd> Disc<S> {
         }
     }
 
-    /// The prediction for elements of tractions q, slips s and bounds g.
+    /// The prediction for tractions q, slips s and traction bounds g.
     #[inline(always)]
     pub fn predict(&self, q: Pair<S>, s: Pair<S>, g: Lanes<S>) -> Prediction<S> {
         let tau = subtract(q, scaled(self.rho, s));
         let (square_q, square_tau) = (dot(q, q), dot(tau, tau));
         let slips = (g * g).is_below(square_tau);
         let (length, reach) = (square_q.sqrt(), square_tau.sqrt());
-        // q is near the circle, and its angle with tau is below that of ALIGNED.
+        // q is near the circle, and its angle with tau is small.
         let is_near =
             (length - g).abs().is_at_most(NEAR_THE_CIRCLE * g) & (ALIGNED * (length * reach)).is_at_most(dot(q, tau));
         let inverse = 1.0 / is_near.choose(length, reach);
@@ -82,7 +83,7 @@ impl<S: Simd> Disc<S> {
         is_across.choose(across * across / square_q, dot(s, s))
     }
 
-    /// E of the preconditioner.
+    /// E of the preconditioner, see `CURVATURE_WEIGHT`.
     #[inline(always)]
     pub fn mixing(&self, curvature: Lanes<S>) -> Lanes<S> {
         1.0 / (1.0 + self.mixed * curvature)
@@ -90,11 +91,11 @@ impl<S: Simd> Disc<S> {
 
     /// The diagonal part of the preconditioner, beside E: `(1 - E)/(D + a0)`.
     #[inline(always)]
-    pub fn own(&self, mixing: Lanes<S>, stiff: Lanes<S>) -> Lanes<S> {
-        (1.0 - mixing) / (stiff + self.a0)
+    pub fn own(&self, mixing: Lanes<S>, curvature: Lanes<S>) -> Lanes<S> {
+        (1.0 - mixing) / (curvature + self.a0)
     }
 
-    /// P v, with the normal n; n = 0: v.
+    /// P v, with the normal n. On stick n is 0, and P v is v.
     #[inline(always)]
     pub fn project(&self, n: Pair<S>, v: Pair<S>) -> Pair<S> {
         subtract(v, scaled(dot(v, n), n))
@@ -106,7 +107,8 @@ impl<S: Simd> Disc<S> {
         self.zero.is_below(x.abs() + y.abs())
     }
 
-    /// The tractions after a step `way` from q: along the circle where elements slip, else straight and projected onto the disc.
+    /// The tractions after a step `way`. Elements that slip step from g n and return to the circle. The others step from q and are projected onto
+    /// the disc.
     #[inline(always)]
     pub fn moved(&self, (slips, n): (Holds<S>, Pair<S>), g: Lanes<S>, q: Pair<S>, way: Pair<S>) -> Pair<S> {
         let to = add(choose(slips, scaled(g, n), q), way);

@@ -52,7 +52,7 @@ impl Coefficients {
         self.diagonal.is_some()
     }
 
-    /// Whether coefficients of neighbours may differ: a layer with a compliance per element, or patches.
+    /// Whether coefficients may change abruptly from one element to the next: a layer with a compliance per element, or patches.
     pub fn may_jump(&self) -> bool {
         self.diagonal().is_some() || self.patches().is_some()
     }
@@ -79,7 +79,7 @@ impl Coefficients {
         self.entry_of(self.kernel.between(place(j), place(i)), i, j)
     }
 
-    /// `A_IJ` from the known coefficient of the kernel.
+    /// `A_IJ` of elements i and j, from the coefficient of the kernel.
     pub fn entry_of(&self, kernel: f64, i: usize, j: usize) -> f64 {
         let coupled = self.coupling.as_ref().map_or(kernel, |patches| patches.between(i, j) * kernel);
         match i == j {
@@ -106,8 +106,8 @@ impl Coefficients {
         }
     }
 
-    /// Fills `out[k]` with the even part of the coefficients at offsets `(+-k, +-ky)` and a typical layer, for preconditioners. A uniform
-    /// pressure that displaces nothing gets a response: that of the mean layer, or without a layer that of the kernel.
+    /// Fills `out[k]` with the even part of the coefficients at offsets `(+-k, +-ky)` and a typical layer, for preconditioners. If a uniform
+    /// pressure displaces nothing, it gets a response: that of the mean layer, or without a layer one that makes A invertible.
     pub fn fill_even_row(&self, ky: i64, out: &mut [f64]) {
         self.kernel.fill_even_row(ky, out);
         let constant = match &self.diagonal {
@@ -128,7 +128,7 @@ impl Coefficients {
         self.kernel.wave(grid, kx, ky).map(|value| value + layer)
     }
 
-    /// The largest coefficient within `grid`, whatever its sign.
+    /// The largest absolute value of a coefficient within `grid`, or a little more: without a negative constant, with the largest layer.
     pub fn largest(&self, grid: &Grid) -> f64 {
         self.kernel.largest(grid) - self.kernel.constant().min(0.0) + self.diagonal.as_ref().map_or(0.0, Layer::most)
     }
@@ -173,7 +173,7 @@ impl Coefficients {
         self.diagonal.is_none() && self.kernel.is_mean_free()
     }
 
-    /// The kernel's influence of an element on itself, without a negative constant, which is not due to the element.
+    /// The kernel's influence of an element on itself, without a negative constant, which all elements have in common.
     fn kernel_on_itself(&self) -> f64 {
         self.kernel.at(0, 0) - self.kernel.constant().min(0.0)
     }
@@ -188,8 +188,8 @@ impl Coefficients {
         self.kernel.without_constant().map(|kernel| self.clone().with_kernel(kernel))
     }
 
-    /// Coefficients of several compliances for preconditioners, which have one each, with the weights of the elements in each. No weights: the
-    /// layer is uniform.
+    /// For preconditioners, which have one compliance each: the coefficients with each of several compliances, and the weights of the elements
+    /// for each. No weights: the layer is uniform, or there is none.
     pub fn levels(&self) -> Result<Vec<(Coefficients, Vec<f64>)>> {
         let Some(layer) = &self.diagonal else { return Ok(vec![(self.clone(), Vec::new())]) };
         let levels = layer.levels(self.kernel_on_itself())?.into_iter();
@@ -210,7 +210,7 @@ impl Coefficients {
         })
     }
 
-    /// Bytes of coefficients held: none for the half-space.
+    /// Bytes of coefficients held; 0 for the half-space.
     pub fn bytes(&self) -> usize {
         let layer = self.diagonal().map_or(0, size_of_val);
         self.kernel.bytes() + layer + self.coupling.as_ref().map_or(0, Patches::bytes)

@@ -1,8 +1,7 @@
 //! The inverse of a circulant near A, as a preconditioner (Strang 1986, T. Chan 1988).
 //!
-//! The period is that of the grid: a product costs a quarter of a padded one, and the number of iterations is the same. The period is
-//! one element longer than the grid, so that the coefficient at offset -m is the true one. A direction of one row (or column) has the
-//! period 1.
+//! The period is at least one element longer than the grid, so that the coefficient at offset -m is the true one. A product costs a quarter
+//! of one with padding, and the number of iterations is the same. A direction with one element has the period 1.
 
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -24,8 +23,8 @@ impl<T: Real> Operator<T> {
         (if grid.mx == 1 { 1 } else { px }, if grid.my == 1 { 1 } else { py })
     }
 
-    /// The inverse of a circulant near A: period `px * py >= mx * my`, coefficients at offsets up to half of it, even in both
-    /// directions. None if it is not positive.
+    /// The inverse of a circulant near A with the `period`. It takes the even part of the coefficients, at offsets up to half the period. None
+    /// if the circulant is not positive definite.
     pub fn inverse_circulant(
         coefficients: &Coefficients,
         grid: &Grid,
@@ -62,11 +61,11 @@ impl<T: Real> Operator<T> {
     }
 }
 
-/// The constant wave gets the response at this part of the smallest wave number, which stands for all waves longer than the period.
-/// Measured.
+/// The uniform pressure gets the response of a wave with this part of the smallest wave number: it represents all waves longer than the
+/// period. Measured.
 const MEAN_WAVE: f64 = 0.45;
 
-/// The response to the wave of a bin.
+/// The response to the wave with bin `(x, y)`.
 fn wave_of(coefficients: &Coefficients, grid: &Grid, (px, py): (usize, usize), (x, y): (usize, usize)) -> f64 {
     let number = |bin: usize, p: usize, d: f64| 2.0 * PI * bin as f64 / (p as f64 * d);
     let (mut kx, ky) = (number(x, px, grid.dx), number(y, py, grid.dy));

@@ -23,11 +23,11 @@ const DIAGONAL: &str = "the operator's diagonal";
 /// The operator of one grid.
 pub struct Operator<T: Real> {
     product: Product<T>,
-    /// The reach of pressures for which products are right. Only even coefficients use it.
+    /// Products are right for pressures within this reach. Only even coefficients use it.
     reach: Reach,
     /// The diagonal of A beyond the coefficients; empty if there is none.
     diagonal: Vec<T>,
-    /// Patches between which A is scaled.
+    /// The patches, with the factors on A between them.
     coupling: Option<Patches>,
 }
 
@@ -37,7 +37,7 @@ impl<T: Real> Operator<T> {
         Operator::scaled(coefficients, 1.0, grid, threads)
     }
 
-    /// The operator of coefficients times a power of two, which changes no digit.
+    /// The operator of coefficients times `factor`, a power of two, which changes no digit.
     pub fn scaled(coefficients: &Coefficients, factor: f64, grid: &Grid, threads: &Threads) -> Result<Operator<T>> {
         let mut operator = Operator::of_period(grid, periods(coefficients, grid, full_reach(grid)), threads)?;
         operator.renew(coefficients, factor, grid, &mut SetUp::default())?;
@@ -72,8 +72,8 @@ impl<T: Real> Operator<T> {
         self.product.threads()
     }
 
-    /// Takes other coefficients, times a factor, on the same `grid`, and keeps plans and memory if they fit. After an error the operator must be
-    /// renewed before use.
+    /// Replaces the coefficients by others, times a factor, on the same `grid`. Keeps plans and memory if they fit. After an error the operator must
+    /// be renewed before use.
     pub fn renew(&mut self, coefficients: &Coefficients, factor: f64, grid: &Grid, set_up: &mut SetUp) -> Result<()> {
         let (period, threads) = (periods(coefficients, grid, self.reach), self.threads().clone());
         let elements = (grid.mx, grid.my);
@@ -128,7 +128,7 @@ impl<T: Real> Operator<T> {
         self.product.bytes() + size_of_val(&self.diagonal[..])
     }
 
-    /// The sizes of the products' memory: the workspace of one operator serves another of the same needs.
+    /// The sizes of the memory of products. Operators with the same needs can share a workspace.
     pub fn needs(&self) -> Needs {
         let masked = self.coupling.as_ref().map_or(0, |_| self.elements());
         Needs { room: self.product.room(), masked }
@@ -222,11 +222,13 @@ impl<T: Real> Workspace<T> {
     }
 }
 
-/// `u = A p` with patches, by one product `multiply(p, u)` without factors for each patch,
+/// `u = A p` with patches, by one product for each patch:
 ///
 /// ```text
 /// u on patch a = A (sum over patches b of F(a, b) p on b)
 /// ```
+///
+/// `multiply(p, u)` is the product without the factors F.
 fn apply_coupled<T: Real>(
     patches: &Patches,
     p: &[T],

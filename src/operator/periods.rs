@@ -1,8 +1,8 @@
 //! The periods of products.
 //!
 //! ```text
-//! A is block Toeplitz, a part of a block circulant of period px * py, which must keep all occurring offsets apart
-//! any p                        -(m-1)..m-1:     2m - 1, or 2m - 2 when the coefficients are even (m-1 and -(m-1) are then alike)
+//! A is block Toeplitz, a part of a block circulant. Its period px * py must keep all occurring offsets apart:
+//! any p                        -(m-1)..m-1:     2m - 1, or 2m - 2 when the coefficients are even (those at m-1 and -(m-1) are then equal)
 //! p within a [`Reach`]         -reach..reach:   2 reach, when the coefficients are even
 //! A circulant in a direction   m: no padding
 //! ```
@@ -23,7 +23,7 @@ pub(super) fn full_reach(grid: &Grid) -> Reach {
 /// The periods of a product.
 pub(super) fn periods(coefficients: &Coefficients, grid: &Grid, reach: Reach) -> (usize, usize) {
     match coefficients.row_tables() {
-        // Columns are not transformed.
+        // There is a table for each row, so columns are not transformed.
         Some((tables, _)) if tables.is_even_in_x() => (good_length(2 * grid.mx - 2), grid.my),
         Some(_) => (good_length(2 * grid.mx - 1), grid.my),
         None if coefficients.is_even(grid) => even_periods(coefficients, grid, (2 * reach.0, 2 * reach.1)),
@@ -35,8 +35,8 @@ pub(super) fn periods(coefficients: &Coefficients, grid: &Grid, reach: Reach) ->
     }
 }
 
-/// Periods of at least `least` for products by even coefficients, in directions without a period of the scene. Either both rows and columns use the
-/// FFT stages of the crate toeplitz, or neither. A machine without vectors has no such stages, but the same periods.
+/// Periods of at least `least` for products by even coefficients; in directions in which the scene repeats, the grid itself. Rows and columns both
+/// use the FFT stages of the crate toeplitz, or neither. A machine without SIMD has no such stages, but the same periods.
 pub(crate) fn even_periods(coefficients: &Coefficients, grid: &Grid, least: (usize, usize)) -> (usize, usize) {
     let repeats = coefficients.repeats(grid);
     let periods = |length: fn(usize) -> usize| {

@@ -1,4 +1,4 @@
-//! The memory of products.
+//! Memory for products.
 
 use toeplitz::fft::Real;
 use toeplitz::{Memory, Room};
@@ -12,7 +12,7 @@ pub struct Workspace<T: Real> {
     pub(super) memory: Memory<T>,
     /// With patches: p scaled for one patch, and its product.
     pub(super) masked: [Vec<T>; 2],
-    /// With patches: a copy of p, if u overwrites it.
+    /// With patches: a copy of p, for products in place.
     pub(super) given: Vec<T>,
 }
 
@@ -21,7 +21,7 @@ pub struct Workspace<T: Real> {
 pub struct Needs {
     /// For transforms.
     pub(super) room: Room,
-    /// Elements of a grid with patches.
+    /// Elements of the grid if there are patches, otherwise 0.
     pub(super) masked: usize,
 }
 
@@ -44,7 +44,7 @@ impl<T: Real> Workspace<T> {
         })
     }
 
-    /// Lets the memory rest, which is not needed for a while.
+    /// Releases the memory of transforms until the next product.
     pub fn rest(&mut self) {
         self.memory.rest();
     }

@@ -5,13 +5,12 @@
 //!    2., 3.  p = 0 in E; a step of the method on C
 //!    (4.1)   elements with p < 0 leave C, those above their limit go to it; then u = A p
 //!    certify if the criterion seems met: u = A p by a fresh product in double precision
-//!    (4.2)   elements that penetrate enter C
-//!    5., 6.  done if the certificate holds and C stays; or go on
+//!    (4.2)   elements that penetrate enter C, and so do elements at their limit with e > 0
+//!    5., 6.  done if the certificate holds and C has not changed; otherwise go on
 //! until max_cycles, a callback that cancels, or no progress: then the best iterate is the result
 //! ```
 //!
-//! The product comes after the truncation of (4.1) and before (4.2). With a product before the truncation the loop
-//! would cycle.
+//! The product comes after (4.1) and before (4.2). With the product before (4.1) the loop would cycle.
 
 use super::best::Best;
 use crate::contact::{admit, all_stay, truncate, AdmissibleSet, Freshness, Survey};
@@ -28,7 +27,7 @@ pub fn iterate<S: AdmissibleSet>(
     let (policy, set, goal) = (method.policy(), task.set, task.goal);
     method.begin(task.state)?;
     let (mut chatter, mut least, mut since) = (0, f64::INFINITY, 0);
-    // Not every step counts as a cycle, but `max_cycles` bounds the number of steps as well.
+    // Not every step counts as a cycle. So the number of steps is limited as well.
     for _ in 0..=goal.max_cycles {
         if task.is_interrupted() {
             break;
@@ -81,8 +80,8 @@ pub fn iterate<S: AdmissibleSet>(
     Ok(task.monitor.interrupted())
 }
 
-/// A step that failed. The operator of an elastic body is positive definite. If a step finds that it is not, round-off is
-/// the cause, and the method gives up. A caller's table is refused in this case.
+/// The outcome of a step that failed. The operator of elastic bodies is positive definite. If a step finds that it is not, round-off is the
+/// cause, and the method gives up. The caller's own coefficients may truly not be positive definite: they are refused with the error.
 fn given_up<S: AdmissibleSet>(error: Error, method: &str, task: &mut Task<'_, '_, S>) -> Result<Change> {
     match error {
         Error::NotPositiveDefinite(message) if !task.problem.given => {
@@ -112,7 +111,7 @@ fn certify<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, change: &Change, left: 
     Ok(survey)
 }
 
-/// (4.2): moves elements that penetrate into C. Returns their number, and the survey of the new C.
+/// (4.2). Returns the number of elements that enter C, and the survey of the new C.
 fn let_enter<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, survey: Survey) -> (usize, Survey) {
     let penetrates = !S::FIXED && survey.violation > 0.0;
     match if penetrates { admit(task.state, task.set) } else { 0 } {

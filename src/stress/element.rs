@@ -1,7 +1,7 @@
-//! Stresses of a uniform load on one rectangular element, in closed form: for places near it.
+//! Stresses of a uniform load on one rectangular element, in closed form: for places near the element.
 //!
-//! With `V = integral of 1/R`, `C` and `W` such that `C_z = V`, `W_z = C` over the element (Johnson, Contact Mechanics, section 3.2), all
-//! times `1/(2 pi)`, suffixes for derivatives, `h = 1 - 2 nu`:
+//! V is the integral of 1/R over the element; C and W are potentials with `C_z = V` and `W_z = C` (Johnson, Contact Mechanics, section 3.2).
+//! Suffixes are derivatives, and `h = 1 - 2 nu`. The stresses by a unit load are `1/(2 pi)` times:
 //!
 //! ```text
 //!       pressure                     traction in x
@@ -22,15 +22,15 @@
 //! V_xy  1/R              V_yz  z/(R (R + X))    V_zz   -(V_xx + V_yy)                 W_xxx  -(W_xyy + V_x)
 //! ```
 //!
-//! Logarithms are taken of quotients, and `R + Y = (X^2 + z^2)/(R - Y)` for Y < 0, so that nothing cancels near the element. At z = 0 only
-//! the edges are special: stresses by tractions are infinite there.
+//! The difference of two logarithms is the logarithm of a quotient, and `R + Y = (X^2 + z^2)/(R - Y)` for Y < 0, so that nothing cancels near
+//! the element. At z = 0 only the edges are special: stresses by tractions are infinite there.
 
 use std::f64::consts::PI;
 
 use super::body::{Body, Loaded};
 use super::tensor::Tensor;
 
-/// Two values per direction: those of the edges at - and +.
+/// The values at the two edges in one direction, `-` first.
 type Edges = [f64; 2];
 
 /// The derivatives of the potentials in the stresses.
@@ -102,7 +102,7 @@ fn potentials(x: Edges, y: Edges, z: f64) -> Potentials {
         let over = sign / (r + z);
         f.wxxy -= x * over;
         f.wxyy -= y * over;
-        // All others have a factor z.
+        // The stresses contain all others times z.
         if z > 0.0 {
             let over_r = sign / r;
             let (to_y, to_x) = (over_r * inverse_of_sum(r, y, x2 + z2), over_r * inverse_of_sum(r, x, y2 + z2));

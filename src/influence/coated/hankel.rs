@@ -1,30 +1,33 @@
 //! The radial functions by quadrature of their Hankel integrals, for the table of [`Radial`](super::Radial).
 //!
-//! Panels in `v = asinh(rho/2)` have polynomials through the values at 16 Chebyshev nodes. Singularities at `Im v = pi/2` are 6.3
-//! half-widths away, so the error is `(6.3 + sqrt(6.3^2 - 1))^-16 = 3e-18`. Values come from Gauss-Legendre in s near 0, and from Ogata's
-//! rule beyond.
+//! The functions are polynomials on panels in `v = asinh(rho/2)`, through the values at 16 Chebyshev nodes. Singularities at `Im v = pi/2`
+//! are 6.3 half-widths away, so the error is `(6.3 + sqrt(6.3^2 - 1))^-16 = 3e-18`. The values come from Gauss-Legendre in s for small rho,
+//! and from Ogata's rule for large rho.
 
 use super::polynomial::{chebyshev, clenshaw, node};
 use super::quadrature::hankel_rule;
 use super::response::Response;
 use crate::influence::gauss;
 
-/// Nodes of a panel in v.
+/// Nodes per panel.
 const N: usize = 16;
 /// Largest width of a panel in v.
 const PANEL: f64 = 0.5;
-/// The s from which B - 1 is negligible, for layers up to 1e4 times stiffer: `4 s^2 exp(-2 s)` is 1.5e-16 there.
+/// The s beyond which B - 1 is negligible, for layers up to 1e4 times stiffer than the substrate: `4 s^2 exp(-2 s)` is 1.5e-16 there.
 const S_MAX: f64 = 22.0;
 
-/// F on panels in v: Chebyshev coefficients of `F_1 sqrt(1 + rho^2/4)` on panels of quadrature in s, and of `F_B0 rho`.
+/// F on panels in v, as Chebyshev coefficients.
 pub struct Hankel {
+    /// The width of a panel.
     width: f64,
+    /// Those of `F_1 sqrt(1 + rho^2/4)`, on the panels of small rho.
     layer: Vec<[f64; N]>,
+    /// Those of `F_B0 rho`, on all panels.
     substrate: Vec<[f64; N]>,
 }
 
 impl Hankel {
-    /// F up to the distance `last`; `pole` is the length L of the nearest pole of B.
+    /// F up to the distance `last`. `pole` is L: the nearest pole of B is at the distance 1/L from 0.
     pub fn new(transfer: &dyn Response, pole: f64, last: f64) -> Hankel {
         let v_max = (0.5 * last).asinh();
         let count = (v_max / PANEL).ceil();
@@ -73,7 +76,8 @@ fn far_value(transfer: &dyn Response, pole: f64, rho: f64) -> f64 {
 }
 
 /// Nodes s, and weights times B - 1, for distances up to `rho_max`: composite 24-point Gauss-Legendre on panels of at most 30 radians of
-/// J0, with the error `(15 e/96)^48 = 2e-18`. The first panel ends at half the distance of the nearest pole, later ends grow up to fourfold.
+/// J0, with the error `(15 e/96)^48 = 2e-18`. The first panel ends at most halfway to the nearest pole. Each later end is at most four times
+/// the one before.
 fn near_rule(transfer: &dyn Response, pole: f64, rho_max: f64) -> Vec<(f64, f64)> {
     let width = f64::min(1.5, 30.0 / rho_max);
     let (mut rule, mut low, mut high) = (Vec::new(), 0.0, f64::min(width, 0.5 / pole));

@@ -1,16 +1,15 @@
 //! The correction of one layer on a grid: the integral of F over each element.
 //!
-//! The integral over an element, by the larger of its distance and t, in longer sides of an element:
+//! The method depends on the larger of t and the distance of the element, in longer sides of an element:
 //!
-//! * beyond [`LEAST_DISTANCE`], by values at the centres of the element and its neighbours (see [`means`]): one
-//!   evaluation per element;
-//! * nearer, by tensor Gauss, or up to [`CORNERS`] diagonals by corner differences of `S(x, y) = integral from 0 to x and 0 to y of F`,
+//! * beyond [`LEAST_DISTANCE`], the values at the centres of the element and its neighbours (see [`means`]): one evaluation per element;
+//! * nearer, tensor Gauss, or up to [`CORNERS`] diagonals the corner differences of `S(x, y) = integral from 0 to x and 0 to y of F`:
 //!
 //! ```text
 //! S(x, y) = t^2 (T(x, y) + T(y, x)),    T(a, b) = integral from 0 to asinh(b/a) of M(a cosh(u)/t)/cosh(u) du
 //! ```
 //!
-//! which is smooth for any ratio of element and thickness.
+//! The integrand of T is smooth for any ratio of element size to thickness.
 
 use super::offsets::{first_beyond, first_of_half, COATED};
 use super::radial::{Base, Radial};
@@ -21,11 +20,11 @@ use crate::influence::means::{self, LEAST_DISTANCE};
 use crate::influence::{HalfSpace, Kernel};
 use crate::memory::zeros;
 
-/// Diagonals of an element up to which differences over its corners serve.
+/// The distance up to which corner differences are used, in diagonals of an element.
 pub(super) const CORNERS: f64 = 2.5;
-/// Points a side of tensor Gauss below these distances.
+/// Tensor Gauss: below each distance, in longer sides, this number of points per side.
 const POINTS: [(f64, usize); 2] = [(12.0, 7), (LEAST_DISTANCE, 4)];
-/// Points of the rule for lines.
+/// Points of the Gauss rule for the integral T.
 pub(super) const LINE_POINTS: usize = 40;
 
 /// The correction of one layer on a grid.
@@ -33,12 +32,12 @@ pub struct Layer<'a> {
     pub radial: &'a Radial,
     pub t: f64,
     pub grid: Grid,
-    /// The integral of 1/r.
+    /// The integrals of 1/r over elements.
     pub half_space: &'a HalfSpace,
 }
 
 impl Layer<'_> {
-    /// Adds `(c/t) integral of F`, with the base of each offset, from [`first_of_half`] on in each row.
+    /// Adds `(c/t) integral of F` to the `table`, in each row from [`first_of_half`] on. The base is the layer nearer than t, the substrate beyond.
     pub fn add(&self, c: f64, table: &mut [f64]) -> Result<()> {
         let Grid { mx, my, dx, dy } = self.grid;
         let far = LEAST_DISTANCE * dx.max(dy);
@@ -77,7 +76,7 @@ impl Layer<'_> {
         Ok(())
     }
 
-    /// Adds the offsets that are not far.
+    /// Adds the offsets nearer than [`LEAST_DISTANCE`].
     fn add_near(&self, c: f64, table: &mut [f64]) -> Result<()> {
         let Grid { mx, my, dx, dy } = self.grid;
         let h = dx.max(dy);
@@ -97,7 +96,7 @@ impl Layer<'_> {
                     *value += c * self.gauss(rule(points), (x, y), here);
                     continue;
                 }
-                // The half-space has the usual base at this offset.
+                // All corners have one base. If this offset has the other, the half-space adds the difference, `(1 - B0)/rho`.
                 let other = base.to(here) * (1.0 - self.radial.transfer.substrate);
                 let half_space = if other == 0.0 { 0.0 } else { other * self.half_space.at(kx as i64, ky as i64) };
                 *value += c * (corners.difference(kx, ky) + half_space);
@@ -122,7 +121,7 @@ impl Layer<'_> {
     }
 }
 
-/// S/t at the corners of the elements next to the loaded one.
+/// S/t at the corners of the elements near the loaded one.
 struct Corners {
     columns: usize,
     values: Vec<f64>,
@@ -142,14 +141,14 @@ impl Corners {
         };
         let mut values = zeros((columns + 1) * (rows + 1), COATED)?;
         for (i, value) in values.iter_mut().enumerate() {
-            // Corners at half-integer offsets, from 1/2 on; values at -1/2 are the opposites.
+            // Corners are at half-integer offsets, from 1/2 on. S is odd, so values at -1/2 are the opposites of those at 1/2.
             let (x, y) = ((i % (columns + 1)) as f64 + 0.5, (i / (columns + 1)) as f64 + 0.5);
             *value = layer.t * (side(x * dx, y * dy) + side(y * dy, x * dx));
         }
         Ok(Corners { columns: columns + 1, values })
     }
 
-    /// The integral over the element at an offset.
+    /// `(1/t) integral of F` over the element at an offset.
     fn difference(&self, kx: usize, ky: usize) -> f64 {
         let corner = |kx: i64, ky: i64| {
             let place = |k: i64| if k < 0 { (0, -1.0) } else { (k as usize, 1.0) };

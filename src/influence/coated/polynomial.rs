@@ -1,4 +1,4 @@
-//! Polynomials on [-1, 1]: through Chebyshev nodes, as coefficients of powers, and their integrals.
+//! Polynomials on [-1, 1]: interpolation at Chebyshev nodes, coefficients of powers, and integrals.
 
 use std::f64::consts::PI;
 
@@ -11,7 +11,7 @@ fn angle(i: usize, m: usize) -> f64 {
     PI * (i as f64 + 0.5) / m as f64
 }
 
-/// The Chebyshev coefficients of the polynomial that has these values at the M nodes.
+/// The Chebyshev coefficients of the polynomial with these values at the M nodes.
 pub fn chebyshev<const M: usize>(values: &[f64; M]) -> [f64; M] {
     std::array::from_fn(|k| {
         let sum: f64 = (0..M).map(|i| values[i] * (k as f64 * angle(i, M)).cos()).sum();
@@ -28,7 +28,7 @@ pub fn clenshaw(coefficients: &[f64], x: f64) -> f64 {
     x * one - two + coefficients[0]
 }
 
-/// The least number of Chebyshev coefficients whose remainder adds up to at most `allowed`.
+/// The number of Chebyshev coefficients to keep: at least one, and so many that the absolute values of the others add up to at most `allowed`.
 pub fn terms(coefficients: &[f64], allowed: f64) -> usize {
     let mut dropped = 0.0;
     let is_needed = |c: &f64| {
@@ -38,7 +38,7 @@ pub fn terms(coefficients: &[f64], allowed: f64) -> usize {
     coefficients.iter().rposition(is_needed).map_or(1, |last| last + 1)
 }
 
-/// The first Chebyshev coefficients as coefficients of powers.
+/// The coefficients of powers of a polynomial with at most M Chebyshev coefficients.
 pub fn powers<const M: usize>(chebyshev: &[f64]) -> [f64; M] {
     // The sum of c[k] T_k, each T_k by its recursion.
     let (mut before, mut now) = ([0.0; M], [0.0; M]);
@@ -58,7 +58,7 @@ pub fn powers<const M: usize>(chebyshev: &[f64]) -> [f64; M] {
     sum
 }
 
-/// `start + factor * integral from -1 to x`; M is N + 1.
+/// The polynomial `start + factor * (integral from -1 to x)`. M must be N + 1.
 pub fn integral<const N: usize, const M: usize>(polynomial: &[f64; N], factor: f64, start: f64) -> [f64; M] {
     let mut integral = [0.0; M];
     for (k, c) in polynomial.iter().enumerate() {
