@@ -14,6 +14,11 @@ if TYPE_CHECKING:
     from ._callbacks import Progress
 
 
+def has_terminal() -> bool:
+    """Whether stderr is a terminal. Windowed programs and services have no stderr."""
+    return sys.stderr is not None and sys.stderr.isatty()
+
+
 class Bar:
     """A bar that fills: with tqdm if that is installed, else on stderr by itself."""
 

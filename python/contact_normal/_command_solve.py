@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 from typing import Any
 
+from ._bar import has_terminal
 from ._command_scene import USAGE, add_effects, add_scene, effects_of, gap_of, scene_arguments
 from ._constants import OK
 from ._field_files import FIELDS, PICTURES, refuse_unless_writable, save, write_fields
@@ -40,7 +40,7 @@ def run(given: argparse.Namespace) -> int:
             raise ValueError(f"{name} is the file of the surface, which would be lost: name another output")
         refuse_unless_writable(name)
     surface = gap_of(given)
-    progress = sys.stderr.isatty() if given.progress is None else given.progress
+    progress = has_terminal() if given.progress is None else given.progress
     result = solve(surface.h, surface.dx, surface.dy, units=surface.units, progress=progress,
                    **effects_of(given, surface.period), **scene_arguments(given))
     print("\n".join(f"{name:24}{text}" for name, text in [*told(result), *_hints(given, surface.period, result)]))

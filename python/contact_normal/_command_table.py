@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ._bar import has_terminal
 from ._constants import OK
 from ._creep_force_plane import AXES
 from ._creep_force_table import creep_force_table
@@ -56,7 +56,7 @@ def run(given: argparse.Namespace) -> int:
         if Path(given.file).suffix != ".nc":
             raise ValueError(f"{given.file} must end in .nc")
         refuse_unless_writable(given.file)
-    progress = sys.stderr.isatty() if given.progress is None else given.progress
+    progress = has_terminal() if given.progress is None else given.progress
     table = creep_force_table(given.file, **axes, elements=given.elements, tolerance=given.tolerance, workers=given.workers,
                               progress=progress)
     if given.file is None:

@@ -71,6 +71,12 @@ class Commands(unittest.TestCase):
         """h - approach, of e = h - approach + u."""
         return found["deformed_distance"] - found["displacement"]
 
+    def test_without_stderr_the_result_is_written(self):
+        written = self.folder / "out.npz"
+        with mock.patch("sys.stderr", None), contextlib.redirect_stdout(io.StringIO()):
+            self.assertEqual(main(["solve", str(self.npy), *BALL, "-o", str(written)]), 0)
+        self.assertTrue(written.exists())
+
     def test_a_ball_has_the_pressures_of_hertz(self):
         code, out, told = called("solve", self.npy, *BALL, "--units", "mm", "N")
         self.assertEqual((code, told), (0, ""))

@@ -266,10 +266,19 @@ class Files(unittest.TestCase):
             ("both", np.block([[np.zeros((1, 1)), np.arange(12)[None] * 0.5], [np.arange(12)[:, None] * 0.3, heights]]), "line"),
             ("a line", np.vstack([np.arange(12) * 0.5, heights]), "line"), ("a column", np.column_stack([np.arange(12), heights]), "column"),
         ):
-            with self.subTest(name):
-                np.savetxt(self.folder / "table.txt", table)
-                with self.assertRaisesRegex(ValueError, f"has coordinates in its first {which}"):
-                    surface.read(self.folder / "table.txt", dx=1, dy=1)
+            # The step of the line in its unit or in another one, by the size of an element or of the field.
+            for given in ({"dx": 0.5, "dy": 0.1}, {"dx": 5e-4, "dy": 0.1}, {"size": (6.0, 6.0)}, {"span": (5.5, 5.5)}):
+                with self.subTest(name, given=given):
+                    np.savetxt(self.folder / "table.txt", table)
+                    with self.assertRaisesRegex(ValueError, f"has coordinates in its first {which}"):
+                        surface.read(self.folder / "table.txt", **given)
+        # No coordinates: the step has nothing of the size of an element.
+        far = np.vstack([0.0137 * np.arange(12) + 40.0, heights])
+        np.savetxt(self.folder / "far.txt", far)
+        with self.assertWarnsRegex(UserWarning, "a straight first line, which is read as heights"):
+            self.assertEqual(surface.read(self.folder / "far.txt", dx=0.5, dy=0.5).z.shape, far.shape)
+        with self.assertRaisesRegex(ValueError, "has coordinates in its first line"):
+            surface.read(self.folder / "far.txt", x=np.arange(12), y=np.arange(13))
         # A broken line of a scan is straight once the map is levelled.
         broken = heights.copy()
         broken[0] = np.linspace(-0.31, 0.42, heights.shape[1]) * np.ptp(heights)
@@ -281,6 +290,13 @@ class Files(unittest.TestCase):
         # A wedge rises evenly everywhere.
         np.savetxt(self.folder / "wedge.txt", np.add.outer(np.arange(12.0), np.arange(9.0)))
         self.assertEqual(surface.read(self.folder / "wedge.txt", dx=1, dy=1).z.shape, (12, 9))
+
+    def test_esri_grids_are_refused_by_name(self):
+        for end in ("asc", "txt"):
+            path = self.folder / f"grid.{end}"
+            path.write_text("NCOLS 3\nNROWS 2\nXLLCORNER 0\nYLLCORNER 0\nCELLSIZE 2\nNODATA_value -9999\n1 2 3\n4 -9999 6\n")
+            with self.assertRaisesRegex(ValueError, "is an ESRI grid: .* NODATA_value as fill"):
+                surface.read(path, dx=2, dy=2)
 
     def test_decimal_commas_between_commas_are_told(self):
         (self.folder / "d.csv").write_text("0,1257,-0,0321,1,5\n0,5,0,7,0,3\n")

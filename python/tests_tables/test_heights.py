@@ -55,3 +55,16 @@ class Heights(unittest.TestCase):
             self.assertAlmostEqual(made.dy, 0.2, delta=1e-12)
             with self.assertRaisesRegex(ValueError, "has z, other; give variable"):
                 surface.read(path)
+
+    def test_axes_are_those_of_the_lines_of_a_text(self):
+        lines = "\n".join("\t".join(f"{z:.6f}" for z in row) for row in Z)
+        text = f"# Channel: Height\n# Width: 14 um\n# Height: 15 um\n# Value units: um\n{lines}\n"
+        with tempfile.TemporaryDirectory() as folder:
+            for end in ("txt", "asc", "tsv"):
+                path = Path(folder, f"map.{end}")
+                path.write_text(text)
+                for axes, z, steps in (("yx", Z, (2.0, 3.0)), ("xy", Z.T, (3.0, 2.0)), (None, Z, (2.0, 3.0))):
+                    made = surface.read(path, **({"axes": axes} if axes else {}))
+                    np.testing.assert_allclose(made.z, z, atol=1e-6, err_msg=f"{end} {axes}")
+                    np.testing.assert_allclose((made.dx, made.dy), steps)
+                    np.testing.assert_allclose(surface.read(path, size=(21.0, 35.0), axes=axes or "yx").dx, 21.0 / z.shape[1])

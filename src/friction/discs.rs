@@ -40,9 +40,9 @@ pub struct Sums {
 }
 
 impl<T: Real> Discs<T> {
-    /// A length in the unit of displacements.
-    pub fn scaled(&self, length: f64) -> f64 {
-        length / self.units.displacement
+    /// A displacement in the unit of the problem.
+    pub fn own_displacement(&self, displacement: f64) -> f64 {
+        self.units.displacement * displacement
     }
 
     /// A traction in the unit of the state.

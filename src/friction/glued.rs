@@ -107,9 +107,10 @@ impl Solver {
             Motion::Shift | Motion::TransientRolling => 1.0,
         };
         let [xx, yy, _] = self.tangential.at(0.0, 0.0);
-        let had = match friction.previous {
-            Previous::None => 0.0,
-            Previous::Given(_) | Previous::Kept => self.largest(window, |i| length(before(friction, kept, i))),
+        let had = match (friction.motion, friction.previous) {
+            // Tractions before steady rolling only begin the iteration.
+            (Motion::SteadyRolling, _) | (_, Previous::None) => 0.0,
+            (_, Previous::Given(_) | Previous::Kept) => self.largest(window, |i| length(before(friction, kept, i))),
         };
         // Forces are sums of weighted tractions.
         let most = friction.weights.map_or(1.0, |[x, y]| self.largest(window, |i| inverse(x[i]).max(inverse(y[i]))));

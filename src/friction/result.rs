@@ -39,7 +39,10 @@ impl Solver {
             threads.for_each_plain_row(stick_slip, grid.mx, |iy, stick_slip| {
                 stick_slip.fill(EXTERIOR);
                 for (k, ix) in touching(iy) {
-                    stick_slip[ix] = if is_on_circle(state.q[k], problem.bound[k]) { SLIP } else { STICK };
+                    let i = iy * grid.mx + ix;
+                    // A bound that was dropped beside larger ones is 0.
+                    let rests = problem.bound[k] == 0.0 && request.bound(i) > 0.0 && slip[i] == [0.0; 2];
+                    stick_slip[ix] = if is_on_circle(state.q[k], problem.bound[k]) && !rests { SLIP } else { STICK };
                 }
             });
             threads.for_each(&mut self.sums, |iy, sum| {

@@ -88,12 +88,12 @@ fn iterate<T: Real>(problem: &mut Problem, state: &mut State, discs: &mut Discs<
 fn until_it_ends<T: Real>(problem: &mut Problem, state: &mut State, discs: &mut Discs<T>, goal: Goal<'_>) -> Outcome {
     let Goal { tolerance, limit, certified, watch } = goal;
     let threads = problem.threads().clone();
-    let rigid = discs.scaled(problem.rms_rigid());
+    let rigid = problem.rms_rigid();
     let mut steps = Steps { forecast: 0.9, energy: 0.0 };
     let (mut least, mut since, mut iterations) = (f64::INFINITY, 0, 0);
     let mut sums = discs.predict(&problem.places, &threads);
     loop {
-        let residual = residual(problem, rigid, sums);
+        let residual = residual(problem, rigid, discs, sums);
         if residual < tolerance {
             if state.is_exact || !certified {
                 return Outcome::Converged;
@@ -124,8 +124,8 @@ fn until_it_ends<T: Real>(problem: &mut Problem, state: &mut State, discs: &mut 
 }
 
 /// The residual of the certificate.
-fn residual(problem: &Problem, rigid: f64, sums: Sums) -> f64 {
-    let [rest, displaced] = [sums.rest, sums.displaced].map(|sum| (sum / problem.count().max(1) as f64).sqrt());
+fn residual<T: Real>(problem: &Problem, rigid: f64, discs: &Discs<T>, sums: Sums) -> f64 {
+    let [rest, displaced] = [sums.rest, sums.displaced].map(|sum| discs.own_displacement(problem.rms_of(sum)));
     relative(rest, problem.compared(rigid, displaced))
 }
 

@@ -15,7 +15,8 @@ const ROUGH: f64 = 0.25;
 /// centres a rough surface keeps the last height: a cubic would leave the range of heights.
 ///
 /// Parts of an element without surface (+infinity) have none. If one of the four has none, the line through the element and its neighbour
-/// with surface is used, on the side of the part if possible, else a constant.
+/// on the side of the part is used. Without surface there, the line goes on from the other side if the three or four heights there are smooth;
+/// others keep the height of the element.
 pub fn refine(h: &[f64], grid: &Grid, parts: (usize, usize), repeats: (bool, bool)) -> Result<Vec<f64>> {
     let (mx, my) = (grid.mx, grid.my);
     let (fine_mx, fine_my) = (mx * parts.0, my * parts.1);
@@ -38,11 +39,16 @@ pub fn refine(h: &[f64], grid: &Grid, parts: (usize, usize), repeats: (bool, boo
     Ok(fine)
 }
 
-/// Whether a surface with these heights at its end is smooth there.
-fn is_smooth(heights: [f64; 4]) -> bool {
-    let steps = [0, 1, 2].map(|k| heights[k + 1] - heights[k]);
-    let largest = steps.iter().fold(0.0, |largest: f64, step| largest.max(step.abs()));
-    (steps[0] - 2.0 * steps[1] + steps[2]).abs() <= ROUGH * largest
+/// Whether a surface with these heights at its end is smooth there, by their third difference, or the second of three. Two tell nothing.
+fn is_smooth(heights: &[f64]) -> bool {
+    let steps = |k: usize| heights[k + 1] - heights[k];
+    let (difference, count) = match heights.len() {
+        4 => (steps(0) - 2.0 * steps(1) + steps(2), 3),
+        3 => (steps(1) - steps(0), 2),
+        _ => return false,
+    };
+    let largest = (0..count).fold(0.0, |largest: f64, k| largest.max(steps(k).abs()));
+    difference.abs() <= ROUGH * largest
 }
 
 /// One of the parts of every element: its distance from the centre of the element, in elements, and the weights of the cubic
@@ -72,7 +78,7 @@ impl Part {
         if (0..count).any(|k| node(k).is_infinite()) {
             return self.beside_a_hole(i, along, value);
         }
-        if count == 4 && self.is_beyond_centres(i, along) && !is_smooth([node(0), node(1), node(2), node(3)]) {
+        if count == 4 && self.is_beyond_centres(i, along) && !is_smooth(&[node(0), node(1), node(2), node(3)]) {
             return value(i);
         }
         // At the border of the grid the four nearest centres are not around the point.
@@ -93,10 +99,15 @@ impl Part {
         let side = |step: isize| elements.place(i as isize + step).map(&value).filter(|there| there.is_finite());
         let towards = if self.offset < 0.0 { -1 } else { 1 };
         let along = self.offset * towards as f64;
-        match (side(towards), side(-towards)) {
-            (Some(there), _) => here + along * (there - here),
-            (None, Some(behind)) => here + along * (here - behind),
-            (None, None) => here,
+        if let Some(there) = side(towards) {
+            return here + along * (there - here);
+        }
+        let mut behind = [here; 4];
+        let count = (1..4).map_while(|k| side(-towards * k).map(|height| behind[k as usize] = height)).count();
+        if is_smooth(&behind[..=count]) {
+            here + along * (here - behind[1])
+        } else {
+            here
         }
     }
 }

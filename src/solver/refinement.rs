@@ -112,7 +112,7 @@ pub fn solve_to_accuracy(
         log::info!("on {} x {}: {past}; refining", past.grid.mx, past.grid.my);
         before = Some(past);
     };
-    Ok(Refinement::of(best, stop, why, began.elapsed().as_secs_f64()))
+    Ok(Refinement::of(best, accuracy, (stop, why), began.elapsed().as_secs_f64()))
 }
 
 /// The coarsest grid of the history, in doublings of the scene's: two halvings if enough elements remain in the shorter direction.
@@ -137,17 +137,22 @@ fn better(last: Option<Solved>, unfinished: Option<Solved>, accuracy: &Accuracy)
 }
 
 impl Refinement {
-    fn of(best: Option<Solved>, stop: Outcome, why: String, seconds: f64) -> Refinement {
+    fn of(best: Option<Solved>, accuracy: &Accuracy, (stop, why): (Outcome, String), seconds: f64) -> Refinement {
         let Some(Solved { solver, report, outlook, .. }) = best else {
             let reason = format!("{why}; nothing was solved");
             return Refinement { stop, reason, solver: None, report: Report::default(), reached: None, seconds };
         };
         // Without contact the result is exact.
         let without = report.measures.is_apart() && stop == Outcome::Converged;
-        let reached = outlook.relative(Quantity::Force).or(without.then_some(0.0));
-        let number = reached.map_or("not known".into(), |reached| format!("{reached:.2e}"));
-        let grid = solver.problem.grid;
-        let reason = format!("{why}; the best reached is {number} on {} x {} elements", grid.mx, grid.my);
+        let error = |quantity: Quantity| outlook.relative(quantity).or(without.then_some(0.0));
+        let over = |(quantity, target): (Quantity, f64)| error(quantity).map_or(f64::INFINITY, |error| error / target);
+        let farthest = accuracy.wanted().max_by(|one, other| over(*one).total_cmp(&over(*other)));
+        let quantity = farthest.map_or(Quantity::Force, |(quantity, _)| quantity);
+        let number = error(quantity).map_or("not known".into(), |error| format!("{error:.2e}"));
+        let of = if quantity == Quantity::Force { String::new() } else { format!(" for {}", quantity.name()) };
+        let Grid { mx, my, .. } = solver.problem.grid;
+        let reason = format!("{why}; the best reached{of} is {number} on {mx} x {my} elements");
+        let reached = error(Quantity::Force);
         log::info!("{stop:?}: {reason}");
         Refinement { stop, reason, solver: Some(solver), report, reached, seconds }
     }

@@ -34,6 +34,7 @@ use crate::effects::Coefficient;
 use crate::friction::{Report, Solution, Vector, SLIP};
 use crate::rectangle::Rectangle;
 use crate::scene::{Friction, Load, Motion, Prescribed};
+use crate::sums::in_blocks;
 
 /// Relative error of the force of a shift, over the bend relative to the depth.
 const SHIFT_ERROR: f64 = 0.3;
@@ -49,6 +50,9 @@ const UNLIKE_FACTOR: f64 = 8.0;
 const COATED_FACTOR: f64 = 2.0;
 /// With a given normal force, the factor on errors at ends is this times `(1 - F/(mu N))^(1/3)`, at most 1.
 const BEFORE_SLIP: f64 = 2.0;
+
+/// Errors are parts of mu N, or of so many times the tractions where bounds are out of their reach: those of glued elements are linear in the motion.
+const WITHIN_REACH: f64 = 15.0;
 
 /// A solved scene with friction.
 pub struct Solved<'a> {
@@ -80,8 +84,9 @@ pub fn estimate(solved: &Solved<'_>, found: &Report) -> [Option<f64>; 2] {
     }
     let Some(parts) = solved.parts else { return unknown };
     let widened = 1.0 + (OUTLINE_CHORD / chord).powi(2);
-    let of_shift = SHIFT_ERROR * curvature.bend.abs() / curvature.depth * widened * found.carried;
-    let hidden = found.certificate.residual * found.carried;
+    let carried = found.carried.min(WITHIN_REACH * solved.tractions());
+    let of_shift = SHIFT_ERROR * curvature.bend.abs() / curvature.depth * widened * carried;
+    let hidden = found.certificate.residual * carried;
     let force = found.force[0].hypot(found.force[1]);
     let creepage = found.creepage[0].hypot(found.creepage[1]);
     // (1 - F/(mu N))^(1/3)
@@ -104,7 +109,7 @@ pub fn estimate(solved: &Solved<'_>, found: &Report) -> [Option<f64>; 2] {
         _ => ROLLING_FACTOR,
     };
     let ends = solved.ends(&parts, stuck);
-    let more = solved.by_the_normal_force(&parts, found.carried) * (1.0 - stuck) + solved.jumps();
+    let more = solved.by_the_normal_force(&parts, carried) * (1.0 - stuck) + solved.jumps();
     [0, 1].map(|k| {
         let at_least = |of: Vector| of[k].max(ACROSS_FACTOR * of[1 - k]);
         let of_surface = part * of_shift + at_least(ends) + more;
@@ -124,6 +129,11 @@ fn is_known_with_law(friction: &Friction<'_>) -> bool {
 }
 
 impl Solved<'_> {
+    /// The sum of the tractions of all elements, as a force.
+    fn tractions(&self) -> f64 {
+        in_blocks(self.solution.traction.iter().map(|q| q[0].hypot(q[1]))) * self.state.grid.element_area()
+    }
+
     /// The error from ends of the surface, in each direction. `stuck`: `(1 - F/(mu N))^(1/3)`.
     fn ends(&self, parts: &Parts, stuck: f64) -> Vector {
         if parts.ends == 0.0 {
@@ -160,7 +170,8 @@ impl Solved<'_> {
                 0.0
             }
         };
-        let value = |i: usize| mu[i];
+        let reached = |i: usize| WITHIN_REACH * solution.traction[i][0].hypot(solution.traction[i][1]) / state.p[i];
+        let value = |i: usize| if state.p[i] > 0.0 { mu[i].min(reached(i)) } else { mu[i] };
         let repeats = problem.coefficients.repeats(grid);
         at_jumps((grid, &Rectangle::full(grid)), repeats, value, weight) * grid.element_area()
     }

@@ -131,3 +131,29 @@ fn compliances_that_differ_by_a_hundred_times_take_few_products() {
     }
     assert!(of_both[1] <= 2.0 * of_both[0], "{of_both:?} products, at most {most:?}, {of_motion:?}");
 }
+
+/// The tractions before are large beside the change of a nearly free step. Iterations compared them in other units than residuals, and ended at
+/// residuals of thousands of tolerances.
+#[test]
+fn nearly_free_steps_beside_a_soft_layer_meet_the_tolerance() {
+    for seed in 0..4 {
+        let case = Ellipse::random(seed, 16, false);
+        let own = solver(&case.grid, case.nu).tangential().at(0.0, 0.0)[0];
+        for softer in [1e-3, 1.0, 1e3, 1e6] {
+            let compliance = Coefficient::Uniform(softer * own);
+            let motion = Motion::TransientRolling;
+            let friction = Friction { motion, rolling_distance: case.grid.dx, compliance, ..case.friction };
+            let mut solver = solver(&case.grid, case.nu);
+            run(&mut solver, &case.bound, &friction, 1e-8);
+            let traction = &solver.solution().expect("a solution").traction;
+            let [x, y] = [0, 1].map(|k| traction.iter().map(|q| q[k]).collect::<Vec<f64>>());
+            let previous = Previous::Given([&x, &y]);
+            for creepage in [0.0, 1e-6, 1e-2] {
+                let prescribed = [Prescribed::Creepage(-creepage * softer * own), Prescribed::Creepage(0.0)];
+                for tolerance in [1e-2, 1e-4] {
+                    run(&mut solver, &case.bound, &Friction { prescribed, spin: 0.0, previous, ..friction }, tolerance);
+                }
+            }
+        }
+    }
+}

@@ -27,11 +27,12 @@ pub fn solver(grid: &Grid, nu: f64) -> Solver {
     Solver::new(*grid, tangential(grid, nu), true, &Threads::One)
 }
 
-/// Solves, and must converge.
+/// Solves, and must converge to the tolerance.
 pub fn run(solver: &mut Solver, g: &[f64], friction: &Friction<'_>, tolerance: f64) -> (Report, Solution) {
     let request = Request::new(g, friction, tolerance);
     let (end, report) = solver.solve(&request, &mut |_, _| true).unwrap();
     assert_eq!(end, Outcome::Converged, "{friction:?} {report:?}");
+    assert!(report.certificate.residual <= tolerance, "{friction:?} {report:?}");
     (report, solver.solution().unwrap().clone())
 }
 

@@ -42,10 +42,10 @@ fn polynomials_up_to_the_number_of_centres_are_reproduced() {
 
 #[test]
 fn parts_of_a_hole_are_holes_and_lines_go_on_beside_it() {
-    let grid = Grid::new(6, 5, 1.0, 1.0).expect("a grid");
+    let grid = Grid::new(8, 7, 1.0, 1.0).expect("a grid");
     let line = |x: f64, y: f64| 2.0 + 0.25 * x - 0.5 * y;
     let mut h = sampled(&grid, line);
-    let holes = [grid.index(0, 0), grid.index(2, 2), grid.index(3, 2), grid.index(5, 4)];
+    let holes = [grid.index(0, 0), grid.index(3, 3), grid.index(4, 3), grid.index(7, 6)];
     holes.iter().for_each(|&i| h[i] = INF);
     let refined = refine(&h, &grid, (4, 4), (false, false)).expect("memory");
     let fine = finer(&grid, 4);
@@ -60,12 +60,17 @@ fn parts_of_a_hole_are_holes_and_lines_go_on_beside_it() {
 }
 
 #[test]
-fn an_element_alone_is_flat() {
-    let grid = Grid::new(3, 3, 1.0, 1.0).expect("a grid");
-    let mut h = vec![INF; 9];
-    h[4] = 0.75;
-    let refined = refine(&h, &grid, (2, 2), (false, false)).expect("memory");
-    assert_eq!(refined.iter().filter(|v| v.is_finite()).copied().collect::<Vec<f64>>(), [0.75; 4]);
+fn an_element_alone_is_flat_and_so_are_the_outer_halves_of_two() {
+    let grid = Grid::new(4, 3, 1.0, 1.0).expect("a grid");
+    let mut h = vec![INF; 12];
+    let finite = |h: &[f64]| {
+        let refined = refine(h, &grid, (2, 2), (false, false)).expect("memory");
+        refined.into_iter().filter(|h| h.is_finite()).collect::<Vec<f64>>()
+    };
+    h[5] = 0.75;
+    assert_eq!(finite(&h), [0.75; 4]);
+    h[6] = 1.75;
+    assert_eq!(finite(&h), [0.75, 1.0, 1.5, 1.75, 0.75, 1.0, 1.5, 1.75]);
 }
 
 /// The values of a grid, moved by some elements, where those beyond an end come in at the other.
@@ -89,6 +94,21 @@ fn one_period_is_refined_alike_wherever_it_begins() {
             }
         }
     }
+}
+
+/// A line through rough heights leaves their range half an element beyond the last one before a hole. Where nothing was measured nothing carries.
+#[test]
+fn rough_heights_beside_holes_stay_near_the_heights() {
+    let grid = Grid::new(24, 20, 1.0, 1.0).expect("a grid");
+    let random = |i: usize, factor: f64| (factor * (i * i) as f64).fract();
+    let mut h: Vec<f64> = (0..grid.len()).map(|i| random(i, 0.754_877_666_246_69)).collect();
+    for i in (0..grid.len()).filter(|i| random(i + 7, 0.569_840_290_998_05) < 0.15) {
+        h[i] = INF;
+    }
+    let refined = refine(&h, &grid, (8, 8), (true, true)).expect("memory");
+    let lowest = |of: &[f64]| of.iter().copied().fold(INF, f64::min);
+    // Lines wherever there is a neighbour reach -0.69. Four heights that happen to look smooth go on, and cubics between heights leave their range: -0.2.
+    assert!(lowest(&refined) > lowest(&h) - 0.35, "{} and {}", lowest(&refined), lowest(&h));
 }
 
 /// A cubic through rough heights is far outside their range half an element beyond the last one, and would carry the load.

@@ -44,6 +44,13 @@ def columns_of(path: str | os.PathLike[str]) -> tuple[str | None, bool]:
     return None, False
 
 
+def refuse_esri_grid(path: str | os.PathLike[str]) -> None:
+    """Refuses a grid of a geographic information system, whose header says the size of an element and which number stands for "not measured"."""
+    if re.match(r"\s*ncols\s+\d", _head(path), re.IGNORECASE):
+        raise ValueError(f"{path} is an ESRI grid: read its numbers by numpy.loadtxt(path, skiprows=6), and give them to surface.heights with its cellsize as dx and dy, "
+                         "its NODATA_value as fill, and top_first=True")
+
+
 def header_of(path: str | os.PathLike[str], is_given: bool = False) -> dict[str, Any]:
     """`size` and `unit` of a text whose header says `# Width: 10.00 um`, `# Height: 5.00 um` and `# Value units: m`: the size is in the unit of the
     heights. Empty without such a header. A size that is no positive length is refused; where the caller gives sizes, it is None."""

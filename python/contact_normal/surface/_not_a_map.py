@@ -27,8 +27,8 @@ _INSTEAD = ("others must be interpolated on a grid (scipy.interpolate.griddata) 
             "its array to surface.heights")
 
 
-def why(values: Any) -> str | None:
-    """Why these numbers are no map, if they are none."""
+def why(values: Any, steps: tuple[float | None, float | None] = (None, None)) -> str | None:
+    """Why these numbers are no map, if they are none. `steps`: the distances of columns and of lines, as far as they are known."""
     lines, columns = values.shape
     if _are_points(values):
         return (f"has x, y and z of {lines} points, which are read where they are {_PLACES}; {_INSTEAD}")
@@ -41,8 +41,9 @@ def why(values: Any) -> str | None:
     if 1 < columns <= _COLUMNS and lines >= _LONG * columns and not _is_strip(values):
         return (f"has {lines} lines of {columns} numbers: a list of points, it seems. Lists are read where their points are {_PLACES}; "
                 f"{_INSTEAD}")
-    for name, rows in _straight_firsts(values):
-        if not _lies_among(rows):
+    straight = _straight_firsts(values)
+    for name, rows in straight:
+        if not _lies_among(rows) and (len(straight) == 2 or _goes_by(rows, steps[name == "column"])):
             return f"has coordinates in its first {name}; it must hold heights alone: leave that {name} out, and give dx and dy"
     return None
 
@@ -75,6 +76,15 @@ def _lies_among(rows: Any) -> bool:
     among = low - (high - low) <= first.min() and first.max() <= high + (high - low)
     is_level = abs(first.mean()) <= _MULTIPLE * np.ptp(first)
     return bool(among and (is_level or abs(halves - round(halves)) > _MULTIPLE))
+
+
+def _goes_by(rows: Any, step: float | None) -> bool:
+    """Whether the first row may have coordinates of this step, in any decimal unit, or counts."""
+    mean = abs(np.diff(rows[0, 1:]).mean())
+    if step is None or abs(mean - round(mean)) <= _MULTIPLE and mean > 0.5:
+        return True
+    digits = np.log10(mean / step) if step > 0.0 else 0.0
+    return bool(abs(digits - round(digits)) <= EVEN)
 
 
 def _is_strip(values: Any) -> bool:

@@ -12,7 +12,7 @@ import numpy as np
 
 from .._texts import is_text
 from .._units import same_length
-from ._headers import columns_of, header_of
+from ._headers import columns_of, header_of, refuse_esri_grid
 from ._heights import Heights, heights
 from ._lattice import Lattice, lattice_of
 from ._instruments import chosen, of_instrument
@@ -122,6 +122,8 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         # Of masked arrays and others heights says what is wrong.
         is_plain = values.ndim == 2 and values.dtype.kind in "iuf"
         return _of_numbers(path, values, given) if is_plain else heights(values, **given)
+    if end in (".asc", ".txt", ".dat") and Path(path).exists():
+        refuse_esri_grid(path)
     # Some instruments write binary files of these ends.
     of_numbers = end in (".txt", ".dat", ".csv") and is_text(path)
     # SurfaceTopography would move the columns behind an empty cell.
@@ -153,8 +155,12 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     if end in _TEXTS and getattr(topography, "dim", 2) == 2:
         # Its arrays have x as the first index.
         values = np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan)
-        if reason := why_no_map(values.T) or why_no_map(values):
+        steps = _steps(values.shape, given)
+        if reason := why_no_map(values.T, steps) or why_no_map(values, steps[::-1]):
             raise ValueError(f"{path} {reason}")
+        # The caller's axes are those of the lines of the file.
+        if "axes" in given:
+            given = {**given, "axes": {"yx": "xy", "xy": "yx"}.get(given["axes"], given["axes"])}
     return from_topography(topography, **given)
 
 
@@ -177,13 +183,25 @@ def _warn_of_size(path: str | os.PathLike[str], told: dict[str, Any], made: Heig
             return
 
 
+def _steps(counts: tuple[int, int], given: dict[str, Any]) -> tuple[Any, Any]:
+    """The sizes of an element in x and y as they are given, of an array with so many elements in x and in y; None where they are not."""
+    if "dx" in given:
+        return given["dx"], given.get("dy", given["dx"])
+    for name, fewer in (("size", 0), ("span", 1)):
+        if name in given:
+            lengths = given[name]
+            return lengths[0] / max(counts[0] - fewer, 1), lengths[1] / max(counts[1] - fewer, 1)
+    return None, None
+
+
 def _of_numbers(path: str | os.PathLike[str], values: Any, given: dict[str, Any]) -> Heights:
     """Heights from numbers that may be a list of points."""
     sizes = sorted(_SIZES & set(given))
     if not sizes and (lattice := lattice_of(values)) is not None:
         said = (None, False) if Path(path).suffix.lower() in (".npy", ".npz") else columns_of(path)
         return _of_lattice(path, lattice, said, given)
-    if reason := why_no_map(values):
+    steps = _steps(values.shape[::-1], given)
+    if reason := why_no_map(values, steps[::-1] if given.get("axes") == "xy" else steps):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             if sizes and lattice_of(values) is not None:
