@@ -32,8 +32,8 @@ int main()
             if (step == 2) scene.friction(friction.continues());
             const cn::result found = solver.solve(scene);
             if (!found) return 1;
-            const std::vector<double> traction[2] = {found.traction[0], found.traction[1]}, slip[2] = {found.slip[0], found.slip[1]};
-            const cn::frictional_work worn = cn::frictional_wear(grid.mx, grid.my, grid.dx, grid.dy, traction, slip, coefficient, hardness, 1.0, 0.0, found.pressure);
+            const cn::frictional_work worn =
+                cn::frictional_wear(grid.mx, grid.my, grid.dx, grid.dy, found.traction, found.slip, coefficient, hardness, 1.0, 0.0, found.pressure);
             for (std::size_t i = 0; i < h.size(); i++) h[i] += worn.depth[i];
             volume += worn.total.volume, work += worn.total.work;
             if (step != 1 && step % 20 != 0) continue;

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <iterator>
 #include <stdexcept>
 #include <string>
@@ -39,6 +40,8 @@ inline contact_normal_status check(contact_normal_status status)
 template <class T> class view {
 public:
     view(const T *data, std::size_t size) : data_(data), size_(size) {}
+    /// Values in braces live as long as the call.
+    view(std::initializer_list<T> values) : view(values.begin(), values.size()) {}
     template <class C, class = std::enable_if_t<std::is_convertible_v<decltype(std::data(std::declval<const C &>())), const T *>>>
     view(const C &container) : data_(std::data(container)), size_(std::size(container))
     {
@@ -83,6 +86,8 @@ template <class T> class borrowed {
 
 public:
     borrowed(const T *data, std::size_t size) : data_(data), size_(size) {}
+    /// Two numbers in braces are no pointer and count, also where the first is a 0.
+    template <class N, std::enable_if_t<std::is_integral_v<N>, int> = 0> borrowed(N, std::size_t) = delete;
     template <class C, std::enable_if_t<fits<C> && detail::lives_on<C>(), int> = 0>
     borrowed(C &&container) : data_(std::data(container)), size_(std::size(container))
     {

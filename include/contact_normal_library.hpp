@@ -5,6 +5,7 @@
 #include <contact_normal_arrays.hpp>
 #include <contact_normal_visco.hpp>
 
+#include <array>
 #include <functional>
 #include <string>
 #include <utility>
@@ -185,8 +186,9 @@ struct frictional_work {
 
 /// Tractions and slips as a solve returned them, [my][mx] each. `coefficient` is K and `hardness` H; with `coefficients` K of each element, with
 /// `pressure` the depth is K/H p |s|; of both, an empty one is not given.
-inline frictional_work frictional_wear(std::int32_t mx, std::int32_t my, double dx, double dy, const std::vector<double> (&traction)[2],
-                                       const std::vector<double> (&slip)[2], double coefficient, double hardness = 1.0, double steps = 1.0,
+inline frictional_work frictional_wear(std::int32_t mx, std::int32_t my, double dx, double dy,
+                                       const std::array<std::vector<double>, 2> &traction,
+                                       const std::array<std::vector<double>, 2> &slip, double coefficient, double hardness = 1.0, double steps = 1.0,
                                        double rolling_distance = 0.0, const std::vector<double> &pressure = {},
                                        const std::vector<double> &coefficients = {})
 {

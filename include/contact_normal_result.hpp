@@ -197,7 +197,7 @@ inline void share_message(const std::string &message, std::vector<result> &resul
     const std::string head = "problem ";
     result *of = nullptr;
     for (std::size_t at = 0; at < message.size();) {
-        const std::size_t end = std::min(message.find('\n', at), message.size());
+        const std::size_t end = (std::min)(message.find('\n', at), message.size());
         std::string line = message.substr(at, end - at);
         if (line.compare(0, head.size(), head) == 0) {
             const std::size_t k = std::strtoul(line.c_str() + head.size(), nullptr, 10), told = line.find(": ");
@@ -222,7 +222,7 @@ inline void share_warnings(const std::string &message, std::vector<result> &resu
             if ((static_cast<std::uint32_t>(each.report.warnings) & bit) == 0) continue;
             each.message += (each.message.empty() ? "" : "; ") + message.substr(at, end - at);
         }
-        at = std::min(end + 2, message.size());
+        at = (std::min)(end + 2, message.size());
     }
 }
 

@@ -211,13 +211,15 @@ class CreepForceTable:
         if not bound.any():
             shape = np.broadcast_shapes(bound.shape, *(np.shape(one) for one in (*both("creepage", creepage), spin, a, b)))
             return np.zeros(shape), np.zeros(shape), np.zeros(shape)
-        # Where there is no load, creepages of 0 and a circle stand for any.
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             unit = modulus * c * c / np.where(bound > 0.0, bound, np.inf)
-            empty = (bound == 0.0) | np.isinf(unit)
-            unit, ratio, bound = np.where(empty, 0.0, unit), np.where(empty, 1.0, a / b), np.where(empty, 0.0, bound)
-        along, across = (unit * real(f"creepage[{k}]", one) for k, one in enumerate(both("creepage", creepage)))
-        x, y, moment, _ = self.forces(along, across, unit * c * real("spin", spin), axis_ratio=ratio, poisson_ratio=poisson_ratio, hold=hold)
+        empty = (bound == 0.0) | np.isinf(unit)
+        along, across = (real(f"creepage[{k}]", one) for k, one in enumerate(both("creepage", creepage)))
+        # Where there is no load, the first entry of the table stands for any.
+        unit, axes = np.where(empty, 0.0, unit), ((self.xi, along), (self.eta, across), (self.phi, c * real("spin", spin)))
+        xi, eta, phi = (np.where(empty, axis[0], unit * value) for axis, value in axes)
+        ratio, bound = np.where(empty, self.axis_ratio[0], a / b), np.where(empty, 0.0, bound)
+        x, y, moment, _ = self.forces(xi, eta, phi, axis_ratio=ratio, poisson_ratio=poisson_ratio, hold=hold)
         return bound * x, bound * y, bound * c * moment
 
 

@@ -41,6 +41,15 @@ class Reads(unittest.TestCase):
         np.testing.assert_array_equal(found, np.transpose([np.ravel(alone), np.zeros(3)]))
         np.testing.assert_array_equal(table.wheel_rail((1e-3, 0.0), 0.0, semi_axes=(0.0, 0.0), normal_force=0.0, **given), np.zeros(3))
         self.assertTrue(np.isnan(table.wheel_rail((1e-3, 0.0), 0.0, semi_axes=(np.nan, 4.0), normal_force=82e3, **given)).all())
+        # Nor does the table need a circle or creepages of 0 for it.
+        table = cn.creep_force_table(xi=[0.1, 0.3], eta=[0.1, 0.2], phi=[0.1, 0.2], axis_ratio=[1.5, 2.0], elements=9)
+        modulus = 82e3 / 8.2e4 / 100.0
+        motion, given = ((0.2 * modulus, 0.1 * modulus), 0.1 * modulus / 10.0), {"semi_axes": (10.0 * 1.75**0.5, 10.0 / 1.75**0.5), **given, "hold": False}
+        given["coefficient"], given["shear_modulus"] = 1.0, 8.2e4
+        found = table.wheel_rail(*motion, normal_force=[82e3, 0.0], **given)
+        alone = table.wheel_rail(*motion, normal_force=82e3, **given)
+        self.assertGreater(abs(np.ravel(alone)).min(), 0.0)
+        np.testing.assert_array_equal(found, np.transpose([np.ravel(alone), np.zeros(3)]))
 
 
 class Errors(unittest.TestCase):

@@ -77,10 +77,11 @@ impl Coating {
         // B(s) of a thin layer: the substrate, its compression, and its shear.
         let is_sheared = transfer.substrate + transfer.of_mean * s < 2.0 / 3.0 * s.powi(3) || transfer.of_mean == 0.0;
         if self.ratio(b, scene)? < RIGID_RATIO && *t < THINNEST * longer && is_sheared {
+            let [thickness, dx, dy] = [*t, scene.grid.dx, scene.grid.dy].map(Number);
             return invalid(format!(
-                "{} is {t} on elements {} x {}; a layer that is almost incompressible, on a body that is rigid beside it, must be at least \
-                 {THINNEST} of the longer side: take smaller elements",
-                NAMES[b][0], scene.grid.dx, scene.grid.dy
+                "{} is {thickness} on elements {dx} x {dy}; a layer that is almost incompressible, on a body that is rigid beside it, must be at \
+                 least {THINNEST} of the longer side: take smaller elements",
+                NAMES[b][0]
             ));
         }
         Ok(())
@@ -92,8 +93,10 @@ impl Coating {
         match modulus / below {
             mu if mu <= STIFFEST => Ok(mu),
             _ => invalid(format!(
-                "{} is {modulus}, that of the body {below}; their ratio must be at most {STIFFEST:e}",
-                NAMES[b][1]
+                "{} is {}, that of the body {}; their ratio must be at most {STIFFEST:e}",
+                NAMES[b][1],
+                Number(modulus),
+                Number(below)
             )),
         }
     }

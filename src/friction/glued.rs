@@ -58,7 +58,8 @@ impl Solver {
         // By creepages alone small slips are solved beside any bounds that are alike.
         let are_alike = || {
             let inverses = self.largest(window, |i| inverse(request.bound(i)));
-            !(inverses * (NEGLIGIBLE_BOUND * largest) > 1.0)
+            // The unit of tractions may exceed the largest bound by a factor of sqrt(2).
+            !(inverses * (NEGLIGIBLE_BOUND * largest) > 0.5)
         };
         if request.friction.has_law() || !forces.any() && are_alike() {
             return None;

@@ -77,7 +77,8 @@ impl Solver {
         if request.is_cancelled {
             return Ok(Outcome::Cancelled);
         }
-        if friction.branch != Branch::Near {
+        // Where no bound falls there is one solution.
+        if friction.branch != Branch::Near && march.falls > 0.0 {
             return self.in_turns((request, began), (&mut march, true), watch, report);
         }
         let outcome = self.nearest(request, (&mut march, forces, forces.any()), watch, report)?;

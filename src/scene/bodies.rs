@@ -1,6 +1,6 @@
 //! The elasticity of the two bodies.
 
-use crate::error::{invalid, require, Error, Result};
+use crate::error::{invalid, require, Error, Number, Result};
 
 /// Shear modulus G and Poisson ratio nu of the two bodies; `G = +infinity`: rigid.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,7 +53,8 @@ impl Bodies {
             }
             if modulus <= 0.0 {
                 return invalid(format!(
-                    "shear_modulus[{i}] is {modulus}; it must be positive, or +infinity for a rigid body"
+                    "shear_modulus[{i}] is {}; it must be positive, or +infinity for a rigid body",
+                    Number(modulus)
                 ));
             }
             let name = ["poisson_ratio[0]", "poisson_ratio[1]"][i];

@@ -27,6 +27,7 @@
 mod curvature;
 mod ends;
 mod jumps;
+mod kink;
 
 pub use curvature::Curvature;
 pub use ends::{at_ends, beyond_ends, pressures_at_ends};
@@ -54,6 +55,8 @@ const JUMPS_FACTOR: f64 = 0.6;
 /// Pressure at ends of the surface over the peak above which the peak has no estimate: pressures at ends are singular and grow as the square root of
 /// the number of elements. With a quarter, the peak remains the largest pressure for the three doublings that a search predicts.
 const PEAK_OVER_ENDS: f64 = 0.25;
+/// The largest pressure at a kink of the surface has an estimate if the kink adds less in so many doublings of the elements.
+const KINK_DOUBLINGS: f64 = 4.0;
 /// Shortest chord with an estimate, in elements. Below it, contact is on single elements.
 pub(super) const LEAST_CHORD: f64 = 1.5;
 /// Relative error of a direction of one element without a period.
@@ -209,8 +212,11 @@ pub fn estimate(
     let measures = last.measures;
     let at_ends = parts.map_or(0.0, |parts| parts.highest_at_ends);
     let is_peak = at_ends <= PEAK_OVER_ENDS * measures.max_pressure;
-    let peak =
-        Curvature::of_peak(problem, finest, measures.max_pressure).filter(|bend| is_peak && *bend <= SINGULAR_PEAK);
+    let missed = |bend: f64| PEAK_ERROR * bend * (1.0 + (bend / SHARP_PEAK).powi(2)) * measures.max_pressure;
+    let settles = |at: usize, bend: f64| KINK_DOUBLINGS * kink::growth(problem, finest, at) <= missed(bend);
+    let peak = Curvature::of_peak(problem, finest, measures.max_pressure)
+        .filter(|(at, bend)| is_peak && *bend <= SINGULAR_PEAK && settles(*at, *bend))
+        .map(|(_, bend)| missed(bend));
     let pressure = parts.map(|_| PRESSURES_ERROR * curvature.pressure);
     let untrusted = untrusted(parts.is_some(), peak.is_some(), pressure.is_some());
     let residual = measures.certificate.residual;
@@ -231,10 +237,7 @@ pub fn estimate(
             true => parts.error(),
             false => (row.measures.found(finest.load) - (found - parts.likely)).abs() + parts.of_first_order(),
         });
-        let highest = peak.map(|bend| {
-            let missed = PEAK_ERROR * bend * (1.0 + (bend / SHARP_PEAK).powi(2)) * measures.max_pressure;
-            missed + (row.measures.max_pressure - measures.max_pressure).abs()
-        });
+        let highest = peak.map(|missed| missed + (row.measures.max_pressure - measures.max_pressure).abs());
         let correction = (row.measures.contact_area - row.measures.corrected_area).abs();
         let off = if is_last { correction } else { (row.measures.contact_area - measures.corrected_area).abs() };
         let hidden = |value: f64| residual * value.abs();

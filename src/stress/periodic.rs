@@ -30,7 +30,7 @@ use super::body::Body;
 use super::kernels::{is_odd, Asked, Kernels};
 use super::waves::{Aliased, Fading, NODES};
 use crate::blocks::LANES;
-use crate::error::{Error, Result};
+use crate::error::{Error, Number, Result};
 use crate::memory::zeros;
 
 /// Beyond this distance, in longer sides, images differ from the polynomial by `10!/10/r^10 = 1e-14`.
@@ -86,9 +86,11 @@ impl Waves {
         let (dx, dy) = body.element();
         if Waves::is_near(body.in_units(depth)) && dx.min(dy) < 1.0 / MOST_SLENDER {
             return Err(Error::Unsupported(format!(
-                "a depth is {depth} and elements are {} x {}: with a period, depths of less than the longer side need elements less \
-                 slender than 1:{MOST_SLENDER}",
-                body.grid.dx, body.grid.dy
+                "a depth is {} and elements are {} x {}: with a period, depths of less than the longer side need elements less slender than \
+                 1:{MOST_SLENDER}",
+                Number(depth),
+                Number(body.grid.dx),
+                Number(body.grid.dy)
             )));
         }
         Ok(())

@@ -2,8 +2,10 @@
 // line per check that fails, and the number of checks.
 #include "cxx_expect.hpp"
 
+#include <array>
 #include <cstdio>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace cn = contact_normal;
@@ -94,7 +96,7 @@ static void sizes()
     const std::vector<double> h = ball(), few(3);
     const double both[2] = {1.0, 1.0};
     refuses([&] { cn::flash_temperature(4, 4, 0.1, 0.1, h, both, both, both); }, "heat_flux has 768 values; it must have 16", "a flux of another size");
-    const std::vector<double> whole[2] = {h, h}, half[2] = {h, few};
+    const std::array<std::vector<double>, 2> whole = {h, h}, half = {h, few};
     refuses([&] { cn::frictional_wear(32, 24, 0.1, 0.1, half, whole, 1e-4); }, "traction has 3 values; it must have 768", "tractions of another size");
     refuses([&] { cn::frictional_wear(32, 24, 0.1, 0.1, whole, half, 1e-4); }, "slip has 3 values", "slip of another size");
     refuses([&] { cn::frictional_wear(32, 24, 0.1, 0.1, whole, whole, 1e-4, 1.0, 1.0, 0.0, few); }, "pressure has 3 values", "pressures of another size");
@@ -110,6 +112,10 @@ static void too_large()
     const cn::scene scene = cn::scene(GRID, STEEL).undeformed_distance(h).force(500.0), vast = cn::scene(TOO_LARGE, STEEL).force(1.0);
     refuses([&] { cn::quantities(scene, force, 2000000000); }, "coarser is 2000000000; it must lie in 0..12", "so many coarser grids");
     refuses([&] { cn::quantities(scene, force, -3); }, "coarser is -3", "fewer than none");
+    // The first of these is 0: together with the second it was taken for a null pointer and a count.
+    const auto of_both = cn::quantities(scene, {CONTACT_NORMAL_QUANTITY_FORCE, CONTACT_NORMAL_QUANTITY_MAX_PRESSURE}, 0);
+    expect(of_both.rows.size() == 2, "quantities in braces");
+    static_assert(!std::is_constructible_v<cn::borrowed<double>, int, std::size_t>, "no pointer");
     refuses([&] { cn::solve(vast); }, "a grid has at most", "a grid");
     refuses([&] { cn::solver handle(vast); }, "a grid has at most", "a handle for it");
     refuses([&] { cn::subsurface_stress(vast, 1, {cn::borrowed<double>(nullptr, 0)}, std::vector<double>{1.0}); }, "a grid has at most", "its stresses");

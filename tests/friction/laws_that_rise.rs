@@ -58,7 +58,7 @@ impl Scene<'_> {
     }
 
     /// What is left of the slip, relative to the displacements and the rigid slip, and of `|q| - g`, relative to the bounds at rest: rms.
-    fn left(&self, found: &Solution) -> [f64; 2] {
+    pub fn left(&self, found: &Solution) -> [f64; 2] {
         let Scene { grid, friction, .. } = self;
         let Coefficient::Uniform(soft) = friction.compliance else { panic!("one layer") };
         let (q, n, rolls) = (&found.traction, grid.len(), friction.motion != Motion::Shift);
@@ -71,13 +71,14 @@ impl Scene<'_> {
         let [mut slips, mut bounds, mut scale, mut rest] = [0.0; 4];
         for row in 0..grid.my {
             let mut upstream = None;
-            for i in (row * grid.mx..(row + 1) * grid.mx).rev() {
+            for i in (row * grid.mx..(row + 1) * grid.mx).rev().filter(|i| self.pressure[*i] > 0.0) {
                 let ahead = if is_steady && i + 1 < (row + 1) * grid.mx { q[i + 1] } else { [0.0; 2] };
                 let w = friction.rigid_slip_at(grid, i);
                 let before = |k: usize| if is_steady { there[i][k] + soft * ahead[k] } else { 0.0 };
                 let s = [0, 1].map(|k| w[k] + u[i][k] + soft * q[i][k] - before(k));
                 let slides = found.stick_slip[i] >= 2;
-                let fresh = (friction.coefficient.at(i), friction.layer.map_or(0.0, |layer| layer.yield_limit));
+                let mu = friction.coefficients_before.map_or_else(|| friction.coefficient.at(i), |before| before[i]);
+                let fresh = (mu, friction.layer.map_or(0.0, |layer| layer.yield_limit));
                 let had = if is_steady { upstream.unwrap_or(fresh) } else { fresh };
                 let (g, particle) = self.bound(i, if slides { s[0].hypot(s[1]) } else { 0.0 }, had);
                 upstream = Some(particle);

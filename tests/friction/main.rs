@@ -25,6 +25,7 @@ mod laws;
 mod laws_by_force;
 mod laws_steep;
 mod laws_that_rise;
+mod laws_that_rise_together;
 mod layer;
 mod linear_theory;
 mod long_elements;

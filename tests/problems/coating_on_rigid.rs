@@ -119,6 +119,22 @@ fn a_ball_on_a_thin_layer_on_a_rigid_body_has_the_force_of_the_closed_form() {
     }
 }
 
+/// Far thinner than an element a layer is springs, of which each element has its own: `p = M (delta - h)/t`. Elements displace each other by some t/d of that.
+#[test]
+fn a_layer_far_thinner_than_elements_is_springs() {
+    for (m, dy) in [(24, 1.0), (24, 10.0)] {
+        let (square, h) = ball(m, 0.55);
+        let grid = Grid { dy: dy * square.dy, ..square };
+        for t in [1e-6, 1e-9, 1e-12, 1e-15, 1e-18, 1e-40, 1e-90] {
+            let scene = Scene { coating: layer(t, 1.0, 0.3), ..Scene::new(grid, &h, RIGID, Load::Approach(0.08)) };
+            let (_, report) = run(&scene, &Options::default());
+            let springs = h.iter().map(|h| 2.0 * 0.7 / 0.4 / t * (0.08 - h).max(0.0)).sum::<f64>();
+            let off = report.measures.force / (springs * grid.element_area()) - 1.0;
+            assert!(off.abs() <= 2.0 * t / grid.dx + 1e-13, "{dy} {t:e}: {off:e}");
+        }
+    }
+}
+
 /// Incompressible: `a^2 = 4 R delta`, `p = 3 G (a^2 - r^2)^2/(32 R t^3)`; that limit is slow, so the distance to it has to halve with t.
 #[test]
 fn a_ball_on_a_thin_incompressible_layer_tends_to_the_closed_form() {

@@ -207,7 +207,8 @@ fn the_inverse_of_a_circulant_undoes_its_product() {
         row.iter_mut().enumerate().for_each(|(kx, value)| {
             let at_half = 2 * kx == grid.0 || 2 * ky as usize == grid.1;
             let [xx, yy, xy] = even(kx as f64, ky as f64);
-            *value = [xx + 1.0, yy + 1.0, if at_half { 0.0 } else { xy }][component];
+            let more = if (kx, ky) == (0, 0) { 1.0 } else { 0.0 };
+            *value = [xx + more, yy + more, if at_half { 0.0 } else { xy }][component];
         });
     };
     let given = (grid.0 / 2 + 1, grid.1 / 2 + 1);
@@ -222,7 +223,7 @@ fn the_inverse_of_a_circulant_undoes_its_product() {
     let q = [values(grid, 1), values(grid, 2)];
     let u = apply(&there, [&q[0], &q[1]]);
     let again = apply(&back, [&u[0], &u[1]]);
-    // The absolute values of its eigenvalues lie between 0.0028 and 206. The bound below is met, but not derived from them.
+    // Its eigenvalues lie between 0.75 and 47. So errors of the first product, relative to sums of 50, grow by 1/0.75, and those of the second add to them.
     for (q, again) in q.iter().flatten().zip(again.iter().flatten()) {
         assert!((q - again).abs() <= 200.0 * allowed::<f64>(grid), "{q} {again}");
     }

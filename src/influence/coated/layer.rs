@@ -11,7 +11,7 @@
 //!
 //! The integrand of T is smooth for any ratio of element size to thickness.
 
-use super::offsets::{first_beyond, first_of_half, COATED};
+use super::offsets::{first_beyond, first_of_half, first_of_substrate, COATED};
 use super::radial::{Base, Radial};
 use crate::error::Result;
 use crate::grid::Grid;
@@ -85,7 +85,7 @@ impl Layer<'_> {
         let base = if h < self.t { Base::Layer } else { Base::Substrate };
         let corners = Corners::new(self, base, (count(dx, by_corners, mx), count(dy, by_corners, my)))?;
         for ky in 0..count(dy, LEAST_DISTANCE * h, my) {
-            let first_of_substrate = first_beyond(self.t, &self.grid, ky);
+            let first_of_substrate = first_of_substrate(self.t, &self.grid, ky);
             for kx in first_of_half(&self.grid, ky)..first_beyond(LEAST_DISTANCE * h, &self.grid, ky) {
                 let (x, y) = (kx as f64 * dx, ky as f64 * dy);
                 let r = x.hypot(y);

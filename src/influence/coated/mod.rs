@@ -27,7 +27,7 @@ mod waves;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use offsets::{first_beyond, first_of_half, COATED};
+use offsets::{first_of_half, first_of_substrate, COATED};
 pub use periodic::CoatedPeriodic;
 pub use radial::{Base, Radial};
 pub use response::Response;
@@ -129,9 +129,9 @@ impl CoatedBody {
         }
     }
 
-    /// The first offset in a row whose distance is not below the thickness, or the row's end.
+    /// The first offset in a row with the base of the substrate, or the row's end.
     fn first_of_substrate(&self, grid: &Grid, ky: usize) -> usize {
-        self.layer.as_ref().map_or(grid.mx, |(t, _)| first_beyond(*t, grid, ky))
+        self.layer.as_ref().map_or(grid.mx, |(t, _)| first_of_substrate(*t, grid, ky))
     }
 
     /// `u/p` of a uniform pressure without lateral strain: the compression of the layer.

@@ -14,6 +14,16 @@ pub(super) fn first_of_half(grid: &Grid, ky: usize) -> usize {
     }
 }
 
+/// The first offset in x of row ky whose base is the substrate of a layer of thickness t: at distances from t on. On elements longer than t all have
+/// it, the loaded one, too: of a layer on a rigid body there only t times its compression is left, which is no difference of larger numbers.
+pub(super) fn first_of_substrate(t: f64, grid: &Grid, ky: usize) -> usize {
+    if t <= grid.dx.max(grid.dy) {
+        0
+    } else {
+        first_beyond(t, grid, ky)
+    }
+}
+
 /// The first offset in x of row ky whose distance is at least `distance`; the end of the row if there is none.
 pub(super) fn first_beyond(distance: f64, grid: &Grid, ky: usize) -> usize {
     let y = ky as f64 * grid.dy;

@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use super::offsets::COATED;
 use super::{waves, CoatedBody, HalfSpace, Kernel};
-use crate::error::{Error, Result};
+use crate::error::{Error, Number, Result};
 use crate::grid::Grid;
 use crate::influence::Periodic;
 use crate::memory::zeros;
@@ -98,9 +98,11 @@ impl CoatedPeriodic {
 fn check(body: &CoatedBody, grid: &Grid) -> Result<()> {
     match &body.layer {
         Some((t, _)) if t * LONGEST < grid.dx.max(grid.dy) => Err(Error::Unsupported(format!(
-            "a coating has thickness {t} on elements {} x {}; with a period it must be at least 1/{LONGEST} of the longer side: name a \
+            "a coating has thickness {} on elements {} x {}; with a period it must be at least 1/{LONGEST} of the longer side: name a \
              layer instead, which thin coatings are",
-            grid.dx, grid.dy
+            Number(*t),
+            Number(grid.dx),
+            Number(grid.dy)
         ))),
         _ => Ok(()),
     }

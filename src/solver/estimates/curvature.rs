@@ -76,8 +76,9 @@ impl Curvature {
         Curvature { jumps: at_jumps.uncertain, highest_at_jumps: at_jumps.highest, ..of_elements }
     }
 
-    /// The second differences of the pressures at their peak, over the peak: small if elements resolve it. None without pressures.
-    pub fn of_peak(problem: &Problem, state: &State, peak: f64) -> Option<f64> {
+    /// The element with the largest pressure `peak`, and the second differences of the pressures there, over the peak: small if elements resolve it.
+    /// None without pressures.
+    pub fn of_peak(problem: &Problem, state: &State, peak: f64) -> Option<(usize, f64)> {
         let at = state.p.iter().position(|p| *p == peak && peak > 0.0)?;
         let (mx, my) = (state.grid.mx, state.grid.my);
         let (x, y) = problem.coefficients.repeats(&state.grid);
@@ -87,7 +88,7 @@ impl Curvature {
         };
         let along = if mx > 1 { beside(neighbours(ix, mx, x).map(|n| n.map(|ix| iy * mx + ix))) } else { 0.0 };
         let across = if my > 1 { beside(neighbours(iy, my, y).map(|n| n.map(|iy| iy * mx + ix))) } else { 0.0 };
-        Some((along + across) / peak)
+        Some((at, (along + across) / peak))
     }
 }
 
