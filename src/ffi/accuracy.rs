@@ -6,7 +6,6 @@ use super::arguments::Regions;
 use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
 use super::floating_point::in_host_environment;
-use super::guard::guard;
 use super::options::{self, contact_normal_options};
 use super::outputs::Outputs;
 use super::report::contact_normal_report;
@@ -156,7 +155,7 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
         concluded?.conclude()
     };
     // SAFETY: as above.
-    guard(|| unsafe { recorded("contact_normal_solve_to_accuracy", options, arguments, solve) })
+    unsafe { recorded("contact_normal_solve_to_accuracy", options, arguments, solve) }
 }
 
 /// The warnings of a search: those of its last grid. The error is known where a target has one.

@@ -6,7 +6,6 @@ use super::accuracy::{self, contact_normal_accuracy};
 use super::arguments::{count, required, Regions};
 use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
-use super::guard::guard;
 use super::ledger::known;
 use super::options::{self, contact_normal_options, Translated};
 use super::scene::{contact_normal_scene, Named};
@@ -192,7 +191,7 @@ pub unsafe extern "C" fn contact_normal_cost_of_accuracy(
         })
     };
     // SAFETY: as above.
-    guard(|| unsafe { recorded("contact_normal_cost_of_accuracy", options, arguments, predict) })
+    unsafe { recorded("contact_normal_cost_of_accuracy", options, arguments, predict) }
 }
 
 /// Predicts, and hands over each row. The message of a cancelled list tells whether the surface callback cancelled.

@@ -3,7 +3,6 @@
 use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
 use super::fields::contact_normal_fields;
-use super::guard::guard;
 use super::options::contact_normal_options;
 use super::outputs::Buffers;
 use super::report::contact_normal_report;
@@ -43,5 +42,5 @@ pub unsafe extern "C" fn contact_normal_pull_off(
         watched(Watcher::of(&options), search)?.conclude()
     };
     // SAFETY: as above.
-    guard(|| unsafe { recorded("contact_normal_pull_off", options, arguments, solve) })
+    unsafe { recorded("contact_normal_pull_off", options, arguments, solve) }
 }

@@ -4,7 +4,6 @@ use super::arguments::Regions;
 use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
 use super::fields::contact_normal_fields;
-use super::guard::guard;
 use super::options::{self, contact_normal_options, Translated};
 use super::outputs::{Buffers, Outputs};
 use super::report::contact_normal_report;
@@ -52,7 +51,7 @@ pub unsafe extern "C" fn contact_normal_solve(
         watched(Watcher::of(&options), solve)?.conclude()
     };
     // SAFETY: as above.
-    guard(|| unsafe { recorded("contact_normal_solve", options, arguments, solve) })
+    unsafe { recorded("contact_normal_solve", options, arguments, solve) }
 }
 
 /// The arguments of a solve. The core checks the scene.

@@ -103,7 +103,7 @@ pub unsafe extern "C" fn contact_normal_solver_new(
         Ok(CONTACT_NORMAL_OK)
     };
     // SAFETY: as above.
-    guard(|| unsafe { recorded("contact_normal_solver_new", options, arguments, set_up) })
+    unsafe { recorded("contact_normal_solver_new", options, arguments, set_up) }
 }
 
 /// Solves for the undeformed distance, the load and the pressure limit of `scene`. Grid, bodies and their branches, layer, coatings, period
@@ -134,7 +134,7 @@ pub unsafe extern "C" fn contact_normal_solver_solve(
         .conclude()
     };
     // SAFETY: as above.
-    guard(|| unsafe { recorded("contact_normal_solver_solve", options, arguments, solve) })
+    unsafe { recorded("contact_normal_solver_solve", options, arguments, solve) }
 }
 
 /// Gives a solver other coefficients, and their scale, for all later solves. `influence`: those of the normal problem; `friction`: its

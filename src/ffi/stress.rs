@@ -3,7 +3,6 @@
 use super::arguments::{not_negative, optional, required, Regions};
 use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
-use super::guard::guard;
 use super::options::{self, contact_normal_options, Translated};
 use super::scene::{contact_normal_scene, Named};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
@@ -56,7 +55,7 @@ pub unsafe extern "C" fn contact_normal_subsurface_stress(
         }
     };
     // SAFETY: as above.
-    guard(|| unsafe { recorded("contact_normal_subsurface_stress", options, arguments, compute) })
+    unsafe { recorded("contact_normal_subsurface_stress", options, arguments, compute) }
 }
 
 /// Stresses as `contact_normal_subsurface_stress` has them, at n `points` `[n][3]`: x and y from the middle of the grid, so that
@@ -112,7 +111,7 @@ pub unsafe extern "C" fn contact_normal_stress_at_points(
         }
     };
     // SAFETY: as above.
-    guard(|| unsafe { recorded("contact_normal_stress_at_points", options, arguments, compute) })
+    unsafe { recorded("contact_normal_stress_at_points", options, arguments, compute) }
 }
 
 /// The first arguments of both exports.

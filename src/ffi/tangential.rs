@@ -8,7 +8,6 @@ use super::batch::NotOk;
 use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
 use super::friction_results::contact_normal_friction_results;
-use super::guard::guard;
 use super::options::{contact_normal_options, Translated};
 use super::outputs::{Buffers, Outputs};
 use super::report::contact_normal_report;
@@ -106,7 +105,7 @@ pub unsafe extern "C" fn contact_normal_solve_tangential(
         call.solve(solver, pressure, given)
     };
     // SAFETY: as above.
-    guard(|| unsafe { recorded("contact_normal_solve_tangential", options, arguments, solve) })
+    unsafe { recorded("contact_normal_solve_tangential", options, arguments, solve) }
 }
 
 /// The arguments that all entries share.
