@@ -26,6 +26,7 @@ pub(super) struct Inside {
 }
 
 impl Inside {
+    /// Begins a call.
     pub fn enter() -> Inside {
         Inside { _environment: DefaultEnvironment::enter(), nested: INSIDE.replace(true) }
     }

@@ -28,6 +28,7 @@ pub(super) struct Watcher {
 }
 
 impl Watcher {
+    /// Asks what the options of a call name.
     pub fn of(options: &Translated) -> Watcher {
         Watcher::asking(options, options.given)
     }
@@ -59,6 +60,7 @@ impl Watcher {
         }
     }
 
+    /// The reason to end a solve now, if there is one.
     fn reason_to_end(&self, progress: &Progress) -> Option<Reason> {
         let stop = self.given.stop.cast_mut();
         // SAFETY: not NULL: an integer of the caller's that another thread may set; only read here, and as an atomic.
