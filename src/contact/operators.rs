@@ -135,7 +135,7 @@ impl Operators {
         self.with_operator(reach, of, |operator, workspace| operator.apply_in_place(p, workspace))
     }
 
-    /// A product with the operator of a reach.
+    /// A product with the operator of a reach; none: with the operator for any p.
     fn with_operator(
         &mut self,
         reach: Option<Reach>,
@@ -144,20 +144,15 @@ impl Operators {
     ) -> Result<()> {
         // The workspace is taken out of `self` during the product.
         let mut workspace = self.workspace.take();
-        let operator = self.get(reach, of)?;
+        let operator = match reach {
+            Some(reach) => self.part(reach, of)?,
+            None => self.whole(of)?,
+        };
         let fitting = fit(&mut workspace, operator)?;
         multiply(operator, fitting);
         fitting.rest();
         self.workspace = workspace;
         Ok(())
-    }
-
-    /// The operator of a reach. `None` means the operator for any p.
-    fn get(&mut self, reach: Option<Reach>, of: MadeOf<'_>) -> Result<&Operator<f64>> {
-        match reach {
-            Some(reach) => self.part(reach, of),
-            None => Ok(&**self.whole(of)?),
-        }
     }
 
     /// The operator of a reach.

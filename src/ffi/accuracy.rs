@@ -6,7 +6,6 @@ use super::arguments::Regions;
 use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
 use super::floating_point::in_host_environment;
-use super::guard::guard;
 use super::options::{self, contact_normal_options};
 use super::outputs::Outputs;
 use super::report::contact_normal_report;
@@ -14,7 +13,7 @@ use super::scene::{contact_normal_scene, Named};
 use super::solver::contact_normal_solver;
 use super::status::{contact_normal_status, Refusal};
 use super::structs::{self, versioned};
-use super::watcher::{watched, Watcher};
+use super::watcher::Watcher;
 use crate::grid::Grid;
 use crate::scene::Scene;
 use crate::solver::{solve_to_accuracy, Accuracy, Options, Refinement, Solver, SurfaceCallback};
@@ -137,26 +136,26 @@ pub unsafe extern "C" fn contact_normal_solve_to_accuracy(
         let asked = translate(&given)?;
         let mut write = surface(&given, recording);
         let surface = write.as_mut().map(|write| write as SurfaceCallback<'_>);
-        let concluded = watched(Watcher::of(&translated), |progress| {
-            let outcome = solve_to_accuracy(&scene, &translated.options, &asked, surface, progress)?;
-            let found = outcome.solver.as_ref();
-            given.set_grid(found.map(Solver::grid));
-            (given.reached, given.seconds) = (outcome.reached.unwrap_or(-1.0), outcome.seconds);
-            let warnings = warnings(&outputs, &outcome, (&scene, &translated.options));
-            outputs.write_report(&outcome.report, found.map_or(&[], |found| found.ledger()), warnings)?;
-            // SAFETY: a struct that declares its size; NULL or room for a pointer.
-            unsafe {
-                structs::write(accuracy, &given)?;
-                if !solver.is_null() {
-                    solver.write(outcome.solver.map_or(std::ptr::null_mut(), contact_normal_solver::holding));
-                }
+        let watcher = Watcher::of(&translated);
+        let told = &mut watcher.told();
+        let outcome = solve_to_accuracy(&scene, &translated.options, &asked, surface, watcher.callback(told))?;
+        let found = outcome.solver.as_ref();
+        given.set_grid(found.map(Solver::grid));
+        (given.reached, given.seconds) = (outcome.reached.unwrap_or(-1.0), outcome.seconds);
+        let warnings = warnings(&outputs, &outcome, (&scene, &translated.options));
+        outputs.write_report(&outcome.report, found.map_or(&[], |found| found.ledger()), warnings)?;
+        // SAFETY: a struct that declares its size; NULL or room for a pointer.
+        unsafe {
+            structs::write(accuracy, &given)?;
+            if !solver.is_null() {
+                solver.write(outcome.solver.map_or(std::ptr::null_mut(), contact_normal_solver::holding));
             }
-            Ok(Conclusion { status: outcome.stop.into(), message: outcome.reason, warnings, ..Conclusion::default() })
-        });
-        concluded?.conclude()
+        }
+        let (status, message) = (outcome.stop.into(), outcome.reason);
+        watcher.conclusion(Conclusion { status, message, warnings, ..Conclusion::default() }).conclude()
     };
     // SAFETY: as above.
-    guard(|| unsafe { recorded("contact_normal_solve_to_accuracy", options, arguments, solve) })
+    unsafe { recorded("contact_normal_solve_to_accuracy", options, arguments, solve) }
 }
 
 /// The warnings of a search: those of its last grid. The error is known where a target has one.

@@ -19,7 +19,7 @@ use super::status::{
     contact_normal_status, Refusal, CONTACT_NORMAL_OK, CONTACT_NORMAL_OUT_OF_MEMORY, CONTACT_NORMAL_UNSUPPORTED,
 };
 use super::structs::Rows;
-use super::watcher::{watched, Watcher};
+use super::watcher::Watcher;
 use crate::memory::collected;
 use crate::solver::Solver;
 
@@ -170,9 +170,8 @@ impl Batch {
             // SAFETY: a scene that declares its size, by the conventions of the ABI.
             let scene = unsafe { Named::read(self.scenes.at(i, "scene")?)?.translate()? };
             Solver::check_problem(&scene)?;
-            watched(Watcher::without_callback(options), |progress| {
-                run(worker, (&scene, None), &options.options, progress, outputs, &mut Buffers::default())
-            })
+            let watcher = Watcher::without_callback(options);
+            run(worker, (&scene, None), &options.options, &watcher, outputs, &mut Buffers::default())
         };
         let mut outcome = solved().unwrap_or_else(Conclusion::from);
         outcome.message += &recording.finish(outcome.status, &outcome.message);

@@ -8,7 +8,7 @@ use super::quantities::{quantities_of, CONTACT_NORMAL_LACK_NONE};
 use super::scene::{contact_normal_scene, Named};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{versioned, Rows};
-use super::watcher::{watched, why, Watcher};
+use super::watcher::{why, Watcher};
 use crate::solver::{effects_bill, BillOptions, BillRow, Omission, Verdict};
 
 /// `omitted`: nothing.
@@ -176,12 +176,11 @@ unsafe fn bill(
         write_count(Omission::left_out_of(&scene, asked.pairs).len() * n);
         return Ok(CONTACT_NORMAL_OK);
     };
-    let concluded = watched(Watcher::of(&translated), |progress| {
-        let (stop, found) = effects_bill(&scene, &translated.options, &asked, &wanted, progress)?;
-        // SAFETY: the caller has room for so many rows.
-        found.iter().take(capacity).enumerate().for_each(|(i, row)| unsafe { to.write(i, &row.into()) });
-        write_count(found.len());
-        Ok(Conclusion::of(stop, || why(stop).into()))
-    });
-    concluded?.conclude()
+    let watcher = Watcher::of(&translated);
+    let told = &mut watcher.told();
+    let (stop, found) = effects_bill(&scene, &translated.options, &asked, &wanted, watcher.callback(told))?;
+    // SAFETY: the caller has room for so many rows.
+    found.iter().take(capacity).enumerate().for_each(|(i, row)| unsafe { to.write(i, &row.into()) });
+    write_count(found.len());
+    watcher.conclusion(Conclusion::of(stop, || why(stop).into())).conclude()
 }

@@ -1,6 +1,5 @@
-//! The one guard that every export goes through: floating-point environment, panics, status, message.
+//! The guard that every export goes through: floating-point environment, panics, status, message.
 
-use std::any::Any;
 use std::cell::Cell;
 use std::panic::{catch_unwind, AssertUnwindSafe};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,44 +14,55 @@ thread_local! {
 
 /// Runs `body` in the default floating-point environment; a refusal or a panic becomes a status and a message.
 pub fn guard(body: impl FnOnce() -> Result<contact_normal_status, Refusal>) -> contact_normal_status {
-    let _environment = DefaultEnvironment::enter();
-    let nested = INSIDE.replace(true);
-    let outcome = catch_unwind(AssertUnwindSafe(|| {
+    let _inside = Inside::enter();
+    status_of(caught(body))
+}
+
+/// A call of the library on this thread, in the default floating-point environment, until it is dropped.
+pub(super) struct Inside {
+    _environment: DefaultEnvironment,
+    /// Whether the call is made in a callback of another one.
+    nested: bool,
+}
+
+impl Inside {
+    /// Begins a call.
+    pub fn enter() -> Inside {
+        Inside { _environment: DefaultEnvironment::enter(), nested: INSIDE.replace(true) }
+    }
+}
+
+impl Drop for Inside {
+    fn drop(&mut self) {
+        INSIDE.set(self.nested);
+    }
+}
+
+/// The result of `work`; a panic becomes a refusal.
+pub(super) fn caught<T>(work: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
+    let ended = catch_unwind(AssertUnwindSafe(|| {
         silence_our_panics();
-        // For a status > 0 the body has set the message.
-        body().unwrap_or_else(|refusal| {
-            set_last_error(&refusal.message);
-            refusal.status
-        })
+        work()
     }));
-    let status = outcome.unwrap_or_else(|panic| {
-        // A message that cannot be formed is left out.
-        if let Err(another) = catch_unwind(AssertUnwindSafe(|| explain(&*panic))) {
-            std::mem::forget(another);
-        }
-        // Dropping a foreign payload might panic again.
+    ended.unwrap_or_else(|panic| {
+        let text = panic.downcast_ref::<&str>().copied().or(panic.downcast_ref::<String>().map(String::as_str));
+        let message = format!("internal error: {}; please report it", text.unwrap_or_default());
+        // Dropping the payload might panic again.
         std::mem::forget(panic);
-        CONTACT_NORMAL_INTERNAL
+        Err(Refusal::new(CONTACT_NORMAL_INTERNAL, message))
+    })
+}
+
+/// The status of a call. The message of a refusal becomes that of this thread; for a status > 0 the call has set it.
+pub(super) fn status_of(ended: Result<contact_normal_status, Refusal>) -> contact_normal_status {
+    let status = caught(|| {
+        ended.or_else(|refusal| {
+            set_last_error(&refusal.message);
+            Ok(refusal.status)
+        })
     });
-    INSIDE.set(nested);
-    status
-}
-
-fn explain(panic: &(dyn Any + Send)) {
-    set_last_error(&text_of(panic));
-}
-
-fn text_of(panic: &(dyn Any + Send)) -> String {
-    let text = panic.downcast_ref::<&str>().copied().or(panic.downcast_ref::<String>().map(String::as_str));
-    format!("internal error: {}; please report it", text.unwrap_or_default())
-}
-
-/// A panic that was caught before the guard.
-pub(super) fn refusal_of_panic(panic: Box<dyn Any + Send>) -> Refusal {
-    let refusal = Refusal::new(CONTACT_NORMAL_INTERNAL, text_of(&*panic));
-    // Dropping the payload might panic again.
-    std::mem::forget(panic);
-    refusal
+    // A message that cannot be formed is left out.
+    status.unwrap_or(CONTACT_NORMAL_INTERNAL)
 }
 
 /// The library prints nothing, so a panic that the guard will catch must not be announced on stderr. Panics elsewhere in the

@@ -6,13 +6,12 @@ use super::accuracy::{self, contact_normal_accuracy};
 use super::arguments::{count, required, Regions};
 use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
-use super::guard::guard;
 use super::ledger::known;
 use super::options::{self, contact_normal_options, Translated};
 use super::scene::{contact_normal_scene, Named};
 use super::status::{contact_normal_status, Refusal};
 use super::structs::{self, versioned, Rows, Versioned};
-use super::watcher::{watched, why, Watcher};
+use super::watcher::{why, Watcher};
 use crate::grid::Grid;
 use crate::scene::Scene;
 use crate::solver::{cost_of_accuracy, Accuracy, Obstacle, Price, Quantity, SurfaceCallback};
@@ -192,7 +191,7 @@ pub unsafe extern "C" fn contact_normal_cost_of_accuracy(
         })
     };
     // SAFETY: as above.
-    guard(|| unsafe { recorded("contact_normal_cost_of_accuracy", options, arguments, predict) })
+    unsafe { recorded("contact_normal_cost_of_accuracy", options, arguments, predict) }
 }
 
 /// Predicts, and hands over each row. The message of a cancelled list tells whether the surface callback cancelled.
@@ -212,13 +211,13 @@ fn predict_watched(
         }
     });
     let surface = surface.as_mut().map(|surface| surface as SurfaceCallback<'_>);
-    let concluded = watched(Watcher::without_callback(translated), |progress| {
-        let (stop, prices) = cost_of_accuracy(scene, &translated.options, asked, wanted, surface, progress)?;
-        prices.iter().enumerate().for_each(|(i, price)| write(i, price));
-        let who = if by_surface.get() { "the surface callback cancelled" } else { why(stop) };
-        Ok(Conclusion::of(stop, || who.into()))
-    });
-    concluded?.conclude()
+    let watcher = Watcher::without_callback(translated);
+    let told = &mut watcher.told();
+    let progress = watcher.callback(told);
+    let (stop, prices) = cost_of_accuracy(scene, &translated.options, asked, wanted, surface, progress)?;
+    prices.iter().enumerate().for_each(|(i, price)| write(i, price));
+    let who = if by_surface.get() { "the surface callback cancelled" } else { why(stop) };
+    watcher.conclusion(Conclusion::of(stop, || who.into())).conclude()
 }
 
 /// The quantity of a number; `name`: of the argument.

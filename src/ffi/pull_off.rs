@@ -3,15 +3,14 @@
 use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
 use super::fields::contact_normal_fields;
-use super::guard::guard;
 use super::options::contact_normal_options;
 use super::outputs::Buffers;
 use super::report::contact_normal_report;
 use super::scene::contact_normal_scene;
 use super::solve::{explain, Request};
 use super::status::contact_normal_status;
-use super::watcher::{watched, Watcher};
-use crate::solver::{ProgressCallback, Solver};
+use super::watcher::Watcher;
+use crate::solver::Solver;
 
 /// Finds the pull-off: from the load of the scene, which has adhesion, the approach goes down until nothing is in contact, and so it does from
 /// bodies that are pressed together. The result is the state of the least force on these ways (`report->normal.force`). A load to begin with that
@@ -32,16 +31,14 @@ pub unsafe extern "C" fn contact_normal_pull_off(
         recording.keep(&buffers.regions);
         let Request { scene, options, outputs } = request?;
         let (mut solver, _) = Solver::for_scene(&scene, &options.options)?;
-        let search = |progress: Option<ProgressCallback<'_>>| {
-            let (stop, report) = solver.pull_off(&scene, &options.options, progress)?;
-            let warnings = outputs.warnings(&scene, &options.options, &report, solver.state());
-            outputs.write_fields(&solver, false);
-            outputs.write_report(&report, solver.ledger(), warnings)?;
-            let message = || explain(stop, &report, options.options.method, Some(solver.state()));
-            Ok(Conclusion { warnings, ..Conclusion::of(stop, message) })
-        };
-        watched(Watcher::of(&options), search)?.conclude()
+        let watcher = Watcher::of(&options);
+        let (stop, report) = solver.pull_off(&scene, &options.options, watcher.callback(&mut watcher.told()))?;
+        let warnings = outputs.warnings(&scene, &options.options, &report, solver.state());
+        outputs.write_fields(&solver, false);
+        outputs.write_report(&report, solver.ledger(), warnings)?;
+        let message = || explain(stop, &report, options.options.method, Some(solver.state()));
+        watcher.conclusion(Conclusion { warnings, ..Conclusion::of(stop, message) }).conclude()
     };
     // SAFETY: as above.
-    guard(|| unsafe { recorded("contact_normal_pull_off", options, arguments, solve) })
+    unsafe { recorded("contact_normal_pull_off", options, arguments, solve) }
 }

@@ -8,7 +8,7 @@ use super::price_list::quantity_of;
 use super::scene::{contact_normal_scene, Named};
 use super::status::{contact_normal_status, Refusal};
 use super::structs::{versioned, Rows};
-use super::watcher::{watched, why, Watcher};
+use super::watcher::{why, Watcher};
 use crate::solver::{self, Lack, Quantity, QuantityRow};
 
 /// `lack`: nothing is missing.
@@ -126,16 +126,16 @@ pub unsafe extern "C" fn contact_normal_quantities(
         let wanted = quantities_of(wanted)?;
         // SAFETY: as above.
         let scene = unsafe { named.translate()? };
-        let concluded = watched(Watcher::of(&translated), |progress| {
-            let (stop, found) = solver::quantities(&scene, &translated.options, &wanted, coarser as usize, progress)?;
-            // SAFETY: the caller has room for all rows.
-            found.iter().enumerate().for_each(|(i, row)| unsafe { to.write(i, &row.into()) });
-            if !written.is_null() {
-                // SAFETY: not NULL: an integer of the caller's.
-                unsafe { written.write(found.len() as i32) };
-            }
-            Ok(Conclusion::of(stop, || why(stop).into()))
-        });
-        concluded?.conclude()
+        let watcher = Watcher::of(&translated);
+        let told = &mut watcher.told();
+        let progress = watcher.callback(told);
+        let (stop, found) = solver::quantities(&scene, &translated.options, &wanted, coarser as usize, progress)?;
+        // SAFETY: the caller has room for all rows.
+        found.iter().enumerate().for_each(|(i, row)| unsafe { to.write(i, &row.into()) });
+        if !written.is_null() {
+            // SAFETY: not NULL: an integer of the caller's.
+            unsafe { written.write(found.len() as i32) };
+        }
+        watcher.conclusion(Conclusion::of(stop, || why(stop).into())).conclude()
     })
 }

@@ -4,21 +4,18 @@ use super::arguments::Regions;
 use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
 use super::fields::contact_normal_fields;
-use super::guard::guard;
 use super::options::{self, contact_normal_options, Translated};
 use super::outputs::{Buffers, Outputs};
 use super::report::contact_normal_report;
 use super::scene::{contact_normal_scene, Named};
 use super::status::{contact_normal_status, Refusal};
 use super::warnings::advice_on_law;
-use super::watcher::{watched, why, Watcher};
+use super::watcher::{why, Watcher};
 use crate::contact::{Certificate, State};
 use crate::effects;
 use crate::error::Rounded;
 use crate::scene::{Load, Scene};
-use crate::solver::{
-    ActiveSet, Asked, InitialGuess, Method, Neglected, Options, Outcome, ProgressCallback, Report, Solver,
-};
+use crate::solver::{ActiveSet, Asked, InitialGuess, Method, Neglected, Options, Outcome, Report, Solver};
 
 /// Solves one scene. `options` NULL: the defaults; `fields`, `report` NULL: not wanted. Since 0.1.
 #[no_mangle]
@@ -38,21 +35,18 @@ pub unsafe extern "C" fn contact_normal_solve(
         let Request { mut scene, options, mut outputs } = request?;
         // Before the set-up: a refusal should not cost one.
         outputs.check_inputs(&options.options, scene.grid.len())?;
-        let solve = |mut progress: Option<ProgressCallback<'_>>| {
-            if options.given.neglect_below > 0.0 {
-                let target = options.given.neglect_below;
-                let told = progress.as_mut().map(|progress| &mut **progress as ProgressCallback<'_>);
-                let neglected = Neglected::of(&scene, &options.options, target, told)?;
-                scene = neglected.leave_out(&scene);
-                outputs.neglected = Some(neglected);
-            }
-            let (mut solver, lowest) = Solver::for_scene(&scene, &options.options)?;
-            run(&mut solver, (&scene, Some(lowest)), &options.options, progress, &outputs, &mut buffers)
-        };
-        watched(Watcher::of(&options), solve)?.conclude()
+        let watcher = Watcher::of(&options);
+        if options.given.neglect_below > 0.0 {
+            let (target, told) = (options.given.neglect_below, &mut watcher.told());
+            let neglected = Neglected::of(&scene, &options.options, target, watcher.callback(told))?;
+            scene = neglected.leave_out(&scene);
+            outputs.neglected = Some(neglected);
+        }
+        let (mut solver, lowest) = Solver::for_scene(&scene, &options.options)?;
+        run(&mut solver, (&scene, Some(lowest)), &options.options, &watcher, &outputs, &mut buffers)?.conclude()
     };
     // SAFETY: as above.
-    guard(|| unsafe { recorded("contact_normal_solve", options, arguments, solve) })
+    unsafe { recorded("contact_normal_solve", options, arguments, solve) }
 }
 
 /// The arguments of a solve. The core checks the scene.
@@ -141,7 +135,7 @@ pub(super) fn run(
     solver: &mut Solver,
     (scene, lowest): (&Scene<'_>, Option<f64>),
     options: &Options,
-    progress: Option<ProgressCallback<'_>>,
+    watcher: &Watcher,
     outputs: &Outputs,
     buffers: &mut Buffers,
 ) -> Result<Conclusion, Refusal> {
@@ -149,6 +143,8 @@ pub(super) fn run(
     outputs.check_inputs(options, n)?;
     let options = &outputs.options(options);
     let guess = outputs.guess(options, n, buffers)?;
+    let told = &mut watcher.told();
+    let progress = watcher.callback(told);
     let (stop, report) = match lowest {
         Some(lowest) => solver.solve_checked(Asked { guess, ..Asked::new((scene, lowest), options) }, progress)?,
         None => solver.solve(scene, options, guess, progress)?,
@@ -157,7 +153,7 @@ pub(super) fn run(
     outputs.write_fields(solver, options.active_set == ActiveSet::Fixed);
     outputs.write_report(&report, solver.ledger(), warnings)?;
     let message = || explain(stop, &report, options.method, Some(solver.state())) + &lack_of_force(scene.load, &report);
-    Ok(Conclusion { warnings, ..Conclusion::of(stop, message) })
+    Ok(watcher.conclusion(Conclusion { warnings, ..Conclusion::of(stop, message) }))
 }
 
 pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Option<&State>) -> String {

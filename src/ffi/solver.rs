@@ -17,7 +17,7 @@ use super::scene::contact_normal_scene;
 use super::solve::{run, Needs, Request};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{self, versioned, Versioned};
-use super::watcher::{watched, Watcher};
+use super::watcher::Watcher;
 use crate::solver::Solver;
 
 /// Operators, transforms, grids and workspace, built once. One thread at a time may use a handle; different handles may be
@@ -103,7 +103,7 @@ pub unsafe extern "C" fn contact_normal_solver_new(
         Ok(CONTACT_NORMAL_OK)
     };
     // SAFETY: as above.
-    guard(|| unsafe { recorded("contact_normal_solver_new", options, arguments, set_up) })
+    unsafe { recorded("contact_normal_solver_new", options, arguments, set_up) }
 }
 
 /// Solves for the undeformed distance, the load and the pressure limit of `scene`. Grid, bodies and their branches, layer, coatings, period
@@ -128,13 +128,10 @@ pub unsafe extern "C" fn contact_normal_solver_solve(
         let request = unsafe { Request::read(scene, options, fields, report, buffers, |_, _| Ok(())) };
         recording.keep_with(&buffers.regions, solver, request.as_ref().is_ok_and(Request::goes_on));
         let Request { scene, options, outputs } = request?;
-        watched(Watcher::of(&options), |progress| {
-            run(solver, (&scene, None), &options.options, progress, &outputs, buffers)
-        })?
-        .conclude()
+        run(solver, (&scene, None), &options.options, &Watcher::of(&options), &outputs, buffers)?.conclude()
     };
     // SAFETY: as above.
-    guard(|| unsafe { recorded("contact_normal_solver_solve", options, arguments, solve) })
+    unsafe { recorded("contact_normal_solver_solve", options, arguments, solve) }
 }
 
 /// Gives a solver other coefficients, and their scale, for all later solves. `influence`: those of the normal problem; `friction`: its

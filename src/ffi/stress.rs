@@ -3,13 +3,12 @@
 use super::arguments::{not_negative, optional, required, Regions};
 use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
-use super::guard::guard;
 use super::options::{self, contact_normal_options, Translated};
 use super::scene::{contact_normal_scene, Named};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::stress_outputs::{contact_normal_stress_maximum, contact_normal_stress_outputs};
 use super::structs;
-use super::watcher::{watched, why, Watcher};
+use super::watcher::{why, Watcher};
 use crate::memory::zeros;
 use crate::progress::{Outcome, ProgressCallback};
 use crate::scene::Scene;
@@ -51,12 +50,14 @@ pub unsafe extern "C" fn contact_normal_subsurface_stress(
             let (scene, options) = load.read()?;
             let (body, loads) = load.on(&scene)?;
             let depths = if n == 0 { &[] } else { required("depths", depths, n)? };
-            watched(Watcher::of(&options), |progress| run(&body, &loads, depths, (&options, &written), progress))?
-                .conclude()
+            let watcher = Watcher::of(&options);
+            let told = &mut watcher.told();
+            let found = run(&body, &loads, depths, (&options, &written), watcher.callback(told))?;
+            watcher.conclusion(found).conclude()
         }
     };
     // SAFETY: as above.
-    guard(|| unsafe { recorded("contact_normal_subsurface_stress", options, arguments, compute) })
+    unsafe { recorded("contact_normal_subsurface_stress", options, arguments, compute) }
 }
 
 /// Stresses as `contact_normal_subsurface_stress` has them, at n `points` `[n][3]`: x and y from the middle of the grid, so that
@@ -100,19 +101,18 @@ pub unsafe extern "C" fn contact_normal_stress_at_points(
             }
             let mut found = zeros(n, "the stresses of points")?;
             let threads = Threads::new(options.options.threads)?;
-            let concluded = watched(Watcher::of(&options), |progress| {
-                let all = stress::stress_at_points(&body, &loads, points, &threads, progress, &mut found)?;
-                let outcome = if all { Outcome::Converged } else { Outcome::Cancelled };
-                Ok(Conclusion::of(outcome, || {
-                    format!("{}; stresses of points that were not reached are 0", why(outcome))
-                }))
-            })?;
+            let watcher = Watcher::of(&options);
+            let told = &mut watcher.told();
+            let progress = watcher.callback(told);
+            let all = stress::stress_at_points(&body, &loads, points, &threads, progress, &mut found)?;
+            let outcome = if all { Outcome::Converged } else { Outcome::Cancelled };
             std::ptr::copy_nonoverlapping(found.as_ptr(), stress.cast::<[f64; 6]>(), n);
-            concluded.conclude()
+            let message = || format!("{}; stresses of points that were not reached are 0", why(outcome));
+            watcher.conclusion(Conclusion::of(outcome, message)).conclude()
         }
     };
     // SAFETY: as above.
-    guard(|| unsafe { recorded("contact_normal_stress_at_points", options, arguments, compute) })
+    unsafe { recorded("contact_normal_stress_at_points", options, arguments, compute) }
 }
 
 /// The first arguments of both exports.

@@ -8,7 +8,6 @@ use super::batch::NotOk;
 use super::conclusion::Conclusion;
 use super::dump::{given, recorded, Recording};
 use super::friction_results::contact_normal_friction_results;
-use super::guard::guard;
 use super::options::{contact_normal_options, Translated};
 use super::outputs::{Buffers, Outputs};
 use super::report::contact_normal_report;
@@ -17,7 +16,7 @@ use super::solve::{explain, Needs, Request};
 use super::solver::{contact_normal_solver, Held, InUse};
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs;
-use super::watcher::{watched, Watcher};
+use super::watcher::Watcher;
 use crate::friction::Solution;
 use crate::memory::collected;
 use crate::scene::Scene;
@@ -106,7 +105,7 @@ pub unsafe extern "C" fn contact_normal_solve_tangential(
         call.solve(solver, pressure, given)
     };
     // SAFETY: as above.
-    guard(|| unsafe { recorded("contact_normal_solve_tangential", options, arguments, solve) })
+    unsafe { recorded("contact_normal_solve_tangential", options, arguments, solve) }
 }
 
 /// The arguments that all entries share.
@@ -138,25 +137,26 @@ impl Call<'_> {
     /// One problem, on all threads.
     fn one(&self, solver: Option<&mut Solver>, pressure: &[f64]) -> Result<contact_normal_status, Refusal> {
         let (scene, options) = (self.scene, &self.options.options);
-        let concluded = watched(Watcher::of(self.options), |progress| {
-            let one_shot;
-            let (stop, solution, report) = match solver {
-                Some(solver) => solver.solve_tangential(scene, pressure, options, progress)?,
-                None => {
-                    let (stop, solution, report) = solve_tangential(scene, pressure, options, progress)?;
-                    one_shot = solution;
-                    (stop, &one_shot, report)
-                }
-            };
-            if let Some(found) = report.friction {
-                // SAFETY: the caller's arrays were checked; there is one entry.
-                unsafe { self.wanted.write(0, Ok((stop, found)), Some(solution)) };
+        let watcher = Watcher::of(self.options);
+        let told = &mut watcher.told();
+        let progress = watcher.callback(told);
+        let one_shot;
+        let (stop, solution, report) = match solver {
+            Some(solver) => solver.solve_tangential(scene, pressure, options, progress)?,
+            None => {
+                let (stop, solution, report) = solve_tangential(scene, pressure, options, progress)?;
+                one_shot = solution;
+                (stop, &one_shot, report)
             }
-            let warnings = self.outputs.warnings_of_law(report.friction.map(|found| found.law_slope));
-            self.outputs.write_report(&report, &[], warnings)?;
-            Ok(Conclusion { warnings, ..Conclusion::of(stop, || explain(stop, &report, options.method, None)) })
-        });
-        self.concluded(concluded?, 1)
+        };
+        if let Some(found) = report.friction {
+            // SAFETY: the caller's arrays were checked; there is one entry.
+            unsafe { self.wanted.write(0, Ok((stop, found)), Some(solution)) };
+        }
+        let warnings = self.outputs.warnings_of_law(report.friction.map(|found| found.law_slope));
+        self.outputs.write_report(&report, &[], warnings)?;
+        let concluded = Conclusion::of(stop, || explain(stop, &report, options.method, None));
+        self.concluded(watcher.conclusion(Conclusion { warnings, ..concluded }), 1)
     }
 
     /// A table, each entry on one thread.
@@ -167,34 +167,35 @@ impl Call<'_> {
         table: &[Entry],
     ) -> Result<contact_normal_status, Refusal> {
         let options = &self.options.options;
-        let concluded = watched(Watcher::of(self.options), |progress| {
-            let (not_ok, steepest) = (Mutex::new(NotOk::default()), Mutex::new(0.0f64));
-            let found = |i: usize, ended: Ended, solution: Option<&Solution>| {
-                if let Ok((_, report)) = &ended {
-                    let mut most = steepest.lock().unwrap_or_else(PoisonError::into_inner);
-                    *most = most.max(report.law_slope);
-                }
-                // SAFETY: each entry is solved by one thread; the caller's arrays were checked.
-                let outcome = unsafe { self.wanted.write(i, ended, solution) };
-                not_ok.lock().unwrap_or_else(PoisonError::into_inner).note(i, outcome);
-            };
-            let (stop, normal) = match (solver, pressure) {
-                (Some(solver), Some(pressure)) => {
-                    solver.solve_friction_batch(self.scene, pressure, table, options, progress, found)?
-                }
-                _ => solve_friction_batch(self.scene, pressure, table, options, progress, found)?,
-            };
-            let steepest = steepest.into_inner().unwrap_or_else(PoisonError::into_inner);
-            let warnings = self.outputs.warnings_of_law(Some(steepest));
-            self.outputs.write_report(&normal, &[], warnings)?;
-            let entries = not_ok.into_inner().unwrap_or_else(PoisonError::into_inner).outcome("entry");
-            if entries.status != CONTACT_NORMAL_OK || stop == Outcome::Converged {
-                return Ok(Conclusion { warnings, ..entries });
+        let watcher = Watcher::of(self.options);
+        let told = &mut watcher.told();
+        let progress = watcher.callback(told);
+        let (not_ok, steepest) = (Mutex::new(NotOk::default()), Mutex::new(0.0f64));
+        let found = |i: usize, ended: Ended, solution: Option<&Solution>| {
+            if let Ok((_, report)) = &ended {
+                let mut most = steepest.lock().unwrap_or_else(PoisonError::into_inner);
+                *most = most.max(report.law_slope);
             }
-            let message = || format!("the normal problem: {}", explain(stop, &normal, options.method, None));
-            Ok(Conclusion { warnings, ..Conclusion::of(stop, message) })
-        });
-        self.concluded(concluded?, table.len())
+            // SAFETY: each entry is solved by one thread; the caller's arrays were checked.
+            let outcome = unsafe { self.wanted.write(i, ended, solution) };
+            not_ok.lock().unwrap_or_else(PoisonError::into_inner).note(i, outcome);
+        };
+        let (stop, normal) = match (solver, pressure) {
+            (Some(solver), Some(pressure)) => {
+                solver.solve_friction_batch(self.scene, pressure, table, options, progress, found)?
+            }
+            _ => solve_friction_batch(self.scene, pressure, table, options, progress, found)?,
+        };
+        let steepest = steepest.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let warnings = self.outputs.warnings_of_law(Some(steepest));
+        self.outputs.write_report(&normal, &[], warnings)?;
+        let entries = not_ok.into_inner().unwrap_or_else(PoisonError::into_inner).outcome("entry");
+        let message = || format!("the normal problem: {}", explain(stop, &normal, options.method, None));
+        let concluded = match entries.status {
+            CONTACT_NORMAL_OK if stop != Outcome::Converged => Conclusion::of(stop, message),
+            _ => entries,
+        };
+        self.concluded(watcher.conclusion(Conclusion { warnings, ..concluded }), table.len())
     }
 
     /// Ends a call of n entries. An entry that `max_seconds` ended gets the status of the call.

@@ -137,18 +137,19 @@ impl<T: Real> Operator<T> {
     /// `u = A p`.
     pub fn apply(&self, p: &[T], u: &mut [T], workspace: &mut Workspace<T>) {
         let Workspace { memory, masked, .. } = workspace;
-        match &self.coupling {
-            None => self.without_coupling(p, u, memory),
-            Some(coupling) => apply_coupled(coupling, p, u, masked, |p, u| self.without_coupling(p, u, memory)),
+        if let Some(patches) = &self.coupling {
+            return self.apply_coupled(patches, p, u, (memory, masked));
         }
+        self.product.forward(p, memory);
+        self.back(p, u, memory);
     }
 
     /// `p = A p`.
     pub fn apply_in_place(&self, p: &mut [T], workspace: &mut Workspace<T>) {
-        let Workspace { memory, masked, given, .. } = workspace;
-        if let Some(coupling) = &self.coupling {
+        let Workspace { memory, masked, given } = workspace;
+        if let Some(patches) = &self.coupling {
             given.copy_from_slice(p);
-            return apply_coupled(coupling, given, p, masked, |p, u| self.without_coupling(p, u, memory));
+            return self.apply_coupled(patches, given, p, (memory, masked));
         }
         self.product.forward(p, memory);
         if self.diagonal.is_empty() {
@@ -161,8 +162,8 @@ impl<T: Real> Operator<T> {
         });
     }
 
-    fn without_coupling(&self, p: &[T], u: &mut [T], memory: &mut Memory<T>) {
-        self.product.forward(p, memory);
+    /// The second half of a product, with the diagonal.
+    fn back(&self, p: &[T], u: &mut [T], memory: &mut Memory<T>) {
         if self.diagonal.is_empty() {
             return self.product.back(u, memory);
         }
@@ -171,6 +172,32 @@ impl<T: Real> Operator<T> {
                 *u = *value + *d * *p;
             }
         });
+    }
+
+    /// `u = A p` with patches, by one product without factors for each patch,
+    ///
+    /// ```text
+    /// u on patch a = A (sum over patches b of F(a, b) p on b)
+    /// ```
+    fn apply_coupled(
+        &self,
+        patches: &Patches,
+        p: &[T],
+        u: &mut [T],
+        (memory, [scaled, product]): (&mut Memory<T>, &mut [Vec<T>; 2]),
+    ) {
+        for a in 0..patches.count {
+            for ((scaled, p), &b) in scaled.iter_mut().zip(p).zip(&*patches.patch) {
+                *scaled = *p * T::of(patches.factor(a, b.into()));
+            }
+            self.product.forward(scaled, memory);
+            self.back(scaled, product, memory);
+            for ((u, product), &b) in u.iter_mut().zip(&*product).zip(&*patches.patch) {
+                if usize::from(b) == a {
+                    *u = *product;
+                }
+            }
+        }
     }
 }
 
@@ -219,32 +246,5 @@ impl<T: Real> Workspace<T> {
     {
         let needs = operators.clone().map(Operator::needs).fold(Needs::default(), Needs::max);
         Workspace::of(needs, operators.map(Operator::threads).next().unwrap_or(&Threads::One))
-    }
-}
-
-/// `u = A p` with patches, by one product for each patch:
-///
-/// ```text
-/// u on patch a = A (sum over patches b of F(a, b) p on b)
-/// ```
-///
-/// `multiply(p, u)` is the product without the factors F.
-fn apply_coupled<T: Real>(
-    patches: &Patches,
-    p: &[T],
-    u: &mut [T],
-    [scaled, product]: &mut [Vec<T>; 2],
-    mut multiply: impl FnMut(&[T], &mut [T]),
-) {
-    for a in 0..patches.count {
-        for ((scaled, p), &b) in scaled.iter_mut().zip(p).zip(&*patches.patch) {
-            *scaled = *p * T::of(patches.factor(a, b.into()));
-        }
-        multiply(scaled, product);
-        for ((u, product), &b) in u.iter_mut().zip(&*product).zip(&*patches.patch) {
-            if usize::from(b) == a {
-                *u = *product;
-            }
-        }
     }
 }

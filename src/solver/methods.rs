@@ -82,29 +82,46 @@ impl Methods {
                     return Ok(Outcome::Converged);
                 }
             }
+            let mut cycles = None;
+            let method: &mut dyn Step<S> = match stage {
+                Stage::Direct => match &mut self.direct {
+                    Some(direct) => direct,
+                    None => continue,
+                },
+                Stage::ProjectedCg => &mut self.projected_cg,
+                Stage::VCycles | Stage::FullMultigrid => {
+                    cycles.insert(set_up_multigrid(&mut self.multigrid, task.problem, self.shape)?.cycles(0))
+                }
+                Stage::ProjectedNewton => &mut self.projected_newton,
+                Stage::Norm => &mut self.norm,
+            };
             let is_last = Some(&stage) == stages.last();
             task.goal.max_cycles = if is_last { most } else { share::<S>(stage, task.monitor.count.cycles, most) };
-            outcome = self.run(stage, task)?;
+            outcome = iterate(method, task, &mut self.best)?;
             let has_more = task.monitor.count.cycles < most && !is_last;
             task.goal.max_cycles = most;
             if outcome != Outcome::Stagnated && !(outcome == Outcome::IterationLimit && has_more) {
                 break;
             }
         }
-        if outcome != Outcome::Converged {
-            let indefinite =
-                outcome == Outcome::Stagnated && task.problem.given && has_negative_energy(task.problem, task.state)?;
-            let survey = self.best.restore(task)?;
-            if indefinite {
-                return Err(Error::NotPositiveDefinite(
-                    "influence coefficients: p'Ap is negative for some pressures p; it must be positive".into(),
-                ));
-            }
-            if outcome != Outcome::Cancelled && !task.goal.by_update() && is_solved(task, survey) {
-                return Ok(Outcome::Converged);
-            }
+        match outcome {
+            Outcome::Converged => Ok(outcome),
+            _ => self.end_with_best(outcome, task),
         }
-        Ok(outcome)
+    }
+
+    /// Ends a solve without convergence with the best iterate, whose fresh product may satisfy the goal.
+    fn end_with_best<S: AdmissibleSet>(&mut self, outcome: Outcome, task: &mut Task<'_, '_, S>) -> Result<Outcome> {
+        let indefinite =
+            outcome == Outcome::Stagnated && task.problem.given && has_negative_energy(task.problem, task.state)?;
+        let survey = self.best.restore(task)?;
+        if indefinite {
+            return Err(Error::NotPositiveDefinite(
+                "influence coefficients: p'Ap is negative for some pressures p; it must be positive".into(),
+            ));
+        }
+        let is_met = outcome != Outcome::Cancelled && !task.goal.by_update() && is_solved(task, survey);
+        Ok(if is_met { Outcome::Converged } else { outcome })
     }
 
     /// Judges the start.
@@ -195,23 +212,6 @@ impl Methods {
             task.goal.tolerance = task.goal.tolerance.max(enough);
         }
         Ok(Beginning::GoOn)
-    }
-
-    fn run<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) -> Result<Outcome> {
-        let mut cycles = None;
-        let method: &mut dyn Step<S> = match stage {
-            Stage::Direct => match &mut self.direct {
-                Some(direct) => direct,
-                None => return Ok(Outcome::Stagnated),
-            },
-            Stage::ProjectedCg => &mut self.projected_cg,
-            Stage::VCycles | Stage::FullMultigrid => {
-                cycles.insert(set_up_multigrid(&mut self.multigrid, task.problem, self.shape)?.cycles(0))
-            }
-            Stage::ProjectedNewton => &mut self.projected_newton,
-            Stage::Norm => &mut self.norm,
-        };
-        iterate(method, task, &mut self.best)
     }
 
     /// Releases the operator, which gets other coefficients. Call [`renew`](Self::renew) before the next solve.

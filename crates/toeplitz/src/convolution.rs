@@ -13,6 +13,7 @@ use crate::block::{for_each_block, room_of_column, BLOCK};
 use crate::coefficients::Coefficients;
 use crate::coefficients::Even;
 use crate::fft::any_length::ColumnTransform;
+use crate::fft::column_pass::{Blocks, EvenSymbol};
 use crate::fft::lane_columns::LaneColumns;
 use crate::fft::lane_rows::LaneRows;
 use crate::lengths::have_stages;
@@ -81,7 +82,8 @@ impl<T: Real> Convolution<T> {
                 let next = piece.next_block(block.as_ptr(), b, length, in_x.blocks());
                 piece.block = b;
                 let (block, columns) = (&mut block[..rows.my * BLOCK], in_x.bins() - b * BLOCK);
-                even.multiply((block, columns), next, loaded.clone(), symbol, &mut piece.columns);
+                let blocks = Blocks { blocks: [block], columns, next: [next], loaded: [loaded.clone()] };
+                even.multiply(blocks, &EvenSymbol(symbol), &mut piece.columns, T::by_even);
             });
         }
         let Memory { bins, pieces, .. } = memory;

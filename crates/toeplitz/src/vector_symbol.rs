@@ -93,12 +93,12 @@ impl<T: Real> VectorSymbol<T> {
     pub fn multiply(&self, columns: &LaneColumns<T>, block: usize, of: Blocks<'_, T, 2>, memory: &mut [Complex<T>]) {
         let planes = [0, 1, 2].map(|plane| self.plane(block, plane));
         match (self.is_even, self.factors_of(block)) {
-            (true, None) => columns.multiply_all(of, &RealMatrix(planes), memory, T::by_matrix),
+            (true, None) => columns.multiply(of, &RealMatrix(planes), memory, T::by_matrix),
             (true, Some(factors)) => {
                 let displaced = Displaced { of: RealMatrix(planes), factors };
-                columns.multiply_all(of, &displaced, memory, T::by_matrix_displaced);
+                columns.multiply(of, &displaced, memory, T::by_matrix_displaced);
             }
-            (false, _) => columns.multiply_all(of, &ComplexMatrix(planes), memory, T::by_complex_matrix),
+            (false, _) => columns.multiply(of, &ComplexMatrix(planes), memory, T::by_complex_matrix),
         }
     }
 
@@ -112,12 +112,12 @@ impl<T: Real> VectorSymbol<T> {
     ) {
         let plane = self.plane(block, component);
         match (self.is_even, self.factors_of(block)) {
-            (true, None) => columns.multiply_all(of, &EvenSymbol(plane), memory, T::by_even),
+            (true, None) => columns.multiply(of, &EvenSymbol(plane), memory, T::by_even),
             (true, Some(factors)) => {
                 let displaced = Displaced { of: EvenSymbol(plane), factors };
-                columns.multiply_all(of, &displaced, memory, T::by_even_displaced);
+                columns.multiply(of, &displaced, memory, T::by_even_displaced);
             }
-            (false, _) => columns.multiply_all(of, &ComplexSymbol(plane), memory, T::by_complex),
+            (false, _) => columns.multiply(of, &ComplexSymbol(plane), memory, T::by_complex),
         }
     }
 

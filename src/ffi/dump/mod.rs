@@ -14,10 +14,9 @@ pub use read::Dump;
 pub use replay::Replayed;
 
 use std::ffi::CStr;
-use std::panic::{catch_unwind, AssertUnwindSafe};
 
 use super::arguments::Regions;
-use super::guard::refusal_of_panic;
+use super::guard::{caught, status_of, Inside};
 use super::influence::{contact_normal_influence, contact_normal_row_tables};
 use super::options::{contact_normal_cycle, contact_normal_options};
 use super::status::{
@@ -127,6 +126,25 @@ impl<'a> Recording<'a> {
         }
     }
 
+    /// Writes the file of a call that failed. Its message tells where it is.
+    fn end(&mut self, ended: Result<contact_normal_status, Refusal>) -> Result<contact_normal_status, Refusal> {
+        match ended {
+            Ok(status) if self.is_wanted() && status != CONTACT_NORMAL_OK => {
+                let message = last_error_text();
+                let more = self.finish(status, &message);
+                if !more.is_empty() {
+                    set_last_error(&(message + &more));
+                }
+                Ok(status)
+            }
+            Ok(status) => Ok(status),
+            Err(mut refusal) => {
+                refusal.message += &self.finish(refusal.status, &refusal.message);
+                Err(refusal)
+            }
+        }
+    }
+
     /// Writes the file of a call that failed. Returns a sentence for its message; none if no file is wanted.
     pub fn finish(&mut self, status: contact_normal_status, message: &str) -> String {
         let Some(path) = self.path.take() else { return String::new() };
@@ -206,31 +224,16 @@ impl Image {
     }
 }
 
-/// Runs a call whose `arguments` may be written: see [`Recording`]. A panic is a failure, too.
+/// The [guard](super::guard::guard) of a call whose `arguments` may be written: see [`Recording`]. A panic is a failure, too.
 pub(super) unsafe fn recorded(
     call: &'static str,
     options: *const contact_normal_options,
     arguments: &[(&'static str, Argument)],
     body: impl FnOnce(&mut Recording<'_>) -> Result<contact_normal_status, Refusal>,
-) -> Result<contact_normal_status, Refusal> {
+) -> contact_normal_status {
+    let _inside = Inside::enter();
     // SAFETY: by the caller.
     let mut recording = unsafe { Recording::new(call, options, arguments) };
-    if !recording.is_wanted() {
-        return body(&mut recording);
-    }
-    let ended = catch_unwind(AssertUnwindSafe(|| body(&mut recording)));
-    match ended.unwrap_or_else(|panic| Err(refusal_of_panic(panic))) {
-        Ok(status) => {
-            let message = if status == CONTACT_NORMAL_OK { String::new() } else { last_error_text() };
-            let more = recording.finish(status, &message);
-            if !more.is_empty() {
-                set_last_error(&(message + &more));
-            }
-            Ok(status)
-        }
-        Err(mut refusal) => {
-            refusal.message += &recording.finish(refusal.status, &refusal.message);
-            Err(refusal)
-        }
-    }
+    let ended = caught(|| body(&mut recording));
+    status_of(caught(|| recording.end(ended)))
 }

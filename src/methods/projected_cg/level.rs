@@ -1,9 +1,10 @@
 //! The iteration of one grid, on the window around its contact area.
 
-use super::inner::{in_either, Inner, MadeOf};
+use super::inner::{in_either, Inner};
 use super::part::{enter, leave};
 use super::punches::Punches;
 use super::scaling::Scaling;
+use super::vectors::Inputs;
 use super::window;
 use crate::contact::{AdmissibleSet, Freshness, State};
 use crate::error::Result;
@@ -187,12 +188,12 @@ impl Level {
         // The operator of a window depends on its size only.
         let whole = whole.filter(|_| window.is_full(&self.grid));
         let threads = &self.threads.suited_to(grid.len());
-        let made_of = MadeOf { coefficients: &self.coefficients, factor: units.influence, whole, threads };
+        let inputs = Inputs { coefficients: &self.coefficients, factor: units.influence, whole, threads };
         let serves = |windowed: &Windowed| windowed.window.grid(&self.grid) == grid;
         let windowed = match self.windowed.take().filter(serves) {
             Some(mut windowed) => {
                 if !windowed.is_current {
-                    windowed.inner.renew(made_of, &grid)?;
+                    windowed.inner.renew(inputs, &grid)?;
                 }
                 windowed.part = windowed.part.filter(|part| part.grid == grid);
                 let part = match (part, windowed.part) {
@@ -202,7 +203,7 @@ impl Level {
                 Windowed { window, units, inner: windowed.inner, part, is_current: true }
             }
             None => {
-                let inner = Inner::new(made_of, &grid, self.precision)?;
+                let inner = Inner::new(inputs, &grid, self.precision)?;
                 let part = part.map(|new| new()).transpose()?;
                 Windowed { window, inner, units, part, is_current: true }
             }

@@ -39,6 +39,15 @@ impl WithLimits {
     }
 }
 
+/// The inputs of an iteration: the coefficients, a factor on them, and the operator in double precision if the window is the whole grid.
+#[derive(Clone, Copy)]
+pub(super) struct Inputs<'a> {
+    pub(super) coefficients: &'a Coefficients,
+    pub(super) factor: f64,
+    pub(super) whole: Option<&'a Operator<f64>>,
+    pub(super) threads: &'a Threads,
+}
+
 /// The name of this memory in messages.
 const DIRECTIONS: &str = "search directions";
 
@@ -68,13 +77,13 @@ pub struct Iteration<T: Real> {
 }
 
 impl<T: Real> Iteration<T> {
-    /// Sets up the iteration on `grid`; `operator` is that of the coefficients times `factor`. Without M if the circulant is not positive.
-    pub fn new(
-        operator: Operator<T>,
-        (coefficients, factor): (&Coefficients, f64),
-        grid: &Grid,
-        threads: &Threads,
-    ) -> Result<Iteration<T>> {
+    /// Sets up the iteration on `grid`. Without M if the circulant is not positive.
+    pub(super) fn new(inputs: Inputs<'_>, grid: &Grid) -> Result<Iteration<T>> {
+        let Inputs { coefficients, factor, whole, threads } = inputs;
+        let operator = match whole {
+            Some(whole) => whole.in_precision(factor)?,
+            None => Operator::scaled(coefficients, factor, grid, threads)?,
+        };
         let preconditioner = preconditioner(coefficients, factor, grid, threads)?;
         let n = grid.len();
         let threads = &threads.for_a_pass(n);
@@ -103,15 +112,9 @@ impl<T: Real> Iteration<T> {
         })
     }
 
-    /// Takes other coefficients, times `factor`, on the same grid, and keeps plans and memory if they fit. `whole` is the operator in double
-    /// precision, if known. After an error the iteration must not be used.
-    pub fn renew(
-        &mut self,
-        coefficients: &Coefficients,
-        factor: f64,
-        grid: &Grid,
-        whole: Option<&Operator<f64>>,
-    ) -> Result<()> {
+    /// Takes other coefficients on the same grid, and keeps plans and memory if they fit. After an error the iteration must not be used.
+    pub(super) fn renew(&mut self, inputs: Inputs<'_>, grid: &Grid) -> Result<()> {
+        let Inputs { coefficients, factor, whole, .. } = inputs;
         let before = self.needs();
         match whole {
             Some(whole) => self.operator = whole.in_precision(factor)?,

@@ -9,13 +9,12 @@
 //!
 //! With several components S is a matrix, and all components are done together ([`Factor`](crate::fft::column_pass::Factor)).
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use par::Result;
 
 use crate::block::BLOCK;
-use crate::fft::column_pass::{Blocks, EvenSymbol, Multiply};
+use crate::fft::column_pass::{Blocks, Multiply};
 use crate::fft::even_plan::EvenPlan;
 use crate::passes::Real;
 use crate::real::Complex;
@@ -56,23 +55,8 @@ impl<T: Real> LaneColumns<T> {
         }
     }
 
-    /// Multiplies the first `columns` columns of a block, with values in the rows `loaded`, by its symbol. `next` is the place of the next block, of
-    /// as many rows.
-    pub fn multiply(
-        &self,
-        (block, columns): (&mut [Complex<T>], usize),
-        next: *const Complex<T>,
-        loaded: Range<usize>,
-        symbol: &[T],
-        memory: &mut [Complex<T>],
-    ) {
-        assert_eq!(symbol.len(), BLOCK * self.kept_rows());
-        let blocks = Blocks { blocks: [block], columns, next: [next], loaded: [loaded] };
-        self.multiply_all(blocks, &EvenSymbol(symbol), memory, T::by_even);
-    }
-
-    /// [`LaneColumns::multiply`] for K components, by the pass of the factor.
-    pub fn multiply_all<F, const K: usize>(
+    /// Multiplies the columns of a block of K components by their symbol `factor`, by its pass.
+    pub fn multiply<F, const K: usize>(
         &self,
         blocks: Blocks<'_, T, K>,
         factor: &F,

@@ -1,8 +1,11 @@
 //! Columns in lanes, by another implementation's transforms, rustfft's.
 
+use std::ops::Range;
+
 use super::*;
 use crate::block::{parts, parts_mut};
 use crate::fft::any_length::ColumnTransform;
+use crate::fft::column_pass::EvenSymbol;
 use crate::fft::stages::before_a_line;
 
 /// A matrix of `my` rows of which some are loaded, its columns multiplied by an even spectrum: the largest error relative to the
@@ -40,8 +43,9 @@ fn error<T: Real>(length: usize, width: usize, my: usize, loaded: Range<usize>) 
     }
     let memory = vec![Complex::new(T::nan(), T::nan()); BLOCK * length + before_a_line::<T>()];
     for (b, (block, spectrum)) in blocks.chunks_exact_mut(my * BLOCK).zip(spectrum.chunks_exact(kept)).enumerate() {
-        let next = block.as_ptr();
-        even.multiply((block, width - b * BLOCK), next, loaded.clone(), spectrum, &mut memory.clone());
+        let (columns, next) = (width - b * BLOCK, [block.as_ptr()]);
+        let blocks = Blocks { blocks: [block], columns, next, loaded: [loaded.clone()] };
+        even.multiply(blocks, &EvenSymbol(spectrum), &mut memory.clone(), T::by_even);
     }
     let (mut difference, mut largest) = (0.0, 0.0);
     for y in 0..my {
@@ -95,8 +99,9 @@ fn by<T: Real>(arch: pulp::Arch, length: usize) -> Vec<Complex<T>> {
     even.write(&mut spectrum, BLOCK, |column, bin| value(column * 31 + bin * 17));
     let mut block: Vec<_> = (0..my * BLOCK).map(|i| Complex::new(value(2 * i), value(2 * i + 1))).collect();
     let mut memory = vec![Complex::default(); BLOCK * length + before_a_line::<T>()];
-    let next = block.as_ptr();
-    even.multiply((&mut block, BLOCK), next, 0..my, &spectrum, &mut memory);
+    let (next, loaded) = ([block.as_ptr()], 0..my);
+    let blocks = Blocks { blocks: [&mut block[..]], columns: BLOCK, next, loaded: [loaded] };
+    even.multiply(blocks, &EvenSymbol(&spectrum), &mut memory, T::by_even);
     block
 }
 
