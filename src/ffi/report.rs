@@ -40,8 +40,8 @@ pub struct contact_normal_report_normal {
     /// The tolerance that the status speaks of: that of the options, or a larger one where `error_ratio` allows it, or the one that
     /// an accuracy asks for.
     pub tolerance: f64,
-    /// `||h - approach + A p|| / ||h - approach||`, 2-norms over C, with a fresh product in double precision. With adhesion relative to what
-    /// the pressures of C displace their own elements by, where that is more, and at least what a force that is given lacks, relative to the sum of |p|.
+    /// `||h - approach + A p|| / ||h - approach||`, 2-norms over C, with a fresh product in double precision. With adhesion relative to what the
+    /// pressures of C displace their own elements by, where that is more, and at least what a force that is given lacks, relative to the sum of |p|.
     pub residual: f64,
     /// Largest -e outside C, or e of an element at its pressure limit; 0 if there is none: a length.
     pub violation: f64,
@@ -79,8 +79,8 @@ pub struct contact_normal_report_tangential {
     pub sensitivities: [f64; 9],
     /// rms over C of the last change of q; 0 where the iteration ended where it began.
     pub update: f64,
-    /// The largest slope by which bounds fall with the slip, memory included, times an element's influence on itself; 0 without a law. From .5 on the iteration
-    /// may end as STAGNATED, from 1 on a single element has several solutions.
+    /// The largest slope by which bounds fall with the slip, memory included, times an element's influence on itself; 0 without a law. From .5 on the
+    /// iteration may end as STAGNATED, from 1 on a single element has several solutions.
     pub law_slope: f64,
     /// Room for later versions: 0.
     pub reserved: [f64; 6],

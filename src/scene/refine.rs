@@ -10,8 +10,8 @@ const ROUGH: f64 = 0.25;
 
 /// The values `h` of `grid` at the centres of a grid with `parts` elements for each one in x and in y.
 ///
-/// By cubics through the four nearest centres in each direction (with fewer elements, the polynomial through all): exact for cubics,
-/// and without additional roughness. In a direction that repeats itself the nearest centres may lie across its end. Beyond the outermost
+/// By cubics between the centres in each direction (with fewer than five elements, the polynomial through all): exact for cubics, without
+/// additional roughness, and with slopes that do not jump. Where they jump, largest pressures are infinite. In a direction that repeats itself the nearest centres may lie across its end. Beyond the outermost
 /// centres a rough surface keeps the last height: a cubic would leave the range of heights.
 ///
 /// Parts of an element without surface (+infinity) have none. If one of the four has none, the line through the element and its neighbour
@@ -85,8 +85,23 @@ impl Part {
         let mut weights = self.weights;
         if first != wanted || count < 4 {
             lagrange((i as isize - first) as f64 + self.offset, &mut weights[..count]);
+            return weights[..count].iter().enumerate().map(|(k, weight)| weight * node(k)).sum();
         }
-        weights[..count].iter().enumerate().map(|(k, weight)| weight * node(k)).sum()
+        let nodes = [0, 1, 2, 3].map(node);
+        let beyond = [first - 1, first + 4].map(|place| along.place(place).map_or(f64::INFINITY, &value));
+        weights.iter().zip(nodes).map(|(weight, node)| weight * node).sum::<f64>() + self.smoothed(nodes, beyond)
+    }
+
+    /// The change of the cubic through four centres to one whose slopes at the inner two are those of five centres each, the same as of the cubic on
+    /// their other side. The slopes differ by a twelfth of the fourth differences. `beyond`: the centres before and behind the four.
+    fn smoothed(&self, nodes: [f64; 4], beyond: [f64; 2]) -> f64 {
+        let fourth = |outer: f64, [a, b, c, d]: [f64; 4]| outer - 4.0 * a + 6.0 * b - 4.0 * c + d;
+        let [n0, n1, n2, n3] = nodes;
+        let changes = [fourth(beyond[0], nodes), fourth(beyond[1], [n3, n2, n1, n0])];
+        // Beside a hole or the border there are four centres.
+        let [before, behind] = changes.map(|change| if change.is_finite() { change / 12.0 } else { 0.0 });
+        let s = if self.offset < 0.0 { 1.0 + self.offset } else { self.offset };
+        s * (1.0 - s) * ((1.0 - s) * before + s * behind)
     }
 
     /// Whether it lies outside the centres of the first and the last element.

@@ -49,6 +49,7 @@ mod heat;
 mod hertz;
 mod influence;
 mod kinds_of_surfaces;
+mod kinks;
 mod layer;
 mod limits_that_differ;
 mod line_contact;

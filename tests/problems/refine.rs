@@ -40,6 +40,24 @@ fn polynomials_up_to_the_number_of_centres_are_reproduced() {
     assert!(error(7, 5, 4, |x, _| x.powi(4)) > 1e-5);
 }
 
+/// Slopes that jump have infinite pressures. The largest steps of the slopes, over those of a parabola's, fall with the parts of an element.
+#[test]
+fn slopes_do_not_jump_between_the_elements() {
+    let grid = Grid::new(12, 1, 1.0, 1.0).expect("a grid");
+    let h: Vec<f64> = (0..12).map(|i| (0.754_877_666_246_69 * (i * i) as f64).fract()).collect();
+    let largest = |parts: usize, period: bool| {
+        let fine = refine(&h, &grid, (parts, 1), (period, false)).expect("memory");
+        // Beyond the outermost centres a surface without a period keeps its height.
+        let inside = &fine[parts / 2..fine.len() - parts / 2];
+        let bends = inside.windows(3).map(|h| (h[0] - 2.0 * h[1] + h[2]).abs());
+        bends.fold(0.0, f64::max) * parts as f64
+    };
+    for period in [false, true] {
+        let [coarse, fine] = [16, 64].map(|parts| largest(parts, period));
+        assert!((fine / coarse - 0.25).abs() < 0.02, "{coarse} {fine}");
+    }
+}
+
 #[test]
 fn parts_of_a_hole_are_holes_and_lines_go_on_beside_it() {
     let grid = Grid::new(8, 7, 1.0, 1.0).expect("a grid");

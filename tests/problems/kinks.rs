@@ -1,0 +1,70 @@
+//! Kinks of the surface within the contact: largest pressures grow as a logarithm of the number of elements, and have no error.
+
+use contact_normal::grid::Grid;
+use contact_normal::scene::{Bodies, Load, Period, Scene};
+use contact_normal::solver::{solve, solve_to_accuracy, Accuracy, Options, Outcome, Quantity};
+
+const SIDE: f64 = 6.0;
+
+/// A parabola with a slope that jumps by 2 `slope` at x = 0.2, on mx x my elements.
+fn bent(mx: usize, my: usize, slope: f64) -> (Grid, Vec<f64>) {
+    let grid = Grid::new(mx, my, SIDE / mx as f64, SIDE / my as f64).expect("a grid");
+    let place = |k: usize, m: usize| if m == 1 { 0.0 } else { (k as f64 + 0.5) * SIDE / m as f64 - 0.5 * SIDE };
+    let of = |i: usize| {
+        let (x, y) = (place(i % mx, mx), place(i / mx, my));
+        0.05 * (x * x + y * y) + slope * (x - 0.2).abs()
+    };
+    (grid, (0..grid.len()).map(of).collect())
+}
+
+/// Whether the largest pressure has an error, and the pressure.
+fn largest((grid, h): &(Grid, Vec<f64>), is_line: bool) -> (bool, f64) {
+    let bodies = Bodies::same(1.0, 0.3);
+    let period = is_line.then_some(Period { x: true, y: true });
+    let scene = Scene { period, ..Scene::new(*grid, h, bodies, Load::Force(0.4)) };
+    let (_, outcome, report) = solve(&scene, &Options { estimates: true, ..Options::default() }).expect("a scene");
+    assert_eq!(outcome, Outcome::Converged);
+    (report.error.max_pressure.is_some(), report.measures.max_pressure)
+}
+
+/// The pressure below the kink lies on that of the parabola, which elements resolve: its error was a fifth of the growth on four times as many.
+#[test]
+fn the_largest_pressure_at_a_kink_has_no_error() {
+    // On coarse grids a weak kink grows by less than the error of the parabola.
+    for (slope, coarsest) in [(0.005, 128), (0.02, 32)] {
+        for m in [coarsest, 2 * coarsest] {
+            let (is_known, pressure) = largest(&bent(m, m, slope), false);
+            assert!(!is_known, "{slope} on {m} x {m}: {pressure}");
+        }
+        for m in [2 * coarsest, 8 * coarsest] {
+            let (is_known, pressure) = largest(&bent(m, 1, slope), true);
+            assert!(!is_known, "{slope} on {m}: {pressure}");
+        }
+    }
+    // Grows by E* s ln 2/(2 pi) each time that the elements are halved.
+    let growth = |m: usize| largest(&bent(4 * m, 1, 0.02), true).1 - largest(&bent(m, 1, 0.02), true).1;
+    let modulus = 1.0 / (1.0 - 0.3);
+    let expected = 2.0 * modulus * 0.04 * 2.0_f64.ln() / (2.0 * std::f64::consts::PI);
+    assert!((growth(1024) / expected - 1.0).abs() < 0.3, "{} for {expected}", growth(1024));
+    // Without a kink, and with one that opens: an edge between two facets carries nothing.
+    for slope in [0.0, -0.03] {
+        for m in [64, 128] {
+            assert!(largest(&bent(m, m, slope), false).0, "{slope} on {m} x {m}");
+        }
+    }
+}
+
+/// A search for the largest pressure does not end with an error that it does not have.
+#[test]
+fn a_search_at_a_kink_does_not_say_that_it_is_done() {
+    let (grid, h) = bent(32, 32, 0.02);
+    let scene = Scene::new(grid, &h, Bodies::same(1.0, 0.3), Load::Force(0.4));
+    let accuracy = Accuracy { max_elements: 40_000, ..Accuracy::new(0.05).with(Quantity::MaxPressure, 0.1) };
+    let mut surface = |grid: &Grid, out: &mut [f64]| {
+        out.copy_from_slice(&bent(grid.mx, grid.my, 0.02).1);
+        false
+    };
+    let found = solve_to_accuracy(&scene, &Options::default(), &accuracy, Some(&mut surface), None).expect("a scene");
+    assert_ne!(found.stop, Outcome::Converged, "{}", found.reason);
+    assert!(found.reason.contains("for max_pressure is not known"), "{}", found.reason);
+}
