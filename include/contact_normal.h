@@ -307,7 +307,7 @@
 #define CONTACT_NORMAL_FRICTION_LAW_EXPONENTIAL 3
 
 /*
- `friction->branch`: the solution near the start of the iteration; where that finds none, LOW.
+ `friction->branch`: the solution near the start of the iteration; where that finds none, the start is turns of LOW.
  */
 #define CONTACT_NORMAL_FRICTION_BRANCH_NEAR 0
 
@@ -1707,8 +1707,8 @@ typedef struct contact_normal_report_normal {
    */
   double tolerance;
   /*
-   `||h - approach + A p|| / ||h - approach||`, 2-norms over C, with a fresh product in double precision. With adhesion relative to what
-   the pressures of C displace their own elements by, where that is more, and at least what a force that is given lacks, relative to the sum of |p|.
+   `||h - approach + A p|| / ||h - approach||`, 2-norms over C, with a fresh product in double precision. With adhesion relative to what the
+   pressures of C displace their own elements by, where that is more, and at least what a force that is given lacks, relative to the sum of |p|.
    */
   double residual;
   /*
@@ -1774,8 +1774,8 @@ typedef struct contact_normal_report_tangential {
    */
   double update;
   /*
-   The largest slope by which bounds fall with the slip, memory included, times an element's influence on itself; 0 without a law. From .5 on the iteration
-   may end as STAGNATED, from 1 on a single element has several solutions.
+   The largest slope by which bounds fall with the slip, memory included, times an element's influence on itself; 0 without a law. From .5 on the
+   iteration may end as STAGNATED, from 1 on a single element has several solutions.
    */
   double law_slope;
   /*
@@ -2167,7 +2167,7 @@ typedef struct contact_normal_accuracy {
    */
   double target;
   /*
-   Seconds for all grids together; 0 (default): no limit.
+   Seconds for all grids together; 0 (default): no limit. No limit ends the first grid.
    */
   double max_seconds;
   /*
@@ -2179,8 +2179,8 @@ typedef struct contact_normal_accuracy {
    */
   int64_t max_elements;
   /*
-   Where the undeformed distance of each grid comes from; NULL (default): that of the scene, refined by cubics through
-   the four nearest centres in each direction.
+   Where the undeformed distance of each grid comes from; NULL (default): that of the scene, refined by cubics between
+   the centres, without jumps of the slope.
    */
   contact_normal_surface_callback surface;
   /*
