@@ -1,5 +1,6 @@
 //! The last step, and a copy of it, to restore it if a step of several solves fails.
 
+use super::law::Particle;
 use super::plane::Vector;
 use super::solution::Solution;
 use super::solver::Solver;
@@ -25,6 +26,14 @@ impl Solver {
     /// The last step, from which another one may continue.
     pub fn last_step(&self) -> Option<&Solution> {
         self.has_solution.then_some(&self.solution)
+    }
+
+    /// Takes a step of another solver on the same grid.
+    pub fn take_step(&mut self, traction: Vec<Vector>, particles: Vec<Particle>) -> Result<()> {
+        self.make_room()?;
+        self.solution = Solution { traction, particles, ..std::mem::take(&mut self.solution) };
+        self.has_solution = true;
+        Ok(())
     }
 
     /// Notes a solve without friction: its result has no tractions. Those of the last step stay, for one that continues.

@@ -80,6 +80,7 @@ use crate::threads::Threads;
 use beside::Beside;
 use compressible::Compressible;
 use methods::Methods;
+pub(crate) use tangential::StepBefore;
 use tangential::Tangent;
 
 /// Operators and grids for many solves on one grid and one pair of bodies. Only one thread at a time may use a solver.
@@ -105,6 +106,8 @@ pub struct Solver {
     beside: Beside,
     /// The tangential problem of scenes with friction.
     friction: Option<Box<Tangent>>,
+    /// A step of another solver, before the first one of this.
+    step_before: Option<StepBefore>,
     /// The solver of scenes with adhesion.
     adhesion: Option<Box<crate::adhesion::Solver>>,
     /// The split of the total pressures of the last result, if its scene had adhesion.
@@ -203,6 +206,7 @@ impl Solver {
             ledger: Vec::new(),
             beside: Beside::default(),
             friction: None,
+            step_before: None,
             adhesion: None,
             split: None,
             remembered: Vec::new(),

@@ -17,7 +17,10 @@ impl Solver {
         for (k, name, Continues { from, .. }) in effects::continuing(scene) {
             let has_step = match name {
                 // Tractions of `solve_tangential` have no normal problem.
-                Friction::NAME => self.friction.as_ref().is_some_and(|tangent| tangent.last_step().is_some()),
+                Friction::NAME => match &self.friction {
+                    Some(tangent) => tangent.last_step().is_some(),
+                    None => self.step_before.is_some(),
+                },
                 _ => {
                     let history = &self.beside.histories[k];
                     (self.has_result || history.is_given) && history.has_step()

@@ -4,7 +4,7 @@ use super::unlike_bodies::UnlikeBodies;
 use super::{Options, Outcome};
 use crate::error::{Error, Result};
 use crate::friction::{
-    Compliance, CrossTables, Last, Report, Request, Solution, Solver, Source, Start, Tangential, Vector,
+    Compliance, CrossTables, Last, Particle, Report, Request, Solution, Solver, Source, Start, Tangential, Vector,
 };
 use crate::grid::Grid;
 use crate::operator::Precision;
@@ -22,6 +22,13 @@ pub struct Tangent {
     solver: Solver,
     /// The coupling of unlike bodies.
     unlike: Option<UnlikeBodies>,
+}
+
+/// A step of another solver, from which friction may continue.
+pub(crate) struct StepBefore {
+    pub traction: Vec<Vector>,
+    pub particles: Vec<Particle>,
+    pub pressure: Vec<f64>,
 }
 
 /// The constant inputs of turns of the normal and the tangential problem.
@@ -104,6 +111,17 @@ impl Tangent {
     /// Whether both bodies have a coating.
     pub fn is_of_coated_bodies(&self) -> bool {
         self.solver.tangential().is_coated()
+    }
+
+    /// The pressures of the last step, of unlike bodies.
+    pub fn pressures_before(&self) -> Option<&[f64]> {
+        self.last_step().and(self.unlike.as_ref()).map(UnlikeBodies::last_pressure)
+    }
+
+    /// Takes a step of another solver.
+    pub fn take_step(&mut self, step: StepBefore) -> Result<()> {
+        self.keep_pressures(&step.pressure);
+        self.solver.take_step(step.traction, step.particles)
     }
 
     /// Notes a solve without friction.

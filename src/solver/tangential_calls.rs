@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::adhesive_friction::bounded;
-use super::tangential::{Tangent, Turn};
+use super::tangential::{StepBefore, Tangent, Turn};
 use super::{InitialGuess, Measures, Options, Outcome, ProgressCallback, Report, Solver};
 use crate::error::{self, invalid, Result};
 use crate::friction::{Solution, Start};
@@ -19,8 +19,22 @@ impl Solver {
     pub(super) fn take_tangent(&mut self, scene: &Scene<'_>, options: &Options) -> Result<Box<Tangent>> {
         match self.friction.take() {
             Some(tangent) => Ok(tangent),
-            None => Ok(Box::new(Tangent::new(scene, options, &self.problem.threads)?)),
+            None => {
+                let mut tangent = Box::new(Tangent::new(scene, options, &self.problem.threads)?);
+                self.step_before.take().map_or(Ok(()), |step| tangent.take_step(step))?;
+                Ok(tangent)
+            }
         }
+    }
+
+    /// Takes a step of another solver on the same grid, from which friction may continue, into one without friction so far.
+    pub(crate) fn take_step(&mut self, step: StepBefore) {
+        self.step_before = Some(step);
+    }
+
+    /// The pressures of the last step with friction, of unlike bodies.
+    pub(crate) fn pressures_before(&self) -> Option<&[f64]> {
+        self.friction.as_deref().and_then(Tangent::pressures_before)
     }
 
     /// [`solve_tangential`] with this solver's coefficients and the tractions of the step before.

@@ -61,6 +61,11 @@ impl UnlikeBodies {
         std::mem::swap(&mut self.last_pressure, &mut other.last_pressure);
     }
 
+    /// The pressures of the last step.
+    pub fn last_pressure(&self) -> &[f64] {
+        &self.last_pressure
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let there = self.there.as_ref().map_or(0, |(_, there)| there.bytes());

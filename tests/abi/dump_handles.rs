@@ -59,6 +59,40 @@ fn a_handle_goes_on_from_what_is_in_the_file() {
     }
 }
 
+/// A step of unlike bodies goes on from the pressures before: the sideways displacements are by the change of the pressures.
+#[test]
+fn a_step_of_unlike_bodies_goes_on_from_the_pressures_in_the_file() {
+    let path = folder("unlike").join("failed");
+    let path_text = text(&path);
+    let mut scene = Everything::new("friction");
+    (scene.scene.shear_modulus[1], scene.scene.poisson_ratio[1]) = (1e4, 0.1);
+    let mut handle = null_mut();
+    // SAFETY (all): structs with the arrays that they declare, and a handle of this test.
+    unsafe {
+        assert_eq!(contact_normal_solver_new(&scene.scene, &scene.options, &mut handle), CONTACT_NORMAL_OK);
+        let solve = |scene: &Everything| {
+            let mut report = contact_normal_report::default();
+            (contact_normal_solver_solve(handle, &scene.scene, &scene.options, null_mut(), &mut report), report)
+        };
+        assert_eq!(solve(&scene).0, CONTACT_NORMAL_OK, "{}", last_error());
+        scene.friction.previous_traction = [null(); 2];
+        scene.friction.continues = 1;
+        (scene.options.max_cycles, scene.options.tolerance) = (400, 1e-18);
+        scene.options.dump = path_text.as_ptr();
+        scene.scene.approach *= 1.5;
+        let (status, report) = solve(&scene);
+        assert!(status > 0, "{}", last_error());
+        contact_normal_solver_free(handle);
+        let dump = Dump::read(&std::fs::read(&path).expect("a dump")).expect("a dump that can be read");
+        assert!(dump.doubles("handle.pressure_before").is_some());
+        let again = dump.replay().expect("a call");
+        assert_eq!(again.status, status, "{}", last_error());
+        let (force, other) = (report.tangential.force, again.report.expect("a report").tangential.force);
+        let off = (force[0] - other[0]).hypot(force[1] - other[1]);
+        assert!(off <= 1e-9 * force[0].hypot(force[1]), "{force:?} {other:?}");
+    }
+}
+
 /// Bodies that relax go on from what the file says that they remember: with the pressures of the call itself, in its time.
 #[test]
 fn a_step_in_time_goes_on_from_the_history_in_the_file() {

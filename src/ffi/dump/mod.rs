@@ -38,6 +38,9 @@ const PARTICLES: [&str; 2] = ["handle.friction_coefficient", "handle.yield_limit
 /// The history of bodies that relax, of a handle.
 const HISTORY: &str = "handle.history";
 
+/// The pressures of the last step of unlike bodies.
+const PRESSURE_BEFORE: &str = "handle.pressure_before";
+
 /// The name of the tangential coefficients of a handle.
 const TANGENTIAL_TABLES: [&str; 5] = [
     "handle.tangential_xx",
@@ -211,6 +214,9 @@ impl Image {
             for (k, name) in ["handle.traction_x", "handle.traction_y"].into_iter().enumerate() {
                 let traction: Vec<f64> = solution.traction.iter().map(|q| q[k]).collect();
                 self.add_doubles(name, &traction);
+            }
+            if let Some(pressure) = solver.pressures_before() {
+                self.add_doubles(PRESSURE_BEFORE, pressure);
             }
             if !solution.particles.is_empty() {
                 let coefficient: Vec<f64> = solution.particles.iter().map(|particle| particle.coefficient).collect();

@@ -5,10 +5,12 @@ use std::ptr::null_mut;
 
 use libc::c_void;
 
-use super::{Dump, HISTORY, PARTICLES, TANGENTIAL_ROW_TABLES, TANGENTIAL_TABLES};
+use super::{Dump, HISTORY, PARTICLES, PRESSURE_BEFORE, TANGENTIAL_ROW_TABLES, TANGENTIAL_TABLES};
 use crate::ffi::arguments::within;
 use crate::ffi::solver::InUse;
 use crate::ffi::*;
+use crate::friction::Particle;
+use crate::solver::StepBefore;
 
 /// How a call ended that was made once more.
 #[derive(Clone, Copy)]
@@ -88,7 +90,7 @@ impl Dump {
                     return Ok(status);
                 }
                 self.start_friction(scene, &mut options)?;
-                self.continue_friction(scene)?;
+                self.continue_friction(scene, *handle)?;
             }
             let (n, entries) = (self.integer("n")?, self.array("entries")?);
             let (results, report) = (self.pointer("results")?, self.pointer("report")?);
@@ -177,7 +179,7 @@ impl Dump {
         ranges.extend([range(&fields), range(&options)]);
         // SAFETY: as above.
         unsafe {
-            self.continue_friction(scene)?;
+            self.continue_friction(scene, *handle)?;
             Ok(within(ranges, || contact_normal_solver_solve(*handle, scene, &options, &mut fields, report)))
         }
     }
@@ -227,8 +229,35 @@ impl Dump {
         Ok(within(ranges, || unsafe { contact_normal_solver_new(&scene, options, handle) }))
     }
 
+    /// Gives the handle the step of unlike bodies that the file has. False: it has none.
+    unsafe fn give_step(&self, handle: *mut contact_normal_solver) -> Result<bool, String> {
+        let of = |name: &str| self.doubles(name);
+        let (Some(pressure), Some(x), Some(y)) =
+            (of(PRESSURE_BEFORE), of("handle.traction_x"), of("handle.traction_y"))
+        else {
+            return Ok(false);
+        };
+        let (coefficients, limits) = (of(PARTICLES[0]).unwrap_or_default(), of(PARTICLES[1]).unwrap_or_default());
+        let limit = |i: usize| limits.get(i).copied().unwrap_or(0.0);
+        let particle = |(i, coefficient): (usize, &f64)| Particle { coefficient: *coefficient, yield_limit: limit(i) };
+        let traction = x.into_iter().zip(y).map(|(x, y)| [x, y]).collect();
+        let particles = coefficients.iter().enumerate().map(particle).collect();
+        // SAFETY: a handle that was set up before.
+        let mut held = unsafe { InUse::begin(handle) }.map_err(|_| "the handle is in use")?;
+        held.held().solver.take_step(StepBefore { traction, particles, pressure });
+        Ok(true)
+    }
+
     /// Friction that continues does so from the tractions of the file.
-    unsafe fn continue_friction(&self, scene: *mut contact_normal_scene) -> Result<(), String> {
+    unsafe fn continue_friction(
+        &self,
+        scene: *mut contact_normal_scene,
+        handle: *mut contact_normal_solver,
+    ) -> Result<(), String> {
+        // SAFETY: the caller's.
+        if unsafe { self.give_step(handle)? } {
+            return Ok(());
+        }
         // SAFETY (both): NULL, or structs of ours which no one else uses.
         let friction = unsafe { scene.as_ref().and_then(|scene| scene.friction.cast_mut().as_mut()) };
         let traction = [self.array::<f64>("handle.traction_x")?, self.array("handle.traction_y")?];

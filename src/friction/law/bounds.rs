@@ -6,7 +6,7 @@ use super::super::problem::{Problem, State};
 use super::super::tangent::{Side, Tangent};
 use super::element::Particle;
 use super::march::March;
-use super::STEEP;
+use super::RISING;
 use crate::methods::fields;
 
 /// Updates the bounds from the slips of elements that slipped in the last step.
@@ -59,7 +59,7 @@ pub(super) fn worst(problem: &Problem, state: &State, tangent: &Tangent) -> f64 
 /// Moves tractions onto their circles, with a fresh product for a certificate. If bounds rise steeply tractions are unchanged: a move to the circles
 /// would change the slips, and bounds by more than the move.
 pub(super) fn settle(problem: &mut Problem, state: &mut State, tangent: &Tangent, march: &March) {
-    match march.rises > STEEP {
+    match march.rises > RISING {
         true => problem.refresh_unclipped(state),
         false => onto_circles(problem, state, tangent),
     }

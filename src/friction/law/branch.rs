@@ -14,7 +14,7 @@ use super::super::plane::Vector;
 use super::super::problem::Problem;
 use super::super::step::compliance;
 use super::march::March;
-use super::{bounds, STEEP};
+use super::{bounds, RISING};
 use crate::error::Result;
 use crate::memory::zeros;
 use crate::powers::LARGEST;
@@ -142,7 +142,7 @@ pub fn renew(level: &mut Level, march: &mut March, best: &mut Best) -> Result<f6
 /// Otherwise their changes and those of the slips would alternate.
 pub fn go_on(level: &mut Level, march: &mut March, (turns, best): (&Turns, &Best)) {
     let Level { problem, state, memory, .. } = level;
-    if march.rises > STEEP {
+    if march.rises > RISING {
         let (rho, part) = (1.0 / compliance(problem), turns.damping);
         bounds::follow(problem, state, &memory.tangent, march, Some(rho));
         problem.bound.iter_mut().zip(&best.last).for_each(|(bound, last)| *bound = last + part * (*bound - last));

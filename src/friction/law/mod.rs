@@ -20,9 +20,11 @@
 //! | `system`, `stages` | Newton steps with the derivatives of bounds; the solve |
 //! | `branch` | named solutions, if there are several |
 
+/// From this `law_slope` on the iteration may end without its certificate.
+pub const STEEP: f64 = 0.5;
 /// Bounds rise steeply from this slope on, times the influence of an element on itself: with that of all elements together slips and lagging bounds
 /// would alternate. On 40 x 40 elements they do from 0.1 on.
-pub const STEEP: f64 = 0.05;
+const RISING: f64 = 0.05;
 
 mod bounds;
 pub(super) mod branch;

@@ -23,7 +23,7 @@ use super::super::take_over::LARGEST_RATIO;
 use super::super::tangent::{mixing, project, rho_of, Side, Tangent};
 use super::bounds::{freeze, lag, settle, worst};
 use super::march::March;
-use super::{system, STEEP};
+use super::{system, RISING};
 use crate::error::Result;
 use crate::methods::fields::Fields;
 use crate::progress::Outcome;
@@ -97,7 +97,7 @@ fn iterate(
     let Goal { tolerance, limit, watch, .. } = goal;
     let (made, cap) = (problem.operators.products, 1.0 / compliance(problem));
     // A bound that hardens, or rises steeply by its memory, must not lag behind the slip.
-    let hardens = march.law.layer.is_some_and(|layer| layer.hardening != 0.0) || march.rises > STEEP;
+    let hardens = march.law.layer.is_some_and(|layer| layer.hardening != 0.0) || march.rises > RISING;
     let mut course = Course { least: f64::INFINITY, since: 0, held: 0, was_newton: false, hardens };
     let mut is_fresh = false;
     loop {
