@@ -139,7 +139,23 @@ fn clean<S: AdmissibleSet>(state: &mut State, set: S) {
             }
         }
     }
+    if S::LIMITED {
+        stay_at_limits(state, set);
+    }
     state.project(set);
+}
+
+/// Moves elements of C at their limit out of C, if others remain there. As free elements they would have their e as the residual, and the first step would
+/// move them all. Those with e > 0 enter C again by step (4.2).
+fn stay_at_limits<S: AdmissibleSet>(state: &mut State, set: S) {
+    let stays = |state: &State, i: usize| state.contact[i] && state.p[i] > 0.0 && state.p[i] >= set.limit(i);
+    if (0..state.p.len()).any(|i| state.contact[i] && !stays(state, i)) {
+        for i in 0..state.p.len() {
+            if stays(state, i) {
+                (state.contact[i], state.at_limit[i], state.reached_limit) = (false, true, true);
+            }
+        }
+    }
 }
 
 /// Makes p carry the prescribed force, and u = A p. If u is exact, both are scaled without a product. Returns whether they were scaled.

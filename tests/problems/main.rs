@@ -76,6 +76,7 @@ mod row_tables;
 mod slow_quantities;
 mod smoothers;
 mod special;
+mod starts_at_limits;
 mod steps_of_the_surface;
 mod stress_of_patches;
 mod stress_on_edges;
