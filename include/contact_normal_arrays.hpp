@@ -40,7 +40,7 @@ inline contact_normal_status check(contact_normal_status status)
 template <class T> class view {
 public:
     view(const T *data, std::size_t size) : data_(data), size_(size) {}
-    /// Values in braces live as long as the call.
+    /// Values in braces, as an argument: they live as long as the call.
     view(std::initializer_list<T> values) : view(values.begin(), values.size()) {}
     template <class C, class = std::enable_if_t<std::is_convertible_v<decltype(std::data(std::declval<const C &>())), const T *>>>
     view(const C &container) : data_(std::data(container)), size_(std::size(container))

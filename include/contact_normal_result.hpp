@@ -217,7 +217,7 @@ inline void share_warnings(const std::string &message, std::vector<result> &resu
     std::size_t at = 0;
     for (std::uint32_t bit = 1; bit != 0 && bit <= all; bit <<= 1) {
         if ((all & bit) == 0) continue;
-        const std::size_t end = (all >> 1) < bit ? message.size() : std::min(message.find("; ", at), message.size());
+        const std::size_t end = (all >> 1) < bit ? message.size() : (std::min)(message.find("; ", at), message.size());
         for (result &each : results) {
             if ((static_cast<std::uint32_t>(each.report.warnings) & bit) == 0) continue;
             each.message += (each.message.empty() ? "" : "; ") + message.substr(at, end - at);

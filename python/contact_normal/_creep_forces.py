@@ -211,16 +211,18 @@ class CreepForceTable:
         if not bound.any():
             shape = np.broadcast_shapes(bound.shape, *(np.shape(one) for one in (*both("creepage", creepage), spin, a, b)))
             return np.zeros(shape), np.zeros(shape), np.zeros(shape)
+        along, across = (real(f"creepage[{k}]", one) for k, one in enumerate(both("creepage", creepage)))
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             unit = modulus * c * c / np.where(bound > 0.0, bound, np.inf)
-        empty = (bound == 0.0) | np.isinf(unit)
-        along, across = (real(f"creepage[{k}]", one) for k, one in enumerate(both("creepage", creepage)))
-        # Where there is no load, the first entry of the table stands for any.
-        unit, axes = np.where(empty, 0.0, unit), ((self.xi, along), (self.eta, across), (self.phi, c * real("spin", spin)))
-        xi, eta, phi = (np.where(empty, axis[0], unit * value) for axis, value in axes)
-        ratio, bound = np.where(empty, self.axis_ratio[0], a / b), np.where(empty, 0.0, bound)
-        x, y, moment, _ = self.forces(xi, eta, phi, axis_ratio=ratio, poisson_ratio=poisson_ratio, hold=hold)
-        return bound * x, bound * y, bound * c * moment
+            empty = (bound == 0.0) | np.isinf(unit)
+            # Where there is no load, the first entry of the table stands for any.
+            axes = ((self.xi, along), (self.eta, across), (self.phi, c * real("spin", spin)))
+            xi, eta, phi = (np.where(empty, axis[0], unit * value) for axis, value in axes)
+            ratio = np.where(empty, self.axis_ratio[0], a / b)
+        nu = None if poisson_ratio is None else np.where(empty, self.poisson_ratio[0], real("poisson_ratio", poisson_ratio))
+        x, y, moment, _ = self.forces(xi, eta, phi, axis_ratio=ratio, poisson_ratio=nu, hold=hold)
+        force_x, force_y, spin_moment = (np.where(empty, 0.0, bound * one) for one in (x, y, c * moment))
+        return force_x, force_y, spin_moment
 
 
 def _is_no_length(values: Doubles) -> npt.NDArray[np.bool_]:

@@ -50,6 +50,10 @@ class Reads(unittest.TestCase):
         alone = table.wheel_rail(*motion, normal_force=82e3, **given)
         self.assertGreater(abs(np.ravel(alone)).min(), 0.0)
         np.testing.assert_array_equal(found, np.transpose([np.ravel(alone), np.zeros(3)]))
+        # Nor lengths, nor a Poisson ratio of the table.
+        lifted = {**given, "semi_axes": ([given["semi_axes"][0], np.nan], [given["semi_axes"][1], 1e200]), "poisson_ratio": [table.poisson_ratio[0], 0.4]}
+        with np.errstate(all="raise"):
+            np.testing.assert_array_equal(table.wheel_rail(*motion, normal_force=[82e3, 0.0], **lifted), np.transpose([np.ravel(alone), np.zeros(3)]))
 
 
 class Errors(unittest.TestCase):

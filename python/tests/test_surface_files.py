@@ -272,6 +272,15 @@ class Files(unittest.TestCase):
                     np.savetxt(self.folder / "table.txt", table)
                     with self.assertRaisesRegex(ValueError, f"has coordinates in its first {which}"):
                         surface.read(self.folder / "table.txt", **given)
+                if which == "line" and name != "both":
+                    # The first index is x: a line has the coordinates of y.
+                    turned = {"dx": 0.1, "dy": 0.5} if "dx" in given else {"span": (12.0, 5.5)}
+                    with self.assertRaisesRegex(ValueError, "has coordinates in its first line"):
+                        surface.read(self.folder / "table.txt", axes="xy", **turned)
+        np.savetxt(self.folder / "plain.txt", heights)
+        for wrong in (10.0, None, (10.0,)):
+            with self.assertRaisesRegex((TypeError, ValueError), "two numbers|in one way"):
+                surface.read(self.folder / "plain.txt", size=wrong)
         # No coordinates: the step has nothing of the size of an element.
         far = np.vstack([0.0137 * np.arange(12) + 40.0, heights])
         np.savetxt(self.folder / "far.txt", far)

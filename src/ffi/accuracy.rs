@@ -33,14 +33,14 @@ pub struct contact_normal_accuracy {
     pub struct_size: i64,
     /// Estimated relative error of the force (of the approach, when the force is prescribed) at most, between 0 and 1; default 1e-3.
     pub target: f64,
-    /// Seconds for all grids together; 0 (default): no limit. No limit ends the first grid.
+    /// Seconds for all grids together; 0 (default): no limit. The first grid is solved whatever this limit and the next two are.
     pub max_seconds: f64,
     /// Bytes that the solvers of two successive grids may hold; 0 (default): no limit.
     pub max_bytes: i64,
     /// Elements of a grid; 0 (default): 4096 x 4096.
     pub max_elements: i64,
     /// Where the undeformed distance of each grid comes from; NULL (default): that of the scene, refined by cubics between
-    /// the centres, without jumps of the slope.
+    /// the centres, whose slopes jump beside holes and rough ends only.
     pub surface: contact_normal_surface_callback,
     /// Passed to `surface`; default NULL.
     pub user: *mut c_void,

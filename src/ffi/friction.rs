@@ -28,7 +28,7 @@ pub const CONTACT_NORMAL_FRICTION_LAW_LINEAR: i32 = 1;
 pub const CONTACT_NORMAL_FRICTION_LAW_RATIONAL: i32 = 2;
 /// `law`: parts fall as `2^(-v/h)`.
 pub const CONTACT_NORMAL_FRICTION_LAW_EXPONENTIAL: i32 = 3;
-/// `friction->branch`: the solution near the start of the iteration; where that finds none, the start is turns of LOW.
+/// `friction->branch`: the solution near the start of the iteration. If that finds none and no force is given, it begins again from turns of LOW.
 pub const CONTACT_NORMAL_FRICTION_BRANCH_NEAR: i32 = 0;
 /// `friction->branch`: that to which bounds without slip lead.
 pub const CONTACT_NORMAL_FRICTION_BRANCH_LOW: i32 = 1;

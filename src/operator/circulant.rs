@@ -1,7 +1,7 @@
 //! The inverse of a circulant near A, as a preconditioner (Strang 1986, T. Chan 1988).
 //!
-//! The period is at least one element longer than the grid, so that the coefficient at offset -m is the true one. A product costs a quarter
-//! of one with padding, and the number of iterations is the same. A direction with one element has the period 1.
+//! The period is at least one element longer than the grid, so that the coefficient at offset -m is the true one. Where the scene repeats it is the
+//! grid's. A product costs a quarter of one with padding, and the number of iterations is the same. A direction with one element has the period 1.
 
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -10,9 +10,9 @@ const ROUGH: f64 = 0.25;
 
 /// The values `h` of `grid` at the centres of a grid with `parts` elements for each one in x and in y.
 ///
-/// By cubics between the centres in each direction (with fewer than five elements, the polynomial through all): exact for cubics, without
-/// additional roughness, and with slopes that do not jump. Where they jump, largest pressures are infinite. In a direction that repeats itself the nearest centres may lie across its end. Beyond the outermost
-/// centres a rough surface keeps the last height: a cubic would leave the range of heights.
+/// By cubics between the centres in each direction (with fewer than five elements, the polynomial through all): exact for cubics, and without additional
+/// roughness. Slopes jump beside holes and rough ends only: where they jump, largest pressures are infinite. In a direction that repeats itself the nearest
+/// centres may lie across its end. Beyond the outermost centres a rough surface keeps the last height: a cubic would leave the range of heights.
 ///
 /// Parts of an element without surface (+infinity) have none. If one of the four has none, the line through the element and its neighbour
 /// on the side of the part is used. Without surface there, the line goes on from the other side if the three or four heights there are smooth;

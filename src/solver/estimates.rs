@@ -55,8 +55,6 @@ const JUMPS_FACTOR: f64 = 0.6;
 /// Pressure at ends of the surface over the peak above which the peak has no estimate: pressures at ends are singular and grow as the square root of
 /// the number of elements. With a quarter, the peak remains the largest pressure for the three doublings that a search predicts.
 const PEAK_OVER_ENDS: f64 = 0.25;
-/// The largest pressure at a kink of the surface has an estimate if the kink adds less in so many doublings of the elements.
-const KINK_DOUBLINGS: f64 = 4.0;
 /// Shortest chord with an estimate, in elements. Below it, contact is on single elements.
 pub(super) const LEAST_CHORD: f64 = 1.5;
 /// Relative error of a direction of one element without a period.
@@ -213,7 +211,7 @@ pub fn estimate(
     let at_ends = parts.map_or(0.0, |parts| parts.highest_at_ends);
     let is_peak = at_ends <= PEAK_OVER_ENDS * measures.max_pressure;
     let missed = |bend: f64| PEAK_ERROR * bend * (1.0 + (bend / SHARP_PEAK).powi(2)) * measures.max_pressure;
-    let settles = |at: usize, bend: f64| KINK_DOUBLINGS * kink::growth(problem, finest, at) <= missed(bend);
+    let settles = |at: usize, bend: f64| kink::missed(problem, finest, at) <= missed(bend);
     let peak = Curvature::of_peak(problem, finest, measures.max_pressure)
         .filter(|(at, bend)| is_peak && *bend <= SINGULAR_PEAK && settles(*at, *bend))
         .map(|(_, bend)| missed(bend));

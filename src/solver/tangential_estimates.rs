@@ -109,7 +109,9 @@ pub fn estimate(solved: &Solved<'_>, found: &Report) -> [Option<f64>; 2] {
         _ => ROLLING_FACTOR,
     };
     let ends = solved.ends(&parts, stuck);
-    let more = solved.by_the_normal_force(&parts, carried) * (1.0 - stuck) + solved.jumps();
+    // 1 - (1 - F/(mu N))^(1/3), without cancellation.
+    let slipped = force / found.carried / (1.0 + stuck + stuck * stuck);
+    let more = solved.by_the_normal_force(&parts, found.carried) * slipped + solved.jumps();
     [0, 1].map(|k| {
         let at_least = |of: Vector| of[k].max(ACROSS_FACTOR * of[1 - k]);
         let of_surface = part * of_shift + at_least(ends) + more;

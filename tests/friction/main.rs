@@ -15,6 +15,7 @@ mod conditions;
 mod dense;
 mod effects;
 mod estimates;
+mod estimates_of_small_shifts;
 mod forces;
 mod glued;
 #[allow(dead_code)] // what docs/reliability_friction.md has

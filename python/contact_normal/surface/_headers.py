@@ -47,8 +47,8 @@ def columns_of(path: str | os.PathLike[str]) -> tuple[str | None, bool]:
 def refuse_esri_grid(path: str | os.PathLike[str]) -> None:
     """Refuses a grid of a geographic information system, whose header says the size of an element and which number stands for "not measured"."""
     if re.match(r"\s*ncols\s+\d", _head(path), re.IGNORECASE):
-        raise ValueError(f"{path} is an ESRI grid: read its numbers by numpy.loadtxt(path, skiprows=6), and give them to surface.heights with its cellsize as dx and dy, "
-                         "its NODATA_value as fill, and top_first=True")
+        raise ValueError(f"{path} is an ESRI grid: read its numbers by numpy.loadtxt(path, skiprows=n), n being the lines of its header, 5 or 6 with NODATA_value. "
+                         "Give them to surface.heights with its cellsize as dx and dy, its NODATA_value as fill, and top_first=True")
 
 
 def header_of(path: str | os.PathLike[str], is_given: bool = False) -> dict[str, Any]:

@@ -83,7 +83,7 @@ def _goes_by(rows: Any, step: float | None) -> bool:
     mean = abs(np.diff(rows[0, 1:]).mean())
     if step is None or abs(mean - round(mean)) <= _MULTIPLE and mean > 0.5:
         return True
-    digits = np.log10(mean / step) if step > 0.0 else 0.0
+    digits = np.log10(mean / step)
     return bool(abs(digits - round(digits)) <= EVEN)
 
 

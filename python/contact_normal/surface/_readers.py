@@ -155,9 +155,11 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     if end in _TEXTS and getattr(topography, "dim", 2) == 2:
         # Its arrays have x as the first index.
         values = np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan)
-        steps = _steps(values.shape, given)
+        steps = _steps(values.T.shape, given)
         if reason := why_no_map(values.T, steps) or why_no_map(values, steps[::-1]):
             raise ValueError(f"{path} {reason}")
+        if reason := doubt(values.T):
+            warnings.warn(f"{path} {reason}", stacklevel=2)
         # The caller's axes are those of the lines of the file.
         if "axes" in given:
             given = {**given, "axes": {"yx": "xy", "xy": "yx"}.get(given["axes"], given["axes"])}
@@ -183,15 +185,22 @@ def _warn_of_size(path: str | os.PathLike[str], told: dict[str, Any], made: Heig
             return
 
 
-def _steps(counts: tuple[int, int], given: dict[str, Any]) -> tuple[Any, Any]:
-    """The sizes of an element in x and y as they are given, of an array with so many elements in x and in y; None where they are not."""
-    if "dx" in given:
-        return given["dx"], given.get("dy", given["dx"])
-    for name, fewer in (("size", 0), ("span", 1)):
-        if name in given:
-            lengths = given[name]
-            return lengths[0] / max(counts[0] - fewer, 1), lengths[1] / max(counts[1] - fewer, 1)
-    return None, None
+def _steps(shape: tuple[int, int], given: dict[str, Any]) -> tuple[float | None, float | None]:
+    """The distances of the columns and of the lines of a text with these lines and columns, as they are given. None where they are not, or are no lengths:
+    `heights` says so."""
+    is_xy, (lines, columns) = given.get("axes") == "xy", shape
+    counts = (lines, columns) if is_xy else (columns, lines)
+    try:
+        if "dx" in given:
+            found = float(given["dx"]), float(given.get("dy", given["dx"]))
+        else:
+            name, fewer = ("size", 0) if "size" in given else ("span", 1)
+            found = float(given[name][0]) / max(counts[0] - fewer, 1), float(given[name][1]) / max(counts[1] - fewer, 1)
+    except (TypeError, ValueError, LookupError):
+        return None, None
+    if not all(0.0 < step < np.inf for step in found):
+        return None, None
+    return found[::-1] if is_xy else found
 
 
 def _of_numbers(path: str | os.PathLike[str], values: Any, given: dict[str, Any]) -> Heights:
@@ -200,8 +209,7 @@ def _of_numbers(path: str | os.PathLike[str], values: Any, given: dict[str, Any]
     if not sizes and (lattice := lattice_of(values)) is not None:
         said = (None, False) if Path(path).suffix.lower() in (".npy", ".npz") else columns_of(path)
         return _of_lattice(path, lattice, said, given)
-    steps = _steps(values.shape[::-1], given)
-    if reason := why_no_map(values, steps[::-1] if given.get("axes") == "xy" else steps):
+    if reason := why_no_map(values, _steps(values.shape, given)):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             if sizes and lattice_of(values) is not None:

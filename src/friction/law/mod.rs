@@ -22,8 +22,8 @@
 
 /// From this `law_slope` on the iteration may end without its certificate.
 pub const STEEP: f64 = 0.5;
-/// Bounds rise steeply from this slope on, times the influence of an element on itself: with that of all elements together slips and lagging bounds
-/// would alternate. On 40 x 40 elements they do from 0.1 on.
+/// With this slope, times an element's influence on itself, or more, bounds rise too steeply to lag behind the slips: both would alternate. On 40 x 40
+/// elements, which move together, they do from 0.1 on.
 const RISING: f64 = 0.05;
 
 mod bounds;

@@ -1,27 +1,35 @@
-//! Kinks of the surface at the largest pressure. Pressures are infinite there, as a logarithm.
+//! Kinks of the surface at the largest pressure. Without a layer pressures are infinite there, as a logarithm.
 
 use std::f64::consts::{LN_2, PI};
 
 use crate::contact::{Problem, State};
 use crate::direction::Direction;
 
-/// The surface has a kink where the second differences of two elements side by side exceed those beside them by this factor.
+/// The surface has a kink where the second differences of two elements side by side exceed those beside them by this factor times the changes of those.
 const KINK_RATIO: f64 = 4.0;
 
-/// The growth of the pressure of an element with each halving of the elements, by a kink of the surface; 0 without one.
+/// The doublings of the elements in which a kink must add less than the error of the peak.
+const DOUBLINGS: f64 = 4.0;
+
+/// A kink of the surface adds this much to the pressure of an element on finer grids, or more; 0 without one.
 ///
-/// Where the slope of the undeformed distance jumps by s, pressures are `E* s/(2 pi) ln(1/distance)` (a wedge: Johnson 1985, section 5.2).
-pub fn growth(problem: &Problem, state: &State, at: usize) -> f64 {
-    let grid = &state.grid;
-    // A layer that is softer than an element spreads the kink.
-    if problem.layer(at) * problem.modulus() > grid.dx.min(grid.dy) {
-        return 0.0;
-    }
+/// Where the slope of the undeformed distance jumps by s, pressures are `E* s/(2 pi) ln(1/distance)` (a wedge: Johnson 1985, section 5.2). On a layer c
+/// that is softer than an element they are finite, but the kink lies anywhere in the element: `s d/(2 c)`.
+pub fn missed(problem: &Problem, state: &State, at: usize) -> f64 {
+    let (grid, layer) = (&state.grid, problem.layer(at));
+    let is_soft = layer * problem.modulus() > grid.dx.min(grid.dy);
     let places = [at % grid.mx, at / grid.mx];
     let lines =
         Direction::both(grid, problem.coefficients.repeats(grid)).into_iter().zip(places).zip([grid.dx, grid.dy]);
-    let slopes = lines.map(|((along, place), d)| jump(state, along, (at, place)) / d);
-    problem.modulus() * slopes.fold(0.0, f64::max) * LN_2 / (2.0 * PI)
+    let each = lines.map(|((along, place), d)| {
+        let jump = jump(state, along, (at, place));
+        if is_soft {
+            0.5 * jump / layer
+        } else {
+            DOUBLINGS * problem.modulus() * jump / d * LN_2 / (2.0 * PI)
+        }
+    });
+    each.fold(0.0, f64::max)
 }
 
 /// The jump of the steps of h from element to element, at the element `at`, which is number `place` of its line; 0 without a kink.
@@ -32,8 +40,11 @@ fn jump(state: &State, along: Direction, (at, place): (usize, usize)) -> f64 {
     let place = place as isize;
     // The kink is between this element and one beside it. Beside a hole or the border of the grid these are NaN.
     let jumps = [place - 1, place].map(|one| {
-        let (jump, beside) = (bend(one) + bend(one + 1), [bend(one - 1), bend(one + 2)]);
-        let is_kink = beside.iter().all(|bend| jump > KINK_RATIO * bend.abs());
+        let (before, behind) = (bend(one - 1), bend(one + 2));
+        // Beyond the curvature that the surface has beside it: twice the larger one, NaN if either is.
+        let jump = bend(one) + bend(one + 1) - (before + behind) - (before - behind).abs();
+        let changes = [before - bend(one - 2), behind - bend(one + 3)];
+        let is_kink = changes.iter().all(|change| jump > KINK_RATIO * change.abs());
         if is_kink {
             jump
         } else {

@@ -307,7 +307,7 @@
 #define CONTACT_NORMAL_FRICTION_LAW_EXPONENTIAL 3
 
 /*
- `friction->branch`: the solution near the start of the iteration; where that finds none, the start is turns of LOW.
+ `friction->branch`: the solution near the start of the iteration. If that finds none and no force is given, it begins again from turns of LOW.
  */
 #define CONTACT_NORMAL_FRICTION_BRANCH_NEAR 0
 
@@ -2167,7 +2167,7 @@ typedef struct contact_normal_accuracy {
    */
   double target;
   /*
-   Seconds for all grids together; 0 (default): no limit. No limit ends the first grid.
+   Seconds for all grids together; 0 (default): no limit. The first grid is solved whatever this limit and the next two are.
    */
   double max_seconds;
   /*
@@ -2180,7 +2180,7 @@ typedef struct contact_normal_accuracy {
   int64_t max_elements;
   /*
    Where the undeformed distance of each grid comes from; NULL (default): that of the scene, refined by cubics between
-   the centres, without jumps of the slope.
+   the centres, whose slopes jump beside holes and rough ends only.
    */
   contact_normal_surface_callback surface;
   /*
