@@ -5,8 +5,10 @@ use std::f64::consts::{LN_2, PI};
 use crate::contact::{Problem, State};
 use crate::direction::Direction;
 
-/// The surface has a kink where the second differences of two elements side by side exceed those beside them by this factor times the changes of those.
+/// The surface has a kink where the second differences of two elements side by side exceed those beside them by this factor times the changes of those,
+/// and by this share of their mean: profiles that are measured or refined have ripples of some hundredths.
 const KINK_RATIO: f64 = 4.0;
+const KINK_SHARE: f64 = 0.5;
 
 /// The doublings of the elements in which a kink must add less than the error of the peak.
 const DOUBLINGS: f64 = 4.0;
@@ -44,8 +46,9 @@ fn jump(state: &State, along: Direction, (at, place): (usize, usize)) -> f64 {
         // Beyond the curvature that the surface has beside it: twice the larger one, NaN if either is.
         let jump = bend(one) + bend(one + 1) - (before + behind) - (before - behind).abs();
         let changes = [before - bend(one - 2), behind - bend(one + 3)];
-        let is_kink = changes.iter().all(|change| jump > KINK_RATIO * change.abs());
-        if is_kink {
+        let least = KINK_SHARE * 0.5 * (before + behind).abs();
+        let is_alone = changes.iter().all(|change| jump > KINK_RATIO * change.abs());
+        if is_alone && jump > least {
             jump
         } else {
             0.0
