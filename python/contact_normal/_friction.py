@@ -25,6 +25,7 @@ _OF_LAW = ("kinetic", "speed", "time_step", "memory_distance", "memory_speed")
 _PAIRS_OF_LAW = ("falling", "half_speed")
 _OF_LAYER = ("yield_limit", "hardening")
 _OF_SET_UP = {"influence", "influence_cross", "row_tables"}
+_OF_A_STEP = {"rolling_direction", "rolling_distance"}
 _KNOWN = ("coefficient", "motion", "force", "compliance", *_PAIRS, *_FLAGS, "influence", "influence_cross", "row_tables", *_NUMBERS, *_FIELDS, "law", "layer", "branch", *_PARTICLES)
 
 
@@ -37,11 +38,11 @@ def friction(value: Any, shape: tuple[int, int], length: float = 0.0) -> tuple[A
         raise ValueError(f"friction has {', '.join(sorted(unknown))}; it may have {', '.join(_KNOWN)}")
     given = {name: one for name, one in value.items() if one is not None}
     # The set-up of a Solver reads tables alone. A layer bounds tractions beside the coefficient, not in its place.
-    if "coefficient" not in given and not (_OF_SET_UP & set(given) and set(given) <= _OF_SET_UP | {"motion", "compliance"}):
+    if "coefficient" not in given and not (_OF_SET_UP & set(given) and set(given) <= _OF_SET_UP | {"motion", "compliance", *_OF_A_STEP}):
         raise ValueError("friction has no coefficient; without friction leave it out, or give a coefficient of 0")
     effect = initialised("friction")
     kept = _one_or_each(effect, "coefficient", given.get("coefficient", 0.0), shape)
-    largest = max((float(one.max()) for one in kept), default=effect.coefficient)
+    largest = max((float(one.max()) for one in kept if one.size), default=effect.coefficient)
     kept += _one_or_each(effect, "compliance", given.get("compliance", 0.0), shape)
     motion = given.get("motion", MOTION_SHIFT)
     effect.motion = constant("friction['motion']", "motion", motion)

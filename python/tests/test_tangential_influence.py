@@ -34,6 +34,15 @@ class TangentialInfluence(unittest.TestCase):
             np.testing.assert_allclose(found.traction, known.traction, atol=1e-4 * np.abs(known.traction).max())
             self.assertGreater(np.count_nonzero(found.stick_slip == 1), 0)
 
+    def test_a_solver_is_set_up_by_tables_of_bodies_that_roll_backwards(self):
+        visco = {"modulus": [0.5, 0.5], "time": [0.2, 0.2]}
+        tables = cn.influence_rolling_tangential(M + 2, M, D, D, shear_modulus=1.0, poisson_ratio=0.3, visco=visco, speed=-1.0)
+        step = {"motion": "STEADY_ROLLING", "rolling_direction": np.pi}
+        with cn.Solver(M, M, D, D, shear_modulus=1.0, poisson_ratio=0.3, friction={"influence": tables, **step}) as solver:
+            found = solver.solve(H, force=0.05, friction={"coefficient": 0.3, "creepage": (1e-3, 0.0), **step})
+        self.assertEqual(found.status, cn.OK)
+        self.assertGreater(abs(found.tangential_force[0]), 0.0)
+
     def test_tables_of_unlike_bodies(self):
         # As above with K/G = (1/G1 - 1/G2)/4 = 1/4: Axz = -K/(pi G) c, where c is the integral of x/(x^2 + y^2) over an element; Ayz likewise.
         unlike = {"shear_modulus": (1 / 1.5, 1 / 0.5), "poisson_ratio": 0.0}
