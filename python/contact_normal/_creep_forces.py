@@ -206,7 +206,7 @@ class CreepForceTable:
         if np.any((bound > 0.0) & (_is_no_length(a) | _is_no_length(b))):
             raise ValueError(f"semi_axes is {semi_axes}; they must be positive and finite where there is a load")
         # Where there is none, any lengths will do.
-        a, b = (np.where(_is_no_length(one), 1.0, one) for one in (a, b))
+        a, b = (np.where(_is_no_length(one) | (bound == 0.0), 1.0, one) for one in (a, b))
         c = np.sqrt(a * b)
         if not bound.any():
             shape = np.broadcast_shapes(bound.shape, *(np.shape(one) for one in (*both("creepage", creepage), spin, a, b)))

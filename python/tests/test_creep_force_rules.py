@@ -53,7 +53,10 @@ class Reads(unittest.TestCase):
         # Nor lengths, nor a Poisson ratio of the table.
         lifted = {**given, "semi_axes": ([given["semi_axes"][0], np.nan], [given["semi_axes"][1], 1e200]), "poisson_ratio": [table.poisson_ratio[0], 0.4]}
         with np.errstate(all="raise"):
-            np.testing.assert_array_equal(table.wheel_rail(*motion, normal_force=[82e3, 0.0], **lifted), np.transpose([np.ravel(alone), np.zeros(3)]))
+            for of_lifted in (np.nan, 1e200, 1e-200):
+                lifted["semi_axes"][0][1] = of_lifted
+                found = table.wheel_rail(*motion, normal_force=[82e3, 0.0], **lifted)
+                np.testing.assert_array_equal(found, np.transpose([np.ravel(alone), np.zeros(3)]))
 
 
 class Errors(unittest.TestCase):

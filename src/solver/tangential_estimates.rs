@@ -12,7 +12,7 @@
 //! about the error (with spin half of it), `e = ROLLING_FACTOR |F - F_coarse|`, plus a part of the above.
 //!
 //! *With a given approach* the error e_N of the normal force adds to the tangential one: `mu e_N` in full slip, else less,
-//! `mu e_N (1 - (1 - F/(mu N))^(1/3))` with a parabola's pressures. The same holds for jumps of the surface.
+//! `mu e_N (1 - (1 - F/(mu N))^(1/3))` with a parabola's pressures. Jumps of the surface, as those of punches, add `F/N` times their part of e_N.
 //!
 //! *Where the surface ends within the contact*, or coefficients jump ([`at_ends`]), tractions are singular like pressures, and the error of the
 //! force is that of the normal one with the traction in place of the pressure. If the normal force is given, this part goes to 0 towards full
@@ -109,9 +109,10 @@ pub fn estimate(solved: &Solved<'_>, found: &Report) -> [Option<f64>; 2] {
         _ => ROLLING_FACTOR,
     };
     let ends = solved.ends(&parts, stuck);
-    // 1 - (1 - F/(mu N))^(1/3), without cancellation.
-    let slipped = force / found.carried / (1.0 + stuck + stuck * stuck);
-    let more = solved.by_the_normal_force(&parts, found.carried) * slipped + solved.jumps();
+    // A punch has F/(mu N) of it; a parabola 1 - (1 - F/(mu N))^(1/3), here without cancellation.
+    let of_jumps = force / found.carried;
+    let slipped = [of_jumps, of_jumps / (1.0 + stuck + stuck * stuck)];
+    let more = solved.by_the_normal_force(&parts, found.carried, slipped) + solved.jumps();
     [0, 1].map(|k| {
         let at_least = |of: Vector| of[k].max(ACROSS_FACTOR * of[1 - k]);
         let of_surface = part * of_shift + at_least(ends) + more;
@@ -150,11 +151,11 @@ impl Solved<'_> {
         sums.map(|sum| of_rest * sum * parts.stiffness / state.force())
     }
 
-    /// In full slip: mu times the error of the normal force.
-    fn by_the_normal_force(&self, parts: &Parts, carried: f64) -> f64 {
+    /// In full slip mu times the error of the normal force, else parts of the errors by jumps and by the bend.
+    fn by_the_normal_force(&self, parts: &Parts, carried: f64, [of_jumps, of_smooth]: [f64; 2]) -> f64 {
         let of_normal = match self.state.load {
-            Load::Force(_) => parts.jumps * parts.stiffness,
-            Load::Approach(_) => parts.jumps + parts.smooth,
+            Load::Force(_) => of_jumps * parts.jumps * parts.stiffness,
+            Load::Approach(_) => of_jumps * parts.jumps + of_smooth * parts.smooth,
         };
         of_normal * carried / self.state.force()
     }

@@ -93,6 +93,38 @@ fn a_step_of_unlike_bodies_goes_on_from_the_pressures_in_the_file() {
     }
 }
 
+/// Elements at their limit belong to the contact area of a start: without them p would be 0 there.
+#[test]
+fn a_start_beside_a_limit_is_the_same_again() {
+    let path = folder("limit").join("failed");
+    let path_text = text(&path);
+    let mut scene = Everything::new("pressure_limit");
+    let mut handle = null_mut();
+    // SAFETY (all): structs with the arrays that they declare, and a handle of this test.
+    unsafe {
+        assert_eq!(contact_normal_solver_new(&scene.scene, &scene.options, &mut handle), CONTACT_NORMAL_OK);
+        let solve = |scene: &Everything| {
+            let mut report = contact_normal_report::default();
+            (contact_normal_solver_solve(handle, &scene.scene, &scene.options, null_mut(), &mut report), report)
+        };
+        assert_eq!(solve(&scene).0, CONTACT_NORMAL_OK, "{}", last_error());
+        let mut contact = vec![0; 30];
+        let mut fields = contact_normal_fields { contact: contact.as_mut_ptr(), ..Default::default() };
+        assert_eq!(contact_normal_solver_fields(handle, &mut fields), CONTACT_NORMAL_OK);
+        assert!(contact.contains(&2), "no element is at its limit");
+        scene.options.initial_guess = CONTACT_NORMAL_INITIAL_GUESS_PREVIOUS;
+        (scene.options.max_cycles, scene.options.tolerance) = (1, 1e-18);
+        scene.options.dump = path_text.as_ptr();
+        let (status, report) = solve(&scene);
+        assert!(status > 0, "{}", last_error());
+        contact_normal_solver_free(handle);
+        let dump = Dump::read(&std::fs::read(&path).expect("a dump")).expect("a dump that can be read");
+        let again = dump.replay().expect("a call").report.expect("a report");
+        let (force, other) = (report.normal.force, again.normal.force);
+        assert!((force - other).abs() <= 1e-9 * force, "{force} {other}");
+    }
+}
+
 /// Bodies that relax go on from what the file says that they remember: with the pressures of the call itself, in its time.
 #[test]
 fn a_step_in_time_goes_on_from_the_history_in_the_file() {

@@ -23,7 +23,6 @@ use super::status::{
     contact_normal_status, last_error_text, set_last_error, Refusal, CONTACT_NORMAL_CANCELLED, CONTACT_NORMAL_OK,
 };
 use super::structs::{self, Versioned};
-use crate::contact::State;
 use crate::effects::TangentialInfluence;
 use crate::solver::Solver;
 pub(super) use argument::{Argument, Given};
@@ -203,9 +202,10 @@ impl Image {
     /// The last result of a handle.
     fn add_result(&mut self, solver: &Solver) {
         if solver.has_solved() {
-            let State { p, contact, .. } = solver.state();
-            self.add_doubles("handle.pressure", p);
-            self.add_integers("handle.contact", &mut contact.iter().map(|inside| i32::from(*inside)));
+            let state = solver.state();
+            self.add_doubles("handle.pressure", &state.p);
+            // Elements at their limit, too: a start takes the pressures of these elements alone.
+            self.add_integers("handle.contact", &mut (0..state.p.len()).map(|i| i32::from(state.touches(i))));
         }
         if let Some(history) = solver.history() {
             self.add_doubles(HISTORY, &history);
