@@ -179,7 +179,7 @@ unsafe fn bill(
     let watcher = Watcher::of(&translated);
     let told = &mut watcher.told();
     let (stop, found) = effects_bill(&scene, &translated.options, &asked, &wanted, watcher.callback(told))?;
-    // SAFETY: the caller has room for so many rows.
+    // SAFETY: the caller's array holds `capacity` rows.
     found.iter().take(capacity).enumerate().for_each(|(i, row)| unsafe { to.write(i, &row.into()) });
     write_count(found.len());
     watcher.conclusion(Conclusion::of(stop, || why(stop).into())).conclude()

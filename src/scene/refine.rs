@@ -74,22 +74,22 @@ impl Part {
         let wanted = i as isize + first_node(self.offset);
         let count = if along.repeats { 4 } else { along.m.min(4) };
         let first = if along.repeats { wanted } else { wanted.clamp(0, (along.m - count) as isize) };
-        let node = |k: usize| along.place(first + k as isize).map_or(f64::INFINITY, &value);
-        if (0..count).any(|k| node(k).is_infinite()) {
+        let at = |place: isize| along.place(place).map_or(f64::INFINITY, &value);
+        let nodes = [0, 1, 2, 3].map(|k| at(first + k));
+        if nodes[..count].iter().any(|height| height.is_infinite()) {
             return self.beside_a_hole(i, along, value);
         }
-        if count == 4 && self.is_beyond_centres(i, along) && !is_smooth(&[node(0), node(1), node(2), node(3)]) {
+        if count == 4 && self.is_beyond_centres(i, along) && !is_smooth(&nodes) {
             return value(i);
         }
+        let through = |weights: &[f64]| weights.iter().zip(nodes).map(|(weight, node)| weight * node).sum::<f64>();
         // At the border of the grid the four nearest centres are not around the point.
-        let mut weights = self.weights;
         if first != wanted || count < 4 {
+            let mut weights = self.weights;
             lagrange((i as isize - first) as f64 + self.offset, &mut weights[..count]);
-            return weights[..count].iter().enumerate().map(|(k, weight)| weight * node(k)).sum();
+            return through(&weights[..count]);
         }
-        let nodes = [0, 1, 2, 3].map(node);
-        let beyond = [first - 1, first + 4].map(|place| along.place(place).map_or(f64::INFINITY, &value));
-        weights.iter().zip(nodes).map(|(weight, node)| weight * node).sum::<f64>() + self.smoothed(nodes, beyond)
+        through(&self.weights) + self.smoothed(nodes, [first - 1, first + 4].map(at))
     }
 
     /// The change of the cubic through four centres to one whose slopes at the inner two are those of five centres each, the same as of the cubic on

@@ -124,12 +124,8 @@ fn first_of_history(grid: &Grid, least: usize) -> i32 {
 
 /// The better of the last solution and an unfinished one, by their estimated errors, which include those of the residual.
 fn better(last: Option<Solved>, unfinished: Option<Solved>, accuracy: &Accuracy) -> Option<Solved> {
-    let worst = |solved: &Option<Solved>| {
-        let excesses = solved.as_ref().map(|solved| accuracy.excesses(&solved.outlook));
-        excesses.map_or(f64::INFINITY, |all| {
-            all.iter().map(|one| one.map_or(f64::INFINITY, |one| one.now())).fold(0.0, f64::max)
-        })
-    };
+    let worst =
+        |solved: &Option<Solved>| solved.as_ref().map_or(f64::INFINITY, |solved| accuracy.farthest(&solved.outlook).1);
     match (worst(&unfinished) < worst(&last), last.is_some()) {
         (false, true) => last,
         _ => unfinished,
@@ -145,9 +141,7 @@ impl Refinement {
         // Without contact the result is exact.
         let without = report.measures.is_apart() && stop == Outcome::Converged;
         let error = |quantity: Quantity| outlook.relative(quantity).or(without.then_some(0.0));
-        let over = |(quantity, target): (Quantity, f64)| error(quantity).map_or(f64::INFINITY, |error| error / target);
-        let farthest = accuracy.wanted().max_by(|one, other| over(*one).total_cmp(&over(*other)));
-        let quantity = farthest.map_or(Quantity::Force, |(quantity, _)| quantity);
+        let (quantity, _) = accuracy.farthest(&outlook);
         let number = error(quantity).map_or("not known".into(), |error| format!("{error:.2e}"));
         let of = if quantity == Quantity::Force { String::new() } else { format!(" for {}", quantity.name()) };
         let Grid { mx, my, .. } = solver.problem.grid;

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::{Asked, InitialGuess};
 use crate::blocks;
-use crate::contact::{AdmissibleSet, Freshness, Problem, State, Survey};
+use crate::contact::{leave, AdmissibleSet, Freshness, Problem, State, Survey};
 use crate::error::Result;
 use crate::methods::Start;
 use crate::progress::{Goal, Monitor};
@@ -152,7 +152,7 @@ fn stay_at_limits<S: AdmissibleSet>(state: &mut State, set: S) {
     if (0..state.p.len()).any(|i| state.contact[i] && !stays(state, i)) {
         for i in 0..state.p.len() {
             if stays(state, i) {
-                (state.contact[i], state.at_limit[i], state.reached_limit) = (false, true, true);
+                leave(state, set, i, true);
             }
         }
     }

@@ -28,7 +28,8 @@ pub struct Tangent {
 pub(crate) struct StepBefore {
     pub traction: Vec<Vector>,
     pub particles: Vec<Particle>,
-    pub pressure: Vec<f64>,
+    /// Those of unlike bodies.
+    pub pressure: Option<Vec<f64>>,
 }
 
 /// The constant inputs of turns of the normal and the tangential problem.
@@ -120,7 +121,7 @@ impl Tangent {
 
     /// Takes a step of another solver.
     pub fn take_step(&mut self, step: StepBefore) -> Result<()> {
-        self.keep_pressures(&step.pressure);
+        step.pressure.iter().for_each(|pressure| self.keep_pressures(pressure));
         self.solver.take_step(step.traction, step.particles)
     }
 

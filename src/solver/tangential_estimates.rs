@@ -51,7 +51,8 @@ const COATED_FACTOR: f64 = 2.0;
 /// With a given normal force, the factor on errors at ends is this times `(1 - F/(mu N))^(1/3)`, at most 1.
 const BEFORE_SLIP: f64 = 2.0;
 
-/// Errors are parts of mu N, or of so many times the tractions where bounds are out of their reach: those of glued elements are linear in the motion.
+/// Errors are parts of mu N. Tractions of glued elements do not reach their bounds, and are linear in the motion. Their errors are parts of the tractions
+/// times this factor.
 const WITHIN_REACH: f64 = 15.0;
 
 /// A solved scene with friction.

@@ -1,5 +1,6 @@
 //! Dumps of what a handle solves, and files that are not what a dump is.
 
+use std::path::Path;
 use std::ptr::{null, null_mut};
 
 use contact_normal::ffi::dump::Dump;
@@ -8,6 +9,18 @@ use contact_normal::ffi::*;
 use crate::call::last_error;
 use crate::dump::{files, folder, text};
 use crate::dump_scene::Everything;
+
+/// The status and the report of a solve with a handle.
+unsafe fn solve(handle: *mut contact_normal_solver, scene: &Everything) -> (i32, contact_normal_report) {
+    let mut report = contact_normal_report::default();
+    // SAFETY: the caller's handle, and structs with the arrays that they declare.
+    let status = unsafe { contact_normal_solver_solve(handle, &scene.scene, &scene.options, null_mut(), &mut report) };
+    (status, report)
+}
+
+fn written(path: &Path) -> Dump {
+    Dump::read(&std::fs::read(path).expect("a dump")).expect("a dump that can be read")
+}
 
 #[test]
 fn a_handle_goes_on_from_what_is_in_the_file() {
@@ -19,10 +32,7 @@ fn a_handle_goes_on_from_what_is_in_the_file() {
         // SAFETY (all): structs with the arrays that they declare, and a handle of this test.
         unsafe {
             assert_eq!(contact_normal_solver_new(&scene.scene, &scene.options, &mut handle), CONTACT_NORMAL_OK);
-            let solve = |scene: &Everything| {
-                let mut report = contact_normal_report::default();
-                (contact_normal_solver_solve(handle, &scene.scene, &scene.options, null_mut(), &mut report), report)
-            };
+            let solve = |scene: &Everything| solve(handle, scene);
             assert_eq!(solve(&scene).0, CONTACT_NORMAL_OK, "{}", last_error());
             if effects == "friction" {
                 // A solve without friction leaves the tractions from which the next step continues.
@@ -45,7 +55,7 @@ fn a_handle_goes_on_from_what_is_in_the_file() {
             scene.options.dump = path_text.as_ptr();
             let (status, _) = solve(&scene);
             assert!(status > 0, "{effects}: {status}: {}", last_error());
-            let dump = Dump::read(&std::fs::read(&path).expect("a dump")).expect("a dump that can be read");
+            let dump = written(&path);
             assert_eq!(dump.doubles("handle.pressure"), Some(before), "{effects}");
             assert_eq!(dump.doubles("handle.traction_x").is_some(), effects == "friction");
             assert_eq!(
@@ -70,10 +80,7 @@ fn a_step_of_unlike_bodies_goes_on_from_the_pressures_in_the_file() {
     // SAFETY (all): structs with the arrays that they declare, and a handle of this test.
     unsafe {
         assert_eq!(contact_normal_solver_new(&scene.scene, &scene.options, &mut handle), CONTACT_NORMAL_OK);
-        let solve = |scene: &Everything| {
-            let mut report = contact_normal_report::default();
-            (contact_normal_solver_solve(handle, &scene.scene, &scene.options, null_mut(), &mut report), report)
-        };
+        let solve = |scene: &Everything| solve(handle, scene);
         assert_eq!(solve(&scene).0, CONTACT_NORMAL_OK, "{}", last_error());
         scene.friction.previous_traction = [null(); 2];
         scene.friction.continues = 1;
@@ -83,7 +90,7 @@ fn a_step_of_unlike_bodies_goes_on_from_the_pressures_in_the_file() {
         let (status, report) = solve(&scene);
         assert!(status > 0, "{}", last_error());
         contact_normal_solver_free(handle);
-        let dump = Dump::read(&std::fs::read(&path).expect("a dump")).expect("a dump that can be read");
+        let dump = written(&path);
         assert!(dump.doubles("handle.pressure_before").is_some());
         let again = dump.replay().expect("a call");
         assert_eq!(again.status, status, "{}", last_error());
@@ -103,10 +110,7 @@ fn a_start_beside_a_limit_is_the_same_again() {
     // SAFETY (all): structs with the arrays that they declare, and a handle of this test.
     unsafe {
         assert_eq!(contact_normal_solver_new(&scene.scene, &scene.options, &mut handle), CONTACT_NORMAL_OK);
-        let solve = |scene: &Everything| {
-            let mut report = contact_normal_report::default();
-            (contact_normal_solver_solve(handle, &scene.scene, &scene.options, null_mut(), &mut report), report)
-        };
+        let solve = |scene: &Everything| solve(handle, scene);
         assert_eq!(solve(&scene).0, CONTACT_NORMAL_OK, "{}", last_error());
         let mut contact = vec![0; 30];
         let mut fields = contact_normal_fields { contact: contact.as_mut_ptr(), ..Default::default() };
@@ -118,7 +122,7 @@ fn a_start_beside_a_limit_is_the_same_again() {
         let (status, report) = solve(&scene);
         assert!(status > 0, "{}", last_error());
         contact_normal_solver_free(handle);
-        let dump = Dump::read(&std::fs::read(&path).expect("a dump")).expect("a dump that can be read");
+        let dump = written(&path);
         let again = dump.replay().expect("a call").report.expect("a report");
         let (force, other) = (report.normal.force, again.normal.force);
         assert!((force - other).abs() <= 1e-9 * force, "{force} {other}");
@@ -138,10 +142,7 @@ fn a_step_in_time_goes_on_from_the_history_in_the_file() {
         visco.clone_from(&*scene.scene.visco);
         scene.scene.visco = &visco;
         assert_eq!(contact_normal_solver_new(&scene.scene, &scene.options, &mut handle), CONTACT_NORMAL_OK);
-        let solve = |scene: &Everything| {
-            let mut report = contact_normal_report::default();
-            (contact_normal_solver_solve(handle, &scene.scene, &scene.options, null_mut(), &mut report), report)
-        };
+        let solve = |scene: &Everything| solve(handle, scene);
         assert_eq!(solve(&scene).0, CONTACT_NORMAL_OK, "{}", last_error());
         let later = contact_normal_visco { continues: 1, time_step: 0.3, ..visco };
         scene.scene.visco = &later;
@@ -153,7 +154,7 @@ fn a_step_in_time_goes_on_from_the_history_in_the_file() {
         let (status, report) = solve(&scene);
         assert!(status > 0, "{status}: {}", last_error());
         contact_normal_solver_free(handle);
-        let dump = Dump::read(&std::fs::read(&path).expect("a dump")).expect("a dump that can be read");
+        let dump = written(&path);
         // A p, and a field of each branch.
         assert_eq!(dump.doubles("handle.history").map(|history| history.len()), Some(2 + 6 * 30));
         let again = dump.replay().expect("a call");

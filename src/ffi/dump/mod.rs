@@ -230,7 +230,7 @@ impl Image {
     }
 }
 
-/// The [guard](super::guard::guard) of a call whose `arguments` may be written: see [`Recording`]. A panic is a failure, too.
+/// Guards a call as [`guard`](super::guard::guard) does, and writes its `arguments` to a file if it fails: see [`Recording`].
 pub(super) unsafe fn recorded(
     call: &'static str,
     options: *const contact_normal_options,

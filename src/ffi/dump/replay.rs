@@ -90,7 +90,7 @@ impl Dump {
                     return Ok(status);
                 }
                 self.start_friction(scene, &mut options)?;
-                self.continue_friction(scene, *handle)?;
+                self.give_step(*handle)?;
             }
             let (n, entries) = (self.integer("n")?, self.array("entries")?);
             let (results, report) = (self.pointer("results")?, self.pointer("report")?);
@@ -179,7 +179,7 @@ impl Dump {
         ranges.extend([range(&fields), range(&options)]);
         // SAFETY: as above.
         unsafe {
-            self.continue_friction(scene, *handle)?;
+            self.give_step(*handle)?;
             Ok(within(ranges, || contact_normal_solver_solve(*handle, scene, &options, &mut fields, report)))
         }
     }
@@ -229,48 +229,25 @@ impl Dump {
         Ok(within(ranges, || unsafe { contact_normal_solver_new(&scene, options, handle) }))
     }
 
-    /// Gives the handle the step of unlike bodies that the file has. False: it has none.
-    unsafe fn give_step(&self, handle: *mut contact_normal_solver) -> Result<bool, String> {
+    /// Gives the handle the step of the file, if it has one, from which friction may continue.
+    unsafe fn give_step(&self, handle: *mut contact_normal_solver) -> Result<(), String> {
         let of = |name: &str| self.doubles(name);
-        let (Some(pressure), Some(x), Some(y)) =
-            (of(PRESSURE_BEFORE), of("handle.traction_x"), of("handle.traction_y"))
-        else {
-            return Ok(false);
-        };
+        let (Some(x), Some(y)) = (of("handle.traction_x"), of("handle.traction_y")) else { return Ok(()) };
         let (coefficients, limits) = (of(PARTICLES[0]).unwrap_or_default(), of(PARTICLES[1]).unwrap_or_default());
         let limit = |i: usize| limits.get(i).copied().unwrap_or(0.0);
         let particle = |(i, coefficient): (usize, &f64)| Particle { coefficient: *coefficient, yield_limit: limit(i) };
-        let traction = x.into_iter().zip(y).map(|(x, y)| [x, y]).collect();
-        let particles = coefficients.iter().enumerate().map(particle).collect();
+        let particles: Vec<Particle> = coefficients.iter().enumerate().map(particle).collect();
+        let pressure = of(PRESSURE_BEFORE);
         // SAFETY: a handle that was set up before.
         let mut held = unsafe { InUse::begin(handle) }.map_err(|_| "the handle is in use")?;
-        held.held().solver.take_step(StepBefore { traction, particles, pressure });
-        Ok(true)
-    }
-
-    /// Friction that continues does so from the tractions of the file.
-    unsafe fn continue_friction(
-        &self,
-        scene: *mut contact_normal_scene,
-        handle: *mut contact_normal_solver,
-    ) -> Result<(), String> {
-        // SAFETY: the caller's.
-        if unsafe { self.give_step(handle)? } {
-            return Ok(());
+        let solver = &mut held.held().solver;
+        let lengths =
+            [Some(x.len()), Some(y.len()), pressure.as_ref().map(Vec::len), Some(particles.len()).filter(|n| *n > 0)];
+        if lengths.into_iter().flatten().any(|length| length != solver.grid().len()) {
+            return Err("the step of the file is not on the grid of the handle".into());
         }
-        // SAFETY (both): NULL, or structs of ours which no one else uses.
-        let friction = unsafe { scene.as_ref().and_then(|scene| scene.friction.cast_mut().as_mut()) };
-        let traction = [self.array::<f64>("handle.traction_x")?, self.array("handle.traction_y")?];
-        if let Some(friction) = friction.filter(|friction| friction.continues == 1 && !traction[0].is_null()) {
-            (friction.continues, friction.previous_traction) = (0, traction.map(<*mut f64>::cast_const));
-            let [coefficient, yield_limit] = [self.array::<f64>(PARTICLES[0])?, self.array(PARTICLES[1])?];
-            if friction.previous_coefficient.is_null() {
-                friction.previous_coefficient = coefficient;
-            }
-            if friction.previous_yield_limit.is_null() {
-                friction.previous_yield_limit = yield_limit;
-            }
-        }
+        let traction = x.into_iter().zip(y).map(|(x, y)| [x, y]).collect();
+        solver.take_step(StepBefore { traction, particles, pressure });
         Ok(())
     }
 }

@@ -28,7 +28,7 @@ pub fn clenshaw(coefficients: &[f64], x: f64) -> f64 {
     x * one - two + coefficients[0]
 }
 
-/// The number of Chebyshev coefficients to keep: at least one, and so many that the absolute values of the others add up to at most `allowed`.
+/// The number of Chebyshev coefficients to keep, at least one. The absolute values of the others add up to at most `allowed`.
 pub fn terms(coefficients: &[f64], allowed: f64) -> usize {
     let mut dropped = 0.0;
     let is_needed = |c: &f64| {

@@ -23,11 +23,12 @@ const STEPPED_JUMP: f64 = 0.15;
 
 /// A row or a column.
 #[derive(Clone, Copy)]
-struct Line {
-    number: usize,
+pub(super) struct Line {
+    /// The number of the line.
+    pub(super) number: usize,
     /// The direction along it, and that to the next line.
-    along: Direction,
-    across: Direction,
+    pub(super) along: Direction,
+    pub(super) across: Direction,
 }
 
 /// A jump between two neighbours of a line.
@@ -141,7 +142,7 @@ impl Line {
 
     /// The second difference at a place; NaN where the surface ends.
     #[inline]
-    fn second(&self, place: isize, value: &impl Fn(usize) -> f64) -> f64 {
+    pub(super) fn second(&self, place: isize, value: &impl Fn(usize) -> f64) -> f64 {
         let second = if place >= 1 && place + 1 < self.along.m as isize {
             let Direction { step, .. } = self.along;
             let at = self.number * self.across.step + place as usize * step;

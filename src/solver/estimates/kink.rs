@@ -2,6 +2,7 @@
 
 use std::f64::consts::{LN_2, PI};
 
+use super::jumps::Line;
 use crate::contact::{Problem, State};
 use crate::direction::Direction;
 
@@ -20,27 +21,26 @@ const DOUBLINGS: f64 = 4.0;
 pub fn missed(problem: &Problem, state: &State, at: usize) -> f64 {
     let (grid, layer) = (&state.grid, problem.layer(at));
     let is_soft = layer * problem.modulus() > grid.dx.min(grid.dy);
-    let places = [at % grid.mx, at / grid.mx];
-    let lines =
-        Direction::both(grid, problem.coefficients.repeats(grid)).into_iter().zip(places).zip([grid.dx, grid.dy]);
-    let each = lines.map(|((along, place), d)| {
-        let jump = jump(state, along, (at, place));
+    let [x, y] = Direction::both(grid, problem.coefficients.repeats(grid));
+    let (ix, iy) = (at % grid.mx, at / grid.mx);
+    let row = (Line { number: iy, along: x, across: y }, ix, grid.dx);
+    let column = (Line { number: ix, along: y, across: x }, iy, grid.dy);
+    let each = [row, column].map(|(line, place, d)| {
+        let jump = jump(state, line, place as isize);
         if is_soft {
             0.5 * jump / layer
         } else {
             DOUBLINGS * problem.modulus() * jump / d * LN_2 / (2.0 * PI)
         }
     });
-    each.fold(0.0, f64::max)
+    each[0].max(each[1])
 }
 
-/// The jump of the steps of h from element to element, at the element `at`, which is number `place` of its line; 0 without a kink.
-fn jump(state: &State, along: Direction, (at, place): (usize, usize)) -> f64 {
-    let first = at - place * along.step;
-    let h = |place: isize| along.at(place).map_or(f64::NAN, |next| state.h[first + next]);
-    let bend = |place: isize| h(place - 1) - 2.0 * h(place) + h(place + 1);
-    let place = place as isize;
-    // The kink is between this element and one beside it. Beside a hole or the border of the grid these are NaN.
+/// The jump of the steps of h from element to element, at the element number `place` of a line; 0 without a kink.
+fn jump(state: &State, line: Line, place: isize) -> f64 {
+    // NaN beside a hole or the border of the grid.
+    let bend = |place: isize| line.second(place, &|i| state.h[i]);
+    // The kink is between this element and one beside it.
     let jumps = [place - 1, place].map(|one| {
         let (before, behind) = (bend(one - 1), bend(one + 2));
         // Beyond the curvature that the surface has beside it: twice the larger one, NaN if either is.

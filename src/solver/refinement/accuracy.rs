@@ -51,6 +51,13 @@ impl Accuracy {
         self.wanted().map(of).collect()
     }
 
+    /// The quantity that is farthest from its target, and its error relative to the target: infinite if it is not known.
+    pub(super) fn farthest(&self, outlook: &Outlook) -> (Quantity, f64) {
+        let of = |excess: Option<Falling>| excess.map_or(f64::INFINITY, |excess| excess.now());
+        let all = self.wanted().zip(self.excesses(outlook)).map(|((quantity, _), excess)| (quantity, of(excess)));
+        all.max_by(|one, other| one.1.total_cmp(&other.1)).unwrap_or((Quantity::Force, 0.0))
+    }
+
     /// Refuses targets and limits out of range.
     pub fn check(&self) -> Result<()> {
         for (quantity, target) in Quantity::ALL.into_iter().zip(self.targets) {
