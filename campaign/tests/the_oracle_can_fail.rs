@@ -94,7 +94,7 @@ const SLIDING: [(&str, Spoil<Found, Sliding>); 5] = [
 #[test]
 fn spoiled_answers_with_friction_are_found() {
     let mut spoiled = [0, 0];
-    for seed in 0..200 {
+    for seed in 0..110 {
         let Some(case) = campaign::friction::draw(&mut Random::new(seed)) else { continue };
         let found = call(&case.place, &case.slide, &case.stop);
         // Tractions before of 1e9 times the bounds leave no digits of the slip.
@@ -110,7 +110,7 @@ fn spoiled_answers_with_friction_are_found() {
             spoiled[usize::from(!case.place.is_alike())] += 1;
         }
     }
-    assert!(spoiled.iter().all(|count| *count >= 50), "{spoiled:?}");
+    assert!(spoiled.iter().all(|count| *count >= 30), "{spoiled:?}");
 }
 
 /// A force of a part of mu N is carried by some creepage, so that a refusal of it would be found; of more than any creepage carries none is.

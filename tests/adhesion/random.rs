@@ -174,7 +174,7 @@ fn areas_and_energies_of_rough_surfaces_are_those_of_a_firm_solve() {
 // Directions of a linear solve take 8 bytes an element up to eleven, and 4 bytes where there are more.
 #[test]
 fn rough_surfaces_take_200_bytes_an_element() {
-    for (n, part, force) in [(512, 0.1, 1e-3), (256, 0.3, 1e-3), (256, 1.0, 1e-3), (256, 1.0, 4e-3)] {
+    for (n, part, force) in [(384, 0.1, 1e-3), (192, 0.3, 1e-3), (192, 1.0, 1e-3), (192, 1.0, 4e-3)] {
         let grid = Grid::new(n, n, 1.0 / n as f64, 1.0 / n as f64).expect("a grid");
         let (h, full) = rough(n, &mut Draw(3), 0.8);
         let work = part * full;

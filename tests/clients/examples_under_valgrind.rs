@@ -1,5 +1,5 @@
-//! All examples in C and in Fortran under valgrind, on small inputs: it is some 50 times slower. The examples of a language are joined to one
-//! program, because valgrind translates the library anew for each program: that takes longer than most examples.
+//! All examples in C and in Fortran under valgrind, on small inputs: it is some 50 times slower. They are joined to one program, because valgrind
+//! translates the library anew for each program: that takes longer than most examples.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,9 @@ use crate::fortran;
 use crate::support::{root, run, run_under_valgrind, scratch};
 
 /// Sizes in the examples in C and in Fortran, and smaller ones.
-const SIZES: [(&str, &str); 19] = [
+const SIZES: [(&str, &str); 21] = [
+    (":: M = 48\n", ":: M = 16\n"),
+    ("step = 1, 100", "step = 1, 4"),
     ("ROLLED = 32", "ROLLED = 10"),
     (":: n = 32, reach", ":: n = 10, reach"),
     ("COUNT = 200", "COUNT = 5"),
@@ -19,8 +21,8 @@ const SIZES: [(&str, &str); 19] = [
     ("STEPS = 100", "STEPS = 4"),
     ("M = 64, STEPS = 8", "M = 16, STEPS = 3"),
     ("m = 64, steps = 8", "m = 16, steps = 3"),
-    ("M = 48, N = 32, STEPS = 12", "M = 24, N = 16, STEPS = 3"),
-    ("m = 48, n = 32, steps = 12", "m = 24, n = 16, steps = 3"),
+    ("M = 48, N = 32, STEPS = 12", "M = 20, N = 12, STEPS = 2"),
+    ("m = 48, n = 32, steps = 12", "m = 20, n = 12, steps = 2"),
     ("MX = 48, MY = 36, CREEPAGES = 7", "MX = 16, MY = 12, CREEPAGES = 7"),
     ("MX = 48, MY = 48", "MX = 16, MY = 16"),
     ("MX = 40, MY = 40", "MX = 12, MY = 12"),
@@ -59,7 +61,8 @@ fn examples(of: &str, extension: &str, folder: &Path, compile: impl Fn(&Path, &P
     sources.sort();
     let one = |file: PathBuf| {
         let name = file.file_stem().expect("a name").to_string_lossy().into_owned();
-        let (source, object) = (folder.join(format!("{name}.{extension}")), folder.join(format!("{name}.o")));
+        let source = folder.join(format!("{name}.{extension}"));
+        let object = folder.join(format!("{name}_{extension}.o"));
         let text = std::fs::read_to_string(&file).expect("a source");
         std::fs::write(&source, smaller(&name, &text)).expect("a smaller source");
         compile(&source, &object);
@@ -70,7 +73,7 @@ fn examples(of: &str, extension: &str, folder: &Path, compile: impl Fn(&Path, &P
             "gap" => vec![gap_file("wheel_rail"), "80000".to_owned()],
             _ => Vec::new(),
         };
-        Example { name, object, arguments }
+        Example { name: format!("{name}_{extension}"), object, arguments }
     };
     sources.into_iter().map(one).collect()
 }
@@ -93,11 +96,12 @@ fn driver(examples: &[Example], folder: &Path) -> PathBuf {
     source
 }
 
-/// Links the examples and runs them all; each must print something. `link`: the compiler, with what else their language needs.
-fn run_all(examples: &[Example], folder: &Path, mut link: Command) {
+/// Links the examples, and the module of those in Fortran, and runs them all; each must print something.
+fn run_all(examples: &[Example], folder: &Path, module: &Path) {
     let (source, object, program) = (driver(examples, folder), folder.join("driver.o"), folder.join("all_examples"));
     run(Command::new("cc").args(["-std=c99", "-c"]).arg(&source).arg("-o").arg(&object));
-    link.arg(&object).args(examples.iter().map(|example| &example.object)).arg("-o").arg(&program);
+    let mut link = Command::new("gfortran");
+    link.args([&object, module]).args(examples.iter().map(|example| &example.object)).arg("-o").arg(&program);
     run(link.arg("-L").arg(folder).args(["-lcontact_normal", "-lm"]));
     let printed = run_under_valgrind(&program, &[], folder);
     let parts: Vec<(&str, &str)> = printed.split("== ").filter_map(|part| part.split_once('\n')).collect();
@@ -107,28 +111,20 @@ fn run_all(examples: &[Example], folder: &Path, mut link: Command) {
 }
 
 #[test]
-fn the_examples_in_c() {
-    let folder = scratch("c_valgrind");
+fn the_examples_in_c_and_in_fortran() {
+    let folder = scratch("examples_under_valgrind");
     std::fs::copy(root().join("c_examples/example.h"), folder.join("example.h")).expect("a header");
-    let examples = examples("c_examples", "c", &folder, |source, object| {
+    let mut all = examples("c_examples", "c", &folder, |source, object| {
         run(c::compiler("cc", "c99").args(["-O2", "-c"]).arg(source).arg("-o").arg(object));
     });
-    assert!(examples.len() >= 23, "{} examples", examples.len());
-    run_all(&examples, &folder, Command::new("cc"));
-}
-
-#[test]
-fn the_examples_in_fortran() {
-    let folder = scratch("fortran_valgrind");
+    let in_c = all.len();
     let flags = ["-g", "-O1"];
     let module = fortran::module(&flags);
-    let examples = examples("fortran_examples", "f90", &folder, |source, object| {
+    all.extend(examples("fortran_examples", "f90", &folder, |source, object| {
         let mut gfortran = fortran::compiler(&flags);
         gfortran.arg("-I").arg(&module).arg("-c").arg(source).arg("-o").arg(object);
         run(gfortran.current_dir(&folder));
-    });
-    assert!(examples.len() >= 21, "{} examples", examples.len());
-    let mut link = Command::new("gfortran");
-    link.arg(module.join("contact_normal.o"));
-    run_all(&examples, &folder, link);
+    }));
+    assert!(in_c >= 23 && all.len() >= in_c + 21, "{in_c} of {} examples in C", all.len());
+    run_all(&all, &folder, &module.join("contact_normal.o"));
 }

@@ -56,7 +56,7 @@ fn fails_everywhere(m: usize, load: Load, all: usize) {
 #[test]
 fn after_a_lack_of_memory_adhesion_is_solved() {
     let _alone = alone();
-    fails_everywhere(96, Load::Approach(0.3), 40);
-    fails_everywhere(96, Load::Force(-0.5), 40);
+    fails_everywhere(96, Load::Approach(0.3), 20);
+    fails_everywhere(96, Load::Force(-0.5), 20);
     fails_everywhere(182, Load::Force(-0.5), 20);
 }

@@ -8,9 +8,9 @@ use super::limited_memory::{self, release};
 use contact_normal::ffi::*;
 
 /// Elements of a line.
-const N: usize = 5600;
-/// Bytes of allocations that count: half a number an element. The lists of coarser grids are smaller.
-const LARGE: usize = 8 * N / 2;
+const N: usize = 3200;
+/// Bytes of allocations that count: three quarters of a number an element. The lists of coarser grids are smaller.
+const LARGE: usize = 8 * N * 3 / 4;
 
 /// Elastic cylinders, along x or along y; the tangential problem with pressures that are given, or both problems.
 fn solve(sides: (usize, usize), modulus: f64, motion: i32, pressures: Option<&[f64]>) -> i32 {
@@ -58,7 +58,7 @@ fn with_more_and_more(what: &str, run: impl Fn() -> i32 + Sync) -> usize {
             return lacks;
         }
         lacks += 1;
-        room += (room / 24).max(8 * N);
+        room += (room / 14).max(8 * N);
     }
 }
 

@@ -70,7 +70,7 @@ fn changes_and_verdicts_are_those_of_the_whole_grid() {
     let h = ball();
     let patch: Vec<i32> = (0..M * M).map(|i| i32::from(i % M >= M / 2)).collect();
     let mut decided = 0;
-    for seed in 0..12 {
+    for seed in 0..8 {
         let scene = with_effects(&h, &patch, &mut Random::new(seed));
         let mut wanted = WANTED.to_vec();
         if scene.friction.is_some() {
@@ -95,7 +95,7 @@ fn changes_and_verdicts_are_those_of_the_whole_grid() {
             decided += 1;
         }
     }
-    assert!(decided > 60, "{decided}");
+    assert!(decided > 40, "{decided}");
 }
 
 /// In the short time that it takes by default, on a grid of which the small ones are a small part.

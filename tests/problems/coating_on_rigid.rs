@@ -150,8 +150,24 @@ fn a_ball_on_a_thin_incompressible_layer_tends_to_the_closed_form() {
     assert!(before < 0.1, "{before}");
 }
 
-/// `u` on elements by a sum over waves of a period that ends where the layer's kernel has decayed: the test's own transfer function, and its
-/// own transform. Aliases fall off as 1/n, so two counts of them leave the rest of a quarter.
+/// The mean of u over elements that wear a wave of unit pressure: by the test's own transfer function, over all aliases of the wave. They fall off as 1/n, so
+/// two counts of them leave the rest of a quarter. `number`: the waves an element holds, in x and in y.
+fn wave_response(nu: f64, t: f64, d: f64, number: [f64; 2]) -> f64 {
+    const LAST: i64 = 40;
+    let sinc = |x: f64| if x == 0.0 { 1.0 } else { x.sin() / x };
+    let alias = |a: i64, b: i64| {
+        let [kx, ky] = [number[0] + a as f64, number[1] + b as f64].map(|number| 2.0 * PI * number / d);
+        let k = kx.hypot(ky);
+        let of_mean = 0.5 * (1.0 - 2.0 * nu) / (1.0 - nu) * t;
+        let u = if k == 0.0 { of_mean } else { (1.0 - nu) / k * finite_thickness(nu, (k * t).min(300.0)) };
+        u * sinc(0.5 * kx * d) * sinc(0.5 * ky * d)
+    };
+    let sum = |n: i64| -> f64 { (-n..=n).flat_map(|a| (-n..=n).map(move |b| alias(a, b))).sum() };
+    let (less, more) = (sum(LAST / 2), sum(LAST));
+    more + (more - less) / 3.0
+}
+
+/// `u` on elements by a sum over waves of a period that ends where the layer's kernel has decayed: by the test's own transform.
 fn by_waves(nu: f64, t: f64, p: &[f64], m: usize, d: f64, period: usize) -> Vec<f64> {
     let waves = |cosine: bool| -> Vec<f64> {
         let at = |i: usize, k: usize| 2.0 * PI * ((i * k) % period) as f64 / period as f64;
@@ -159,10 +175,12 @@ fn by_waves(nu: f64, t: f64, p: &[f64], m: usize, d: f64, period: usize) -> Vec<
         (0..period * m).map(|n| value(n / m, n % m)).collect()
     };
     let (cosines, sines) = (waves(true), waves(false));
-    let sinc = |x: f64| if x == 0.0 { 1.0 } else { x.sin() / x };
     let mut u = vec![0.0; m * m];
     let half = period / 2;
-    let last = 40;
+    // Waves of both directions of travel have one response.
+    let responses: Vec<f64> = (0..(half + 1) * (half + 1))
+        .map(|k| wave_response(nu, t, d, [k % (half + 1), k / (half + 1)].map(|i| i as f64 / period as f64)))
+        .collect();
     for j in 0..period {
         // Rows of p, turned in y.
         let (c, s) = (&cosines[j * m..][..m], &sines[j * m..][..m]);
@@ -175,22 +193,7 @@ fn by_waves(nu: f64, t: f64, p: &[f64], m: usize, d: f64, period: usize) -> Vec<
             for (x, (a, b)) in columns.iter().enumerate() {
                 (re, im) = (re + a * cx[x] + b * sx[x], im + b * cx[x] - a * sx[x]);
             }
-            let number = |i: usize| if i > half { i as f64 - period as f64 } else { i as f64 } / period as f64;
-            let sum = |n: i64| -> f64 {
-                let aliases = (-n..=n).flat_map(|a| (-n..=n).map(move |b| (a, b)));
-                aliases
-                    .map(|(a, b)| {
-                        let (kx, ky) = (2.0 * PI * (number(i) + a as f64) / d, 2.0 * PI * (number(j) + b as f64) / d);
-                        let k = kx.hypot(ky);
-                        let of_mean = 0.5 * (1.0 - 2.0 * nu) / (1.0 - nu) * t;
-                        let u =
-                            if k == 0.0 { of_mean } else { (1.0 - nu) / k * finite_thickness(nu, (k * t).min(300.0)) };
-                        u * sinc(0.5 * kx * d) * sinc(0.5 * ky * d)
-                    })
-                    .sum()
-            };
-            let (less, more) = (sum(last / 2), sum(last));
-            let response = (more + (more - less) / 3.0) / (period * period) as f64;
+            let response = responses[j.min(period - j) * (half + 1) + i.min(period - i)] / (period * period) as f64;
             (re, im) = (re * response, im * response);
             for y in 0..m {
                 // e^{i ky y}
