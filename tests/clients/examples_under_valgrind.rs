@@ -1,5 +1,5 @@
-//! All examples in C and in Fortran under valgrind, on small inputs: it is some 50 times slower. The examples of a language are joined to one
-//! program, because valgrind translates the library anew for each program: that takes longer than most examples.
+//! All examples in C and in Fortran under valgrind, which is some 50 times slower: on small inputs. The examples of a language are one program, because
+//! valgrind translates the library for each program, and this takes longer than most examples.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -93,7 +93,7 @@ fn driver(examples: &[Example], folder: &Path) -> PathBuf {
     source
 }
 
-/// Links the examples and runs them all; each must print something. `link`: the compiler, with what else their language needs.
+/// Links the examples and runs them all; each must print something. `link`: the compiler, with the libraries of the language.
 fn run_all(examples: &[Example], folder: &Path, mut link: Command) {
     let (source, object, program) = (driver(examples, folder), folder.join("driver.o"), folder.join("all_examples"));
     run(Command::new("cc").args(["-std=c99", "-c"]).arg(&source).arg("-o").arg(&object));
