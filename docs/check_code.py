@@ -1,8 +1,9 @@
-"""Runs or compiles every code block of the pages in a folder: `check_code.py PREFIX FOLDER [PAGE.md ...]`, with the library installed in PREFIX.
+"""Runs or compiles every code block of docs/ and of both README.md: `check_code.py PREFIX FOLDER [PAGE.md ...]`, with the library installed in PREFIX. FOLDER gets
+the programs and their data.
 
-Blocks of Python run one after the other, one page in one process; notebooks have run when their pages were written. A block of C, C++ or Fortran that is a program is compiled, linked and
-run; any other is compiled inside a function, with the variables of PREAMBLE declared. sh, cmake, toml and text are left alone: `make
-package-test` runs what they say.
+All Python blocks of a page run in one process, in order. Notebooks run when their pages are written. A block of C, C++ or Fortran that is a program is
+compiled, linked and run; any other one is compiled inside a function, with the variables that it uses declared. Blocks of sh, cmake, toml and text do not run:
+`make package-test` runs their commands.
 """
 
 import os
@@ -19,7 +20,7 @@ x, y = (np.arange(95) - 47) * 0.2, (np.arange(88) - 43.5) * 0.2
 h = 0.001 * x[None, :] ** 2 + 0.002 * y[:, None] ** 2
 steel = dict(shear_modulus=82000.0, poisson_ratio=0.28)
 """
-# Pages whose Python is a whole program as it is printed.
+# Pages whose Python blocks are a complete program.
 WHOLE = ("README.md", "tutorial.md", "creep_force_tables.md")
 C = """#include <contact_normal.h>
 #include <stdio.h>
@@ -32,7 +33,7 @@ contact_normal_status block(int mx, int my, const double *h, double *p, contact_
     return status;
 }
 """
-# What a fragment uses but does not declare.
+# The variables that a fragment of C uses without declaring them.
 C_DECLARED = {
     "options.": "contact_normal_options options; contact_normal_options_init(&options);",
     "scene": "contact_normal_scene scene; contact_normal_scene_init(&scene);",
@@ -49,7 +50,7 @@ void block(int mx, int my, const std::vector<double> &h)
 %s
 }
 """
-# What a fragment of C++ uses but does not declare.
+# The variables that a fragment of C++ uses without declaring them.
 CPP_DECLARED = {
     "scene": "contact_normal::scene scene({mx, my, 0.2, 0.2}, {82000.0, 0.28}); scene.undeformed_distance(h);",
     "patch_of_element": "std::vector<std::int32_t> patch_of_element(h.size());",
@@ -73,25 +74,25 @@ WARNINGS = ["-Wall", "-Wextra", "-Werror"]
 
 
 def run(command: list, folder: Path, **more) -> None:
-    """Runs a command; what it prints is shown if it fails."""
+    """Runs a command. Its output is shown if it fails."""
     done = subprocess.run([str(word) for word in command], cwd=folder, capture_output=True, text=True, **more)
     if done.returncode:
         raise SystemExit(f"{' '.join(map(str, command))}:\n{done.stdout}\n{done.stderr}")
 
 
 def declared_in_cpp(block: str) -> str:
-    """Declarations of what a fragment of C++ uses and does not declare."""
+    """Declarations of the variables that a fragment of C++ uses without declaring them."""
     return "\n".join(code for name, code in CPP_DECLARED.items() if re.search(rf"\b{name}\b", block) and not re.search(rf"contact_normal::{name} {name}\b", block))
 
 
 def declared(block: str) -> str:
-    """Declarations of what a C fragment, and the function around it, uses and does not declare."""
+    """Declarations of the variables that a fragment of C, or the function around it, uses without declaring them."""
     block += " status"
     return "\n".join(code for name, code in C_DECLARED.items() if name in block and f"contact_normal_{name.rstrip('.')} {name.rstrip('.')};" not in block)
 
 
 def main(prefix: Path, folder: Path, only: list) -> None:
-    """Checks all pages, or those of these names."""
+    """Checks all pages, or only those with these names."""
     folder.mkdir(parents=True, exist_ok=True)
     for data in (*(root / "data" / "wheel_rail").glob("*.txt"), *(root / "data" / "heights").glob("*.npy"), *(root / "data" / "profiles").glob("*.pr?")):
         (folder / data.name).write_bytes(data.read_bytes())
@@ -125,7 +126,7 @@ def main(prefix: Path, folder: Path, only: list) -> None:
                 whole = block.lstrip().startswith("program")
                 source = source.with_suffix(".f90")
                 source.write_text(block if whole else FORTRAN % block)
-                # A fragment does not use all that is declared around it.
+                # A fragment does not use all variables declared around it.
                 unused = [] if whole else ["-Wno-unused-variable", "-Wno-unused-dummy-argument"]
                 compiler = ["gfortran", *WARNINGS, *unused, prefix / "include" / "contact_normal.f90", source]
             else:

@@ -1,4 +1,4 @@
-"""On the site, code blocks of several languages that follow each other, with nothing between, are tabs. A choice of a language holds on all pages."""
+"""Turns adjacent code blocks of several languages into tabs of the site. A chosen language holds on all pages."""
 
 from docutils import nodes
 from sphinx.transforms import SphinxTransform
@@ -8,7 +8,7 @@ NAMES = {"python": "Python", "c": "C", "cpp": "C++", "fortran": "Fortran", "rust
 
 
 class LanguageTabs(SphinxTransform):
-    """Puts each row of such blocks into a tab set of sphinx-design."""
+    """Puts each row of adjacent blocks into a tab set of sphinx-design."""
 
     default_priority = 100
 

@@ -1,5 +1,5 @@
-//! Adhesion: random scenes through the C ABI, each answer certified by the campaign's own product; a step of a handle; a pull that is refused
-//! must be more than the pull-off force that the library finds.
+//! Adhesion: random scenes through the C ABI, with a step of a handle. Each result is certified by the campaign's own product. A pull that is refused
+//! must exceed the pull-off force of the library.
 
 use std::ptr::null_mut;
 
@@ -16,22 +16,22 @@ use crate::operator::Operator;
 use crate::random::Random;
 use crate::verdict::Verdict;
 
-/// Of the library's tolerance of 1e-6: its measures are norms of the whole, this is the worst element's penetration among them.
+/// Twice the tolerance of the library: its measures are norms over all elements, and here the worst element counts too.
 const TOLERANCE: f64 = 2e-6;
 
-/// The part of contact pressures that is a scale of total ones.
+/// Total pressures have at least this part of the contact pressures as their scale.
 const CANCELLED: f64 = 1e-3;
 
-/// What came of a case.
+/// The result of a case.
 pub struct Run {
     pub case: Case,
     pub statuses: Vec<i32>,
     pub verdict: Verdict,
-    /// Of the first call, if it was OK, in products on the finest grid.
+    /// The work units of the first call, if it was OK.
     pub products: Option<f64>,
 }
 
-/// A random case: alone and again, or twice with a handle.
+/// A random case: solved once, then again or in two steps of a handle.
 pub fn run(random: &mut Random) -> Run {
     let case = Case::random(random);
     let mut verdict = Verdict::default();
@@ -108,7 +108,7 @@ fn stays(case: &Case, handle: *mut contact_normal_solver, last: &Found) -> Verdi
     verdict
 }
 
-/// A pull that is refused: the library's own pull-off force is smaller.
+/// A pull that is refused must exceed the library's own pull-off force.
 fn is_too_much(case: &Case, force: f64, message: &str, statuses: &mut Vec<i32>) -> Verdict {
     let found = ask(case, Load::Force(0.0), &Asked::PullOff);
     statuses.push(found.status);
@@ -128,7 +128,7 @@ fn judge(case: &Case, load: Load, found: &Found) -> Verdict {
     match found.status {
         CONTACT_NORMAL_OK => certify(case, load, found),
         CONTACT_NORMAL_INFEASIBLE if matches!(load, Load::Force(force) if force < 0.0) => Verdict::default(),
-        // All in contact: the mean of the distances stays where it is.
+        // In full contact, pressures do not change the mean distance.
         CONTACT_NORMAL_INFEASIBLE if case.effects.period == Some((true, true)) && matches!(load, Load::Approach(_)) => {
             Verdict::excused("two periods in full contact, by approach")
         }
@@ -151,7 +151,7 @@ fn certify(case: &Case, load: Load, found: &Found) -> Verdict {
     let own = operator.diagonal();
     let largest = found.p.iter().fold(0.0, |most: f64, p| most.max(p.abs()));
     let (mut inside, mut distances, mut outside, mut all, mut count, mut pressures) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    // Of contact pressures: where they and the attraction cancel to less than `CANCELLED` the total ones are round-off.
+    // From contact pressures: if these and the attraction cancel to less than `CANCELLED`, total pressures are round-off.
     let mut repulsive = 0.0;
     let (mut penetration, mut pulled): (f64, f64) = (0.0, 0.0);
     for (i, p) in found.p.iter().enumerate() {
@@ -199,7 +199,7 @@ fn certify(case: &Case, load: Load, found: &Found) -> Verdict {
     verdict
 }
 
-/// Of bodies in full contact: where a uniform pressure displaces nothing, the approach is the mean of the distances, whatever the pressures are.
+/// In full contact: if a uniform pressure has no displacement, the approach is the mean of h, whatever the pressures are.
 fn mean_distance(case: &Case, approach: f64, operator: &Operator, rms: f64) -> Verdict {
     let (mut verdict, n) = (Verdict::default(), case.h.len());
     let displaced = operator.displace(&vec![1.0; n]);
@@ -211,13 +211,13 @@ fn mean_distance(case: &Case, approach: f64, operator: &Operator, rms: f64) -> V
     verdict
 }
 
-/// The force that is given, and tractions within their bound.
+/// The sum of the pressures is the prescribed force, and tractions are within their bound.
 fn forces(case: &Case, load: Load, found: &Found) -> Verdict {
     let mut verdict = Verdict::default();
     let area = case.grid.element_area();
     let (sum, size) = found.p.iter().fold((0.0, 0.0), |(sum, size), p| (sum + p * area, size + p.abs() * area));
     let size = f64::max(size, CANCELLED * found.report.adhesion.repulsive_force);
-    // Of bodies apart a law that ends leaves less than round-off.
+    // Bodies beyond the range of a law have a force of less than round-off.
     let nothing = 1e-16 * case.work.at(0) / found.report.adhesion.range * area;
     if let Load::Force(force) = load {
         verdict.unless((sum - force).abs() <= TOLERANCE * size + nothing, "the force is carried", || {

@@ -1,4 +1,4 @@
-//! One case: a scene with its effects and how it is to be solved, made from a seed.
+//! One case, made from a seed: a scene with its effects, and the options of its solve.
 
 use contact_normal::ffi::*;
 
@@ -11,7 +11,7 @@ use crate::random::Random;
 use crate::scales::{self, Scales};
 use crate::surface;
 
-/// How it is to be solved.
+/// The options of a solve.
 #[derive(Clone, Debug)]
 pub struct How {
     pub method: i32,
@@ -22,9 +22,9 @@ pub struct How {
     pub threads: i32,
     pub coarsest: i32,
     pub max_cycles: i32,
-    /// Cancelled by the callback in this call of it.
+    /// The call of the callback that cancels.
     pub cancel_at: Option<u32>,
-    /// The contact area, where it is fixed.
+    /// The contact area, if it is fixed.
     pub fixed: Option<Vec<i32>>,
     /// Pressures to start from.
     pub given: Option<Vec<f64>>,
@@ -33,7 +33,7 @@ pub struct How {
 /// A name and undeformed distances of size about 1.
 pub type Surfaces = fn(&mut Random, &Grid) -> (String, Vec<f64>);
 
-/// A scene and how it is to be solved.
+/// A scene, and the options of its solve.
 #[derive(Clone, Debug)]
 pub struct Case {
     pub seed: u64,
@@ -41,17 +41,17 @@ pub struct Case {
     pub shear_modulus: [f64; 2],
     pub poisson_ratio: [f64; 2],
     pub surface: String,
-    /// Where other surfaces of its kind come from.
+    /// The function that makes other surfaces of this kind.
     pub surfaces: Surfaces,
     pub h: Vec<f64>,
-    /// What rounding may have done to h.
+    /// A bound on the round-off of h.
     pub h_rounding: f64,
     pub load: Load,
     pub effects: Effects,
     pub how: How,
     /// Solved through a handle, by a sequence of calls.
     pub through_handle: bool,
-    /// Of what people bring.
+    /// Whether the case is one of the module `measured`.
     pub is_measured: bool,
 }
 
@@ -73,9 +73,9 @@ impl Case {
         h.iter_mut().for_each(|h| *h = *h * height + offset);
         let c = compliance(shear_modulus, poisson_ratio);
         let mut effects = effects::make(random, &kinds, &grid, c);
-        // By numbers of their own: those of the other effects stay what they were.
+        // By other random numbers, so that the other effects do not change.
         let own = &mut Random::new(seed ^ 0xc0a7);
-        // Elements of an oracle by quadrature are not slender.
+        // The oracle by quadrature needs elements that are not slender.
         if own.chance(0.12) && (0.1..=10.0).contains(&(grid.dx / grid.dy)) {
             effects.coating = Some(coating::random(own, &grid, (shear_modulus, poisson_ratio), effects.period));
         }
@@ -103,7 +103,7 @@ impl Case {
         }
     }
 
-    /// The same with another surface and load, as the next call of a sequence has it.
+    /// The next case of a sequence, with another surface and load.
     pub fn next(&self, random: &mut Random) -> Case {
         let mut next = self.clone();
         let c = compliance(self.shear_modulus, self.poisson_ratio);
@@ -119,7 +119,7 @@ impl Case {
         }
         let how = How::any(random, &scales, &next.h, next.load, self.effects.limit.is_some());
         let set_up = &self.how;
-        // What a handle was set up with.
+        // The options of the set-up of a handle stay.
         next.how = How {
             smoother: set_up.smoother,
             threads: set_up.threads,
@@ -130,7 +130,7 @@ impl Case {
         next
     }
 
-    /// u = A p, by the test's own coefficients.
+    /// A, with the campaign's own coefficients.
     pub fn operator(&self) -> Operator<'_> {
         Operator::new(&self.grid, compliance(self.shear_modulus, self.poisson_ratio), &self.effects)
     }
@@ -140,7 +140,7 @@ impl Case {
         ["AUTO", "NORM", "MULTIGRID", "FULL_MULTIGRID", "PROJECTED_CG"][self.how.method as usize]
     }
 
-    /// What the scene is, in one line.
+    /// A description of the scene in one line.
     pub fn describe(&self) -> String {
         let Grid { mx, my, dx, dy } = self.grid;
         let how = &self.how;
@@ -177,7 +177,7 @@ fn elements(random: &mut Random, periodic: bool, row_tables: bool, unit: f64) ->
         _ => (random.integer(64, 112), random.integer(64, 112)),
     };
     let dx = unit * random.decades(0.1, 1.0);
-    // A period's sums take time where elements are slender; 1e4 is what the closed form's rounding allows without one.
+    // With a period, sums over the images of slender elements take long. Without one, round-off of the closed form allows 1e4.
     let slenderness: f64 = if periodic { 8.0 } else { 1e4 };
     let dy = match random.uniform() {
         u if u < 0.4 => dx,
@@ -187,7 +187,7 @@ fn elements(random: &mut Random, periodic: bool, row_tables: bool, unit: f64) ->
     Grid { mx, my, dx, dy }
 }
 
-/// What is prescribed, by the size of the scene.
+/// A random load that suits the scales of the scene.
 pub fn load(random: &mut Random, scales: &Scales, grid: &Grid) -> Load {
     if random.chance(0.5) {
         let part = match random.uniform() {
@@ -223,7 +223,7 @@ impl How {
         }
     }
 
-    /// Whether it may go on as long as the defaults let it.
+    /// Whether the solve has the default number of cycles, and is not cancelled.
     pub fn is_unhindered(&self) -> bool {
         self.max_cycles == 1000 && self.cancel_at.is_none()
     }

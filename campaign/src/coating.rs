@@ -1,6 +1,6 @@
 //! Coatings: a bonded layer on a body, by its transfer function and a quadrature of its Hankel integral.
 //!
-//! Beside a half-space of the layer's material, a pressure on one element displaces by
+//! A unit pressure on one element displaces the surface by this much more than that of a half-space of the layer's material:
 //!
 //! ```text
 //! c (1/t) integral over the element of F(r/t),    F(rho) = integral over s > 0 of (B(s) - 1) J0(s rho),    c = (1 - nu1)/(2 pi G1)
@@ -33,10 +33,11 @@ pub struct Coating {
     pub poisson_ratio: [f64; 2],
 }
 
-/// What a coefficient may be off, over it: what the library says of its own for G1/G2 of 0.01 to 100, and as much here.
+/// The error of coefficients, relative to the largest one: that of the library for G1/G2 of 0.01 to 100, and as much of this module.
 const ACCURACY: f64 = 2e-10;
-/// What coefficients may be off grows with G1/G2 beyond this.
+/// Above this G1/G2 the error of coefficients grows in proportion.
 const STIFF: f64 = 100.0;
+
 /// Layers on one body or on both, of which one may be rigid; with two periods on small grids down to 1/16 of an element.
 pub fn random(
     random: &mut Random,
@@ -73,10 +74,10 @@ pub fn random(
     Coating { layers, shear_modulus, poisson_ratio }
 }
 
-/// Elements of a grid on which layers may be a twentieth of an element thick: their table along the distance is long.
+/// Most elements of a grid whose layers may be a twentieth of an element thick: their table along the distance is long.
 const FEW: usize = 2500;
 
-/// One layer on both bodies, which are the same; now and then on rigid ones, and then it is of the bodies' material; or thin and stiff.
+/// The same layer on two equal bodies. Some layers are thin and stiff. Some bodies are rigid; then the layer has the material that the bodies had.
 pub fn on_both(random: &mut Random, grid: &Grid, (shear_modulus, poisson_ratio): (f64, f64)) -> Coating {
     let coating = self::random(random, grid, ([shear_modulus; 2], [poisson_ratio; 2]), None);
     let Some(mut layer) = coating.layers[0].or(coating.layers[1]) else { return coating };
@@ -93,7 +94,7 @@ pub fn on_both(random: &mut Random, grid: &Grid, (shear_modulus, poisson_ratio):
 }
 
 impl Coating {
-    /// `(c, thickness, G1/G2, nu)` of what is at the surface of a body; no thickness: one material.
+    /// `(c, thickness, G1/G2, [nu1, nu2])` of a body. Thickness 0: the body has no layer.
     pub fn surface(&self, b: usize) -> (f64, f64, f64, [f64; 2]) {
         let (g, nu) = (self.shear_modulus[b], self.poisson_ratio[b]);
         match self.layers[b].filter(|layer| layer.thickness > 0.0) {
@@ -105,7 +106,7 @@ impl Coating {
         }
     }
 
-    /// Both bodies' compliance over pi, of what is at their surfaces.
+    /// The compliance `1/E*` of both materials at the surface, divided by pi.
     pub fn compliance(&self) -> f64 {
         self.surface(0).0 + self.surface(1).0
     }
@@ -117,7 +118,7 @@ impl Coating {
         layer.map_or(own, |layer| ([layer.shear_modulus; 2], [layer.poisson_ratio; 2]))
     }
 
-    /// The coefficients of both bodies; with one period those of layers that are none.
+    /// The coefficients of both bodies; with one period those of half-spaces of the materials at the surface.
     pub fn coefficients(&self, grid: &Grid, period: Option<(bool, bool)>) -> Quadrant {
         let Grid { mx, my, dx, dy } = *grid;
         let surfaces = [self.surface(0), self.surface(1)];
@@ -141,14 +142,14 @@ impl Coating {
             }
         }
         let largest = quadrant.values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-        // In stiffer ones as many more digits cancel.
+        // Cancellation in stiffer layers.
         let stiffest = surfaces.iter().fold(STIFF, |most: f64, (_, _, mu, _)| most.max(*mu));
         quadrant.rounding += ACCURACY * largest * stiffest / STIFF;
         quadrant
     }
 }
 
-/// What a mean pressure of 1 compresses a layer by: `t/M`. One that is no other material than the body compresses nothing.
+/// The compression of a layer by a mean pressure of 1: `t/M`. 0 if the layer has the material of the body.
 fn compression((c, t, mu, [nu1, nu2]): (f64, f64, f64, [f64; 2])) -> f64 {
     if mu == 1.0 && nu1 == nu2 {
         return 0.0;
@@ -218,7 +219,7 @@ mod tests {
         Coating { layers: [Some(layer), None], shear_modulus: [below, f64::INFINITY], poisson_ratio: [nu[1], 0.3] }
     }
 
-    /// Nine elements are one that is three times as long: half as thick as those are long, and four times.
+    /// The coefficients of 3 x 3 elements add up to that of one element three times as long.
     #[test]
     fn nine_elements_are_one() {
         for (t, mu, nu) in [
@@ -236,7 +237,7 @@ mod tests {
                 let nine = (-1..2).flat_map(|j| (-1..2).map(move |i| (3 * kx + i, 3 * ky + j)));
                 let sum: f64 = nine.map(|(kx, ky)| fine.at(kx, ky)).sum();
                 let error = (sum - coarse.at(kx, ky)).abs();
-                // The half of what both may be off together.
+                // This module has half of the error; a test has half of that.
                 assert!(
                     error <= 0.25 * coarse.rounding,
                     "t {t} mu {mu} ({kx}, {ky}): {error:e} of {:e}",
@@ -246,7 +247,7 @@ mod tests {
         }
     }
 
-    /// One material; a layer so thick that it is the body; and waves on a long period, which differ by those of the images.
+    /// A layer of the body's material; and a layer so thick that the body below has no effect.
     #[test]
     fn limits_are_half_spaces() {
         let grid = Grid { mx: 20, my: 16, dx: 1.0, dy: 1.0 };

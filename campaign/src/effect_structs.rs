@@ -26,7 +26,7 @@ fn pointer_if<T>(named: bool, to: &T) -> *const T {
     }
 }
 
-/// Structs that point into these effects.
+/// The structs of `effects`, whose arrays they point to.
 pub fn effect_structs(effects: &Effects) -> Box<EffectStructs> {
     let mut structs = Box::new(EffectStructs {
         influence: initialised(contact_normal_influence_init),
@@ -72,7 +72,7 @@ pub fn effect_structs(effects: &Effects) -> Box<EffectStructs> {
 }
 
 impl EffectStructs {
-    /// The effects that are there become those of the scene.
+    /// Points the scene to the structs of its effects; NULL: the effect is off.
     pub fn point_from(&self, scene: &mut contact_normal_scene, effects: &Effects) {
         scene.influence = pointer_if(effects.influence.is_some(), &self.influence);
         scene.layer = pointer_if(effects.layer.is_some(), &self.layer);

@@ -59,7 +59,7 @@ struct Plane {
 }
 
 impl Plane {
-    /// At least so many values in x and in y.
+    /// A plane of at least x by y values.
     fn new(x: usize, y: usize) -> Plane {
         Plane { along_x: Transform::new(x.next_power_of_two()), along_y: Transform::new(y.next_power_of_two()) }
     }
@@ -91,7 +91,7 @@ pub struct Convolution {
 }
 
 impl Convolution {
-    /// `entry(kx, ky)`: what a load of 1 does at this offset from it.
+    /// `entry(kx, ky)`: the effect of a load of 1 at this offset from it.
     pub fn new(mx: usize, my: usize, entry: impl Fn(i64, i64) -> f64) -> Convolution {
         let plane = Plane::new(2 * mx - 1, 2 * my - 1);
         let (nx, ny) = (plane.along_x.n, plane.along_y.n);
@@ -106,7 +106,7 @@ impl Convolution {
         Convolution { mx, my, plane, spectrum }
     }
 
-    /// Of two fields of loads at once, one in each part of a complex number.
+    /// The convolutions of two fields of loads at once, one in each part of a complex number.
     pub fn apply(&self, loads: [&[f64]; 2]) -> [Vec<f64>; 2] {
         let (nx, ny) = (self.plane.along_x.n, self.plane.along_y.n);
         let mut values = vec![[0.0; 2]; nx * ny];
@@ -128,14 +128,14 @@ impl Convolution {
         [(0..n).map(|i| over * at(i)[0]).collect(), (0..n).map(|i| -over * at(i)[1]).collect()]
     }
 
-    /// Of one field.
+    /// The convolution of one field of loads.
     pub fn of(&self, load: &[f64]) -> Vec<f64> {
         let [result, _] = self.apply([load, &[]]);
         result
     }
 }
 
-/// The real part of a sum of waves `amplitude e^(i phase)` on nx by ny elements, powers of two: a field that repeats itself.
+/// The real part of a sum of waves `amplitude e^(i phase)` on nx by ny elements, powers of two: a periodic field.
 pub fn synthesis(nx: usize, ny: usize, amplitude_and_phase: impl Fn(usize, usize) -> (f64, f64)) -> Vec<f64> {
     let plane = Plane::new(nx, ny);
     let wave = |i: usize| {

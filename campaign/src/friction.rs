@@ -11,18 +11,18 @@ use crate::friction_sequence;
 use crate::random::Random;
 use crate::verdict::Verdict;
 
-/// Some lines of unlike bodies take more than the 1000 cycles of the default, and these are enough (docs/hard_cases.md).
+/// Some lines of unlike bodies take more cycles than the default, 1000. This number is enough (docs/hard_cases.md).
 const SLOW_CYCLES: i32 = 3000;
 const SLOW_LINE: &str = "friction: a line of unlike bodies took more than 1000 cycles";
 
-/// What came of a case: the statuses of its calls, and what was not kept.
+/// The result of a case: the statuses of its calls, and the rules that they broke.
 pub struct Run {
     pub case: Case,
     pub statuses: Vec<i32>,
     pub verdict: Verdict,
 }
 
-/// A random case: once on its own and again, or twice with a handle.
+/// A random case, solved twice: without a handle, or with one.
 pub fn run(random: &mut Random, is_measured: bool) -> Run {
     if random.chance(0.15) {
         let (case, statuses, verdict) = friction_sequence::run(random, is_measured);
@@ -31,7 +31,7 @@ pub fn run(random: &mut Random, is_measured: bool) -> Run {
     let place = Place::random(random, is_measured);
     let without = frictionless(&place, &Stop::sharp(random));
     if without.status < 0 {
-        // More force than the limit carries: the normal campaign asks why.
+        // Refused, for example a force above the sum of the pressure limits. The normal campaign checks refusals.
         let case = Case::random(random, place, &without);
         return Run { case, statuses: vec![without.status], verdict: Verdict::excused("friction: no normal problem") };
     }
@@ -49,7 +49,7 @@ pub fn run(random: &mut Random, is_measured: bool) -> Run {
     Run { case, statuses, verdict }
 }
 
-/// A case alone, if its normal problem is one.
+/// A random case, not solved; none if its normal problem is not OK.
 pub fn draw(random: &mut Random) -> Option<Case> {
     let place = Place::random(random, false);
     let without = frictionless(&place, &Stop::sharp(random));
@@ -70,7 +70,7 @@ fn on_its_own(case: &Case, statuses: &mut Vec<i32>) -> Verdict {
     verdict
 }
 
-/// The call with more cycles, which are enough.
+/// The call with more cycles, which must be OK.
 fn with_more_cycles(case: &Case, statuses: &mut Vec<i32>) -> Verdict {
     let mut case = case.clone();
     case.stop.max_cycles = SLOW_CYCLES;
@@ -82,7 +82,7 @@ fn with_more_cycles(case: &Case, statuses: &mut Vec<i32>) -> Verdict {
     verdict
 }
 
-/// From the tractions that the handle holds, where the first call came to an end.
+/// Two solves with a handle. The second one, if the first is OK, starts from the tractions of the first.
 fn with_handle(case: &Case, statuses: &mut Vec<i32>) -> Verdict {
     let Case { place, slide, stop, .. } = case;
     let mut handle = match Handle::new(place, stop) {
@@ -109,7 +109,7 @@ fn with_handle(case: &Case, statuses: &mut Vec<i32>) -> Verdict {
     verdict
 }
 
-/// Of like bodies pressures are those of the scene without friction.
+/// For like bodies, the pressures are those of the scene without friction.
 fn leaves_pressures(case: &Case, found: &Found) -> Verdict {
     let mut verdict = Verdict::default();
     if case.place.is_alike() && case.stop.cancel_at.is_none() && found.status >= 0 {

@@ -1,7 +1,7 @@
-//! Laws of friction and layers that yield, in random scenes: each answer certified by the campaign's own products and its own march of particles, and the
-//! wear of each, and what the heat of friction does, by its own sums.
+//! Laws of friction and layers that yield, in random scenes. Each result is certified by the campaign's own products and by its own march along the paths of
+//! particles. Its wear, and the temperatures by its heat, are compared with the campaign's own sums.
 //!
-//! Two conditions: stick and slip with bounds that stand still at |q| (`friction_conditions`), and `|q|` that is the bound of the slip.
+//! A result meets two conditions: those of stick and slip with the bounds fixed at |q| (`friction_conditions`), and that `|q|` is the bound of the slip.
 
 use contact_normal::ffi::*;
 
@@ -16,14 +16,14 @@ use crate::law_case::{Law, Particles};
 use crate::random::Random;
 use crate::verdict::Verdict;
 
-/// From this `law_slope` on a solve may end without a certificate, by the library's documents.
+/// From this `law_slope` on a solve may end without a certificate (docs/laws.md).
 const STEEP: f64 = 0.5;
 
-/// What came of a case.
+/// The result of a case.
 pub struct Run {
     pub case: Case,
     pub law: Law,
-    /// Numbers for the heat of friction.
+    /// Random numbers for the heat of friction.
     heat: Random,
     /// `law_slope` and status of each call.
     pub ends: Vec<(f64, i32)>,
@@ -45,13 +45,13 @@ impl Run {
     }
 }
 
-/// A random case: from rest, and continued by the handle and by what the caller hands on.
+/// A random case: from rest, then continued by the handle, and by the caller's tractions and particles.
 pub fn run(random: &mut Random) -> Run {
     loop {
         let mut place = Place::random(random, false);
         place.shear_modulus[1] = place.shear_modulus[0];
         place.poisson_ratio[1] = place.poisson_ratio[0];
-        // By numbers of their own: the others stay what they were.
+        // By other random numbers, so that the rest of the case does not change.
         let own = &mut random.beside(0x1a35);
         if own.chance(0.25) && place.effects.coating.is_none() && place.own.is_none() && place.surface != "roller" {
             place.take_tables(own);
@@ -89,7 +89,7 @@ impl Run {
         });
         let before = Before { q: first.q.clone(), p: first.p.clone() };
         self.check(&case, &kept, (&before, &particles));
-        // The same by what the caller hands on: from rest it starts elsewhere, and where there are several solutions it may find another one. The
+        // The same step from the caller's tractions and particles. The solve starts elsewhere, so that it may find another one of several solutions. The
         // yield limits may differ from particle to particle.
         let particles = self.varied(particles);
         let mut handed = case.clone();
@@ -98,7 +98,7 @@ impl Run {
             law.put(friction, Some(&particles));
         });
         self.check(&handed, &found, (&before, &particles));
-        // Few cycles leave tractions on their way.
+        // After few cycles tractions are not converged.
         let mut short = case.stop.clone();
         short.max_cycles = self.heat.beside(0xc07).integer(1, 12) as i32;
         let found =
@@ -115,7 +115,7 @@ impl Run {
         particles
     }
 
-    /// Whatever the status: no traction is longer than mu p, and what touches sticks or slips.
+    /// With any status >= 0: no traction is longer than mu p, and each element in contact sticks or slips.
     fn bounded(&mut self, found: &Found) {
         if found.status < 0 {
             return;
@@ -123,7 +123,7 @@ impl Run {
         let mu = &self.case.slide.mu;
         let beyond = |i: usize| length(found.q[i]) - mu[i] * found.p[i].max(0.0) * (1.0 + 1e-15);
         let most = (0..found.q.len()).map(beyond).fold(f64::NEG_INFINITY, f64::max);
-        // With memory particles bring the coefficient of where they come from.
+        // With memory, particles keep the coefficient of an earlier place.
         let is_bounded = most <= 0.0 || self.law.memory_distance > 0.0;
         self.unless(is_bounded, "a law keeps tractions within mu p", || format!("status {}: {most:e}", found.status));
         let of = &found.report.tangential;
@@ -136,7 +136,7 @@ impl Run {
         self.verdict.unless(kept, promise, || format!("{}, {law:?}: {}", case.describe(), details()));
     }
 
-    /// Of one answer; what particles have after it, if it is one.
+    /// Checks one result. Returns the state of the particles after it if the status is OK.
     fn check(&mut self, case: &Case, found: &Found, (before, had): (&Before, &Particles)) -> Option<Particles> {
         let (status, law, slope) = (found.status, self.law.clone(), found.report.tangential.law_slope);
         self.ends.push((if status < 0 { 0.0 } else { slope }, status));
@@ -144,7 +144,7 @@ impl Run {
             self.unless(!found.written, "a law refused leaves outputs alone", || format!("status {status}"));
             match (status, case.may_be_infeasible(), case.normal_reason(status)) {
                 (CONTACT_NORMAL_INFEASIBLE, Some(why), _) | (_, _, Some(why)) => self.verdict.excuse(why),
-                // mu p is no bound of what a layer carries.
+                // A layer that yields carries less than mu p.
                 (CONTACT_NORMAL_INFEASIBLE, ..) if law.yield_limit > 0.0 => {
                     self.verdict.excuse("refused: a force on a layer that yields")
                 }
@@ -195,7 +195,7 @@ impl Run {
             }
             let slips = found.stick_slip[i] >= CONTACT_NORMAL_STICK_SLIP_SLIP;
             frozen.slide.mu[i] = if slips { q / p } else { 10.0 * case.slide.mu[i].max(q / p) };
-            // The slip is right to the tolerance, and the bound as right as that makes it.
+            // The error of the slip is within the tolerance; `change` is that of the bound by it.
             let off = if slips { ((q - bound).abs() - change).max(0.0) } else { (q - bound).max(0.0) };
             left += (off / most).powi(2);
             worst = if off > worst.0 { (off, i) } else { worst };
@@ -235,7 +235,7 @@ impl Run {
         });
     }
 
-    /// Status > 0: why that may be.
+    /// Status > 0: excused for the slope, a force, or a branch.
     fn stopped(&mut self, case: &Case, found: &Found) {
         let slope = found.report.tangential.law_slope;
         let says = found.message.contains("tangential.law_slope is");

@@ -1,12 +1,12 @@
-//! The campaign: random scenes through the C ABI of contact-normal, each answer certified by an oracle of the campaign's own.
+//! The campaign: random scenes through the C ABI of contact-normal. An oracle of the campaign's own certifies each result.
 //!
-//! `case` makes a scene from a seed, `measured` one of what people bring, `call` has the library solve it, `operator` (with `half_space`,
-//! `coating` and `fft`) multiplies displacements, `rules` has the promises, `verdict` what was broken and what is excused, `sequence` what a
-//! handle promises beyond them, `run` puts this together, and `account` tells what was run. `bytes` (with `bytes_friction`) turns random
-//! bytes into calls. Some seeds are asked more beside their case: `batch`, `set_influence`, `accuracy` (a ball to an accuracy), `stress`
-//! (with `stress_waves`), `adhesion`, and `friction` with its rules, its coefficients (`tangential`) and its handles
-//! (`friction_sequence`); `laws` asks for laws of friction (`law_case`), layers that yield, wear, and `flash` temperatures. `replay` has the scene of
-//! a dump judged. Nothing of the library is used but the C ABI's functions and its reader of dumps: a change of its core does not touch this.
+//! `case` makes a scene from a seed, `measured` one with a measured surface. `call` solves it with the library, and `operator` (with `half_space`,
+//! `coating` and `fft`) computes products. `rules` has the promises, `verdict` the broken ones and the excuses, and `sequence` the further promises of a
+//! handle. `run` runs a case, and `account` counts the results. `bytes` (with `bytes_friction`) turns random bytes into calls. Some seeds also run
+//! `batch`, `set_influence`, `accuracy` (a ball to an accuracy), `stress` (with `stress_waves`), `adhesion`, and `friction` with its rules, its
+//! coefficients (`tangential`) and its handles (`friction_sequence`). `laws` runs laws of friction (`law_case`), layers that yield, wear, and `flash`
+//! temperatures. `replay` judges the scene of a dump. The campaign uses only the functions of the C ABI and its reader of dumps, so it does not depend on the
+//! core of the library.
 
 pub mod account;
 pub mod accuracy;

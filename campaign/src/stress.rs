@@ -7,8 +7,8 @@
 //! szz = -3 z^2 (fx x + fy y + fz z)/(2 pi R^5)
 //! ```
 //!
-//! An element is Gauss points of them, more where it is near. With patches the loads of each count by its factor; with two periods the
-//! stresses are sums over waves (`stress_waves`).
+//! The load of an element is a sum of such forces at Gauss points, with more points on near elements. With patches the loads count by the factor
+//! of their patch; with two periods the stresses are sums over waves (`stress_waves`).
 
 use std::f64::consts::PI;
 use std::ptr::null;
@@ -52,13 +52,13 @@ fn cerruti(nu: f64, [x, y, z]: [f64; 3]) -> Tensor {
     [xx, yy, by * z, xy, by * x, by * y].map(|value| value / (2.0 * PI))
 }
 
-/// The same by a force along y.
+/// Stresses by a force along y.
 fn cerruti_y(nu: f64, [x, y, z]: [f64; 3]) -> Tensor {
     let [xx, yy, zz, xy, xz, yz] = cerruti(nu, [y, x, z]);
     [yy, xx, zz, xy, yz, xz]
 }
 
-/// Places and weights along an element from its centre: on parts of it that are at most half as long as it is far away.
+/// Gauss points along an element, from its centre, and their weights. The element is divided into parts of at most half of its distance.
 fn places(rule: &[(f64, f64)], d: f64, distance: f64) -> Vec<(f64, f64)> {
     let parts = (2.0 * d / distance).ceil().max(1.0);
     let part = |k: usize| rule.iter().map(move |(x, w)| ((k as f64 + x) * d / parts - 0.5 * d, w * d / parts));
@@ -112,7 +112,7 @@ impl Loaded {
         sum
     }
 
-    /// What the library says at depths below all elements, `[component][depth][element]`, and at points.
+    /// The stresses of the library at depths below all elements, `[component][depth][element]`, and at points.
     fn library(&self, depths: &[f64], points: &[[f64; 3]]) -> Result<(Vec<Vec<f64>>, Vec<Tensor>), i32> {
         let structs = effect_structs(&self.effects);
         let mut scene = initialised(contact_normal_scene_init);
@@ -127,7 +127,7 @@ impl Loaded {
         // SAFETY: arrays as long as the grid and the depths say.
         let status = unsafe { contact_normal_subsurface_stress(&scene, 2, p, qx, qy, z, n, null(), &mut outputs) };
         let mut at = vec![[f64::NAN; 6]; points.len()];
-        // Here places are counted from the outer corner of element (0, 0), there from the middle of the grid.
+        // The origin of this module is the outer corner of element (0, 0), that of the library the middle of the grid.
         let half = [self.grid.mx as f64 * self.grid.dx / 2.0, self.grid.my as f64 * self.grid.dy / 2.0];
         let points: Vec<[f64; 3]> = points.iter().map(|[x, y, z]| [x - half[0], y - half[1], *z]).collect();
         let (place, n) = (points.as_ptr().cast(), points.len() as i32);
@@ -144,7 +144,7 @@ impl Loaded {
     }
 }
 
-/// Random loads on a grid: in the open, on patches, or of two periods.
+/// Random loads on a grid: plain, on patches, or with two periods.
 fn random_loads(random: &mut Random) -> (Loaded, f64) {
     let unit = random.decades(1e-3, 1e3);
     let kind = random.uniform();
@@ -177,13 +177,13 @@ fn random_loads(random: &mut Random) -> (Loaded, f64) {
     (Loaded { grid, nu, loads, effects, waves }, size)
 }
 
-/// Random loads and depths: at some elements and at points beside them.
+/// The stresses by random loads at two depths: below some elements, and at other points.
 pub fn check(random: &mut Random) -> Verdict {
     let (loaded, size) = random_loads(random);
     let (grid, longer) = (loaded.grid, loaded.grid.dx.max(loaded.grid.dy));
     let depths = [longer * random.decades(0.2, 3.0), longer * random.decades(1.0, 100.0)];
     let elements: Vec<usize> = (0..2).map(|_| random.integer(0, grid.len() - 1)).collect();
-    // Within the grid where patches say what is below what.
+    // With patches, a point needs an element above it.
     let beyond = if loaded.effects.patches.is_some() { 0.0 } else { 1.0 };
     let beside = |random: &mut Random, m: usize, d: f64| random.between(-beyond, m as f64 + beyond) * d;
     let points: Vec<[f64; 3]> =
@@ -199,8 +199,8 @@ pub fn check(random: &mut Random) -> Verdict {
     let mut compare = |found: Tensor, place: [f64; 3], below: Option<usize>| {
         let exact = loaded.at(place, below);
         for (c, (found, exact)) in found.into_iter().zip(exact).enumerate() {
-            // Loads of `size`. Parts of half the distance leave `(4 + sqrt 17)^-16 = 3e-15` of eight points; four points at ten elements
-            // `(1/40)^8`, times what differences of 1/R^3 grow by.
+            // Loads are at most `size`. The relative error of eight points on parts of half the distance is `(4 + sqrt 17)^-16 = 3e-15`, that of
+            // four points at a distance of ten elements `(1/40)^8`, times the growth of differences of 1/R^3.
             let is_near = (found - exact).abs() <= 1e-9 * size;
             verdict.unless(is_near, "stresses are those of the loads", || {
                 let effects = loaded.effects.name();

@@ -1,6 +1,6 @@
-//! Stresses below loads that repeat themselves in both directions: sums over the waves of loads that are constant on elements.
+//! Stresses below periodic loads that are constant on elements: sums over waves.
 //!
-//! A wave `e^(i k.x)` of loads on the surface of a half-space makes, with `n` the direction of k, `t` the one across it and `d = e^(-k z)`:
+//! A wave `e^(i k.x)` of the loads on a half-space makes these stresses, with `n` along k, `t` across it and `d = e^(-k z)`:
 //!
 //! ```text
 //! of p          nn: -(1 - k z) d     tt: -2 nu d       zz: -(1 + k z) d     nz: i k z d
@@ -24,13 +24,13 @@ fn scaled(a: Complex, by: f64) -> Complex {
     [a[0] * by, a[1] * by]
 }
 
-/// The amplitudes of p, qx and qy of the waves `(i, j)` of a grid, whatever their aliases: one over the other.
+/// The amplitudes of p, qx and qy of the waves `(i, j)` of a grid, row by row. All aliases of a wave have its amplitude.
 pub struct Waves {
     grid: Grid,
     amplitudes: Vec<[Complex; 3]>,
 }
 
-/// Waves fade as `e^(-k z)`: those below this are left out.
+/// Waves fade as `e^(-k z)`: those with k z above this are left out.
 const NEGLIGIBLE: f64 = 36.0;
 
 impl Waves {

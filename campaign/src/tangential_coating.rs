@@ -1,4 +1,4 @@
-//! What tractions displace on surfaces that have one coating, beside half-spaces of the layer's material.
+//! Displacements by tractions on surfaces with a coating, less those of half-spaces of the layer's material.
 //!
 //! With the responses L along a wave and T across it a wave of tractions displaces by `((1 - nu1) L k k^T/k^2 + T (1 - k k^T/k^2))/(G1 k)`. In real space
 //! that is, of both bodies and in 1/(pi G1 t),
@@ -15,25 +15,25 @@ use crate::grid::Grid;
 use crate::hankel::{of_tractions, Rules, Table};
 use crate::tangential_coefficients::Vector;
 
-/// What a coefficient may be off, over the largest: four digits that cancel in L and the tables' 1e-13, here and there.
+/// The error of a coefficient, relative to the largest, of the library and of this module: four digits cancel in L, and the tables have an error of 1e-13.
 pub const ACCURACY: f64 = 1e-11;
 
 /// The change by the coating of both bodies.
 pub struct Coat {
-    /// Both radial functions; none: it is none.
+    /// Both radial functions; none without a coating.
     tables: Option<[Table; 2]>,
     t: f64,
     sides: Vector,
     rules: Rules,
 }
 
-/// Of 2 theta.
+/// The Bessel function J2, for the terms in 2 theta.
 fn j2(x: f64) -> f64 {
     libm::jn(2, x)
 }
 
 impl Coat {
-    /// On a grid. Displacements are taken at a distance from the centres.
+    /// The change on a grid, for displacements at a distance from the centres.
     pub fn new(coating: &Coating, grid: &Grid, by: Vector) -> Coat {
         let (_, t, mu, nu) = coating.surface(0);
         let reach = |m: usize, d: f64, by: f64| (m as f64 + 1.0) * d + by.abs();
@@ -83,7 +83,7 @@ mod tests {
     use super::*;
     use crate::coating::Layer;
 
-    /// Nine elements are one that is three times as long; a thin layer is what is below, nearly.
+    /// The coefficients of 3 x 3 elements add up to that of one element three times as long. A thin layer hardly changes those of the body.
     #[test]
     fn nine_elements_are_one() {
         for (t, modulus, below, nu) in [

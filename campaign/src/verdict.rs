@@ -1,14 +1,14 @@
-//! What came of an answer: promises that were not kept, and what is excused.
+//! The verdict on a result: broken promises, and excuses.
 
 /// A promise that was not kept.
 #[derive(Clone, Debug)]
 pub struct Failure {
-    /// Which one, in a few words.
+    /// The promise, in a few words.
     pub promise: &'static str,
     pub details: String,
 }
 
-/// Failures, and reasons for which an answer that is no solution was let pass: each is counted and printed.
+/// Failures, and the reasons for which a result that is no solution is accepted. Each is counted and printed.
 #[derive(Clone, Debug, Default)]
 pub struct Verdict {
     pub failures: Vec<Failure>,
@@ -16,7 +16,7 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// An answer that was let pass.
+    /// A result that is no solution, but accepted.
     pub fn excused(why: &'static str) -> Verdict {
         Verdict { failures: Vec::new(), excuses: vec![why] }
     }
@@ -39,13 +39,13 @@ impl Verdict {
         self.excuses.push(why);
     }
 
-    /// Adds another one.
+    /// Adds another verdict.
     pub fn add(&mut self, other: Verdict) {
         self.failures.extend(other.failures);
         self.excuses.extend(other.excuses);
     }
 
-    /// The same with a word before the details of each failure.
+    /// The verdict with `what` before the details of each failure.
     pub fn within(mut self, what: &str) -> Verdict {
         self.failures.iter_mut().for_each(|failure| failure.details = format!("{what}{}", failure.details));
         self

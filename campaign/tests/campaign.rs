@@ -1,9 +1,9 @@
-//! Some cases of the campaign; `make campaign N=20000` runs more, `make campaign SURFACES=measured N=5000` those of what people bring.
+//! Some cases of the campaign. `make campaign N=20000` runs more of them, `make campaign SURFACES=measured N=5000` those of measured surfaces.
 
 use campaign::account::Account;
 use campaign::run::{measured, ordinary, Run};
 
-/// Runs seeds from 0 on; most of their calls have to be solved.
+/// Runs seeds from 0 on. At least `least` of their calls must be solved.
 fn clean(seeds: u64, run: fn(u64) -> Run, least: usize) {
     let mut account = Account::default();
     for seed in 0..seeds {

@@ -1,12 +1,12 @@
-//! Random bytes through the C ABI: every call returns a known status, untouched outputs when it refuses, and the truth when it is OK.
-//! The bytes are the same at every run; fuzz/ has the same targets for cargo-fuzz.
+//! Random bytes through the C ABI. Every call returns a known status. A refused call leaves its outputs untouched, and an OK result is certified.
+//! The bytes are the same in every run. fuzz/ has the same targets for cargo-fuzz.
 
 use campaign::bytes;
 use campaign::random::Random;
 
 type Target = fn(&[u8]) -> Vec<i32>;
 
-/// Runs a target on so many strings of bytes; returns how many calls ended with an answer, by status from 0.
+/// Runs a target on this many strings of bytes. Returns the number of calls with each status from 0 on.
 fn run(runs: u64, target: Target) -> [u64; 4] {
     let mut answers = [0; 4];
     let mut random = Random::new(1);
@@ -33,7 +33,7 @@ fn tables_of_coefficients() {
 #[test]
 fn frictions() {
     let answers = run(6000, bytes::friction);
-    // Of what random bytes say most is refused; the rest has to be enough to tell.
+    // Most random scenes are refused. Enough of them must be solved for the test to count.
     assert!(answers[0] >= 300, "{answers:?}");
 }
 

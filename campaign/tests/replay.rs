@@ -38,7 +38,7 @@ fn the_scene_of_a_dump_is_solved_and_judged() {
     let run = replay::run(&Dump::read(&bytes).expect("a dump that can be read")).expect("a case");
     assert_eq!(run.statuses, [status]);
     assert!(run.verdict.failures.is_empty(), "{:?}", run.verdict.failures);
-    // What was given is what is solved.
+    // The solved scene is the given one.
     assert_eq!((run.case.h.len(), run.case.h[17].to_bits()), (120, h[17].to_bits()));
     assert_eq!(run.case.effects.name(), "layer + limit per element");
 }

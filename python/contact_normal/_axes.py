@@ -36,12 +36,12 @@ def matplotlib() -> Any:
 
 
 def edges(centres: Doubles, d: float) -> Doubles:
-    """Of elements, from those of their centres."""
+    """The edges of elements, from their centres."""
     return np.append(centres - 0.5 * d, centres[-1:] + 0.5 * d)
 
 
 def exterior(axes: Axes) -> tuple[float, float, float]:
-    """The colour of the exterior area: from the background towards the letters, on dark pages so far that small pressures differ from it."""
+    """The colour of the exterior area, between those of the background and of the text: on dark pages far enough from that of small pressures."""
     from matplotlib import colors
 
     back, front = (np.array(colors.to_rgb(colour)) for colour in (axes.get_facecolor(), axes.xaxis.label.get_color()))
@@ -51,7 +51,7 @@ def exterior(axes: Axes) -> tuple[float, float, float]:
 
 
 def name_axes(axes: Axes, units: Units) -> None:
-    """x and y, seen from above; to scale, unless the grid is so slender that nothing would be seen."""
+    """Names the axes x and y of a view from above. They are to scale, unless the grid is too slender."""
     width, height = (abs(high - low) for low, high in (axes.get_xlim(), axes.get_ylim()))
     is_slender = not 1.0 / _SLENDER <= width / height <= _SLENDER
     axes.set(xlabel=label("x", "length", units), ylabel=label("y", "length", units), aspect="auto" if is_slender else "equal")
@@ -66,7 +66,7 @@ def nearest(place: float, centres: Any, d: float, name: str) -> int:
 
 
 def middle(centres: Any) -> float:
-    """Of a row of elements."""
+    """The middle of a row of elements."""
     return float(0.5 * (centres[0] + centres[-1]))
 
 

@@ -13,7 +13,7 @@ from ._library import library
 
 
 class Warned:
-    """What the reports of a batch warn of, together."""
+    """The warnings of all reports of a batch together."""
 
     def __init__(self, reports: Any) -> None:
         self._reports = reports
@@ -24,7 +24,7 @@ class Warned:
 
 
 def messages_of(statuses: Any, told: str, warnings: Sequence[int]) -> list[str]:
-    """The message of each problem, of the lines "problem 3: ..." that the library has for those that are not OK; if all are, of what they warn of."""
+    """The message of each problem. Problems that are not OK have lines "problem 3: ..." in the text of the library. If all are OK, the text has warnings."""
     if all(status == OK for status in statuses):
         return [_part_of(told, functools.reduce(operator.or_, warnings, 0), one) for one in warnings]
     parts = re.split(r"^problem (\d+): ", told, flags=re.MULTILINE)
@@ -34,7 +34,7 @@ def messages_of(statuses: Any, told: str, warnings: Sequence[int]) -> list[str]:
 
 
 def _part_of(told: str, all_of: int, warnings: int) -> str:
-    """Of the text of several warnings, which stand in the order of their bits, that of some."""
+    """The text of some warnings, cut from the text of all of them, which has the order of their bits."""
     bits = [1 << k for k in range(all_of.bit_length()) if all_of >> k & 1]
     texts = told.split("; ", len(bits) - 1) if bits else []
     if len(texts) != len(bits):

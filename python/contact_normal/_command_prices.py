@@ -1,4 +1,4 @@
-"""`contact-normal prices`: what accuracies of a scene cost, before they are paid for."""
+"""`contact-normal prices`: predicts what accuracies of a scene cost."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from ._quantities import QUANTITIES
 
 
 def add(commands: Any) -> None:
-    """The command and its options."""
+    """Adds the command and its options."""
     command = commands.add_parser("prices", usage=USAGE, help="what accuracies cost: grid, seconds, bytes",
                                   description="Predicts which grid, time and memory relative errors of 1e-2, 1e-3, ... take.")
     add_scene(command)
     add_effects(command)
     command.add_argument("--targets", type=float, nargs="+", default=[1e-2, 1e-3, 1e-4], metavar="ERROR", help="default 1e-2 1e-3 1e-4")
     command.add_argument("--quantity", choices=tuple(QUANTITIES), default="force",
-                         help="default force, which stands for the approach where the force is prescribed")
+                         help="default force; with a prescribed force this is the approach")
     command.set_defaults(run=run)
 
 

@@ -1,4 +1,4 @@
-"""What of a table is done: planes in a folder beside it, each written whole or not at all."""
+"""The finished planes of a table, in a folder beside it. Each plane is written whole or not at all."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ._creep_force_plane import AXES, Plan
 
 
 def key(plan: Plan) -> str:
-    """The same for the same plan: axes, elements, tolerance, surface."""
+    """A key that equal plans share: of axes, elements, tolerance and surface."""
     axes = {name: getattr(plan, name) for name in (*AXES, "elements", "tolerance")}
     digest = hashlib.sha256(json.dumps(axes, sort_keys=True).encode())
     for grid in () if plan.surface is None else (plan.surface["fine"], plan.surface["coarse"]):
@@ -29,14 +29,14 @@ def key(plan: Plan) -> str:
 
 
 class Journal:
-    """The planes of a table that are done, in the folder `<path>.parts`.
+    """The finished planes of a table, in the folder `<path>.parts`.
 
     Parameters
     ----------
     path : path
-        Of the table.
+        The path of the table.
     plan : Plan
-        Of the table. A folder of another one is refused.
+        The plan of the table. A folder of another plan is refused.
     """
 
     def __init__(self, path: str | os.PathLike[str], plan: Plan) -> None:
@@ -58,7 +58,7 @@ class Journal:
             shutil.rmtree(self._folder, ignore_errors=True)
 
     def done(self) -> dict[int, dict[str, Any]]:
-        """The planes that are there."""
+        """The finished planes by their index."""
         found = {}
         for file in sorted(self._folder.glob("[0-9]*.npz")):
             with np.load(file) as arrays:
@@ -76,7 +76,7 @@ class Journal:
         os.replace(unfinished, file)
 
     def finish(self) -> None:
-        """The table is written: the parts are not needed any more."""
+        """Removes the folder, after the table is written."""
         shutil.rmtree(self._folder)
 
 

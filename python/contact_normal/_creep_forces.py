@@ -1,4 +1,4 @@
-"""Tables of creep forces: what they hold, and how they are read between their entries."""
+"""Tables of creep forces, and the interpolation between their entries."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ class CreepForceTable:
     Attributes
     ----------
     axis_ratio, poisson_ratio, phi, eta, xi : ndarray
-        The axes. Of a surface the first two have one value, which means nothing.
+        The axes. For a surface the first two have one value without a meaning.
     force_x, force_y, moment : ndarray, (axis_ratio, poisson_ratio, phi, eta, xi)
-        Of ellipses relative to mu N and to mu N c, as `creep_force_table` has them; of a surface as they are.
+        For ellipses relative to mu N and to mu N c; for a surface in the caller's units.
     error : ndarray, of that shape
         Estimated error of the forces relative to mu N, and of the moment relative to mu N times the radius of the contact area.
     residual, products : ndarray, of that shape
-        The residual that each entry's tractions leave, and its products of two components.
+        The residual of the tractions of each entry, and its products, each of two components.
     status : ndarray of int, of that shape
-        0 (OK), or what `friction_batch` says; < 0: NaN.
+        0 (OK), or another status of `friction_batch`. Entries with a status < 0 are NaN.
     of_surface : bool
         Whether it is the table of a surface.
     elements : int
-        Elements along each side of the grid; of a surface 0.
+        Elements along each side of the grid; 0 for a surface.
     """
 
     def __init__(self, axes: Mapping[str, Doubles], values: Mapping[str, Any], elements: int, tolerance: float, of_surface: bool,
@@ -83,15 +83,15 @@ class CreepForceTable:
                poisson_ratio: npt.ArrayLike | None = None, hold: bool = False) -> tuple[Doubles, Doubles, Doubles, Doubles]:
         """Forces, moment and error between the entries, linear in each axis (in the logarithm of the axis ratio).
 
-        Symmetries give what is not in the table: with the signs of all of xi, eta, phi those of force and moment change. For ellipses
-        the signs of eta and phi alone change those of force_y and moment, so that (-xi, eta, phi) has (-force_x, force_y, moment).
+        Symmetries extend the table. If xi, eta and phi change their signs, so do forces and moment. For ellipses, if eta and phi alone change
+        their signs, so do force_y and moment. So (-xi, eta, phi) has (-force_x, force_y, moment).
 
         Parameters
         ----------
         xi, eta, phi : array_like
-            In the units of the table; arrays are taken together as by numpy.
+            In the units of the table; arrays are broadcast.
         axis_ratio, poisson_ratio : array_like
-            Of an ellipse; the Poisson ratio may be left out where the table has one only. Not used for a surface.
+            For ellipses only. The Poisson ratio may be left out if the table has one only.
         hold : bool
             Beyond the ends of an axis: the value at its end, and NaN where a value is NaN. Otherwise both are errors.
 
@@ -150,7 +150,7 @@ class CreepForceTable:
         return plot_creep_forces(self, of, eta, axis_ratio, poisson_ratio, axes)
 
     def _is_straight(self, spin: Doubles) -> npt.NDArray[np.bool_]:
-        """Where the table is read without spin: the signs that spin would choose are then free, and those are taken that the table has."""
+        """Whether the table is read at spin 0. Then spin does not determine the signs, and those are chosen for which the table has entries."""
         return np.asarray(np.clip(np.abs(spin), self.phi[0], self.phi[-1]) == 0.0)
 
     def _beyond(self, name: str, places: Doubles) -> Doubles:
@@ -182,7 +182,7 @@ class CreepForceTable:
         Parameters
         ----------
         creepage, spin
-            As they are: no units, and one over a length.
+            The creepage without a unit; the spin in one over a length.
         semi_axes : (float, float)
             In the direction of rolling, and across; positive where there is a load.
         normal_force, coefficient, shear_modulus, poisson_ratio, hold
@@ -205,7 +205,7 @@ class CreepForceTable:
         bound = np.asarray(mu * load)
         if np.any((bound > 0.0) & (_is_no_length(a) | _is_no_length(b))):
             raise ValueError(f"semi_axes is {semi_axes}; they must be positive and finite where there is a load")
-        # Where there is none, any lengths will do.
+        # Without a load, any lengths will do.
         a, b = (np.where(_is_no_length(one) | (bound == 0.0), 1.0, one) for one in (a, b))
         c = np.sqrt(a * b)
         if not bound.any():
@@ -215,7 +215,7 @@ class CreepForceTable:
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             unit = modulus * c * c / np.where(bound > 0.0, bound, np.inf)
             empty = (bound == 0.0) | np.isinf(unit)
-            # Where there is no load, the first entry of the table stands for any.
+            # Without a load, the first entry of the table takes the place of any other.
             axes = ((self.xi, along), (self.eta, across), (self.phi, c * real("spin", spin)))
             xi, eta, phi = (np.where(empty, axis[0], unit * value) for axis, value in axes)
             ratio = np.where(empty, self.axis_ratio[0], a / b)
@@ -226,7 +226,7 @@ class CreepForceTable:
 
 
 def _is_no_length(values: Doubles) -> npt.NDArray[np.bool_]:
-    """Where a semi-axis is none: NaN, of which forces are NaN, is not judged."""
+    """Whether a semi-axis is infinite or not positive. NaN passes: its forces are NaN."""
     return np.asarray((values <= 0.0) | np.isinf(values))
 
 
@@ -238,6 +238,6 @@ def _interpolated(values: Doubles, corners: Sequence[tuple[Any, Any]]) -> Double
         for (before, part), size, after in zip(corners, values.shape, corner):
             weight = weight * (part if after else 1.0 - part)
             index.append(np.minimum(before + after, size - 1))
-        # An entry that failed does no harm where it has no weight.
+        # An entry that is NaN does not count without a weight.
         total += np.where(weight > 0, weight * values[tuple(index)], 0.0)
     return total

@@ -1,4 +1,4 @@
-"""Commas in text files of numbers: whether they are decimal points or part columns."""
+"""Commas in text files of numbers: whether they are decimal points or separate columns."""
 
 from __future__ import annotations
 
@@ -12,5 +12,5 @@ def has_decimal_commas(lines: list[str]) -> bool:
 
 
 def _commas(word: str) -> int:
-    """Commas of a word, 2 for those that are not between digits: such commas part columns."""
+    """The number of commas of a word; 2 if one is not between digits, because it then separates columns."""
     return word.count(",") if re.fullmatch(r"[-+]?\d*(,\d+)?([eEdD][-+]?\d+)?", word) else 2

@@ -11,7 +11,7 @@ from ._library import VERSION
 
 
 def xarray(in_files: bool = True) -> Any:
-    """xarray, with what it writes NetCDF by if it shall do that."""
+    """The module xarray. `in_files`: netCDF4 must be there too, by which xarray writes files."""
     try:
         if in_files:
             importlib.import_module("netCDF4")
@@ -24,7 +24,7 @@ def xarray(in_files: bool = True) -> Any:
 def write(path: str | os.PathLike[str], dataset: Any) -> None:
     """Writes NetCDF, whole or not at all."""
     xarray()
-    # A link stays; a device or a pipe would be replaced.
+    # Links stay. Devices and pipes are refused: os.replace would replace them.
     target = Path(path).resolve()
     if target.exists() and not target.is_file():
         raise FileExistsError(f"{target} is no file")

@@ -1,4 +1,4 @@
-"""What `repr` says of objects that hold arrays: their shapes and ranges, not their numbers."""
+"""The `repr` of objects that hold arrays: with shapes and ranges in place of the numbers."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 
 class Short:
-    """A dataclass whose arrays are told by shape and range. What is None is left out."""
+    """A dataclass whose `repr` has the shapes and ranges of its arrays, without members that are None."""
 
     def __repr__(self) -> str:
         members: Any = self
@@ -17,7 +17,7 @@ class Short:
 
 
 def told(holder: Any, names: Any) -> str:
-    """`repr` of what has these members."""
+    """`repr` of an object with these members."""
     values = {name: getattr(holder, name) for name in names}
     return f"{type(holder).__name__}({', '.join(f'{name}={short(value)}' for name, value in values.items() if value is not None)})"
 

@@ -80,7 +80,7 @@ class SubsurfaceStress(WithUnits):
         return f"<SubsurfaceStress: {mx} x {my} elements, {len(self.depths)} depths; largest {', '.join(told) or 'values not asked for'}>"
 
     def to_xarray(self) -> Any:
-        """All that was asked for as an `xarray.Dataset` with coordinates, names and, if `units` are told, units. Needs xarray."""
+        """The requested stresses as an `xarray.Dataset` with coordinates, names and, if `units` are known, units. Needs xarray."""
         from ._datasets import of_stress
 
         return of_stress(self)

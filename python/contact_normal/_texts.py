@@ -6,19 +6,19 @@ import codecs
 import os
 from pathlib import Path
 
-# What the first bytes of a file name.
+# The encodings that the first bytes of a file name.
 _MARKS = {codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
-# Texts have no byte 0 among so many.
+# A text has no byte 0 among its first bytes, this many.
 _LOOKED_AT = 4096
 
 
 def text_of(path: str | os.PathLike[str]) -> str:
-    """The text of a file, in the encoding that its first bytes name, or UTF-8; else any byte is a character. Signs of minus are hyphens."""
+    """The text of a file, in the encoding that its first bytes name, else UTF-8, else Latin-1. Minus signs become hyphens."""
     return decoded(Path(path).read_bytes())
 
 
 def decoded(data: bytes, cut: bool = False) -> str:
-    """The same of bytes; `cut`: they end anywhere, maybe within a character."""
+    """The text of bytes. `cut`: they may end within a character."""
     named = [encoding for mark, encoding in _MARKS.items() if data.startswith(mark)]
     try:
         text = data.decode(named[0] if named else "utf-8-sig", errors="replace" if named else "strict")

@@ -1,4 +1,4 @@
-"""What callers pass by mistake is refused by name: it does not wrap, lose its mask, or get truncated."""
+"""Mistaken arguments are refused by name: integers do not wrap, masks are not lost, numbers are not truncated."""
 
 import unittest
 from unittest import mock
@@ -131,7 +131,7 @@ class Arguments(unittest.TestCase):
         for name in ("influence", "row_tables"):
             with self.assertRaisesRegex(TypeError, rf"friction\['{name}'\] is 5; it must be \(xx, yy, xy\)"):
                 solve(friction={"coefficient": 0.3, name: 5})
-        # An old numpy makes arrays of objects of them.
+        # Old versions of numpy make object arrays of them.
         with self.assertRaisesRegex((ValueError, TypeError), "h has (parts of different shapes|dtype object)"):
             solve([[0.0, 1.0], [2.0]])
         with self.assertRaisesRegex((ValueError, TypeError), "influence has (parts of different shapes|dtype object)"):

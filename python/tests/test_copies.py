@@ -1,4 +1,4 @@
-"""What can be pickled and copied, and what cannot; handles and callbacks that are dropped while the library uses them."""
+"""Objects that can be pickled and copied, and those that cannot; handles and callbacks that are dropped while the library uses them."""
 
 import concurrent.futures
 import copy
@@ -172,7 +172,7 @@ class Logs(unittest.TestCase):
             found = lines.setdefault(level, [])
             cn.set_log(lambda at, text, found=found: found.append((at, text)), level)
             refuse_to_converge()
-        # That a solve stopped early is information: its status says so, too.
+        # An early stop is information, not a warning, because the status reports it too.
         self.assertEqual({at for at, _ in lines[cn.LOG_INFO]}, {cn.LOG_INFO})
         self.assertRegex(lines[cn.LOG_INFO][0][1], "^Norm on 24 x 24: IterationLimit after 2 cycles")
         self.assertEqual((lines[cn.LOG_WARNING], lines[cn.LOG_OFF]), ([], []))

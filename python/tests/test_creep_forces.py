@@ -49,17 +49,17 @@ class Entries(unittest.TestCase):
             table = cn.creep_force_table(xi=[0.0, small], eta=[0.0, small], phi=[0.0, small], poisson_ratio=0.25, elements=elements)
             x, y, moment = (values[0, 0] / small for values in (table.force_x, table.force_y, table.moment))
             slopes.append(np.array([-x[0, 0, 1], -y[0, 1, 0], -y[1, 0, 0], moment[0, 1, 0]]))
-        # C23 twice: the force by spin, and the moment by lateral creepage. The tables' own digits are good to some 1 %.
+        # C23 twice: the force by spin, and the moment by lateral creepage. Kalker's values are accurate to some 1 %.
         np.testing.assert_allclose(2.0 * slopes[1] - slopes[0], [4.12, 3.67, 1.47, 1.47], rtol=0.015)
 
     def test_the_estimated_error_bounds_that_to_a_finer_grid(self):
         axes = {"xi": XI, "eta": ETA, "phi": PHI, "axis_ratio": [0.5, 2.0]}
         coarse, fine = (cn.creep_force_table(elements=elements, **axes) for elements in (17, 68))
-        radius = 1.0  # c: of the circle that is as large as the contact area
+        radius = 1.0  # c, the radius of a circle of the area of the contact
         off = np.sqrt((coarse.force_x - fine.force_x) ** 2 + (coarse.force_y - fine.force_y) ** 2 + ((coarse.moment - fine.moment) / radius) ** 2)
-        # The finer grid is off by a quarter itself.
+        # The finer grid has a quarter of the error.
         self.assertLess((off / coarse.error).max(), 1.0)
-        # And it is no bound of anything.
+        # The estimate is not much too large.
         self.assertLess(np.median(coarse.error), 4.0 * np.median(off))
 
 
@@ -85,7 +85,7 @@ class Work(unittest.TestCase):
                 # The second entry of each plane.
                 np.testing.assert_array_equal(table.status[..., 0, 1], status)
                 np.testing.assert_array_equal(table.status[..., 0, 0], cn.OK)
-        # That of the fine grid comes first.
+        # The status of the fine grid takes precedence.
         both = lambda *given, **named: mark(solved(*given, **named))  # noqa: E731
 
         def mark(found):
@@ -190,7 +190,7 @@ class Surfaces(unittest.TestCase):
             scaled = ellipse.forces(xi, 0.0, 0.5, axis_ratio=a / b)
             off = np.hypot(table.force_x[0, 0, 1, 0, k] / bound - scaled[0], table.force_y[0, 0, 1, 0, k] / bound - scaled[1])
             self.assertLess(off, table.error[0, 0, 1, 0, k] + scaled[3])
-            # The signs of all three: those of forces and moment.
+            # If all three change their signs, so do forces and moment.
             there = table.forces(-xi / unit, -0.15 / unit, -0.5 / (unit * c))
             np.testing.assert_array_equal(there[0], -table.force_x[0, 0, 1, 1, k])
             np.testing.assert_array_equal(there[2], -table.moment[0, 0, 1, 1, k])

@@ -26,7 +26,7 @@ x = np.arange({M}) - {0.5 * (M - 1)}
 h = 0.002 * (x[None, :] ** 2 + x[:, None] ** 2)
 given = {GIVEN}
 """
-    # It would hang, not fail: the limit is for that.
+    # A fault would make the process hang: the limit ends it.
     return subprocess.run([sys.executable, "-c", begin + script], capture_output=True, text=True, timeout=300, **given)
 
 
@@ -36,7 +36,7 @@ class Process(unittest.TestCase):
         self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (0, printed, ""))
 
     def test_what_is_ended_with_the_interpreter_solves(self):
-        # Long enough for a worker, and, on one element beside the border, with a message.
+        # One solve is long enough for a worker. The other one, of a single element, has a message.
         self.check("""
 def steps():
     try:
@@ -187,7 +187,7 @@ class Memory(unittest.TestCase):
             with self.assertRaises(Enough):
                 cn.solve(H, 0.1, 0.1, progress=enough, **GIVEN)
         end = time.monotonic() + 10.0
-        # A worker may still be on its way from the last call.
+        # A worker may still be ending the last call.
         while held() > before and time.monotonic() < end:
             time.sleep(0.05)
         self.assertEqual(held(), before)

@@ -1,4 +1,4 @@
-"""Many tangential problems of one scene, as Python has them."""
+"""Batches of tangential problems of one scene in Python."""
 
 import unittest
 from unittest import mock
@@ -23,7 +23,7 @@ class FrictionBatches(unittest.TestCase):
         for i in (0, 7, 19):
             x, y, spin = ENTRIES[i]
             one = cn.solve(H, D, D, force=1000.0, friction={**FRICTION, "creepage": (x, y), "spin": spin}, **STEEL)
-            # A residual of 1e-6 leaves some 1e-7 of mu N (docs/friction.md).
+            # With a residual of 1e-6 forces have an error of some 1e-7 of mu N (docs/friction.md).
             np.testing.assert_allclose(batch.force[i], one.report["tangential_force"], atol=1e-5 * 300)
             np.testing.assert_allclose(batch.traction[i].sum(axis=(1, 2)) * D * D, batch.force[i], atol=1e-9 * 300)
             self.assertLess(np.count_nonzero(batch.stick_slip[i] != one.stick_slip), 3)

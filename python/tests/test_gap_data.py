@@ -1,4 +1,4 @@
-"""The files that docs/heights_to_gap.md and docs/profiles_to_gap.md begin with are those that the examples make."""
+"""The data files of docs/heights_to_gap.md and docs/profiles_to_gap.md equal those that the examples make."""
 
 import sys
 import tempfile
@@ -34,7 +34,7 @@ class Data(unittest.TestCase):
         rail = profiles_to_gap.made_rail()
         head = rail[np.abs(rail[:, 0]) < 10.3]
         np.testing.assert_allclose(np.hypot(head[:, 0], head[:, 1] - 300.0), 300.0, atol=1e-9)
-        # The flanks are 1:20, and the corner is that of an arc of 13: its three points have one circle.
+        # The flanks are 1:20, and the corner is an arc of radius 13: the circle through three of its points.
         slopes = np.diff(rail[-80:, 0]) / np.diff(rail[-80:, 1])
         np.testing.assert_allclose(slopes, 1.0 / 20.0, atol=1e-9)
         corner = rail[(rail[:, 1] > 4.0) & (rail[:, 1] < 10.0) & (rail[:, 0] > 0)]

@@ -14,7 +14,7 @@ ARCS = Path(__file__).resolve().parents[2] / "data" / "profiles"
 
 
 def scanned(made, count, noise, seed):
-    """Points of a scan: so many along the curve, with noise in y and z, sorted by y."""
+    """Points of a scan: `count` along the curve, with noise in y and z, sorted by y."""
     curve, rng = made.curve(), np.random.default_rng(seed)
     y, z, _, _ = curve.at(np.linspace(0.0, curve.t[-1], count))
     y, z = y + noise * rng.normal(size=count), z + noise * rng.normal(size=count)
@@ -71,7 +71,7 @@ class Thinned(unittest.TestCase):
 
 class FarOff(unittest.TestCase):
     def test_a_point_on_the_flange_is_refused(self):
-        # There its neighbours are as steep as a face, behind which a profile would end.
+        # The neighbours of such a point are as steep as a face, at which a profile could end.
         wheel = profiles.read(ARCS / "arcs.prw")
         steep = np.abs(np.diff(wheel.z) / np.diff(wheel.y)) > 2.0
         chosen = [k for k in range(8, len(wheel.y) - 8) if steep[k - 5 : k + 5].all()]
@@ -85,7 +85,7 @@ class FarOff(unittest.TestCase):
         self.assertEqual(len(profiles.Profile(np.delete(wheel.y, k), np.delete(wheel.z, k), "wheel").curve().y), len(wheel.curve().y) - 1)
 
     def test_a_step_is_a_face(self):
-        # Behind a step down the profile goes on in its direction, but not from point to point.
+        # The profile goes on beyond a step down, but the step counts as its end.
         y = np.linspace(0.0, 60.0, 121)
         z = 0.001 * (y - 20.0) ** 2 + np.where(y > 50.2, 6.0, 0.0)
         self.assertEqual(len(profiles.Profile(y, z, "rail").curve().y), 101)
@@ -128,7 +128,7 @@ class Uncertain(unittest.TestCase):
         noisy = self.each(lambda one: profiles.Profile(one.y, one.z + 1e-3 * random.normal(size=len(one.y)), one.kind))
         with self.assertWarnsRegex(UserWarning, r"uncertain by some [12]\d%: so much is left of noise"):
             self.assertGreater(pressed(*(one.smoothed(1.0) for one in noisy)).max_pressure / self.largest, 1.1)
-        # Smoothed in two steps it is as noisy as in the longer one.
+        # Two smoothings leave as much noise as the longer one alone.
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             largest = pressed(*(one.smoothed(1.0).smoothed(4.0) for one in noisy)).max_pressure

@@ -1,4 +1,4 @@
-"""The handle frees itself, batches keep their messages, and what is drawn is what was asked for."""
+"""The handle frees itself, batches keep their messages, and pictures show the requested quantity."""
 
 import contextlib
 import gc
@@ -50,7 +50,7 @@ class Handles(unittest.TestCase):
         for _ in range(40):
             one()
         gc.collect()
-        # Each one holds `held` bytes: 40 that leak are ten times what this allows for the allocator's own ways.
+        # Each one holds `held` bytes. 40 leaked ones would be ten times the allowance for the allocator.
         self.assertLess(resident_bytes() - before, 4 * held)
 
     def test_close_and_what_comes_after(self):

@@ -1,4 +1,4 @@
-"""What means something else than it seems to: masks, complex numbers, booleans, words, contact areas, NaN."""
+"""Arguments that are easily mistaken: masks, complex numbers, booleans, words, contact areas, NaN."""
 
 import unittest
 import warnings
@@ -35,7 +35,7 @@ class Masks(unittest.TestCase):
         for h in (MASKED, list(MASKED), tuple(MASKED), rows, Holds(), *under_the_mask):
             np.testing.assert_array_equal(solve(h).pressure, self.expected)
         np.testing.assert_array_equal(solve(np.ma.masked_array(H)).pressure, solve().pressure)
-        # Integers under a mask may be any.
+        # Integers under a mask may have any value.
         whole = np.ma.masked_array(np.where(MASK, 10**18, np.round(H)).astype(np.int64), MASK)
         np.testing.assert_array_equal(solve(whole).pressure, solve(np.where(MASK, np.inf, np.round(H))).pressure)
 
@@ -107,7 +107,7 @@ class Numbers(unittest.TestCase):
         self.assert_refused("^h has dtype complex", lambda: solve(H + 0j))
         self.assert_refused("^h holds 9007199254740993; it must be at most 2", lambda: solve(np.full((M, M), 2**53 + 1)))
         huge = H.astype(np.longdouble)
-        # On Windows it is a double.
+        # On Windows longdouble is double.
         if np.finfo(np.longdouble).max > np.finfo(float).max:
             huge[3, 4] = np.longdouble(10) ** 400
             self.assert_refused("^h holds a number that does not fit", lambda: solve(huge))
@@ -219,7 +219,7 @@ class Tables(unittest.TestCase):
             self.assertTrue(np.isnan(one.wheel_rail(creepage, spin, **rail)).all())
         for name in ("normal_force", "coefficient", "shear_modulus"):
             self.assertTrue(np.isnan(one.wheel_rail((0.1, 0.0), 0.0, **{**rail, name: np.nan})).all())
-        # A wheel that is lifted, or nearly, has no force; its neighbour has that of a single one.
+        # Wheels that are lifted, entirely or nearly, have no force; the loaded wheel has the force of a call of its own.
         lifted = {**rail, "semi_axes": (np.array([1.0, 1.0, 1.0]), np.array([0.0, 1.0, 1.0])), "normal_force": np.array([0.0, 1.0, 1e-320])}
         for hold in (True, False):
             forces = np.array(one.wheel_rail((1e-4, 0.0), 0.0, **{**lifted, "hold": hold}))

@@ -1,4 +1,4 @@
-"""Tables of creep forces in files and on a cluster: what is killed goes on from what was written. Needs xarray, netCDF4, distributed, tqdm."""
+"""Tables of creep forces in files and on a cluster: a killed computation goes on from the written parts. Needs xarray, netCDF4, distributed, tqdm."""
 
 import contextlib
 import io
@@ -22,7 +22,7 @@ PLANES = 8
 NAMES = ("axis_ratio", "poisson_ratio", "phi", "eta", "xi", "force_x", "force_y", "moment", "error", "residual", "products", "status")
 WHOLE = cn.creep_force_table(**AXES)
 
-# Kills its own process when so many planes are done.
+# A program that kills itself when `planes` planes are done.
 KILLED = """
 import os, signal, sys
 import contact_normal as cn
@@ -66,7 +66,7 @@ class Files(unittest.TestCase):
             self.assertEqual(dataset.force_x.dims, ("axis_ratio", "poisson_ratio", "phi", "eta", "xi"))
             self.assertIn("G c^2", dataset.attrs["units"])
             np.testing.assert_array_equal(dataset.force_x.sel(xi=0.3, eta=0.0, phi=0.2).values, WHOLE.force_x[:, :, 2, 1, 2])
-        # A second call reads: were it to compute, it would be told.
+        # A second call only reads the file: computing would call progress.
         cn.creep_force_table(self.path, progress=self.fail, **AXES)
 
     def test_another_table_is_not_overwritten(self):
@@ -86,7 +86,7 @@ class Files(unittest.TestCase):
                 parts = path.with_name(path.name + ".parts")
                 written = {file.name: file.stat().st_mtime_ns for file in parts.glob("*.npz")}
                 self.assertEqual(len(written), 3)
-                # What a process that died in the midst of writing leaves is no part.
+                # An unfinished file, left by a process that died while writing, is no part.
                 (parts / "000007.unfinished").write_bytes(b"PK")
                 told = []
                 self.assert_whole(cn.creep_force_table(path, workers=workers, progress=lambda done, total: told.append(done), **AXES))

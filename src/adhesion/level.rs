@@ -35,7 +35,7 @@ pub type Still = (Box<dyn Frozen>, State);
 /// Makes the solver of frozen problems on a grid.
 pub type MakeFrozen<'a> = &'a dyn Fn(&contact::Problem) -> Result<Box<dyn Frozen>>;
 
-/// At an opening elements leave the contact whose q - e/a0 exceeds the least one by less than this share of its range.
+/// In [`Level::open`] an element leaves the contact if its q - e/a0 exceeds the least one by less than this share of the range of q - e/a0.
 const OPENING_PRESSURE: f64 = 0.01;
 
 /// M, the inverse of a circulant near A, in single precision. Residuals are not extended beyond C, where separate equations determine
@@ -123,7 +123,7 @@ impl Level {
         self.problem.coefficients.is_mean_free()
     }
 
-    /// Lowers all pressures by a constant, which displaces nothing, so that the elements that press least by the natural map leave the contact.
+    /// Lowers all pressures by a constant, which has no displacement, so that the elements with the least values of the natural map leave the contact.
     pub fn open(&mut self) {
         let (surface, a0, n) = (&self.surface, self.self_influence(), self.now.u.len());
         let pressing = |i: usize| {

@@ -1,4 +1,4 @@
-//! Adhesion: attractive forces across the gap. docs/adhesion.md says what it computes.
+//! Adhesion: attractive forces across the gap (docs/adhesion.md).
 //!
 //! ```text
 //! e = h - approach + A p,    p = q - sigma(e),    q >= 0,  e >= 0,  q e = 0
@@ -18,6 +18,7 @@
 //! | `stability`, `tangent` | the distance of a state from a snap; dF/dapproach of a state, and its stability |
 //! | `start`, `begin` | the starts without a previous state |
 //! | `request`, `solver`, `report` | the whole solve |
+//! | `split` | the pressures of a result, split into contact pressures and attraction |
 
 mod begin;
 mod held;

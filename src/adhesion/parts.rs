@@ -1,5 +1,5 @@
-//! Linear systems without a border, solved to small residuals. On large grids GMRES restarts: each part solves for the residual that the parts
-//! before it left, so that memory holds few vectors at a time.
+//! Linear systems without a border, solved to small residuals. On large grids GMRES restarts with the remaining residual as the right-hand side, so that
+//! few directions are kept at a time.
 
 use super::system::{Linearised, Short};
 use super::unknowns::is_small;
@@ -7,13 +7,13 @@ use crate::error::Result;
 use crate::methods::fgmres::{self, Bordered, Until};
 use crate::methods::fields::{self, Fields};
 
-/// Factor on the wanted residual at which a system counts as solved, for round-off.
+/// Factor on the target for round-off: a system with a residual of at most this times the target counts as solved.
 const SLACK: f64 = 1.0 + 1e-6;
 
 /// The accuracy and the cost of a solve.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Relative residual at which a solve ends.
+    /// The target: the relative residual at which a solve ends.
     pub part: f64,
     /// Most directions.
     pub most: usize,
@@ -25,11 +25,11 @@ pub struct Effort {
 pub struct Solution {
     pub y: Vec<Short>,
     pub product: Vec<Short>,
-    /// Whether the wanted residual is reached.
+    /// Whether the target is reached.
     pub is_solved: bool,
 }
 
-/// Solves for a right-hand side; `right(system, i)` is its element i.
+/// Solves the system. `right(system, i)` is element i of the right-hand side.
 pub fn solve_in_parts(
     system: &mut Linearised<'_>,
     right: impl Fn(&Linearised<'_>, usize) -> f64 + Sync + Send,

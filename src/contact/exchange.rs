@@ -13,7 +13,7 @@ pub fn truncate<S: AdmissibleSet>(state: &mut State, set: S, threads: &Threads) 
     if S::FIXED {
         return 0;
     }
-    // Most often no element leaves, and otherwise few rows have one that does.
+    // Usually no element leaves. If some leave, they are in few rows.
     let (p, contact) = (&state.p, &state.contact);
     let some = blocks::fold(
         &state.grid,
@@ -65,7 +65,7 @@ pub fn enter<S: AdmissibleSet>(state: &mut State, i: usize) {
     }
 }
 
-/// Whether any of some elements leaves. Tests all of them: the compiler vectorises this.
+/// Whether any of these elements leaves C. Tests all of them: the compiler vectorises this.
 #[inline(always)]
 fn some_leaves<S: AdmissibleSet>(set: S, p: &[f64], contact: &[bool], elements: Range<usize>) -> bool {
     let values = p[elements.clone()].iter().zip(&contact[elements.clone()]).zip(elements);

@@ -13,7 +13,7 @@ pub enum Freshness {
     Stale,
 }
 
-/// Whether one of some pressures is not 0.
+/// Whether any pressure is not 0.
 #[inline(always)]
 pub fn presses(p: &[f64]) -> bool {
     p.iter().fold(0, |any, p| any | p.to_bits() << 1) != 0

@@ -11,12 +11,12 @@ use crate::progress::{Monitor, Outcome};
 ///
 /// ```text
 /// repeat   solve           its own problem, with the pressures of the normal one
-///          displace        h by what was found
+///          displace        h by the displacements of this solution
 ///          until the certificate of the normal problem holds with that distance; else the normal problem once more
 /// step_done
 /// ```
 pub trait Coupled {
-    /// Solves the problem with the pressures of a normal problem that ended with `outcome`. Returns its own.
+    /// Solves the problem with the pressures of a normal problem that ended with `outcome`. Returns its own outcome.
     fn solve(&mut self, outcome: Outcome, state: &State, monitor: &mut Monitor<'_>) -> Result<Outcome>;
 
     /// Whether the problem displaces the undeformed distance; if not, there is one turn.
@@ -42,7 +42,7 @@ pub trait Coupled {
 pub struct History {
     fields: Vec<Vec<f64>>,
     has_step: bool,
-    /// Whether the history is that of another solver, which has the corresponding result.
+    /// Whether the history was [taken](History::take) from another solver, whose result belongs to it.
     pub is_given: bool,
     /// The time of the steps so far, for effects with a time.
     pub time: f64,
@@ -89,8 +89,8 @@ impl History {
         (self.has_step, self.is_given, self.time, self.error) = (false, false, 0.0, 0.0);
     }
 
-    /// The history as numbers: the time, the error, then the fields one after the other; none before the first step,
-    /// and without fields.
+    /// The history as numbers: the time, the error, then the fields one after the other. None before the first step or
+    /// without fields.
     pub fn numbers(&self) -> Option<Vec<f64>> {
         let is_there = self.has_step && !self.fields.is_empty();
         is_there.then(|| [self.time, self.error].into_iter().chain(self.fields.iter().flatten().copied()).collect())

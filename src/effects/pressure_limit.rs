@@ -51,7 +51,7 @@ impl Effect for PressureLimit<'_> {
         self.0.check(["pressure_limit->limit", "pressure_limit->limits"], grid, require)
     }
 
-    // Elements at their limit leave the mean distance to the others.
+    // Elements at their limit yield, so bodies can approach beyond their mean distance.
     fn gives_way(&self, scene: &Plain<'_>) -> bool {
         let is_held = |(h, limit): (&f64, f64)| h.is_finite() && limit < f64::INFINITY;
         let h = scene.undeformed_distance.iter();

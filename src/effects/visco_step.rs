@@ -1,4 +1,4 @@
-//! A step in time of relaxing bodies, on the elements of a grid.
+//! A step in time of bodies that relax, on the elements of a grid.
 //!
 //! The history has A p of the last step, then the displacements of each body's dashpots, branch by branch.
 
@@ -17,14 +17,15 @@ pub struct Body {
 }
 
 impl Body {
-    /// A step of a time and a form.
+    /// The map of a body over a time step in a form.
     pub fn new(series: &Series, share: f64, (time_step, form): (f64, Form)) -> Body {
         Body { share, map: Map::new(series, time_step, form) }
     }
 }
 
-/// The step.
+/// One step in time.
 pub struct Step {
+    /// The length of the step; 0: an instantaneous load.
     pub time_step: f64,
     pub bodies: Vec<Body>,
     /// The bodies in another form, for the error.
@@ -39,7 +40,7 @@ impl Step {
         1 + self.bodies.iter().map(|body| body.map.branches()).sum::<usize>()
     }
 
-    /// H of element i by the maps of either form, from the fields `[A p, q...]`.
+    /// H, the displacement of element i by the history, by the maps of `bodies`, from the fields `[A p, q...]`.
     fn history(bodies: &[Body], fields: &[Vec<f64>], i: usize) -> f64 {
         let (mut sum, mut first, mut q) = (0.0, 1, [0.0; MOST_BRANCHES]);
         for Body { share, map } in bodies {
@@ -51,15 +52,15 @@ impl Step {
         sum
     }
 
-    /// What bodies in a form give way by in the step, over what they do at once.
+    /// The compliance of `bodies` over the step, relative to their instantaneous compliance.
     pub fn compliance_of(bodies: &[Body]) -> f64 {
         bodies.iter().map(|body| body.share * body.map.compliance()).sum()
     }
 
-    /// The difference of both forms, and h - approach: rms over the elements in contact.
+    /// The difference of the displacements by both forms, and h - approach: rms over the elements in contact.
     fn error(&self, fields: &[Vec<f64>], state: &State) -> (f64, f64) {
         let found = self.error_by(1.0, fields, state);
-        // In very long steps bodies that flow give way by lengths whose squares overflow.
+        // In very long steps, bodies that flow have displacements whose squares overflow.
         if found.0.is_finite() && found.1.is_finite() {
             return found;
         }
@@ -67,7 +68,7 @@ impl Step {
         (off / SMALL, distance / SMALL)
     }
 
-    /// The same times a `factor`.
+    /// [`Step::error`], times a `factor` that prevents overflow.
     fn error_by(&self, factor: f64, fields: &[Vec<f64>], state: &State) -> (f64, f64) {
         let (s, other) = (Step::compliance_of(&self.bodies), Step::compliance_of(&self.compared));
         let (mut differences, mut distances, mut count) = (0.0, 0.0, 0usize);

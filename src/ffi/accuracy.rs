@@ -167,14 +167,14 @@ fn warnings(outputs: &Outputs, outcome: &Refinement, (scene, options): (&Scene<'
 }
 
 impl contact_normal_accuracy {
-    /// The grid of the result; zeros where there is none.
+    /// The grid of the result; zeros without a result.
     fn set_grid(&mut self, grid: Option<&Grid>) {
         (self.mx, self.my) = grid.map_or((0, 0), |grid| (grid.mx as i32, grid.my as i32));
         (self.dx, self.dy) = grid.map_or((0.0, 0.0), |grid| (grid.dx, grid.dy));
     }
 }
 
-/// The function that writes the caller's surface; none where there is none.
+/// The function that writes the caller's surface; none without a callback.
 pub(super) fn surface<'r, 'a>(
     given: &contact_normal_accuracy,
     recording: &'r mut Recording<'a>,

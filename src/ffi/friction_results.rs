@@ -47,12 +47,11 @@ pub struct contact_normal_friction_results {
 
 versioned! { contact_normal_friction_results, contact_normal_friction_results_init, 104 }
 
-// SAFETY: the pointers are the caller's, who leaves what they point to alone during the call; what is written for one entry no other
-// one writes.
+// SAFETY: the pointers are the caller's, who does not touch their memory during the call. Each entry has its own part of it.
 unsafe impl Sync for contact_normal_friction_results {}
 
 impl contact_normal_friction_results {
-    /// Adds the outputs of n entries on so many elements, and the struct that points to them.
+    /// Adds the struct, and the outputs of n entries on `elements` elements, to the regions.
     pub(super) fn add_to(
         &self,
         regions: &mut Regions,
@@ -113,7 +112,7 @@ impl contact_normal_friction_results {
         outcome
     }
 
-    /// `max_seconds` ended the call: entries that were cancelled for it reached a limit.
+    /// For calls that `max_seconds` ended: cancelled entries get the status ITERATION_LIMIT.
     pub(super) unsafe fn late(&self, n: usize) {
         for i in (0..n).filter(|_| !self.status.is_null()) {
             // SAFETY: not null: room for all entries, each with its status, by the caller.
@@ -126,7 +125,7 @@ impl contact_normal_friction_results {
     }
 }
 
-/// Writes a value where it is wanted.
+/// Writes value i of an output that is not NULL.
 unsafe fn put<T>(to: *mut T, i: usize, value: T) {
     if !to.is_null() {
         // SAFETY: not null: room for it, by the caller.

@@ -32,7 +32,7 @@ fn read<T: Versioned, const N: usize>(at: [*const T; N], names: [&str; N]) -> Re
 /// The contents of a table, and the places of its values.
 type Given = ([(&'static str, f64); 3], *const f64);
 
-/// The values of table k, of so many. A table whose members differ from those of the first one is refused.
+/// The values of table k. A table whose members differ from those of the first one is refused.
 fn values<'a, T>(
     (tables, names): (&[Option<T>], &[&str]),
     (k, size): (usize, usize),
@@ -51,7 +51,7 @@ fn values<'a, T>(
 }
 
 impl contact_normal_friction {
-    /// The friction of the tables, of which nothing else is used.
+    /// A friction that has the tables only.
     pub(super) fn tables_alone<'a>(&self) -> Result<Friction<'a>, Refusal> {
         Ok(Friction { influence: self.own_influence()?, ..Friction::new(0.0) })
     }

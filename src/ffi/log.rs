@@ -48,7 +48,7 @@ pub(super) fn quietly<R>(work: impl FnOnce() -> R) -> R {
             QUIET.set(self.0);
         }
     }
-    // Its drop makes messages heard again even after a panic.
+    // Its drop ends the silence, even after a panic.
     let _restored = Restored(QUIET.replace(true));
     work()
 }
@@ -61,7 +61,7 @@ impl Log for Forward {
     }
 
     fn log(&self, record: &Record<'_>) {
-        // Callbacks are called on the thread that called us, never from a thread of ours, and not for a part of the problems of a batch.
+        // The callback runs on the thread that called the library, never on a worker, and not for the problems of a batch.
         if QUIET.get() || is_worker() {
             return;
         }

@@ -66,7 +66,7 @@ impl Outputs {
         (self.fields_at.cast_mut(), self.report)
     }
 
-    /// Adds the outputs that are read, too.
+    /// Adds the outputs that are also read.
     pub fn add_read(&self, regions: &mut Regions, options: &Options) {
         let given = options.initial_guess == InitialGuess::Given;
         if given {
@@ -77,7 +77,7 @@ impl Outputs {
         }
     }
 
-    /// Whether the arrays that are read are there and hold valid values.
+    /// Refuses arrays that are read, if they are missing or have invalid values.
     pub fn check_inputs(&self, options: &Options, n: usize) -> Result<(), Refusal> {
         let fixed = options.active_set == ActiveSet::Fixed;
         let given = options.initial_guess == InitialGuess::Given;
@@ -160,7 +160,7 @@ impl Outputs {
         Ok(())
     }
 
-    /// Writes the caller's arrays. A contact area that `is_fixed` is the caller's, with whatever codes it has: it stays.
+    /// Writes the caller's arrays. `is_fixed`: the contact area is the caller's, with codes of its own, and is not written.
     pub fn write_fields(&self, solver: &Solver, is_fixed: bool) {
         let state = solver.state();
         let n = state.p.len();
@@ -195,7 +195,7 @@ impl Outputs {
         }
     }
 
-    /// Writes what friction has found; zeros where there is none.
+    /// Writes the fields of friction; zeros without friction.
     pub fn write_friction(&self, found: Option<&Solution>, n: usize) {
         let fields = &self.fields;
         let value = |field: &[Vector], i: usize, k: usize| if found.is_some() { field[i][k] } else { 0.0 };
@@ -220,7 +220,7 @@ impl Outputs {
         }
     }
 
-    /// Writes what particles of the interface carry.
+    /// Writes the state of the particles of the interface.
     fn write_particles(&self, found: Option<&Solution>, n: usize) {
         let of = |i: usize| found.and_then(|found| found.particles.get(i)).copied().unwrap_or_default();
         for (to, value) in [
@@ -234,7 +234,7 @@ impl Outputs {
         }
     }
 
-    /// That of laws of friction; likewise.
+    /// The warning of a law of friction; nothing where no report is wanted.
     pub fn warnings_of_law(&self, slope: Option<f64>) -> i32 {
         self.given_report.map_or(0, |_| warnings::of_law(slope))
     }

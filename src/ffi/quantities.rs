@@ -86,7 +86,7 @@ pub(super) fn quantities_of(numbers: &[i32]) -> Result<Vec<Quantity>, Refusal> {
     numbers.iter().enumerate().map(of).collect()
 }
 
-/// Grids below the scene's own at most: the coarsest has 1/4096 of its elements in each direction.
+/// The limit on `coarser`: the coarsest grid has 1/4096 of the elements in each direction.
 const MOST_COARSER: i32 = 12;
 
 /// Solves the scene on its grid and on `coarser` grids (0 to 12), each with half the elements of the next in both directions and solved from

@@ -85,7 +85,7 @@ impl contact_normal_stress_outputs {
         }
     }
 
-    /// Adds the outputs at n depths of so many elements, and the struct that points to them.
+    /// Adds the struct, and the outputs at n depths of all elements, to the regions.
     pub(super) fn add_to(
         &self,
         regions: &mut Regions,

@@ -4,12 +4,12 @@
 //! n = q/|q|,  s_n = s.n;  on the circle: |q| >= g (1 - 1e-7)
 //! rest = s                       inside the circle
 //! rest = s - min(s_n, 0) n       on it: without the outward normal part of -s
-//! residual = rms_C(rest)/S,      S = max(rms_C(rigid slip), f rms_C(u));  u: displacements of a shift or of a step, f = 1 for a shift and
-//!                                for steady rolling by a force; else f = 1.5e-8, round-off
-//!                                with given forces S is at least 1.5e-8 rms_C(rigid slip without the found creepages)
+//! residual = rms_C(rest)/S,      S = max(rms_C(rigid slip), f rms_C(u))
 //! gap      = sum_C (s.q + g |s|) / sum_C g |rigid slip|     >= 0, and 0 for the solution only
 //! ```
 //!
+//! u is the displacement of a shift or of a step. f is 1 for a shift and for steady rolling by a force, else 1.5e-8, which is round-off. With given
+//! forces S is at least 1.5e-8 times rms_C of the rigid slip without the found creepages. Without a rigid slip, the gap is relative to S sum_C g.
 //! The error of q obeys `(q - q*)' A (q - q*) <= sum_C (s.q + g |s|)`.
 
 use super::plane::{add, dot, square, Vector};
@@ -19,7 +19,7 @@ use crate::methods::fields::{self, BLOCK};
 
 /// Tractions of at least this share of the bound are on the circle. The round-off of the projection is far smaller.
 pub const ON_THE_CIRCLE: f64 = 1.0 - 1e-7;
-/// A rigid slip less than this part of the scale of residuals is none. Round-off of creepages that cancel a slip is up to 2.5e-8 of it.
+/// A rigid slip counts as 0 below this part of the scale of residuals. If found creepages cancel a slip, its round-off is up to 2.5e-8 of the scale.
 const NO_SLIP: f64 = 1e-6;
 
 /// The measures of a solution.
@@ -41,7 +41,7 @@ pub fn scale(problem: &Problem, state: &State) -> f64 {
 }
 
 impl Certificate {
-    /// The gap relative to the work of the rigid slip; to `least` without a rigid slip, or with one that found creepages cancel.
+    /// The gap relative to the work of the rigid slip; relative to `least` without a rigid slip, or if found creepages cancel it.
     pub fn relative_gap(gap: f64, work: f64, least: f64) -> f64 {
         relative(gap.max(0.0), if work > NO_SLIP * least { work } else { least })
     }

@@ -1,14 +1,15 @@
-//! Shift, and a step of transient rolling, with given motion, if faster methods cycle: Newton's method, projected on the discs. Every step lowers
-//! the energy `1/2 q.Aq + w.q`, so no state recurs (Bertsekas, *Projected Newton methods for optimization problems with simple constraints*,
-//! 1982).
+//! Newton's method, projected on the discs `|q| <= g`, for shifts and steps of transient rolling with given motion in which faster methods cycle.
+//! Every step reduces the energy `1/2 q.Aq + w.q`, so no state recurs (Bertsekas, *Projected Newton methods for optimization problems with simple
+//! constraints*, 1982).
 //!
 //! ```text
 //! z       a step of Newton's method                            (module `step`)
-//! d = clip(q + z + c) - q,    c: so that d carries the force of z
+//! d = clip(q + z + c) - q,    with the vector c for which d has the force of z
 //! a = -(d, s)/(d, A d), at most 1;    q = q + a d
 //! ```
 //!
-//! c is needed because a missing force displaces all of C: on long lines a tends to 0 without c. If d leads uphill, `z = -rho s` does not.
+//! c is needed because a missing force displaces all of C: on long lines a tends to 0 without c. If d leads uphill, `z = -rho s` without c takes its
+//! place.
 
 use super::best::Best;
 use super::forces::Forces;
@@ -24,7 +25,7 @@ use crate::progress::Outcome;
 /// Relative tolerance of linear solves, and most directions of one step.
 const INNER: f64 = 0.1;
 const MOST_DIRECTIONS: usize = 16;
-/// Most rounds to carry a force.
+/// Most iterations for c.
 const ROUNDS: u32 = 4;
 /// Steps without a new least residual after which the energy changes by round-off only.
 const PATIENCE: u32 = 40;
@@ -119,7 +120,7 @@ fn go(
     Ok(part)
 }
 
-/// The c with which `clip(to + c)` carries the force of `to`: a missing force displaces all of C, and would shorten the step.
+/// The c with which `clip(to + c)` has the force of `to`: a missing force displaces all of C, and would shorten the step.
 fn carried(problem: &Problem, to: &[Vector]) -> Vector {
     let mut c = [0.0; 2];
     for _ in 0..ROUNDS {
@@ -141,7 +142,7 @@ fn carried(problem: &Problem, to: &[Vector]) -> Vector {
 }
 
 impl Way {
-    /// d from q to the nearest feasible tractions.
+    /// Sets d from q to the admissible tractions nearest to `to`, and its slope.
     fn to(&mut self, problem: &Problem, (q, u): (&[Vector], &[Vector]), to: impl Fn(usize) -> Vector + Sync + Send) {
         let threads = problem.threads();
         fields::fill(threads, &mut self.d, |i| plus(clip(to(i), problem.bound[i]), -1.0, q[i]));

@@ -4,7 +4,7 @@ use super::plane::{add, Vector};
 use crate::effects::{Friction, Previous};
 use crate::grid::Grid;
 
-/// The request of a solve.
+/// The request of a tangential solve.
 #[derive(Clone, Copy)]
 pub struct Request<'a> {
     /// The pressures of the normal problem, `[my][mx]`.
@@ -13,7 +13,7 @@ pub struct Request<'a> {
     pub friction: &'a Friction<'a>,
     /// The tolerance of the residual.
     pub tolerance: f64,
-    /// Most iterations on the finest grid.
+    /// The limit on iterations on the finest grid.
     pub limit: u64,
     /// Unlike bodies: the sideways displacements by the pressures, less those before the step.
     pub sideways: Option<&'a [Vector]>,
@@ -25,7 +25,7 @@ pub struct Request<'a> {
     pub estimates: bool,
     /// The yield limits of an ideal layer; empty without one.
     pub limits: &'a [f64],
-    /// The largest bound of an element: larger ones are out of reach of tractions.
+    /// The cap on traction bounds: no traction reaches a larger one.
     pub largest_bound: f64,
 }
 
@@ -65,8 +65,8 @@ pub enum Start<'a> {
     Before,
     /// From the last result: the same step once more with other pressures. The state before the step is kept.
     Again,
-    /// As `Again`, but with given creepages, times the length rolled. The forces, which the friction prescribes, are
-    /// found.
+    /// As `Again`, but with given creepages, times the length rolled, in place of the forces that the friction
+    /// prescribes. The solve finds the forces.
     Held(Vector),
     /// From the last result.
     Last,

@@ -1,4 +1,4 @@
-//! Shift, and a step of transient rolling, with given motion: projected conjugate gradients on discs.
+//! Projected conjugate gradients on discs, for shifts and steps of transient rolling with given motion.
 //!
 //! Per iteration, with the prediction of [`Tangent`] and one product `A t`:
 //!

@@ -108,7 +108,7 @@ impl<T: Real> Toeplitz<T> {
         let unit = 1.0 / unit_of(quadrant.at(0, 0)[0]);
         let fill = |component: usize, ky: i64, row: &mut [f64]| {
             quadrant.fill_row(component, ky, row);
-            // An odd function has no value half-way around.
+            // An odd function is 0 at half a period.
             if component == 2 {
                 let first = if 2 * ky as usize == period.1 { 0 } else { (period.0 / 2).min(row.len()) };
                 row[first..].fill(0.0);
@@ -147,7 +147,7 @@ impl<T: Real> Toeplitz<T> {
         let mean = [wave(1, 0), wave(0, 1)].iter().fold(0.0, |most: f64, [xx, yy, _]| most.max(*xx).max(*yy));
         let inverse = |kx: usize, ky: usize| {
             let [xx, yy, xy] = if (kx, ky) == (0, 0) { [mean, mean, 0.0] } else { wave(kx, ky) };
-            // An odd function has no value half-way around.
+            // An odd function is 0 at half a period.
             let xy = if 2 * kx == px || 2 * ky == py { 0.0 } else { xy };
             inverted([xx, yy, xy]).0.map(|value| value / unit)
         };
@@ -247,7 +247,7 @@ impl<T: Real> Toeplitz<T> {
     }
 }
 
-/// A wave of a period, per element, and its longest alias, each with its mean over an element.
+/// The numbers of wave k of a period and of its longest alias, in radians per element, each with the mean of the wave over an element.
 fn aliases(k: usize, period: usize) -> [(f64, f64); 2] {
     let half = PI * k as f64 / period as f64;
     let mean = |half: f64| if half == 0.0 { 1.0 } else { half.sin() / half };

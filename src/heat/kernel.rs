@@ -25,7 +25,7 @@ use crate::powers::FADED;
 
 /// Longest panel in t, on which the rule integrates exp(-a cosh t) to 1e-10.
 const PANEL: f64 = 2.0;
-/// Largest t: beyond it sinh(t) is infinite, as quotients are by wakes next to nothing.
+/// Largest t: sinh(t) is infinite beyond it. For tiny wave numbers the end of the integral would be infinite too.
 const LONGEST: f64 = 700.0;
 /// Ratio of the ends of panels in x.
 const PANEL_RATIO: f64 = 4.0;

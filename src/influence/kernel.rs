@@ -53,8 +53,8 @@ pub trait Kernel: Any + Debug + Send + Sync {
         (false, false)
     }
 
-    /// The constant in all coefficients beyond those of bodies of zero mean displacement. It displaces in proportion to the mean pressure:
-    /// it changes the approach of a prescribed force, but not its pressures.
+    /// A constant part of all coefficients. Without it the mean displacement is 0. Its displacement is proportional to the mean pressure: it
+    /// changes the approach of a prescribed force, but not its pressures.
     fn constant(&self) -> f64 {
         0.0
     }

@@ -1,7 +1,7 @@
 //! The inverse of a circulant near A, as a preconditioner (Strang 1986, T. Chan 1988).
 //!
-//! The period is at least one element longer than the grid, so that the coefficient at offset -m is the true one. Where the scene repeats it is the
-//! grid's. A product costs a quarter of one with padding, and the number of iterations is the same. A direction with one element has the period 1.
+//! The period is at least one element longer than the grid, so that the coefficient at offset -m is the true one. In a periodic direction it is the length
+//! of the grid, in a direction with one element 1. A product costs a quarter of one with padding, and the number of iterations is the same.
 
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,8 +23,8 @@ impl<T: Real> Operator<T> {
         (if grid.mx == 1 { 1 } else { px }, if grid.my == 1 { 1 } else { py })
     }
 
-    /// The inverse of a circulant near A with the `period`. It takes the even part of the coefficients, at offsets up to half the period. None
-    /// if the circulant is not positive definite.
+    /// The inverse of a circulant near A with the `period`. The circulant has the even part of the coefficients at offsets up to half the period.
+    /// None if it is not positive definite.
     pub fn inverse_circulant(
         coefficients: &Coefficients,
         grid: &Grid,

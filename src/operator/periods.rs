@@ -35,7 +35,7 @@ pub(super) fn periods(coefficients: &Coefficients, grid: &Grid, reach: Reach) ->
     }
 }
 
-/// Periods of at least `least` for products by even coefficients; in directions in which the scene repeats, the grid itself. Rows and columns both
+/// Periods of at least `least` for products by even coefficients; in periodic directions of the scene, the grid itself. Rows and columns both
 /// use the FFT stages of the crate toeplitz, or neither. A machine without SIMD has no such stages, but the same periods.
 pub(crate) fn even_periods(coefficients: &Coefficients, grid: &Grid, least: (usize, usize)) -> (usize, usize) {
     let repeats = coefficients.repeats(grid);

@@ -1,11 +1,11 @@
-//! What a solve was asked.
+//! The request of a solve.
 
 use super::{Guess, Options};
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::threads::Threads;
 
-/// What a solve was asked.
+/// The request of a solve.
 #[derive(Clone, Copy)]
 pub(crate) struct Asked<'a> {
     /// The scene, which is checked.
@@ -16,7 +16,7 @@ pub(crate) struct Asked<'a> {
     pub options: &'a Options,
     /// The caller's pressures and contact area.
     pub guess: Option<Guess<'a>>,
-    /// Whether the surface ends and jumps between elements only, for estimates.
+    /// For estimates: whether all edges and jumps of the surface are at edges of elements.
     pub exact_edges: bool,
 }
 
@@ -31,7 +31,7 @@ impl<'a> Asked<'a> {
         self.guess.filter(|_| self.options.is_fixed())
     }
 
-    /// The same for `scene`, with another undeformed distance, which is checked; none: the distance is unchanged.
+    /// The request with `scene`, whose undeformed distance differs and is checked here. Without a scene, the request is unchanged.
     pub fn on<'s>(self, scene: Option<&'s Scene<'s>>, threads: &Threads) -> Result<Asked<'s>>
     where
         'a: 's,

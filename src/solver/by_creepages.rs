@@ -22,7 +22,7 @@ use crate::scene::{Load, Scene};
 /// If forces miss less than CLOSE_FORCES times mu N, tractions by force are tried with the same pressures, with
 /// [`FINISHING_PRODUCTS`] products.
 const CLOSE_FORCES: f64 = 1e-4;
-/// Most creepages.
+/// Most creepages tried between those that bracket the force.
 const MOST_TRIALS: u32 = 30;
 /// Creepages that are tried, relative to those of turns by force. With two forces, those from OPPOSITE_FROM on are
 /// opposite to the force.

@@ -1,5 +1,5 @@
-//! A copy of the last complete result, to restore it: a further problem may be refused after the normal problem is solved, and a pulling force may have no
-//! equilibrium. Coefficients that turn out to be those of no elastic body leave no result: a copy for each solve would allocate.
+//! A copy of the last complete result. It is restored if a coupled problem is refused after the normal problem is solved, or if a pulling force has no
+//! equilibrium. If coefficients turn out to be those of no elastic body, no result is left: a copy for each solve would allocate.
 
 use super::Solver;
 use crate::contact::State;
@@ -10,7 +10,7 @@ use crate::progress::LedgerRow;
 use crate::rectangle::Rectangle;
 use crate::scene::Scene;
 
-/// A copy of the last result, and of the state from which a step in time continues.
+/// A copy of the last result, and of the state from which the next solve continues.
 pub struct Kept {
     state: State,
     before: (Predictor, Option<Rectangle>),
@@ -18,7 +18,7 @@ pub struct Kept {
 }
 
 impl Solver {
-    /// A copy of the last result, for scenes that may be refused when they are being solved.
+    /// A copy of the last result, for scenes that a solve may refuse. None for other scenes, and without a result.
     pub(super) fn kept(&self, scene: &Scene<'_>) -> Result<Option<Kept>> {
         let may_be_refused = effects::beside(scene).next().is_some() || scene.attraction().is_some();
         if !may_be_refused || !self.has_result {
@@ -28,7 +28,7 @@ impl Solver {
         Ok(Some(Kept { state, before: self.methods.projected_cg.last()?, ledger: self.ledger.clone() }))
     }
 
-    /// Restores the last result; without a copy there is none.
+    /// Restores the last result. Without a copy the solver has no result.
     pub(super) fn go_back(&mut self, kept: Option<Kept>) {
         self.has_result = kept.is_some();
         if let Some(Kept { state, before, ledger }) = kept {

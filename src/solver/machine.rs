@@ -2,7 +2,7 @@
 //!
 //! A product of n elements takes `n log n` operations, but its arrays exceed one cache after the other, at sizes that
 //! depend on the machine. So products of half-spaces of 32 x 32 to 256 x 256 elements are timed when a process first
-//! predicts seconds. Each is timed a few times, and the least time counts. All takes a few milliseconds on one thread.
+//! predicts seconds. Each is timed a few times, and the least time counts. All timings take a few milliseconds on one thread.
 //! Threads that predict at the same time measure separately. Between two of these sizes seconds grow with a power of the
 //! number of elements, beyond the last with the power between the last two. Bounds on the powers limit the error on a
 //! busy machine. No solve depends on these times.
@@ -20,8 +20,8 @@ use crate::scene::{Bodies, Load, Scene};
 const SIZES: [usize; 4] = [32, 64, 128, 256];
 /// Products on each grid; the first ones are slow.
 const PRODUCTS_PER_GRID: usize = 4;
-/// Least and largest exponent of the growth of seconds with the number of elements, of a product. The largest holds for
-/// a solve, too.
+/// The least and the largest power of the number of elements with which seconds of a product grow. The largest one also
+/// limits the growth of a solve.
 const POWERS: (f64, f64) = (1.0, 1.2);
 /// The power without timings (docs/performance.md).
 const GROWTH: f64 = 1.08;
@@ -38,8 +38,9 @@ const LEAST_PRODUCTS: f64 = 0.5;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
     pub elements: f64,
-    /// Seconds of one thread, and the part of the set-up.
+    /// Seconds of set-up and solve on one thread.
     pub seconds: f64,
+    /// Seconds of the set-up.
     pub setup: f64,
     /// Products in work units.
     pub products: f64,
@@ -93,7 +94,7 @@ pub fn seconds_on(samples: &[Cost], elements: f64) -> f64 {
     }
 }
 
-/// The number of products on so many elements, extrapolated beyond the last sample: with friction it may grow by a fifth with a doubling.
+/// The number of products on `elements`, extrapolated beyond the last sample. With friction it grows, at most by [`MOST_PRODUCTS_RATIO`] with a doubling.
 fn more_products(samples: &[Cost], elements: f64) -> f64 {
     match samples {
         [.., before, last] => {
@@ -107,8 +108,8 @@ fn more_products(samples: &[Cost], elements: f64) -> f64 {
 }
 
 /// The power of the number of elements with which seconds grow: the least power between successive samples, because
-/// others were disturbed. Pairs count if the first sample has `least` products. The seconds of solves in turns, of
-/// unlike bodies, grow more than their products.
+/// others were disturbed. Pairs count if the first sample has `least` products. Unlike bodies with friction are solved in
+/// turns, whose seconds grow more than their products.
 fn grown(samples: &[Cost], least: f64) -> f64 {
     let of = |pair: &[Cost]| (pair[1].seconds / pair[0].seconds).ln() / (pair[1].elements / pair[0].elements).ln();
     let seen = samples.windows(2).filter(|pair| pair[0].products >= least).map(of);

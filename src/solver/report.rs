@@ -55,7 +55,7 @@ pub struct Report {
     pub setup_seconds: f64,
     /// Seconds of the solve.
     pub solve_seconds: f64,
-    /// Those of them in which coefficients of coarser grids were set up.
+    /// The part of these seconds in which coefficients of coarser grids were set up.
     pub coarse_seconds: f64,
     /// Bytes held by operators and unknowns.
     pub bytes: u64,

@@ -12,8 +12,8 @@ use crate::progress::Monitor;
 use crate::scene::{Friction, Prescribed, Scene};
 use crate::threads::Threads;
 
-/// If pressures carry less than the given force, the problem is solved for this part of the force that they carry.
-/// Nearly all elements slip then, and the next pressures carry the force of full slip to 1e-4
+/// If the prescribed force exceeds the traction bounds of the pressures, the problem is solved for this part of the largest
+/// force within them. Nearly all elements slip then, and the next pressures carry the force of full slip to 1e-4
 /// (tests/friction/unlike_forces.rs).
 const IN_REACH: f64 = 1.0 - 1e-7;
 
@@ -28,7 +28,7 @@ pub struct Tangent {
 pub(crate) struct StepBefore {
     pub traction: Vec<Vector>,
     pub particles: Vec<Particle>,
-    /// Those of unlike bodies.
+    /// The pressures of the step, for unlike bodies.
     pub pressure: Option<Vec<f64>>,
 }
 
@@ -95,7 +95,7 @@ impl Tangent {
         self.solver.into_solution()
     }
 
-    /// Takes the last result of another one with other coefficients.
+    /// Takes over the last result of `other`, which has other coefficients.
     pub fn with_last_of(mut self, mut other: Tangent) -> Tangent {
         self.solver.take_last_of(&mut other.solver);
         if let (Some(unlike), Some(before)) = (&mut self.unlike, &mut other.unlike) {
@@ -114,7 +114,7 @@ impl Tangent {
         self.solver.tangential().is_coated()
     }
 
-    /// The pressures of the last step, of unlike bodies.
+    /// The pressures of the last step; none for like bodies.
     pub fn pressures_before(&self) -> Option<&[f64]> {
         self.last_step().and(self.unlike.as_ref()).map(UnlikeBodies::last_pressure)
     }
@@ -125,7 +125,7 @@ impl Tangent {
         self.solver.take_step(step.traction, step.particles)
     }
 
-    /// Notes a solve without friction.
+    /// Records a solve without friction: its result has no tractions, and those of the last step stay.
     pub fn pass_over(&mut self) {
         self.solver.pass_over();
     }

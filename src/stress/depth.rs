@@ -58,14 +58,14 @@ pub struct Maximum {
     pub value: f64,
     /// The index of the depth.
     pub depth: usize,
-    /// The element above, in x.
+    /// The index in x of the element above.
     pub ix: usize,
-    /// The element above, in y.
+    /// The index in y of the element above.
     pub iy: usize,
 }
 
 impl Maximum {
-    /// Takes the largest of `values` at a depth, if it is larger than any before. With patches those below their elements count.
+    /// Takes the largest of `values` at a depth, if it is larger than any before. With patches only values below their elements count.
     pub fn join(known: &mut Option<Maximum>, values: &[f64], depth: usize, (grid, loads): (&Grid, &Loads<'_>)) {
         let counts = loads.counted();
         for (i, &value) in values.iter().enumerate().filter(|(i, _)| counts(*i)) {
@@ -76,7 +76,7 @@ impl Maximum {
     }
 }
 
-/// One depth, and the memory of its computation.
+/// The results at one depth, and the workspace of their computation.
 pub(super) struct DepthMemory {
     workspace: Workspace,
     pub depth: Depth,

@@ -7,7 +7,7 @@ use crate::error::{finite, invalid, require, Result};
 use crate::grid::{check_values, Grid};
 use crate::memory::collected;
 
-/// Loads below this have stresses in the range of numbers: of a load of 1 they are below the 2^11 of the logarithms at edges.
+/// Loads below this have finite stresses. Stresses by a load of 1 are below 2^11, since they grow with a logarithm towards edges.
 const LARGEST: f64 = 1e304;
 
 /// Pressures and tractions, `[my][mx]`, each optional. Tractions act on the body considered, in the directions of x and y.
@@ -65,7 +65,7 @@ impl<'a> Loads<'a> {
         [Part::All].into_iter().chain((0..patches.count).map(Part::Patch)).filter(has).collect()
     }
 
-    /// Whether the stresses below an element count for the largest ones: with patches, below their elements.
+    /// Whether the stresses below an element count for the largest ones. With patches, only those below an element of a patch count.
     pub fn counted(&self) -> impl Fn(usize) -> bool + '_ {
         let patches = self.coupled();
         move |i| patches.is_none_or(|patches| Part::of(patches, i) != Part::All)

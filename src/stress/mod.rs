@@ -8,10 +8,10 @@
 //! szz = -p,  sxz = -qx,  syz = -qy    at z = 0
 //! ```
 //!
-//! The kernels depend on the Poisson ratio, not on the shear modulus. Near its element a kernel has a closed form (`element`), which
-//! cancels far away, where point forces are used (`point_force`); `kernels` combines them. At each depth sums over elements are products by
-//! FFT (`product`). Each kernel is even or odd in x and in y, so its symbol is real or imaginary, and one quadrant is tabulated. At places off
-//! the centres the sum is direct (`points`).
+//! The kernels depend on the Poisson ratio, not on the shear modulus. Near its element a kernel has a closed form (`element`). Far away this form
+//! suffers from cancellation, and point forces are used (`point_force`); `kernels` combines both. At each depth sums over elements are products
+//! by FFT (`product`). Each kernel is even or odd in x and in y, so its symbol is real or imaginary, and one quadrant is tabulated. At any other
+//! point the sum is direct (`points`).
 //!
 //! Contact patches coupled by factors have one product each (`loads`).
 //!
@@ -54,7 +54,8 @@ use product::Product;
 ///
 /// # Errors
 /// `NotFinite`: a load or a depth is not finite; `InvalidArgument`: an array of another size than the grid, no load, a negative depth, a
-/// Poisson ratio out of range; `Unsupported`: a period, very slender elements, and a depth of less than their longer side; `OutOfMemory`.
+/// Poisson ratio out of range; `Unsupported`: a period with patches, or with very slender elements and a depth of less than their longer side;
+/// `OutOfMemory`.
 pub fn subsurface_stress(
     body: &Body,
     loads: &Loads<'_>,
@@ -94,7 +95,7 @@ pub fn subsurface_stress(
             done += 1;
             if let Some(told) = &mut progress {
                 let seconds = began.elapsed().as_secs_f64();
-                // A stop that comes with the last depth leaves nothing out.
+                // After the last depth there is nothing to cancel.
                 if told(&Progress::of_part(&body.grid, done as u64, seconds)) && done < depths.len() {
                     return Ok(false);
                 }

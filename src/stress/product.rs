@@ -19,10 +19,10 @@ use crate::memory::zeros;
 /// The name of this memory in messages.
 const STRESS: &str = "the stresses of a depth";
 
-/// The transform of each load, `[bin in x][bin in y]`, over its number of values; none if there is no such load.
+/// The transform of each load, `[bin in x][bin in y]`, divided by the number of elements of a period; none if there is no such load.
 type Spectra = [Option<Vec<Complex<f64>>>; 3];
 
-/// Products with the loads of one body, of all depths.
+/// The products of the loads of one body by the kernels of any depth.
 pub struct Product<'a> {
     pub body: Body,
     transforms: ParityProduct,

@@ -21,7 +21,7 @@ fn constant(name: &str) -> Option<i32> {
     (status == CONTACT_NORMAL_OK).then_some(value)
 }
 
-/// A member of a struct in the header: "  double tolerance;".
+/// The type and the name of each member of a struct in the header, such as `("double", "tolerance")`.
 fn members(name: &str) -> Vec<(String, String)> {
     let header = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/include/contact_normal.h")).expect("it");
     let body = header.split_once(&format!("typedef struct {name} {{")).expect("a struct").1;

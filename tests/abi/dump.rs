@@ -1,4 +1,4 @@
-//! `options->dump`: a call that fails leaves a file from which it is made again, and nothing else of the call changes.
+//! `options->dump`: a call that fails writes a file from which it can be replayed. Nothing else of the call changes.
 
 use std::ffi::{CStr, CString};
 use std::path::{Path, PathBuf};
@@ -55,7 +55,7 @@ fn reproduces(name: &str, scene: &mut Everything) -> i32 {
 
 #[test]
 fn a_solve_with_every_effect_is_made_again_from_its_file() {
-    // Each with what it goes with (docs/effects.md).
+    // Effects that can be combined (docs/effects.md).
     for effects in [
         "",
         "layer pressure_limit",
@@ -91,7 +91,7 @@ fn guesses_and_fixed_contact_areas_are_in_the_file() {
     }
 }
 
-/// A new effect, or a new array of one, is set here: then this shows that it is in the file.
+/// All effects and all of their arrays are set here, so that the test shows that each is in the file. Add new ones.
 #[test]
 fn every_pointer_of_a_scene_is_in_the_file() {
     let path = folder("every").join("failed");
@@ -100,7 +100,7 @@ fn every_pointer_of_a_scene_is_in_the_file() {
         "layer pressure_limit coating influence row_tables period patches friction tables tangential_rows adhesion visco",
     );
     scene.options.dump = path_text.as_ptr();
-    // Effects that do not go together.
+    // These effects exclude each other.
     let (status, _) = scene.solve();
     assert_eq!(status, CONTACT_NORMAL_UNSUPPORTED);
     let bytes = std::fs::read(&path).expect("a dump");

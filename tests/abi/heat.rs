@@ -1,4 +1,4 @@
-//! `contact_normal_flash_temperature`: memory that overlaps with one of its structs is refused.
+//! `contact_normal_flash_temperature`: speeds out of range, too many threads and overlapping memory are refused; a flux that cools is shared equally.
 
 use crate::call::{initialised, last_error};
 use contact_normal::ffi::*;
@@ -20,7 +20,7 @@ fn run(heat: &contact_normal_heat) -> (i32, contact_normal_flash) {
     (status, flash)
 }
 
-/// The speed over the diffusivity overflows: the call did not return.
+/// The speed over the diffusivity overflows.
 #[test]
 fn speeds_beyond_the_range_of_numbers_are_refused() {
     let flux = [1.0; N];
@@ -40,7 +40,7 @@ fn threads_have_the_limit_of_all_calls() {
     assert_eq!(run(&contact_normal_heat { threads: 1024, ..of((4, 4), &flux) }).0, CONTACT_NORMAL_OK);
 }
 
-/// A flux that cools warms nothing, so that each body has one half. Rounding errors of 1e-17 upstream counted as warm: .444 at (100, 50).
+/// A flux that cools warms no element, so each body has one half. Rounding errors of 1e-17 upstream must not count as warm.
 #[test]
 fn a_flux_that_cools_is_shared_equally() {
     let cools = |i: usize| (8..16).contains(&(i % 32)) && (4..12).contains(&(i / 32));

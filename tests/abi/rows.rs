@@ -1,4 +1,4 @@
-//! The rows of bad input: what makes a valid call bad, the status, and what the message names.
+//! Bad input, one case a row: the change of a valid call, the status, and the words of the message.
 
 use std::ptr::{null, null_mut};
 
@@ -20,7 +20,7 @@ pub const FORCE: i32 = CONTACT_NORMAL_PRESCRIBED_FORCE;
 /// Factors of two patches.
 pub const HALF: [f64; 4] = [1.0, 0.5, 0.5, 1.0];
 
-/// The argument and its value as the message says them, the status, and what makes a valid call bad.
+/// Argument and value as in the message, the status, and the change that makes a valid call bad.
 pub type Row = (&'static [&'static str], i32, fn(&mut Call));
 
 /// Scene and options: refused by a solve, with or without a handle, and by the set-up of a handle.
@@ -214,7 +214,7 @@ pub const SET_UP: &[Row] = &[
     (&["coarsest", "0"], INVALID, |c| c.use_cycle().coarsest = 0),
     (&["coarsest", "17"], INVALID, |c| c.use_cycle().coarsest = 17),
     (&["threads", "-1"], INVALID, |c| c.options.known.threads = -1),
-    // Refused, not tried: a million threads would be started, or take the machine down.
+    // Refused, not tried: a million threads might take the machine down.
     (&["threads", "1025"], INVALID, |c| c.options.known.threads = 1025),
     (&["threads", "2147483647"], INVALID, |c| c.options.known.threads = i32::MAX),
 ];
@@ -229,7 +229,7 @@ pub const SOLVES: &[Row] = &[
     (&["ledger_capacity", "-1"], INVALID, |c| c.report.known.ledger_capacity = -1),
     (&["contact", "FIXED"], NULL, |c| { c.fix_contact(); c.fields.known.contact = null_mut(); }),
     (&["contact", "empty"], INVALID, |c| { c.fix_contact(); c.contact.fill(0); }),
-    // In contact only where there is no surface.
+    // The only element in contact has no surface.
     (&["contact", "empty"], INVALID, |c| { c.fix_contact(); c.contact[1..].fill(0); c.h[0] = INF; }),
     (&["pressure", "GIVEN"], NULL, |c| { c.options.known.initial_guess = 1; c.fields.known.pressure = null_mut(); }),
     (&["pressure", "NaN"], NOT_FINITE, |c| { c.options.known.initial_guess = 1; c.pressure[7] = NAN; }),

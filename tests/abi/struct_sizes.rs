@@ -1,4 +1,4 @@
-//! Structs of other sizes than this library's: what is none is refused; a larger one is read if what we do not know is zero.
+//! Structs of other sizes than this library's. A size of no version is refused. A larger struct is read if its unknown members are 0.
 
 use std::ptr::null_mut;
 

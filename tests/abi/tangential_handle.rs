@@ -1,4 +1,4 @@
-//! `contact_normal_solve_tangential` with a handle: what it keeps, what it refuses, where it starts.
+//! `contact_normal_solve_tangential` with a handle: the tractions that it keeps, refusals, and starts.
 
 use std::ptr::{null, null_mut};
 
@@ -8,7 +8,7 @@ use contact_normal::ffi::*;
 const M: usize = 16;
 const N: usize = M * M;
 
-/// A ball's pressures on a grid, friction, and room for what is found.
+/// A ball's pressures on a grid, friction, and room for the results.
 struct Call {
     scene: contact_normal_scene,
     friction: contact_normal_friction,
@@ -46,7 +46,7 @@ impl Call {
         call
     }
 
-    /// Own tables: `factor` times what decays as the distance.
+    /// Tables of the caller: `factor` times a function that decays with the distance.
     fn use_tables(&mut self, factor: f64) {
         let offset = |k: usize| ((k % (2 * M)) as f64 - M as f64, (k / (2 * M)) as f64 - M as f64);
         let along = |k: usize| factor / (1.0 + offset(k).0.hypot(offset(k).1));
@@ -62,7 +62,7 @@ impl Call {
         }
     }
 
-    /// From here on the tractions that were found last are those before the step.
+    /// Makes the last tractions those before the step.
     fn go_on(&mut self) {
         self.before = [self.traction[..N].to_vec(), self.traction[N..].to_vec()];
         self.friction.previous_traction = self.before.each_ref().map(|q| q.as_ptr());
@@ -226,14 +226,14 @@ fn other_tables_have_a_status_of_their_own() {
     let found = call.traction.clone();
     assert_eq!(call.run(null_mut()), OK);
     assert_eq!(found, call.traction);
-    // What is no table is refused, and changes nothing.
+    // An invalid table is refused, and changes nothing.
     call.values[2][(M + 1) * 2 * M + M + 1] += 1.0;
     assert_eq!(handle.set_influence(&call), CONTACT_NORMAL_UNSUPPORTED);
     call.friction.influence = [null(); 3];
     assert_eq!(handle.set_influence(&call), CONTACT_NORMAL_INVALID_ARGUMENT);
     assert_eq!(call.run(handle.0), OK);
     assert_eq!(found, call.traction);
-    // The half-space's cannot be exchanged for tables.
+    // Coefficients of the half-space cannot be exchanged for tables.
     let mut plain = Call::new();
     let half_space = Handle::of(&plain);
     assert_eq!(plain.run(half_space.0), OK);
@@ -277,7 +277,7 @@ fn a_start_near_the_solution_saves_products_and_changes_nothing() {
             }
             assert_eq!(call.run(null_mut()), OK);
             let (cold, found) = (call.products(), call.traction.clone());
-            // The solution itself: one product says so.
+            // A start from the solution takes one product.
             let start = [found[..N].to_vec(), found[N..].to_vec()];
             call.friction.initial_traction = start.each_ref().map(|q| q.as_ptr());
             assert_eq!(call.run(null_mut()), OK);
@@ -286,9 +286,9 @@ fn a_start_near_the_solution_saves_products_and_changes_nothing() {
                 "motion {motion}, by force {by_force}: {} of {cold}",
                 call.products()
             );
-            // A residual of 1e-9 leaves some 1e-8 of the tractions.
+            // With a residual of 1e-9 tractions have an error of some 1e-8.
             assert!(apart(&found, &call.traction) < 1e-6, "{motion} {by_force}: {}", apart(&found, &call.traction));
-            // What is far from it is not gone on from.
+            // A start far from the solution is dropped.
             let far = [vec![-1e3; N], vec![7.0; N]];
             call.friction.initial_traction = far.each_ref().map(|q| q.as_ptr());
             assert_eq!(call.run(null_mut()), OK);
@@ -298,7 +298,7 @@ fn a_start_near_the_solution_saves_products_and_changes_nothing() {
                 "motion {motion}, by force {by_force}: {} of {cold}",
                 call.products()
             );
-            // PREVIOUS does the same with what the handle found.
+            // PREVIOUS does the same with the last tractions of the handle.
             call.friction.initial_traction = [null(); 2];
             let handle = Handle::of(&call);
             assert_eq!(call.run(handle.0), OK);
@@ -325,7 +325,7 @@ fn own_tables_may_end_with_the_grid_in_rolling() {
         call.friction.motion = motion;
         assert_eq!(call.run(null_mut()), OK);
         assert!(call.report.tangential.force[0] > 0.0);
-        // C and a step ask for more than there is.
+        // C and a step need larger tables.
         call.friction.rolling_distance = 5.0;
         let (status, message) = call.run(null_mut());
         assert!(status == CONTACT_NORMAL_INVALID_ARGUMENT && message.contains("cx is 16"), "{status} {message}");
@@ -385,7 +385,7 @@ fn a_table_of_entries_has_the_tables_of_its_handle() {
     // Later scenes may leave the tables out.
     call.friction.influence = [null(); 3];
     assert_eq!(forces(&call, with_tables.0), expected);
-    // A handle without takes none later, whatever it has solved before.
+    // A handle without tables takes none later, whatever it has solved before.
     let without = Handle::of(&call);
     let of_half_space = forces(&call, without.0);
     assert!(of_half_space.0 == CONTACT_NORMAL_OK && of_half_space != expected);
@@ -393,7 +393,7 @@ fn a_table_of_entries_has_the_tables_of_its_handle() {
     assert_eq!(forces(&call, without.0).0, CONTACT_NORMAL_INFLUENCE_CHANGED);
 }
 
-/// What a later scene leaves out counts as much as what it names.
+/// Tables that a later scene leaves out exclude the same effects as tables that it names.
 #[test]
 fn coefficients_that_are_left_out_exclude_what_they_exclude() {
     let mut call = Call::new();

@@ -1,4 +1,4 @@
-//! Pull-offs beside a way down in small steps, by Newton's method with a dense matrix.
+//! Pull-off forces beside the least force of an unloading in small steps, by Newton's method with a dense matrix.
 
 use contact_normal::adhesion::Law;
 use contact_normal::grid::Grid;
@@ -19,7 +19,7 @@ struct Body {
     a: Vec<Vec<f64>>,
 }
 
-/// A state by approach: pressures, contact, their sum.
+/// A state at an approach: pressures, contact area, sum of the pressures.
 #[derive(Clone)]
 struct At {
     p: Vec<f64>,
@@ -76,7 +76,7 @@ impl Body {
         None
     }
 
-    /// The least sum of p on the way down from a state, in steps of so much.
+    /// The least sum of p of an unloading from a state. Steps are halved, at most six times, if Newton's method fails or many elements part at once.
     fn least(&self, mut approach: f64, from: At, mut step: f64) -> f64 {
         let (mut here, mut least, mut halved) = (from, f64::INFINITY, 0);
         let count = |at: &At| at.contact.iter().filter(|&&inside| inside).count();
@@ -93,7 +93,7 @@ impl Body {
     }
 }
 
-/// Gauss with pivots; the right-hand side is the last column.
+/// Gaussian elimination with partial pivoting. The right-hand side is the last column.
 fn solve(rows: &mut [Vec<f64>]) -> Vec<f64> {
     let n = rows.len();
     for k in 0..n {
@@ -122,7 +122,7 @@ fn pull_off(scene: &Scene<'_>) -> (Solver, f64, f64) {
     (solver, report.measures.force, report.measures.approach)
 }
 
-// Each ring of elements that parts makes a minimum. Steps of a tenth of the contact's length found 0.7 % less of the first sphere.
+// Each ring of elements that parts makes a minimum of the force. Steps of a tenth of the contact's length miss the least one of the first sphere by 0.7 %.
 #[test]
 fn a_pull_off_is_the_least_of_small_steps() {
     let bodies = [
@@ -140,13 +140,13 @@ fn a_pull_off_is_the_least_of_small_steps() {
         let least = body.least(above, from, (above - approach) / 40.0) * body.grid.element_area();
         assert!(least.is_finite(), "the dense path has no step");
         println!("in small steps {least}");
-        // A step of 1/40 of the way at a parabola's minimum: some 1e-3 of the depth of the way, and so are small steps of the library.
+        // Steps of 1/40 of the way miss the minimum of a parabola by some 1e-3 of its depth, and so do the small steps of the library.
         assert!(found < least * (1.0 - 2e-3), "{found} {least}");
     }
 }
 
-// Elements whose attraction they hardly carry: kappa .6 to .92. Printed by a dense prototype, steps of 0.03 in units of Johnson, Kendall and Roberts: the
-// minima at the rings of elements differ by some per cent, and so do ways in different steps, by half of that.
+// Elements that barely resolve the attraction: kappa .6 to .92. The forces are those of a dense prototype, with steps of 0.03 in units of Johnson, Kendall
+// and Roberts. The minima at the rings of elements differ by some per cent, and results of different steps by half of that.
 #[test]
 fn elements_that_hardly_carry_the_attraction_have_a_pull_off() {
     for (tabor, n, half_width, law, kappa, printed) in [

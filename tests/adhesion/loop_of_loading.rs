@@ -26,7 +26,7 @@ fn walk(sphere: &Sphere, approaches: &[f64]) -> Vec<(f64, f64, bool)> {
     approaches.iter().enumerate().map(step).collect()
 }
 
-// The prototype's loop (recipes/adhesion/t13.py), Tabor 3 on 128 x 128: JKR has its snap-out at -.909.
+// The loop of the prototype (recipes/adhesion/t13.py): Tabor's parameter 3, 128 x 128 elements. The snap-out of JKR's theory is at -.909.
 #[test]
 fn the_loop_snaps_in_and_out_where_the_prototype_does() {
     let sphere = Sphere::by_tabor(3.0, 128, 2.0);
@@ -41,7 +41,7 @@ fn the_loop_snaps_in_and_out_where_the_prototype_does() {
     assert!((at(up, -0.6) + 1.5178).abs() < 1e-3, "after it: {}", at(up, -0.6));
     assert!((at(down, -0.9) + 1.1487).abs() < 1e-3, "before the snap-out: {}", at(down, -0.9));
     assert!((at(down, -1.0) + 0.01035).abs() < 1e-4, "after it: {}", at(down, -1.0));
-    // Both ways have residuals of 1e-6, and so have the forces, but for some unit.
+    // From the snap-in on, both branches are one. The residuals are 1e-6, and the forces differ by a few times that.
     for k in -6..=1 {
         let approach = 0.1 * f64::from(k);
         assert!(

@@ -1,4 +1,4 @@
-//! Bodies that are drawn apart: flat ones, rough ones, and elements that are too coarse for their range.
+//! Bodies that are pulled apart: flat and rough ones, and some with elements that are too coarse for the range.
 
 use contact_normal::adhesion::{Law, Start};
 use contact_normal::error::Error;
@@ -16,7 +16,7 @@ fn solved(scene: &Scene<'_>) -> (Solver, Report) {
     (solver, report)
 }
 
-/// The least force that is found from a load on.
+/// The pull-off force of a scene, from its load on.
 fn pull_off(scene: &Scene<'_>) -> f64 {
     let mut solver = Solver::new(scene, &Options::default()).expect("a solver");
     let (outcome, report) = solver.pull_off(scene, &Options::default(), None).expect("a pull-off");
@@ -28,8 +28,8 @@ fn is_infeasible(scene: &Scene<'_>) -> bool {
     matches!(solver::solve(scene, &Options::default()), Err(Error::Infeasible(_)))
 }
 
-// Seeds 112, 1045, 2786 and 3056 of `campaign --adhesion`, in small. Below a flat punch without a load contact pressures and attraction are w/rho
-// both, and total pressures are 0: all that is left of them is round-off.
+// Small versions of seeds 112, 1045, 2786 and 3056 of `campaign --adhesion`. Under a flat punch without a load, contact pressures and attraction are
+// both w/rho, and total pressures are round-off.
 #[test]
 fn flat_tops_without_a_load_touch_and_carry_nothing() {
     let (n, work) = (24, 1e-3);
@@ -56,7 +56,7 @@ fn flat_tops_without_a_load_touch_and_carry_nothing() {
                     "{law:?}: {}",
                     report.measures.contact_count
                 );
-                // e is 1e-6 of what w/rho displaces an element by, and so are pressures of w/rho, but for the condition of A.
+                // e is 1e-6 of the displacement of an element by w/rho. So pressures are 1e-6 of w/rho, times the condition number of A.
                 let largest = state.p.iter().fold(0.0, |largest: f64, p| largest.max(p.abs()));
                 assert!(largest < 1e-4 * work / range, "{law:?}: {largest:e} {:e}", work / range);
                 assert!((state.approach - offset).abs() < 1e-5 * range, "{law:?}: {:e}", state.approach - offset);
@@ -66,8 +66,8 @@ fn flat_tops_without_a_load_touch_and_carry_nothing() {
 }
 
 // Kendall 1971: a round flat punch of radius a parts at sqrt(8 pi E* w a^3), as a crack that begins at its edge. The crack's process zone makes the
-// punch smaller: that of Dugdale is pi/8 K^2/sigma(0)^2 = pi/4 E* w/sigma(0)^2, 2.2 elements at the shortest range that they carry, and that of
-// an exponential law, which has no end, is taken for less than twice as long.
+// punch smaller. For Dugdale's law it is pi/8 K^2/sigma(0)^2 = pi/4 E* w/sigma(0)^2, 2.2 elements at the shortest range that they resolve. For
+// an exponential law, which has no end, it is assumed to be less than twice as long.
 #[test]
 fn full_contact_is_pulled_off_as_kendalls_punch() {
     let (n, work) = (48, 1e-3);
@@ -93,7 +93,7 @@ fn full_contact_is_pulled_off_as_kendalls_punch() {
     assert!(is_infeasible(&scene(Load::Force(1.1 * least))));
 }
 
-// Seeds 5155 and 5610 of `campaign --adhesion`, in small: with two periods pressures that are the same everywhere displace nothing.
+// Small versions of seeds 5155 and 5610 of `campaign --adhesion`: with two periods uniform pressures have no displacement.
 #[test]
 fn full_contact_of_two_periods_holds_a_pull_of_all_attraction() {
     for (law, n) in [(Law::Exponential, 7), (Law::VanDerWaals, 15), (Law::Cubic, 40)] {
@@ -113,7 +113,7 @@ fn full_contact_of_two_periods_holds_a_pull_of_all_attraction() {
     }
 }
 
-// Seed 5546 of `campaign --adhesion`, in small: a law that ends, and a force of 0, which bodies apart carry as well.
+// A small version of seed 5546 of `campaign --adhesion`: a law of finite range, and a force of 0, which bodies apart have too.
 #[test]
 fn a_law_that_ends_leaves_nothing_of_bodies_apart() {
     let n = 24;
@@ -155,8 +155,7 @@ fn rough_surfaces_are_pulled_by_forces() {
     }
 }
 
-// Where an element is unstable in its own spring several states belong to a load: what is returned is one of them, and says that it is not to be
-// trusted.
+// If a single element is unstable (kappa > 1), a load has several states. The solve returns one of them, whose errors are marked as untrusted.
 #[test]
 fn elements_that_snap_alone_have_a_certified_state() {
     let mut sphere = Sphere::by_tabor(1.0, 32, 3.0);
@@ -172,8 +171,8 @@ fn elements_that_snap_alone_have_a_certified_state() {
     }
 }
 
-// With two periods the approach stays where it is while all elements are in contact, and the force falls: the pressures of full contact are those of a
-// wave, A q^-1 h with A = 2/(E* q) (Johnson 1985, section 13.2), and each keeps a pull of w/range.
+// With two periods the approach is constant while all elements are in contact and the force falls. The pressures of full contact are those of a wave,
+// A^-1 h with A = 2/(E* q) (Johnson 1985, section 13.2), and each element can carry a pull of w/range.
 #[test]
 fn full_contact_of_two_periods_has_a_pull_off() {
     let (n, options) = (32, Options::default());

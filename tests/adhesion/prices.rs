@@ -1,4 +1,4 @@
-//! What accuracy costs where something attracts.
+//! The price of accuracy with adhesion.
 
 use std::thread::sleep;
 use std::time::Duration;
@@ -12,8 +12,8 @@ use contact_normal::solver::{
 
 use super::support::Sphere;
 
-/// One grid has no estimate there, so the error follows from three or four: on a machine that is slow, too, where the seconds of the list end with the first
-/// sample. A machine is made slow by a callback that sleeps longer than these 35 ms.
+/// With adhesion a single grid has no error estimate, and errors follow from three or four grids. This holds on a slow machine too, where the 35 ms for samples
+/// end with the first one. A callback that sleeps for 50 ms imitates such a machine.
 #[test]
 fn prices_come_from_several_grids_on_a_slow_machine() {
     let sphere = Sphere::by_tabor(1.0, 128, 4.0);
@@ -39,7 +39,7 @@ fn prices_come_from_several_grids_on_a_slow_machine() {
     }
 }
 
-/// Coarser grids that hold nothing are passed over, so that the grid named is the first that counts.
+/// The message names the scene's grid, not a coarser one that refuses the force as well.
 #[test]
 fn a_pull_that_is_refused_names_its_grid() {
     let sphere = Sphere::by_tabor(1.0, 32, 3.0);
@@ -49,7 +49,8 @@ fn a_pull_that_is_refused_names_its_grid() {
     assert!(message.starts_with("on 32 x 32 elements: "), "{message}");
 }
 
-/// Bodies apart that attract have errors like bodies in contact. A result on a coarse grid is within the target, and a target beyond the limit is not met.
+/// Bodies that attract each other without contact have errors like bodies in contact. A result on a coarse grid is within the target. A target that needs more
+/// than the limit of elements is not met.
 #[test]
 fn bodies_apart_are_solved_to_an_accuracy() {
     let sphere = Sphere::by_tabor(1.0, 8, 3.0);

@@ -58,7 +58,7 @@ fn spheres_of_all_laws_are_solved_and_certified() {
     println!("spheres: median work {}, most {}", products[products.len() / 2], products[products.len() - 1]);
 }
 
-/// Waves of random phases, their rms slope .1: heights fall as a power of the wave number.
+/// Waves of random phases with an rms slope of .1. Amplitudes fall with a power of the wave number.
 pub fn rough(n: usize, draw: &mut Draw, hurst: f64) -> (Vec<f64>, f64) {
     let mut waves = Vec::new();
     for kx in 0..=12i32 {
@@ -78,7 +78,7 @@ pub fn rough(n: usize, draw: &mut Draw, hurst: f64) -> (Vec<f64>, f64) {
         };
         -scale * waves.iter().map(wave).sum::<f64>()
     };
-    // Of full contact, E* = 1: a wave of amplitude a and wave number q takes E* q a^2/8 in the mean over its period.
+    // The elastic energy per area of full contact, with E* = 1: a wave of amplitude a and wave number q has E* q a^2/8.
     let energy = waves.iter().map(|(_, _, k, a, _)| 2.0 * PI * k * (scale * a).powi(2) / 8.0).sum();
     ((0..n * n).map(at).collect(), energy)
 }
@@ -156,12 +156,12 @@ fn areas_and_energies_of_rough_surfaces_are_those_of_a_firm_solve() {
             let size = elastic - adhesive;
             assert!((found.elastic_energy - elastic).abs() < 1e-9 * size, "{law:?}: {found:?} {elastic}");
             assert!((found.adhesive_energy - adhesive).abs() < 1e-9 * size, "{law:?}: {found:?} {adhesive}");
-            // A force that is off changes the energy by its part of the approach.
+            // An error of the force changes the energy by this error times the approach.
             let total = elastic + adhesive - report.measures.force * state.approach;
             (report.measures.contact_count, total, size)
         };
         let (firm_count, firm, _) = solved(1e-10);
-        // Distances that are not 0 in contact change the energy by their part of it.
+        // The residual, distances in contact that are not 0, changes the energy in proportion.
         for (tolerance, most) in [(1e-6, 1e-6), (1e-7, 3e-7)] {
             let (count, energy, size) = solved(tolerance);
             println!("{law:?} {part}: {count} elements, energies differ by {:e}", (energy - firm) / size);

@@ -1,4 +1,4 @@
-// What the tests of contact_normal.hpp count and print.
+// Counts the checks of the tests of contact_normal.hpp, and prints those that fail.
 #pragma once
 
 #include <contact_normal.hpp>

@@ -1,5 +1,5 @@
-// contact_normal.hpp: what is refused comes as `error`, or as a status of what ends with `_into`, and a refused result holds nothing. Prints one
-// line per check that fails, and the number of checks.
+// contact_normal.hpp: a refused call throws `error`; one whose name ends with `_into` returns a status. A refused result holds nothing. Prints one line per
+// check that fails, and the number of checks.
 #include "cxx_expect.hpp"
 
 #include <array>
@@ -22,7 +22,7 @@ static std::vector<double> ball()
     return h;
 }
 
-/// The call throws `error` as INVALID_ARGUMENT, and says this.
+/// The call throws `error` with INVALID_ARGUMENT and a message that contains `said`.
 template <class Call> static void refuses(Call call, const std::string &said, const char *what)
 {
     bool is_refused = false;
@@ -108,7 +108,7 @@ static void sizes()
 template <class B, class = void> struct takes_zero : std::false_type {};
 template <class B> struct takes_zero<B, std::void_t<decltype(B(0, std::size_t(1)))>> : std::true_type {};
 
-/// What no memory could hold is refused by the library, which names it, before there is room for it.
+/// The library refuses sizes beyond all memory by name, before the header allocates.
 static void too_large()
 {
     const std::vector<double> h = ball();
@@ -116,7 +116,7 @@ static void too_large()
     const cn::scene scene = cn::scene(GRID, STEEL).undeformed_distance(h).force(500.0), vast = cn::scene(TOO_LARGE, STEEL).force(1.0);
     refuses([&] { cn::quantities(scene, force, 2000000000); }, "coarser is 2000000000; it must lie in 0..12", "so many coarser grids");
     refuses([&] { cn::quantities(scene, force, -3); }, "coarser is -3", "fewer than none");
-    // The first of these is 0: together with the second it was taken for a null pointer and a count.
+    // The first of these is 0. The pair must not count as a null pointer and a length.
     const auto of_both = cn::quantities(scene, {CONTACT_NORMAL_QUANTITY_FORCE, CONTACT_NORMAL_QUANTITY_MAX_PRESSURE}, 0);
     expect(of_both.rows.size() == 2, "quantities in braces");
     static_assert(!takes_zero<cn::borrowed<double>>::value, "no pointer");

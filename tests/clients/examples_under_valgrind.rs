@@ -1,5 +1,5 @@
-//! All examples in C and in Fortran under valgrind, on small inputs: it is some 50 times slower. They are joined to one program, because valgrind
-//! translates the library anew for each program: that takes longer than most examples.
+//! All examples in C and in Fortran under valgrind, which is some 50 times slower: on small inputs. They are one program, because valgrind translates
+//! the library for each program, and this takes longer than most examples.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

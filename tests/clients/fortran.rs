@@ -24,7 +24,7 @@ pub fn compiler(flags: &[&str]) -> Command {
     gfortran
 }
 
-/// Compiles `source` with the module; returns the program. `flags` for both.
+/// Compiles `source` and the module with `flags`; returns the program.
 fn compile(source: &str, flags: &[&str], folder: &Path) -> PathBuf {
     let name = Path::new(source).file_stem().expect("a file name").to_string_lossy().into_owned();
     let (program, module) = (folder.join(name), module(flags));
@@ -39,7 +39,7 @@ fn compile(source: &str, flags: &[&str], folder: &Path) -> PathBuf {
 pub fn module(flags: &[&str]) -> PathBuf {
     static COMPILED: Mutex<BTreeMap<String, PathBuf>> = Mutex::new(BTreeMap::new());
     let flags_of_name = flags.concat().replace(['=', ','], "_");
-    // One that did not compile leaves nothing behind.
+    // A failed compilation poisons the lock, but adds nothing to the map.
     let mut compiled = COMPILED.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(folder) = compiled.get(&flags_of_name) {
         return folder.clone();
@@ -52,12 +52,12 @@ pub fn module(flags: &[&str]) -> PathBuf {
     folder
 }
 
-/// What a program prints, without the times.
+/// The output of a program without the times.
 fn without_times(output: &str) -> String {
     output.lines().filter(|line| !line.starts_with("time")).map(|line| format!("{line}\n")).collect()
 }
 
-/// Segments an example; it must print what stands beside it. Recomputes the certificate of the arrays that it wrote.
+/// Runs an example, which must print its expected output. Recomputes the certificate of the arrays that it wrote.
 fn check_example(name: &str, arguments: &[&str], flags: &[&str], tolerance: f64) {
     let folder = scratch(&format!("fortran_{name}{}", flags.concat().replace(['=', ','], "_")));
     let program = compile(&format!("fortran_examples/{name}.f90"), flags, &folder);
@@ -103,8 +103,8 @@ fn wheel_rail_case() -> String {
     root().join("data/wheel_rail/y0_10kN.txt").to_string_lossy().into_owned()
 }
 
-/// norm_solve stops at an rms update of eps rms(p). The errors dp that are left are at most 10 updates if they fall to
-/// 0.9 or less in an iteration. Smooth p displaces the most: `||A dp|| / ||A p||` is at most about `||dp|| / ||p||`.
+/// norm_solve stops at an rms update of eps rms(p). If each iteration reduces the error dp to 0.9 or less, dp is then at most
+/// 10 updates. A smooth p has the largest displacements: `||A dp|| / ||A p||` is at most about `||dp|| / ||p||`.
 const PER_UPDATE: f64 = 10.0;
 
 #[test]
@@ -112,13 +112,13 @@ fn wheel_rail_prints_what_is_expected() {
     check_example("wheel_rail", &[&wheel_rail_case()], &["-O2"], PER_UPDATE * 1e-8);
 }
 
-/// What the Python package wrote; the tolerance that the example asks for.
+/// A gap that the Python package wrote, with the tolerance that the example asks for.
 #[test]
 fn gap_prints_what_is_expected() {
     check_example("gap", &[&gap_file("wheel_rail"), "80000"], &["-O2"], 1e-9);
 }
 
-/// Their solutions are compared with closed forms and direct sums in tests of their own.
+/// Other tests compare the solutions of these examples with closed forms and direct sums.
 #[test]
 fn the_effects_print_what_is_expected() {
     for name in EXAMPLES_OF_EFFECTS {
@@ -135,7 +135,7 @@ fn norm_drop_in_prints_what_is_expected() {
     check_example("norm_drop_in", &[], &["-O2"], PER_UPDATE * 1e-9);
 }
 
-/// -ffast-math flushes denormals to zero, the traps kill a program at its first NaN: neither reaches into the library.
+/// -ffast-math flushes denormals to zero, and the traps kill a program at its first NaN. Neither changes the results of the library.
 #[test]
 fn a_host_with_its_own_floating_point_environment_gets_the_same() {
     for flags in [&["-O3", "-ffast-math"][..], &["-O2", "-ffpe-trap=invalid,zero,overflow"]] {
@@ -179,7 +179,7 @@ fn tang_solve_without_the_module_is_that_of_the_module() {
     prints("tang_solve_external", [&["-g", "-O1", "-fcheck=all"], &["-O3", "-ffast-math"]], "the same bits\n");
 }
 
-/// A program of this folder prints this, compiled with either flags.
+/// A program of this folder prints `expected`, compiled with either set of flags.
 fn prints(name: &str, both: [&[&str]; 2], expected: &str) {
     for (i, flags) in both.into_iter().enumerate() {
         let folder = scratch(&format!("fortran_{name}_{i}"));
@@ -202,7 +202,7 @@ fn the_wrappers_of_the_module_work() {
     assert_eq!(run_linked(&program, &[], &folder), format!("{}\nall hold\n", env!("CARGO_PKG_VERSION")));
 }
 
-/// And of programs whose default kinds are wider, which compile the module so, too.
+/// Programs with wider default kinds compile the module with the same flags.
 #[test]
 fn the_module_works_with_other_default_kinds() {
     let wide = ["-fdefault-integer-8", "-fdefault-real-8", "-fdefault-double-8"];
@@ -224,7 +224,7 @@ fn callbacks_call_the_library() {
     prints("fortran_callbacks", [&["-g", "-O1", "-fcheck=all"], &["-O2", "-fno-automatic"]], "all hold\n");
 }
 
-/// A program that checks itself, under valgrind and with wider default integers, too.
+/// Runs a program that checks itself, under valgrind: with usual and with wider default integers.
 fn all_hold(name: &str) {
     for (i, flags) in [&["-g", "-O1", "-fcheck=all"][..], &["-O2", "-fdefault-integer-8"]].into_iter().enumerate() {
         let folder = scratch(&format!("{name}_{i}"));
@@ -296,7 +296,7 @@ fn the_module_has_every_export_of_the_header() {
     }
 }
 
-/// What a struct points to can be attached: its procedure names the struct by the end of its name, or `given`, a copy.
+/// Each pointer of a struct can be set. The procedures call the struct by the last word of its name, or `given` for a copy.
 #[test]
 fn the_module_attaches_every_array_of_the_header() {
     let files = std::fs::read_dir(root().join("include")).expect("include/").map(|file| file.expect("a file").path());

@@ -1,5 +1,5 @@
-! What the module's procedures take beyond their shapes, or one of two without the other, is said, and nothing is written elsewhere; results of
-! friction have what particles carry.
+! The module's procedures refuse arrays of another shape, and one of two arrays without the other. Then they write nothing.
+! Results of friction have the state of the particles.
 program fortran_shapes
   use, intrinsic :: iso_c_binding
   use contact_normal
@@ -32,7 +32,7 @@ contains
     error stop 1
   end subroutine
 
-  ! A call was refused for this.
+  ! A call was refused with this message.
   subroutine refused(status, why)
     integer(c_int32_t), intent(in) :: status
     character(*), intent(in) :: why
@@ -40,7 +40,7 @@ contains
     call hold(status == CONTACT_NORMAL_INVALID_ARGUMENT, why)
   end subroutine
 
-  ! Everything anew, valid.
+  ! A new, valid scene.
   subroutine begin()
     call contact_normal_scene_init(scene)
     scene%mx = MX
@@ -128,7 +128,7 @@ contains
     call refused(contact_normal_solve(scene), "set_visco: modulus_2 is not associated")
   end subroutine
 
-  ! What particles have after each entry of a table is what they have after the entry alone.
+  ! The state of the particles after an entry of a table is that after the entry alone.
   subroutine particles()
     type(contact_normal_friction), target :: friction
     type(contact_normal_friction_results) :: results
@@ -167,7 +167,7 @@ contains
                  "set_friction_results: friction_coefficient is not associated")
   end subroutine
 
-  ! So many rows do not fit into memory, and their number not into an integer; the library refuses them.
+  ! The library refuses numbers of grids whose rows exceed the memory or the range of an integer.
   subroutine too_many_grids()
     type(contact_normal_quantity_row), allocatable :: rows(:)
     integer(c_int32_t), parameter :: WANTED(1) = CONTACT_NORMAL_QUANTITY_MAX_PRESSURE

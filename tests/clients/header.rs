@@ -1,5 +1,5 @@
-//! include/contact_normal.h is what cbindgen makes of src/ffi, byte for byte, and versions are the same wherever they stand.
-//! `CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test clients header` writes it anew.
+//! include/contact_normal.h equals the header that cbindgen generates from src/ffi, byte for byte. The versions in all files are equal.
+//! `CONTACT_NORMAL_WRITE_HEADER=1 cargo test --test clients header` writes the header.
 
 use std::path::Path;
 
@@ -65,13 +65,13 @@ fn the_committed_header_is_the_generated_one() {
     );
 }
 
-/// Before the end of the include guard.
+/// The header with the `_init` functions, before the end of the include guard.
 fn with_inits(header: &str) -> String {
     let end = header.rfind("\n#endif").expect("the include guard");
     format!("{}{}{}", &header[..end], c_inits(&Description::of(header)), &header[end..])
 }
 
-/// tests/clients/installed_package.rs compares those of the library and of the installed package.
+/// tests/clients/installed_package.rs compares the versions of the library and of the installed package.
 #[test]
 fn the_header_and_the_modules_have_the_versions_of_the_library() {
     let read = |name: &str| std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).expect("a file");

@@ -1,4 +1,4 @@
-//! The papers that go with the library: notices of third parties, versions, licences.
+//! The documents beside the code: notices of third parties, versions, licences.
 
 use std::collections::BTreeSet;
 use std::process::Command;
@@ -14,7 +14,7 @@ fn locked() -> BTreeSet<String> {
     let lock = read("Cargo.lock");
     let value = |line: &str| line.split('"').nth(1).expect("a value").to_owned();
     let names = lock.lines().filter(|line| line.starts_with("name = ")).map(value);
-    // The second line of the file is a version, too: that of its format, without quotation marks.
+    // Cargo.lock begins with the version of its own format, without quotation marks.
     let versions = lock.lines().filter(|line| line.starts_with("version = \"")).map(value);
     names.zip(versions).map(|(name, version)| format!("{name} {version}")).collect()
 }
@@ -41,7 +41,7 @@ fn the_notices_name_every_crate_that_is_linked() {
     assert!(linked.len() > 20, "{linked:?}");
     let missing: Vec<_> = linked.difference(&named).collect();
     assert!(missing.is_empty(), "THIRD_PARTY_NOTICES is out of date, run `make notices`; it lacks {missing:?}");
-    // Those of other machines' crates are in Cargo.lock as well.
+    // Cargo.lock has the crates of all platforms, and so have the notices.
     let known = locked();
     let unknown: Vec<_> = named.difference(&known).collect();
     assert!(

@@ -9,7 +9,7 @@ use contact_normal::grid::Grid;
 use contact_normal::influence::{Coefficients, HalfSpace};
 use contact_normal::scene::Bodies;
 
-/// What python_examples/wheel_rail.py asks for.
+/// The tolerance of python_examples/wheel_rail.py.
 const TOLERANCE: f64 = 1e-9;
 
 /// A Python that has numpy and matplotlib.
@@ -44,7 +44,7 @@ pub fn in_folder(mut command: Command, folder: &Path) -> Command {
         .env("CONTACT_NORMAL_LIBRARY", folder.join("libcontact_normal.so"))
         .env("PYTHONPATH", root().join("python"))
         .env("PYTHONDONTWRITEBYTECODE", "1")
-        // Where a program stands that hangs.
+        // Prints the place at which a program hangs.
         .env("PYTHONFAULTHANDLER", "1")
         // matplotlib keeps its cache there, and complains when it cannot.
         .env("MPLCONFIGDIR", folder);
@@ -77,7 +77,7 @@ fn the_tests_of_the_package_pass() {
     let output = finished(command.args(["-m", "unittest", "discover", "-s"]).arg(&tests));
     let told = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{told}");
-    // "Ran 15 tests in ...": none found would be a success, too.
+    // "Ran 15 tests in ...": without any test the run would succeed too.
     let ran = told.lines().find_map(|line| line.strip_prefix("Ran ")?.split(' ').next()?.parse::<usize>().ok());
     let written: usize = std::fs::read_dir(&tests)
         .expect("python/tests")
@@ -149,7 +149,7 @@ fn the_example_of_laws_prints_what_is_expected_and_draws() {
     prints_what_is_expected_and_draws("laws");
 }
 
-/// A law of the program's own, by turns.
+/// A friction law of the program, solved in turns.
 #[test]
 fn the_example_of_hot_friction_prints_what_is_expected_and_draws() {
     prints_what_is_expected_and_draws("hot_friction");

@@ -9,7 +9,7 @@ use super::laws::{off_by, pressures, solver};
 
 const FORCE: f64 = 622_216.0;
 
-/// Of each case from the fourth on, all from above: `Fx/(.3 N)` and elements that stick; a line for each time that the force rises.
+/// For each case from the fourth on, all from above: `Fx/(.3 N)` and the number of sticking elements, with one line for each rise of the force.
 #[rustfmt::skip]
 pub const PRINTED: [(f64, usize); 50] = [
     (0.5702, 34), (0.5739, 79), (0.5774, 77), (0.5806, 75), (0.5835, 73), (0.5860, 71), (0.5882, 69),
@@ -23,10 +23,10 @@ pub const PRINTED: [(f64, usize); 50] = [
     (0.5638, 35),
 ];
 
-/// From .3 to .18 at once.
+/// A coefficient that falls from .3 to .18, without memory.
 pub const FALLS: FrictionLaw = FrictionLaw::new(Fall::Exponential, (0.18, 0.12), 100.0, 45_000.0);
 
-/// A cylinder on 92 x 1 elements, friction that falls from .3 to .18 at once.
+/// A cylinder on 92 x 1 elements, with a coefficient of friction that falls from .3 to .18, without memory.
 pub struct Cylinder {
     pub grid: Grid,
     pub pressure: Vec<f64>,
@@ -65,7 +65,7 @@ impl Cylinder {
         0.3 * FORCE
     }
 
-    /// From steady rolling, which has one solution from wherever it starts.
+    /// A solver after steady rolling, which has one solution, whatever the start.
     pub fn rolling(&self, branch: Branch) -> Solver {
         let mut solver = solver(&self.grid);
         let report = self.step(&mut solver, ROLLING, branch);
@@ -78,7 +78,7 @@ pub fn part(report: &Report) -> f64 {
     report.force[0] / (0.3 * FORCE)
 }
 
-/// What it rolls like before the first step.
+/// The motion before the first step.
 pub const ROLLING: (Motion, f64) = (Motion::SteadyRolling, -0.0009999);
 
 pub const STEP: (Motion, f64) = (Motion::TransientRolling, -0.001);
@@ -113,9 +113,9 @@ fn a_step_has_the_solutions_from_below_and_from_above() {
     }
 }
 
-/// 50 steps from above, a sawtooth of stick and slip: 40 forces with the four digits printed and ten that differ by less than one of the last digit; elements
-/// that stick as printed, but for one in one step, where it is at its bound. What differs is CONTACT's: a hundredth of the tolerance changes
-/// no force by a thousandth of the last digit.
+/// 50 steps from above, a sawtooth of stick and slip. 40 forces have the four printed digits, and ten differ by less than one unit of the last digit. The
+/// numbers of sticking elements are as printed, except for one element in one step, which is at its bound. The differences are errors of CONTACT: with a
+/// hundredth of the tolerance no force of the library changes by a thousandth of the last digit.
 #[test]
 fn stick_and_slip_in_turns_is_that_of_contact() {
     let cylinder = Cylinder::new();

@@ -1,4 +1,4 @@
-//! A ball pushed sideways: the exact solution of Cattaneo and Mindlin, and what CONTACT printed.
+//! A ball pushed sideways: beside the exact solution of Cattaneo and Mindlin, and beside the output of CONTACT.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Prescribed, Scene};
@@ -19,14 +19,14 @@ fn a_ball_pushed_sideways_has_cattaneos_tractions() {
         };
         let (report, solution) = run(&mut solver(&case.grid, 0.0), &case.bound, &friction, 1e-6);
         let found = case.compare(&solution);
-        // The errors of a first-order discretisation at these sizes, as an independent program has them (docs/friction.md).
+        // The errors of a first-order discretisation at these sizes, which an independent program has too (docs/friction.md).
         assert!(found.error <= most, "{m}: {}", found.error);
         assert!(found.error < before);
         before = found.error;
-        // Half an element, and the elements of C do not fill the disc.
+        // To half an element: the elements of C do not fill the disc.
         assert!((found.stick_radius - 0.5).abs() <= 0.5 * case.grid.dx, "{m}: {}", found.stick_radius);
         let force = report.force[0] / case.carried();
-        // Of first order at worst; twice what the coarsest grid has (docs/friction.md), for which theory gives no factor.
+        // The error is of first order at worst. Theory gives no factor: it is twice that of the coarsest grid (docs/friction.md).
         assert!((force - 0.875).abs() <= 0.02 * case.grid.dx, "{m}: {force}");
     }
 }
@@ -51,7 +51,7 @@ fn contacts_cattaneo_is_met() {
     assert!((report.measures.max_pressure - 4.393).abs() <= 5e-4, "{}", report.measures.max_pressure);
     assert_eq!((report.measures.contact_count, found.certificate.stick_count), (177, 45));
     assert!((found.creepage[0] - 8.155e-3).abs() <= 5e-7, "{:?}", found.creepage);
-    // An independent program in Python, whose last digit this is; a residual of 1e-6 hides 1e-8.
+    // The value of an independent program in Python, to its last digit. A residual of 1e-6 allows an error of 1e-8.
     assert!((found.creepage[0] - 8.15489e-3).abs() <= 2e-8, "{:?}", found.creepage);
     assert!(found.creepage[1].abs() <= 1e-6 * found.creepage[0], "{:?}", found.creepage);
 }

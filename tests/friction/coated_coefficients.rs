@@ -1,4 +1,4 @@
-//! How coated bodies give way to tractions: responses to waves, and coefficients.
+//! Displacements of coated bodies by tractions: responses to waves, and coefficients.
 
 use std::f64::consts::PI;
 
@@ -9,7 +9,7 @@ use contact_normal::influence::{Across, Along, Coat, Response};
 use super::coefficients::rule;
 use super::dense;
 
-/// Both bodies the same: a layer with `1/G1 = 1` of thickness t, on one of `G2 = 1/mu`.
+/// Two equal bodies: a layer of thickness t with `1/G1 = 1`, on a body with `G2 = 1/mu`.
 fn coated((dx, dy): (f64, f64), t: f64, mu: f64, nu: [f64; 2]) -> Tangential {
     let [surface, below] =
         [(1.0, nu[0]), (mu, nu[1])].map(|(shear, nu)| Compliance { shear, poisson: shear * nu, unlike: 0.0 });
@@ -45,13 +45,14 @@ fn responses_are_those_of_the_boundary_value_problem() {
             assert!((found / expected - 1.0).abs() <= 5e-15, "{mu} {nu:?} {s}: {found:e} {expected:e}");
         }
         for (found, expected) in [(l.less_one(s), along), (t.less_one(s), across)] {
-            // The digits that 1 takes.
+            // Without the digits that the subtraction of 1 cancels.
             assert!((found - (expected - 1.0)).abs() <= 5e-15 * expected.max(1.0), "{mu} {nu:?} {s}");
         }
     }
 }
 
-/// Long waves see the substrate, and a layer on a rigid body gives way by t/G1, compressible or not; Taylor coefficients are those of the function.
+/// Long waves have the response of the substrate. On a rigid body the response of a layer is t/G1, compressible or not. Taylor coefficients are those of the
+/// function.
 #[test]
 fn responses_have_their_limits() {
     for mu in [0.0, 1e-6, 0.01, 0.3, 1.0, 3.0, 100.0, 1e4] {
@@ -67,7 +68,7 @@ fn responses_have_their_limits() {
                 assert!((series - at).abs() <= 1e-13 * at, "{mu} {nu:?}: {series} {at}");
                 assert!((of.at(50.0) - 1.0).abs() <= 1e-15 && of.less_one(25.0).abs() <= 1e-15);
                 if mu == 0.0 {
-                    // Plus s^2 of it and less.
+                    // Up to terms of relative order s^2.
                     assert!((at / (slope * near) - 1.0).abs() <= 3.0 * near * near, "{nu:?}: {at}");
                 }
             }
@@ -112,7 +113,7 @@ fn coefficients_are_those_of_hankel_integrals() {
     }
 }
 
-/// Nine elements are one that is three times as long and wide, across all that coefficients are made by.
+/// The coefficients of 3 x 3 elements add up to that of one element three times as long and wide, by all methods of computation.
 #[test]
 fn coefficients_add_up() {
     let mut worst: f64 = 0.0;
@@ -157,7 +158,7 @@ fn coefficients_add_up() {
     println!("worst: {worst:e}");
 }
 
-/// A layer of the body's own material, of no thickness beside elements, and one that is thicker than all of the grid.
+/// A layer of the body's own material, one that is much thinner than an element, and one that is thicker than the grid is long.
 #[test]
 fn limits_are_half_spaces() {
     let size = (1.0, 0.7);
@@ -185,7 +186,7 @@ fn thin_layers_on_rigid_bodies_are_springs() {
         let t = 1e-3;
         let coated = coated((1.0, 1.0), t, 0.0, [nu, 0.3]);
         let [xx, yy, _] = coated.at(0.0, 0.0);
-        // Next to its edges, within some t, tractions beyond are missing; they do not reach the centre.
+        // Near the edges of the element, within some t, tractions from outside are missing. This has no effect at the centre.
         assert!((xx - 2.0 * t).abs() <= 1e-13 && (yy - 2.0 * t).abs() <= 1e-13, "{nu}: {xx} {yy}");
         let far = coated.at(1.0, 0.0);
         assert!(far.iter().all(|value| value.abs() <= 1e-13), "{nu}: {far:?}");
@@ -209,7 +210,7 @@ fn products_are_those_of_the_fourier_plane() {
     let by = (0.4, -0.25);
     let mut u = vec![[0.0; 2]; grid.len()];
     dense::apply(&coated, &grid, by, &q, &mut u);
-    // Beside the layer's half-space: what is left fades as exp(-2 k t), and aliases with it.
+    // Less the half-space of the layer's material: the rest fades as exp(-2 k t), and so do aliases.
     let mut half_space = vec![[0.0; 2]; grid.len()];
     dense::apply(&plain((grid.dx, grid.dy), 1.0, nu[0]), &grid, by, &q, &mut half_space);
     let response = |k: f64| {

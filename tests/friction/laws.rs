@@ -1,5 +1,5 @@
-//! Laws of friction that fall, against what CONTACT printed (its examples tractcurv, series 2, and veldep_fric; eve70a/CONTACT), and against
-//! their own conditions by direct sums.
+//! Laws of friction that fall, beside the output of CONTACT (its examples tractcurv, series 2, and veldep_fric; eve70a/CONTACT). Their conditions
+//! hold by direct sums.
 
 use contact_normal::friction::{Compliance, Report, Request, Solution, Solver, Tangential, SLIP, STICK};
 use contact_normal::grid::Grid;
@@ -20,7 +20,7 @@ pub fn pressures(grid: Grid, h: &[f64], force: f64) -> Vec<f64> {
     solver.state().p.iter().map(|p| p.max(0.0)).collect()
 }
 
-/// Of two bodies of steel.
+/// The coefficients of two bodies of steel.
 pub fn steel(grid: &Grid) -> Tangential {
     let (g, nu) = STEEL;
     Tangential::new(grid.dx, grid.dy, Compliance { shear: 1.0 / g, poisson: nu / g, unlike: 0.0 })
@@ -56,7 +56,7 @@ impl Wheel {
         Wheel::of(48 * times, 44 * times)
     }
 
-    /// The same on so many elements.
+    /// The wheel on mx x my elements.
     pub fn of(mx: usize, my: usize) -> Wheel {
         let (a, b, curvature) = (6.3036, 12.6072, [8e-4, 2.8142e-4]);
         let grid = Grid::new(mx, my, 2.2 * a / mx as f64, 2.2 * b / my as f64).unwrap();
@@ -79,7 +79,7 @@ impl Wheel {
         self.limited(friction, tolerance, Request::new(&self.pressure, friction, tolerance).limit)
     }
 
-    /// With so many products at most.
+    /// A solve with at most `limit` products.
     pub fn limited(&self, friction: &Friction<'_>, tolerance: f64, limit: u64) -> (Outcome, Report, Solution) {
         let mut solver = solver(&self.grid);
         let request = Request { limit, ..Request::new(&self.pressure, friction, tolerance) };
@@ -88,7 +88,7 @@ impl Wheel {
     }
 }
 
-/// xi, `Fx/(.33 N)`, elements that stick of 1384.
+/// xi, `Fx/(.33 N)`, and the number of sticking elements of 1384.
 #[rustfmt::skip]
 const PRINTED: [(f64, f64, usize); 30] = [
     (1e-5, -0.001869, 1382), (0.001, -0.1825, 1342), (0.002, -0.3495, 1250), (0.003, -0.4928, 1124), (0.004, -0.6101, 998),
@@ -104,7 +104,8 @@ pub fn off_by(number: f64, printed: f64) -> f64 {
     (number - printed).abs() / 10f64.powi(printed.abs().log10().floor() as i32 - 3)
 }
 
-/// All forces but one have the four digits printed, and that one differs by less than one of its last digit; elements that stick as printed.
+/// All forces but one have the four printed digits, and that one differs by less than one unit of its last digit. The numbers of sticking elements are as
+/// printed.
 #[test]
 fn a_creep_curve_with_falling_friction_is_that_of_contact() {
     let wheel = Wheel::new(1);
@@ -121,7 +122,7 @@ fn a_creep_curve_with_falling_friction_is_that_of_contact() {
         // CONTACT ends where an outer iteration changes slips by less than 1e-3.
         assert!(off < 1.0, "{xi}: {part} {force}");
         assert_eq!(report.certificate.stick_count, sticks, "{xi}");
-        // By differences of the bound of the element of most pressure, of fresh material.
+        // By differences of the bound of the element with the largest pressure, for a fresh particle.
         assert!((report.law_slope - 0.294).abs() < 0.001, "{}", report.law_slope);
         most = most.max(report.products);
     }
@@ -146,8 +147,8 @@ fn a_fine_grid_takes_few_products_and_meets_the_conditions() {
     }
 }
 
-/// The conditions of a law in a shift from rest, or in steady rolling along x by one element, by direct sums: what is left of the slip over C relative to the rigid
-/// slip, and of `|q| - g(slip)` relative to the bounds at rest; and the displacements of the step relative to the rigid slip.
+/// The residuals of a law in a shift from rest, or in steady rolling along x by one element, by direct sums: that of the slip over C relative to the rigid slip, and
+/// `|q| - g(slip)` relative to the bounds at rest. Also the displacements of the step relative to the rigid slip.
 pub fn left(wheel: &Wheel, friction: &Friction<'_>, solution: &Solution) -> [f64; 3] {
     let (grid, law) = (&wheel.grid, friction.law.unwrap());
     let Coefficient::Uniform(layer) = friction.compliance else { panic!("one layer") };
@@ -219,7 +220,7 @@ fn all_laws_meet_their_conditions_by_direct_sums() {
                     report.law_slope, report.products
                 );
                 assert_eq!(end, Outcome::Converged);
-                // The tolerance, and round-off of direct sums and of what both call slip.
+                // The tolerance, and round-off of direct sums and of both slips.
                 assert!(slip <= 1.01e-7 && bound <= 1.01e-7, "{slip} {bound}");
             }
         }

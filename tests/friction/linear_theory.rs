@@ -43,10 +43,10 @@ fn slopes(ratio: f64, nu: f64, m: usize) -> [f64; 3] {
 fn creepages_near_zero_have_kalkers_coefficients() {
     for (ratio, known) in TABLE {
         for (k, nu) in [0.0, 0.25, 0.5].into_iter().enumerate() {
-            // Of first order: of the most slender ellipse tractions rise within few elements.
+            // Convergence is of first order. In the most slender ellipse tractions rise within few elements.
             let found = slopes(ratio, nu, if ratio < 5.0 { 128 } else { 256 });
             for (found, known) in found.into_iter().zip(known.map(|known| known[k])) {
-                // 1 %, and half of the last digit of three.
+                // 1 %, and half a unit of the third digit.
                 let last = 10f64.powf(known.log10().floor() - 2.0);
                 assert!((found - known).abs() <= 0.01 * known + 0.5 * last, "{ratio} {nu}: {found} {known}");
             }

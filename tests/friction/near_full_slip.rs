@@ -1,4 +1,4 @@
-//! Unlike bodies near full slip: creepages of any size, forces just below what full slip carries, and lines of which one element alone sticks.
+//! Unlike bodies near full slip: creepages of any size, forces just below that of full slip, and lines in which a single element sticks.
 
 use contact_normal::effects::Coefficient;
 use contact_normal::grid::Grid;
@@ -15,8 +15,8 @@ pub fn ellipse(m: usize, shift: f64) -> (Grid, Vec<f64>) {
     (Grid::new(m, m, 1.0, 1.0).unwrap(), (0..m * m).map(of).collect())
 }
 
-/// Where all slips by far tractions are mu p against the creepages, whatever the ratio of slips to displacements. (Elements inside their circles by
-/// 1e-6 were taken for those that stick, and never went to their circles: from 1e8 on one of twenty such scenes stagnated.)
+/// In full slip tractions are mu p against the creepages, for any ratio of slips to displacements. (Elements inside their circles by 1e-6 must not count
+/// as sticking.)
 #[test]
 fn creepages_of_any_size_slip() {
     let mut count = 0;
@@ -34,7 +34,7 @@ fn creepages_of_any_size_slip() {
                     let traction = &solver.friction().unwrap().traction;
                     for (q, p) in traction.iter().zip(&solver.state().p) {
                         let expected = [0.6, -0.8].map(|part| part * mu * p.max(0.0));
-                        // Displacements of at most 10 beside slips of `size` turn the direction, and the residual of 1e-6 does.
+                        // Displacements of at most 10 beside slips of `size` turn the direction, and so does the residual of 1e-6.
                         let off = (q[0] - expected[0]).hypot(q[1] - expected[1]);
                         assert!(
                             off <= (2e-6 + 20.0 / size) * mu * p.max(0.0),
@@ -49,8 +49,8 @@ fn creepages_of_any_size_slip() {
     assert_eq!(count, 180);
 }
 
-/// A coefficient of friction that differs from element to element, or an approach that is given: what the pressures carry is known when they are. The
-/// force of full slip is that of a large creepage, solved to 1e-9; a part of it is no force that cannot be carried.
+/// By approach, or with a coefficient of friction that differs between elements, the force of full slip is known only with the pressures. Here it is that of
+/// a large creepage, solved to 1e-9. A part of it is found, and not refused.
 #[test]
 fn forces_up_to_full_slip_are_found() {
     for (m, shift) in [(5, 0.0), (5, 0.3), (9, 0.3), (14, 0.0)] {
@@ -91,8 +91,8 @@ fn forces_up_to_full_slip_are_found() {
     }
 }
 
-/// Rollers of unlike bodies with little friction, pushed along by a slip: pressures push the surfaces sideways, all slips but for one element, and that one
-/// decides what the force is. Newton's method goes round in circles there: two of these 48 took all 1000 products.
+/// Rollers of unlike bodies with little friction, pushed by a force: pressures displace the surfaces sideways, all elements but one slip, and the sticking one
+/// determines the force. Newton's method alone may cycle there.
 #[test]
 fn one_element_alone_sticks() {
     let mut products = 0.0;
@@ -125,11 +125,11 @@ fn one_element_alone_sticks() {
             }
         }
     }
-    // They took 7800, and two were not solved; 7020 now, all with the certificate of the normal problem.
+    // Measured: 7020, all with the certificate of the normal problem.
     assert!(products <= 7500.0, "{products} products");
 }
 
-/// Lines by both forces whose first turn takes 260 to 540 products: a turn that was cut short began anew, and 1000 were too few.
+/// Lines by both forces whose first turn takes 260 to 540 products. A turn that is cut short begins anew, so that 1000 products would be too few.
 #[test]
 fn long_turns_of_lines_are_not_cut_short() {
     let bodies = |stiff: f64, poisson: f64| Bodies { shear_modulus: [1.0, stiff], poisson_ratio: [poisson, 0.3] };
@@ -155,7 +155,8 @@ fn long_turns_of_lines_are_not_cut_short() {
     }
 }
 
-/// All products of the tangential problem, those of all grids, turns and creepages, are as many as the caller said, and those of a linear solve that had begun.
+/// The products of the tangential problem on all grids, in all turns and for all creepages, are at most the caller's limit plus those of a linear solve that has
+/// begun.
 #[test]
 fn products_are_bounded_by_the_cycles_that_a_caller_allows() {
     const MORE: f64 = 30.0;

@@ -1,5 +1,5 @@
-//! A ball is pushed sideways, and then rolls with the same force until it is steady: what CONTACT prints of its example catt_to_cart
-//! (Kalker 1990, section 5.2.2.5), and the way to the steady solution.
+//! A ball is pushed sideways, and then rolls with the same force until it is steady: beside the output of CONTACT for its example catt_to_cart
+//! (Kalker 1990, section 5.2.2.5), and beside the steady solution.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Motion, Prescribed, Previous, Scene};
@@ -37,8 +37,8 @@ fn counts(report: &Report) -> (u64, u64) {
     (certificate.stick_count as u64, certificate.slip_count as u64)
 }
 
-/// A shift, then `steps` steps of rolling, each told; returns the largest difference of a traction from the steady ones after the last,
-/// relative to the largest of mu p.
+/// A shift, then `steps` steps of rolling; `tell` gets the report of each. Returns the largest difference between the last and the steady
+/// tractions, relative to the largest mu p.
 fn roll(steps: u32, distance: f64, tell: &mut dyn FnMut(u32, &Report)) -> f64 {
     let ball = ball();
     let (steady, outcome, report) =
@@ -85,14 +85,14 @@ fn contacts_onset_of_rolling_is_met() {
         }
     });
     assert_eq!(met, printed.len());
-    // Two contacts long, each step an element: .59 after the first step, and 4 times less with every 8 steps at the end.
+    // Over two lengths of the contact, each step one element: .59 after the first step, and in the end a quarter after every 8 steps.
     assert!(apart <= 2e-4, "{apart}");
 }
 
 #[test]
 fn the_onset_of_rolling_ends_at_steady_rolling() {
-    // Four contacts long, each step two elements.
+    // Over four lengths of the contact, each step two elements.
     let apart = roll(56, 0.5, &mut |_, _| ());
-    // A residual of 1e-8 leaves some 1e-7 of the tractions, in either.
+    // With a residual of 1e-8 both tractions have an error of some 1e-7.
     assert!(apart <= 1e-6, "{apart}");
 }

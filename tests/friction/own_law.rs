@@ -1,4 +1,4 @@
-//! A law of the host's own: coefficients of each element that it changes between solves of one handle.
+//! A friction law of the host: it changes the coefficient of each element between solves with one handle.
 
 use contact_normal::friction::{Request, Solution};
 use contact_normal::scene::{Coefficient, Friction, FrictionLaw, Motion, Prescribed, Previous};
@@ -6,7 +6,7 @@ use contact_normal::solver::Outcome;
 
 use super::laws::{solver, Wheel, RUNNING};
 
-/// The law of the host: mu of the slip velocity, without memory.
+/// The law of the host: mu depends on the slip velocity alone, without memory.
 const LAW: FrictionLaw = FrictionLaw { memory_distance: 0.0, ..RUNNING };
 
 fn coefficients(wheel: &Wheel, found: &Solution) -> Vec<f64> {
@@ -15,8 +15,8 @@ fn coefficients(wheel: &Wheel, found: &Solution) -> Vec<f64> {
     slips.map(|(s, is)| 0.33 * LAW.at(if *is == 2 { s[0].hypot(s[1]) / duration } else { 0.0 }).0).collect()
 }
 
-/// Steady rolling: solves with the coefficients of the last slips lead to what the library's own law gives, and each takes as many products as
-/// with one coefficient.
+/// Steady rolling. Each solve has the coefficients that belong to the last slips. The solves converge to the result of the same law in the library, and
+/// each takes at most one product more than a solve with one coefficient.
 #[test]
 fn turns_with_a_law_of_the_host_lead_to_the_librarys() {
     let wheel = Wheel::new(1);
@@ -34,19 +34,19 @@ fn turns_with_a_law_of_the_host_lead_to_the_librarys() {
             let (end, report) =
                 handle.solve(&Request::new(&wheel.pressure, &friction, 1e-6), &mut |_, _| true).unwrap();
             assert_eq!(end, Outcome::Converged);
-            // The first is cold; others start from the last tractions.
+            // The first solve has no start; the others start from the last tractions.
             assert!(report.products <= one.1.products + 1.0, "{turn}: {} {}", report.products, one.1.products);
             force = report.force[0];
             mu = coefficients(&wheel, handle.solution().unwrap());
         }
         println!("{xi} {force} {:?}", known.force);
-        // Each turn is off by its tolerance of 1e-6 and by a factor below 1/2 of what the one before it was: by 2e-6 in the end. The force follows
-        // the slips by at most as much; the library's own is off by 1e-8.
+        // The error of a turn is its tolerance of 1e-6 plus less than half of the error of the turn before: 2e-6 in the end. The relative error of
+        // the force is at most that of the slips. The result of the law in the library has an error of 1e-8.
         assert!((force / known.force[0] - 1.0).abs() <= 2.1e-6, "{force} {:?}", known.force);
     }
 }
 
-/// Transient rolling with other coefficients in each step: as many products as with one, and what the last step had is kept.
+/// Transient rolling with new coefficients in each step takes nearly as many products as with one coefficient. Tractions obey the bounds of their step.
 #[test]
 fn steps_with_coefficients_of_each_step_take_as_many_products_as_with_one() {
     let wheel = Wheel::new(1);
@@ -78,6 +78,6 @@ fn steps_with_coefficients_of_each_step_take_as_many_products_as_with_one() {
     };
     let [own, one] = [products(true), products(false)];
     println!("{own} {one}");
-    // Bounds that change from step to step may cost an iteration in some: less than one in six.
+    // Changed bounds may take another iteration in some steps: less than one in six.
     assert!(own <= 1.15 * one, "{own} {one}");
 }

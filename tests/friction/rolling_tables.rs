@@ -1,5 +1,5 @@
-//! Own tables that are uneven in x, of bodies that relax and roll steadily: what CONTACT printed (its example visc_cylindr; eve70a/CONTACT), direct sums,
-//! and mirrors.
+//! The caller's tables that are not even in x, for steady rolling of bodies that relax: beside the output of CONTACT (its example visc_cylindr;
+//! eve70a/CONTACT), direct sums, and mirrored scenes.
 
 use contact_normal::error::Error;
 use contact_normal::friction::{rolling_tables, Compliance, Request, Solution, Solver, Tangential, EXTERIOR, SLIP};
@@ -12,7 +12,7 @@ use contact_normal::solver::{solve, Options, Outcome};
 use contact_normal::threads::Threads;
 use contact_normal::visco::{rolling_table, RollingBody, Series};
 
-/// The integral of f from a to b by the double exponential rule: to round-off but for some digits, whatever the slope of f at the ends is.
+/// The integral of f from a to b by the double exponential rule, whose error is a few units of round-off even if the slope of f at the ends is infinite.
 fn integral(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (half, step) = (0.5 * (b - a), 0.125);
     let term = |k: i32| {
@@ -26,7 +26,8 @@ fn integral(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     half * step * (-26..=26).map(term).sum::<f64>()
 }
 
-/// `a + W` of a function of the offset in elements: a body that gives way to twice as much at once, L elements behind where it is loaded.
+/// The coefficient at offset x of a body that relaxes to half its modulus: `a(x) + W(x)`, where W is the mean of a over the earlier offsets t > x of the
+/// material, with the weight `exp(-(t - x)/L)/L`. All in elements.
 fn relaxed(a: impl Fn(f64) -> f64, x: f64, length: f64) -> f64 {
     let end = x + 40.0 * length;
     // The slope of a is infinite at the edges of the element; further panels are as long as they are far from these, and at most 2 L.
@@ -47,7 +48,7 @@ fn tables(tangential: &Tangential, (cx, cy): (usize, usize), length: f64) -> [Ve
         let at = |k: usize| {
             let (x, y) = ((k % (2 * cx)) as f64 - cx as f64, (k / (2 * cx)) as f64 - cy as f64);
             let a = |x: f64| tangential.at(x, y)[component];
-            // What nobody reads, and what is 0.
+            // The first row and column are not read, and xy is odd in y.
             let is_read = k % (2 * cx) > 0 && k / (2 * cx) > 0;
             match (component, length) {
                 _ if !is_read => 0.0,
@@ -65,7 +66,8 @@ fn influence(of: &[Vec<f64>; 3], (cx, cy): (usize, usize)) -> TangentialInfluenc
     TangentialInfluence { cx, cy, coefficients, cross: None, scale: 1.0, by_row: false }
 }
 
-/// Two cylinders that relax alike to half their modulus, 99 x 1 elements, at 1000 mm/s, pulled by .6 mu N: approach, creepage and elements that stick as printed.
+/// Two cylinders that relax alike to half their modulus, 99 x 1 elements, at 1000 mm/s, pulled by .6 mu N. Approach, creepage and the number of sticking
+/// elements are those that CONTACT printed.
 #[test]
 fn cylinders_that_relax_and_roll_are_those_of_contact() {
     let (mx, dx, dy, nu, g) = (99, 0.16, 1000.0, 0.4, 1143.0);
@@ -78,7 +80,7 @@ fn cylinders_that_relax_and_roll_are_those_of_contact() {
         (0.045, 2.06321, 1.152e-2, 36),
         (2.0, 1.45462, 9.932e-3, 35),
     ] {
-        // The creep time is twice the relaxation time; the shortest of all relaxes at once.
+        // The creep time is twice the relaxation time. A time of 0 becomes 1e-30: the bodies relax at once.
         let body = || RollingBody {
             compliance: (1.0 - nu) / (2.0 * g),
             series: Series::new(g, &[0.5 * g], &[f64::max(0.5 * creep, 1e-30)]).unwrap(),
@@ -104,14 +106,14 @@ fn cylinders_that_relax_and_roll_are_those_of_contact() {
         assert_eq!(stop, Outcome::Converged);
         let found = report.friction.unwrap();
         println!("{creep} {} {:?} {}", report.measures.approach, found.creepage, found.certificate.stick_count);
-        // The digits printed; with the slow one CONTACT's tail ends early, at some 1e-5.
+        // To the printed digits. For the longest creep time CONTACT cuts off the tail of the displacements, some 1e-5.
         assert!((report.measures.approach - approach).abs() <= 4e-5, "{creep}: {}", report.measures.approach);
         assert!((found.creepage[0] / creepage - 1.0).abs() <= 5.1e-4, "{creep}: {:?}", found.creepage);
         assert_eq!(found.certificate.stick_count, sticks, "{creep}");
     }
 }
 
-/// Where they are read: tables that are those of the test, to ten digits of the largest.
+/// The entries that are read agree to 1e-10 of the largest.
 fn assert_near(found: &[Vec<f64>; 3], expected: &[Vec<f64>; 3], (cx, cy): (usize, usize)) {
     let largest = expected[0].iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     for k in (0..4 * cx * cy).filter(|k| k % (2 * cx) > 0 && k / (2 * cx) > 0) {
@@ -122,13 +124,13 @@ fn assert_near(found: &[Vec<f64>; 3], expected: &[Vec<f64>; 3], (cx, cy): (usize
     }
 }
 
-/// The library's tables are those of the test's own quadrature; rolling towards -x is a mirror; unlike bodies are refused.
+/// The library's tables are those of the test's own quadrature. Rolling towards -x mirrors them. Unlike bodies are refused.
 #[test]
 fn tables_of_bodies_that_relax_are_those_of_quadrature() {
     let (reach, (dx, dy), nu, g) = ((9, 6), (0.5, 0.7), 0.3, 4.0);
     let tangential = Tangential::new(dx, dy, Compliance { shear: 1.0 / g, poisson: nu / g, unlike: 0.0 });
     for length in [0.05, 0.7, 3.0, 40.0] {
-        // Half of the modulus relaxes, in half the time in which the bodies creep.
+        // Half of the modulus relaxes. The relaxation time is half the creep time.
         let body = |part: f64| RollingBody {
             compliance: 0.5 / g,
             series: Series::new(g, &[part * g], &[0.5 * length * dx / 10.0]).unwrap(),
@@ -149,7 +151,7 @@ fn tables_of_bodies_that_relax_are_those_of_quadrature() {
             let refused = rolling_tables(reach, (dx, dy), (&bodies, nu), 10.0).unwrap_err().to_string();
             assert!(refused.contains("unlike"), "{refused}");
         }
-        // Incompressible ones push nothing sideways, however they relax.
+        // Incompressible bodies are not unlike, however they relax: pressures do not move their surfaces sideways.
         assert!(rolling_tables(reach, (dx, dy), (&[body(0.5), body(0.4)], [0.5; 2]), 10.0).is_ok());
     }
 }
@@ -173,7 +175,7 @@ impl Small {
         Small { grid, pressure, own: tables(&tangential, SMALL_REACH, 3.0) }
     }
 
-    /// The same seen from the other side of y z: x and what points along it change their signs.
+    /// The scene mirrored at the plane of y and z: coordinates and components in x change their signs.
     fn mirrored(&self) -> Small {
         let (cx, _) = SMALL_REACH;
         let flip = |values: &[f64], sign: f64| -> Vec<f64> {
@@ -201,7 +203,7 @@ impl Small {
         (solver.solution().unwrap().clone(), report.creepage)
     }
 
-    /// The displacement of element i by tractions, by `x` elements further on in x.
+    /// The displacement by tractions at `x` elements beyond element i in x.
     fn displacement(&self, q: &[[f64; 2]], i: usize, x: i64) -> [f64; 2] {
         let ((cx, cy), mx) = (SMALL_REACH, self.grid.mx);
         let (ix, iy) = ((i % mx) as i64 + x, (i / mx) as i64);
@@ -213,7 +215,7 @@ impl Small {
         })
     }
 
-    /// What is left of the conditions over the rigid slip: of steady rolling by `by` elements along x.
+    /// The residual of the conditions of steady rolling by `by` elements along x, relative to the rms rigid slip.
     fn left(&self, friction: &Friction<'_>, found: &Solution, (by, creepage): (i64, [f64; 2])) -> f64 {
         let moved = Friction { prescribed: creepage.map(Prescribed::Creepage), ..*friction };
         let (mut left, mut rigid, mut slips) = (0.0, 0.0, 0);
@@ -259,7 +261,7 @@ fn conditions_hold_by_direct_sums_and_bodies_seen_from_behind_are_the_same() {
     let small = Small::new();
     let mirrored = small.mirrored();
     let largest = small.own[0].iter().copied().fold(0.0, f64::max);
-    // They are far from even.
+    // The tables are far from even in x.
     let (row, cx) = (SMALL_REACH.1 * 2 * SMALL_REACH.0, SMALL_REACH.0);
     assert!(small.own[0][row + cx - 1] - small.own[0][row + cx + 1] > 0.1 * largest);
     for (creepage, spin, steps) in [
@@ -301,7 +303,7 @@ fn forces_and_laws_go_with_them() {
     assert!(
         (sums[0] + 0.5 * carried).abs() <= 1.01e-8 * carried && (sums[1] - 0.2 * carried).abs() <= 1.01e-8 * carried
     );
-    // By forces the slip is compared with the displacements, too.
+    // With prescribed forces the solver's residual is relative to the displacements too, which are larger than the rigid slip.
     assert!(small.left(&pulled, &found, (1, creepage)) <= 1e-7);
     let law = FrictionLaw::new(Fall::Exponential, (0.1, 0.2), 100.0, 1e4);
     let (falls, _) = small.solved(&Friction { law: Some(law), ..rolling([-0.01, 0.0], 0.0) });

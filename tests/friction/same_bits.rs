@@ -1,4 +1,4 @@
-//! A solve from nothing or from a given guess has the same bits on any handle, whatever it solved before, and in batches of any number of threads.
+//! A solve without a guess, or from a given one, has the same bits on any handle, whatever it solved before, and in batches of any number of threads.
 
 use contact_normal::scene::{Bodies, Each, Friction, Load, Motion, Prescribed, PressureLimit, Previous, Scene};
 use contact_normal::solver::{solve, Guess, InitialGuess, Method, Options, Problem, Solver};

@@ -1,4 +1,4 @@
-//! Where gradients stall, Newton's method goes on: what is logged, and that the conditions hold.
+//! If gradients stall, Newton's method continues, with a log message. Then the conditions hold.
 
 use std::cell::Cell;
 
@@ -10,7 +10,7 @@ use super::scenes::Ellipse;
 use super::support::{residual, solver};
 
 thread_local! {
-    /// How often this thread was told that Newton's method goes on.
+    /// The number of messages on this thread that Newton's method goes on.
     static TOLD: Cell<u32> = const { Cell::new(0) };
 }
 
@@ -30,8 +30,8 @@ impl Log for Listener {
     fn flush(&self) {}
 }
 
-/// Shifts with the coefficients of nu = 0.999, which no half-space has and own tables may hold: one component couples to the other nearly
-/// as much as it displaces itself. By gradients alone 18 of the first 30 scenes are not solved.
+/// Shifts with the coefficients of nu = 0.999. No half-space has them, but the caller's tables may: the coupling of the components is nearly as
+/// large as the displacement of each by itself. By gradients alone 18 of the first 30 scenes are not solved.
 #[test]
 fn where_gradients_stall_newtons_method_goes_on() {
     set_logger(&Listener).expect("the only logger of these tests");

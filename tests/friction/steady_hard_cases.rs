@@ -1,4 +1,4 @@
-//! Steady rolling where it is hard: extreme creepages and forces, gaps, one row, many patches; cancelled anywhere.
+//! Hard cases of steady rolling: extreme creepages and forces, gaps, one row, many patches; cancelled at any callback.
 
 use std::f64::consts::PI;
 
@@ -107,7 +107,7 @@ fn hard_cases_of_steady_rolling_have_their_answers() {
     }
 }
 
-/// The slip that the creepage suggests is smaller by many orders than that of the force.
+/// The slip by the creepage is smaller by many orders than the slip by the force.
 #[test]
 fn a_force_beside_a_creepage_of_another_order_is_met() {
     let (grid, g) = disc(12, |_, _| true);
@@ -126,8 +126,8 @@ fn a_force_beside_a_creepage_of_another_order_is_met() {
     }
 }
 
-/// On one element a step along x keeps the directions apart: the slip in x is that of the given creepage, however large the creepages are that
-/// the force in y takes on the way.
+/// On one element a step along x does not couple the directions. The slip in x is that of the given creepage, however large the creepages in y are
+/// that are tried for the force.
 #[test]
 fn a_given_creepage_is_as_it_is_beside_a_force() {
     let (grid, g) = disc(24, |x, y| (x, y) == (9, 9));
@@ -180,7 +180,7 @@ fn short_steps_on_long_elements_are_solved() {
 
 #[test]
 fn one_element_rolls_in_any_direction_with_any_creepage() {
-    // Where it slips the step has one unknown, and the first direction solves it to round-off: the next ones are none.
+    // If it slips, the step has one unknown, and the first direction solves it to round-off: there is no further direction.
     let grid = Grid::new(1, 1, 7e-4, 7e-4).unwrap();
     for (nu, g) in [(0.0, 3.1e-6), (0.1, 3.1e-6), (0.28, 3e-4), (0.47, 3.1e-6)] {
         for k in 0..200 {

@@ -1,5 +1,5 @@
-//! Tangential coefficients of the caller's own: those of the half-space as tables give what the half-space gives; what is none is
-//! refused by name.
+//! The caller's tangential coefficients. Tables with the coefficients of the half-space give its results. Invalid tables are refused
+//! by name.
 
 use std::f64::consts::PI;
 
@@ -69,7 +69,7 @@ fn solved<'a>(scene: &Scene<'a>, own: Option<TangentialInfluence<'a>>, tolerance
 
 #[test]
 fn tables_of_the_half_space_give_what_the_half_space_gives() {
-    // Without a coarser grid every number is the same; with them only those of the coarser grids differ.
+    // Without coarser grids every number is the same. With them only the coefficients of coarser grids differ.
     for (m, most) in [(20, 0.0), (48, 1e-5)] {
         let (grid, h) = ball(m, m - 2);
         let scene = Scene::new(grid, &h, STEEL, Load::Force(900.0));
@@ -81,7 +81,7 @@ fn tables_of_the_half_space_give_what_the_half_space_gives() {
                 let largest = known.traction.iter().map(|q| q[0].hypot(q[1])).fold(0.0, f64::max);
                 for (a, b) in known.traction.iter().zip(&found.traction) {
                     let off = (a[0] - b[0]).hypot(a[1] - b[1]);
-                    // What a residual of 1e-8 hides of the tractions (docs/friction.md: 1e-5 at 1e-6, less by its square root).
+                    // The error of tractions with a residual of 1e-8 (docs/friction.md: 1e-5 at 1e-6, and it falls with the square root).
                     assert!(off <= most * largest, "{m}: {off:e} of {largest}");
                 }
             }
@@ -137,7 +137,7 @@ fn tables_of_unlike_half_spaces_give_what_these_give() {
         // The same numbers in the same order.
         assert_eq!(known.traction, found.traction);
     }
-    // And without what couples them the tractions are others.
+    // Without the coupling the tractions differ.
     let like = solved(&Scene { bodies: STEEL, ..scene.clone() }, Some(influence(&grid, &tables, 1.0)), 1e-8);
     assert_ne!(like[0].traction, found[0].traction);
     let (mut even, good) = (xz.clone(), &yz);
@@ -231,13 +231,13 @@ fn tables_that_are_none_are_refused_by_name() {
     refused(of(&good, &as_it_is, pushed(), unlike), "unlike bodies");
 }
 
-/// Tables per row, and a coating, of the normal problem: the tractions are those of the pressures that it has without friction.
+/// A normal problem with row tables or a coating has the pressures of the scene without friction. The tractions are those of these pressures.
 #[test]
 fn own_coefficients_go_with_row_tables_and_coatings() {
     let (grid, h) = ball(20, 18);
     let tables = tables(&grid, 1.0);
     let own = Some(influence(&grid, &tables, 1.0));
-    // By 1 % softer from row to row: a table of offsets has nothing like it.
+    // Each row is 1 % softer than the one before, which a table of offsets cannot describe.
     let half_space = HalfSpace::new(grid.dx, grid.dy, STEEL.compliance());
     let value = |k: usize| {
         let (x, iy, jy) = ((k % 40) as i64 - 20, (k / 40 % 18) as i64, (k / 720) as i64);

@@ -1,4 +1,4 @@
-//! The shift and the steady rolling of a wheel on a rail, against what CONTACT printed (data/friction/README.md).
+//! The shift and the steady rolling of a wheel on a rail, beside the output of CONTACT (data/friction/README.md).
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Friction, Load, Scene};
@@ -22,7 +22,7 @@ fn a_shift_of_a_wheel_is_that_of_contact() {
         (2, 12902, 7243, [-0.2197644, 0.1581319], 18.0),
         (4, 50796, 28260, [-0.2197680, 0.1581256], 22.0),
     ] {
-        // What the prototype in Python took.
+        // The products of the prototype in Python.
         let products = solved(k, 1e-6, shift).friction.unwrap().products;
         assert!(products <= most, "{k}: {products} products");
         let report = solved(k, 1e-7, shift);
@@ -32,7 +32,7 @@ fn a_shift_of_a_wheel_is_that_of_contact() {
         assert!(found.certificate.slip_count.abs_diff(slips) <= 1, "{}", found.certificate.slip_count);
         for (found, force) in found.force.iter().zip(force) {
             let part = found / (0.3 * report.measures.force);
-            // The digits printed, and what a residual of 1e-7 hides.
+            // The printed digits, and the error with a residual of 1e-7.
             assert!((part - force).abs() <= 2e-7, "{part} {force}");
         }
     }
@@ -58,7 +58,7 @@ fn steady_rolling_of_a_wheel_is_that_of_contact() {
         assert_eq!(found.certificate.slip_count, slips);
         for (found, force) in found.force.iter().zip(force) {
             let part = found / (0.3 * report.measures.force);
-            // Half of the last digit printed, and what a residual of 1e-9 hides.
+            // Half of the last printed digit, and the error with a residual of 1e-9.
             assert!((part - force).abs() <= 5.1e-8, "{part} {force}");
         }
     }
@@ -75,7 +75,7 @@ fn creepages_of_a_wheel_with_forces_are_those_of_contact() {
         let found = report.friction.unwrap();
         assert_eq!(found.certificate.slip_count, slips);
         let printed = if eta.is_nan() { 5e-9 } else { 5e-11 };
-        // The digits printed, and what a residual of 1e-8 hides of creepages of this size.
+        // The printed digits, and the error of creepages of this size with a residual of 1e-8.
         assert!((found.creepage[0] - xi).abs() <= printed + 1e-10, "{:?}", found.creepage);
         assert!(eta.is_nan() || (found.creepage[1] - eta).abs() <= printed + 1e-10, "{:?}", found.creepage);
         for (found, part) in found.force.iter().zip([-0.573, -0.327]) {

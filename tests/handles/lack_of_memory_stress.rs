@@ -1,4 +1,4 @@
-//! Stresses below the surface without memory: the status says so, at whichever allocation it comes, and the next call works.
+//! Stresses below the surface without memory: the status is OUT_OF_MEMORY whichever allocation fails, and the next call works.
 
 use std::ptr::null;
 
@@ -10,7 +10,7 @@ use contact_normal::ffi::*;
 /// Elements in each direction.
 const M: usize = 48;
 const N: usize = M * M;
-/// The second is near the surface: with periods images are summed there, too.
+/// The second depth is near the surface, where stresses with periods also need images.
 const DEPTHS: [f64; 2] = [2.0, 0.25];
 const SENTINEL: f64 = -7.0;
 

@@ -19,8 +19,8 @@ fn layer(thickness: f64, shear_modulus: f64, poisson_ratio: f64) -> Option<Coati
     Some(CoatingLayer { thickness, shear_modulus, poisson_ratio })
 }
 
-/// What a coating adds to the coefficients of its own half-space, by its definition: all waves of the grid with all their aliases that are
-/// not below 1e-17.
+/// The coefficients of a coated body less those of a half-space of the coating, by definition: a sum over all waves of the grid and their
+/// aliases that are not below 1e-17.
 fn by_waves(mu: f64, nu: [f64; 2], t: f64, grid: &Grid, offsets: &[(usize, usize)]) -> Vec<f64> {
     let (transfer, sinc) = (Transfer::new(mu, nu), |x: f64| if x == 0.0 { 1.0 } else { x.sin() / x });
     let last = |d: f64| (21.0 * d / (2.0 * PI * t)).ceil() as i64 + 1;
@@ -89,7 +89,7 @@ fn coefficients_are_sums_over_all_aliases() {
     println!("largest difference from sums over waves: {worst:e}");
 }
 
-/// A coarser grid of a coating that is too thin for it joins elements: displacements of four by a pressure on four.
+/// If a coating is too thin for the elements of a coarser grid, coefficients there are mean displacements of four elements by a pressure on four.
 #[test]
 fn coefficients_of_coarser_grids_are_means_where_a_coating_is_thin() {
     let (fine, coarse) = (Grid::new(24, 16, 1.0, 1.0).unwrap(), Grid::new(12, 8, 2.0, 2.0).unwrap());
@@ -112,7 +112,7 @@ fn oedometric(g: f64, nu: f64) -> f64 {
     (1.0 - 2.0 * nu) / (2.0 * g * (1.0 - nu))
 }
 
-/// What a uniform pressure of 1 compresses the coatings by.
+/// The compression of the coatings by a uniform pressure of 1.
 fn compression(coating: &Coating) -> f64 {
     let of = |layer: CoatingLayer| layer.thickness * oedometric(layer.shear_modulus, layer.poisson_ratio);
     coating.layers.iter().flatten().copied().map(of).sum()
@@ -160,7 +160,7 @@ fn a_uniform_pressure_compresses_by_the_oedometric_moduli() {
                     "{what}: {p} {u}"
                 );
             }
-            // The approach given, the force follows, and pulls on a given area.
+            // By approach, with the same force; and with a force that pulls on a given area.
             let (_, report) = run(&Scene { load: Load::Approach(expected), ..scene.clone() }, &options);
             assert!((report.measures.force / 2.0 - 1.0).abs() <= 1e-6, "{what}: force {}", report.measures.force);
             let fixed = Options { active_set: ActiveSet::Fixed, ..options };
@@ -178,7 +178,7 @@ fn a_uniform_pressure_compresses_by_the_oedometric_moduli() {
     }
 }
 
-/// Some waves.
+/// A wavy surface.
 fn wavy(grid: &Grid) -> Vec<f64> {
     let turn = |k: usize, m: usize| 2.0 * PI * (k as f64 + 0.3) / m as f64;
     let at = |i: usize| {
@@ -188,8 +188,8 @@ fn wavy(grid: &Grid) -> Vec<f64> {
     (0..grid.len()).map(at).collect()
 }
 
-/// The conditions of contact with the approach and the displacements that are reported, and a product of our own, by force and by
-/// approach, from light contact to beyond the mean of h.
+/// The conditions of contact hold with the reported approach and displacements, and with direct sums: by force and by approach, from light
+/// contact to approaches beyond the mean of h.
 #[test]
 fn the_approach_of_a_force_has_that_force() {
     let grid = Grid::new(24, 21, 0.25, 0.3).unwrap();
@@ -243,7 +243,7 @@ fn a_thin_coating_has_the_approach_of_a_layer() {
     assert!(difference.abs() <= 0.03 * mean, "{difference} of {mean}");
 }
 
-/// The caller's grid decides whether a coating is too thin, not those that a method makes for itself.
+/// Only the caller's grid decides whether a coating is too thin, not the coarser grids of a method.
 #[test]
 fn a_coating_may_be_a_sixteenth_of_an_element() {
     for (mx, my, dx, dy) in

@@ -1,4 +1,4 @@
-//! Pairs of effects: solved, and then the conditions hold, or refused by names; none silently ignored.
+//! Pairs of effects. A pair is solved, and the conditions of both hold, or it is refused by both names. No effect is ignored.
 
 use std::f64::consts::PI;
 
@@ -67,7 +67,7 @@ fn every_pair_is_solved_or_refused_and_each_effect_tells() {
     let table_at = |kx: i64, ky: i64| half_space.at(kx, ky) * (-0.3 * ((kx * kx + ky * ky) as f64).sqrt()).exp();
     let table: Vec<f64> = (0..4 * grid.len() as i64).map(|i| table_at(i % 40 - 20, i / 40 - 18)).collect();
     let table = Table::new(20, 18, &table, &grid).unwrap();
-    // Rows that answer less and less.
+    // Coefficients that fall from row to row.
     let answers = |iy: i64| 1.0 - 0.03 * iy as f64;
     let row_tables: Vec<f64> = (0..18 * 18 * 40)
         .map(|i| {
@@ -76,7 +76,7 @@ fn every_pair_is_solved_or_refused_and_each_effect_tells() {
         })
         .collect();
     let row_tables = RowTables::new(20, 18, &row_tables, &grid).unwrap();
-    // A soft coating of two elements: its coefficients are tested by themselves.
+    // A soft coating, two elements thick. Other tests check its coefficients.
     let below = CoatedBody { compliance: 0.7 / (2.0 * PI), layer: None };
     let above = CoatedBody { compliance: 0.6 / (2.0 * PI * 0.3), layer: Some((0.2, radial(0.3, [0.4, 0.3]))) };
     let coated = Coated::new([above, below], &grid).unwrap();

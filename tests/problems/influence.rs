@@ -9,7 +9,7 @@ use contact_normal::solver::{solve, InitialGuess, Options, Outcome, Solver};
 
 use super::support::assert_conditions;
 
-/// Bits of the reference: cancellation at offset 16384 and aspect ratio 1000 eats about 80 of them.
+/// Bits of the reference: cancellation at offset 16384 and aspect ratio 1000 takes about 80 of them.
 const BITS: usize = 320;
 const RM: RoundingMode = RoundingMode::ToEven;
 
@@ -88,8 +88,8 @@ fn scaling_the_element_by_a_power_of_two_scales_the_bits() {
     }
 }
 
-/// A table of the half-space's coefficients is solved with the operators of the half-space: all that is held beside them are the tables, which
-/// are even: of offsets >= 0, mx by my doubles on each grid.
+/// A table of the half-space's coefficients is solved with the operators of the half-space. Only the tables are held in addition. They are even, with
+/// mx by my doubles of offsets >= 0 on each grid.
 #[test]
 fn reported_bytes_hold_the_coefficients() {
     let (mx, my) = (40, 36);
@@ -117,8 +117,8 @@ fn own_table(grid: &Grid, factor: f64, skew: f64) -> Vec<f64> {
     offsets.map(|(kx, ky)| (1.0 + skew * kx.signum() as f64) * half_space.at(kx, ky)).collect()
 }
 
-/// On a window of the grid, in both precisions of it, from nothing: the very bits. A skew below 1e-7 leaves the table symmetric for the solver,
-/// but its spectrum has another period.
+/// Solves without a guess, on a window of the grid and in both precisions, have the same bits. With a skew below 1e-7 the table is symmetric for the
+/// solver, but its symbol has another period.
 #[test]
 fn a_solver_with_another_table_solves_as_a_new_one_from_nothing_and_from_its_last_result() {
     let grid = Grid::new(90, 72, 0.5, 0.6).expect("a grid");
@@ -158,7 +158,7 @@ fn a_solver_with_another_table_solves_as_a_new_one_from_nothing_and_from_its_las
     }
 }
 
-/// Beside the largest coefficient within the grid, not beside that of the table or of an element on itself.
+/// Symmetry is relative to the largest coefficient within the grid, not to that of the table or of an element on itself.
 #[test]
 fn symmetry_is_judged_beside_the_largest_coefficient_of_the_grid() {
     let (grid, part) = (Grid::new(9, 6, 1.0, 1.0).unwrap(), Grid::new(4, 6, 1.0, 1.0).unwrap());
@@ -192,15 +192,15 @@ fn a_coefficient_that_is_not_finite_is_named() {
             let mut values = vec![1.0; 10 * 8];
             bad.iter().for_each(|(kx, ky)| values[place(*kx, *ky)] = value);
             let error = Table::scaled(5, 4, &values, 1e10, &grid).unwrap_err().to_string();
-            // An even table is looked at in its quarter.
+            // Only a quarter of an even table is tested.
             let first = if bad.len() == 4 && !value.is_nan() { "(2, 3)" } else { first };
             assert!(error.contains(first) && error.contains("finite"), "{error}, not {first}");
         }
     }
 }
 
-/// Coefficients of small grids are kept, others are not: an element's are the same, to the last bit, whoever asks, and on a grid of
-/// elements twice as large they are twice as large.
+/// Coefficients of small grids are kept, others are computed. Both have the same bits. On a grid of elements twice as large the coefficients are
+/// twice as large.
 #[test]
 fn coefficients_that_are_kept_are_those_that_are_computed() {
     for (dx, dy) in [(1.0, 1.0), (0.3, 0.7), (2.0, 0.01)] {

@@ -1,5 +1,5 @@
-//! Limits that differ between elements by up to a thousand times, two periods: flat lines, gratings, rough squares. Most elements are at their limit,
-//! and which ones is found late. The certificates are computed by direct sums.
+//! Pressure limits that differ between elements by up to a factor of a thousand, with two periods: flat lines, gratings, rough squares. Most elements are at
+//! their limit, and the elements at their limit change until late. The certificates are computed by direct sums.
 
 use crate::periodic_by_approach::{displacements, rough};
 use crate::random::Random;
@@ -34,14 +34,15 @@ pub fn assert_conditions(solver: &Solver, scene: &Scene<'_>, limits: &[f64], wha
         }
     }
     assert!(counts.1 > 0.01 * h.len() as f64, "{what}: hardly any contact");
-    // Where all is flat and free, h - approach is the round-off of sums over all elements.
+    // If the whole surface is flat and free, h - approach is round-off of sums over all elements.
     let noise =
         f64::EPSILON * state.p.iter().sum::<f64>() * scene.coefficients().unwrap().at(0, 0) * f64::sqrt(counts.0);
     assert!(f64::sqrt(residual) <= TOLERANCE * f64::sqrt(distance) + noise, "{what}: {residual:e} of {distance:e}");
     assert!(violation <= TOLERANCE * f64::sqrt(touching / counts.1), "{what}: violation {violation}");
 }
 
-/// The approach of the scene by approach is that at which elements carry a part of their limits.
+/// Solves a scene with random limits of `size` to `spread` times that, and checks the result. A force is given as a part of the sum of the limits.
+/// Returns the number of cycles.
 fn check(grid: Grid, h: &[f64], (size, spread): (f64, f64), load: Load, random: &mut Random) -> u64 {
     let limits: Vec<f64> = h.iter().map(|_| size * random.decades(1.0, spread)).collect();
     let load = match load {
@@ -82,7 +83,7 @@ fn lines_with_limits_that_differ_are_solved() {
         let spread = random.decades(1.0, 1e3);
         most = most.max(check(grid, &h, (size, spread), load, random));
     }
-    // Of 1000 that a call may take.
+    // The default limit is 1000 cycles.
     assert!(most <= 800, "{most} cycles");
 }
 
@@ -107,8 +108,8 @@ fn rough_squares_with_limits_that_differ_are_solved() {
     }
 }
 
-/// Full contact but for a few elements at their limit: those alone say how large the mean of p is, which displaces nothing otherwise. It is found by
-/// approach as by force; 84 of 3676 such scenes ended before the first element was at its limit.
+/// Full contact with a few elements at their limit. The mean of p has no displacement, so only the elements at their limit determine it. Scenes by force
+/// and by approach find it.
 #[test]
 fn the_mean_is_found_where_a_few_elements_are_at_their_limit() {
     let random = &mut Random::new(7);
@@ -122,7 +123,7 @@ fn the_mean_is_found_where_a_few_elements_are_at_their_limit() {
         let mut pressures = solve(&free, &Options::default()).unwrap().0.state().p.clone();
         assert!(pressures.iter().all(|p| *p > 0.0), "full contact");
         pressures.sort_by(f64::total_cmp);
-        // Below the pressures of a few.
+        // Below the `few` largest pressures.
         let last = pressures.len() - few;
         let limit = 0.5 * (pressures[last] + pressures[last - 1]);
         let limits = vec![limit; m * m];

@@ -39,7 +39,7 @@ fn own_coefficients_on_one_row_or_column_keep_the_preconditioner() {
                 let scene = Scene { influence: Some(table(&grid, &bodies, factor)), ..plain.clone() };
                 let (solver, stop, own) = solve(&scene, &Options::default()).unwrap();
                 assert_eq!(stop, Outcome::Converged, "{mx} x {my} {load:?}");
-                // The preconditioner's circulant is that of the same coefficients but for what lies beyond the grid.
+                // The circulants differ only in the coefficients beyond the grid.
                 let allowed = report.count.cycles + 4;
                 assert!(
                     own.count.cycles <= allowed,
@@ -69,7 +69,7 @@ fn the_circulant_of_one_row_is_one_row_long() {
         let coefficients = table(&grid, &Bodies::same(1.0, 0.3), |_| 1.0).into();
         let (px, py) = Operator::<f64>::circulant_period(&coefficients, &grid);
         assert!((mx > 1 || px == 1) && (my > 1 || py == 1), "{mx} x {my}: period {px} x {py}");
-        // Of a uniform pressure on a whole period the inverse makes one over the sum of the circulant's coefficients.
+        // The inverse maps a uniform pressure of 1 on a whole period to one over the sum of the circulant's coefficients.
         let inverse = Operator::<f64>::inverse_circulant(&coefficients, &grid, (px, py), &Threads::One).unwrap();
         assert!(inverse.is_some(), "{mx} x {my}: not positive");
     }
@@ -93,7 +93,7 @@ fn largest_stresses_of_a_roller_lie_below_its_surface() {
             let (_, rows) = quantities(&scene, &Options::default(), &wanted, 2, None).unwrap();
             let found: Vec<f64> = rows[6..].iter().map(|row| row.value.expect("a value")).collect();
             println!("{mx} {long} {found:?} {a} {p0}");
-            // The ends are felt as a over the length; 21 elements across the contact; the depth has two digits.
+            // The effect of the ends is a over the length. The contact has 21 elements across. The exact depth has two digits.
             let ends = a / long;
             for (value, exact, allowed) in
                 [(found[0], 0.558 * p0, 2e-3), (found[1], 0.70 * a, 0.03), (found[2], 0.3003 * p0, 2e-3)]

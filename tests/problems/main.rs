@@ -1,4 +1,4 @@
-//! What the library computes: every number is compared with a closed form, a direct sum or a certificate recomputed.
+//! Results of the library: every number is compared with a closed form, a direct sum or a recomputed certificate.
 
 // Cases that the examples and benchmarks have too.
 #[path = "../../examples/accuracy/judge.rs"]

@@ -1,5 +1,5 @@
-//! What means nothing is refused, at every entrance: grids made without their check, tolerances and targets of 1 and more. What a callback is told
-//! are numbers.
+//! Meaningless input is refused by every call that takes it: grids made without their check, tolerances and targets of 1 and more. Callbacks get numbers,
+//! never NaN.
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
@@ -98,7 +98,7 @@ fn tolerances_and_targets_lie_below_1() {
     names(solve_to_accuracy(&scene, &Options::default(), &high, None, None).map(drop), "max_pressure_target is 1");
     let high = Accuracy::new(0.1).with(Quantity::ContactArea, 5.0);
     names(solve_to_accuracy(&scene, &Options::default(), &high, None, None).map(drop), "contact_area_target is 5");
-    // The largest that is a tolerance.
+    // The largest valid tolerance.
     assert!(solve(&scene, &Options { tolerance: 1.0f64.next_down(), ..Options::default() }).is_ok());
 }
 
@@ -111,7 +111,7 @@ fn sweeps_that_overflow_are_refused() {
     names(options.check(), "both 0");
 }
 
-/// Where h is the approach everywhere in contact, there is no distance that a residual is relative to.
+/// If h equals the approach on all of C, the scale of residuals is 0.
 #[test]
 fn a_callback_is_told_numbers() {
     let grid = Grid::new(9, 7, 1.0, 1.0).unwrap();

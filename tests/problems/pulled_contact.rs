@@ -20,7 +20,7 @@ fn bonded(grid: &Grid) -> (Vec<f64>, Vec<bool>) {
     (h, contact)
 }
 
-/// Forces of both signs and of none, with the direct sum: one approach for all elements, and the force to rounding.
+/// Forces of both signs, and 0. By direct sums, all elements have the same approach, and the force is exact to round-off.
 #[test]
 fn a_force_that_pulls_is_carried_by_every_method() {
     let grid = Grid::new(22, 17, 0.5, 0.4).unwrap();
@@ -40,7 +40,7 @@ fn a_force_that_pulls_is_carried_by_every_method() {
                 continue;
             }
             let mut solver = Solver::new(scene, &fixed(method)).unwrap();
-            // The last two are next to nothing beside what pushes and pulls.
+            // The last two forces are tiny beside the sum of the pressures that push.
             for force in [-3.0, -1e-3, 0.0, 2.0, -50.0, 1e-22, -1e-12] {
                 let scene = Scene { load: Load::Force(force), ..scene.clone() };
                 let guess = Some(Guess { pressure: &pressure, contact: &contact });
@@ -70,7 +70,8 @@ fn a_force_that_pulls_is_carried_by_every_method() {
     }
 }
 
-/// Twice the pull less what the surface bends is as the equations are: linear. A pull from the last solution takes its product.
+/// On a given area the equations are linear: apart from the pressures without a force, twice the force has twice the pressures. A solve from the last solution
+/// makes products too.
 #[test]
 fn pulls_add_up() {
     let grid = Grid::new(20, 20, 1.0, 1.0).unwrap();
@@ -105,7 +106,7 @@ fn a_free_contact_area_is_not_pulled() {
     );
 }
 
-/// Flat bodies without a force: p = 0, and the distances that a residual is relative to are 0, too.
+/// Flat bodies without a force: p = 0, and the residual is relative to distances of 0.
 #[test]
 fn an_even_contact_area_without_force_has_no_pressures() {
     let grid = Grid::new(31, 24, 0.5, 0.4).unwrap();
@@ -126,7 +127,7 @@ fn an_even_contact_area_without_force_has_no_pressures() {
     }
 }
 
-/// With two periods waves leave the mean of the distances: on an area that is given an approach above it presses, and one below it pulls.
+/// With two periods the mean displacement is 0. On a given area an approach above the mean of h presses, and one below it pulls.
 #[test]
 fn an_area_with_two_periods_takes_approaches_beyond_the_mean() {
     let grid = Grid::new(16, 12, 1.0, 1.0).unwrap();
@@ -144,7 +145,7 @@ fn an_area_with_two_periods_takes_approaches_beyond_the_mean() {
             let (p, mut u) = (&solver.state().p, vec![0.0; h.len()]);
             dense::apply(&scene.coefficients().unwrap(), &grid, p, &mut u);
             for i in (0..h.len()).filter(|i| contact[*i]) {
-                // The tolerance of 1e-9 in the rms, and the square root of the elements.
+                // The tolerance of 1e-9 for the rms, times the square root of the number of elements.
                 assert!(
                     (h[i] - approach + u[i]).abs() <= 1e-9 * 14.0 * 3.0,
                     "{method:?} {approach}: {}",

@@ -1,4 +1,4 @@
-//! Everything that can be asked of a scene: values against closed forms of a ball on a plate, errors against these, targets and prices.
+//! All quantities of a scene: values and errors beside the closed forms of a ball on a plate, targets and prices.
 //!
 //! Ball of radius R, approach d: a^2 = R d, F = 4/3 E* a d, p0 = 2/pi E* a/R, dF/dd = 2 E* a (Johnson 1985, section 4.2). Along the axis below
 //! a Hertz pressure `sr = st`, and the von Mises stress is `|sz - sr|` (Johnson, eq. 3.45); the largest shear stress is half of it. A ball that
@@ -45,7 +45,7 @@ fn scene<'a>(grid: Grid, h: &'a [f64]) -> Scene<'a> {
     Scene::new(grid, h, Bodies::same(G, NU), Load::Approach(APPROACH))
 }
 
-/// Shifted by half of what friction carries.
+/// A shift by half of the force of full slip.
 fn shifted() -> Friction<'static> {
     let prescribed = [Prescribed::Force(0.5 * MU * force()), Prescribed::Creepage(0.0)];
     Friction { prescribed, ..Friction::new(MU) }
@@ -98,10 +98,9 @@ fn rows(scene: &Scene<'_>, wanted: &[Quantity], coarser: usize) -> Vec<QuantityR
     rows
 }
 
-/// The estimate covers what is off (that of one grid alone at least a third of it, which is what such estimates are judged by), and is not out of all
-/// proportion: ten times of it, or a twentieth of the value. Cattaneo's shift of a ball is
-/// an approximation of the elastic problem with like bodies of nu > 0: slip is not quite along the force (Munisamy, Hills & Nowell 1994), by
-/// 2 % at most.
+/// The estimate is at least the true error (from one grid alone, at least a third of it), and at most ten times the true error plus a twentieth of the
+/// value. Cattaneo's shift of a ball is an approximation of the elastic problem with like bodies of nu > 0, by 2 % at most: slip is not quite along the
+/// force (Munisamy, Hills & Nowell 1994).
 fn assert_covered(row: &QuantityRow, theory: f64) {
     let (value, error) = (row.value.expect("a value"), row.error.unwrap_or_else(|| panic!("an error: {row:?}")));
     let off = (value - truth(row.quantity)).abs();
@@ -290,7 +289,7 @@ fn errors_of_tangential_forces_follow_from_the_grids() {
     assert!((found[1].error.expect("an error") / before - 1.0).abs() < 1e-3, "{found:?}");
 }
 
-/// In full contact the residual alone is left of the gap. Searches took it for a number, and refined to their limit.
+/// In full contact the gap is a residual, which counts as 0. A search must not refine because of it.
 #[test]
 fn full_contact_has_no_gap() {
     let (m, d) = (16, 1.0);

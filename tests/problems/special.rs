@@ -1,4 +1,4 @@
-//! Special functions beside the tables of them.
+//! Special functions beside published tables.
 
 use contact_normal::influence::special::hurwitz_zeta;
 

@@ -1,4 +1,4 @@
-//! Stresses below contact patches that feel each other by factors: as the pressures do, element by element.
+//! Stresses below contact patches that are coupled by factors: each element belongs to a patch, as for the pressures.
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
@@ -16,7 +16,7 @@ fn body() -> Body {
     Body { grid: Grid::new(14, 9, 1.0, 0.7).unwrap(), poisson_ratio: 0.3, periodic: false }
 }
 
-/// Three patches in stripes that are not those of rows, the second in two pieces, and elements of none.
+/// Three patches in oblique stripes, the second in two pieces, and elements of no patch.
 fn patch(grid: &Grid) -> Vec<i32> {
     let of = |i: usize| [0, 1, 2, -1, 1][(i % grid.mx + i / grid.mx) / 5];
     (0..grid.len()).map(of).collect()
@@ -41,8 +41,8 @@ fn at_depths(loads: &Loads<'_>, depths: &[f64]) -> Vec<Vec<Tensor>> {
     found
 }
 
-/// The definition: of each element, or point, the sum over patches of the factor times the stresses by the loads of that patch alone; below an element of no
-/// patch, and of loads on these, in full.
+/// By definition, the stress below an element or at a point is the sum over patches of the factor times the stress by the loads of that patch alone. Below
+/// elements of no patch all loads count in full, and so do loads on these elements everywhere.
 #[test]
 fn each_patch_has_its_own_sum() {
     let (grid, mut random) = (body().grid, Random(7));

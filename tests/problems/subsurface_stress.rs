@@ -56,7 +56,7 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |l: f64, v| l.max(v.abs()))
 }
 
-/// Random loads on all grids, slender ones and single elements among them: by FFT as by the direct sum.
+/// Products by FFT equal direct sums: random loads on many grids, also slender ones and a single element.
 #[test]
 fn products_are_direct_sums() {
     let depths = [0.0, 1e-12, 0.3, 2.0, 17.0, 1e6];
@@ -72,7 +72,7 @@ fn products_are_direct_sums() {
             for (i, exact) in at(&body, &loads, &points).iter().enumerate() {
                 for (found, exact) in tensor(depth, i).iter().zip(exact) {
                     let error = (found - exact).abs();
-                    // Loads of 1; the two sum kernels that differ by 1e-12 of the largest far away, where they are small.
+                    // Loads are at most 1. The kernels of both sums differ only far away, where they are small, by 1e-12 of their largest value.
                     assert!(error <= 1e-13, "{mx} x {my}, z {z}, element {i}: {error:e}");
                 }
             }
@@ -80,8 +80,8 @@ fn products_are_direct_sums() {
     }
 }
 
-/// The hard grids and ratios: a long strip of elements, one element, nu = 1/2, depths from nothing to a million elements. By FFT as by
-/// the direct sum, at some of the elements.
+/// Products by FFT equal direct sums at some of the elements in hard cases: a long strip, one element, nu = 1/2, depths from 0 to a million
+/// elements.
 #[test]
 fn hard_cases_are_direct_sums() {
     for (mx, my, dx, dy, nu) in [(4099, 7, 1.0, 1.0, 0.5), (7, 4099, 0.3, 1.0, 0.0), (1, 1, 2.0, 0.5, 0.5)] {
@@ -95,7 +95,7 @@ fn hard_cases_are_direct_sums() {
             let points: Vec<_> = chosen.iter().map(|&i| centre(i)).collect();
             for (&i, exact) in chosen.iter().zip(at(&body, &loads, &points)) {
                 for (c, (found, exact)) in tensor(depth, i).into_iter().zip(exact).enumerate() {
-                    // Loads of 1, as above; far away kernels by Gauss points and by means differ by 1e-12 of what is left there.
+                    // Loads are at most 1, as above. Far away, kernels by Gauss points and by means differ by 1e-12 of their small values.
                     let error = (found - exact).abs();
                     assert!(error <= 1e-13, "{mx} x {my}, z {z}, element {i}, component {c}: {error:e}");
                 }
@@ -140,7 +140,7 @@ fn a_rectangle_and_a_strip_have_their_closed_forms() {
     }
 }
 
-/// Equilibrium, `d sij/dxj = 0`, by central differences of step 1e-3: second order, and what is left of 1e-16 over 2e-3.
+/// Equilibrium, `d sij/dxj = 0`, by central differences. Their error is of second order in the step of 1e-3, plus round-off of 1e-16 over 2e-3.
 #[test]
 fn stresses_are_in_equilibrium() {
     let body = body(5, 4, 1.0, 0.8, 0.3);
@@ -164,9 +164,9 @@ fn stresses_are_in_equilibrium() {
     }
 }
 
-/// What goes in at the surface goes through each depth. Under one loaded element the sum of a stress over a window of elements is the
-/// stress in the middle of a load on the whole window, as kernels are even: of pressures Love's closed form (1929), of tractions that of
-/// `V_z - z V_xx`. What is missing has gone through the plane beyond the window.
+/// The force on the surface passes through the plane at each depth. Kernels are even, so the sum of a stress over a window of elements under one
+/// loaded element equals the stress in the middle under a load on the whole window. For pressures this is Love's closed form (1929), for
+/// tractions that of `V_z - z V_xx`. The rest of the force passes through the plane outside the window.
 #[test]
 fn forces_pass_through_each_depth() {
     let m = 121;
@@ -182,15 +182,15 @@ fn forces_pass_through_each_depth() {
         let sum = |c: usize| -depth.stress[c].iter().sum::<f64>();
         println!("z {z}: szz {:.6}, sxz {:.6}", sum(2), sum(4));
         for (found, exact) in [(sum(2), normal), (sum(4), shear), (sum(5), shear)] {
-            // Kernels have twelve digits of the largest component at a place, and those add up to some 3.
+            // The error of a kernel is 1e-12 of the largest component at its place. The largest components add up to about 3.
             assert!((found - exact).abs() <= 1e-11, "z {z}: {found} for {exact}");
         }
-        // Shear along the other axis, and all that a load is not, cancels.
+        // sxy is odd in x or in y for each load, so its sum vanishes.
         assert!(depth.stress[3].iter().sum::<f64>().abs() <= 1e-11);
     }
 }
 
-/// A ball on a half-space: pressures p0 sqrt(1 - (r/a)^2) at the centres, a = 1, n elements to it.
+/// The Hertz pressures of a ball, sqrt(1 - (r/a)^2) at the centres of elements: a = 1 is n elements, with `more` elements outside.
 fn ball(n: usize, more: usize) -> (Body, Vec<f64>) {
     let m = 2 * (n + more) + 1;
     let d = 1.0 / n as f64;
@@ -202,7 +202,7 @@ fn ball(n: usize, more: usize) -> (Body, Vec<f64>) {
 
 #[test]
 fn under_a_ball_are_the_stresses_of_hertz() {
-    // The largest error is of second order in a/dx, 1.4e-4 p0 at 32; the shear at .48 a is 0.310020 (Johnson, eq. 3.45 and 4.24).
+    // The largest error is of second order in dx/a: 1.4e-4 p0 for dx = a/32. The shear at .48 a is 0.310020 (Johnson, eq. 3.45 and 4.24).
     for (n, tolerance, of_shear) in [(16, 6e-4, 2e-4), (32, 2e-4, 5e-5)] {
         let (body, pressure) = ball(n, 0);
         let depths: Vec<f64> = (1..=100).map(|k| 0.02 * k as f64).collect();
@@ -221,8 +221,8 @@ fn under_a_ball_are_the_stresses_of_hertz() {
     }
 }
 
-/// The largest shear is .3100205 p0 at .480864 a (from the closed form on the axis). The depths are .001 a apart, and the place is
-/// within two of them.
+/// The largest shear is .3100205 p0 at .480864 a (from the closed form on the axis). The depths are .001 a apart. The depth found is at most
+/// two of these off.
 #[test]
 fn the_largest_shear_under_a_ball_is_at_its_depth() {
     let (body, pressure) = ball(32, 0);
@@ -398,7 +398,7 @@ fn progress_counts_depths_and_cancels() {
     assert_eq!((done, told, kept), (Ok(false), vec![1, 2], 2));
 }
 
-/// The waves of element-wise constant loads that vary in x alone, summed term by term: xx, yy, zz, xz by a pressure and by a traction.
+/// The stresses xx, yy, zz, xz by a pressure and by a traction that are constant on each element and vary in x alone: a sum of waves, term by term.
 fn waves(load: &[f64], d: f64, nu: f64, i: usize, z: f64) -> [[f64; 4]; 2] {
     let m = load.len();
     let mean = load.iter().sum::<f64>() / m as f64;
@@ -435,13 +435,13 @@ fn a_periodic_load_is_a_sum_of_waves() {
     let mean = load.iter().sum::<f64>() / m as f64;
     for (k, z) in depths.into_iter().enumerate() {
         for (i, p) in everywhere.iter().enumerate() {
-            // At the surface exactly: sxx = -p and syy = -2 nu p but for the mean, szz = -p, sxz = -q.
+            // Exactly at the surface: szz = -p, sxz = -q, and without the mean of p sxx = -p, syy = -2 nu p.
             let sideways = -nu / (1.0 - nu) * mean;
             let surface = [sideways - (p - mean), sideways - 2.0 * nu * (p - mean), -p, 0.0];
             let exact = if z > 0.0 { waves(&load, d, nu, i % m, z) } else { [surface, [f64::NAN, f64::NAN, 0.0, -p]] };
             for (found, exact) in [&pressed[k], &sheared[k]].into_iter().zip(exact) {
                 for (c, exact) in [0, 1, 2, 4].into_iter().zip(exact).filter(|(_, exact)| !exact.is_nan()) {
-                    // A tenth difference: its weights, of up to 252, times round-off, and what is left beyond its reach.
+                    // Near the surface kernels are tenth differences: round-off times weights of up to 252, and the images that are left out.
                     let found = found.stress[c][i];
                     assert!((found - exact).abs() <= 1e-11, "z {z}, element {i}, component {c}: {found} for {exact}");
                 }
@@ -451,8 +451,9 @@ fn a_periodic_load_is_a_sum_of_waves() {
     }
 }
 
-/// In two dimensions: near the surface as by the waves that are left there, which another grid of a third of the element sums. Odd and
-/// even numbers of elements, slender ones, more than a lane of bins, and depths at which most bins or all have faded.
+/// Loads in two dimensions have the same stresses on a grid of elements a third as long. At depths between the sides of both elements, the
+/// fine grid sums waves and the coarse one takes tenth differences. Odd and even numbers of elements, slender ones, more bins than a lane has, and
+/// depths at which most or all waves have faded.
 #[test]
 fn periodic_stresses_are_those_of_finer_elements() {
     for (mx, my, dx, dy) in [(5, 4, 1.0, 0.8), (31, 16, 0.4, 1.0), (2, 33, 1.0, 0.3), (1, 1, 1.0, 1.0)] {
@@ -469,7 +470,7 @@ fn periodic_stresses_are_those_of_finer_elements() {
         };
         let both = (of(&coarse, &loads, 2), of(&fine, &loads.each_ref().map(refined), 1));
         for (z, (one, other)) in depths.into_iter().zip(both.0.iter().zip(&both.1)) {
-            // Below a side of an element both are sums of waves; above, a tenth difference of kernels that have twelve digits.
+            // Deeper than a side of the coarse element both are sums of waves. Nearer the surface, tenth differences have an error of 1e-12.
             let tolerance = if z < 1.0 { 1e-11 } else { 1e-14 };
             for i in 0..mx * my {
                 let middle = (3 * (i / mx) + 1) * 3 * mx + 3 * (i % mx) + 1;
@@ -482,7 +483,7 @@ fn periodic_stresses_are_those_of_finer_elements() {
     }
 }
 
-/// Loads on a line with two periods are uniform along its elements, however long these are: plane strain.
+/// A line of elements with two periods has uniform loads along each element. The stresses are those of plane strain, whatever the length of the elements.
 #[test]
 fn a_periodic_line_has_the_stresses_of_plane_strain() {
     let (m, d, load) = (24, 0.3, noise(7, 24));
@@ -497,7 +498,7 @@ fn a_periodic_line_has_the_stresses_of_plane_strain() {
             stresses(&Body { periodic: true, ..body(mx, my, dx, dy, 0.3) })
         };
         let square = on(d);
-        // Three rows are one.
+        // Three equal rows are as good as one.
         let rows: Vec<f64> = (0..3 * m).map(|i| load[if my == 1 { i % m } else { i / 3 }]).collect();
         let (wide, high) = if my == 1 { (m, 3) } else { (3, m) };
         let three = Body { periodic: true, ..body(wide, high, d, d, 0.3) };
@@ -507,7 +508,7 @@ fn a_periodic_line_has_the_stresses_of_plane_strain() {
             .into_iter()
             .flat_map(|depth| (0..m).map(|i| depth.von_mises[if my == 1 { i } else { 3 * i }]).collect::<Vec<f64>>())
             .collect();
-        // Kernels have 1e-12 (tests above); so do sums of 24 of them.
+        // The error of a kernel is 1e-12 (tests above); that of a sum of 24 is below 1e-10.
         assert!(square.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-10 * largest(&expected)), "{mx} x {my}");
         for long in [1e-4, 1e4] {
             assert!(on(long) == square, "{mx} x {my}, elements {long} long");

@@ -43,7 +43,7 @@ const PATH: [(f64, Load); 9] = [
     (1.5, Load::Force(0.02)),
 ];
 
-/// What each body gives way of both at once.
+/// The share of each body in the instantaneous compliance.
 fn shares(bodies: &Bodies) -> [f64; 2] {
     let of = |b: usize| (1.0 - bodies.poisson_ratio[b]) / bodies.shear_modulus[b];
     [of(0) / (of(0) + of(1)), of(1) / (of(0) + of(1))]
@@ -164,7 +164,7 @@ fn a_handle_goes_on_begins_anew_and_keeps_what_it_remembers_where_a_step_is_refu
     for round in 0..2 {
         solver.solve(&step(0.2, false, Load::Approach(0.05)), &options, None, None).unwrap();
         if round == 1 {
-            // No pressures carry a force without a limit on an area that has none.
+            // Without a surface no pressures carry a force.
             let hole = vec![f64::INFINITY; h.len()];
             let nothing = Scene { undeformed_distance: &hole, ..step(0.3, true, Load::Force(1.0)) };
             solver.solve(&nothing, &options, None, None).unwrap_err();

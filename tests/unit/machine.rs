@@ -1,6 +1,6 @@
 use super::{growth, growth_by, seconds_on, Cost, GROWTH, POWERS};
 
-/// Powers of 1.1 up to 4096 elements and of 1.15 from there on, in whatever seconds.
+/// Powers of 1.1 up to 4096 elements and of 1.15 from there on, in arbitrary seconds.
 const TIMED: [(f64, f64); 3] = [(1024.0, 3e-5), (4096.0, 3e-5 * 4.594_793_419_988_14), (16384.0, 0.0)];
 
 fn timed() -> [(f64, f64); 3] {
@@ -9,7 +9,7 @@ fn timed() -> [(f64, f64); 3] {
     [a, b, c]
 }
 
-/// The powers are exact but for round-off, as the seconds above are.
+/// The powers are exact up to round-off, like the seconds above.
 fn assert_near(found: f64, expected: f64) {
     assert!((found / expected - 1.0).abs() < 1e-12, "{found} and {expected}");
 }
@@ -20,7 +20,7 @@ fn growth_is_that_of_the_sizes_that_it_passes() {
     assert_near(growth_by(&timed, 2000.0, 3000.0), 1.5f64.powf(1.1));
     assert_near(growth_by(&timed, 5000.0, 10000.0), 2f64.powf(1.15));
     assert_near(growth_by(&timed, 1024.0, 16384.0), 4f64.powf(1.1) * 4f64.powf(1.15));
-    // Before the first size and beyond the last one that of their neighbours.
+    // Before the first size and beyond the last one, the power of the nearest interval.
     assert_near(growth_by(&timed, 256.0, 1024.0), 4f64.powf(1.1));
     assert_near(growth_by(&timed, 16384.0, 65536.0), 4f64.powf(1.15));
     assert_near(growth_by(&timed, 9000.0, 9000.0), 1.0);
@@ -47,8 +47,8 @@ fn the_machine_is_timed_once_and_by_any_thread() {
     assert!((64f64.powf(POWERS.0)..=64f64.powf(POWERS.1) * (1.0 + 1e-12)).contains(&found[0]), "{}", found[0]);
 }
 
-/// Coefficients of a scene that repeats itself take 1.2 ms on each small grid, the solve grows with the elements: on 256 times these it takes 256 times as long
-/// or more, the coefficients not twice as long. (With the least power of .4 they had nine times as long.)
+/// The set-up of a periodic scene takes 1.2 ms on each small grid, and the solve grows with the elements. On 256 times the elements the solve takes at least 256
+/// times as long, the set-up less than twice as long.
 #[test]
 fn a_set_up_that_stays_is_not_carried_on_as_a_solve() {
     let of = |m: f64| Cost { elements: m * m, seconds: 1.2e-3 + 1e-8 * m * m, setup: 1.2e-3, products: 4.0 };
@@ -60,7 +60,7 @@ fn a_set_up_that_stays_is_not_carried_on_as_a_solve() {
     assert_eq!(seconds_on(&[], 100.0), 0.0);
 }
 
-/// Products that grow by a fifth with a doubling: the seconds of 10 ns for each element and product, whichever sample is carried on.
+/// Products that grow by a fifth with a doubling: 10 ns for each element and product, from whichever sample seconds are extrapolated.
 #[test]
 fn products_that_grow_are_carried_on() {
     let of = |m: f64| {

@@ -1,7 +1,7 @@
 use super::*;
 use crate::solver::quantities::Quantity;
 
-/// A solve of one second for each told iteration, that ends one second and one product after the last.
+/// A solve of one second for each reported iteration. It ends one second and one product after the last.
 fn sample(reached: Vec<Told>, tangential: f64) -> Sample {
     let &(_, seconds, products) = reached.last().expect("an iteration");
     Sample {
@@ -26,12 +26,12 @@ fn what_is_done_beyond_a_residual_goes() {
     let plain = sample(vec![(1e-1, 1.0, 1.0), (1e-2, 2.0, 2.0), (1e-4, 3.0, 3.0), (1e-6, 4.0, 4.0)], 0.0);
     assert_eq!(plain.to(1e-2, 1e-2), (3.0, 3.0));
     assert_eq!(plain.to(1e-6, 1e-6), (5.0, 5.0));
-    // A direct solve tells a residual at its end only.
+    // A direct solve reports a residual at its end only.
     let direct = sample(vec![(0.0, 1.0, 1.0), (0.0, 2.0, 1.0), (0.0, 3.0, 2.0)], 0.0);
     assert_eq!(direct.to(1e-2, 1e-2), (4.0, 3.0));
 }
 
-/// With friction the normal problem is solved to its end, then the tangential one, of which no products are told: four between its first iterations.
+/// With friction the normal problem is solved first, then the tangential one, whose products are not reported: four between its first iterations.
 #[test]
 fn both_problems_of_friction_end_there() {
     let reached = vec![(1e-2, 1.0, 1.0), (1e-4, 2.0, 2.0), (1e-1, 3.0, 2.0), (1e-3, 4.0, 2.0), (1e-5, 5.0, 2.0)];
@@ -39,7 +39,7 @@ fn both_problems_of_friction_end_there() {
     assert_eq!(sample(reached, 6.0).to(1e-2, 1e-2), (6.0 - 1.0 - 1.0, 9.0 - 1.0 - 2.0));
 }
 
-/// Tangential problems that tell nothing, between two of the normal one: the time of them stays.
+/// Tangential problems without reports, between two normal ones: any residual needs their time.
 #[test]
 fn turns_are_needed_by_any_residual() {
     let turns = sample(vec![(1e-4, 1.0, 1.0), (1e-6, 2.0, 2.0), (1e-5, 12.0, 3.0), (1e-7, 13.0, 4.0)], 0.0);
@@ -57,9 +57,9 @@ fn between_two_tolerances_costs_are_those_of_the_logarithm() {
         assert!((a - part).abs() < 1e-12 && (b - products).abs() < 1e-12, "{a} {b}");
     };
     near(sample.between(1e-4), (0.75, 6.0));
-    // Beyond both ends what is there.
+    // Beyond both ends, the values at the ends.
     near(sample.between(1e-8), (1.0, 9.0));
     near(sample.between(1e-1), (0.5, 3.0));
-    // Two products of the normal problem to 1e-6; half of what is told to 1e-2.
+    // Two products of the normal problem to 1e-6; half of the reported ones to 1e-2.
     assert_eq!((sample.normal(1e-6, 1e-6), sample.normal(1e-2, 1e-2)), (2.0, 1.0));
 }

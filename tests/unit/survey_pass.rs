@@ -1,4 +1,4 @@
-//! A survey against a loop over the elements. All values are whole numbers, the sums of which have no rounding.
+//! A survey equals a loop over the elements. All values are whole numbers, so that sums are exact.
 
 use super::super::certificate::Survey;
 use super::super::State;
@@ -8,18 +8,18 @@ use crate::threads::Threads;
 
 const APPROACH: f64 = 3.0;
 
-/// What a state is like, beside the numbers of a generator: some elements have no surface, and the first 70 columns of wide grids carry nothing.
+/// The kind of a random state. In all of them some elements have no surface, and the first 70 columns of wide grids have no pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
-    /// Pressures of either sign; u is no number where there is no surface.
+    /// Pressures of either sign; u is NaN on elements without a surface.
     Plain,
     /// Pressures of either sign, and elements at their limit.
     Limited,
-    /// The same; those at their limit would be deepest if they counted as exterior.
+    /// As `Limited`; elements at their limit would have the largest violation if they counted as exterior.
     DeepAtLimit,
-    /// No pressure but positive ones: the least of all is that of elements without.
+    /// Pressures are positive or 0: the least one is that of an unloaded element.
     Positive,
-    /// Nothing presses, p is 0 or -0, and u is no number where there is no surface.
+    /// No element is loaded: p is 0 or -0. u is NaN on elements without a surface.
     Idle,
 }
 

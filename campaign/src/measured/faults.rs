@@ -1,9 +1,9 @@
-//! What an instrument, wear and a mounting do to a map of heights.
+//! Faults of a map of heights by the instrument, by wear and by the mounting.
 
 use crate::grid::Grid;
 use crate::random::Random;
 
-/// Spoils h in up to three ways, and says how. At least one element keeps a surface.
+/// Adds up to three faults to h, and returns their names. At least one element keeps a surface.
 pub fn any(random: &mut Random, grid: &Grid, h: &mut [f64]) -> Vec<&'static str> {
     let mut names = Vec::new();
     let count = random.pick(&[0, 0, 1, 1, 1, 2, 2, 3]);
@@ -26,7 +26,7 @@ pub fn any(random: &mut Random, grid: &Grid, h: &mut [f64]) -> Vec<&'static str>
     names
 }
 
-/// The heights that there are, sorted.
+/// The finite heights, sorted.
 pub fn sorted(h: &[f64]) -> Vec<f64> {
     let mut finite: Vec<f64> = h.iter().copied().filter(|h| h.is_finite()).collect();
     finite.sort_by(f64::total_cmp);
@@ -75,7 +75,7 @@ fn plateau(random: &mut Random, h: &mut [f64]) -> &'static str {
     }
 }
 
-/// Points above all others, one or many: dust, or what an interferometer makes of a slope.
+/// One or many points above all others: dust, or errors of an interferometer on a slope.
 fn spikes(random: &mut Random, h: &mut [f64]) -> &'static str {
     let (count, height) = (points(random, h.len()), rms(h) * random.decades(1.0, 1e4));
     let alike = random.chance(0.3);
@@ -98,7 +98,7 @@ fn pits(random: &mut Random, h: &mut [f64]) -> &'static str {
     "pits"
 }
 
-/// One, some, or a part of all.
+/// A number of points: one, some, or a part of all.
 fn points(random: &mut Random, n: usize) -> usize {
     match random.uniform() {
         u if u < 0.4 => 1,

@@ -1,4 +1,4 @@
-//! Surfaces without their faults: undeformed distances of size about 1.
+//! Random surfaces without faults: undeformed distances of size about 1.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use crate::fft::synthesis;
 use crate::grid::Grid;
 use crate::random::Random;
 
-/// A name, and h.
+/// The name and h of a random surface.
 pub fn any(random: &mut Random, grid: &Grid) -> (String, Vec<f64>) {
     let (name, h) = match random.integer(0, 15) {
         0..=4 => ("self-affine", self_affine(random, grid)),
@@ -30,8 +30,9 @@ fn centres(grid: &Grid) -> impl Iterator<Item = [f64; 2]> {
     (0..mx * my).map(move |i| [along(i % mx, mx), along(i / mx, my)])
 }
 
-/// Random phases, amplitudes as the wave number to -(1 + Hurst exponent), constant below the roll-off and 0 beyond the shortest wave; from
-/// the highest point down, rms 1. It repeats itself where the counts are powers of two.
+/// A self-affine surface of waves with random phases. Amplitudes go with the wave number to the power -(1 + Hurst exponent). They are constant
+/// below the roll-off, and 0 beyond the shortest wave. Distances are measured down from the highest point, with rms 1. The surface is periodic if
+/// the numbers of elements are powers of two.
 pub fn self_affine(random: &mut Random, grid: &Grid) -> Vec<f64> {
     let Grid { mx, my, .. } = *grid;
     let (nx, ny) = (mx.next_power_of_two(), my.next_power_of_two());
@@ -58,7 +59,7 @@ fn from_the_top(z: Vec<f64>) -> Vec<f64> {
     z.into_iter().map(|z| (top - z) / size).collect()
 }
 
-/// White: uniform, or with a long tail to one side.
+/// White noise: uniform, or with a long tail to one side.
 fn noise(random: &mut Random, grid: &Grid) -> Vec<f64> {
     let power = random.pick(&[1.0, 1.0, 0.1, 8.0]);
     (0..grid.len()).map(|_| random.uniform().powf(power)).collect()
@@ -81,7 +82,7 @@ fn waves(random: &mut Random, grid: &Grid) -> Vec<f64> {
     (0..grid.len()).map(at).collect()
 }
 
-/// Flat, curved or leaning within an outline whose edges fall between elements; beside it a step, a slope, or nothing.
+/// A punch: flat, curved or leaning within an outline whose edges may cut elements; outside a step, a slope, or no surface.
 fn punch(random: &mut Random, grid: &Grid) -> Vec<f64> {
     let (a, b) = (random.between(0.05, 1.0), random.between(0.05, 1.0));
     let (x0, y0) = (random.between(-0.4, 0.4), random.between(-0.4, 0.4));
@@ -108,7 +109,7 @@ fn punch(random: &mut Random, grid: &Grid) -> Vec<f64> {
     centres(grid).map(at).collect()
 }
 
-/// Arcs of several radii across, as of a wheel and a rail, and one along.
+/// Arcs of several radii across, like those of a wheel on a rail, and one arc along.
 fn profile(random: &mut Random, grid: &Grid) -> Vec<f64> {
     let (along, corners) = (random.decades(1e-3, 1.0), random.integer(1, 6));
     let places: Vec<[f64; 2]> = (0..corners).map(|_| [random.between(-1.0, 1.0), random.decades(0.01, 10.0)]).collect();
@@ -136,7 +137,7 @@ fn grating(random: &mut Random, grid: &Grid) -> Vec<f64> {
     (0..grid.len()).map(at).collect()
 }
 
-/// Few heights in turns along both directions.
+/// A pattern of few heights that repeats in both directions.
 fn pattern(random: &mut Random, grid: &Grid) -> Vec<f64> {
     let (a, b, k) = (random.integer(0, 4), random.integer(1, 4), random.integer(2, 7));
     (0..grid.len()).map(|i| ((a * (i % grid.mx) + b * (i / grid.mx)) % k) as f64).collect()

@@ -1,4 +1,4 @@
-//! Cases of what people bring: measured maps with their faults, line scans, strips, punches, gratings; on grids of 1 to 60000 elements.
+//! Random cases of usual surfaces: measured maps with their faults, line scans, strips, punches, gratings, on grids of 1 to 60000 elements.
 
 mod faults;
 mod grids;
@@ -15,7 +15,7 @@ use crate::half_space::compliance;
 use crate::random::Random;
 use crate::scales::{self, Scales};
 
-/// Undeformed distances of a grid, of any unit, and what they are called.
+/// The name and the undeformed distances of a random surface, in an arbitrary unit.
 pub fn surface(random: &mut Random, grid: &Grid) -> (String, Vec<f64>) {
     let (mut name, mut h) = heights::any(random, grid);
     for fault in faults::any(random, grid, &mut h) {
@@ -66,7 +66,7 @@ pub fn case(seed: u64) -> Case {
     }
 }
 
-/// Some heights are above another level than their own, and some are all the same. Returns what it is called.
+/// Shifts some surfaces by a constant, and flattens others. Returns the addition to the name.
 fn datum(random: &mut Random, height: f64, h: &mut [f64]) -> &'static str {
     let (is_other, is_flat) = (random.chance(0.1), random.chance(0.02));
     let level = if is_other || is_flat { height * random.pick(&[1.0 / 3.0, -1.0, 30.0, 1e3]) } else { 0.0 };
@@ -80,10 +80,10 @@ fn datum(random: &mut Random, height: f64, h: &mut [f64]) -> &'static str {
     }
 }
 
-/// The effects that a scene names. Tables per row are dear, and so are others on large grids.
+/// The effects of a scene. Row tables take long: small grids only.
 fn kinds(random: &mut Random, grid: &Grid) -> Kinds {
     let mut kinds = Kinds::default();
-    // The sums of a period take time where elements are slender.
+    // Sums over the images of slender elements take long.
     let slender = grid.dx.max(grid.dy) > 8.0 * grid.dx.min(grid.dy);
     if !slender && random.chance(0.45) {
         kinds.period = Some(random.pick(&[(true, false), (false, true), (true, true), (true, true)]));
@@ -98,7 +98,7 @@ fn kinds(random: &mut Random, grid: &Grid) -> Kinds {
     kinds
 }
 
-/// Coatings of not too large grids, whose elements are not slender: the oracle integrates by quadrature.
+/// Whether bodies are coated: only on small grids without slender elements, because the oracle integrates by quadrature.
 fn is_coated(random: &mut Random, grid: &Grid, effects: &Effects) -> bool {
     let own = effects.influence.is_some() || effects.row_tables.is_some();
     let one_period = matches!(effects.period, Some((true, false) | (false, true)));

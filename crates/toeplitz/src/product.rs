@@ -28,7 +28,7 @@ enum Columns<T: Real> {
 }
 
 impl<T: Real> Product<T> {
-    /// Makes the plans of a period, at least as long as the grid in either direction, without the symbol. Fails without memory.
+    /// Makes the plans for a period that is at least as long as the grid in either direction. The symbol is not set. Fails if memory is short.
     pub fn new(grid: (usize, usize), period: (usize, usize), threads: &Threads) -> Result<Product<T>> {
         let columns = Columns::Toeplitz(Convolution::new(period)?);
         Ok(Product { rows: Rows::new(grid, period.0, threads)?, columns })

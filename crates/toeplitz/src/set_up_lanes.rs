@@ -44,7 +44,7 @@ impl<'a> LaneTransforms<'a> {
         LaneTransforms::on(pulp::Arch::new(), period, threads)
     }
 
-    /// [`LaneTransforms::new`] with the vectors of these instructions. No bit depends on them.
+    /// [`LaneTransforms::new`] for an instruction set. Results have the same bits with any of them.
     pub(crate) fn on(
         arch: pulp::Arch,
         (px, py): (usize, usize),

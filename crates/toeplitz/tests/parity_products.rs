@@ -18,8 +18,8 @@ fn load((mx, my): (usize, usize), seed: usize) -> Vec<f64> {
     (0..mx * my).map(|i| ((i * 7919 + seed * 131) % 1013) as f64 / 506.0 - 1.0).collect()
 }
 
-/// The largest error of the sum of products of loads by kernels of these parities, relative to what terms may add up to. With a period, loads and
-/// kernels repeat themselves.
+/// The largest error of the sum of products of loads by kernels of these parities, relative to the sum of the absolute values of the kernels. `repeats`: loads and
+/// kernels are periodic.
 fn error(grid: (usize, usize), parities: &[(bool, bool)], repeats: bool) -> f64 {
     let (mx, my) = grid;
     let period = |m: usize| if repeats { m } else { good_length(2 * m - 1) };
@@ -27,7 +27,7 @@ fn error(grid: (usize, usize), parities: &[(bool, bool)], repeats: bool) -> f64 
     let ((px, py), (nb, half)) = (product.lengths(), product.bins());
     let given = if repeats { (mx / 2 + 1, my / 2 + 1) } else { grid };
     let mut memory = product.memory(given.1).expect("memory");
-    // Offsets of at most half a period; half a period away what is odd is 0.
+    // Offsets of at most half a period, at which an odd kernel is 0.
     let near = |k: i64, m: usize| {
         let k = if repeats { k.rem_euclid(m as i64) } else { k };
         if repeats && 2 * k > m as i64 {

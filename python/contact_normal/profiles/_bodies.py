@@ -15,29 +15,30 @@ from ._profile import Profile
 if TYPE_CHECKING:
     from .._arguments import Doubles
 
-# Rails are inclined by 1/20 or less, and wheelsets yaw less, in rad: larger numbers are 40 for 1/40, or degrees.
+# Rails are inclined by at most 1/20 rad, and wheelsets yaw less. A larger number is a mistake: 40 for 1/40, or degrees.
 _STEEPEST = 0.5
 
-# Lengths are in mm of one scale, a model's too. A gauge is 6 to 20 times as large as a rail is wide, where it is in the same unit, and so on.
+# All lengths are in mm and of one scale, which may be that of a model. Ratios outside these ranges show mixed units: a gauge is 6 to 20 times the width of
+# a rail in the same unit.
 _GAUGE_OVER_RAIL = 3.5, 100.0
 _BACKS_OVER_WHEEL = (2.0, 80.0)
 _RADIUS_OVER_WHEEL = 0.8
 _HEIGHT_OVER_GAUGE = 0.002
-# Sides of a head are looked at so far below its top, in mm; a rail that leans to the field side by so much, in rad, is mirrored.
+# The sides of a head are compared at these depths below its top, in mm. A rail that leans to the field side by more than this angle, in rad, is mirrored.
 _SIDES, _LEANS = (16.0, 32.0), 0.012
-# The origin of z is on the tread to this, in mm; and the back so far from the smallest y of a profile with a flange, and without.
+# Largest distance of the tread from z = 0, in mm; of the flange back from the smallest y of a profile with a flange, and of one without.
 _TREAD = 20.0
 _BACK, _BACK_OF_TREAD = 40.0, 120.0
 
-# Behind its tip a flange falls by more than this part of its height, down to the back. Radii are those at so many mm from the back, to so many mm in z: what
-# wears off is less; both for flanges of full size.
+# Behind its tip a flange falls to the back by more than _FALLS of its height. Radii are measured _TAPE mm from the back. There z is 0 to _OFF_TAPE mm, since
+# wear is less: checked for flange heights of _FULL mm only.
 _FALLS, _TAPE, _OFF_TAPE, _FULL = 0.2, 70.0, 6.0, (20.0, 45.0)
-# Profiles that are less wide, in mm, are those of models.
+# Wheels narrower than this, in mm, are those of models.
 _WHOLE = 40.0
-# Heads of rails and whole rails are less high than so many widths.
+# The height of a rail, or of its head, is less than this times its width.
 _SLENDER = 1.8
 
-# Flanges are measured so far below the tread, as a part of the radius: 10 mm. Wheelsets have a play of some mm in the track, and less than this part of the gauge.
+# Flanges are measured 10 mm below the tread, as a part of the radius. The play of a wheelset in the track is some mm, less than _PLAY of the gauge.
 _FACE, _PLAY = 10.0 / 460.0, 0.05
 
 _UNITS = "lengths are in mm, those of profiles, gauges and radii; profiles.read takes scale=, as 25.4 for a file in inches"
@@ -52,8 +53,8 @@ class Position:
     y : float
         Shift of the middle of the axle to the right, in mm.
     z : float or None
-        How much lower the axle is than the nominal radius above the top of the rails, in mm. None: the wheelset is lowered until the wheel of
-        interest touches.
+        Distance in mm by which the axle is lower than its nominal height, one radius above the top of the rails. None: the wheelset is lowered
+        until the wheel of interest touches.
     roll, yaw : float
         Angles about x (the right side moves down) and about z (the right side moves back), in rad. The wheelset is rolled first.
     """
@@ -73,7 +74,7 @@ class Position:
                 raise ValueError(f"{name} is {getattr(self, name)}; it is an angle in rad of at most {_STEEPEST}")
 
     def seen_from(self, side: str) -> Position:
-        """The same, mirrored for the left side, so that y grows outwards."""
+        """This position for the right side, and its mirror image for the left side, so that y grows outwards."""
         if side not in ("left", "right"):
             raise ValueError(f'side is {side!r}; it must be "left" or "right"')
         return self if side == "right" else Position(-self.y, self.z, -self.roll, -self.yaw)
@@ -93,13 +94,13 @@ class Track:
     Attributes
     ----------
     rail : Profile
-        Of the right rail.
+        The profile of the right rail.
     gauge : float
         Distance of the gauge points of both rails, in mm.
     gauge_height : float
         How far the gauge points are below the top of the rails, in mm.
     inclination : float
-        Angle in rad by which the profile is still to be inclined towards the track, as 1/40. 0: the profile has its inclination.
+        Angle in rad by which to incline the profile towards the track, for example 1/40. 0: the profile is drawn inclined.
     """
 
     rail: Profile
@@ -147,7 +148,7 @@ class Track:
 
 
 def _lean(rail: Profile) -> float:
-    """By how much a rail leans to the track, in rad, if both sides of its head are there: how the middle of the head moves out with the depth."""
+    """The angle in rad by which a rail leans to the track: the slope of the middle of its head over the depth. 0 if the profile lacks a side of the head."""
     top = int(np.argmin(rail.z))
     sides = (rail.y[: top + 1][::-1], rail.z[: top + 1][::-1]), (rail.y[top:], rail.z[top:])
     deepest = min(float(z.max()) for _, z in sides) - float(rail.z[top])
@@ -165,7 +166,7 @@ class Wheelset:
     Attributes
     ----------
     wheel : Profile
-        Of the right wheel; its z is 0 where the radius is `radius`.
+        The profile of the right wheel; its z is 0 where the radius is `radius`.
     radius : float
         Radius at z = 0 of the profile, in mm.
     flange_back : float
@@ -198,7 +199,7 @@ class Wheelset:
         self._warn_of_origin()
 
     def _warn_of_back(self) -> None:
-        """Warns of a profile whose smallest y is taken for the back, but is not."""
+        """Warns if the smallest y of the profile is taken for the flange back, but is not."""
         if self.flange_back_at is not None:
             return
         tip, end = float(self.wheel.z.max()), float(self.wheel.z[0])
@@ -224,7 +225,7 @@ class Wheelset:
                           "wheel.moved(z=...) puts the origin on the tread", stacklevel=4)
 
     def _check_back(self) -> None:
-        """Refuses a back that is not where the profile ends, at the flange."""
+        """Refuses a flange back that is far from the smallest y of the profile."""
         if self.flange_back_at is None:
             return
         at, end = number("flange_back_at", self.flange_back_at), float(self.wheel.y.min())
@@ -252,7 +253,7 @@ class Wheelset:
 
 
 def warn_of_play(track: Track, wheelset: Wheelset, stacklevel: int) -> None:
-    """Warns of a wheelset that does not fit between the rails, or has room for another one."""
+    """Warns of a wheelset that does not fit between the rails, or has too much play."""
     across = wheelset.across_flanges()
     if across is None:
         return
@@ -264,7 +265,7 @@ def warn_of_play(track: Track, wheelset: Wheelset, stacklevel: int) -> None:
 
 
 def _refuse_unless(kind: str, profile: Profile) -> None:
-    """Refuses what is not a profile of this kind."""
+    """Refuses anything but a profile of this kind."""
     if not isinstance(profile, Profile):
         raise TypeError(f"{kind} is a {type(profile).__name__}; it must be a Profile, as profiles.read(...) returns it")
     if profile.kind != kind:

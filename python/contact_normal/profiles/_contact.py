@@ -15,24 +15,24 @@ from ._patch import ContactPoint, Pair
 if TYPE_CHECKING:
     from .._arguments import Doubles
 
-# Places between two points of the wheel's curve at which the clearance is looked at.
+# Places between two points of the wheel's curve at which the clearance is computed.
 _BETWEEN = 6
 # An interval around a minimum is divided by 32 points, nine times: it shrinks by 16^9.
 _SECTIONS, _PARTS = 9, 32
-# Steps of the search of a roll, in which each has about 1.6 times the digits of the one before.
+# Most steps of the secant method for the roll. Each step has about 1.6 times the digits of the one before.
 _ROLLS = 40
-# How these are made.
+# Examples of their arguments, for messages.
 _AS = {Track: "rail", Wheelset: "wheel", Position: "y=4.0"}
-# What to look at.
+# The advice in messages.
 _BESIDE = ("look at both by plot(): they are in mm, y grows to the field side and z downwards, and one is a wheel, the other a rail; then at the gauge and "
            "the distance of the flange backs")
 
 
 def _lowest(pair: Pair, t: Any) -> tuple[Doubles, Doubles, Doubles]:
-    """The place on each circle of the wheel whose normal has no part along the rail, in coordinates of the track.
+    """The place on each circle of the wheel whose normal has no component along the rail, in coordinates of the track.
 
-    Only there a wheel can touch a rail, which is the same all along x. With e the radial direction at an angle theta from straight
-    below and r the radius, the normal is e - r' e_y in the wheelset; its part along x is a sin(theta) + b cos(theta) - c r'.
+    Only there can a wheel touch a rail, which is uniform along x. Let e be the radial direction at an angle theta from straight below, and
+    r the radius. Then the normal is e - r' e_y in the wheelset, and its component along x is a sin(theta) + b cos(theta) - c r'.
     """
     y, radius, dy, dz = pair.tread.at(t)
     turned = pair.position.rotation()
@@ -91,8 +91,8 @@ def contact_points(
     side : {"left", "right"}
         Which wheel.
     within : float
-        Other local minima are returned whose clearance is by at most this length larger, in mm. Loaded wheels may touch there too: each place
-        is a patch of its own.
+        A length in mm. Other local minima are returned too if their clearance exceeds the smallest one by at most this length. Loaded wheels may
+        touch there: each place is a patch of its own.
 
     Returns
     -------

@@ -22,16 +22,16 @@ if TYPE_CHECKING:
     from .._arguments import Doubles
     from .._result import Result
 
-# Newton's steps for a distance along the normal. Each doubles the digits; the start is off by the curvature of the wheel only. Two or three suffice in most
-# cases: a step of less than this part of the radius is the last one.
+# Most steps of Newton's method for a distance along the normal. Each step doubles the digits. The start has an error by the curvature of the wheel only, so two
+# or three steps suffice in most cases. A step of less than _TIGHT of the radius is the last one.
 _STEPS, _TIGHT = 8, 1e-13
-# Places that are worked on at a time: some megabytes.
+# Places that are computed at a time: some megabytes.
 _BLOCK = 1 << 16
-# A grid is made for the approach times the second number, and made anew if it was made for more than the first one.
+# A grid is made for _RESERVE times the approach, and made again if it was made for more than _LOOSE times the approach.
 _LOOSE, _RESERVE = 1.5, 1.1
-# Of the rolling radius: nothing approaches by more, unless units are mixed.
+# A larger approach, relative to the rolling radius, shows mixed units.
 _DEEPEST = 0.05
-# A grid on which no force can be carried is made anew for an approach of so many times.
+# A grid that cannot carry the force is made again for an approach that is larger by this factor.
 _DEEPER = 4.0
 # The grid of a patch has at most this many elements on each side of the contact point; the first one that is tried.
 _FARTHEST = 1024
@@ -126,7 +126,7 @@ class ContactPoint:
         """The same; raises _Late between two blocks of rows once no time is left."""
         pair, (_, ey, normal) = self._pair, self._axes()
         origin = np.array([self._x, *(float(value) for value in pair.rail.at(self._on_rail)[:2])])
-        # The rail is the same all along x.
+        # The rail is uniform along x.
         along = (ey[1], ey[2])
         on_rail = pair.rail.where(y + along[0] * origin[1] + along[1] * origin[2], along, self._on_rail)
         rail_y, rail_z, _, _ = pair.rail.at(np.where(np.isnan(on_rail), 0.0, on_rail))
@@ -179,7 +179,7 @@ class ContactPoint:
                 raise ValueError(f"depth is {depth}: the grid would need more than {2 * _FARTHEST} elements of {dx} x {dy} in a direction")
             k = np.arange(-reach, reach + 1)
             x, y = np.asarray(k * dx, dtype=np.float64), np.asarray(k * dy, dtype=np.float64)
-            # Both axes first: they tell of most grids that are too small.
+            # Both axes first: they show most grids that are too small.
             ahead, aside = self._distance(x, np.zeros(1), is_over)[0], self._distance(np.zeros(1), y, is_over)[:, 0]
             if min(ahead[0], ahead[-1], aside[0], aside[-1]) >= min(ahead.min(), aside.min()) + depth:
                 h = self._distance(x, y, is_over)
@@ -209,10 +209,10 @@ class ContactPoint:
         friction : dict, optional
             As that of `contact_normal.solve`. Its spin is about the contact point.
         **scene
-            Elastic constants, effects and options of `contact_normal.solve`. `max_seconds` is the limit of all grids and solves together, but
-            that the first grid is made to its end; the solve of friction is the last one. No other one follows a solve that is cancelled, or
-            ended by this limit: it is the result. Where no time is left for the next solve, the one before is the result; its `status` is
-            `ITERATION_LIMIT` then, and `message` tells what is missing.
+            Elastic constants, effects and options of `contact_normal.solve`. `max_seconds` is the limit of all grids and solves together, except
+            that the first grid is always finished. The solve of friction is the last one. A solve that is cancelled, or ended by this limit, is the
+            result, and no other one follows. If no time is left for the next solve, the one before is the result. Its `status` is then
+            `ITERATION_LIMIT`, and its `message` says what is missing.
         """
         may_shrink, limit = True, TimeLimit(scene)
         gap = self.gap(dx, dy, depth)
@@ -257,7 +257,7 @@ class ContactPoint:
         return gap, result
 
     def _warn_of_others(self, gap: Gap, approach: float) -> None:
-        """Warns if the wheel would touch at another place, too, that is not in the grid."""
+        """Warns if the wheel would also touch at another place, which is not in the grid."""
         (_, ey, _), (y0, z0) = self._axes(), (float(value) for value in self._pair.rail.at(self._on_rail)[:2])
         for clearance, y, z in self._others:
             along = (y - y0) * ey[1] + (z - z0) * ey[2]
@@ -283,7 +283,7 @@ class ContactPoint:
         yaw_rate, roll_rate : float
             Rates of the angles of the position, in rad/s.
         lateral_speed, vertical_speed : float
-            Of the middle of the axle: to the right, and downwards, in mm/s.
+            Speeds of the middle of the axle to the right and downwards, in mm/s.
         """
         if not number("speed", speed) > 0.0:
             raise ValueError(f"speed is {speed}; it must be positive")

@@ -13,13 +13,13 @@ from .._decimal_commas import has_decimal_commas
 from .._texts import text_of
 from ._not_a_map import has_cut_decimals
 
-# What parts the numbers of a line, in words.
+# The names of the separators of numbers, for messages.
 _BETWEEN = {None: "spaces", ",": "commas", ";": "semicolons", "\t": "tabs"}
 
 
 def of_text(path: str | os.PathLike[str], end: str) -> Any:
-    """Columns of numbers: those of a line are separated by spaces, in .csv by commas, or by semicolons where there are any: commas are
-    then decimal points. Cells of such files may be quoted, and those without a number are NaN, as are empty cells between tabs."""
+    """Columns of numbers. Spaces separate the numbers of a line, in .csv files commas, or semicolons if there are any; then commas are
+    decimal points. Cells of .csv files may be quoted. Cells without a number are NaN, and so are empty cells between tabs."""
     lines = [line.split("#")[0] for line in text_of(path).splitlines()]
     tabs, lines = _between_tabs(lines), [line for line in lines if line.strip()]
     if not lines:
@@ -51,15 +51,15 @@ _FORTRAN = re.compile(r"(?<=[\d.])[dD](?=[-+\d])")
 
 
 def has_empty_cells(path: str | os.PathLike[str]) -> bool:
-    """Whether single tabs part the numbers of all lines of a file, and some cells are empty."""
+    """Whether single tabs separate the numbers of all lines of a file, and some cells are empty."""
     return _between_tabs([line.split("#")[0] for line in text_of(path).splitlines()]) is not None
 
 
 def _between_tabs(lines: list[str]) -> list[str] | None:
-    """Lines of cells between tabs whose empty cells are NaN; None without empty cells, or if single tabs do not part all numbers."""
+    """Lines of cells between tabs whose empty cells are NaN; None without empty cells, or if single tabs do not separate all numbers."""
     lines = [line.replace('"', "").strip(" \r") for line in lines]
     most = max((line.count("\t") for line in lines), default=0)
-    # Of lines without a number those with as many cells as others are rows of holes.
+    # A line without a number is a row of holes if it has as many cells as the others.
     lines = [line for line in lines if line.strip() or line and line.count("\t") >= max(1, most - 1)]
     if not any(re.search(r"^\t|\t[^\S\t]*\t|\t$", line) for line in lines):
         return None

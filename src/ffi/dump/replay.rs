@@ -1,4 +1,4 @@
-//! The call of a dump once more.
+//! Replays the call of a dump.
 
 use std::ops::Range;
 use std::ptr::null_mut;
@@ -12,7 +12,7 @@ use crate::ffi::*;
 use crate::friction::Particle;
 use crate::solver::StepBefore;
 
-/// How a call ended that was made once more.
+/// The end of a replayed call.
 #[derive(Clone, Copy)]
 pub struct Replayed {
     /// Its status.
@@ -136,7 +136,7 @@ impl Dump {
         }
     }
 
-    /// The request, with the surfaces of the file.
+    /// The accuracy asked for, with the surfaces of the file.
     fn accuracy(&self) -> Result<*mut contact_normal_accuracy, String> {
         let accuracy = self.pointer::<contact_normal_accuracy>("accuracy")?;
         // SAFETY: NULL or a struct of ours, which no one else uses.
@@ -147,7 +147,7 @@ impl Dump {
         Ok(accuracy)
     }
 
-    /// Sets up a handle as that of the call was, and solves.
+    /// Sets up a handle like that of the call, and solves.
     unsafe fn solve_with_handle(&self, handle: *mut *mut contact_normal_solver) -> Result<i32, String> {
         // SAFETY: what a call reads and writes is within these ranges, or it is refused.
         let status = unsafe { self.set_up(handle)? };

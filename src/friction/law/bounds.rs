@@ -1,4 +1,4 @@
-//! Bounds from slips, and the residuals of the conditions with them.
+//! Traction bounds that follow from slips by a law, and the residuals with these bounds.
 
 use super::super::certificate::{scale, Certificate};
 use super::super::plane::{clip, dot, square};
@@ -31,7 +31,8 @@ pub(super) fn follow(problem: &mut Problem, state: &State, tangent: &Tangent, ma
     problem.bound = bound;
 }
 
-/// The larger residual of the slips and of the bounds: on slip the slip across q and `|q| - g`, on stick the slip.
+/// The larger one of the residuals of the slips and of the bounds. Where elements slip: the slip across q, or all of it if it is not opposite to q, and
+/// `|q| - g`. Where they stick: the slip, and `|q|` beyond g.
 pub(super) fn worst(problem: &Problem, state: &State, tangent: &Tangent) -> f64 {
     let of = |k: usize| {
         let (q, g) = (state.q[k], problem.bound[k]);

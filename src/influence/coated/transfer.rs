@@ -26,7 +26,7 @@ pub(super) const NEGLIGIBLE_EXPONENTIALS: f64 = 0.5 * FADED;
 /// s above which exp(-2 s) is 0 in double precision.
 const ZERO_EXPONENTIALS: f64 = 373.0;
 
-/// B of one layer.
+/// The transfer function B of one layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transfer {
     pub(super) lambda: f64,
@@ -38,12 +38,12 @@ pub struct Transfer {
     pub(super) less_both: f64,
     /// B(0).
     pub substrate: f64,
-    /// `(G1/(1 - nu1))/M`, with the oedometric modulus `M = 2 G1 (1 - nu1)/(1 - 2 nu1)`.
+    /// A mean pressure p compresses the layer by `p t/M`, with the oedometric modulus `M = 2 G1 (1 - nu1)/(1 - 2 nu1)`. This is `(G1/(1 - nu1))/M`.
     pub of_mean: f64,
 }
 
 impl Transfer {
-    /// B of a layer of `mu` times the substrate's shear modulus; Poisson ratios of the layer, then of the substrate.
+    /// B of a layer with `mu` times the shear modulus of the substrate; `[nu1, nu2]`: the Poisson ratios of layer and substrate.
     pub fn new(mu: f64, [nu1, nu2]: [f64; 2]) -> Transfer {
         let (one, two) = (1.0 + mu * (3.0 - 4.0 * nu2), mu + 3.0 - 4.0 * nu1);
         let (less_lambda, less_kappa) = (4.0 * (1.0 - nu1) / one, 4.0 * (1.0 - nu1) / two);
@@ -60,7 +60,7 @@ impl Transfer {
         }
     }
 
-    /// B(s) - 1 for s >= 1; `grows`: 1 + 2 s, or 1 - 2 s for tractions.
+    /// B(s) - 1 for s >= 1. `grows` is 1 + 2 s for a pressure and 1 - 2 s for a traction.
     pub(super) fn less_one_plain(&self, s: f64, grows: f64) -> f64 {
         if s > ZERO_EXPONENTIALS {
             return 0.0;

@@ -261,7 +261,7 @@ pub(super) struct Entering<'a> {
     pub(super) approach: f64,
     /// Whether the contact area is given.
     pub(super) is_fixed: bool,
-    /// Whether elements are at their limit; empty: none is.
+    /// Whether each element is at its limit; empty: none is.
     pub(super) held: &'a [bool],
 }
 

@@ -37,7 +37,7 @@ impl Predictor {
         (self.p.len() + self.u.len()) * size_of::<f64>()
     }
 
-    /// Copies it; memory is fallible.
+    /// A copy. Fails if memory is short.
     pub fn copy(&self) -> Result<Predictor> {
         Ok(Predictor { p: copied(&self.p, LAST)?, u: copied(&self.u, LAST)?, is_of_others: self.is_of_others })
     }
@@ -47,7 +47,7 @@ impl Predictor {
         self.is_of_others = true;
     }
 
-    /// The solution from which `state` was moved on.
+    /// The solution from which [`Predictor::predict`] extrapolated.
     pub fn last(&self) -> Last<'_> {
         Last { p: &self.p, u: Some(&self.u) }
     }

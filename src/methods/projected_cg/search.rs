@@ -1,8 +1,8 @@
 //! The state between two iterations: the forecast of the step length, and the slope of the last direction.
 
-/// The forecast of the first alpha: the first step of fixed length leaves smooth errors, with eigenvalues near 1. And the range of later forecasts,
-/// each of which is the last alpha.
+/// The forecast of the first alpha: the first step of fixed length leaves smooth errors, with eigenvalues near 1.
 pub(super) const FIRST_FORECAST: f64 = 0.9;
+/// The usual range of later forecasts, each of which is the last alpha.
 const FORECASTS: (f64, f64) = (0.3, 1.0);
 /// Factor between forecast and alpha beyond which the forecast failed.
 const FAR_OFF: f64 = 3.0;
@@ -26,7 +26,7 @@ impl Search {
         Search { forecast, may_clip: true, tq: 0.0, is_first: true, products: 0 }
     }
 
-    /// The forecast, unless it was [`FAR_OFF`].
+    /// The forecast, if alpha is within the factor [`FAR_OFF`] of it. If not, the next direction is neither clipped nor conjugate to this one.
     pub(super) fn believed(&mut self, alpha: f64) -> Option<f64> {
         let good = self.forecast.filter(|forecast| self.may_clip && within_factor(alpha, *forecast, FAR_OFF));
         self.may_clip = !self.may_clip || good.is_some();

@@ -19,7 +19,7 @@ pub(super) fn find_free<S: AdmissibleSet>(state: &State, set: S, distance: &mut 
     }
 }
 
-/// Unfrees the elements at a bound that t would violate, or `all` at a bound. Returns whether there are any.
+/// Removes from the free elements those at a bound that t would violate; with `all`, each one at a bound. Returns whether there are any.
 pub(super) fn keep_at_bounds<S: AdmissibleSet>(
     (state, set): (&State, S),
     t: &[f64],
@@ -36,8 +36,8 @@ pub(super) fn keep_at_bounds<S: AdmissibleSet>(
     any
 }
 
-/// With limits: sets pressures to a bound that they equal up to the round-off of the force. If nearly all elements are at a bound, the one that
-/// carries this round-off must not determine the approach.
+/// With limits: sets pressures to a bound that they equal up to the round-off of the force. If nearly all elements are at a bound, an element whose
+/// pressure is this round-off must not determine the approach.
 pub(super) fn snap<S: AdmissibleSet>(state: &mut State, set: S) {
     if !S::LIMITED {
         return;

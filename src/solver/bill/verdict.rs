@@ -17,7 +17,7 @@ pub enum Verdict {
     NotDecided,
     /// The quantity changes by less than the target, its error included.
     Negligible,
-    /// The quantity changes by more than the target, even less its error.
+    /// The quantity changes by more than the target, its error subtracted.
     Needed,
 }
 
@@ -46,7 +46,7 @@ pub struct BillRow {
     pub bytes: [f64; 2],
 }
 
-/// A quantity with and without.
+/// A quantity with and without the omissions.
 pub struct Measured<'a> {
     pub quantity: Quantity,
     pub value: Result<f64, Lack>,

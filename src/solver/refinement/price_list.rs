@@ -1,6 +1,6 @@
 //! The price list: predicted costs of accuracies.
 //!
-//! The scene is solved on small grids, the last of which takes a small part of the time of the dearest accuracy. Errors and seconds are
+//! The scene is solved on small grids, the last of which takes a small part of the time of the most expensive accuracy. Errors and seconds are
 //! extrapolated to finer grids: errors by their orders (module `estimates`), seconds by a power of the number of elements.
 
 use std::time::Instant;
@@ -19,7 +19,7 @@ use crate::solver::quantities::Quantity;
 use crate::solver::{Options, Outcome, ProgressCallback};
 
 /// Most seconds of all samples, including those predicted for the next one: SAMPLES_SECONDS, or this share of the
-/// seconds of the dearest accuracy if that is more.
+/// seconds of the most expensive accuracy if that is more.
 const SAMPLES_SHARE: f64 = 0.014;
 const SAMPLES_SECONDS: f64 = 0.035;
 /// The first sample has from this many to twice as many elements in its longer direction, if the grid can be halved so
@@ -113,7 +113,7 @@ fn check_asked(
     quantity.check(scene)
 }
 
-/// The least of the seconds that samples predicted for the dearest row so far. Samples of few elements may predict too many.
+/// The least of the seconds that samples predicted for the most expensive row so far. Samples of few elements may predict too many.
 #[derive(Default)]
 struct Budget {
     least: Option<f64>,

@@ -1,11 +1,11 @@
-//! The cases: two like bodies, E* = G/(1 - nu), with what presses them together and what moves them.
+//! The cases: two like bodies, E* = G/(1 - nu), with a load and a motion.
 
 use contact_normal::grid::Grid;
 use contact_normal::scene::{Bodies, Coefficient, Friction, Load, Motion, Prescribed, Previous, Scene};
 
 use crate::case::{distance, grid, paraboloid};
 
-/// Each case is solved in all of them; steps of rolling are of one element along x.
+/// The motions in which each case is solved. A step of rolling is one element along x.
 pub const MOTIONS: [(&str, Motion); 3] = [
     ("SHIFT", Motion::Shift),
     ("TRANSIENT_ROLLING", Motion::TransientRolling),
@@ -26,7 +26,7 @@ pub struct Case {
     pub mu: Vec<f64>,
     pub prescribed: [Prescribed; 2],
     pub spin: f64,
-    /// The tractions before.
+    /// The tractions before the step.
     pub previous: Option<Pair>,
     pub rigid_slip: Option<Pair>,
     /// The status that it is refused with; none: it has to be solved.
@@ -56,7 +56,7 @@ impl Case {
         Bodies::same(1.0, self.nu)
     }
 
-    /// As the library takes it.
+    /// The scene of the library.
     pub fn scene(&self, motion: Motion) -> Scene<'_> {
         let friction = Friction {
             coefficient: Coefficient::PerElement(&self.mu),

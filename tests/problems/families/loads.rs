@@ -90,7 +90,7 @@ mod promises {
                 assert_certified(&by_approach, "by approach", &again, options.tolerance);
                 let largest = found.p.iter().copied().fold(0.0, f64::max);
                 for (p, q) in found.p.iter().zip(&again.p) {
-                    // Two residuals of 1e-10, times the condition of A on this grid (below 100).
+                    // Two residuals of 1e-10, times the condition number of A on this grid (below 100).
                     assert!((p - q).abs() <= 1e-8 * largest, "{method:?} {force}: {p} and {q}");
                 }
             }

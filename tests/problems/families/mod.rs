@@ -1,4 +1,4 @@
-//! The families of hard cases. Each file has its cases, for docs/reliability_table.md as well, and what is promised of them.
+//! The families of hard cases. Each file has the cases of a family, which docs/reliability_table.md lists too, and the tests of their promises.
 
 pub mod case;
 pub mod certificate;

@@ -67,7 +67,7 @@ mod promises {
                 let there = run_with(&case, &options).expect("a solve");
                 assert_certified(&case, name, &there, options.tolerance);
                 for (p, q) in here.p.iter().zip(&there.p) {
-                    // Two residuals of 1e-10, times the condition of A on this grid (below 100).
+                    // Two residuals of 1e-10, times the condition number of A on this grid (below 100).
                     assert!((p - q / (pressure * scale)).abs() <= 1e-8 * largest, "{name}: {p} and {q}");
                 }
             }

@@ -26,12 +26,12 @@ pub(crate) struct LaneColumns<T: Real> {
 }
 
 impl<T: Real> LaneColumns<T> {
-    /// The products of a length; None if it has no plan.
+    /// Products of columns of this length; None if there is no plan for it.
     pub fn new(length: usize) -> Result<Option<LaneColumns<T>>> {
         LaneColumns::on(pulp::Arch::new(), length)
     }
 
-    /// [`LaneColumns::new`] with the vectors of these instructions, on which no bit depends.
+    /// [`LaneColumns::new`] for an instruction set. Results have the same bits with any of them.
     fn on(arch: pulp::Arch, length: usize) -> Result<Option<LaneColumns<T>>> {
         Ok(EvenPlan::shared(length)?.map(|plan| LaneColumns { plan, arch }))
     }
@@ -55,7 +55,7 @@ impl<T: Real> LaneColumns<T> {
         }
     }
 
-    /// Multiplies the columns of a block of K components by their symbol `factor`, by its pass.
+    /// Multiplies the columns of a block of K components by the symbol `factor`; `pass` does the work.
     pub fn multiply<F, const K: usize>(
         &self,
         blocks: Blocks<'_, T, K>,

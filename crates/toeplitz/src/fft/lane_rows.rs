@@ -35,7 +35,7 @@ impl<T: Real> LaneRows<T> {
         LaneRows::on(pulp::Arch::new(), n)
     }
 
-    /// [`LaneRows::new`] with the vectors of these instructions, on which no bit depends.
+    /// [`LaneRows::new`] for an instruction set. Results have the same bits with any of them.
     pub(crate) fn on(arch: pulp::Arch, n: usize) -> Result<Option<LaneRows<T>>> {
         match arch.dispatch(LaneCount::<f64>(std::marker::PhantomData)) {
             Some(1) => Ok(None),

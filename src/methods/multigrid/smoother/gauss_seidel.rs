@@ -37,8 +37,9 @@ pub struct GaussSeidel {
     between_rows: Vec<Complex<f64>>,
     /// For blocks of 2, 4, .. strips: the action of the first half on the second.
     halves: Vec<Half>,
-    /// `[my][bins]`: the transformed changes of each finished row, and the sums of them for each later row.
+    /// `[my][bins]`: the transformed changes of each finished row.
     changes: Vec<Complex<f64>>,
+    /// `[my][bins]`: their transformed effect on each later row.
     gathered: Vec<Complex<f64>>,
     bins: Vec<Complex<f64>>,
     columns: Vec<Complex<f64>>,
