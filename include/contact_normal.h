@@ -382,7 +382,7 @@
 #define CONTACT_NORMAL_FORM_AUTO 0
 
 /*
- `form`: displacements are linear in the step; second order, exact where the approach is held.
+ `form`: displacements are linear in the step; second order. Exact where the approach is held, and one body is rigid or both relax alike.
  */
 #define CONTACT_NORMAL_FORM_RELAXATION 1
 
@@ -1157,11 +1157,12 @@ typedef struct contact_normal_friction {
   double hardening;
   /*
    mu that particles of the interface had before the step, of a law with memory, `[my][mx]`; default NULL: that at rest, and with
-   `continues` what the handle found. In transient rolling a particle comes from its old place; steady rolling does not read it.
+   `continues` what the handle found. Zeros alone, which a step without a law writes, are as NULL. In transient rolling a particle comes from its
+   old place; steady rolling does not read it.
    */
   const double *previous_coefficient;
   /*
-   And their yield limits; default NULL: `yield_limit`.
+   And their yield limits; default NULL, and zeros alone: `yield_limit`.
    */
   const double *previous_yield_limit;
   /*

@@ -81,13 +81,15 @@ impl Visco<'_> {
     fn bodies(&self, at_surface: &Bodies, form: Form) -> Result<Vec<Body>> {
         let series = self.series(at_surface)?;
         let compliance = |b: usize| (1.0 - at_surface.poisson_ratio[b]) / (2.0 * at_surface.shear_modulus[b]);
-        let total = compliance(0) + compliance(1);
+        let first = compliance(0) / (compliance(0) + compliance(1));
+        // Both shares add up to 1 exactly: a jump from rest then has the bits of the elastic scene.
+        let shares = [first, 1.0 - first];
         let body = |b: usize, share: f64| Body::new(&series[b], share, (self.time_step, form));
-        if series[0] == series[1] {
+        if series[0].is_like(&series[1]) {
             return Ok(vec![body(0, 1.0)]);
         }
         let elastic = (0..2).filter(|&b| compliance(b) > 0.0);
-        Ok(elastic.map(|b| body(b, compliance(b) / total)).collect())
+        Ok(elastic.map(|b| body(b, shares[b])).collect())
     }
 
     /// Rejects bodies that relax differently if the coefficients are not those of two half-spaces. `of` is the effect with these coefficients.
@@ -108,7 +110,7 @@ impl Visco<'_> {
             }
         }
         let is_rigid = |b: usize| at_surface.shear_modulus[b].is_infinite();
-        if series[0] == series[1] || is_rigid(0) || is_rigid(1) {
+        if series[0].is_like(&series[1]) || is_rigid(0) || is_rigid(1) {
             return Ok(());
         }
         Err(Error::Unsupported(format!(

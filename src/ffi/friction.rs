@@ -151,9 +151,10 @@ pub struct contact_normal_friction {
     /// bodies and `sensitivities` as with a `law`.
     pub hardening: f64,
     /// mu that particles of the interface had before the step, of a law with memory, `[my][mx]`; default NULL: that at rest, and with
-    /// `continues` what the handle found. In transient rolling a particle comes from its old place; steady rolling does not read it.
+    /// `continues` what the handle found. Zeros alone, which a step without a law writes, are as NULL. In transient rolling a particle comes from its
+    /// old place; steady rolling does not read it.
     pub previous_coefficient: *const f64,
-    /// And their yield limits; default NULL: `yield_limit`.
+    /// And their yield limits; default NULL, and zeros alone: `yield_limit`.
     pub previous_yield_limit: *const f64,
     /// Which solution, of a law or a layer that hardens or softens: CONTACT_NORMAL_FRICTION_BRANCH_...; default NEAR. Others take several times as many
     /// products, and creepages in both directions (UNSUPPORTED otherwise).
@@ -193,6 +194,10 @@ impl contact_normal_friction {
         // SAFETY (all): as above.
         let (coefficients_before, yield_limits) =
             unsafe { (optional(self.previous_coefficient, n), optional(self.previous_yield_limit, n)) };
+        // A step without a law or a layer writes zeros.
+        let is_of_none = |values: &&[f64]| values.iter().all(|value| *value == 0.0);
+        let [coefficients_before, yield_limits] =
+            [coefficients_before, yield_limits].map(|values| values.filter(|values| !is_of_none(values)));
         let (coefficients, compliances) =
             unsafe { (optional(self.coefficients, grid.len()), optional(self.compliances, grid.len())) };
         Ok(Friction {

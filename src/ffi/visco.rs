@@ -9,7 +9,7 @@ use crate::visco::{Form, Report, MOST_BRANCHES};
 
 /// `form`: RELAXATION where the approach is given, CREEP where the force is.
 pub const CONTACT_NORMAL_FORM_AUTO: i32 = 0;
-/// `form`: displacements are linear in the step; second order, exact where the approach is held.
+/// `form`: displacements are linear in the step; second order. Exact where the approach is held, and one body is rigid or both relax alike.
 pub const CONTACT_NORMAL_FORM_RELAXATION: i32 = 1;
 /// `form`: pressures are linear in the step; second order, exact where they are held.
 pub const CONTACT_NORMAL_FORM_CREEP: i32 = 2;

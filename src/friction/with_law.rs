@@ -51,7 +51,7 @@ impl Had<'_> {
     fn before(&self, i: usize) -> Particle {
         let fresh = self.fresh(i);
         let mut kept = self.kept.get(i).copied().unwrap_or(fresh);
-        // A step without a layer leaves no limits.
+        // After a step without a layer.
         if kept.yield_limit == 0.0 {
             kept.yield_limit = fresh.yield_limit;
         }
@@ -139,7 +139,9 @@ impl Solver {
                 solution.stick_slip[i] = PLASTIC;
             }
             let Particle { coefficient, yield_limit } = response.particle;
-            particles[i] = Particle { coefficient, yield_limit: scales.own_traction([yield_limit, 0.0])[0] };
+            // A step without a layer leaves no limits.
+            let yield_limit = if law.layer.is_some() { scales.own_traction([yield_limit, 0.0])[0] } else { 0.0 };
+            particles[i] = Particle { coefficient, yield_limit };
             response.particle
         });
         solution.particles = particles;

@@ -1,6 +1,6 @@
 //! One step of time of one body, by any of three forms:
 //!
-//! * relaxation: u is linear in the step, so a held approach is exact;
+//! * relaxation: u is linear in the step, so a held approach is exact if this body alone gives way, or both relax alike;
 //! * creep: w is linear in the step, so a held load is exact where pressures are constant;
 //! * backward Euler, of first order, as in tamaas (Frérot et al. 2020).
 //!

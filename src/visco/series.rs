@@ -50,6 +50,16 @@ impl Series {
         Some(series)
     }
 
+    /// Whether bodies of both series relax alike, to the round-off of their moduli and times.
+    pub fn is_like(&self, other: &Series) -> bool {
+        let are = |a: &[f64], b: &[f64], near: fn(f64, f64) -> bool| {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| near(*a, *b))
+        };
+        are(&self.fractions, &other.fractions, |a, b| (a - b).abs() <= ROUNDING)
+            && are(&self.times, &other.times, |a, b| (a - b).abs() <= ROUNDING * a.max(b))
+            && (self.rest == 0.0) == (other.rest == 0.0)
+    }
+
     /// Number of branches.
     pub fn len(&self) -> usize {
         self.times.len()

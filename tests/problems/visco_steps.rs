@@ -113,6 +113,41 @@ fn beside_other_effects_steps_meet_the_conditions() {
     }
 }
 
+/// Moduli `f G` and times as a host multiplies them: quotients by G, and times, differ in their last bits. A step of no time is the elastic solve, to the last bit.
+#[test]
+fn bodies_of_one_series_are_alike_whatever_their_moduli() {
+    let h = ball();
+    let (mut beside_tables, options) = (0, Options { tolerance: 1e-6, ..Options::default() });
+    for k in 0..60 {
+        let moduli = [34.31 * 1.37f64.powi(k), 710.22 / 1.13f64.powi(k)];
+        let bodies = Bodies { shear_modulus: moduli, ..BODIES };
+        let series = moduli.map(|g| [0.01, 0.91, 0.06].map(|part| part * g));
+        let times = [[0.3, 2.0, 0.007], [0.1 * 3.0, 2.0, 0.07 * 0.1]];
+        let branches = [0, 1].map(|b| Branches { modulus: &series[b], time: &times[b] });
+        let elastic = Scene {
+            bodies,
+            load: Load::Force(0.02 * moduli[0]),
+            ..Scene::new(grid(), &h, BODIES, Load::Approach(0.0))
+        };
+        let mut table = vec![0.0; 4 * MX * MY];
+        let kernel = elastic.coefficients().unwrap();
+        for (i, entry) in table.iter_mut().enumerate() {
+            *entry = kernel.at((i % (2 * MX)) as i64 - MX as i64, (i / (2 * MX)) as i64 - MY as i64);
+        }
+        let influence = Some(Table::new(MX, MY, &table, &grid()).unwrap());
+        let after = |time_step: f64| Some(Visco { bodies: branches, time_step, ..Visco::default() });
+        let (_, outcome, _) = solve(&Scene { influence, visco: after(1.0), ..elastic.clone() }, &options).unwrap();
+        beside_tables += usize::from(outcome == Outcome::Converged);
+        // Of bodies that do not relax alike.
+        let other = [branches[0], Branches { modulus: &series[1][..2], time: &times[1][..2] }];
+        let jump = Some(Visco { bodies: other, ..Visco::default() });
+        let found = [elastic.clone(), Scene { visco: jump, ..elastic }].map(|scene| solve(&scene, &options).unwrap().0);
+        let [elastic, jump] = found.each_ref().map(|solver| (&solver.state().p, solver.state().approach));
+        assert!(elastic == jump, "{moduli:?}");
+    }
+    assert_eq!(beside_tables, 60);
+}
+
 #[test]
 fn on_a_given_contact_area_steps_relax_as_the_body_does() {
     let h = ball();
