@@ -37,13 +37,17 @@ pub unsafe extern "C" fn contact_normal_solve(
         outputs.check_inputs(&options.options, scene.grid.len())?;
         let watcher = Watcher::of(&options);
         if options.given.neglect_below > 0.0 {
-            let (target, told) = (options.given.neglect_below, &mut watcher.told());
-            let neglected = Neglected::of(&scene, &options.options, target, watcher.callback(told))?;
+            let target = options.given.neglect_below;
+            let neglected = Neglected::of(&scene, &options.options, target, watcher.callback(&mut watcher.told()))?;
             scene = neglected.leave_out(&scene);
             outputs.neglected = Some(neglected);
         }
         let (mut solver, lowest) = Solver::for_scene(&scene, &options.options)?;
-        run(&mut solver, (&scene, Some(lowest)), &options.options, &watcher, &outputs, &mut buffers)?.conclude()
+        let options = &outputs.options(&options.options);
+        let guess = outputs.guess(options, scene.grid.len(), &mut buffers)?;
+        let asked = Asked { guess, ..Asked::new((&scene, lowest), options) };
+        let solved = solver.solve_checked(asked, watcher.callback(&mut watcher.told()))?;
+        end(&solver, (&scene, options), solved, &watcher, &outputs)?.conclude()
     };
     // SAFETY: as above.
     unsafe { recorded("contact_normal_solve", options, arguments, solve) }
@@ -130,10 +134,10 @@ impl Request<'_> {
     }
 }
 
-/// Solves with a solver that is set up, and writes the outputs. A scene that is checked has its least distance.
+/// Solves with a solver that is set up, and writes the outputs.
 pub(super) fn run(
     solver: &mut Solver,
-    (scene, lowest): (&Scene<'_>, Option<f64>),
+    scene: &Scene<'_>,
     options: &Options,
     watcher: &Watcher,
     outputs: &Outputs,
@@ -143,12 +147,18 @@ pub(super) fn run(
     outputs.check_inputs(options, n)?;
     let options = &outputs.options(options);
     let guess = outputs.guess(options, n, buffers)?;
-    let told = &mut watcher.told();
-    let progress = watcher.callback(told);
-    let (stop, report) = match lowest {
-        Some(lowest) => solver.solve_checked(Asked { guess, ..Asked::new((scene, lowest), options) }, progress)?,
-        None => solver.solve(scene, options, guess, progress)?,
-    };
+    let solved = solver.solve(scene, options, guess, watcher.callback(&mut watcher.told()))?;
+    end(solver, (scene, options), solved, watcher, outputs)
+}
+
+/// Writes the outputs of a solve, and concludes.
+fn end(
+    solver: &Solver,
+    (scene, options): (&Scene<'_>, &Options),
+    (stop, report): (Outcome, Report),
+    watcher: &Watcher,
+    outputs: &Outputs,
+) -> Result<Conclusion, Refusal> {
     let warnings = outputs.warnings(scene, options, &report, solver.state());
     outputs.write_fields(solver, options.active_set == ActiveSet::Fixed);
     outputs.write_report(&report, solver.ledger(), warnings)?;

@@ -128,7 +128,7 @@ pub unsafe extern "C" fn contact_normal_solver_solve(
         let request = unsafe { Request::read(scene, options, fields, report, buffers, |_, _| Ok(())) };
         recording.keep_with(&buffers.regions, solver, request.as_ref().is_ok_and(Request::goes_on));
         let Request { scene, options, outputs } = request?;
-        run(solver, (&scene, None), &options.options, &Watcher::of(&options), &outputs, buffers)?.conclude()
+        run(solver, &scene, &options.options, &Watcher::of(&options), &outputs, buffers)?.conclude()
     };
     // SAFETY: as above.
     unsafe { recorded("contact_normal_solver_solve", options, arguments, solve) }
