@@ -30,7 +30,7 @@ pub unsafe extern "C" fn contact_normal_solve(
         let mut buffers = Buffers::default();
         let (arguments, outputs) = ((scene, options), (fields, report));
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
-        let request = unsafe { Request::read_for(Needs::AllOrLess, arguments, outputs, &mut buffers, |_, _| Ok(())) };
+        let request = unsafe { Request::read(Needs::AllOrLess, arguments, outputs, &mut buffers, |_, _| Ok(())) };
         recording.keep(&buffers.regions);
         let Request { mut scene, options, mut outputs } = request?;
         // Before the set-up: a refusal should not cost one.
@@ -77,19 +77,6 @@ impl Request<'_> {
     /// Reads the structs, and refuses outputs that overlap: those, and what is `also` written, on so many elements. The caller's arrays
     /// must live as long as the result is used.
     pub unsafe fn read<'a>(
-        scene: *const contact_normal_scene,
-        options: *const contact_normal_options,
-        fields: *mut contact_normal_fields,
-        report: *mut contact_normal_report,
-        buffers: &mut Buffers,
-        also: impl FnOnce(&mut Regions, usize) -> Result<(), Refusal>,
-    ) -> Result<Request<'a>, Refusal> {
-        // SAFETY: by the caller.
-        unsafe { Request::read_for(Needs::All, (scene, options), (fields, report), buffers, also) }
-    }
-
-    /// The same for a call that needs less of its scene.
-    pub unsafe fn read_for<'a>(
         needs: Needs,
         (scene, options): (*const contact_normal_scene, *const contact_normal_options),
         (fields, report): (*mut contact_normal_fields, *mut contact_normal_report),
