@@ -1,11 +1,10 @@
 //! Solves without a start. A pull, or no force, is reached along a stable branch, down from a state of more force.
 
-use super::level::MakeFrozen;
+use super::level::{Level, MakeFrozen};
 use super::majorise::Descent;
 use super::nested;
 use super::newton::{End, Goal};
 use super::place::{Met, Place, Walk};
-use super::solver::{pulls, Solver};
 use super::start::Start;
 use super::unknowns::Unknowns;
 use super::way::Walker;
@@ -32,21 +31,26 @@ const STEP_BELOW: f64 = 0.1;
 const FURTHER_WAY_CYCLES: u64 = 4;
 const LEAST_WAY_CYCLES: u64 = 500;
 
-impl Solver {
-    pub(super) fn begin_anew(
-        &mut self,
-        goal: Goal,
-        (start, make): (Start, MakeFrozen<'_>),
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Descent> {
-        if !pulls(goal) {
-            return self.begin_pressed(goal, (start, make), monitor);
+/// A search for the state of a goal on the finest of some grids.
+pub(super) struct Search<'a, 'm, 'c> {
+    pub levels: &'a mut [Level],
+    /// The start of grids without a state.
+    pub start: Start,
+    pub make: MakeFrozen<'a>,
+    pub monitor: &'m mut Monitor<'c>,
+}
+
+impl<'c> Search<'_, '_, 'c> {
+    /// Solves without a state.
+    pub fn begin_anew(&mut self, goal: Goal) -> Result<Descent> {
+        if !goal.pulls() {
+            return self.begin_pressed(goal);
         }
-        if self.is_found_from_coarse(goal, (start, make), monitor)? {
+        if self.is_found_from_coarse(goal)? {
             return Ok(Descent::By(End::Solved));
         }
-        let walk = self.down_from_no_load(goal, (start, make), monitor)?;
-        match self.hold_pull_off(walk, goal, (start, make), monitor)? {
+        let walk = self.down_from_no_load(goal)?;
+        match self.hold_pull_off(walk, goal)? {
             Walk::Found => Ok(Descent::By(End::Solved)),
             Walk::Least { sum, approach } => {
                 let area = self.levels[0].problem.grid.element_area();
@@ -62,28 +66,23 @@ impl Solver {
                      {found}"
                 )))
             }
-            Walk::Interrupted if monitor.is_cancelled() => Ok(Descent::By(End::Interrupted)),
+            Walk::Interrupted if self.monitor.is_cancelled() => Ok(Descent::By(End::Interrupted)),
             walk => {
-                let is_cut = walk == Walk::Interrupted || goal.is_interrupted(monitor);
+                let is_cut = walk == Walk::Interrupted || goal.is_interrupted(self.monitor);
                 let end = if is_cut { End::Interrupted } else { End::Failed };
                 self.beyond_all_attraction(goal).map_or(Ok(Descent::By(end)), Err)
             }
         }
     }
 
-    /// Solves without a start by an approach, or by a force that does not pull.
-    fn begin_pressed(
-        &mut self,
-        goal: Goal,
-        (start, make): (Start, MakeFrozen<'_>),
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Descent> {
-        let ended = nested::solve(&mut self.levels, goal, (start, make), monitor)?;
-        if goal.is_interrupted(monitor) && ended.end != Descent::By(End::Solved) {
+    /// Solves without a state by an approach, or by a force that does not pull.
+    fn begin_pressed(&mut self, goal: Goal) -> Result<Descent> {
+        let ended = nested::solve(self.levels, goal, (self.start, self.make), self.monitor)?;
+        if goal.is_interrupted(self.monitor) && ended.end != Descent::By(End::Solved) {
             return Ok(ended.end);
         }
         if ended.is_in_contact() && goal.wanted.is_some() {
-            let settled = self.walker(goal, make, monitor).settle()?;
+            let settled = self.walker(goal).settle()?;
             if settled == Walk::Found {
                 return Ok(ended.end);
             }
@@ -93,7 +92,7 @@ impl Solver {
         let mut found = Unknowns::default();
         found.copy_from(&self.levels[0].now)?;
         // Bodies apart carry no force either: a state of adhering bodies is sought from above.
-        let walk = self.down_all_ways(goal, (false, make), monitor)?;
+        let walk = self.down_all_ways(goal, false)?;
         if walk == Walk::Found {
             return Ok(Descent::By(End::Solved));
         }
@@ -105,50 +104,40 @@ impl Solver {
         })
     }
 
-    pub(super) fn walker<'a, 'm, 'c>(
-        &'a mut self,
-        goal: Goal,
-        make: MakeFrozen<'a>,
-        monitor: &'m mut Monitor<'c>,
-    ) -> Walker<'a, 'm, 'c> {
-        Walker::new(&mut self.levels[0], goal, make, monitor)
+    /// A walker from the state of the finest grid.
+    pub fn walker(&mut self, goal: Goal) -> Walker<'_, '_, 'c> {
+        Walker::new(&mut self.levels[0], goal, self.make, self.monitor)
     }
 
     /// The walker of the first way of a search for a pull. This way has many states, and a snap after the strongest.
-    fn first_walker<'a, 'm, 'c>(
-        &'a mut self,
-        goal: Goal,
-        spent: u64,
-        make: MakeFrozen<'a>,
-        monitor: &'m mut Monitor<'c>,
-    ) -> Walker<'a, 'm, 'c> {
-        if goal.wanted.is_some() && !pulls(goal) {
-            return self.walker(goal, make, monitor);
+    fn first_walker(&mut self, goal: Goal, spent: u64) -> Walker<'_, '_, 'c> {
+        if goal.wanted.is_some() && !goal.pulls() {
+            return self.walker(goal);
         }
         let left = goal.most.saturating_mul(PULL_OFF_CYCLES).saturating_sub(spent);
-        let most = monitor.count.cycles.saturating_add(left);
+        let most = self.monitor.count.cycles.saturating_add(left);
         let each = if goal.wanted.is_some() { u64::MAX } else { goal.most / STATES_OF_PULL_OFF + 1 };
-        Walker { each, ..self.walker(Goal { most, ..goal }, make, monitor) }
+        Walker { each, ..self.walker(Goal { most, ..goal }) }
     }
 
     /// The first way down. It may be lost if elements are too coarse for the range and snap one after the other. Then another way begins at a
     /// state below, found without a start. Returns the cycles of all ways as well.
-    fn walk_first(&mut self, goal: Goal, make: MakeFrozen<'_>, monitor: &mut Monitor<'_>) -> Result<(Walk, u64)> {
-        let before = monitor.count.cycles;
-        let mut ended = self.first_walker(goal, 0, make, monitor).walk(None)?;
-        let mut spent = monitor.count.cycles - before;
+    fn walk_first(&mut self, goal: Goal) -> Result<(Walk, u64)> {
+        let before = self.monitor.count.cycles;
+        let mut ended = self.first_walker(goal, 0).walk(None)?;
+        let mut spent = self.monitor.count.cycles - before;
         for _ in 0..MOST_WAYS {
             if ended != Walk::Lost || goal.wanted.is_some() {
                 break;
             }
             let lost = Place::of(&self.levels[0], Met::of(&self.levels[0]).sum)?;
-            if !self.is_found_below(goal, &mut spent, make, monitor)? {
+            if !self.is_found_below(goal, &mut spent)? {
                 self.levels[0].now.copy_from(&lost.at)?;
                 return Ok((Walk::Lost, spent));
             }
-            let before = monitor.count.cycles;
-            ended = self.first_walker(goal, spent, make, monitor).walk(None)?;
-            spent += monitor.count.cycles - before;
+            let before = self.monitor.count.cycles;
+            ended = self.first_walker(goal, spent).walk(None)?;
+            spent += self.monitor.count.cycles - before;
             let is_less = match ended {
                 Walk::Least { sum, .. } => sum < lost.sum,
                 _ => Met::of(&self.levels[0]).sum < lost.sum,
@@ -162,22 +151,16 @@ impl Solver {
     }
 
     /// Whether a state in contact is found below the state of the finest grid, without a start.
-    fn is_found_below(
-        &mut self,
-        goal: Goal,
-        spent: &mut u64,
-        make: MakeFrozen<'_>,
-        monitor: &mut Monitor<'_>,
-    ) -> Result<bool> {
+    fn is_found_below(&mut self, goal: Goal, spent: &mut u64) -> Result<bool> {
         let from = self.levels[0].now.approach();
-        let step = self.walker(goal, make, monitor).first_step(STEP_BELOW)?;
+        let step = self.walker(goal).first_step(STEP_BELOW)?;
         let each = Goal { wanted: None, most: goal.most / STATES_OF_PULL_OFF + 1, ..goal };
         for k in (1..=STEPS_BELOW).filter(|_| step > 0.0) {
             self.levels.iter_mut().for_each(|level| level.now.p.border = [from - f64::from(k) * step]);
-            let ended = nested::solve(&mut self.levels, each, (Start::Auto, make), monitor)?;
+            let ended = nested::solve(self.levels, each, (Start::Auto, self.make), self.monitor)?;
             // The finest grid counts anew.
-            *spent += monitor.count.cycles;
-            if ended.is_in_contact() || monitor.is_cancelled() {
+            *spent += self.monitor.count.cycles;
+            if ended.is_in_contact() || self.monitor.is_cancelled() {
                 return Ok(ended.is_in_contact());
             }
         }
@@ -185,32 +168,22 @@ impl Solver {
     }
 
     /// Follows the stable branch of the finest grid down from its state without a load.
-    pub(super) fn down_from_no_load(
-        &mut self,
-        goal: Goal,
-        (start, make): (Start, MakeFrozen<'_>),
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Walk> {
+    pub fn down_from_no_load(&mut self, goal: Goal) -> Result<Walk> {
         let unloaded = Goal { wanted: Some(0.0), ..goal };
-        let ended = nested::solve(&mut self.levels, unloaded, (start, make), monitor)?;
-        self.down_all_ways(goal, (ended.is_in_contact(), make), monitor)
+        let ended = nested::solve(self.levels, unloaded, (self.start, self.make), self.monitor)?;
+        self.down_all_ways(goal, ended.is_in_contact())
     }
 
     /// Follows the stable branch down from the finest grid's state, if `is_state`, and from bodies pressed together. The latter serves bodies
     /// of which one asperity or none adheres without a load. The pressing force grows until no stronger pull is found. The finest grid then
     /// has the state of the least force.
-    pub(super) fn down_all_ways(
-        &mut self,
-        goal: Goal,
-        (is_state, make): (bool, MakeFrozen<'_>),
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Walk> {
+    pub fn down_all_ways(&mut self, goal: Goal, is_state: bool) -> Result<Walk> {
         let (mut least, mut met, mut most) = (None::<Place>, None, goal.most);
         // The last state of a lost way, or that of no load; the end without a least force.
         let (mut before, mut without) = (None, Walk::Lost);
         if is_state {
             met = Some(Met::of(&self.levels[0]));
-            let (walk, spent) = self.walk_first(goal, make, monitor)?;
+            let (walk, spent) = self.walk_first(goal)?;
             match walk {
                 Walk::Least { sum, .. } => least = Some(Place::of(&self.levels[0], sum)?),
                 Walk::Lost | Walk::Met => {
@@ -226,14 +199,14 @@ impl Solver {
         let mut pressing = self.first_pressing(least.as_ref(), goal);
         for _ in 0..MOST_WAYS {
             let pressed = Goal { wanted: Some(pressing), most, ..goal };
-            let ended = nested::solve(&mut self.levels, pressed, (Start::Auto, make), monitor)?;
+            let ended = nested::solve(self.levels, pressed, (Start::Auto, self.make), self.monitor)?;
             let walk = match ended.end {
-                Descent::By(End::Solved) => self.walker(Goal { most, ..goal }, make, monitor).walk(met)?,
+                Descent::By(End::Solved) => self.walker(Goal { most, ..goal }).walk(met)?,
                 Descent::By(End::Interrupted) if least.is_some() => Walk::Interrupted,
                 _ => Walk::Lost,
             };
             // A way that is cut short may have led to the wanted force.
-            if monitor.is_cancelled() || walk == Walk::Interrupted && (least.is_none() || pulls(goal)) {
+            if self.monitor.is_cancelled() || walk == Walk::Interrupted && (least.is_none() || goal.pulls()) {
                 without = Walk::Interrupted;
                 break;
             }

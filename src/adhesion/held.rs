@@ -1,17 +1,14 @@
 //! The stable state under a prescribed force. If an equilibrium under this force is unstable, the stable one lies at a larger approach.
 
-use super::level::MakeFrozen;
+use super::begin::Search;
 use super::levels::prolong;
 use super::majorise::Descent;
 use super::nested::{self, coarse_goal};
 use super::newton::{newton, End, Goal};
 use super::place::{Met, Place, Walk};
-use super::solver::Solver;
-use super::start::Start;
 use super::tangent::is_stable;
 use super::way::{Walker, GROWTH};
 use crate::error::Result;
-use crate::progress::Monitor;
 
 /// Most secant steps between two states.
 const MOST_SECANTS: u32 = 40;
@@ -93,69 +90,58 @@ impl Walker<'_, '_, '_> {
     }
 }
 
-impl Solver {
+impl Search<'_, '_, '_> {
     /// Follows the stable branch down on the coarsest grid, which is cheap, then solves for the force from grid to grid. Returns false if there is
     /// one grid only, if a solve fails, or if the result is not stable.
-    pub(super) fn is_found_from_coarse(
-        &mut self,
-        goal: Goal,
-        (start, make): (Start, MakeFrozen<'_>),
-        monitor: &mut Monitor<'_>,
-    ) -> Result<bool> {
+    pub fn is_found_from_coarse(&mut self, goal: Goal) -> Result<bool> {
         let last = self.levels.len() - 1;
         if last == 0 {
             return Ok(false);
         }
-        let coarse = coarse_goal(&self.levels, last, goal);
+        let coarse = coarse_goal(self.levels, last, goal);
         let unloaded = Goal { wanted: Some(0.0), ..coarse };
         self.levels[last].fields = std::mem::take(&mut self.levels[0].fields);
-        monitor.enter_grid();
-        let ended = nested::solve(&mut self.levels[last..], unloaded, (start, make), monitor)?;
+        self.monitor.enter_grid();
+        let ended = nested::solve(&mut self.levels[last..], unloaded, (self.start, self.make), self.monitor)?;
         let is_found = ended.end == Descent::By(End::Solved)
-            && Walker::new(&mut self.levels[last], coarse, make, monitor).walk(None)? == Walk::Found;
+            && Walker::new(&mut self.levels[last], coarse, self.make, self.monitor).walk(None)? == Walk::Found;
         if !is_found {
             return Ok(false);
         }
         for l in (0..last).rev() {
             let (fine, below) = self.levels.split_at_mut(l + 1);
             prolong(&mut below[0], &mut fine[l])?;
-            let goal = coarse_goal(&self.levels, l, goal);
-            monitor.enter_grid();
-            let (end, _) = newton(&mut self.levels[l], goal, false, monitor)?;
+            let goal = coarse_goal(self.levels, l, goal);
+            self.monitor.enter_grid();
+            let (end, _) = newton(&mut self.levels[l], goal, false, self.monitor)?;
             if end != End::Solved {
                 return Ok(false);
             }
         }
-        is_stable(&mut self.levels[0], true, monitor)
+        is_stable(&mut self.levels[0], true, self.monitor)
     }
 
     /// Seeks a state for a pull slightly stronger than the strongest one of the walk `known`. Elements that are coarse for the range separate
     /// one by one, so the strongest pull depends on the steps of the walk. A pull-off takes other steps, because it does not stop at a force. If
     /// it holds the prescribed pull, `climb` finds the state of that pull. If it only holds more than `known`, its end replaces `known`.
-    pub(super) fn hold_pull_off(
-        &mut self,
-        known: Walk,
-        goal: Goal,
-        (start, make): (Start, MakeFrozen<'_>),
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Walk> {
+    pub fn hold_pull_off(&mut self, known: Walk, goal: Goal) -> Result<Walk> {
         let Some(wanted) =
             goal.wanted.filter(|wanted| matches!(known, Walk::Least { sum, .. } if *wanted > PULL_MARGIN * sum))
         else {
             return Ok(known);
         };
         let strongest = Place::of(&self.levels[0], Met::of(&self.levels[0]).sum)?;
-        let walk = self.down_from_no_load(Goal { wanted: None, ..goal }, (start, make), monitor)?;
+        let walk = self.down_from_no_load(Goal { wanted: None, ..goal })?;
         match (walk, known) {
             (Walk::Least { sum, .. }, _) if sum <= wanted => {
-                let most = monitor.count.cycles.saturating_add(goal.most);
-                self.walker(Goal { most, ..goal }, make, monitor).climb(sum)
+                let most = self.monitor.count.cycles.saturating_add(goal.most);
+                self.walker(Goal { most, ..goal }).climb(sum)
             }
             (Walk::Least { sum, .. }, Walk::Least { sum: least, .. }) if sum < least => Ok(walk),
             (Walk::Interrupted, _) => {
                 let level = &mut self.levels[0];
                 level.refresh()?;
-                level.count_products(monitor);
+                level.count_products(self.monitor);
                 let measured = level.measure(false, None);
                 if !(measured.is_state(goal.tolerance) && measured.pressures < strongest.sum) {
                     level.now.copy_from(&strongest.at)?;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::unknowns::{is_small, measure, Measured, Pressures, Surface, Unknowns};
+use super::unknowns::{is_small, measure, Measured, Surface, Unknowns};
 use crate::contact::{self, State};
 use crate::error::Result;
 use crate::grid::Grid;
@@ -58,8 +58,8 @@ pub struct Level {
     pub surface: Surface,
     /// The present unknowns.
     pub now: Unknowns,
-    /// The last state from which descent can continue.
-    pub good: Pressures,
+    /// The last state from which descent can continue, [kept](Unknowns::keep).
+    pub good: Unknowns,
     /// Fields of linear solves, shared by all grids and held by the active one.
     pub fields: Fields<1>,
     inverse: Option<Inverse>,
@@ -89,7 +89,7 @@ impl Level {
             work,
             surface: Surface::default(),
             now,
-            good: Pressures::default(),
+            good: Unknowns::default(),
             fields: Fields::touched_by(threads),
             inverse,
             frozen: None,

@@ -101,6 +101,11 @@ impl Goal {
     pub fn is_interrupted(&self, monitor: &Monitor<'_>) -> bool {
         monitor.is_cancelled() || monitor.count.cycles >= self.most
     }
+
+    /// Whether the given force pulls.
+    pub fn pulls(&self) -> bool {
+        self.wanted.is_some_and(|wanted| wanted < 0.0)
+    }
 }
 
 /// Iterates from the level's state. `keeps`: the first step keeps its contact area.

@@ -69,7 +69,7 @@ pub fn solve(
     monitor: &mut Monitor<'_>,
 ) -> Result<Ended> {
     let mut good = std::mem::take(&mut level.good);
-    good.take(&level.now, &level.problem.threads)?;
+    good.keep(&level.now, &level.problem.threads)?;
     let mut ended = None;
     let (mut least, mut is_lost, mut has_descended) = (f64::INFINITY, false, false);
     for round in 0..NEWTON_TRIALS {
@@ -101,7 +101,7 @@ pub fn solve(
             break;
         }
         least = energy(level, goal.wanted);
-        good.take(&level.now, &level.problem.threads)?;
+        good.keep(&level.now, &level.problem.threads)?;
     }
     level.good = good;
     let (end, measured) = match ended {

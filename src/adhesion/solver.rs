@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::begin::Search;
 use super::level::{Level, MakeFrozen};
 use super::levels::{levels, take_surfaces};
 use super::majorise::Descent;
@@ -12,7 +13,6 @@ use super::request::{Request, State};
 use super::robust;
 use super::split::Split;
 use super::stability::stability;
-use super::start::Start;
 use super::tangent::stiffness_of_contact;
 use super::way::count_contact;
 use crate::error::Result;
@@ -29,9 +29,7 @@ const SNAPPED: f64 = 0.25;
 
 /// Grids and memory for many solves on one grid.
 pub struct Solver {
-    pub(super) levels: Vec<Level>,
-    /// Whether the state of the finest grid could not be followed from the previous state.
-    jumped: bool,
+    levels: Vec<Level>,
 }
 
 impl Solver {
@@ -42,7 +40,7 @@ impl Solver {
         operator: Arc<Operator<f64>>,
         threads: &Threads,
     ) -> Result<Solver> {
-        Ok(Solver { levels: levels(grid, coefficients, operator, threads)?, jumped: false })
+        Ok(Solver { levels: levels(grid, coefficients, operator, threads)? })
     }
 
     /// The finest grid, with the solution.
@@ -91,32 +89,26 @@ impl Solver {
         };
         let goal =
             Goal { tolerance: request.tolerance, wanted, certified: true, most: request.max_cycles, pace: Pace::Bold };
-        self.jumped = false;
         if let Load::Approach(approach) = request.load {
             self.levels.iter_mut().for_each(|level| level.now.p.border = [approach]);
         }
-        let end = match request.state {
-            Some(state) => self.go_on(&state, goal, (request.start, make), monitor)?,
-            None => self.begin_anew(goal, (request.start, make), monitor)?,
+        let mut search = Search { levels: &mut self.levels, start: request.start, make, monitor };
+        let (end, jumped) = match request.state {
+            Some(state) => search.go_on(&state, goal)?,
+            None => (search.begin_anew(goal)?, false),
         };
         let end = match (end, request.pull_off) {
             // If no state is found at the load, continuation starts only from bodies that are pressed together.
-            (Descent::By(end), true) if end != End::Interrupted => {
-                self.pull_off(goal, (end == End::Solved, make), monitor)?
-            }
+            (Descent::By(end), true) if end != End::Interrupted => search.pull_off(goal, end == End::Solved)?,
             (end, _) => end,
         };
-        self.conclude(end, goal, request, monitor)
+        search.conclude((end, jumped), goal, request)
     }
+}
 
-    /// Continues from a state along its branch.
-    fn go_on(
-        &mut self,
-        state: &State<'_>,
-        goal: Goal,
-        (start, make): (Start, MakeFrozen<'_>),
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Descent> {
+impl Search<'_, '_, '_> {
+    /// Continues from a state along its branch. Returns as well whether the bodies have snapped.
+    fn go_on(&mut self, state: &State<'_>, goal: Goal) -> Result<(Descent, bool)> {
         let level = &mut self.levels[0];
         if let Some(pressure) = state.pressure {
             level.now.p.field.as_flattened_mut().copy_from_slice(pressure);
@@ -127,46 +119,40 @@ impl Solver {
             level.now.p.border = [state.approach];
         }
         level.refresh()?;
-        level.count_products(monitor);
+        level.count_products(self.monitor);
         if state.pressure.is_some() && goal.wanted.is_some() {
             approach_contact(level);
         }
-        let (end, settled) = if !pulls(goal) {
-            let ended = robust::solve(level, goal, (true, make), monitor)?;
-            self.jumped = ended.is_lost && is_snap(before, ended.measured.count);
+        let (end, settled, jumped) = if !goal.pulls() {
+            let ended = robust::solve(level, goal, (true, self.make), self.monitor)?;
+            let jumped = ended.is_lost && is_snap(before, ended.measured.count);
             let settled = match goal.wanted.is_some() && ended.is_in_contact() {
-                true => self.walker(goal, make, monitor).settle()?,
+                true => self.walker(goal).settle()?,
                 false => Walk::Found,
             };
-            (ended.end, settled)
+            (ended.end, settled, jumped)
         } else {
-            let (end, _) = newton(level, goal, true, monitor)?;
+            let (end, _) = newton(level, goal, true, self.monitor)?;
             let settled = match end {
-                End::Solved => self.walker(goal, make, monitor).settle()?,
+                End::Solved => self.walker(goal).settle()?,
                 End::Interrupted => Walk::Interrupted,
                 _ => Walk::Lost,
             };
-            (Descent::By(end), settled)
+            (Descent::By(end), settled, false)
         };
         match settled {
-            Walk::Found => return Ok(end),
-            Walk::Interrupted => return Ok(Descent::By(End::Interrupted)),
+            Walk::Found => return Ok((end, jumped)),
+            Walk::Interrupted => return Ok((Descent::By(End::Interrupted), jumped)),
             _ => {}
         }
-        let end = self.begin_anew(goal, (start, make), monitor)?;
-        self.jumped = is_snap(before, count_contact(&self.levels[0]));
-        Ok(end)
+        let end = self.begin_anew(goal)?;
+        Ok((end, is_snap(before, count_contact(&self.levels[0]))))
     }
 
     /// Finds the state of the least force, from the current state if it is valid.
-    fn pull_off(
-        &mut self,
-        goal: Goal,
-        (is_state, make): (bool, MakeFrozen<'_>),
-        monitor: &mut Monitor<'_>,
-    ) -> Result<Descent> {
+    fn pull_off(&mut self, goal: Goal, is_state: bool) -> Result<Descent> {
         let goal = Goal { wanted: None, ..goal };
-        Ok(match self.down_all_ways(goal, (is_state, make), monitor)? {
+        Ok(match self.down_all_ways(goal, is_state)? {
             Walk::Least { .. } | Walk::Found => Descent::By(End::Solved),
             Walk::Interrupted => Descent::By(End::Interrupted),
             Walk::Lost | Walk::Met => Descent::By(End::Failed),
@@ -176,14 +162,12 @@ impl Solver {
     /// Computes the measures of the solution, with a fresh product unless it has one.
     fn conclude(
         &mut self,
-        end: Descent,
+        (mut end, jumped): (Descent, bool),
         goal: Goal,
         request: &Request<'_>,
-        monitor: &mut Monitor<'_>,
     ) -> Result<(Outcome, Report)> {
-        let level = &mut self.levels[0];
-        let wanted = goal.wanted;
-        let mut end = end;
+        let Search { levels, monitor, .. } = self;
+        let (level, wanted) = (&mut levels[0], goal.wanted);
         if end == Descent::Parted && wanted == Some(0.0) {
             // There is no attraction and no pulling force.
             level.now.unload(&level.problem.threads);
@@ -203,9 +187,9 @@ impl Solver {
             measured.force = 0.0;
         }
         let mut report = Report::of(level, &measured);
-        report.jumped = self.jumped;
+        report.jumped = jumped;
         let is_state = measured.is_state(request.tolerance);
-        report.is_short = end == Descent::By(End::Interrupted) && pulls(goal) && is_state && measured.pressures < 0.0;
+        report.is_short = end == Descent::By(End::Interrupted) && goal.pulls() && is_state && measured.pressures < 0.0;
         let is_solved = end == Descent::By(End::Solved);
         if request.stiffness && is_solved && !monitor.is_cancelled() {
             let area = level.problem.grid.element_area();
@@ -241,9 +225,4 @@ fn approach_contact(level: &mut Level) {
 /// Whether the number of elements in contact changes by more than [`SNAPPED`] of it.
 fn is_snap(before: usize, now: usize) -> bool {
     before.abs_diff(now) as f64 > SNAPPED * before.max(now) as f64
-}
-
-/// Whether the prescribed force pulls.
-pub(super) fn pulls(goal: Goal) -> bool {
-    goal.wanted.is_some_and(|wanted| wanted < 0.0)
 }

@@ -28,8 +28,9 @@ pub struct Unknowns {
 impl Unknowns {
     /// p = 0 on n elements.
     pub fn new(n: usize, threads: &Threads) -> Result<Unknowns> {
-        let mut unknowns = Unknowns::default();
-        unknowns.reserve(n, threads)?;
+        let mut unknowns = Unknowns::without_fields(n, threads)?;
+        unwritten(&mut unknowns.p.field, n, [f64::NAN], MEMORY, threads)?;
+        unwritten(&mut unknowns.u, n, [f64::NAN], MEMORY, threads)?;
         unknowns.unload(threads);
         Ok(unknowns)
     }
@@ -40,13 +41,6 @@ impl Unknowns {
         unwritten(&mut unknowns.contact, n, false, MEMORY, threads)?;
         unknowns.contact.fill(false);
         Ok(unknowns)
-    }
-
-    /// Allocates memory for n elements with undefined values.
-    fn reserve(&mut self, n: usize, threads: &Threads) -> Result<()> {
-        unwritten(&mut self.p.field, n, [f64::NAN], MEMORY, threads)?;
-        unwritten(&mut self.u, n, [f64::NAN], MEMORY, threads)?;
-        Ok(unwritten(&mut self.contact, n, false, MEMORY, threads)?)
     }
 
     /// The approach.
@@ -63,12 +57,43 @@ impl Unknowns {
 
     /// Copies other unknowns.
     pub fn copy_from(&mut self, other: &Unknowns) -> Result<()> {
+        self.copy_pressures(other, &Threads::One)?;
+        self.copy_displacements(other)
+    }
+
+    /// Copies other unknowns; on large grids without u, which a product recomputes.
+    pub fn keep(&mut self, other: &Unknowns, threads: &Threads) -> Result<()> {
+        self.copy_pressures(other, threads)?;
+        if is_small(other.u.len()) {
+            self.copy_displacements(other)?;
+        }
+        Ok(())
+    }
+
+    /// Copies what was kept to other unknowns. Returns whether u was kept and is copied as well.
+    pub fn put(&self, to: &mut Unknowns) -> bool {
+        to.p.field.copy_from_slice(&self.p.field);
+        to.contact.copy_from_slice(&self.contact);
+        to.p.border = self.p.border;
+        if !self.u.is_empty() {
+            to.u.copy_from_slice(&self.u);
+        }
+        !self.u.is_empty()
+    }
+
+    fn copy_pressures(&mut self, other: &Unknowns, threads: &Threads) -> Result<()> {
         let n = other.u.len();
-        self.reserve(n, &Threads::One)?;
-        self.p.field.copy_from_slice(&other.p.field);
-        self.u.copy_from_slice(&other.u);
+        unwritten(&mut self.p.field, n, [f64::NAN], MEMORY, threads)?;
+        unwritten(&mut self.contact, n, false, MEMORY, threads)?;
+        fields::fill(threads, &mut self.p.field, |i| other.p.field[i]);
         self.contact.copy_from_slice(&other.contact);
         self.p.border = other.p.border;
+        Ok(())
+    }
+
+    fn copy_displacements(&mut self, other: &Unknowns) -> Result<()> {
+        unwritten(&mut self.u, other.u.len(), [f64::NAN], MEMORY, &Threads::One)?;
+        self.u.copy_from_slice(&other.u);
         Ok(())
     }
 
@@ -91,47 +116,6 @@ const SMALL: usize = 1 << 15;
 /// Whether a grid of n elements is small, so that memory is spent to save products.
 pub fn is_small(n: usize) -> bool {
     n <= SMALL
-}
-
-/// Pressures with the approach, and the contact area; on large grids u is recomputed by a product.
-#[derive(Default)]
-pub struct Pressures {
-    p: Bordered<1>,
-    u: Vec<One>,
-    contact: Vec<bool>,
-}
-
-impl Pressures {
-    /// Copies the pressures of unknowns.
-    pub fn take(&mut self, from: &Unknowns, threads: &Threads) -> Result<()> {
-        let n = from.u.len();
-        unwritten(&mut self.p.field, n, [f64::NAN], MEMORY, threads)?;
-        unwritten(&mut self.contact, n, false, MEMORY, threads)?;
-        fields::fill(threads, &mut self.p.field, |i| from.p.field[i]);
-        self.contact.copy_from_slice(&from.contact);
-        self.p.border = from.p.border;
-        if is_small(n) {
-            unwritten(&mut self.u, n, [f64::NAN], MEMORY, &Threads::One)?;
-            self.u.copy_from_slice(&from.u);
-        }
-        Ok(())
-    }
-
-    /// Copies the pressures to unknowns. Returns whether u was kept and is copied as well.
-    pub fn put(&self, to: &mut Unknowns) -> bool {
-        to.p.field.copy_from_slice(&self.p.field);
-        to.contact.copy_from_slice(&self.contact);
-        to.p.border = self.p.border;
-        if !self.u.is_empty() {
-            to.u.copy_from_slice(&self.u);
-        }
-        !self.u.is_empty()
-    }
-
-    /// Bytes held.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&self.p.field[..]) + size_of_val(&self.u[..]) + self.contact.len()
-    }
 }
 
 /// The surfaces: h, the law and the work of adhesion of each element.

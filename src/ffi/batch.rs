@@ -171,7 +171,7 @@ impl Batch {
             let scene = unsafe { Named::read(self.scenes.at(i, "scene")?)?.translate()? };
             Solver::check_problem(&scene)?;
             let watcher = Watcher::without_callback(options);
-            run(worker, (&scene, None), &options.options, &watcher, outputs, &mut Buffers::default())
+            run(worker, &scene, &options.options, &watcher, outputs, &mut Buffers::default())
         };
         let mut outcome = solved().unwrap_or_else(Conclusion::from);
         outcome.message += &recording.finish(outcome.status, &outcome.message);

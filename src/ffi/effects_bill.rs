@@ -1,12 +1,12 @@
 //! `contact_normal_effects_bill`: which effects a scene calls for, and what they cost.
 
-use super::arguments::{count, not_negative, required, switch, Regions};
+use super::arguments::{self, not_negative, required, switch, Regions};
 use super::conclusion::Conclusion;
 use super::guard::guard;
 use super::options::{self, contact_normal_options};
 use super::quantities::{quantities_of, CONTACT_NORMAL_LACK_NONE};
 use super::scene::{contact_normal_scene, Named};
-use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
+use super::status::{contact_normal_status, CONTACT_NORMAL_OK};
 use super::structs::{versioned, Rows};
 use super::watcher::{why, Watcher};
 use crate::solver::{effects_bill, BillOptions, BillRow, Omission, Verdict};
@@ -133,54 +133,44 @@ pub unsafe extern "C" fn contact_normal_effects_bill(
     rows: *mut contact_normal_effects_row,
     count: *mut i32,
 ) -> contact_normal_status {
-    // SAFETY: as below.
-    guard(|| unsafe { bill(scene, options, (target, pairs), (n, quantities), (capacity, rows), count) })
-}
-
-unsafe fn bill(
-    scene: *const contact_normal_scene,
-    options: *const contact_normal_options,
-    (target, pairs): (f64, i32),
-    (n, quantities): (i32, *const i32),
-    (capacity, rows): (i32, *mut contact_normal_effects_row),
-    number: *mut i32,
-) -> Result<contact_normal_status, Refusal> {
-    let n = count("n", n)?;
-    let capacity = not_negative("capacity", capacity)?;
-    let pairs = switch("pairs", pairs)?;
-    // SAFETY: each pointer is NULL or points to what it says, by the conventions of the ABI.
-    let (translated, named, wanted) =
-        unsafe { (options::translate(options)?, Named::read(scene)?, required("quantities", quantities, n)?) };
-    // SAFETY: NULL, or rows of which the first declares its size.
-    let to = if rows.is_null() { None } else { Some(unsafe { Rows::of(rows, "rows")? }) };
-    let mut regions = Regions::default();
-    named.add_to(&mut regions, scene)?;
-    translated.add_to(&mut regions, options)?;
-    regions.input("quantities", wanted.as_ptr(), n)?;
-    if let Some(to) = &to {
-        regions.output_rows("rows", rows, to, capacity)?;
-    }
-    regions.output("count", number, 1)?;
-    regions.check()?;
-    let wanted = quantities_of(wanted)?;
-    // SAFETY: as above.
-    let scene = unsafe { named.translate()? };
-    let asked = BillOptions { target, max_seconds: translated.given.max_seconds, pairs };
-    let write_count = |found: usize| {
-        if !number.is_null() {
-            // SAFETY: not NULL: an integer of the caller's.
-            unsafe { number.write(found as i32) };
+    guard(|| {
+        let n = arguments::count("n", n)?;
+        let capacity = not_negative("capacity", capacity)?;
+        let pairs = switch("pairs", pairs)?;
+        // SAFETY: each pointer is NULL or points to what it says, by the conventions of the ABI.
+        let (translated, named, wanted) =
+            unsafe { (options::translate(options)?, Named::read(scene)?, required("quantities", quantities, n)?) };
+        // SAFETY: NULL, or rows of which the first declares its size.
+        let to = if rows.is_null() { None } else { Some(unsafe { Rows::of(rows, "rows")? }) };
+        let mut regions = Regions::default();
+        named.add_to(&mut regions, scene)?;
+        translated.add_to(&mut regions, options)?;
+        regions.input("quantities", wanted.as_ptr(), n)?;
+        if let Some(to) = &to {
+            regions.output_rows("rows", rows, to, capacity)?;
         }
-    };
-    let Some(to) = to else {
-        write_count(Omission::left_out_of(&scene, asked.pairs).len() * n);
-        return Ok(CONTACT_NORMAL_OK);
-    };
-    let watcher = Watcher::of(&translated);
-    let told = &mut watcher.told();
-    let (stop, found) = effects_bill(&scene, &translated.options, &asked, &wanted, watcher.callback(told))?;
-    // SAFETY: the caller's array holds `capacity` rows.
-    found.iter().take(capacity).enumerate().for_each(|(i, row)| unsafe { to.write(i, &row.into()) });
-    write_count(found.len());
-    watcher.conclusion(Conclusion::of(stop, || why(stop).into())).conclude()
+        regions.output("count", count, 1)?;
+        regions.check()?;
+        let wanted = quantities_of(wanted)?;
+        // SAFETY: as above.
+        let scene = unsafe { named.translate()? };
+        let asked = BillOptions { target, max_seconds: translated.given.max_seconds, pairs };
+        let write_count = |found: usize| {
+            if !count.is_null() {
+                // SAFETY: not NULL: an integer of the caller's.
+                unsafe { count.write(found as i32) };
+            }
+        };
+        let Some(to) = to else {
+            write_count(Omission::left_out_of(&scene, asked.pairs).len() * n);
+            return Ok(CONTACT_NORMAL_OK);
+        };
+        let watcher = Watcher::of(&translated);
+        let told = &mut watcher.told();
+        let (stop, found) = effects_bill(&scene, &translated.options, &asked, &wanted, watcher.callback(told))?;
+        // SAFETY: the caller's array holds `capacity` rows.
+        found.iter().take(capacity).enumerate().for_each(|(i, row)| unsafe { to.write(i, &row.into()) });
+        write_count(found.len());
+        watcher.conclusion(Conclusion::of(stop, || why(stop).into())).conclude()
+    })
 }

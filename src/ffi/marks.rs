@@ -8,95 +8,41 @@ const WRONG_BODY: i64 = 1;
 const NOT_ASSOCIATED: i64 = 2;
 const WRONG_SHAPE: i64 = 3;
 
-/// The procedures and their arguments, in the order of include/contact_normal.f90.
-const PROCEDURES: [(&str, &[&str]); 22] = [
-    ("set_undeformed_distance", &["scene", "h"]),
-    ("set_influence", &["scene", "influence", "cx", "cy", "coefficients", "scale"]),
-    ("set_layer", &["scene", "layer", "compliance", "compliances"]),
-    ("set_pressure_limit", &["scene", "pressure_limit", "limit", "limits"]),
-    ("set_period", &["scene", "period", "x", "y"]),
-    ("set_patches", &["scene", "patches", "patch", "factors"]),
-    ("set_row_tables", &["scene", "row_tables", "cx", "coefficients", "scale"]),
-    ("set_coating", &["scene", "body", "coating", "thickness", "shear_modulus", "poisson_ratio"]),
-    ("set_cycle", &["options", "cycle"]),
+/// The procedures, each with the names of its arguments, in the order of include/contact_normal.f90.
+const PROCEDURES: [(&str, &str); 22] = [
+    ("set_undeformed_distance", "scene h"),
+    ("set_influence", "scene influence cx cy coefficients scale"),
+    ("set_layer", "scene layer compliance compliances"),
+    ("set_pressure_limit", "scene pressure_limit limit limits"),
+    ("set_period", "scene period x y"),
+    ("set_patches", "scene patches patch factors"),
+    ("set_row_tables", "scene row_tables cx coefficients scale"),
+    ("set_coating", "scene body coating thickness shear_modulus poisson_ratio"),
+    ("set_cycle", "options cycle"),
     (
         "set_friction",
-        &[
-            "scene",
-            "friction",
-            "coefficient",
-            "coefficients",
-            "previous_x",
-            "previous_y",
-            "slip_x",
-            "slip_y",
-            "initial_x",
-            "initial_y",
-            "compliances",
-            "weight_x",
-            "weight_y",
-            "previous_coefficient",
-            "previous_yield_limit",
-        ],
+        "scene friction coefficient coefficients previous_x previous_y slip_x slip_y initial_x initial_y \
+         compliances weight_x weight_y previous_coefficient previous_yield_limit",
     ),
-    ("set_tangential_influence", &["friction", "tables", "xx", "yy", "xy", "scale", "xz", "yz"]),
-    (
-        "set_friction_fields",
-        &[
-            "fields",
-            "traction_x",
-            "traction_y",
-            "slip_x",
-            "slip_y",
-            "stick_slip",
-            "friction_coefficient",
-            "yield_limit",
-        ],
-    ),
+    ("set_tangential_influence", "friction tables xx yy xy scale xz yz"),
+    ("set_friction_fields", "fields traction_x traction_y slip_x slip_y stick_slip friction_coefficient yield_limit"),
     (
         "set_friction_results",
-        &[
-            "results",
-            "force",
-            "moment",
-            "creepage",
-            "residual",
-            "gap",
-            "products",
-            "stick_count",
-            "slip_count",
-            "status",
-            "traction",
-            "slip",
-            "stick_slip",
-            "friction_coefficient",
-            "yield_limit",
-        ],
+        "results force moment creepage residual gap products stick_count slip_count status traction slip \
+         stick_slip friction_coefficient yield_limit",
     ),
-    (
-        "set_fields",
-        &["fields", "pressure", "contact", "displacement", "deformed_distance", "contact_pressure", "attraction"],
-    ),
+    ("set_fields", "fields pressure contact displacement deformed_distance contact_pressure attraction"),
     (
         "set_stress_outputs",
-        &[
-            "outputs",
-            "stress",
-            "von_mises",
-            "maximum_shear",
-            "principal",
-            "directions",
-            "largest_von_mises",
-            "largest_shear",
-        ],
+        "outputs stress von_mises maximum_shear principal directions largest_von_mises largest_shear",
     ),
-    ("set_ledger", &["report", "ledger"]),
-    ("solver_solve_batch", &["solver", "scenes", "options", "fields", "reports", "statuses"]),
-    ("set_tangential_row_tables", &["friction", "tables", "cx", "xx", "yy", "xy", "scale"]),
-    ("set_adhesion", &["scene", "adhesion", "work", "works", "range", "law"]),
-    ("set_visco", &["scene", "visco", "modulus_1", "time_1", "modulus_2", "time_2", "time_step", "continues"]),
-    ("flash_temperature", &["heat", "heat_flux", "temperature", "flash"]),
-    ("frictional_wear", &["wear", "traction", "slip", "work", "depth", "passage", "worn", "pressure", "coefficients"]),
+    ("set_ledger", "report ledger"),
+    ("solver_solve_batch", "solver scenes options fields reports statuses"),
+    ("set_tangential_row_tables", "friction tables cx xx yy xy scale"),
+    ("set_adhesion", "scene adhesion work works range law"),
+    ("set_visco", "scene visco modulus_1 time_1 modulus_2 time_2 time_step continues"),
+    ("flash_temperature", "heat heat_flux temperature flash"),
+    ("frictional_wear", "wear traction slip work depth passage worn pressure coefficients"),
 ];
 
 /// The text of a mark, if this is one.
@@ -109,7 +55,7 @@ pub fn read(declared: i64) -> Option<String> {
     let (procedure, arguments) = PROCEDURES.get(place(bits >> 40 & 0xFF)?)?;
     // The low 32 bits are an integer of Fortran.
     let about = bits as i32;
-    let argument = || arguments.get(place(i64::from(about))?);
+    let argument = || arguments.split(' ').nth(place(i64::from(about))?);
     let fault = match bits >> 32 & 0xFF {
         WRONG_BODY => format!("body is {about}; it must be 1 or 2"),
         NOT_ASSOCIATED => format!("{} is not associated (or not allocated)", argument()?),
@@ -120,51 +66,5 @@ pub fn read(declared: i64) -> Option<String> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn mark(procedure: i64, kind: i64, about: i32) -> i64 {
-        -(MARK << 48 | procedure << 40 | kind << 32 | i64::from(about as u32))
-    }
-
-    #[test]
-    fn a_mark_names_the_procedure_and_what_is_wrong() {
-        let said = |procedure, kind, about| read(mark(procedure, kind, about)).expect("a mark");
-        assert_eq!(said(8, WRONG_BODY, -3), "contact_normal_set_coating: body is -3; it must be 1 or 2");
-        assert_eq!(
-            said(1, NOT_ASSOCIATED, 2),
-            "contact_normal_set_undeformed_distance: h is not associated (or not allocated)"
-        );
-        assert_eq!(
-            said(17, WRONG_SHAPE, 6),
-            "contact_normal_solver_solve_batch: statuses has another shape than it must have"
-        );
-        assert_eq!(
-            said(13, NOT_ASSOCIATED, 15),
-            "contact_normal_set_friction_results: yield_limit is not associated (or not allocated)"
-        );
-        assert_eq!(
-            said(21, WRONG_SHAPE, 3),
-            "contact_normal_flash_temperature: temperature has another shape than it must have"
-        );
-        assert_eq!(
-            said(22, WRONG_SHAPE, 9),
-            "contact_normal_frictional_wear: coefficients has another shape than it must have"
-        );
-    }
-
-    #[test]
-    fn other_sizes_are_no_marks() {
-        let wrong = [
-            mark(0, 1, 1),
-            mark(23, 1, 1),
-            mark(1, 0, 1),
-            mark(1, 4, 1),
-            mark(1, NOT_ASSOCIATED, 0),
-            mark(1, NOT_ASSOCIATED, 3),
-        ];
-        for declared in [0, 8, 168, -1, -168, i64::MAX, i64::MIN].into_iter().chain(wrong) {
-            assert_eq!(read(declared), None, "{declared}");
-        }
-    }
-}
+#[path = "../../tests/unit/marks.rs"]
+mod tests;

@@ -11,7 +11,7 @@ use super::status::Refusal;
 use super::structs::{self, Rows, Versioned};
 use super::warnings;
 use crate::contact::State;
-use crate::friction::{Particle, Solution, Vector, EXTERIOR};
+use crate::friction::{Solution, Vector, EXTERIOR};
 use crate::memory::reserve;
 use crate::scene::Scene;
 use crate::solver::{ActiveSet, Guess, InitialGuess, LedgerRow, Neglected, Options, Report, Solver};
@@ -165,17 +165,14 @@ impl Outputs {
         let state = solver.state();
         let n = state.p.len();
         let fields = &self.fields;
-        // SAFETY (all four): not null: room for n values, by the conventions of the ABI; no two overlap (`Regions`).
+        let contact = |i: usize| if state.at_limit.get(i) == Some(&true) { 2 } else { i32::from(state.contact[i]) };
+        // SAFETY (all four): NULL or room for n values, by the conventions of the ABI; no two overlap (`Regions`).
         unsafe {
             copy_to(&state.p, fields.pressure, 0);
             copy_to(&state.u, fields.displacement, 0);
-            if !fields.deformed_distance.is_null() {
-                (0..n).for_each(|i| fields.deformed_distance.add(i).write(state.deformed_distance(i)));
-            }
-            if !fields.contact.is_null() && !is_fixed {
-                (0..n).for_each(|i| fields.contact.add(i).write(i32::from(state.contact[i])));
-                let at_limit = state.at_limit.iter().enumerate().filter(|(_, &at_limit)| at_limit);
-                at_limit.for_each(|(i, _)| fields.contact.add(i).write(2));
+            write_each(fields.deformed_distance, n, |i| state.deformed_distance(i));
+            if !is_fixed {
+                write_each(fields.contact, n, contact);
             }
         }
         self.write_friction(solver.friction(), n);
@@ -200,37 +197,17 @@ impl Outputs {
         let fields = &self.fields;
         let value = |field: &[Vector], i: usize, k: usize| if found.is_some() { field[i][k] } else { 0.0 };
         let none = Solution::default();
-        let Solution { traction, slip, stick_slip, .. } = found.unwrap_or(&none);
-        for (k, (q, s)) in fields.traction.iter().zip(fields.slip).enumerate() {
-            // SAFETY (both): not null: room for n values, as above.
-            unsafe {
-                if !q.is_null() {
-                    (0..n).for_each(|i| q.add(i).write(value(traction, i, k)));
-                }
-                if !s.is_null() {
-                    (0..n).for_each(|i| s.add(i).write(value(slip, i, k)));
-                }
+        let Solution { traction, slip, stick_slip, particles } = found.unwrap_or(&none);
+        let particle = |i: usize| particles.get(i).copied().unwrap_or_default();
+        // SAFETY (all): NULL or room for n values, as above.
+        unsafe {
+            for k in 0..2 {
+                write_each(fields.traction[k], n, |i| value(traction, i, k));
+                write_each(fields.slip[k], n, |i| value(slip, i, k));
             }
-        }
-        self.write_particles(found, n);
-        if !fields.stick_slip.is_null() {
-            let stick_slip = |i: usize| if found.is_some() { stick_slip[i] } else { EXTERIOR };
-            // SAFETY: likewise.
-            unsafe { (0..n).for_each(|i| fields.stick_slip.add(i).write(stick_slip(i))) };
-        }
-    }
-
-    /// Writes the state of the particles of the interface.
-    fn write_particles(&self, found: Option<&Solution>, n: usize) {
-        let of = |i: usize| found.and_then(|found| found.particles.get(i)).copied().unwrap_or_default();
-        for (to, value) in [
-            (self.fields.friction_coefficient, (|particle| particle.coefficient) as fn(Particle) -> f64),
-            (self.fields.yield_limit, |particle| particle.yield_limit),
-        ] {
-            if !to.is_null() {
-                // SAFETY: not null: room for n values, as above.
-                unsafe { (0..n).for_each(|i| to.add(i).write(value(of(i)))) };
-            }
+            write_each(fields.stick_slip, n, |i| if found.is_some() { stick_slip[i] } else { EXTERIOR });
+            write_each(fields.friction_coefficient, n, |i| particle(i).coefficient);
+            write_each(fields.yield_limit, n, |i| particle(i).yield_limit);
         }
     }
 
@@ -264,6 +241,14 @@ impl Outputs {
     /// Rows that the caller's ledger has room for.
     fn ledger_capacity(&self) -> usize {
         self.given_report.map_or(0, |report| report.ledger_capacity as usize)
+    }
+}
+
+/// Writes a value for each of n elements. NULL: they are not wanted.
+unsafe fn write_each<A>(to: *mut A, n: usize, value: impl Fn(usize) -> A) {
+    if !to.is_null() {
+        // SAFETY: not null: room for n values, by the caller.
+        unsafe { (0..n).for_each(|i| to.add(i).write(value(i))) };
     }
 }
 

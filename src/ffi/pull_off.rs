@@ -7,7 +7,7 @@ use super::options::contact_normal_options;
 use super::outputs::Buffers;
 use super::report::contact_normal_report;
 use super::scene::contact_normal_scene;
-use super::solve::{explain, Request};
+use super::solve::{explain, Needs, Request};
 use super::status::contact_normal_status;
 use super::watcher::Watcher;
 use crate::solver::Solver;
@@ -27,7 +27,8 @@ pub unsafe extern "C" fn contact_normal_pull_off(
     let solve = |recording: &mut Recording<'_>| {
         let mut buffers = Buffers::default();
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
-        let request = unsafe { Request::read(scene, options, fields, report, &mut buffers, |_, _| Ok(())) };
+        let request =
+            unsafe { Request::read(Needs::All, (scene, options), (fields, report), &mut buffers, |_, _| Ok(())) };
         recording.keep(&buffers.regions);
         let Request { scene, options, outputs } = request?;
         let (mut solver, _) = Solver::for_scene(&scene, &options.options)?;

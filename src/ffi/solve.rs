@@ -30,20 +30,24 @@ pub unsafe extern "C" fn contact_normal_solve(
         let mut buffers = Buffers::default();
         let (arguments, outputs) = ((scene, options), (fields, report));
         // SAFETY: each pointer is NULL or points to a struct that declares its size, by the conventions of the ABI.
-        let request = unsafe { Request::read_for(Needs::AllOrLess, arguments, outputs, &mut buffers, |_, _| Ok(())) };
+        let request = unsafe { Request::read(Needs::AllOrLess, arguments, outputs, &mut buffers, |_, _| Ok(())) };
         recording.keep(&buffers.regions);
         let Request { mut scene, options, mut outputs } = request?;
         // Before the set-up: a refusal should not cost one.
         outputs.check_inputs(&options.options, scene.grid.len())?;
         let watcher = Watcher::of(&options);
         if options.given.neglect_below > 0.0 {
-            let (target, told) = (options.given.neglect_below, &mut watcher.told());
-            let neglected = Neglected::of(&scene, &options.options, target, watcher.callback(told))?;
+            let target = options.given.neglect_below;
+            let neglected = Neglected::of(&scene, &options.options, target, watcher.callback(&mut watcher.told()))?;
             scene = neglected.leave_out(&scene);
             outputs.neglected = Some(neglected);
         }
         let (mut solver, lowest) = Solver::for_scene(&scene, &options.options)?;
-        run(&mut solver, (&scene, Some(lowest)), &options.options, &watcher, &outputs, &mut buffers)?.conclude()
+        let options = &outputs.options(&options.options);
+        let guess = outputs.guess(options, scene.grid.len(), &mut buffers)?;
+        let asked = Asked { guess, ..Asked::new((&scene, lowest), options) };
+        let solved = solver.solve_checked(asked, watcher.callback(&mut watcher.told()))?;
+        end(&solver, (&scene, options), solved, &watcher, &outputs)?.conclude()
     };
     // SAFETY: as above.
     unsafe { recorded("contact_normal_solve", options, arguments, solve) }
@@ -73,19 +77,6 @@ impl Request<'_> {
     /// Reads the structs, and refuses outputs that overlap: those, and what is `also` written, on so many elements. The caller's arrays
     /// must live as long as the result is used.
     pub unsafe fn read<'a>(
-        scene: *const contact_normal_scene,
-        options: *const contact_normal_options,
-        fields: *mut contact_normal_fields,
-        report: *mut contact_normal_report,
-        buffers: &mut Buffers,
-        also: impl FnOnce(&mut Regions, usize) -> Result<(), Refusal>,
-    ) -> Result<Request<'a>, Refusal> {
-        // SAFETY: by the caller.
-        unsafe { Request::read_for(Needs::All, (scene, options), (fields, report), buffers, also) }
-    }
-
-    /// The same for a call that needs less of its scene.
-    pub unsafe fn read_for<'a>(
         needs: Needs,
         (scene, options): (*const contact_normal_scene, *const contact_normal_options),
         (fields, report): (*mut contact_normal_fields, *mut contact_normal_report),
@@ -130,10 +121,10 @@ impl Request<'_> {
     }
 }
 
-/// Solves with a solver that is set up, and writes the outputs. A scene that is checked has its least distance.
+/// Solves with a solver that is set up, and writes the outputs.
 pub(super) fn run(
     solver: &mut Solver,
-    (scene, lowest): (&Scene<'_>, Option<f64>),
+    scene: &Scene<'_>,
     options: &Options,
     watcher: &Watcher,
     outputs: &Outputs,
@@ -143,12 +134,18 @@ pub(super) fn run(
     outputs.check_inputs(options, n)?;
     let options = &outputs.options(options);
     let guess = outputs.guess(options, n, buffers)?;
-    let told = &mut watcher.told();
-    let progress = watcher.callback(told);
-    let (stop, report) = match lowest {
-        Some(lowest) => solver.solve_checked(Asked { guess, ..Asked::new((scene, lowest), options) }, progress)?,
-        None => solver.solve(scene, options, guess, progress)?,
-    };
+    let solved = solver.solve(scene, options, guess, watcher.callback(&mut watcher.told()))?;
+    end(solver, (scene, options), solved, watcher, outputs)
+}
+
+/// Writes the outputs of a solve, and concludes.
+fn end(
+    solver: &Solver,
+    (scene, options): (&Scene<'_>, &Options),
+    (stop, report): (Outcome, Report),
+    watcher: &Watcher,
+    outputs: &Outputs,
+) -> Result<Conclusion, Refusal> {
     let warnings = outputs.warnings(scene, options, &report, solver.state());
     outputs.write_fields(solver, options.active_set == ActiveSet::Fixed);
     outputs.write_report(&report, solver.ledger(), warnings)?;

@@ -93,7 +93,7 @@ pub unsafe extern "C" fn contact_normal_solver_new(
         let request = unsafe {
             let also = |regions: &mut Regions, _| regions.output("solver", solver, 1);
             let (arguments, no_outputs) = ((scene, options), (null_mut(), null_mut()));
-            Request::read_for(Needs::Bodies, arguments, no_outputs, &mut buffers, also)
+            Request::read(Needs::Bodies, arguments, no_outputs, &mut buffers, also)
         };
         recording.keep(&buffers.regions);
         let Request { scene, options, .. } = request?;
@@ -125,10 +125,10 @@ pub unsafe extern "C" fn contact_normal_solver_solve(
         let mut in_use = unsafe { InUse::begin(solver)? };
         let Held { solver, buffers } = in_use.held();
         // SAFETY: as in contact_normal_solver_new.
-        let request = unsafe { Request::read(scene, options, fields, report, buffers, |_, _| Ok(())) };
+        let request = unsafe { Request::read(Needs::All, (scene, options), (fields, report), buffers, |_, _| Ok(())) };
         recording.keep_with(&buffers.regions, solver, request.as_ref().is_ok_and(Request::goes_on));
         let Request { scene, options, outputs } = request?;
-        run(solver, (&scene, None), &options.options, &Watcher::of(&options), &outputs, buffers)?.conclude()
+        run(solver, &scene, &options.options, &Watcher::of(&options), &outputs, buffers)?.conclude()
     };
     // SAFETY: as above.
     unsafe { recorded("contact_normal_solver_solve", options, arguments, solve) }

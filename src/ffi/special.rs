@@ -3,11 +3,12 @@
 use super::arguments::{aligned, count, required};
 use super::guard::guard;
 use super::influence::table_size;
+use super::ledger::copy;
 use super::scene::load_of;
 use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use super::structs::{self, versioned};
 use super::visco::contact_normal_visco;
-use crate::analytic::{self, Hertz};
+use crate::analytic;
 use crate::effects::Effect;
 use crate::error::{positive, require, Error};
 use crate::friction::rolling_tables;
@@ -71,10 +72,8 @@ pub unsafe extern "C" fn contact_normal_hertz(
             Load::Force(_) => ("amount, the force,", analytic::hertz_by_force),
         };
         positive(name, amount)?;
-        let Hertz { semi_axis_x, semi_axis_y, max_pressure, approach, force, area } =
-            exact(curvature_x, curvature_y, amount, compliance)?;
-        (value.semi_axis_x, value.semi_axis_y, value.area) = (semi_axis_x, semi_axis_y, area);
-        (value.max_pressure, value.approach, value.force) = (max_pressure, approach, force);
+        let found = exact(curvature_x, curvature_y, amount, compliance)?;
+        copy!(found => value: semi_axis_x, semi_axis_y, max_pressure, approach, force, area);
         // SAFETY: it declares its size.
         unsafe { structs::write(solution, &value)? };
         Ok(CONTACT_NORMAL_OK)

@@ -82,7 +82,7 @@ pub unsafe extern "C" fn contact_normal_solve_tangential(
             };
             let needs = if pressure.is_null() { Needs::All } else { Needs::NoLoad };
             let buffers = in_use.as_mut().map_or(&mut own, |in_use| &mut in_use.held().buffers);
-            Request::read_for(needs, (scene, options), (null_mut(), report), buffers, also)
+            Request::read(needs, (scene, options), (null_mut(), report), buffers, also)
         };
         match in_use.as_mut().map(InUse::held) {
             Some(Held { solver, buffers }) => {

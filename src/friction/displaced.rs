@@ -5,7 +5,7 @@ use super::row_product::RowProduct;
 use super::row_tables::RowTables;
 use super::toeplitz::Toeplitz;
 use super::Tangential;
-use crate::error::{invalid, Result};
+use crate::error::Result;
 use crate::grid::Grid;
 use crate::threads::Threads;
 use toeplitz::Memory;
@@ -55,20 +55,16 @@ pub fn displaced<'a>(
 ) -> Result<&'a mut Displaced> {
     let (rows, threads) = (tangential.rows(), &threads.suited_to(grid.len()));
     let first = rows.map(RowTables::first);
-    if !kept.as_ref().is_some_and(|kept| kept.by == by && kept.grid == grid && kept.first == first) {
-        *kept = None;
-        let product = match rows {
-            Some(rows) => Product::ByRow(Box::new(RowProduct::displaced(tangential, rows, &grid, by.0, threads)?)),
-            None => {
-                let operator = Box::new(Toeplitz::displaced(tangential, &grid, by, threads)?);
-                let workspace = operator.workspace()?;
-                Product::Toeplitz(operator, workspace)
-            }
-        };
-        *kept = Some(Displaced { by, grid, first, product });
+    if let Some(known) = kept.take().filter(|kept| kept.by == by && kept.grid == grid && kept.first == first) {
+        return Ok(kept.insert(known));
     }
-    match kept {
-        Some(kept) => Ok(kept),
-        None => invalid("no displaced operator".into()),
-    }
+    let product = match rows {
+        Some(rows) => Product::ByRow(Box::new(RowProduct::displaced(tangential, rows, &grid, by.0, threads)?)),
+        None => {
+            let operator = Box::new(Toeplitz::displaced(tangential, &grid, by, threads)?);
+            let workspace = operator.workspace()?;
+            Product::Toeplitz(operator, workspace)
+        }
+    };
+    Ok(kept.insert(Displaced { by, grid, first, product }))
 }

@@ -56,8 +56,7 @@ pub fn solve(
     fields::fill(&threads, &mut r, |i| tangent.project_inside(i, dw[i].map(|w| -w * scale)));
     let first = fields::dot(&threads, &r, &r).sqrt();
     let until = Until { target: tolerance * first, most: DIRECTIONS };
-    let mut x = Bordered { field: fields.take(n)?, border: [0.0; 2] };
-    x.field.fill([0.0; 2]);
+    let mut x = Bordered { field: fields.zeros(n, &threads)?, border: [0.0; 2] };
     let mut product = fields.take(n)?;
     for _ in 0..MOST_CALLS {
         let left = fields::dot(&threads, &r, &r).sqrt();
@@ -65,8 +64,7 @@ pub fn solve(
             break;
         }
         product.fill([0.0; 2]);
-        let mut gained = Bordered { field: fields.take(n)?, border: [0.0; 2] };
-        gained.field.fill([0.0; 2]);
+        let mut gained = Bordered { field: fields.zeros(n, &threads)?, border: [0.0; 2] };
         let mut given = fields.take(n)?;
         given.copy_from_slice(&r);
         let given = Bordered { field: given, border: [0.0; 2] };

@@ -202,10 +202,9 @@ impl Solver {
         watch: &mut dyn FnMut(&Grid, f64) -> bool,
         report: &mut Report,
     ) -> Result<Outcome> {
-        let bound = |i: usize| request.bound(i);
         let from_rest = report.from_rest;
         self.set_up(window, rolling)?;
-        let mut had_slip = self.begin(request, from_rest, window, bound)?;
+        let mut had_slip = self.begin(request, from_rest, window)?;
         if request.friction.has_law() {
             let nested = from_rest && !request.start.is_again();
             let end = self.iterate_with_law(request, (window, forces, (nested, had_slip)), watch, report)?;
@@ -221,7 +220,7 @@ impl Solver {
             }
             is_useful = near.is_useful;
             if !is_useful {
-                had_slip = self.begin(&Request { start: Start::Before, ..*request }, from_rest, window, bound)?;
+                had_slip = self.begin(&Request { start: Start::Before, ..*request }, from_rest, window)?;
             }
         }
         let nested = from_rest && !is_useful && !request.start.is_again();

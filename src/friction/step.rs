@@ -93,10 +93,7 @@ fn way_to_the_circles(problem: &Problem, tangent: &Tangent, state: &State) -> [f
 
 impl Start {
     fn nothing(n: usize, threads: &Threads, fields: &mut Fields) -> Result<Start> {
-        let (mut gained, mut along) = (fields.take(n)?, fields.take(n)?);
-        fields::fill(threads, &mut gained, |_| [0.0; 2]);
-        fields::fill(threads, &mut along, |_| [0.0; 2]);
-        Ok(Start { gained, along, by: [0.0; 2] })
+        Ok(Start { gained: fields.zeros(n, threads)?, along: fields.zeros(n, threads)?, by: [0.0; 2] })
     }
 
     fn new(system: &mut TangentSystem<'_>, state: &State, forces: Forces, fields: &mut Fields) -> Result<Start> {

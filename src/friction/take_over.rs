@@ -48,26 +48,14 @@ impl Solver {
 
     /// Sets g, w and the tractions of the start. Rejects slips out of range. Returns whether nearly all of C slips at
     /// the start.
-    pub(super) fn begin(
-        &mut self,
-        request: &Request<'_>,
-        from_rest: bool,
-        window: &Rectangle,
-        bound: impl Fn(usize) -> f64 + Sync + Send,
-    ) -> Result<bool> {
-        let had_slip = self.take_over(request, from_rest, window, bound)?;
+    pub(super) fn begin(&mut self, request: &Request<'_>, from_rest: bool, window: &Rectangle) -> Result<bool> {
+        let had_slip = self.take_over(request, from_rest, window)?;
         self.leave_creepages_out_of_range();
         self.check_range()?;
         Ok(had_slip)
     }
 
-    fn take_over(
-        &mut self,
-        request: &Request<'_>,
-        from_rest: bool,
-        window: &Rectangle,
-        bound: impl Fn(usize) -> f64 + Sync + Send,
-    ) -> Result<bool> {
+    fn take_over(&mut self, request: &Request<'_>, from_rest: bool, window: &Rectangle) -> Result<bool> {
         let Request { friction, start, .. } = *request;
         let (grid, kept, scales) = (&self.grid, &self.before, self.scales);
         let Level { problem, state, .. } = &mut self.levels[0];
@@ -76,7 +64,7 @@ impl Solver {
         threads.for_each_row_pair((&mut problem.bound, width), (&mut problem.rigid, width), |iy, bounds, rigid| {
             let places = window.row(grid, iy);
             for ((g, rigid), i) in bounds.iter_mut().zip(rigid).zip(places) {
-                let traction = scales.traction(bound(i));
+                let traction = scales.traction(request.bound(i));
                 *g = if traction < NEGLIGIBLE_BOUND { 0.0 } else { traction };
                 *rigid = scales.displacement(request.rigid_slip(grid, i));
             }

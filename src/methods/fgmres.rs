@@ -185,10 +185,8 @@ fn orthogonalise<const K: usize, T: Stored>(
     for (j, v) in basis.iter().enumerate() {
         let h = along + weight * dot(&w.border, &v.border);
         w.border = plus(w.border, -h, v.border);
-        along = match basis.get(j + 1) {
-            Some(next) => passes::add_and_dot(threads, &mut w.field, -h, &v.field, &next.field),
-            None => passes::add_and_square(threads, &mut w.field, -h, &v.field),
-        };
+        let next = basis.get(j + 1).map(|next| &next.field[..]);
+        along = passes::add_and_dot(threads, &mut w.field, -h, &v.field, next);
         column.push(h);
     }
     (column, (along + weight * dot(&w.border, &w.border)).sqrt())

@@ -133,35 +133,19 @@ pub fn dot<const K: usize, T: Real>(threads: &Threads, v: &[[T; K]], w: &[[T; K]
     sums.iter().sum()
 }
 
-/// `to += a v`, and then `to . w`.
+/// `to += a v`, and then `to . w`; without w `to . to`.
 pub fn add_and_dot<const K: usize, T: Real>(
     threads: &Threads,
     to: &mut [[T; K]],
     a: f64,
     v: &[[T; K]],
-    w: &[[T; K]],
-) -> f64 {
-    add_and_sum(threads, to, a, v, |start, to| dot_of_block(to, &w[start..start + to.len()]))
-}
-
-/// `to += a v`, and then `to . to`.
-pub fn add_and_square<const K: usize, T: Real>(threads: &Threads, to: &mut [[T; K]], a: f64, v: &[[T; K]]) -> f64 {
-    add_and_sum(threads, to, a, v, |_, to| dot_of_block(to, to))
-}
-
-/// `to += a v`, and then the sum of `of(first element, block)` over the blocks of `to`.
-fn add_and_sum<const K: usize, T: Real>(
-    threads: &Threads,
-    to: &mut [[T; K]],
-    a: f64,
-    v: &[[T; K]],
-    of: impl Fn(usize, &[[T; K]]) -> f64 + Sync + Send,
+    w: Option<&[[T; K]]>,
 ) -> f64 {
     let mut sums = vec![0.0; v.len().div_ceil(BLOCK)];
     threads.for_each_row_pair((to, BLOCK), (&mut sums[..], 1), |k, to, sum| {
         let start = k * BLOCK;
         to.iter_mut().zip(&v[start..]).for_each(|(to, v)| *to = plus_of(*to, a, *v));
-        sum[0] = of(start, to);
+        sum[0] = dot_of_block(to, w.map_or(&*to, |w| &w[start..start + to.len()]));
     });
     sums.iter().sum()
 }

@@ -1,7 +1,6 @@
 //! A problem on one grid and its goal.
 
 use crate::contact::{AdmissibleSet, Problem, State, Survey};
-use crate::error::Result;
 use crate::progress::{Goal, Monitor};
 
 /// A problem on one grid and its goal.
@@ -21,11 +20,6 @@ pub struct Task<'a, 'm, S> {
 }
 
 impl<S: AdmissibleSet> Task<'_, '_, S> {
-    /// Makes p carry the prescribed force, u = A p by a fresh product, and the approach fit both.
-    pub fn refresh(&mut self) -> Result<()> {
-        self.problem.refresh(self.state, self.set)
-    }
-
     /// Whether p carries a prescribed force.
     pub fn carries(&self) -> bool {
         self.state.carries(&self.problem.threads)

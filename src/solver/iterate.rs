@@ -96,7 +96,7 @@ fn given_up<S: AdmissibleSet>(error: Error, method: &str, task: &mut Task<'_, '_
 /// Surveys the state, by a fresh product if u is stale or the criterion seems met: only a fresh product certifies.
 fn certify<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, change: &Change, left: usize) -> Result<Survey> {
     if left > 0 || task.state.u_is == Freshness::Stale {
-        task.refresh()?;
+        task.problem.refresh(task.state, task.set)?;
     } else {
         task.state.fit_approach(&task.problem.threads);
     }
@@ -104,7 +104,7 @@ fn certify<S: AdmissibleSet>(task: &mut Task<'_, '_, S>, change: &Change, left: 
     if task.state.u_is == Freshness::Near
         && (task.is_interrupted() || task.goal.holds(&survey, change.update, task.set))
     {
-        task.refresh()?;
+        task.problem.refresh(task.state, task.set)?;
         survey = task.survey();
     }
     task.count_products();

@@ -183,7 +183,7 @@ impl Methods {
                 }
                 match task.state.start_on_bearing_area(task.set, self_influence, threads) {
                     Some(most) if most <= HIDDEN_DISPLACEMENT * task.state.approach.abs() => {
-                        task.refresh()?;
+                        task.problem.refresh(task.state, task.set)?;
                         task.count_products();
                         if is_solved(task, task.survey()) {
                             return Ok(Beginning::Solved);

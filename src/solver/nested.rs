@@ -74,7 +74,7 @@ impl FullMultigrid {
                 None => {
                     interpolate(from, task.state, highest);
                     task.state.project(task.set);
-                    task.refresh()?;
+                    task.problem.refresh(task.state, task.set)?;
                 }
             }
         }

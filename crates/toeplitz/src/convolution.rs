@@ -13,7 +13,7 @@ use crate::block::{for_each_block, room_of_column, BLOCK};
 use crate::coefficients::Coefficients;
 use crate::coefficients::Even;
 use crate::fft::any_length::ColumnTransform;
-use crate::fft::column_pass::{Blocks, EvenSymbol};
+use crate::fft::column_pass::{Blocks, EvenSymbol, Multiply};
 use crate::fft::lane_columns::LaneColumns;
 use crate::fft::lane_rows::LaneRows;
 use crate::lengths::have_stages;
@@ -83,7 +83,8 @@ impl<T: Real> Convolution<T> {
                 piece.block = b;
                 let (block, columns) = (&mut block[..rows.my * BLOCK], in_x.bins() - b * BLOCK);
                 let blocks = Blocks { blocks: [block], columns, next: [next], loaded: [loaded.clone()] };
-                even.multiply(blocks, &EvenSymbol(symbol), &mut piece.columns, T::by_even);
+                let (factor, memory) = (&EvenSymbol(symbol), &mut piece.columns[..]);
+                T::by_even(even.arch, Multiply { plan: &even.plan, blocks, factor, memory });
             });
         }
         let Memory { bins, pieces, .. } = memory;

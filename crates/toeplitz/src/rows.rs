@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::block::{room_of_column, BLOCK};
 use crate::fft::lane_rows::LaneRows;
+use crate::fft::row_pass::{Forward, Inverse};
 use crate::fft::row_transform::RowTransform;
 use crate::fft::stages::{before_a_line, from_a_line};
 use crate::passes::Real;
@@ -81,7 +82,8 @@ impl<T: Real> Rows<T> {
             let (bins, pieces) = self.blocks_of_bins(lanes, memory);
             let bins = lanes.groups(self.my, bins, loaded.clone());
             self.threads.share(rows.zip(bins), pieces, |(rows, mut bins), piece| {
-                lanes.forward(rows, mx, &mut bins, &mut piece.scratch);
+                let (bins, scratch) = (&mut bins, &mut piece.scratch[..]);
+                T::rows_forward(lanes.arch, Forward { plan: &lanes.plan, rows, width: mx, bins, scratch });
             });
         } else {
             let nb = self.transform.bins();
@@ -129,7 +131,9 @@ impl<T: Real> Rows<T> {
             let (bins, pieces) = self.blocks_of_bins(lanes, memory);
             let bins = lanes.groups(self.my, bins, 0..self.my);
             return self.threads.share(u.zip(bins), pieces, |((i, u), bins), piece| {
-                work(i, u, piece, &mut |rows, scratch| lanes.inverse(&bins, rows, mx, scratch));
+                work(i, u, piece, &mut |rows, scratch| {
+                    T::rows_inverse(lanes.arch, Inverse { plan: &lanes.plan, bins: &bins, rows, width: mx, scratch });
+                });
             });
         }
         let nb = self.transform.bins();

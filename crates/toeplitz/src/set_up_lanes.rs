@@ -14,6 +14,7 @@ use crate::coefficients::{Even, Parity};
 use crate::fft::even_plan::EvenPlan;
 use crate::fft::lane_rows::LaneRows;
 use crate::fft::lanes::{lane_count, Arithmetic, Lanes, Parts, C};
+use crate::fft::row_pass::Forward;
 use crate::fft::stages::{before_a_line, first, inlined, of_radix, rows_of};
 use crate::passes::Real;
 use crate::real::Complex;
@@ -120,7 +121,9 @@ impl<'a> LaneTransforms<'a> {
                 fill_period((k * together + i) as i64, row_given, row, parity, &even.fill);
             }
             let bins = &mut piece.column[..together * nb];
-            rows.forward(&piece.row[..count * px], px, &mut Block::of(bins, together * BLOCK), &mut piece.rows);
+            let (given, scratch) = (&piece.row[..count * px], &mut piece.rows[..]);
+            let of_rows = &mut Block::of(bins, together * BLOCK);
+            f64::rows_forward(rows.arch, Forward { plan: &rows.plan, rows: given, width: px, bins: of_rows, scratch });
             // The real parts of blocks, or the imaginary ones.
             let part = parity.swapped() * BLOCK;
             for (b, block) in parts(bins).chunks_exact(together * 2 * BLOCK).enumerate() {

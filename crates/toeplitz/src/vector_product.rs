@@ -14,6 +14,7 @@ use crate::coefficients::EvenMatrix;
 use crate::fft::column_pass::Blocks;
 use crate::fft::lane_columns::LaneColumns;
 use crate::fft::lane_rows::LaneRows;
+use crate::fft::row_pass::{Forward, Inverse};
 use crate::fft::stages::{before_a_line, from_a_line};
 use crate::lengths::length_for_stages;
 use crate::passes::Real;
@@ -176,7 +177,8 @@ impl<T: Real> VectorProduct<T> {
                 let count = self.rows.at_a_time().min(rows.end - first);
                 let values = &mut piece.row[..count * self.mx];
                 load(component, first, values);
-                self.rows.forward(values, self.mx, &mut bins, &mut piece.scratch);
+                let (plan, bins, scratch) = (&*self.rows.plan, &mut bins, &mut piece.scratch[..]);
+                T::rows_forward(self.rows.arch, Forward { plan, rows: values, width: self.mx, bins, scratch });
             });
         }
         match alone {
@@ -190,11 +192,13 @@ impl<T: Real> VectorProduct<T> {
             let first = i * self.rows.at_a_time();
             let count = self.rows.at_a_time().min(self.my - first);
             let (ux, uy) = piece.row[..2 * count * self.mx].split_at_mut(count * self.mx);
-            for ((bins, u), is_zero) in [(x, &mut *ux), (y, &mut *uy)].into_iter().zip(is_zero) {
-                match is_zero {
-                    true => u.fill(T::zero()),
-                    false => self.rows.inverse(&bins, u, self.mx, &mut piece.scratch),
+            for ((bins, rows), is_zero) in [(x, &mut *ux), (y, &mut *uy)].into_iter().zip(is_zero) {
+                if is_zero {
+                    rows.fill(T::zero());
+                    continue;
                 }
+                let (plan, scratch) = (&*self.rows.plan, &mut piece.scratch[..]);
+                T::rows_inverse(self.rows.arch, Inverse { plan, bins: &bins, rows, width: self.mx, scratch });
             }
             write(to, first, [ux, uy]);
         });

@@ -6,6 +6,7 @@ use crate::block::{blocks_of, parts, BLOCK};
 use crate::coefficients::{Even, EvenMatrix, Parity};
 use crate::fft::even_plan::EvenPlan;
 use crate::fft::lanes::{lane_count, Arithmetic, Lanes, Parts, C};
+use crate::fft::row_pass::Forward;
 use crate::fft::stages::{before_a_line, first, inlined, of_radix, rows_of};
 use crate::passes::Real;
 use crate::real::Complex;
@@ -140,7 +141,8 @@ impl LaneTransforms<'_> {
                 period.iter_mut().for_each(|period| period[mx..px - (mx - 1)].fill(0.0));
             }
             for (mut out, periods) in [xx, yy, xy].into_iter().zip(periods).take(planes) {
-                rows.forward(&periods[..count * px], px, &mut out, &mut piece.rows);
+                let (given, bins, scratch) = (&periods[..count * px], &mut out, &mut piece.rows[..]);
+                f64::rows_forward(rows.arch, Forward { plan: &rows.plan, rows: given, width: px, bins, scratch });
             }
         });
     }

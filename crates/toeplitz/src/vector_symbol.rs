@@ -9,7 +9,7 @@
 use std::f64::consts::PI;
 
 use crate::block::BLOCK;
-use crate::fft::column_pass::{Blocks, EvenSymbol};
+use crate::fft::column_pass::{Blocks, EvenSymbol, Multiply};
 use crate::fft::factors::{ComplexMatrix, ComplexSymbol, Displaced, RealMatrix};
 use crate::fft::lane_columns::LaneColumns;
 use crate::passes::Real;
@@ -90,34 +90,42 @@ impl<T: Real> VectorSymbol<T> {
     }
 
     /// Multiplies a block of columns of both coupled components.
-    pub fn multiply(&self, columns: &LaneColumns<T>, block: usize, of: Blocks<'_, T, 2>, memory: &mut [Complex<T>]) {
+    pub fn multiply(
+        &self,
+        LaneColumns { plan, arch }: &LaneColumns<T>,
+        block: usize,
+        blocks: Blocks<'_, T, 2>,
+        memory: &mut [Complex<T>],
+    ) {
         let planes = [0, 1, 2].map(|plane| self.plane(block, plane));
         match (self.is_even, self.factors_of(block)) {
-            (true, None) => columns.multiply(of, &RealMatrix(planes), memory, T::by_matrix),
+            (true, None) => T::by_matrix(*arch, Multiply { plan, blocks, factor: &RealMatrix(planes), memory }),
             (true, Some(factors)) => {
-                let displaced = Displaced { of: RealMatrix(planes), factors };
-                columns.multiply(of, &displaced, memory, T::by_matrix_displaced);
+                let factor = &Displaced { of: RealMatrix(planes), factors };
+                T::by_matrix_displaced(*arch, Multiply { plan, blocks, factor, memory });
             }
-            (false, _) => columns.multiply(of, &ComplexMatrix(planes), memory, T::by_complex_matrix),
+            (false, _) => {
+                T::by_complex_matrix(*arch, Multiply { plan, blocks, factor: &ComplexMatrix(planes), memory });
+            }
         }
     }
 
     /// Multiplies a block of columns of one component.
     pub fn multiply_one(
         &self,
-        columns: &LaneColumns<T>,
+        LaneColumns { plan, arch }: &LaneColumns<T>,
         (block, component): (usize, usize),
-        of: Blocks<'_, T, 1>,
+        blocks: Blocks<'_, T, 1>,
         memory: &mut [Complex<T>],
     ) {
         let plane = self.plane(block, component);
         match (self.is_even, self.factors_of(block)) {
-            (true, None) => columns.multiply(of, &EvenSymbol(plane), memory, T::by_even),
+            (true, None) => T::by_even(*arch, Multiply { plan, blocks, factor: &EvenSymbol(plane), memory }),
             (true, Some(factors)) => {
-                let displaced = Displaced { of: EvenSymbol(plane), factors };
-                columns.multiply(of, &displaced, memory, T::by_even_displaced);
+                let factor = &Displaced { of: EvenSymbol(plane), factors };
+                T::by_even_displaced(*arch, Multiply { plan, blocks, factor, memory });
             }
-            (false, _) => columns.multiply(of, &ComplexSymbol(plane), memory, T::by_complex),
+            (false, _) => T::by_complex(*arch, Multiply { plan, blocks, factor: &ComplexSymbol(plane), memory }),
         }
     }
 

@@ -166,27 +166,9 @@ impl WithSimd for Go<'_, '_> {
                 let u = plus([ux, uy], length, [px, py]);
                 let predicted = disc.predict(new, add([wx, wy], u), g);
                 let z = scaled(disc.mixing(predicted.curvature + excess), predicted.projected);
-                let ([nx, ny], [rx, ry]) = (predicted.normal, predicted.projected);
-                (
-                    [
-                        new[0],
-                        new[1],
-                        u[0],
-                        u[1],
-                        nx,
-                        ny,
-                        t[0],
-                        t[1],
-                        late[0],
-                        late[1],
-                        predicted.curvature,
-                        rx,
-                        ry,
-                        z[0],
-                        z[1],
-                    ],
-                    [predicted.rest, dot(u, u), dot(late, late), dot(way, way)],
-                )
+                let (bend, [nx, ny], [rx, ry]) = (predicted.curvature, predicted.normal, predicted.projected);
+                let sums = [predicted.rest, dot(u, u), dot(late, late), dot(way, way)];
+                ([new[0], new[1], u[0], u[1], nx, ny, t[0], t[1], late[0], late[1], bend, rx, ry, z[0], z[1]], sums)
             },
         )
     }

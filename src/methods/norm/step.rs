@@ -107,7 +107,7 @@ impl Norm {
         self.before.keep(state);
         self.u_before.clone_from(&state.u);
         truncate(state, set, &task.problem.threads);
-        task.refresh()?;
+        task.problem.refresh(task.state, task.set)?;
         self.next = Next::ExchangeOne;
         Ok(false)
     }

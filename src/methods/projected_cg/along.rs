@@ -95,11 +95,7 @@ impl<T: Real> Iteration<T> {
     pub(super) fn step_sums_beside_deflation(&mut self, state: &State) -> StepSums {
         let (State { h, u, p, .. }, formula) = (state, StepTerms { approach: state.approach });
         let arrays = [&self.t[..], &self.q, &self.deflation.d];
-        let [rt, tq, tt, t1, pp, rd, qd] = self.segments.sum(
-            &state.contact,
-            #[inline(always)]
-            |block| block.sum([h, u, p], arrays, formula),
-        );
+        let [rt, tq, tt, t1, pp, rd, qd] = self.segments.sum_of(&state.contact, [h, u, p], arrays, formula);
         StepSums { rt, tq, tt, t1, pp, rd, qd, energy: None }
     }
 
@@ -138,25 +134,13 @@ impl<T: Real> Iteration<T> {
         }
         let Deflation { d, w, energy, size, .. } = &self.deflation;
         let (State { h, u, .. }, formula) = (&*state, Residual { approach: state.approach });
-        let [rd, rr] = self.segments.sum(
-            &state.contact,
-            #[inline(always)]
-            |block| block.sum([h, u], [&d[..]], formula),
-        );
+        let [rd, rr] = self.segments.sum_of(&state.contact, [h, u], [&d[..]], formula);
         let gamma = rd / energy;
         if !(gamma.is_finite() && gamma * gamma * size > LEAST_FIRST_STEP * LEAST_FIRST_STEP * rr) {
             return;
         }
         let State { p, contact, .. } = state;
-        let [] = self.segments.sum_changing(
-            contact,
-            p,
-            #[inline(always)]
-            |block, p| {
-                block.change(p, [], [&d[..], d], Moved { alpha: gamma, gamma: 0.0 });
-                []
-            },
-        );
+        self.segments.change(contact, p, ([], [&d[..], d]), Moved { alpha: gamma, gamma: 0.0 });
         let mx = state.grid.mx;
         self.threads.for_each_plain_row(&mut state.u, mx, |y, u| {
             u.iter_mut().zip(&w[y * mx..]).for_each(|(u, w)| *u += gamma * w.to_double());

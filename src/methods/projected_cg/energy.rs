@@ -70,11 +70,7 @@ impl<T: Real> Iteration<T> {
         let (_, w) = self.deflation.beside(update.gamma, &self.t, &self.q);
         let (State { h, u, p, .. }, products) = (state, [&self.q[..], &self.z, w]);
         let formula = WorkAndEnergy { approach: state.approach, update };
-        let [work, energy] = self.segments.sum(
-            &state.contact,
-            #[inline(always)]
-            |block| block.sum([h, u, p], products, formula),
-        );
+        let [work, energy] = self.segments.sum_of(&state.contact, [h, u, p], products, formula);
         (work, energy)
     }
 

@@ -101,11 +101,7 @@ impl<T: Real> Iteration<T> {
             }
         }
         let State { p, contact, .. } = &*state;
-        let [carried] = self.segments.sum(
-            contact,
-            #[inline(always)]
-            |block| block.sum([p], none::<T>(), Carried),
-        );
+        let [carried] = self.segments.sum_of(contact, [p], none::<T>(), Carried);
         let factor = force / (carried * state.grid.element_area());
         if !(factor.is_finite() && factor > 0.0) {
             return 1.0;

@@ -30,10 +30,11 @@ impl<T: Real> Iteration<T> {
             return;
         }
         let (q, z) = (&self.q[..], &self.z[..]);
-        let [sum] = self.segments.sum(
+        let [sum] = self.segments.sum_of(
             &state.contact,
-            #[inline(always)]
-            |block| block.sum([&state.h, &state.u], [q, z], Distance { update, approach: state.approach }),
+            [&state.h, &state.u],
+            [q, z],
+            Distance { update, approach: state.approach },
         );
         if self.segments.count() > 0 {
             state.approach += sum / self.segments.count() as f64 + self.limits.shift;
@@ -99,15 +100,7 @@ impl<T: Real> Iteration<T> {
         let missing = self.limits.missing / forecast.unwrap_or(1.0);
         let (mean, beta) = self.conjugate(state, without_force.then_some(missing), tq);
         let (z, formula) = (&self.z[..], Direction { mean, beta, forecast });
-        let [] = self.segments.sum_changing(
-            &state.contact,
-            &mut self.t,
-            #[inline(always)]
-            |block, t| {
-                block.change(t, [&state.p], [z], formula);
-                []
-            },
-        );
+        self.segments.change(&state.contact, &mut self.t, ([&state.p], [z]), formula);
         if let Some(forecast) = forecast.filter(|_| without_force) {
             self.remove_force(state, missing, forecast);
         }
@@ -118,25 +111,13 @@ impl<T: Real> Iteration<T> {
     fn remove_force(&mut self, state: &State, missing: f64, forecast: f64) {
         for _ in 0..NEWTON_STEPS {
             let (t, formula) = (&self.t[..], Free { forecast });
-            let [sum, absolute, free] = self.segments.sum(
-                &state.contact,
-                #[inline(always)]
-                |block| block.sum([&state.p], [t], formula),
-            );
+            let [sum, absolute, free] = self.segments.sum_of(&state.contact, [&state.p], [t], formula);
             let excess = sum - missing;
             if !(excess > SMALL_FORCE * absolute && free > 0.0) {
                 return;
             }
             let formula = Lowered { shift: excess / free, forecast };
-            let [] = self.segments.sum_changing(
-                &state.contact,
-                &mut self.t,
-                #[inline(always)]
-                |block, t| {
-                    block.change(t, [&state.p], none::<T>(), formula);
-                    []
-                },
-            );
+            self.segments.change(&state.contact, &mut self.t, ([&state.p], none::<T>()), formula);
         }
     }
 
@@ -146,11 +127,7 @@ impl<T: Real> Iteration<T> {
             return (0.0, 0.0);
         }
         let arrays = [&self.t[..], &self.z, &self.q];
-        let [t1, z1, q1, zq] = self.segments.sum(
-            &state.contact,
-            #[inline(always)]
-            |block| block.sum([], arrays, Conjugate),
-        );
+        let [t1, z1, q1, zq] = self.segments.sum_of(&state.contact, [], arrays, Conjugate);
         let count = self.segments.count() as f64;
         let mean = if missing.is_some() { z1 / count } else { 0.0 };
         let beta = if tq > 0.0 { (-(zq - mean * q1) / tq).max(0.0) } else { 0.0 };
@@ -165,18 +142,10 @@ impl<T: Real> Iteration<T> {
         let State { h, u, p, contact, .. } = state;
         let (tq, formula) = ([&self.t[..], &self.q], StepTerms { approach: state.approach });
         if !self.is_scaled {
-            let [rt, tq, tt, t1, pp] = self.segments.sum(
-                contact,
-                #[inline(always)]
-                |block| block.sum([h, u, p], tq, formula),
-            );
+            let [rt, tq, tt, t1, pp] = self.segments.sum_of(contact, [h, u, p], tq, formula);
             return StepSums { rt, tq, tt, t1, pp, rd: 0.0, qd: 0.0, energy: None };
         }
-        let [rt, tq, tt, t1, pp, pd, td, pu, pq] = self.segments.sum(
-            contact,
-            #[inline(always)]
-            |block| block.sum([h, u, p], tq, formula),
-        );
+        let [rt, tq, tt, t1, pp, pd, td, pu, pq] = self.segments.sum_of(contact, [h, u, p], tq, formula);
         let energy = Energy { pd, td, pu, pq_tu: pq + td - rt, tq };
         StepSums { rt, tq, tt, t1, pp, rd: 0.0, qd: 0.0, energy: Some(energy) }
     }
@@ -185,14 +154,6 @@ impl<T: Real> Iteration<T> {
     pub(super) fn scale(&mut self, state: &mut State, factor: f64) {
         self.truncation.scale(factor);
         let State { p, contact, .. } = state;
-        let [] = self.segments.sum_changing(
-            contact,
-            p,
-            #[inline(always)]
-            |block, p| {
-                block.change(p, [], none::<T>(), Scale { factor });
-                []
-            },
-        );
+        self.segments.change(contact, p, ([], none::<T>()), Scale { factor });
     }
 }

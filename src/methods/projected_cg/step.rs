@@ -139,7 +139,7 @@ impl ProjectedCg {
             let whole = self.whole_operator(task.problem, task.state)?;
             self.on_finest(task, whole.as_deref()).correct()?;
             self.finest.rest();
-            task.refresh()?;
+            task.problem.refresh(task.state, task.set)?;
             task.count_products();
         }
         Ok(())

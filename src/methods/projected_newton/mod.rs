@@ -107,7 +107,7 @@ impl<S: AdmissibleSet> Step<S> for ProjectedNewton {
         let slope = self.downhill(task)?;
         if !(slope < 0.0) {
             // No direction is downhill, up to round-off: the loop's certificate decides.
-            task.refresh()?;
+            task.problem.refresh(task.state, task.set)?;
             let update = if slope == 0.0 { 0.0 } else { f64::INFINITY };
             return Ok(Change { update, gives_up: true, ..Change::default() });
         }
@@ -220,7 +220,7 @@ fn take_over<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<()> {
     state.p.iter_mut().enumerate().for_each(project);
     state.carry_force(set, &task.problem.threads);
     find_contact(state, set);
-    task.refresh()
+    task.problem.refresh(task.state, task.set)
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -57,7 +57,7 @@ pub fn even_value<T: Scalar, S: Simd>(symbol: &[T], At { kept, q, vector, .. }: 
     T::vectors::<S>(symbol)[kept.row(q) * (BLOCK / lane_count::<T, S>()) + vector]
 }
 
-/// One pass over the columns of a block.
+/// One pass over the columns of a block of K components, which multiplies them by their symbol `factor`.
 pub struct Multiply<'a, T: Scalar, F, const K: usize> {
     pub plan: &'a EvenPlan<T>,
     pub blocks: Blocks<'a, T, K>,
@@ -71,6 +71,10 @@ impl<T: Scalar, F: Factor<T, K>, const K: usize> WithSimd for Multiply<'_, T, F,
     /// Takes one vector of columns after the other, so that each stays in the nearest cache.
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) {
+        for (block, loaded) in self.blocks.blocks.iter().zip(&self.blocks.loaded) {
+            let rows = block.len() / BLOCK;
+            assert!(rows <= self.plan.stages.length() && loaded.end <= rows && block.len() % BLOCK == 0);
+        }
         let vectors = self.blocks.columns.min(BLOCK).div_ceil(lane_count::<T, S>());
         for vector in 0..vectors {
             let here = self.blocks.blocks.each_ref().map(|block| block.as_ptr());

@@ -14,15 +14,13 @@ use std::sync::Arc;
 use par::Result;
 
 use crate::block::BLOCK;
-use crate::fft::column_pass::{Blocks, Multiply};
 use crate::fft::even_plan::EvenPlan;
 use crate::passes::Real;
-use crate::real::Complex;
 
 /// Products of columns of one length.
 pub(crate) struct LaneColumns<T: Real> {
-    plan: Arc<EvenPlan<T>>,
-    arch: pulp::Arch,
+    pub(crate) plan: Arc<EvenPlan<T>>,
+    pub(crate) arch: pulp::Arch,
 }
 
 impl<T: Real> LaneColumns<T> {
@@ -53,21 +51,6 @@ impl<T: Real> LaneColumns<T> {
             there.iter_mut().enumerate().for_each(|(column, to)| *to = value(column, bin));
             beyond.fill(T::zero());
         }
-    }
-
-    /// Multiplies the columns of a block of K components by the symbol `factor`; `pass` does the work.
-    pub fn multiply<F, const K: usize>(
-        &self,
-        blocks: Blocks<'_, T, K>,
-        factor: &F,
-        memory: &mut [Complex<T>],
-        pass: impl FnOnce(pulp::Arch, Multiply<'_, T, F, K>),
-    ) {
-        for (block, loaded) in blocks.blocks.iter().zip(&blocks.loaded) {
-            let rows = block.len() / BLOCK;
-            assert!(rows <= self.plan.stages.length() && loaded.end <= rows && block.len() % BLOCK == 0);
-        }
-        pass(self.arch, Multiply { plan: &self.plan, blocks, factor, memory });
     }
 }
 

@@ -16,7 +16,7 @@ use std::sync::Arc;
 use par::Result;
 
 use crate::block::{blocks_of, Block, BLOCK};
-use crate::fft::row_pass::{Forward, Inverse, LaneCount};
+use crate::fft::row_pass::LaneCount;
 use crate::fft::row_plan::RowPlan;
 use crate::fft::stages::before_a_line;
 use crate::passes::Real;
@@ -24,8 +24,8 @@ use crate::real::Complex;
 
 /// Transforms of rows of one length.
 pub(crate) struct LaneRows<T: Real> {
-    plan: Arc<RowPlan<T>>,
-    arch: pulp::Arch,
+    pub(crate) plan: Arc<RowPlan<T>>,
+    pub(crate) arch: pulp::Arch,
     lanes: usize,
 }
 
@@ -88,23 +88,6 @@ impl<T: Real> LaneRows<T> {
     /// Length of the scratch of both directions.
     pub fn scratch_length(&self) -> usize {
         self.plan.length() * self.lanes + before_a_line::<T>()
-    }
-
-    /// Transforms up to [`at_a_time`](Self::at_a_time) rows of `width` values to bins `[block][row of these][part][bin]`, which always have
-    /// room for [`at_a_time`](Self::at_a_time) rows. Shorter rows are padded with zeros.
-    pub fn forward(&self, rows: &[T], width: usize, bins: &mut Block<'_, T>, scratch: &mut [Complex<T>]) {
-        assert!(self.fits(bins) && width <= 2 * self.plan.length() && rows.len() >= width);
-        T::rows_forward(self.arch, Forward { plan: &self.plan, rows, width, bins, scratch });
-    }
-
-    /// Transforms bins of [`at_a_time`](Self::at_a_time) rows to the first `width` values of the given rows.
-    pub fn inverse(&self, bins: &Block<'_, T>, rows: &mut [T], width: usize, scratch: &mut [Complex<T>]) {
-        assert!(self.fits(bins) && width <= 2 * self.plan.length() && width > 0);
-        T::rows_inverse(self.arch, Inverse { plan: &self.plan, bins, rows, width, scratch });
-    }
-
-    fn fits(&self, bins: &Block<'_, T>) -> bool {
-        bins.rows() == self.blocks() && bins.columns() == self.lanes * BLOCK
     }
 }
 

@@ -33,7 +33,7 @@ pub trait Lanes: Copy {
 }
 
 macro_rules! lanes {
-    ($t:ident, $v:ident, $as:ident, $as_mut:ident, $splat:ident, $add:ident, $sub:ident, $mul:ident, $from_rows:ident, $to_rows:ident) => {
+    ($t:ident: $v:ident $as:ident $as_mut:ident $splat:ident $add:ident $sub:ident $mul:ident $from_rows:ident $to_rows:ident) => {
         impl Lanes for $t {
             type Vector<S: Simd> = S::$v;
 
@@ -72,30 +72,8 @@ macro_rules! lanes {
         }
     };
 }
-lanes!(
-    f32,
-    f32s,
-    as_simd_f32s,
-    as_mut_simd_f32s,
-    splat_f32s,
-    add_f32s,
-    sub_f32s,
-    mul_f32s,
-    deinterleave_shfl_f32s,
-    interleave_shfl_f32s
-);
-lanes!(
-    f64,
-    f64s,
-    as_simd_f64s,
-    as_mut_simd_f64s,
-    splat_f64s,
-    add_f64s,
-    sub_f64s,
-    mul_f64s,
-    deinterleave_shfl_f64s,
-    interleave_shfl_f64s
-);
+lanes! { f32: f32s as_simd_f32s as_mut_simd_f32s splat_f32s add_f32s sub_f32s mul_f32s deinterleave_shfl_f32s interleave_shfl_f32s }
+lanes! { f64: f64s as_simd_f64s as_mut_simd_f64s splat_f64s add_f64s sub_f64s mul_f64s deinterleave_shfl_f64s interleave_shfl_f64s }
 
 /// Number of lanes of a vector.
 #[inline(always)]

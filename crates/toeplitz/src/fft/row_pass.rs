@@ -22,7 +22,13 @@ impl<T: Scalar> WithSimd for LaneCount<T> {
     }
 }
 
-/// Rows to bins.
+/// Whether a block is that of all bins of a group of rows.
+fn fits<T: Scalar, S: Simd>(plan: &RowPlan<T>, bins: &Block<'_, T>) -> bool {
+    bins.rows() == plan.blocks() && bins.columns() == lane_count::<T, S>() * BLOCK
+}
+
+/// Rows to bins: up to as many rows of `width` values as a vector has lanes, to bins `[block][row of these][part][bin]`, which always have room
+/// for that many rows. Shorter rows are padded with zeros.
 pub struct Forward<'a, 'b, T: Scalar> {
     pub plan: &'a RowPlan<T>,
     pub rows: &'a [T],
@@ -37,6 +43,7 @@ impl<T: Scalar> WithSimd for Forward<'_, '_, T> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Forward { plan, rows, width, bins, scratch } = self;
+        assert!(fits::<T, S>(plan, bins) && width <= 2 * plan.length() && rows.len() >= width);
         let (a, h) = (Arithmetic::<T, S>::new(simd), plan.length());
         let z = &mut rows_of::<T, S>(scratch)[..h];
         load::<T, S>(a, rows, width, z);
@@ -47,7 +54,7 @@ impl<T: Scalar> WithSimd for Forward<'_, '_, T> {
     }
 }
 
-/// Bins to rows.
+/// Bins to rows: those of as many rows as a vector has lanes, to the first `width` values of the given rows.
 pub struct Inverse<'a, 'b, T: Scalar> {
     pub plan: &'a RowPlan<T>,
     pub bins: &'a Block<'b, T>,
@@ -62,6 +69,7 @@ impl<T: Scalar> WithSimd for Inverse<'_, '_, T> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Inverse { plan, bins, rows, width, scratch } = self;
+        assert!(fits::<T, S>(plan, bins) && width <= 2 * plan.length() && width > 0);
         let (a, h) = (Arithmetic::<T, S>::new(simd), plan.length());
         let z = &mut rows_of::<T, S>(scratch)[..h];
         load_bins::<T, S>(a, plan, bins, z);

@@ -5,8 +5,9 @@ use std::ops::Range;
 use super::*;
 use crate::block::{parts, parts_mut};
 use crate::fft::any_length::ColumnTransform;
-use crate::fft::column_pass::EvenSymbol;
+use crate::fft::column_pass::{Blocks, EvenSymbol, Multiply};
 use crate::fft::stages::before_a_line;
+use crate::real::Complex;
 
 /// A matrix of `my` rows of which some are loaded, its columns multiplied by an even spectrum: the largest error relative to the
 /// largest value.
@@ -45,7 +46,8 @@ fn error<T: Real>(length: usize, width: usize, my: usize, loaded: Range<usize>) 
     for (b, (block, spectrum)) in blocks.chunks_exact_mut(my * BLOCK).zip(spectrum.chunks_exact(kept)).enumerate() {
         let (columns, next) = (width - b * BLOCK, [block.as_ptr()]);
         let blocks = Blocks { blocks: [block], columns, next, loaded: [loaded.clone()] };
-        even.multiply(blocks, &EvenSymbol(spectrum), &mut memory.clone(), T::by_even);
+        let (factor, memory) = (&EvenSymbol(spectrum), &mut memory.clone()[..]);
+        T::by_even(even.arch, Multiply { plan: &even.plan, blocks, factor, memory });
     }
     let (mut difference, mut largest) = (0.0, 0.0);
     for y in 0..my {
@@ -101,7 +103,7 @@ fn by<T: Real>(arch: pulp::Arch, length: usize) -> Vec<Complex<T>> {
     let mut memory = vec![Complex::default(); BLOCK * length + before_a_line::<T>()];
     let (next, loaded) = ([block.as_ptr()], 0..my);
     let blocks = Blocks { blocks: [&mut block[..]], columns: BLOCK, next, loaded: [loaded] };
-    even.multiply(blocks, &EvenSymbol(&spectrum), &mut memory, T::by_even);
+    T::by_even(arch, Multiply { plan: &even.plan, blocks, factor: &EvenSymbol(&spectrum), memory: &mut memory });
     block
 }
 

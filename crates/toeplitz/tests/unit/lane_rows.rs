@@ -1,7 +1,8 @@
 //! Rows in lanes, by another implementation's transforms, realfft's.
 
 use super::*;
-use crate::block::{blocks_of, parts};
+use crate::block::parts;
+use crate::fft::row_pass::{Forward, Inverse};
 use realfft::RealFftPlanner;
 
 /// The largest error of all bins of some rows, and of the rows that come back, relative to the largest value.
@@ -13,7 +14,8 @@ fn errors<T: Real>(n: usize, width: usize, missing: usize) -> [f64; 2] {
     let mut bins = vec![Complex::new(T::nan(), T::nan()); lanes.blocks() * together * BLOCK];
     let mut bins = Block::of(&mut bins, together * BLOCK);
     let mut scratch = vec![Complex::new(T::nan(), T::nan()); lanes.scratch_length()];
-    lanes.forward(&rows, width, &mut bins, &mut scratch);
+    let plan = &*lanes.plan;
+    T::rows_forward(lanes.arch, Forward { plan, rows: &rows, width, bins: &mut bins, scratch: &mut scratch });
     let mut planner = RealFftPlanner::<f64>::new();
     let (mut difference, mut largest) = (0.0, 0.0);
     for (r, row) in rows.chunks_exact(width).enumerate() {
@@ -31,7 +33,7 @@ fn errors<T: Real>(n: usize, width: usize, missing: usize) -> [f64; 2] {
         }
     }
     let mut back = vec![T::nan(); count * width];
-    lanes.inverse(&bins, &mut back, width, &mut scratch);
+    T::rows_inverse(lanes.arch, Inverse { plan, bins: &bins, rows: &mut back, width, scratch: &mut scratch });
     let of_row = |(x, back): (&T, &T)| (back.to_double() / n as f64 - x.to_double()).abs();
     assert!(back.iter().all(|x| x.to_double().is_finite()), "{n}, {width} values");
     let back = rows.iter().zip(&back).map(of_row).fold(0.0, f64::max);
@@ -76,8 +78,15 @@ fn by<T: Real>(arch: pulp::Arch, n: usize, width: usize) -> (Vec<Complex<T>>, Ve
         blocks.enumerate().for_each(|(k, mut some)| work(k * together * width, &mut some));
     };
     let count = together * width;
-    of_all(&mut bins, &mut |at, bins| lanes.forward(&rows[at..][..count], width, bins, &mut scratch));
-    of_all(&mut bins, &mut |at, bins| lanes.inverse(bins, &mut back[at..][..count], width, &mut scratch));
+    let plan = &*lanes.plan;
+    of_all(&mut bins, &mut |at, bins| {
+        let (rows, scratch) = (&rows[at..][..count], &mut scratch[..]);
+        T::rows_forward(arch, Forward { plan, rows, width, bins, scratch });
+    });
+    of_all(&mut bins, &mut |at, bins| {
+        let (rows, scratch) = (&mut back[at..][..count], &mut scratch[..]);
+        T::rows_inverse(arch, Inverse { plan, bins, rows, width, scratch });
+    });
     (bins, back)
 }
 

@@ -4,7 +4,44 @@ use super::arrays::Arrays;
 use super::block::{Becomes, Block, Terms, Wanted};
 use super::lists::{Everywhere, List};
 use super::passes::{Changes, Sum};
+use super::Segments;
 use crate::operator::fft::Real;
+
+impl Segments {
+    /// [`sum`](Segments::sum) of terms; a and b are arrays on the whole grid.
+    pub fn sum_of<T: Real, const A: usize, const B: usize, const K: usize>(
+        &mut self,
+        contact: &[bool],
+        a: [&[f64]; A],
+        b: [&[T]; B],
+        terms: impl Terms<A, B, K> + Copy + Sync + Send,
+    ) -> [f64; K] {
+        self.sum(
+            contact,
+            #[inline(always)]
+            |block| block.sum(a, b, terms),
+        )
+    }
+
+    /// Changes an array on C, whose segments are up to date; a and b are arrays on the whole grid.
+    pub fn change<D: Real, T: Real, const A: usize, const B: usize>(
+        &mut self,
+        contact: &[bool],
+        data: &mut [D],
+        (a, b): ([&[f64]; A], [&[T]; B]),
+        change: impl Becomes<A, B> + Copy + Sync + Send,
+    ) {
+        let [] = self.sum_changing(
+            contact,
+            data,
+            #[inline(always)]
+            |block, data| {
+                block.change(data, a, b, change);
+                []
+            },
+        );
+    }
+}
 
 impl Block<'_> {
     /// Sums over the elements of the block in contact; a and b are arrays on the whole grid.
