@@ -2801,8 +2801,9 @@ contact_normal_status contact_normal_solver_new(const struct contact_normal_scen
  Solves for the undeformed distance, the load and the pressure limit of `scene`. Grid, bodies and their branches, layer, coatings, period
  and patches must be those of the set-up; what differs is refused by name. `scene->influence` and `scene->row_tables` may be NULL: those of the solver. If they
  are not NULL, each solve reads and compares them. Other coefficients need `contact_normal_solver_set_influence`. `fields`, `report`
- NULL: not wanted. After a first solve, further ones of the same kind allocate nothing, with one thread and without coefficients to
- compare (docs/conventions.md, "Many solves"). Since 0.1.
+ NULL: not wanted. After a first solve, further ones of the same kind allocate nothing, with one thread, without coefficients to compare,
+ and without friction, adhesion, pressure limits, patches and bodies that relax, which take some memory for the call (docs/conventions.md,
+ "Many solves"). Since 0.1.
  */
 contact_normal_status contact_normal_solver_solve(struct contact_normal_solver *solver,
                                                   const struct contact_normal_scene *scene,

@@ -126,7 +126,7 @@ public:
     /// Takes over a handle of the C ABI.
     explicit solver(contact_normal_solver *handle) : handle_(handle) {}
 
-    /// As the functions of the same names; `how.initial_guess` may be PREVIOUS. A later solve into the same result allocates nothing.
+    /// As the functions of the same names; `how.initial_guess` may be PREVIOUS. A later solve into the same result takes no new memory for its arrays.
     contact_normal_status solve_into(const scene &of, result &found, const options &how = {}, const progress &told = {})
     {
         return detail::run(of, found, how, told, [this](auto *scene, auto *options, auto *fields, auto *report) {

@@ -33,6 +33,7 @@ struct stresses {
     std::vector<double> von_mises, maximum_shear;
     std::array<std::vector<double>, 3> principal;  // the largest first
     std::array<std::vector<double>, 3> directions; // of them: unit vectors, three values for each place
+    // The largest shear stress belongs to maximum_shear, principal and none; otherwise it is not computed.
     contact_normal_stress_maximum largest_von_mises, largest_shear;
 
     stresses() { contact_normal_stress_maximum_init(&largest_von_mises), contact_normal_stress_maximum_init(&largest_shear); }
@@ -54,8 +55,9 @@ inline contact_normal_stress_outputs room_of(stresses &found, stress_fields aske
 {
     contact_normal_stress_outputs outputs;
     contact_normal_stress_outputs_init(&outputs);
+    const auto asks = [&](stress_fields which) { return (static_cast<std::uint32_t>(asked) & static_cast<std::uint32_t>(which)) != 0; };
     const auto room = [&](std::vector<double> &values, stress_fields which, std::size_t n) -> double * {
-        if ((static_cast<std::uint32_t>(asked) & static_cast<std::uint32_t>(which)) == 0) return nullptr;
+        if (!asks(which)) return nullptr;
         values.resize(n);
         return values.data();
     };
@@ -66,7 +68,9 @@ inline contact_normal_stress_outputs room_of(stresses &found, stress_fields aske
         outputs.principal[k] = room(found.principal[k], stress_fields::principal, size);
         outputs.directions[k] = room(found.directions[k], stress_fields::directions, 3 * size);
     }
-    outputs.largest_von_mises = &found.largest_von_mises, outputs.largest_shear = &found.largest_shear;
+    outputs.largest_von_mises = &found.largest_von_mises;
+    // Principal stresses, which it needs, take longer than all the rest.
+    if (asked == stress_fields::none || asks(stress_fields::maximum_shear | stress_fields::principal)) outputs.largest_shear = &found.largest_shear;
     return outputs;
 }
 

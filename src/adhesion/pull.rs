@@ -132,10 +132,11 @@ impl Walker<'_, '_, '_> {
             if self.goal.wanted.is_some_and(|wanted| sum <= wanted) {
                 return Ok(Err(self.between(&mut way.here, (sum, approach))?));
             }
+            // The least force may lie within the step in which the last elements part.
+            least.look_at(self.level, sum, &way)?;
             if is_apart {
                 return Ok(Ok(least));
             }
-            least.look_at(self.level, sum, &way)?;
             if let Some(at) = meets.filter(|met| approach == met.approach) {
                 if (sum - at.sum).abs() <= MEETING_DIFFERENCE * at.all {
                     // A force less than at the meeting lies on this way only.

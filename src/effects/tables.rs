@@ -39,7 +39,7 @@ impl Effect for Table {
             let Grid { mx: columns, my: rows, .. } = grid;
             return invalid(format!("influence is a table of {mx} x {my} elements; the grid has {columns} x {rows}"));
         }
-        Ok(())
+        self.check_largest()
     }
 
     fn kernel(&self, _: &Plain<'_>, _: &[Option<&dyn Effect>]) -> Result<Option<Arc<dyn Kernel>>> {
@@ -84,7 +84,7 @@ impl Effect for RowTables {
             let Grid { mx: columns, my: rows, .. } = grid;
             return invalid(format!("row_tables are those of {mx} x {my} elements; the grid has {columns} x {rows}"));
         }
-        Ok(())
+        self.check_largest()
     }
 
     fn kernel(&self, _: &Plain<'_>, _: &[Option<&dyn Effect>]) -> Result<Option<Arc<dyn Kernel>>> {

@@ -1,7 +1,7 @@
 //! The caller's table as given. The copy of its used part also determines its extremes.
 
 use super::extremes::Extremes;
-use crate::error::{Error, Result};
+use crate::error::{Error, Number, Result};
 use crate::grid::Grid;
 use crate::memory::{blank, reserve};
 
@@ -100,7 +100,8 @@ impl Given<'_> {
         let found = offsets.map(|offset| (offset, at(offset))).find(|(_, value)| !value.is_finite());
         let ((kx, ky), value) = found.unwrap_or(((0, 0), f64::NAN));
         Error::NotFinite(format!(
-            "influence.coefficients at offset ({kx}, {ky}) is {value}; coefficients must be finite"
+            "influence.coefficients at offset ({kx}, {ky}) is {}; coefficients must be finite",
+            Number(value)
         ))
     }
 }

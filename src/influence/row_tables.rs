@@ -24,8 +24,9 @@ use std::sync::Arc;
 use super::extremes::{are_finite, largest, SYMMETRY};
 use super::given::width;
 use super::kernel::Kernel;
+use super::table::LARGEST_RATIO;
 use super::table::{check_scale, coarsen_row, place};
-use crate::error::{invalid, Error, Result};
+use crate::error::{invalid, Error, Number, Result};
 use crate::grid::Grid;
 use crate::memory::{blank, reserve, Held};
 
@@ -58,14 +59,14 @@ fn are_even(cx: usize, values: &[f64], scale: f64, grid: &Grid) -> Result<bool> 
             let kx = i as i64 - (mx as i64 - 1);
             return Err(Error::NotFinite(format!(
                 "row_tables->coefficients of rows (jy {jy}, iy {iy}) at offset {kx} is {}; coefficients must be finite",
-                scale * row[i]
+                Number(scale * row[i])
             )));
         }
         if jy == iy && scale * row[mx - 1] <= 0.0 {
             return Err(Error::NotPositiveDefinite(format!(
                 "row_tables->coefficients of rows (jy {jy}, iy {iy}) at offset 0 is {}; a pressure must displace its own \
                  element inwards",
-                scale * row[mx - 1]
+                Number(scale * row[mx - 1])
             )));
         }
     }
@@ -112,6 +113,29 @@ impl RowTables {
             kept.extend(row.iter().map(|value| scale * value));
         }
         Ok(RowTables { mx, my, even, largest: largest(&kept), values: Arc::new(kept.into()) })
+    }
+
+    /// Refuses a coefficient that, in the mean with that of the opposite pair, exceeds all of elements on themselves: two such elements alone have an
+    /// indefinite matrix.
+    pub(crate) fn check_largest(&self) -> Result<()> {
+        let own = (0..self.my).map(|jy| self.coefficient(jy, jy, 0)).fold(0.0, f64::max);
+        if self.largest <= LARGEST_RATIO * own {
+            return Ok(());
+        }
+        let last = self.mx as i64 - 1;
+        let pairs = (0..self.my * self.my).flat_map(|k| (-last..=last).map(move |kx| (k / self.my, k % self.my, kx)));
+        let mean = |(jy, iy, kx): (usize, usize, i64)| {
+            0.5 * (self.coefficient(jy, iy, kx) + self.coefficient(iy, jy, -kx)).abs()
+        };
+        let Some((jy, iy, kx)) = pairs.into_iter().find(|pair| mean(*pair) > LARGEST_RATIO * own) else {
+            return Ok(());
+        };
+        Err(Error::NotPositiveDefinite(format!(
+            "row_tables->coefficients of rows (jy {jy}, iy {iy}) at offset {kx} is {}, and at most {} of an element on itself: no elastic body moves \
+             another element more than the one that is pressed",
+            Number(self.coefficient(jy, iy, kx)),
+            Number(own)
+        )))
     }
 
     /// Whether all tables are even in x.

@@ -12,9 +12,12 @@ use std::sync::Arc;
 use super::extremes::{are_symmetric, largest, Extremes};
 use super::given::{width, Given, TABLE};
 use super::kernel::Kernel;
-use crate::error::{invalid, require, Error, Result};
+use crate::error::{invalid, require, Error, Number, Result};
 use crate::grid::Grid;
 use crate::memory::{blank, Held};
+
+/// Ratio to the coefficient of an element on itself beyond which another is an error, not rounding.
+pub(super) const LARGEST_RATIO: f64 = 1.001;
 
 /// Refuses a scale that is not positive and finite.
 pub(super) fn check_scale(name: &str, scale: f64) -> Result<()> {
@@ -63,10 +66,40 @@ impl Table {
         if table.at(0, 0) <= 0.0 {
             return Err(Error::NotPositiveDefinite(format!(
                 "influence.coefficients at offset (0, 0) is {}; a pressure must displace its own element inwards",
-                table.at(0, 0)
+                Number(table.at(0, 0))
             )));
         }
         Ok(table)
+    }
+
+    /// Refuses coefficients larger than that of an element on itself.
+    pub(crate) fn check_largest(&self) -> Result<()> {
+        let Some((kx, ky)) = self.beyond_own() else { return Ok(()) };
+        Err(Error::NotPositiveDefinite(format!(
+            "influence.coefficients at offset ({kx}, {ky}) is {}, and {} at (0, 0): no elastic body moves another element more than the one that is \
+             pressed. Offset (0, 0) is value [cy][cx] of the table",
+            Number(self.at(kx, ky)),
+            Number(self.at(0, 0))
+        )))
+    }
+
+    /// An offset whose coefficient, in the mean with that of the opposite offset, exceeds the one at offset (0, 0). Two such elements alone have an
+    /// indefinite matrix.
+    fn beyond_own(&self) -> Option<(i64, i64)> {
+        let most = LARGEST_RATIO * self.at(0, 0);
+        if self.extremes.largest <= most {
+            return None;
+        }
+        let (last_x, last_y) = (self.cx as i64 - 1, self.cy as i64 - 1);
+        let mut offsets = (0..=last_y).flat_map(|ky| (-last_x..=last_x).map(move |kx| (kx, ky)));
+        let mean = |(kx, ky): (i64, i64)| 0.5 * (self.at(kx, ky) + self.at(-kx, -ky)).abs();
+        offsets.find(|offset| mean(*offset) > most).map(|(kx, ky)| {
+            if self.at(kx, ky).abs() >= self.at(-kx, -ky).abs() {
+                (kx, ky)
+            } else {
+                (-kx, -ky)
+            }
+        })
     }
 
     /// Whether the table is that of a grid of this size, not of a larger one.

@@ -3,7 +3,7 @@
 
 use contact_normal::error::Error;
 use contact_normal::grid::Grid;
-use contact_normal::influence::{Coefficients, HalfSpace, Kernel, Table};
+use contact_normal::influence::{Coefficients, HalfSpace, Kernel, RowTables, Table};
 use contact_normal::scene::{Bodies, Load, Scene};
 use contact_normal::solver::{
     solve, ActiveSet, Criterion, Guess, InitialGuess, Method, Options, Outcome, Precision, Solver,
@@ -286,13 +286,47 @@ fn a_table_whose_circulant_is_not_positive_is_solved_all_the_same() {
 fn an_indefinite_table_is_refused() {
     let grid = Grid::new(12, 12, 1.0, 1.0).unwrap();
     let h = vec![0.0; grid.len()];
-    let influence = table_of(&grid, 12, 12, |kx, ky, _| if (kx, ky) == (0, 0) { 1.0 } else { -2.0 });
+    let influence = table_of(&grid, 12, 12, |kx, ky, _| if (kx, ky) == (0, 0) { 1.0 } else { -0.9 });
     for method in [Method::Auto, Method::Norm] {
         let scene =
             Scene { influence: Some(influence.clone()), ..Scene::new(grid, &h, rigid_on(1.0), Load::Approach(1.0)) };
         let error = solve(&scene, &Options { method, ..Options::default() }).err();
         assert!(matches!(error, Some(Error::NotPositiveDefinite(_))), "{method:?}: {error:?}");
     }
+}
+
+/// Tables of other layouts: padded behind, offset (0, 0) first; and rows whose own coefficient is not the largest. Coefficients to one side alone may be larger.
+#[test]
+fn coefficients_larger_than_that_of_an_element_on_itself_are_refused() {
+    let grid = Grid::new(12, 9, 1.0, 1.0).unwrap();
+    let h = vec![0.0; grid.len()];
+    let solved = |influence: Option<Table>, row_tables: Option<RowTables>| {
+        let plain = Scene::new(grid, &h, rigid_on(1.0), Load::Approach(1.0));
+        solve(&Scene { influence, row_tables, ..plain }, &Options::default()).map(|(_, outcome, _)| outcome)
+    };
+    let of = |at: &dyn Fn(i64, i64) -> f64| solved(Some(table_of(&grid, 12, 9, |kx, ky, _| at(kx, ky))), None);
+    let half_space = &HalfSpace::new(1.0, 1.0, rigid_on(1.0).compliance());
+    let wrapped = |k: i64, c: i64| if k < 0 { k + c } else { k - c };
+    let behind = of(&|kx, ky| half_space.at(kx + 1, ky + 1));
+    let first = of(&|kx, ky| half_space.at(wrapped(kx, 12), wrapped(ky, 9)));
+    let pulled = of(&|kx, ky| if (kx, ky) == (0, 0) { 1.0 } else { -1e100 });
+    for refused in [behind, first, pulled] {
+        let message = refused.unwrap_err();
+        assert!(matches!(&message, Error::NotPositiveDefinite(text) if text.contains("[cy][cx]")), "{message}");
+    }
+    let leans = of(&|kx, ky| half_space.at(kx, ky) * (1.0 + 0.9 * kx.signum() as f64));
+    assert_eq!(leans.unwrap(), Outcome::Converged);
+    let rows = |own: f64| {
+        let row = |k: i64| {
+            let at =
+                move |kx: i64| half_space.at(kx, k / 9 - k % 9) * if k / 9 == k % 9 && kx == 0 { own } else { 1.0 };
+            (-12..12).map(at)
+        };
+        let values: Vec<f64> = (0..81).flat_map(row).collect();
+        solved(None, Some(RowTables::new(12, 9, &values, &grid).unwrap()))
+    };
+    assert_eq!(rows(1.0).unwrap(), Outcome::Converged);
+    assert!(matches!(rows(0.2).unwrap_err(), Error::NotPositiveDefinite(text) if text.contains("itself")));
 }
 
 #[test]

@@ -55,7 +55,13 @@ pub fn have_stages((px, py): (usize, usize)) -> bool {
 
 /// Whether there are stages for a length: not up to the longest radix, where one stage suffices.
 fn has_stages(length: usize) -> bool {
-    length > LONGEST && radices(length).is_some()
+    let without = |mut rest: usize, prime: usize| {
+        while rest > 0 && rest % prime == 0 {
+            rest /= prime;
+        }
+        rest
+    };
+    length > LONGEST && [2, 3, 5].into_iter().fold(length, without) == 1
 }
 
 /// Factors of a length: a four first, the other fours last, the other factors between.

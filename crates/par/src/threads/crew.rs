@@ -26,6 +26,9 @@ pub fn is_worker() -> bool {
 /// 1000 us, with serial work between them, and waking a sleeping thread takes about 50 us.
 const AWAKE: Duration = Duration::from_micros(150);
 
+/// Bytes of a worker's stack, whatever RUST_MIN_STACK says.
+const STACK: usize = 2 << 20;
+
 /// The workers of one process. In a forked child they do not exist.
 pub(super) struct Crew {
     pub process: u32,
@@ -78,7 +81,7 @@ impl Crew {
             return Ok(());
         }
         let refused = |e| OutOfMemory(format!("threads is {}; the threads could not be started: {e}", workers + 1));
-        let builder = rayon::ThreadPoolBuilder::new().num_threads(workers - known);
+        let builder = rayon::ThreadPoolBuilder::new().num_threads(workers - known).stack_size(STACK);
         let builder =
             builder.thread_name(move |i| format!("{THREAD_NAME}{}", known + i)).start_handler(|_| IS_WORKER.set(true));
         let more = signals::blocked(|| builder.build()).map_err(refused)?;
