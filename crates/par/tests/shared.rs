@@ -6,7 +6,7 @@ use std::thread::scope;
 
 use par::threads::{made_once, Shared};
 
-/// Another thread makes the value, and does not come to its end before this one has it.
+/// Another thread makes the value, and does not end before this one has it.
 #[test]
 fn a_value_that_another_thread_makes_is_not_waited_for() {
     static PLACE: OnceLock<i32> = OnceLock::new();

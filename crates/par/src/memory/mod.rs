@@ -108,7 +108,8 @@ pub fn reserve<A: Copy + Send + 'static>(v: &mut Vec<A>, n: usize, what: &str) -
     allocate(v, n, what)
 }
 
-/// The same for an array of which few values may be used. It is no kept array, so that unused pages take no memory.
+/// An array with capacity for n values, of which few may be used. It comes from the system, not from the kept arrays, so that unused pages take no
+/// memory.
 pub fn sparse<A>(n: usize, what: &str) -> Result<Vec<A>> {
     let mut v = Vec::new();
     allocate(&mut v, n, what)?;
