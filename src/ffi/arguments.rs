@@ -1,4 +1,4 @@
-//! Arguments of the caller's: counts, arrays, and the memory that a call reads or writes.
+//! The caller's arguments: counts, arrays, and the memory that a call reads or writes.
 
 use std::cell::RefCell;
 use std::ops::Range;
@@ -56,7 +56,7 @@ pub(super) unsafe fn required<'a, T>(name: &str, values: *const T, n: usize) -> 
     unsafe { optional(values, n) }.ok_or_else(|| Refusal::null(name))
 }
 
-/// Copies values into part k of the caller's array, whose parts are as long as they. NULL: it is not wanted.
+/// Copies values into part k of the caller's array, whose parts have the length of `values`. NULL: not wanted.
 pub(super) unsafe fn copy_to<A>(values: &[A], to: *mut f64, k: usize) {
     if !to.is_null() {
         // SAFETY: not null: room for the parts, by the conventions of the ABI, and nothing overlaps (`Regions`).
@@ -71,7 +71,7 @@ pub(super) enum Element {
     Int32,
 }
 
-/// A type that can stand in an array that is read.
+/// The element types of arrays that are read.
 pub(super) trait Plain {
     const ELEMENT: Element;
 }
@@ -88,16 +88,16 @@ impl Plain for i32 {
     const ELEMENT: Element = Element::Int32;
 }
 
-/// Memory of the caller's.
+/// A part of the caller's memory.
 #[derive(Clone, Copy)]
 pub(super) struct Region {
     start: usize,
     end: usize,
     pub name: &'static str,
-    /// Of a batch: counted from 0.
+    /// The problem of a batch, counted from 0.
     problem: Option<usize>,
     is_output: bool,
-    /// The copy for a call; not of structs, and not of outputs that are only written.
+    /// Whether the call reads the array. False for structs, and for outputs that are only written.
     pub is_read: bool,
     pub element: Element,
 }
@@ -155,14 +155,14 @@ impl Regions {
         Ok(())
     }
 
-    /// The output that begins here is read, too.
+    /// Marks the output that begins here as read.
     pub fn read_too<T: Plain>(&mut self, start: *const T) {
         for region in self.list.iter_mut().filter(|region| region.start == start as usize) {
             (region.is_read, region.element) = (true, T::ELEMENT);
         }
     }
 
-    /// The argument that begins here; of several the longest.
+    /// The longest of the arguments that begin here.
     pub fn at(&self, start: usize) -> Option<&Region> {
         self.list.iter().filter(|region| region.start == start).max_by_key(|region| region.end)
     }
@@ -247,7 +247,7 @@ impl Regions {
     }
 }
 
-/// Refuses arrays that do not begin at a multiple of what an element needs: elements of packed structs, or of a record in a file in memory.
+/// Refuses arrays whose start is not aligned for their elements, as in packed structs or in records of a file in memory.
 pub(super) fn aligned<T>(name: &str, start: *const T, count: usize) -> Result<(), Refusal> {
     if count == 0 || start.is_aligned() {
         return Ok(());
@@ -266,7 +266,7 @@ fn overlap(one: &Region, other: &Region) -> Refusal {
 
 /// An effect, as the caller's header has it.
 pub(super) trait GivenEffect: Versioned {
-    /// Adds the arrays that are read; none.
+    /// Adds the arrays that are read. By default there are none.
     fn add_to(&self, _regions: &mut Regions, _grid: &Grid) -> Result<(), Refusal> {
         Ok(())
     }

@@ -117,7 +117,7 @@ impl Batch {
         }
     }
 
-    /// Adds all that is read and written: several threads do so at a time. A problem that is refused for itself does neither.
+    /// Adds all memory that is read and written, because several threads work at a time. A refused problem reads and writes nothing.
     fn add_to(&mut self, regions: &mut Regions, n: usize) -> Result<(), Refusal> {
         regions.output("statuses", self.statuses, self.outputs.len())?;
         for i in 0..self.outputs.len() {
@@ -183,7 +183,7 @@ impl Batch {
     }
 }
 
-/// At most so many problems have a line in the message of a batch.
+/// The most problems with a line in the message of a batch.
 const LINES: usize = 1000;
 
 /// The problems that are not OK: those that were refused before those that stopped early, then by number.

@@ -23,7 +23,7 @@ pub(super) enum Kind {
 /// The types that members have in Rust.
 pub(super) trait Typed {
     const KIND: Kind;
-    /// So many values of an array; none: it is no array.
+    /// The number of values of an array; none: it is no array.
     const COUNT: Option<usize> = None;
 }
 

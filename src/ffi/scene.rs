@@ -145,7 +145,7 @@ impl Named {
         }
     }
 
-    /// The same for a call that uses no load: none needs to be set.
+    /// A scene for a call that uses no load, which need not be set.
     pub fn load_or_none(mut self) -> Named {
         let scene = &mut self.scene;
         if scene.load == CONTACT_NORMAL_PRESCRIBED_UNSET && scene.approach.is_nan() && scene.force.is_nan() {
@@ -165,7 +165,7 @@ impl Named {
         self.add_without_distance(regions, at)
     }
 
-    /// The same of a call that takes the undeformed distance from elsewhere.
+    /// [`add_to`](Self::add_to) of a call that takes the undeformed distance from elsewhere.
     pub fn add_without_distance(&self, regions: &mut Regions, at: *const contact_normal_scene) -> Result<(), Refusal> {
         let (scene, grid) = (&self.scene, &self.grid);
         regions.input_struct(at, scene)?;
@@ -200,7 +200,7 @@ impl Named {
         unsafe { self.with_distance(self.distance()?) }
     }
 
-    /// The same with another undeformed distance.
+    /// [`translate`](Self::translate) with another undeformed distance.
     pub unsafe fn with_distance<'a>(&self, undeformed_distance: &'a [f64]) -> Result<Scene<'a>, Refusal> {
         let load = load_of_scene(&self.scene)?;
         // SAFETY: by the caller.

@@ -61,11 +61,11 @@ pub(super) struct Request<'a> {
 pub(super) enum Needs {
     /// One with an undeformed distance and a load.
     All,
-    /// The same, of which effects may be left out.
+    /// One as for `All`, whose effects may be left out.
     AllOrLess,
-    /// One that may be without an undeformed distance: then its load is not looked at either.
+    /// One that may lack an undeformed distance. Then its load is not read either.
     Bodies,
-    /// One whose pressures are given: undeformed distance and load are not looked at.
+    /// One whose pressures are given. Its undeformed distance and its load are not read.
     NoLoad,
 }
 
@@ -84,7 +84,7 @@ impl Request<'_> {
         unsafe { Request::read_for(Needs::All, (scene, options), (fields, report), buffers, also) }
     }
 
-    /// The same for a call that needs less of its scene.
+    /// [`read`](Self::read) for a call that needs less of its scene.
     pub unsafe fn read_for<'a>(
         needs: Needs,
         (scene, options): (*const contact_normal_scene, *const contact_normal_options),
@@ -188,7 +188,7 @@ pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Opt
     message
 }
 
-/// By how much the force of a result is not the one that is given, where that is more than the tolerance: bodies that pull too little.
+/// A text about the difference of the force from the given one, if it exceeds the tolerance: the bodies pull too little.
 fn lack_of_force(load: Load, report: &Report) -> String {
     let Load::Force(given) = load else { return String::new() };
     let lack = (report.measures.force / given - 1.0).abs();
@@ -236,10 +236,10 @@ fn stagnation(report: &Report, method: Method, state: &State) -> String {
     }
 }
 
-/// Distances that are so much larger than what the surfaces give way are far from where they are measured.
+/// Ratio of distances to their rms from the approach above which they are measured from far away.
 const FAR: f64 = 100.0;
 
-/// Distances of the contact area: of its free elements, whose distances the residual is measured by, where there are some.
+/// Distances of the contact area: of its free elements, if there are some, because the residual is relative to their distances.
 struct Distances {
     /// The largest of h, or of u.
     largest: f64,

@@ -84,14 +84,14 @@ pub(super) fn of(scene: &Scene<'_>, options: &Options, report: &Report, state: &
     effects | found.into_iter().filter(|(_, holds)| *holds).map(|(bit, _)| bit).sum::<i32>()
 }
 
-/// Those of adhesion.
+/// The warnings of adhesion.
 fn of_adhesion(report: &Report) -> i32 {
     let Some(found) = &report.adhesion else { return 0 };
     let range = if found.resolution > UNSTABLE_KAPPA { CONTACT_NORMAL_WARNING_RANGE } else { 0 };
     range | if found.border_share > LARGEST_BORDER_SHARE { CONTACT_NORMAL_WARNING_ATTRACTION } else { 0 }
 }
 
-/// That of a law of friction, by `law_slope`.
+/// The warning of a law of friction, by `law_slope`.
 pub(super) fn of_law(slope: Option<f64>) -> i32 {
     if slope.is_some_and(|slope| slope >= STEEP) {
         CONTACT_NORMAL_WARNING_LAW

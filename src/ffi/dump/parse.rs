@@ -34,7 +34,7 @@ pub(super) enum Item {
         room: usize,
         members: Vec<(Place, Value)>,
     },
-    /// So many values of so many bytes, which begin at this byte of the data.
+    /// `count` values of `size` bytes each, from byte `at` of the data on.
     Array {
         size: usize,
         count: usize,
@@ -56,7 +56,7 @@ pub(super) struct Parsed {
     pub arguments: Vec<(String, Target)>,
     pub integers: Vec<(String, i64)>,
     pub items: Vec<Item>,
-    /// Bytes of the arrays that were told so far.
+    /// Bytes of the arrays so far.
     data: usize,
 }
 
