@@ -22,7 +22,7 @@ pub struct Grid {
 /// The largest number of elements: the padded products and the C ABI count elements in 32 bits.
 pub(crate) const MOST_ELEMENTS: usize = i32::MAX as usize;
 
-/// How many times as many elements a grid has after a doubling of those in these directions.
+/// The ratio of the numbers of elements after and before a doubling in these directions.
 pub fn doubling((in_x, in_y): (bool, bool)) -> f64 {
     if in_x && in_y {
         4.0

@@ -77,7 +77,7 @@ pub enum Pace {
     Bold,
     /// With a part of it, until the contact area is constant.
     Cautious,
-    /// As bold ones, but their linear systems are solved firmly, and there are more of them.
+    /// As bold ones, but with linear systems solved to smaller tolerances, and more steps.
     Firm,
 }
 

@@ -45,7 +45,7 @@ pub trait Effect {
     /// pressure compresses a layer, or pressures are limited.
     fn gives_way(&self, scene: &Plain<'_>) -> bool;
 
-    /// The stresses below the surface of body 1 (`b` is 0) or 2 with it.
+    /// The stresses below the surface of body 1 (`b` is 0) or 2 with this effect.
     fn stresses(&self, b: usize, scene: &Plain<'_>) -> Stresses<'_>;
 
     /// The reason in the refusal of another effect that it excludes.

@@ -22,8 +22,8 @@
 
 /// From this `law_slope` on there may be several solutions, and the iteration may end without its certificate.
 pub const STEEP: f64 = 0.5;
-/// With this slope, times an element's influence on itself, or more, bounds rise too steeply to lag behind the slips: both would alternate. On 40 x 40
-/// elements, which move together, they do from 0.1 on.
+/// From this slope times an element's influence on itself on, bounds rise too steeply to lag behind the slips: both would alternate. On 40 x 40
+/// elements, which move together, they alternate from 0.1 on.
 const RISING: f64 = 0.05;
 
 mod bounds;

@@ -64,8 +64,7 @@ impl Krylov {
         let (basis, w) = self.basis.split_at_mut((k + 1) * m);
         self.columns.resize((k + 1) * RESTART, 0.0);
         let column = &mut self.columns[k * RESTART..];
-        // The direction is orthogonalised twice, and its mean removed each time. No residual would show a mean that
-        // round-off leaves.
+        // The direction is orthogonalised twice, and its mean is removed each time. A mean left by round-off would not appear in the residual.
         for _ in 0..2 {
             project(w);
             for (h, v) in column.iter_mut().zip(basis.chunks_exact(m)) {

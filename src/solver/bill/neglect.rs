@@ -27,7 +27,7 @@ impl Neglected {
     /// friction, adhesion, a step in time, and a layer in place of a coating. Nor is a pressure limit: small grids do not resolve the peaks that
     /// reach it, and a limit that no element reaches changes nothing.
     ///
-    /// `progress` is told of the cycles on small grids; if it cancels, nothing is left out.
+    /// `progress` is called after the cycles on small grids. If it cancels, nothing is left out.
     pub fn of(
         scene: &Scene<'_>,
         options: &Options,
