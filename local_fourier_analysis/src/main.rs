@@ -2,7 +2,7 @@
 //! the paper's ellipse (the set {h <= approach}) and on a full rectangle, from a random error.
 //!
 //! `cargo run --release -p local_fourier_analysis [-- FOLDER]` writes the data of the picture to FOLDER (target/local_fourier_analysis).
-//! `make analysis` also draws the picture.
+//! `make analysis` also copies them to local_fourier_analysis/results, with three digits.
 
 #[path = "../../examples/paper_tables/case.rs"]
 #[allow(dead_code)] // the paper's runs, of which this example uses table 1
