@@ -20,7 +20,7 @@ use crate::error::Result;
 use crate::methods::fields;
 use crate::progress::Outcome;
 
-/// Each time the missing force falls to CLOSE_RATIO times the last value, Newton's method with balanced creepages is tried.
+/// Newton's method with balanced creepages is tried each time the missing force falls to CLOSE_RATIO times that of the last try.
 const CLOSE_RATIO: f64 = 0.1;
 /// Products of a try of tractions by force, when the forces are nearly met.
 pub const FINISHING_PRODUCTS: u64 = 30;

@@ -22,7 +22,7 @@ use crate::sums::in_blocks;
 /// traction from the slip.
 pub(super) const NEGLIGIBLE_BOUND: f64 = 1e-17;
 
-/// Upper bound on the largest traction over its estimate: an element that displaces itself alone by its slip.
+/// Upper bound on the largest traction relative to its estimate, by which each element alone makes up for its slip.
 const REACH: f64 = 1e3;
 
 impl Solver {
@@ -118,7 +118,7 @@ impl Solver {
         steps * (held + self.largest_slip(request, window)) / xx.min(yy) + had + length(forces.sum) * most.max(1.0)
     }
 
-    /// The largest rigid slip of the elements of a window. Without arrays it is linear in the place.
+    /// The largest rigid slip of the elements of a window. Without arrays it is linear in the place, and largest at a corner.
     fn largest_slip(&self, request: &Request<'_>, window: &Rectangle) -> f64 {
         let (friction, grid) = (request.friction, &self.grid);
         let slip = |i: usize| length(request.rigid_slip(grid, i));

@@ -27,7 +27,7 @@ use crate::error::Result;
 use crate::methods::fields::Fields;
 use crate::progress::Outcome;
 
-/// Relative tolerance of the linear solve of a step, and in rolling.
+/// Relative tolerances of the linear solve of a step, without and with rolling.
 const INNER: f64 = 0.15;
 const INNER_ROLLING: f64 = 0.35;
 /// Below this times the tolerance `polish` takes the certificate.
