@@ -21,7 +21,7 @@ pub(super) fn not_negative(name: &str, value: i32) -> Result<usize, Refusal> {
     usize::try_from(value).map_err(|_| Refusal::invalid(format!("{name} is {value}; it must not be negative")))
 }
 
-/// A member that is kept for later versions.
+/// Refuses another value than 0 for a member that is reserved for later versions.
 pub(super) fn reserved(name: &str, value: i32) -> Result<(), Refusal> {
     match value {
         0 => Ok(()),
@@ -29,7 +29,7 @@ pub(super) fn reserved(name: &str, value: i32) -> Result<(), Refusal> {
     }
 }
 
-/// A member that is 0 or 1.
+/// Translates a member that is 0 or 1.
 pub(super) fn switch(name: &str, value: i32) -> Result<bool, Refusal> {
     match value {
         0 => Ok(false),
@@ -113,7 +113,7 @@ thread_local! {
     static ALLOWED: RefCell<Option<Vec<Range<usize>>>> = const { RefCell::new(None) };
 }
 
-/// Makes calls that are refused before they read or write beyond these ranges: for calls replayed from a file.
+/// Runs `call`. In it, calls of the library are refused before they read or write beyond these ranges. This is for calls replayed from a file.
 pub(super) fn within<R>(ranges: Vec<Range<usize>>, call: impl FnOnce() -> R) -> R {
     let outer = ALLOWED.replace(Some(ranges));
     let result = call();
@@ -129,18 +129,18 @@ pub(super) struct Regions {
 }
 
 impl Regions {
-    /// Forgets all, and keeps the memory.
+    /// Removes all regions, and keeps the memory of the list.
     pub fn clear(&mut self) {
         self.list.clear();
         self.problem = None;
     }
 
-    /// All that is added from here on belongs to this problem of a batch.
+    /// The regions added from now on belong to this problem of a batch.
     pub fn enter_problem(&mut self, problem: usize) {
         self.problem = Some(problem);
     }
 
-    /// Drops the regions of the last problem. It is refused, so nothing of it is read or written.
+    /// Removes the regions of the last problem. The problem is refused, so that its memory is neither read nor written.
     pub fn leave_out_problem(&mut self) {
         while self.list.last().is_some_and(|region| region.problem.is_some() && region.problem == self.problem) {
             self.list.pop();

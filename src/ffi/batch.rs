@@ -205,8 +205,8 @@ impl NotOk {
         }
     }
 
-    /// The return value of the call: the status of the first, and a line for each: "problem 3: ...", where `each` is a problem; the warnings if
-    /// all are OK.
+    /// The conclusion of the call. Its status is that of the first problem. Its message has a line for each problem ("problem 3: ..."), where `each`
+    /// is the word for a problem. If all are OK, it has the warnings.
     pub fn outcome(self, each: &str) -> Conclusion {
         let status = self.first.first().map_or(CONTACT_NORMAL_OK, |(_, outcome)| outcome.status);
         let line = |(i, outcome): &(usize, Conclusion)| format!("{each} {i}: {}", outcome.message);

@@ -75,7 +75,7 @@ pub struct contact_normal_scene {
 
 versioned! { contact_normal_scene, contact_normal_scene_init, 168, approach: f64::NAN, force: f64::NAN }
 
-/// The load that the constants and values of the boundary mean.
+/// The load from the constants and values of the C ABI.
 pub(super) fn load_of(load: i32, approach: f64, force: f64) -> Result<Load, Refusal> {
     match load {
         CONTACT_NORMAL_PRESCRIBED_APPROACH => Ok(Load::Approach(approach)),
@@ -103,7 +103,7 @@ fn load_of_scene(scene: &contact_normal_scene) -> Result<Load, Refusal> {
     }
 }
 
-/// A scene and the effects that it names, as the caller's header has them; no array was looked at.
+/// A scene and the effects that it names, in the caller's form. Their arrays are not read yet.
 pub(super) struct Named {
     scene: contact_normal_scene,
     grid: Grid,
@@ -159,7 +159,7 @@ impl Named {
         self.grid.len()
     }
 
-    /// Adds all that is read of the scene, which stands at `at`.
+    /// Adds the memory that is read of the scene at `at`.
     pub fn add_to(&self, regions: &mut Regions, at: *const contact_normal_scene) -> Result<(), Refusal> {
         regions.input("undeformed_distance", self.scene.undeformed_distance, self.grid.len())?;
         self.add_without_distance(regions, at)

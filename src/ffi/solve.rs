@@ -33,7 +33,7 @@ pub unsafe extern "C" fn contact_normal_solve(
         let request = unsafe { Request::read_for(Needs::AllOrLess, arguments, outputs, &mut buffers, |_, _| Ok(())) };
         recording.keep(&buffers.regions);
         let Request { mut scene, options, mut outputs } = request?;
-        // Before the set-up: a refusal should not cost one.
+        // Checked before the set-up, which a refused call does not need.
         outputs.check_inputs(&options.options, scene.grid.len())?;
         let watcher = Watcher::of(&options);
         if options.given.neglect_below > 0.0 {
@@ -56,7 +56,7 @@ pub(super) struct Request<'a> {
     pub outputs: Outputs,
 }
 
-/// Which scene a call asks for.
+/// The parts of a scene that a call needs.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Needs {
     /// One with an undeformed distance and a load.
@@ -70,8 +70,8 @@ pub(super) enum Needs {
 }
 
 impl Request<'_> {
-    /// Reads the structs, and refuses outputs that overlap: those, and what is `also` written, on so many elements. The caller's arrays
-    /// must live as long as the result is used.
+    /// Reads the structs. Refuses outputs that overlap: those of `fields` and `report`, and those that `also` adds for the number of elements. The
+    /// caller's arrays must live as long as the result is used.
     pub unsafe fn read<'a>(
         scene: *const contact_normal_scene,
         options: *const contact_normal_options,
@@ -123,14 +123,14 @@ impl Request<'_> {
 }
 
 impl Request<'_> {
-    /// Whether it begins where the handle ended last.
+    /// Whether the solve continues from the last result of the handle.
     pub fn goes_on(&self) -> bool {
         let continues = effects::continuing(&self.scene).next().is_some();
         continues || self.options.options.initial_guess == InitialGuess::Previous
     }
 }
 
-/// Solves with a solver that is set up, and writes the outputs. A scene that is checked has its least distance.
+/// Solves with a solver that is set up, and writes the outputs. `lowest` is the least distance of a scene that is already checked.
 pub(super) fn run(
     solver: &mut Solver,
     (scene, lowest): (&Scene<'_>, Option<f64>),
@@ -188,7 +188,7 @@ pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Opt
     message
 }
 
-/// A text about the difference of the force from the given one, if it exceeds the tolerance: the bodies pull too little.
+/// The part of the message about a force that differs from the given one by more than the tolerance.
 fn lack_of_force(load: Load, report: &Report) -> String {
     let Load::Force(given) = load else { return String::new() };
     let lack = (report.measures.force / given - 1.0).abs();
@@ -207,7 +207,7 @@ fn lack_of_force(load: Load, report: &Report) -> String {
     format!("{found}; the force is off by {} of the one that is given", Rounded(lack))
 }
 
-/// The point that a solve without further progress has reached, as far as its result proves it.
+/// The part of the message about a solve that stagnated: the reason, as far as the result shows it, and advice.
 fn stagnation(report: &Report, method: Method, state: &State) -> String {
     let (residual, distances) = (report.measures.certificate.residual, Distances::of(state));
     // If the normal problem is solved, the tangential one has stagnated.

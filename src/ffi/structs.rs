@@ -58,7 +58,7 @@ macro_rules! versioned {
 }
 pub(super) use versioned;
 
-/// No struct of this library will be larger. Of longer ones no more is read.
+/// No struct of this library will be larger. Calls refuse longer ones; their `_init` sets no more than this.
 pub(super) const LARGEST: usize = 4096;
 
 /// The declared size of a struct, after a check.
@@ -134,7 +134,7 @@ pub unsafe fn write<T: Versioned>(to: *mut T, value: &T) -> Result<(), Refusal> 
     Ok(())
 }
 
-/// An array of the caller's structs, of an older or newer version maybe. The size of the first one is the distance from each to the next.
+/// An array of the caller's structs, possibly of an older or newer version. The size of the first one is the distance from each to the next.
 pub struct Rows<T> {
     first: *mut T,
     stride: usize,

@@ -203,7 +203,7 @@ impl Methods {
                 task.state.start(self_influence);
             }
         }
-        // The other methods start from p = 0, which tells nothing of the error.
+        // The other methods start from p = 0, which gives no information about the error.
         let is_near = matches!(stage, Stage::Direct | Stage::ProjectedCg | Stage::FullMultigrid);
         if error_ratio > 0.0 && is_near && !S::FIXED {
             let predicted = estimates::predict(task.problem, task.state);

@@ -10,7 +10,7 @@ use super::image::Image;
 /// Dumps of this process so far.
 static COUNT: AtomicU64 = AtomicU64::new(0);
 
-/// Writes a file under a temporary name, then renames it, so that nobody sees a part of it. Returns its path, or why there is none.
+/// Writes a file under a temporary name, then renames it, so that no reader finds an unfinished file. Returns its path, or the reason of the failure.
 pub(super) fn write(path: &[u8], head: &str, image: &Image) -> Result<String, String> {
     let number = COUNT.fetch_add(1, Ordering::Relaxed) + 1;
     let path = expanded(path, number);

@@ -8,7 +8,7 @@ use crate::ffi::member::{Kind, Place};
 use crate::ffi::members::structure;
 use crate::ffi::structs::LARGEST;
 
-/// The text for a pointer to something that is not in the file.
+/// The text for a pointer whose target is not in the file.
 pub(super) const UNREAD: &str = "unread";
 
 /// The text that lists structs and arrays, and the bytes of the arrays, in order.
@@ -18,9 +18,9 @@ pub(super) struct Image {
     pub data: Vec<u8>,
     /// The structs and arrays that have a number: address and kind of each.
     items: Vec<(usize, Option<&'static str>)>,
-    /// The number of these that are written.
+    /// The number of items that are written.
     written: usize,
-    /// Whether memory for a copy could not be had.
+    /// Whether there was no memory for a copy.
     pub lacks_memory: bool,
 }
 
@@ -119,7 +119,7 @@ impl Image {
         UNREAD.into()
     }
 
-    /// The number of an array; "unread" where the call has not told how long it is.
+    /// The number of an array; "unread" if the call has not registered its length.
     fn array_at(&mut self, at: usize, regions: &Regions) -> String {
         match (at, regions.at(at)) {
             (0, _) => "NULL".into(),

@@ -70,12 +70,12 @@ impl Dump {
         self.structure("scene")
     }
 
-    /// The options of the call, likewise. What belonged to the host is NULL: callbacks and their data.
+    /// The options of the call, likewise. Callbacks and their data, which belonged to the host, are NULL.
     pub fn options(&self) -> Option<&contact_normal_options> {
         self.structure("options")
     }
 
-    /// The arrays of the call, likewise.
+    /// The struct of the arrays of the call, likewise.
     pub fn fields(&self) -> Option<&contact_normal_fields> {
         self.structure("fields")
     }
@@ -129,7 +129,7 @@ impl Dump {
         }
     }
 
-    /// A value that was an argument.
+    /// The integer argument of this name.
     pub(super) fn integer(&self, name: &str) -> Result<i32, String> {
         let found = self.parsed.integers.iter().find(|(known, _)| known == name);
         let value = found.ok_or_else(|| format!("{name} is not in the file"))?.1;
@@ -221,7 +221,7 @@ fn is_struct(items: &[Item], item: usize, name: &str) -> bool {
     matches!(items.get(item), Some(Item::Struct { kind, .. }) if kind.name == name)
 }
 
-/// Bytes of memory for an item. A struct has room for whatever size it declares.
+/// Bytes of memory for an item. A struct has room for the largest size that a struct may declare.
 fn room(item: &Item) -> usize {
     match item {
         Item::Struct { room, .. } => LARGEST.max(*room),

@@ -125,10 +125,10 @@ fn estimate(report: &Report, quantity: Quantity) -> Option<f64> {
     }
 }
 
-/// The values of `wanted` on the grid of the scene and on `coarser` grids with half the elements each, coarsest first, one row for each grid and
-/// quantity. Each grid is solved without a guess. Errors of force, largest pressure and area are the estimates of the report. All others follow from
-/// the grids before (module `sequence`); the coarsest grid has none. Values of 0 are exact if nothing touches on the grid of the scene. Otherwise a
-/// value of 0 on a coarser grid where nothing touches has no known error.
+/// The values of `wanted` on the grid of the scene and on `coarser` grids, each with half the elements of the next in both directions. The coarsest
+/// comes first, with one row for each grid and quantity. Each grid is solved without a guess. Errors of force, largest pressure and area are the
+/// estimates of the report. All others follow from the coarser grids (module `sequence`); the coarsest grid has none. Values of 0 are exact if
+/// nothing touches on the grid of the scene. Otherwise a value of 0 on a coarser grid where nothing touches has no known error.
 ///
 /// # Errors
 /// Those of a solve on the grid of the scene. `Unsupported`: own coefficients, kept tractions, and a fixed contact area. Rows of a coarser grid
