@@ -27,7 +27,7 @@ pub enum Value<'a> {
 /// The usual reason why an effect excludes another.
 pub(super) const NOT_TOGETHER: &str = "this version does not solve them together";
 
-/// An effect. Its [`Properties`] have no default; its actions have one: nothing.
+/// An effect. The [`Properties`] and the methods up to [`stresses`](Effect::stresses) have no default. The other methods change nothing by default.
 pub trait Effect {
     /// The name in a scene.
     fn name(&self) -> &'static str;

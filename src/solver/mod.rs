@@ -1,8 +1,8 @@
 //! The solve of a scene: the options, the loop (`iterate`), the methods and their order, the report.
 //!
-//! A [`Solver`] is set up once for a grid and a pair of bodies (operators, transforms, grids) and then solves any number of
-//! undeformed distances and loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call. The methods of a solver
-//! stand in the files of this folder, one subject in each.
+//! A [`Solver`] is set up once for a grid and a pair of bodies (operators, transforms, grids) and then solves any number of undeformed distances and
+//! loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call. The functions of a solver stand in the files of
+//! this folder, one subject in each.
 
 mod adhesion;
 mod adhesive_friction;
