@@ -70,7 +70,8 @@ impl Grid {
         Ok(())
     }
 
-    /// Rows of each block, if work is divided into at most `most` blocks of at least `least` elements. It does not depend on the number of threads.
+    /// Rows of each block, if work is divided into at most `most` blocks of about `least` elements or more. It does not depend on the number of
+    /// threads.
     pub(crate) fn rows_of_blocks(&self, most: usize, least: usize) -> usize {
         self.my.div_ceil(most).max(least / self.mx).min(self.my)
     }
