@@ -1,5 +1,5 @@
-//! Restarted GMRES (Saad & Schultz 1986) for the equations on a fixed contact area with an A that is not symmetric, as the caller's table may be:
-//! conjugate gradients would converge to something else or not at all.
+//! Restarted GMRES (Saad & Schultz 1986) for the equations on a fixed contact area with an A that is not symmetric, as the caller's table may be.
+//! Conjugate gradients would converge to a wrong solution or not at all.
 
 use super::conjugate_gradients::noise;
 use super::{InnerStop, Workspace};
