@@ -5,8 +5,8 @@
 //! ```
 //!
 //! with `g = min(mu p, yield limit + hardening |s|)`, mu by a [`FrictionLaw`](crate::effects::FrictionLaw). mu and the yield limit are transported
-//! with the particles of the interface: in steady rolling along each row from the leading edge, otherwise from the step before. Creepages or forces
-//! are prescribed. Coulomb's friction does not use this module.
+//! with the particles of the interface: in steady rolling along the direction of rolling from the leading edge, otherwise from the step before.
+//! Creepages or forces are prescribed. Coulomb's friction does not use this module.
 //!
 //! If bounds fall with the slip, there may be several solutions. This module finds one. A single element has one solution if the largest slope of g
 //! times its coefficient on itself (`law_slope` of a report) is below 1. From 0.5 on the iteration may end without its certificate.
