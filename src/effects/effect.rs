@@ -41,8 +41,8 @@ pub trait Effect {
     /// Calls `tell` with each value that a set-up depends on, and its name. All other values may differ in each solve.
     fn values(&self, tell: &mut dyn FnMut(&'static str, Value<'_>));
 
-    /// With two periods a uniform pressure does not move the bodies. Whether surfaces can approach beyond their mean distance all the same: the
-    /// pressure compresses a layer, or pressures are limited.
+    /// Whether surfaces can approach beyond their mean distance with two periods: a uniform pressure compresses a layer, or pressures are limited.
+    /// Otherwise a uniform pressure does not move the bodies.
     fn gives_way(&self, scene: &Plain<'_>) -> bool;
 
     /// The stresses below the surface of body 1 (`b` is 0) or 2 with this effect.
@@ -53,7 +53,7 @@ pub trait Effect {
         NOT_TOGETHER
     }
 
-    /// Whether the effect is in effect in a scene.
+    /// Whether the values change the scene, or are invalid: then the scene refuses them. Otherwise the scene counts as one without the effect.
     fn is_one(&self, _scene: &Plain<'_>) -> bool {
         true
     }
