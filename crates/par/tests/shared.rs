@@ -1,4 +1,4 @@
-//! Data that a process shares: nobody waits for a thread that may not exist, as in a process forked meanwhile.
+//! Data that all threads of a process share: no thread waits for one that may not exist, as in a process forked meanwhile.
 
 use std::sync::mpsc::channel;
 use std::sync::OnceLock;

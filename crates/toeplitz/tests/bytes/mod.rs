@@ -107,7 +107,7 @@ pub fn product(data: &[u8]) {
 }
 
 /// A transform keeps the norm of its values, and each of its steps rounds. No value of the symbol exceeds the sum of the coefficients' absolute
-/// values. So the norm of the error is at most this sum, times the norm of p, times some roundings a step.
+/// values. So the norm of the error is at most this sum, times the norm of p, times a few roundings per step.
 fn compare<T: Real>(table: &Table, grid: (usize, usize), kind: u64, threads: &Threads, p: &[f64]) {
     let product = match kind {
         0 => Product::<T>::even(grid, |kx, ky| table.at(kx as i64, ky as i64), threads),
