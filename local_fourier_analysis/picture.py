@@ -1,7 +1,7 @@
-"""Draws docs/pictures/local_fourier_analysis.svg from local_fourier_analysis/results, which `make analysis` fills:
+"""Draws docs/pictures/local_fourier_analysis.svg from the tables in local_fourier_analysis/results, which `make analysis` writes:
 
     cargo run --release -p local_fourier_analysis FOLDER
-    python3 local_fourier_analysis/picture.py --keep FOLDER      # three digits of what the picture shows
+    python3 local_fourier_analysis/picture.py --keep FOLDER      # the tables, with three digits
     python3 local_fourier_analysis/picture.py docs/pictures/local_fourier_analysis.svg
 """
 
@@ -20,7 +20,7 @@ TABLES = "waves", "sizes", "relaxation"
 
 
 def keep(folder):
-    """Copies the tables, with three digits: a picture shows no more. The frequencies of waves are those of a grid."""
+    """Copies the tables with three digits, as many as a picture shows, and the waves without their frequencies, which are those of a grid."""
     RESULTS.mkdir(exist_ok=True)
     for name in TABLES:
         head, *rows = (Path(folder) / f"{name}.csv").read_text().split()
@@ -34,7 +34,7 @@ def table(name):
 
 
 def wave_map(axes, waves, name, title, label, **style):
-    """A field over the frequencies, from -pi to pi; the square is what the next grid sees."""
+    """A field over the frequencies from -pi to pi. The square contains the frequencies that the next grid resolves."""
     side = int(round(len(waves) ** 0.5))
     field = np.roll(waves[name].reshape(side, side), (side // 2, side // 2), (0, 1))
     image = axes.imshow(field, origin="lower", extent=(-1, 1, -1, 1), **style)

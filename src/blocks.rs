@@ -10,7 +10,7 @@ use crate::threads::Threads;
 
 /// Most blocks of a pass over a grid: each has a fixed cost.
 pub const BLOCKS: usize = 64;
-/// Elements of a block: two fields of 1024 vectors stay in the nearest cache. Blocks of whole rows have at least as many.
+/// Elements of a block: two fields of 1024 vectors stay in the nearest cache. Blocks of whole rows have about as many, or more.
 pub const BLOCK: usize = 1024;
 /// Lanes of a pass, as many as in the longest vector: the compiler vectorises loops over them, and no bit of their sums depends on the machine.
 /// Flags of as many elements are the bytes of a word.

@@ -22,7 +22,7 @@ pub struct Grid {
 /// The largest number of elements: the padded products and the C ABI count elements in 32 bits.
 pub(crate) const MOST_ELEMENTS: usize = i32::MAX as usize;
 
-/// How many times as many elements a grid has after a doubling of those in these directions.
+/// The ratio of the numbers of elements after and before a doubling in these directions.
 pub fn doubling((in_x, in_y): (bool, bool)) -> f64 {
     if in_x && in_y {
         4.0
@@ -70,7 +70,8 @@ impl Grid {
         Ok(())
     }
 
-    /// Rows of each block, if work is divided into at most `most` blocks of at least `least` elements. It does not depend on the number of threads.
+    /// Rows of each block, if work is divided into at most `most` blocks of about `least` elements or more. It does not depend on the number of
+    /// threads.
     pub(crate) fn rows_of_blocks(&self, most: usize, least: usize) -> usize {
         self.my.div_ceil(most).max(least / self.mx).min(self.my)
     }

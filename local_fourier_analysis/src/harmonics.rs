@@ -1,4 +1,4 @@
-//! What a cycle makes of the waves that it couples: those that look alike on its coarsest grid.
+//! The effect of a cycle on the waves that it couples: those that alias to one wave of its coarsest grid.
 
 use super::level::{is_low, Left, Level};
 use super::spectral_radius::spectral_radius;
@@ -6,7 +6,7 @@ use contact_normal::operator::fft::Complex;
 
 /// A cycle V(n1, n2) on waves.
 pub(super) struct Cycle<'a> {
-    /// Finest first; the equations are solved exactly on the last.
+    /// The levels, finest first. On the last one the equations are solved exactly.
     pub levels: &'a [Level],
     /// One sweep on each level but the last.
     pub sweeps: &'a [Vec<Left>],
@@ -40,7 +40,7 @@ impl Cycle<'_> {
         spectral_radius(n, columns(n, |error| self.reduce(0, base, error)))
     }
 
-    /// The spectral radius of n1 sweeps on the finest grid and an ideal correction, which removes what the next grid sees.
+    /// The spectral radius of n1 sweeps on the finest grid and an ideal correction, which removes the waves that the next grid resolves.
     pub fn smoothing(&self, base: [usize; 2]) -> f64 {
         let waves = self.waves(0, base);
         let n = waves.side * waves.side;
@@ -62,7 +62,7 @@ impl Cycle<'_> {
         Waves { base, spacing, side: 1 << (self.levels.len() - 1 - l) }
     }
 
-    /// The error that a cycle leaves of `error`, starting on level `l`.
+    /// The error after a cycle that starts on level `l` with `error`.
     fn reduce(&self, l: usize, base: [usize; 2], error: Vec<Complex<f64>>) -> Vec<Complex<f64>> {
         if l + 1 == self.levels.len() {
             return vec![Complex::default(); error.len()];
@@ -71,7 +71,7 @@ impl Cycle<'_> {
         let (coarse, coarse_waves) = (&self.levels[l + 1], self.waves(l + 1, base));
         let mut error = (0..self.pre).fold(error, |error, _| self.smooth(l, waves, error));
 
-        // Mean of the defects over the children, and the coarse equations without an error.
+        // The means of the defects over the children, divided by the coarse symbols.
         let half = coarse_waves.side;
         let alias = |i: usize| i / waves.side % half * half + i % waves.side % half;
         let mean = |[jx, jy]: [usize; 2]| level.means[0][jx] * level.means[1][jy];
@@ -82,7 +82,7 @@ impl Cycle<'_> {
         for (v, [jx, jy]) in correction.iter_mut().zip(coarse_waves.frequencies()) {
             *v /= coarse.values[jy * coarse.n[0] + jx].whole;
         }
-        // The coarse cycle starts at zero: its error is v, and what it leaves of that is missing.
+        // The coarse cycle starts at zero. So its error is v at first; the error after it is what the correction lacks.
         let missing = self.reduce(l + 1, base, correction.clone());
         for (i, j) in waves.frequencies().enumerate() {
             error[i] -= mean(j).conj() * (correction[alias(i)] - missing[alias(i)]);

@@ -14,11 +14,11 @@ pub struct Level {
     pub(super) diagonal: f64,
     /// `[jy][jx]`.
     pub(super) values: Vec<Value>,
-    /// `(1 + e^(i t))/2` for every frequency of a direction: the mean over two neighbours.
+    /// `(1 + e^(i t))/2` at every frequency of a direction: the mean of a wave over two neighbours.
     pub(super) means: [Vec<Complex<f64>>; 2],
 }
 
-/// What one sweep makes of a wave of frequency t: its own amplitude, and that of the wave of frequency t + (pi, pi).
+/// The effect of one sweep on a wave of frequency t: its new amplitude, and that of the wave of frequency t + (pi, pi).
 pub(super) type Left = (Complex<f64>, Complex<f64>);
 
 /// Frequency j of n.
@@ -26,13 +26,13 @@ pub(super) fn frequency(j: usize, n: usize) -> f64 {
     PI * (2 * j + 1) as f64 / n as f64
 }
 
-/// Whether the next coarser grid sees frequency j of n: |t| < pi/2.
+/// Whether the next coarser grid resolves frequency j of n: |t| < pi/2.
 pub(super) fn is_low(j: usize, n: usize) -> bool {
     2 * (2 * j + 1).min(2 * (n - j) - 1) < n
 }
 
 impl Level {
-    /// Elements `dx` by `dy`, n frequencies in each direction.
+    /// The level of elements `dx` by `dy` with n frequencies in each direction.
     pub(super) fn new(dx: f64, dy: f64, n: [usize; 2]) -> Level {
         let symbol = Symbol::new(dx, dy, 1.0);
         let [nx, ny] = n;
@@ -42,7 +42,7 @@ impl Level {
             let column = symbol.row(frequency(jx, nx), (0..ny).map(|jy| frequency(jy, ny)));
             for (jy, value) in column.into_iter().enumerate() {
                 values[jy * nx + jx] = value;
-                // at -t: the conjugate
+                // At -t L has the conjugate value.
                 values[(ny - 1 - jy) * nx + nx - 1 - jx] = Value { before: value.before.conj(), ..value };
             }
         }
@@ -56,7 +56,7 @@ impl Level {
         (jy + ny / 2) % ny * nx + (jx + nx / 2) % nx
     }
 
-    /// One sweep, for every frequency.
+    /// The effect of one sweep at every frequency.
     pub(super) fn sweep(&self, smoother: SmootherKind, omega: f64) -> Vec<Left> {
         let alone = |factor: Complex<f64>| (factor, Complex::default());
         match smoother {
@@ -76,12 +76,12 @@ impl Level {
         }
     }
 
-    /// A red half sweep, then a black one, on the wave of index `own`; `other` is t + (pi, pi). Within a colour the offsets
-    /// kx + ky are even, and the mean of L(t) and L(t + (pi, pi)) is the sum over those.
+    /// The effect of a red half sweep, then a black one, on the wave of index `own`; `other` is t + (pi, pi). Within a colour the offsets kx + ky are
+    /// even, and the mean of L(t) and L(t + (pi, pi)) is the sum over those.
     fn red_black(&self, own: usize, other: usize, omega: f64) -> Left {
         let (value, opposite) = (self.values[own], self.values[other]);
         let inverse = 1.0 / (self.diagonal / omega + 0.5 * (value.before + opposite.before));
-        // Half of the residual is that of the red elements, and an equal wave at the other frequency.
+        // The residual of the red elements has half its amplitude in the wave itself, and half in the wave of the other frequency.
         let red = 0.5 * inverse * value.whole;
         let (mut left, mut crossed) = (1.0 - red, -red);
         let black = 0.5 * inverse * (value.whole * left - opposite.whole * crossed);

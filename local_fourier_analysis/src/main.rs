@@ -1,8 +1,8 @@
-//! Local Fourier analysis beside measurement: smoothing factors, convergence factors of two and three grids, and those of
-//! actual cycles on the paper's ellipse (the set {h <= approach}) and on a full rectangle, from a random error.
+//! Local Fourier analysis compared with measurements: smoothing factors, convergence factors of two and three grids, and factors of actual cycles on
+//! the paper's ellipse (the set {h <= approach}) and on a full rectangle, from a random error.
 //!
-//! `cargo run --release -p local_fourier_analysis [-- FOLDER]`; what the picture is drawn from goes into FOLDER
-//! (target/local_fourier_analysis): `make analysis` does both.
+//! `cargo run --release -p local_fourier_analysis [-- FOLDER]` writes the data of the picture to FOLDER (target/local_fourier_analysis).
+//! `make analysis` also copies them to local_fourier_analysis/results, with three digits.
 
 #[path = "../../examples/paper_tables/case.rs"]
 #[allow(dead_code)] // the paper's runs, of which this example uses table 1
@@ -19,12 +19,12 @@ use local_fourier_analysis::{measured, Analysis};
 /// Sizes of the paper's problem, m x m elements.
 const SIZES: [usize; 3] = [32, 64, 128];
 const CYCLES: [(usize, usize); 3] = [(1, 1), (1, 0), (0, 1)];
-/// Cycles that are measured, and how many at their end make the factor.
+/// The number of measured cycles, and the number of the last ones that determine the factor.
 const MEASURED: (usize, usize) = (60, 20);
 /// The largest coarse grid on which a two-grid cycle is measured: its equations are solved by elimination.
 const LARGEST_DIRECT: usize = 32;
 
-/// What is analysed and measured: a contact area, and its elements across.
+/// A contact area that is analysed and measured, and its elements across.
 struct Area {
     grid: Grid,
     contact: Vec<bool>,
@@ -60,7 +60,7 @@ fn shape(smoother: SmootherKind, relaxation: f64, (pre_sweeps, post_sweeps): (us
     CycleShape { smoother, relaxation, pre_sweeps, post_sweeps, coarsest: 4 }
 }
 
-/// A factor; those far from convergence in powers of ten.
+/// A factor as text, in powers of ten if the cycle diverges fast.
 fn text(factor: f64) -> String {
     if factor < 100.0 {
         format!("{factor:.3}")

@@ -6,14 +6,13 @@ use contact_normal::influence::Coefficients;
 use contact_normal::methods::multigrid::{CycleShape, Multigrid};
 use contact_normal::threads::Threads;
 
-/// Uniform in -1/2..1/2.
+/// A random number, uniform between -1/2 and 1/2.
 pub fn random(state: &mut u64) -> f64 {
     *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
     (*state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
 }
 
-/// The mean reduction of the residual per cycle over the last `of` of `cycles` cycles on A p = 0, after which the slowest
-/// parts of the error rule.
+/// The mean reduction of the residual per cycle over the last `of` of `cycles` cycles on A p = 0. By then the slowest parts of the error dominate.
 pub fn factor(
     grid: &Grid,
     influence: &Coefficients,
@@ -34,7 +33,7 @@ pub fn factor(
         residual.iter_mut().zip(contact).for_each(|(r, &inside)| *r = if inside { -*r } else { 0.0 });
         let norm = residual.iter().map(|r| r * r).sum::<f64>().sqrt();
         reductions.push(norm / before);
-        // of size 1 again: cycles are homogeneous
+        // The norm is 1 again: cycles are homogeneous.
         p.iter_mut().chain(&mut residual).for_each(|value| *value /= norm);
         before = 1.0;
         let correction = multigrid.cycle(0, &residual, contact);

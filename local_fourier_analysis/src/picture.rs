@@ -1,4 +1,4 @@
-//! What picture.py draws, as comma-separated values.
+//! The data of picture.py, as comma-separated values.
 
 use std::fs::File;
 use std::io::{BufWriter, Result, Write};
@@ -31,7 +31,7 @@ pub fn write_sizes(folder: &Path, table: &[[f64; 6]]) -> Result<()> {
     write(folder, "sizes.csv", "across,gauss_seidel,red_black,jacobi,fft,two_grids", table)
 }
 
-/// The symbol, and what a sweep leaves of each wave: square elements, 32 x 32 across.
+/// The symbol, and the amplification of each wave by a sweep: square elements, 32 x 32 across.
 pub fn write_waves(folder: &Path) -> Result<()> {
     let analysis = Analysis::new(1.0, 1.0, [32, 32], 2).expect("a valid analysis");
     let [tx, ty] = analysis.frequencies();

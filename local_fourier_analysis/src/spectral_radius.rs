@@ -2,11 +2,11 @@
 
 use contact_normal::operator::fft::Complex;
 
-/// q = 2^SQUARINGS: |M^q|^(1/q) is above the spectral radius by a factor of at most k^(1/q), k a condition number of the
-/// eigenvectors: 1e-5 for k = 1e4, and less than that for defective eigenvalues of a 256 x 256 matrix too.
+/// q = 2^SQUARINGS. |M^q|^(1/q) exceeds the spectral radius by a factor of at most k^(1/q), with k a condition number of the eigenvectors: 1e-5 for k
+/// = 1e4, and less for defective eigenvalues of a 256 x 256 matrix.
 const SQUARINGS: i32 = 20;
 
-/// Of an n x n matrix, its columns one after the other.
+/// The spectral radius of an n x n matrix, given column by column.
 pub(super) fn spectral_radius(n: usize, mut matrix: Vec<Complex<f64>>) -> f64 {
     let mut logarithm = 0.0;
     let mut square = matrix.clone();
@@ -38,7 +38,7 @@ mod tests {
 
     #[test]
     fn a_spectral_radius_is_the_largest_modulus_of_an_eigenvalue() {
-        // Rotation by 0.7, scaled by 0.3: eigenvalues 0.3 e^(+-0.7 i). Rounding of 20 squarings, each halved by the next.
+        // Rotation by 0.7, scaled by 0.3: eigenvalues 0.3 e^(+-0.7 i). The rounding errors are those of 20 squarings, each halved by the next.
         let (s, c) = 0.7f64.sin_cos();
         assert!((of(2, &[0.3 * c, 0.3 * s, -0.3 * s, 0.3 * c]) - 0.3).abs() <= 1e-6 * 0.3);
         // Defective, eigenvalue 0.5 twice: |M^q|^(1/q) <= 0.5 (1 + 2 q)^(1/q), 1e-5 more.

@@ -5,8 +5,8 @@
 //! L(t) = the same sum over k = (kx, ky) with ky > 0, or ky = 0 and kx > 0     what a lexicographic sweep has updated
 //! ```
 //!
-//! The coefficients fall off like 1/|k|: term by term the sums hardly converge. In closed form, with c = compliance/pi: the
-//! Fourier transform of 1/r along x is 2 K0(w |y|), so that by Poisson's summation formula the row at distance ky is
+//! The coefficients fall off like 1/|k|, so that sums of them hardly converge. In closed form, with c = compliance/pi: the Fourier transform of 1/r
+//! along x is 2 K0(w |y|). By Poisson's summation formula the row at distance ky is
 //!
 //! ```text
 //! R(ky) = sum over kx of c(kx, ky) e^(-i kx tx) = 2 c sum over m of sinc_m * integral of K0(w_m |y|) over the element in y
@@ -21,10 +21,9 @@
 //! R(0) = 2 pi c sum over m of sinc_m/w_m - 4 c sum over m, integral over s of sinc_m/(w_m cosh s) e^(-x/2)
 //! ```
 //!
-//! Everything falls off exponentially in m and doubly so in s, where the trapezoidal rule of step H has an error of
-//! e^(-pi^2/H) (the nearest poles are at Im s = pi/2). Only the first sum of R(0) is slow; it alternates, and is accelerated.
-//! The part of L in the own row has the real part (R(0) - c(0,0))/2, and an imaginary part of which the slow terms are
-//! known sums. All of it is accurate to about 1e-13 of c(0, 0).
+//! All terms fall off exponentially in m and doubly so in s, where the trapezoidal rule of step H has an error of e^(-pi^2/H) (the nearest poles are
+//! at Im s = pi/2). Only the first sum of R(0) converges slowly. It alternates, and is accelerated. The part of L in the own row has the real part
+//! (R(0) - c(0,0))/2. The slow terms of its imaginary part are known sums. The error is about 1e-13 of c(0, 0).
 
 use std::f64::consts::PI;
 
@@ -34,11 +33,11 @@ use contact_normal::operator::fft::Complex;
 /// Step of the trapezoidal rule in s: e^(-pi^2/H) = 7e-18.
 const H: f64 = 0.25;
 
-/// e^(-x/2) is left out from here on: 4e-18.
+/// Terms with e^(-x/2) are dropped from here on: 4e-18.
 const NEGLIGIBLE: f64 = 80.0;
 
-/// Coefficients of the own row that are summed one by one, for elements no longer in y than in x: what is left out is a
-/// sum of terms below 0.1/k^5, 3e-14.
+/// Coefficients of the own row that are summed one by one, for elements no longer in y than in x. The remainder is a sum of terms below 0.1/k^5,
+/// 3e-14.
 const OWN_ROW: usize = 1000;
 
 /// The symbols of the half-space's coefficients on elements `dx` by `dy`.
@@ -65,7 +64,7 @@ pub struct Value {
 }
 
 impl Symbol {
-    /// For elements `dx` by `dy`; `compliance` is `1/E*`.
+    /// The symbols of elements `dx` by `dy`; `compliance` is `1/E*`.
     pub fn new(dx: f64, dy: f64, compliance: f64) -> Symbol {
         let c = compliance / PI;
         let ratio = dy / dx;
@@ -88,7 +87,7 @@ impl Symbol {
     /// The symbols at `(tx, ty)` for every ty of a list. tx and ty are frequencies per element, any but multiples of 2 pi.
     pub fn row(&self, tx: f64, ty: impl Iterator<Item = f64>) -> Vec<Value> {
         let folded = tx.rem_euclid(2.0 * PI);
-        // R is even, the sines are odd
+        // R is even and the sines are odd.
         let (t, sign) = if folded <= PI { (folded, 1.0) } else { (2.0 * PI - folded, -1.0) };
         let (terms, row_zero) = self.terms(t);
         let own_row = Complex::new(0.5 * (row_zero - self.diagonal), -sign * self.sines(t));
@@ -135,7 +134,7 @@ impl Symbol {
 
     /// Sum over k >= 1 of c(k, 0) sin(k t), 0 < t < 2 pi.
     fn sines(&self, t: f64) -> f64 {
-        // of sin(k t)/k and sin(k t)/k^3
+        // The sums of sin(k t)/k and of sin(k t)/k^3.
         let (first, third) = (0.5 * (PI - t), t * t * t / 12.0 - 0.25 * PI * t * t + PI * PI * t / 6.0);
         let rest: f64 = (1..).map(f64::from).zip(&self.own_row).map(|(k, value)| value * (k * t).sin()).sum();
         self.alpha * first + self.beta * third + rest

@@ -158,7 +158,7 @@ impl<'c> Search<'_, '_, 'c> {
         for k in (1..=STEPS_BELOW).filter(|_| step > 0.0) {
             self.levels.iter_mut().for_each(|level| level.now.p.border = [from - f64::from(k) * step]);
             let ended = nested::solve(self.levels, each, (Start::Auto, self.make), self.monitor)?;
-            // The finest grid counts anew.
+            // The count of the finest grid begins anew in each solve.
             *spent += self.monitor.count.cycles;
             if ended.is_in_contact() || self.monitor.is_cancelled() {
                 return Ok(ended.is_in_contact());
@@ -179,7 +179,7 @@ impl<'c> Search<'_, '_, 'c> {
     /// has the state of the least force.
     pub fn down_all_ways(&mut self, goal: Goal, is_state: bool) -> Result<Walk> {
         let (mut least, mut met, mut most) = (None::<Place>, None, goal.most);
-        // The last state of a lost way, or that of no load; the end without a least force.
+        // `before`: the last state of a lost way, or the state without a load. `without`: the end if no least force was found.
         let (mut before, mut without) = (None, Walk::Lost);
         if is_state {
             met = Some(Met::of(&self.levels[0]));

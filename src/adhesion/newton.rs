@@ -4,13 +4,13 @@
 //! in C  e = 0,      outside  p = -sigma(e)
 //! ```
 //!
-//! Far from the solution the exponential law is linearised at the mean of e and of the distance whose attraction is -p: at e alone the tangent
-//! of a steep law overshoots. There is no line search: if steps fail, descent follows ([`robust`](super::robust)).
+//! Far from the solution bold and firm steps linearise the exponential law at the mean of e and of the distance whose attraction is -p: at e alone
+//! the tangent of a steep law overshoots. There is no line search: if steps fail, descent follows ([`robust`](super::robust)).
 //!
-//! A cautious step uses a part of the slope of the attraction, as long as elements enter or leave the contact, and after a full step failed. It
-//! lies between a Newton step and a step of descent, which uses no slope. Such steps seldom jump from one state of an element to another.
-//! Example: a sphere with nearly unstable elements (Tabor's parameter 3, 64 x 64 elements, kappa 0.92) is drawn off in steps of 0.1. Bold steps
-//! fail at 18 of 20 of these, cautious ones at 9, with half the number of steps.
+//! A cautious step uses a part of the slope of the attraction in three cases: far from the solution, while elements enter or leave the contact, and
+//! after a full step has failed. It lies between a Newton step and a step of descent, which uses no slope. Such steps seldom jump from one state of
+//! an element to another. Example: a sphere with nearly unstable elements (Tabor's parameter 3, 64 x 64 elements, kappa 0.92) is pulled off in steps
+//! of 0.1. Bold steps fail at 18 of 20 of these, cautious ones at 9, with half the number of steps.
 //!
 //! With two periods waves do not change the mean distance. As long as the approach is below it, not all elements touch: if all touch by the
 //! natural map, pressures are lowered until some leave.
@@ -30,8 +30,8 @@ use crate::progress::Monitor;
 
 /// Most steps.
 const MOST_STEPS: u64 = 20;
-/// Above this residual a step linearises at the mean distance and solves its linear system to `FAR_TOLERANCE`, below to
-/// `CLOSE_TOLERANCE`.
+/// Above this residual a step is far from the solution. Its linear system is solved to `FAR_TOLERANCE`, that of a step near the solution to
+/// `CLOSE_TOLERANCE`. Firm steps have `FIRM_TOLERANCES` for both.
 const CLOSE_RESIDUAL: f64 = 2e-2;
 const FAR_TOLERANCE: f64 = 0.2;
 const CLOSE_TOLERANCE: f64 = 0.1;
@@ -77,7 +77,7 @@ pub enum Pace {
     Bold,
     /// With a part of it, until the contact area is constant.
     Cautious,
-    /// As bold ones, but their linear systems are solved firmly, and there are more of them.
+    /// As bold ones, but with linear systems solved to smaller tolerances, and more steps.
     Firm,
 }
 

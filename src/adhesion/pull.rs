@@ -20,7 +20,7 @@ const LONGEST_STEP_TO_MEET: f64 = 0.3;
 /// The least length, relative to the range. Bodies in contact without attraction have a length that falls with their force, and a way in parts of
 /// that length has no end.
 const LEAST_LENGTH: f64 = 1e-3;
-/// A step of surfaces locked in contact, relative to the range.
+/// The first step from surfaces locked in contact or apart, relative to the range.
 const LOCKED_STEP: f64 = 0.1;
 /// Most steps.
 const MOST_STEPS: u32 = 400;
@@ -35,7 +35,7 @@ const NEARLY_LEAST_BOUNDS: (f64, f64) = (0.005, 0.02);
 const STARTS_ABOVE: [f64; 4] = [0.0, 0.25, 0.5, 1.0];
 /// Steps from the minimum to both sides, which are halved: the last elements of a contact part at a cusp.
 const LAST_STEPS: u32 = 5;
-/// Difference of the sums of p, relative to the whole attraction or repulsion, at which two ways meet.
+/// Difference of the sums of p, relative to the sum of |p|, at which two ways meet.
 const MEETING_DIFFERENCE: f64 = 1e-3;
 /// Contact pressures of parting elements are below this share of sigma(0).
 const PARTING_PRESSURE: f64 = 1e-9;

@@ -31,8 +31,7 @@ pub struct Report {
     pub stability: Option<f64>,
     /// Whether the bodies have snapped: the state before could not be followed, and more than a quarter of the contact differs.
     pub jumped: bool,
-    /// Whether the cycles ended before a way down reached the prescribed pull. The state is then that of the strongest
-    /// pull on the ways.
+    /// Whether no cycle was left before a state with the prescribed pull was found. The state is then that of the strongest pull found.
     pub is_short: bool,
 }
 

@@ -37,7 +37,8 @@ impl Ended {
     }
 }
 
-/// The energy that a stable equilibrium minimises, per area of an element: elastic energy less work of adhesion, less the work of a given force.
+/// The energy that a stable equilibrium minimises, per area of an element: elastic energy less the remaining work of the attraction, less the work of
+/// a given force.
 pub fn energy(level: &Level, wanted: Option<f64>) -> f64 {
     let [elastic, adhesive] = energies(&level.surface, &level.now, &level.problem.threads);
     elastic - adhesive - wanted.map_or(0.0, |wanted| wanted * level.now.approach())

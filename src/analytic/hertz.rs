@@ -40,7 +40,7 @@ pub fn hertz(curvature_x: f64, curvature_y: f64, approach: f64, compliance: f64)
     found.map_or_else(|| out_of_range(curvature_x, curvature_y, ("approach", approach)), Ok)
 }
 
-/// The same for a prescribed force. `F` is proportional to the approach to the power 3/2.
+/// Hertz contact for a prescribed force `F`, which is proportional to the approach to the power 3/2.
 pub fn hertz_by_force(curvature_x: f64, curvature_y: f64, force: f64, compliance: f64) -> Result<Hertz> {
     check(curvature_x, curvature_y, ("force", force), compliance)?;
     let unit = ellipse(curvature_x, curvature_y, 1.0, compliance);

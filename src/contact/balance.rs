@@ -10,7 +10,7 @@ use crate::scene::Load;
 use crate::sums::{Sums, ROUND_OFF};
 use crate::threads::Threads;
 
-/// Most rounds of [`State::carry_force`] with limits. Each round but the last brings at least one element to its limit, most bring many.
+/// Most rounds of [`State::carry_force`] with limits. Nearly every round but the last brings elements to their limit, mostly many.
 const ROUNDS: u32 = 50;
 
 /// Pressures cancel if |sum of p| is below this part of the sum of |p|: p then gets the force by an added pressure, not by a factor. Contact

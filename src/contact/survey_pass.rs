@@ -107,7 +107,7 @@ fn add(state: &State, elements: Range<usize>, sums: &mut Parts) -> u64 {
         hh[i] += f64::from_bits((distance * distance).to_bits() & inside);
         pressures[i] += p[i];
         squares[i] += p[i] * p[i];
-        // Of elements at their limit, which press and are not in C, a gap counts and a penetration does not. The comparison is false for NaN.
+        // An element at its limit presses and is not in C: a gap of it counts, a penetration does not. The comparison is false for NaN.
         let gap = if limited && !contact[i] && e < 0.0 { 0.0 } else { e.abs() };
         gaps[i] += f64::from_bits((p[i] * gap).to_bits() & presses);
         energy[i] += f64::from_bits((p[i] * u[i].abs()).to_bits() & presses);

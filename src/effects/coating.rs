@@ -12,8 +12,8 @@ use crate::scene::{Bodies, Plain};
 
 /// Bound on the shear modulus of a coating over that of its substrate.
 const STIFFEST: f64 = 1e4;
-/// An incompressible layer must be at least THINNEST elements thick if its modulus is below this share of the
-/// substrate's, as on a rigid body. It has no other compliance.
+/// Below this ratio of the layer's modulus to the substrate's, as on a rigid body, an almost incompressible layer must be at least THINNEST elements
+/// thick. Shear is its only compliance.
 const RIGID_RATIO: f64 = 1e-4;
 const THINNEST: f64 = 0.125;
 /// Thickness, relative to an element, below which there is no layer.

@@ -27,7 +27,7 @@ pub enum Value<'a> {
 /// The usual reason why an effect excludes another.
 pub(super) const NOT_TOGETHER: &str = "this version does not solve them together";
 
-/// An effect. Its [`Properties`] have no default; its actions have one: nothing.
+/// An effect. The [`Properties`] and the methods up to [`stresses`](Effect::stresses) have no default. The other methods change nothing by default.
 pub trait Effect {
     /// The name in a scene.
     fn name(&self) -> &'static str;
@@ -41,11 +41,11 @@ pub trait Effect {
     /// Calls `tell` with each value that a set-up depends on, and its name. All other values may differ in each solve.
     fn values(&self, tell: &mut dyn FnMut(&'static str, Value<'_>));
 
-    /// With two periods a uniform pressure does not move the bodies. Whether surfaces can approach beyond their mean distance all the same: the
-    /// pressure compresses a layer, or pressures are limited.
+    /// Whether surfaces can approach beyond their mean distance with two periods: a uniform pressure compresses a layer, or pressures are limited.
+    /// Otherwise a uniform pressure does not move the bodies.
     fn gives_way(&self, scene: &Plain<'_>) -> bool;
 
-    /// The stresses below the surface of body 1 (`b` is 0) or 2 with it.
+    /// The stresses below the surface of body 1 (`b` is 0) or 2 with this effect.
     fn stresses(&self, b: usize, scene: &Plain<'_>) -> Stresses<'_>;
 
     /// The reason in the refusal of another effect that it excludes.
@@ -53,7 +53,7 @@ pub trait Effect {
         NOT_TOGETHER
     }
 
-    /// Whether the effect is in effect in a scene.
+    /// Whether the values change the scene, or are invalid: then the scene refuses them. Otherwise the scene counts as one without the effect.
     fn is_one(&self, _scene: &Plain<'_>) -> bool {
         true
     }

@@ -1,7 +1,7 @@
 //! Effect: friction, `|q| <= g = mu p`: tangential tractions from the motion of the bodies, or from the tangential forces.
 //!
-//! See [`friction`](crate::friction) for the problem that is solved. The normal problem is the same with and without it where the bodies
-//! are alike; it is solved first.
+//! See [`friction`](crate::friction) for the problem that is solved. For like bodies the normal problem is the same with and without friction. It is
+//! solved first.
 
 use super::each::Each;
 use super::friction_law::{Branch, FrictionLaw, PlasticLayer};

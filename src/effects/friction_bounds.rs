@@ -91,7 +91,7 @@ pub(super) fn check_bodies_of_law(friction: &Friction<'_>, bodies: &Bodies) -> R
     Ok(())
 }
 
-/// A limit may have fallen to a thousandth of what it was.
+/// Refuses an invalid yield limit before the step, which may have fallen to a thousandth of that of fresh material.
 fn kept_limit(name: &str, limit: f64) -> Result<()> {
     let rule = "it must be positive, from 1e-143 to 1e140: choose other units";
     require((1e-3 / LARGEST..=LARGEST).contains(&limit), name, limit, rule)

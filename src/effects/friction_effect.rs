@@ -143,7 +143,7 @@ fn check_step(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
     }
 }
 
-/// Refuses slips, weights and tractions that are not finite, or whose squares leave the range of double precision.
+/// Refuses slips and tractions that are not finite, or whose squares leave the range of double precision, and weights outside [-1, 1].
 fn check_range(friction: &Friction<'_>, grid: &Grid) -> Result<()> {
     let small = |name: &str, value: f64| {
         finite(name, value)?;

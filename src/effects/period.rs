@@ -51,8 +51,8 @@ impl Effect for Period {
         Ok(())
     }
 
-    // With two periods the mean displacement is zero. So the mean deformed distance is mean(h) - approach, whatever the force. If it is zero,
-    // contact is full and any force satisfies the conditions; it cannot be negative. Such approaches are refused.
+    // With two periods the mean displacement is zero. So the mean deformed distance is mean(h) - approach, whatever the force. If it is zero, contact
+    // is full and any force satisfies the conditions; if it is negative, no pressures do. Such approaches are refused.
     fn check_area(&self, scene: &Plain<'_>, others: &[Option<&dyn Effect>], given: Option<&[bool]>) -> Result<()> {
         let (Load::Approach(approach), true, true) = (scene.load, self.x, self.y) else { return Ok(()) };
         if others.iter().flatten().any(|other| other.gives_way(scene)) {

@@ -60,9 +60,9 @@ pub struct Properties<'a> {
     pub without_multigrid: Option<&'static str>,
     /// Whether the effect works on a given contact area.
     pub with_given_area: bool,
-    /// Why the effect stands for one grid only, so that refinement to an accuracy is refused.
+    /// Why the effect stands for one grid only, so that solves on several grids are refused.
     pub one_grid: Option<&'static str>,
-    /// The caller's coefficients, in place of the bodies'. Later scenes of a solver need not name them again.
+    /// The layout of the caller's coefficients, if they replace those of the bodies. Later scenes of a solver need not name them again.
     pub own_coefficients: Option<Layout>,
     /// The directions in which the effect makes the scene repeat.
     pub repeats: (bool, bool),

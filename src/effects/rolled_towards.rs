@@ -69,8 +69,8 @@ pub(super) fn check_tangential(friction: &Friction<'_>, grid: &Grid) -> Result<(
     Ok(())
 }
 
-/// Refuses coefficients of pressures of another direction of rolling. Of tables per loaded row those of a row on itself are compared, which are even
-/// if the operator is symmetric.
+/// Refuses coefficients of pressures of another direction of rolling. For tables per loaded row the coefficients of each row on itself are compared.
+/// They are even if the operator is symmetric.
 pub(super) fn check_pressures(friction: &Friction<'_>, grid: &Grid, coefficients: &Coefficients) -> Result<()> {
     if friction.motion == Motion::Shift {
         return Ok(());

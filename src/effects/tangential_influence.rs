@@ -12,10 +12,9 @@ pub type TangentialInfluence<'a> = TangentialTables<&'a [f64]>;
 /// A solver's copy of them.
 pub type KeptInfluence = TangentialTables<Vec<f64>>;
 
-/// Tangential influence coefficients: three tables over offsets `-cx..cx-1` by `-cy..cy-1`, x fastest, in
-/// the layout of the normal table. Axx and Ayy must be even in both directions, Axy odd in both. In steady rolling they
-/// need this symmetry in y only, because relaxing bodies are softer behind. With `by_row` there is a table for each
-/// loaded row (`tangential_rows.rs`).
+/// Tangential influence coefficients: three tables over offsets `-cx..cx-1` by `-cy..cy-1`, x fastest, in the layout of the normal table. Axx and Ayy
+/// must be even in both directions, Axy odd in both. In steady rolling of like bodies they need this symmetry in y only, because relaxing bodies are
+/// softer behind. With `by_row` there is a table for each loaded row (`tangential_rows.rs`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TangentialTables<A> {
     /// Columns of the tables' grid.

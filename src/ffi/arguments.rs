@@ -1,4 +1,4 @@
-//! Arguments of the caller's: counts, arrays, and the memory that a call reads or writes.
+//! The caller's arguments: counts, arrays, and the memory that a call reads or writes.
 
 use std::cell::RefCell;
 use std::ops::Range;
@@ -21,7 +21,7 @@ pub(super) fn not_negative(name: &str, value: i32) -> Result<usize, Refusal> {
     usize::try_from(value).map_err(|_| Refusal::invalid(format!("{name} is {value}; it must not be negative")))
 }
 
-/// A member that is kept for later versions.
+/// Refuses another value than 0 for a member that is reserved for later versions.
 pub(super) fn reserved(name: &str, value: i32) -> Result<(), Refusal> {
     match value {
         0 => Ok(()),
@@ -29,7 +29,7 @@ pub(super) fn reserved(name: &str, value: i32) -> Result<(), Refusal> {
     }
 }
 
-/// A member that is 0 or 1.
+/// Translates a member that is 0 or 1.
 pub(super) fn switch(name: &str, value: i32) -> Result<bool, Refusal> {
     match value {
         0 => Ok(false),
@@ -56,7 +56,7 @@ pub(super) unsafe fn required<'a, T>(name: &str, values: *const T, n: usize) -> 
     unsafe { optional(values, n) }.ok_or_else(|| Refusal::null(name))
 }
 
-/// Copies values into part k of the caller's array, whose parts are as long as they. NULL: it is not wanted.
+/// Copies values into part k of the caller's array, whose parts have the length of `values`. NULL: not wanted.
 pub(super) unsafe fn copy_to<A>(values: &[A], to: *mut f64, k: usize) {
     if !to.is_null() {
         // SAFETY: not null: room for the parts, by the conventions of the ABI, and nothing overlaps (`Regions`).
@@ -71,7 +71,7 @@ pub(super) enum Element {
     Int32,
 }
 
-/// A type that can stand in an array that is read.
+/// The element types of arrays that are read.
 pub(super) trait Plain {
     const ELEMENT: Element;
 }
@@ -88,16 +88,16 @@ impl Plain for i32 {
     const ELEMENT: Element = Element::Int32;
 }
 
-/// Memory of the caller's.
+/// A part of the caller's memory.
 #[derive(Clone, Copy)]
 pub(super) struct Region {
     start: usize,
     end: usize,
     pub name: &'static str,
-    /// Of a batch: counted from 0.
+    /// The problem of a batch, counted from 0.
     problem: Option<usize>,
     is_output: bool,
-    /// The copy for a call; not of structs, and not of outputs that are only written.
+    /// Whether the call reads the array. False for structs, and for outputs that are only written.
     pub is_read: bool,
     pub element: Element,
 }
@@ -113,7 +113,7 @@ thread_local! {
     static ALLOWED: RefCell<Option<Vec<Range<usize>>>> = const { RefCell::new(None) };
 }
 
-/// Makes calls that are refused before they read or write beyond these ranges: for calls replayed from a file.
+/// Runs `call`. In it, calls of the library are refused before they read or write beyond these ranges. This is for calls replayed from a file.
 pub(super) fn within<R>(ranges: Vec<Range<usize>>, call: impl FnOnce() -> R) -> R {
     let outer = ALLOWED.replace(Some(ranges));
     let result = call();
@@ -129,18 +129,18 @@ pub(super) struct Regions {
 }
 
 impl Regions {
-    /// Forgets all, and keeps the memory.
+    /// Removes all regions, and keeps the memory of the list.
     pub fn clear(&mut self) {
         self.list.clear();
         self.problem = None;
     }
 
-    /// All that is added from here on belongs to this problem of a batch.
+    /// The regions added from now on belong to this problem of a batch.
     pub fn enter_problem(&mut self, problem: usize) {
         self.problem = Some(problem);
     }
 
-    /// Drops the regions of the last problem. It is refused, so nothing of it is read or written.
+    /// Removes the regions of the last problem. The problem is refused, so that its memory is neither read nor written.
     pub fn leave_out_problem(&mut self) {
         while self.list.last().is_some_and(|region| region.problem.is_some() && region.problem == self.problem) {
             self.list.pop();
@@ -155,14 +155,14 @@ impl Regions {
         Ok(())
     }
 
-    /// The output that begins here is read, too.
+    /// Marks the output that begins here as read.
     pub fn read_too<T: Plain>(&mut self, start: *const T) {
         for region in self.list.iter_mut().filter(|region| region.start == start as usize) {
             (region.is_read, region.element) = (true, T::ELEMENT);
         }
     }
 
-    /// The argument that begins here; of several the longest.
+    /// The longest of the arguments that begin here.
     pub fn at(&self, start: usize) -> Option<&Region> {
         self.list.iter().filter(|region| region.start == start).max_by_key(|region| region.end)
     }
@@ -247,7 +247,7 @@ impl Regions {
     }
 }
 
-/// Refuses arrays that do not begin at a multiple of what an element needs: elements of packed structs, or of a record in a file in memory.
+/// Refuses arrays whose start is not aligned for their elements, as in packed structs or in records of a file in memory.
 pub(super) fn aligned<T>(name: &str, start: *const T, count: usize) -> Result<(), Refusal> {
     if count == 0 || start.is_aligned() {
         return Ok(());
@@ -266,7 +266,7 @@ fn overlap(one: &Region, other: &Region) -> Refusal {
 
 /// An effect, as the caller's header has it.
 pub(super) trait GivenEffect: Versioned {
-    /// Adds the arrays that are read; none.
+    /// Adds the arrays that are read. By default there are none.
     fn add_to(&self, _regions: &mut Regions, _grid: &Grid) -> Result<(), Refusal> {
         Ok(())
     }

@@ -117,7 +117,7 @@ impl Batch {
         }
     }
 
-    /// Adds all that is read and written: several threads do so at a time. A problem that is refused for itself does neither.
+    /// Adds all memory that is read and written, because several threads work at a time. A refused problem reads and writes nothing.
     fn add_to(&mut self, regions: &mut Regions, n: usize) -> Result<(), Refusal> {
         regions.output("statuses", self.statuses, self.outputs.len())?;
         for i in 0..self.outputs.len() {
@@ -183,7 +183,7 @@ impl Batch {
     }
 }
 
-/// At most so many problems have a line in the message of a batch.
+/// The most problems with a line in the message of a batch.
 const LINES: usize = 1000;
 
 /// The problems that are not OK: those that were refused before those that stopped early, then by number.
@@ -205,8 +205,8 @@ impl NotOk {
         }
     }
 
-    /// The return value of the call: the status of the first, and a line for each: "problem 3: ...", where `each` is a problem; the warnings if
-    /// all are OK.
+    /// The conclusion of the call. Its status is that of the first problem. Its message has a line for each problem ("problem 3: ..."), where `each`
+    /// is the word for a problem. If all are OK, it has the warnings.
     pub fn outcome(self, each: &str) -> Conclusion {
         let status = self.first.first().map_or(CONTACT_NORMAL_OK, |(_, outcome)| outcome.status);
         let line = |(i, outcome): &(usize, Conclusion)| format!("{each} {i}: {}", outcome.message);

@@ -22,7 +22,7 @@ impl From<Refusal> for Conclusion {
 }
 
 impl Conclusion {
-    /// Of an outcome; what is not solved has a message.
+    /// The conclusion of an outcome. Unless it is `Converged`, it has a message.
     pub fn of(outcome: Outcome, message: impl FnOnce() -> String) -> Conclusion {
         let message = if outcome == Outcome::Converged { String::new() } else { message() };
         Conclusion { status: outcome.into(), message, ..Conclusion::default() }

@@ -121,7 +121,7 @@ impl contact_normal_patches {
         Ok(Patches { count, patch, factors })
     }
 
-    /// Factors that are read: of too many patches none, whose count the core refuses.
+    /// The number of factors that are read: none for too many patches, whose count the core refuses.
     fn factor_count(&self) -> usize {
         usize::try_from(self.count).ok().filter(|count| *count <= MOST_PATCHES).map_or(0, |count| count * count)
     }

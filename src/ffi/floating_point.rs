@@ -10,7 +10,7 @@ thread_local! {
 
 /// Restores the host's environment when dropped.
 pub struct DefaultEnvironment {
-    /// That of the call in whose callback this one is made.
+    /// The host's environment of the outer call, if this call is made in a callback.
     outer: Option<Register>,
 }
 

@@ -65,10 +65,10 @@ pub(super) fn status_of(ended: Result<contact_normal_status, Refusal>) -> contac
     status.unwrap_or(CONTACT_NORMAL_INTERNAL)
 }
 
-/// The library prints nothing, so a panic that the guard will catch must not be announced on stderr. Panics elsewhere in the
-/// process go to whatever hook was there.
+/// The library prints nothing, so that a panic that the guard will catch must not be announced on stderr. The previous hook handles panics elsewhere
+/// in the process.
 fn silence_our_panics() {
-    // Nobody waits for the thread that does it: a process that is forked meanwhile does not have that thread.
+    // No thread waits for the one that sets the hook: a process that is forked meanwhile does not have that thread.
     static IS_DONE: AtomicBool = AtomicBool::new(false);
     // The hook cannot be changed while this thread unwinds; the next call changes it.
     if std::thread::panicking() || IS_DONE.load(Ordering::Relaxed) || IS_DONE.swap(true, Ordering::Relaxed) {

@@ -56,7 +56,7 @@ pub(super) fn table_size(cx: usize, cy: usize) -> Result<usize, Refusal> {
 }
 
 impl contact_normal_influence {
-    /// Copies what the grid needs of the caller's table.
+    /// Copies the part of the caller's table that the grid needs.
     pub(super) unsafe fn translate(&self, grid: &Grid) -> Result<Table, Refusal> {
         let (cx, cy, size) = self.size("influence")?;
         // SAFETY: NULL or 2 cy by 2 cx values, by the conventions of the ABI.
@@ -78,7 +78,7 @@ impl GivenEffect for contact_normal_influence {
 }
 
 impl contact_normal_row_tables {
-    /// Copies what the grid needs of the caller's tables.
+    /// Copies the part of the caller's tables that the grid needs.
     pub(super) unsafe fn translate(&self, grid: &Grid) -> Result<RowTables, Refusal> {
         let (cx, rows, size) = self.size(grid)?;
         // SAFETY: NULL or rows by rows by 2 cx values, by the conventions of the ABI.
@@ -91,7 +91,7 @@ impl contact_normal_row_tables {
         self.size_on(Some(grid), "row_tables")
     }
 
-    /// The same; `name` is what messages call the tables. Without a grid all of them.
+    /// cx, rows, and the number of values that are read, with the `name` of the tables in messages. Without a grid all are read.
     pub(super) fn size_on(&self, grid: Option<&Grid>, name: &str) -> Result<(usize, usize, usize), Refusal> {
         let (cx, rows) = (count(&format!("{name}->cx"), self.cx)?, count(&format!("{name}->rows"), self.rows)?);
         // A table for another grid is refused, so that its coefficients are not read.

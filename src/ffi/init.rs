@@ -77,7 +77,7 @@ pub unsafe extern "C" fn contact_normal_init(kind: i32, to: *mut c_void, size: i
     });
 }
 
-/// The structs of the ABI: which `kind` is which.
+/// The structs of the ABI, each with its `kind`.
 macro_rules! kinds {
     ($($kind:ident => $name:ident),+ $(,)?) => {
         unsafe fn init_kind(kind: i32, to: *mut c_void, size: i64) {

@@ -5,7 +5,7 @@ use super::status::{contact_normal_status, Refusal, CONTACT_NORMAL_OK};
 use crate::{memory, threads};
 use toeplitz::plan;
 
-/// The plans of transforms have this part of the kept memory.
+/// The kept memory over its part for the plans of transforms.
 const OF_PLANS: usize = 8;
 
 /// Returns to the system all that the library keeps for later calls: the memory of solves that are over, and the threads that no solver holds.

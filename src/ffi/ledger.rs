@@ -70,7 +70,7 @@ macro_rules! copy {
 }
 pub(super) use copy;
 
-/// Sets what rows of the ledger and reports both have of the result.
+/// Sets the results that rows of the ledger and reports have in common.
 macro_rules! set_measures {
     ($to:ident, $measures:expr) => {
         copy!($measures.certificate => $to: residual);
@@ -79,7 +79,7 @@ macro_rules! set_measures {
 }
 pub(super) use set_measures;
 
-/// And of its errors.
+/// Sets the errors that rows of the ledger and reports have in common.
 macro_rules! set_errors {
     ($to:ident, $error:expr) => {
         copy!($error => $to: untrusted);

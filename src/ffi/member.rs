@@ -12,7 +12,7 @@ pub(super) enum Kind {
     Int32,
     Int64,
     Double,
-    /// A callback, a text or anything: only the host knows what it points to.
+    /// A pointer to a callback, a text or data that only the host can interpret.
     OfTheHost,
     /// It points to numbers.
     Array,
@@ -23,7 +23,7 @@ pub(super) enum Kind {
 /// The types that members have in Rust.
 pub(super) trait Typed {
     const KIND: Kind;
-    /// So many values of an array; none: it is no array.
+    /// The number of values of an array; none: it is no array.
     const COUNT: Option<usize> = None;
 }
 

@@ -146,7 +146,7 @@ versioned! {
 }
 
 impl contact_normal_options {
-    /// The part of the options of a set-up that the handle goes on using; the cycle is not there.
+    /// The options of a set-up that the handle uses later: precision and threads.
     pub(super) fn of_set_up(options: &Options) -> contact_normal_options {
         let precision = match options.precision {
             Precision::Auto => CONTACT_NORMAL_PRECISION_AUTO,
@@ -175,7 +175,7 @@ impl From<&CycleShape> for contact_normal_cycle {
     }
 }
 
-/// Options, and as the caller gave them: with the callback and its user pointer.
+/// Translated options, with the struct given by the caller.
 pub(super) struct Translated {
     pub given: contact_normal_options,
     cycle: Option<contact_normal_cycle>,
@@ -188,7 +188,7 @@ pub(super) struct Translated {
 unsafe impl Sync for Translated {}
 
 impl Translated {
-    /// Adds the struct, which stands at `at`, NULL or not, and its cycle.
+    /// Adds the struct at `at`, which may be NULL, and its cycle.
     pub fn add_to(&self, regions: &mut Regions, at: *const contact_normal_options) -> Result<(), Refusal> {
         regions.input_struct(at, &self.given)?;
         regions.input("options->stop", self.given.stop, 1)?;

@@ -1,4 +1,4 @@
-//! `contact_normal_cost_of_accuracy`: what accuracies cost, before they are paid for.
+//! `contact_normal_cost_of_accuracy`: the predicted cost of accuracies.
 
 use std::cell::Cell;
 
@@ -194,7 +194,7 @@ pub unsafe extern "C" fn contact_normal_cost_of_accuracy(
     unsafe { recorded("contact_normal_cost_of_accuracy", options, arguments, predict) }
 }
 
-/// Predicts, and hands over each row. The message of a cancelled list tells whether the surface callback cancelled.
+/// Predicts the rows and passes them on one by one. The message of a cancelled list tells whether the surface callback cancelled.
 fn predict_watched(
     scene: &Scene<'_>,
     translated: &Translated,

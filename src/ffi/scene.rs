@@ -75,7 +75,7 @@ pub struct contact_normal_scene {
 
 versioned! { contact_normal_scene, contact_normal_scene_init, 168, approach: f64::NAN, force: f64::NAN }
 
-/// The load that the constants and values of the boundary mean.
+/// The load from the constants and values of the C ABI.
 pub(super) fn load_of(load: i32, approach: f64, force: f64) -> Result<Load, Refusal> {
     match load {
         CONTACT_NORMAL_PRESCRIBED_APPROACH => Ok(Load::Approach(approach)),
@@ -103,7 +103,7 @@ fn load_of_scene(scene: &contact_normal_scene) -> Result<Load, Refusal> {
     }
 }
 
-/// A scene and the effects that it names, as the caller's header has them; no array was looked at.
+/// A scene and the effects that it names, in the caller's form. Their arrays are not read yet.
 pub(super) struct Named {
     scene: contact_normal_scene,
     grid: Grid,
@@ -145,7 +145,7 @@ impl Named {
         }
     }
 
-    /// The same for a call that uses no load: none needs to be set.
+    /// A scene for a call that uses no load, which need not be set.
     pub fn load_or_none(mut self) -> Named {
         let scene = &mut self.scene;
         if scene.load == CONTACT_NORMAL_PRESCRIBED_UNSET && scene.approach.is_nan() && scene.force.is_nan() {
@@ -159,13 +159,13 @@ impl Named {
         self.grid.len()
     }
 
-    /// Adds all that is read of the scene, which stands at `at`.
+    /// Adds the memory that is read of the scene at `at`.
     pub fn add_to(&self, regions: &mut Regions, at: *const contact_normal_scene) -> Result<(), Refusal> {
         regions.input("undeformed_distance", self.scene.undeformed_distance, self.grid.len())?;
         self.add_without_distance(regions, at)
     }
 
-    /// The same of a call that takes the undeformed distance from elsewhere.
+    /// [`add_to`](Self::add_to) of a call that takes the undeformed distance from elsewhere.
     pub fn add_without_distance(&self, regions: &mut Regions, at: *const contact_normal_scene) -> Result<(), Refusal> {
         let (scene, grid) = (&self.scene, &self.grid);
         regions.input_struct(at, scene)?;
@@ -200,7 +200,7 @@ impl Named {
         unsafe { self.with_distance(self.distance()?) }
     }
 
-    /// The same with another undeformed distance.
+    /// [`translate`](Self::translate) with another undeformed distance.
     pub unsafe fn with_distance<'a>(&self, undeformed_distance: &'a [f64]) -> Result<Scene<'a>, Refusal> {
         let load = load_of_scene(&self.scene)?;
         // SAFETY: by the caller.

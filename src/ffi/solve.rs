@@ -33,7 +33,7 @@ pub unsafe extern "C" fn contact_normal_solve(
         let request = unsafe { Request::read(Needs::AllOrLess, arguments, outputs, &mut buffers, |_, _| Ok(())) };
         recording.keep(&buffers.regions);
         let Request { mut scene, options, mut outputs } = request?;
-        // Before the set-up: a refusal should not cost one.
+        // Checked before the set-up, which a refused call does not need.
         outputs.check_inputs(&options.options, scene.grid.len())?;
         let watcher = Watcher::of(&options);
         if options.given.neglect_below > 0.0 {
@@ -60,22 +60,22 @@ pub(super) struct Request<'a> {
     pub outputs: Outputs,
 }
 
-/// Which scene a call asks for.
+/// The parts of a scene that a call needs.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Needs {
     /// One with an undeformed distance and a load.
     All,
-    /// The same, of which effects may be left out.
+    /// One as for `All`, whose effects may be left out.
     AllOrLess,
-    /// One that may be without an undeformed distance: then its load is not looked at either.
+    /// One that may lack an undeformed distance. Then its load is not read either.
     Bodies,
-    /// One whose pressures are given: undeformed distance and load are not looked at.
+    /// One whose pressures are given. Its undeformed distance and its load are not read.
     NoLoad,
 }
 
 impl Request<'_> {
-    /// Reads the structs, and refuses outputs that overlap: those, and what is `also` written, on so many elements. The caller's arrays
-    /// must live as long as the result is used.
+    /// Reads the structs. Refuses outputs that overlap: those of `fields` and `report`, and those that `also` adds for the number of elements. The
+    /// caller's arrays must live as long as the result is used.
     pub unsafe fn read<'a>(
         needs: Needs,
         (scene, options): (*const contact_normal_scene, *const contact_normal_options),
@@ -114,7 +114,7 @@ impl Request<'_> {
 }
 
 impl Request<'_> {
-    /// Whether it begins where the handle ended last.
+    /// Whether the solve continues from the last result of the handle.
     pub fn goes_on(&self) -> bool {
         let continues = effects::continuing(&self.scene).next().is_some();
         continues || self.options.options.initial_guess == InitialGuess::Previous
@@ -185,7 +185,7 @@ pub(super) fn explain(stop: Outcome, report: &Report, method: Method, state: Opt
     message
 }
 
-/// By how much the force of a result is not the one that is given, where that is more than the tolerance: bodies that pull too little.
+/// The part of the message about a force that differs from the given one by more than the tolerance.
 fn lack_of_force(load: Load, report: &Report) -> String {
     let Load::Force(given) = load else { return String::new() };
     let lack = (report.measures.force / given - 1.0).abs();
@@ -204,7 +204,7 @@ fn lack_of_force(load: Load, report: &Report) -> String {
     format!("{found}; the force is off by {} of the one that is given", Rounded(lack))
 }
 
-/// The point that a solve without further progress has reached, as far as its result proves it.
+/// The part of the message about a solve that stagnated: the reason, as far as the result shows it, and advice.
 fn stagnation(report: &Report, method: Method, state: &State) -> String {
     let (residual, distances) = (report.measures.certificate.residual, Distances::of(state));
     // If the normal problem is solved, the tangential one has stagnated.
@@ -233,10 +233,10 @@ fn stagnation(report: &Report, method: Method, state: &State) -> String {
     }
 }
 
-/// Distances that are so much larger than what the surfaces give way are far from where they are measured.
+/// Ratio of distances to their rms from the approach above which they are measured from far away.
 const FAR: f64 = 100.0;
 
-/// Distances of the contact area: of its free elements, whose distances the residual is measured by, where there are some.
+/// Distances of the contact area: of its free elements, if there are some, because the residual is relative to their distances.
 struct Distances {
     /// The largest of h, or of u.
     largest: f64,

@@ -40,7 +40,7 @@ pub struct contact_normal_hertz_solution {
 
 versioned! { contact_normal_hertz_solution, contact_normal_hertz_solution_init, 56 }
 
-/// The bodies of two values each.
+/// The bodies from two shear moduli and two Poisson's ratios.
 unsafe fn bodies(shear_modulus: *const f64, poisson_ratio: *const f64) -> Result<Bodies, Refusal> {
     // SAFETY: NULL or two values each, by the conventions of the ABI.
     let (moduli, ratios) =
@@ -184,7 +184,7 @@ pub unsafe extern "C" fn contact_normal_influence_rolling_tangential(
     })
 }
 
-/// Writes K tables of bodies that relax and roll steadily, one after the other; `make` has the offsets, Poisson's ratios and the bodies.
+/// Writes K tables of bodies that relax and roll steadily, one after the other. `make` takes the numbers of offsets, Poisson's ratios and the bodies.
 unsafe fn write_rolling<const K: usize>(
     (cx, cy): (i32, i32),
     (dx, dy): (f64, f64),

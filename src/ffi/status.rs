@@ -134,7 +134,7 @@ pub(super) fn set_last_error(message: &str) {
     LAST_ERROR.set(text);
 }
 
-/// The same with a text that needs no memory.
+/// Sets a text that needs no memory as the message of the last call.
 pub(super) fn set_last_text(message: &'static CStr) {
     LAST_ERROR.set(message.as_ptr());
 }

@@ -132,7 +132,7 @@ impl Load {
         Ok((scene, unsafe { options::translate(self.options)? }))
     }
 
-    /// The half-space of that scene, and what acts on it.
+    /// The half-space of that scene, and its loads.
     unsafe fn on<'a>(&self, scene: &'a Scene<'a>) -> Result<(Body, Loads<'a>), Refusal> {
         // SAFETY: NULL or one value per element, by the conventions of the ABI.
         let arrays = self.arrays.map(|array| unsafe { optional(array, scene.grid.len()) });

@@ -58,7 +58,7 @@ macro_rules! versioned {
 }
 pub(super) use versioned;
 
-/// No struct of this library will be larger. Of longer ones no more is read.
+/// No struct of this library will be larger. Calls refuse longer ones; their `_init` sets no more than this.
 pub(super) const LARGEST: usize = 4096;
 
 /// The declared size of a struct, after a check.
@@ -105,7 +105,7 @@ pub unsafe fn read<T: Versioned>(from: *const T, name: &str) -> Result<T, Refusa
     Ok(value)
 }
 
-/// The same where NULL means none.
+/// [`read`] with None for NULL.
 pub unsafe fn read_optional<T: Versioned>(from: *const T, name: &str) -> Result<Option<T>, Refusal> {
     // SAFETY: by the caller.
     (!from.is_null()).then(|| unsafe { read(from, name) }).transpose()
@@ -134,7 +134,7 @@ pub unsafe fn write<T: Versioned>(to: *mut T, value: &T) -> Result<(), Refusal> 
     Ok(())
 }
 
-/// An array of the caller's structs, of an older or newer version maybe. The size of the first one is the distance from each to the next.
+/// An array of the caller's structs, possibly of an older or newer version. The size of the first one is the distance from each to the next.
 pub struct Rows<T> {
     first: *mut T,
     stride: usize,
@@ -147,7 +147,7 @@ impl<T: Versioned> Rows<T> {
         Ok(Rows { first, stride: unsafe { declared_size(first.cast_const(), name)? } })
     }
 
-    /// Bytes of so many.
+    /// Bytes of `count` rows.
     pub fn bytes(&self, count: usize) -> usize {
         self.stride.saturating_mul(count)
     }
@@ -191,7 +191,7 @@ pub unsafe fn init<T: Versioned>(to: *mut T, size: i64) {
     }
 }
 
-/// The same of a struct that is not known at all: its size, then 0.
+/// Writes a struct of an unknown kind: its size, then 0.
 pub unsafe fn init_unknown(to: *mut u8, size: i64) {
     // SAFETY: by the caller.
     unsafe { init_bytes(to, &[], size) }

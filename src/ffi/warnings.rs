@@ -27,7 +27,7 @@ pub const CONTACT_NORMAL_WARNING_ATTRACTION: i32 = 32;
 /// `warnings`: bounds of friction fall so steeply with the slip (`tangential.law_slope` of .5 or more) that there may be several solutions.
 pub const CONTACT_NORMAL_WARNING_LAW: i32 = 64;
 
-/// Each with its text in messages.
+/// Each warning with its text in messages.
 const TEXTS: [(i32, &str); 7] = [
     (CONTACT_NORMAL_WARNING_BORDER, "contact reaches the border of the grid: a larger grid may carry more"),
     (
@@ -47,7 +47,7 @@ const TEXTS: [(i32, &str); 7] = [
     (CONTACT_NORMAL_WARNING_LAW, "friction falls so steeply that there may be several solutions; this is the one that friction.branch asks for: take a larger memory distance, or a stiffer layer"),
 ];
 
-/// The warnings in words; none: nothing. Made once, because later solves with a handle allocate nothing.
+/// The texts of the warnings; empty without any. They are made once, because later solves with a handle allocate nothing.
 pub(super) fn text(warnings: i32) -> &'static CStr {
     if warnings == 0 {
         return c"";
@@ -84,14 +84,14 @@ pub(super) fn of(scene: &Scene<'_>, options: &Options, report: &Report, state: &
     effects | found.into_iter().filter(|(_, holds)| *holds).map(|(bit, _)| bit).sum::<i32>()
 }
 
-/// Those of adhesion.
+/// The warnings of adhesion.
 fn of_adhesion(report: &Report) -> i32 {
     let Some(found) = &report.adhesion else { return 0 };
     let range = if found.resolution > UNSTABLE_KAPPA { CONTACT_NORMAL_WARNING_RANGE } else { 0 };
     range | if found.border_share > LARGEST_BORDER_SHARE { CONTACT_NORMAL_WARNING_ATTRACTION } else { 0 }
 }
 
-/// That of a law of friction, by `law_slope`.
+/// The warning of a law of friction, by `law_slope`.
 pub(super) fn of_law(slope: Option<f64>) -> i32 {
     if slope.is_some_and(|slope| slope >= STEEP) {
         CONTACT_NORMAL_WARNING_LAW
@@ -111,8 +111,8 @@ pub(super) fn advice_on_law(slope: f64) -> String {
     }
 }
 
-/// Whether an element in contact lies on a row or column that has no neighbour beyond. Of a grid of one row or column, a line contact,
-/// that direction does not count.
+/// Whether an element in contact lies in a row or column at a border of the grid without a period across it. In a line contact the direction of one
+/// element does not count.
 fn is_at_border(scene: &Scene<'_>, state: &State) -> bool {
     let (x, y) = effects::repeats(scene);
     let [columns, rows, _] = state.edge_counts();

@@ -33,7 +33,7 @@ impl Watcher {
         Watcher::asking(options, options.given)
     }
 
-    /// For a thread of ours: no callback is called there.
+    /// A watcher for a thread of the library, on which no callback is called.
     pub fn without_callback(options: &Translated) -> Watcher {
         Watcher::asking(options, contact_normal_options { progress: None, ..options.given })
     }
@@ -46,7 +46,7 @@ impl Watcher {
         Watcher { given, end, reason: Cell::new(None) }
     }
 
-    /// What this has [`told`](Self::told), as the callback of a solve; none where there is nothing to ask.
+    /// `told`, the answers of [`told`](Self::told), as the callback of a solve. None if there is nothing to ask.
     pub fn callback<'a>(&self, told: ProgressCallback<'a>) -> Option<ProgressCallback<'a>> {
         let watches = self.given.progress.is_some() || !self.given.stop.is_null() || self.end.is_some();
         watches.then_some(told)

@@ -63,7 +63,7 @@ pub struct contact_normal_worn {
 
 versioned! { contact_normal_worn, contact_normal_worn_init, 48 }
 
-/// Where results go; NULL: not wanted.
+/// The arrays of the results; NULL: not wanted.
 struct Wanted {
     work: *mut f64,
     depth: *mut f64,

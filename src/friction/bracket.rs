@@ -20,7 +20,7 @@ use crate::error::Result;
 use crate::methods::fields;
 use crate::progress::Outcome;
 
-/// Each time the missing force falls to CLOSE_RATIO times the last value, Newton's method with balanced creepages is tried.
+/// Newton's method with balanced creepages is tried each time the missing force falls to CLOSE_RATIO times that of the last try.
 const CLOSE_RATIO: f64 = 0.1;
 /// Products of a try of tractions by force, when the forces are nearly met.
 pub const FINISHING_PRODUCTS: u64 = 30;
@@ -85,7 +85,7 @@ pub fn solve(
                 return Ok(end);
             }
         }
-        // The forces are those of the trial before: the residual of the solve hides their change.
+        // The forces are those of the trial before: their change is below the residual of the solve.
         if excess == before && inner > LEAST_INNER {
             inner *= TIGHTER;
             continue;
@@ -97,7 +97,8 @@ pub fn solve(
         } else if is_exact {
             break;
         } else {
-            // A residual on one element alone may hide a missing force: such a solve cuts off the wanted creepages.
+            // The forces have an error by the residual, which may exceed the missing force, as on one element alone. Then a cut removes the wanted
+            // creepages.
             (is_exact, inner, trials) = (true, inner.min(LEAST_INNER), Trials::new(problem, forces, bounds));
         }
     }

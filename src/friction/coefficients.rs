@@ -28,7 +28,7 @@ pub struct Tangential {
     coat: Option<(Coat, HalfSpace)>,
     /// The caller's tables, in place of these.
     own: Option<Tables>,
-    /// Tables per loaded row, whose means the coefficients are.
+    /// Tables per loaded row. The coefficients are their means over rows.
     rows: Option<RowTables>,
     /// The compliance of a layer between the bodies, which adds to the coefficient of an element on itself.
     layer: f64,
@@ -141,7 +141,7 @@ impl Tangential {
         (Tangential { own, rows, coat, layer: self.layer / unit, ..plain }, unit)
     }
 
-    /// The materials' factors.
+    /// The elastic constants of both bodies together.
     pub fn compliance(&self) -> Compliance {
         self.half_space.compliance
     }

@@ -5,8 +5,8 @@
 
 use super::plane::{dot, plus, Vector};
 
-/// A trial is good if its missing force is at most this part of the last or least one: halving, which the centre of the corral nearly does. The centre
-/// follows trials that are not good.
+/// A trial is good if its missing force is at most this part of the last or least one. One half is about what the centre of the corral achieves,
+/// which follows trials that are not good.
 pub const PROGRESS: f64 = 0.5;
 
 /// The polygon; with one unknown creepage a rectangle, whose cuts are parallel.

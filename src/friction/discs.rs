@@ -120,7 +120,7 @@ impl<T: Real> Discs<T> {
         let [] = self.give_z(&problem.places, problem.threads(), direct);
     }
 
-    /// Multiplies. Returns `t.(A + D) t` and `t` times the projected residual. On stick the chord takes the place of t.
+    /// Multiplies the given field by A. Returns `t.(A + D) t` and `t` times the projected residual. On stick the chord takes the place of t.
     pub fn multiply(&mut self, problem: &mut Problem) -> [f64; 2] {
         self.multiply_given(problem);
         let units = self.units;

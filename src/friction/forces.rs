@@ -215,7 +215,7 @@ pub fn sum_of_bounds(problem: &Problem) -> f64 {
     fields::sum(problem.threads(), problem.bound.len(), |i| [problem.bound[i]])[0]
 }
 
-/// The sum of two fields.
+/// The sum of two fields together, as [`sum_of`].
 pub fn sum_of_both(problem: &Problem, v: &[Vector], w: &[Vector]) -> Vector {
     fields::sum(problem.threads(), v.len(), |i| problem.weighted(i, add(v[i], w[i])))
 }

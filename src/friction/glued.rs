@@ -1,5 +1,5 @@
-//! Bounds that no traction reaches, as of glued elements, or beside forces and motions that are small. The unit of tractions is the largest bound:
-//! beside such a one tractions, and other bounds, would be round-off. So bounds are lowered to what tractions may reach.
+//! Bounds that no traction reaches: those of glued elements, or all bounds if forces and motions are small. The unit of tractions is the largest
+//! bound. Relative to such a bound tractions and other bounds would be round-off. So bounds are lowered to what tractions may reach.
 
 use super::certificate::{scale, Certificate};
 use super::forces::Forces;
@@ -22,7 +22,7 @@ use crate::sums::in_blocks;
 /// traction from the slip.
 pub(super) const NEGLIGIBLE_BOUND: f64 = 1e-17;
 
-/// Upper bound on the largest traction over its estimate: an element that displaces itself alone by its slip.
+/// Upper bound on the largest traction relative to its estimate, by which each element alone makes up for its slip.
 const REACH: f64 = 1e3;
 
 impl Solver {
@@ -53,9 +53,9 @@ impl Solver {
         Ok((end, is_lowered))
     }
 
-    /// The largest bound to solve with, if bounds are to be lowered. Laws have bounds of their own, which are not.
+    /// The largest bound to solve with, if bounds are to be lowered. Bounds by a law are not lowered.
     fn reached(&self, (largest, request): (f64, &Request<'_>), window: &Rectangle, forces: &Forces) -> Option<f64> {
-        // By creepages alone small slips are solved beside any bounds that are alike.
+        // By creepages alone, small slips are solved with any bounds of similar size.
         let are_alike = || {
             let inverses = self.largest(window, |i| inverse(request.bound(i)));
             // The unit of tractions may exceed the largest bound by a factor of sqrt(2).
@@ -79,7 +79,7 @@ impl Solver {
         self.scales.own_traction([sum * area, 0.0])[0]
     }
 
-    /// The gap of the [certificate](Certificate) of the result with the bounds themselves, where they were lowered.
+    /// The gap of the [certificate](Certificate) of the result with the original bounds, after a solve with lowered ones.
     pub(super) fn gap_of_bounds(&self, request: &Request<'_>) -> f64 {
         let (friction, grid, solution) = (request.friction, &self.grid, &self.solution);
         let Level { problem, state, .. } = &self.levels[0];
@@ -118,7 +118,7 @@ impl Solver {
         steps * (held + self.largest_slip(request, window)) / xx.min(yy) + had + length(forces.sum) * most.max(1.0)
     }
 
-    /// The largest rigid slip of the elements of a window. Without arrays it is linear in the place.
+    /// The largest rigid slip of the elements of a window. Without arrays it is linear in the place, and largest at a corner.
     fn largest_slip(&self, request: &Request<'_>, window: &Rectangle) -> f64 {
         let (friction, grid) = (request.friction, &self.grid);
         let slip = |i: usize| length(request.rigid_slip(grid, i));

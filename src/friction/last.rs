@@ -36,7 +36,7 @@ impl Solver {
         Ok(())
     }
 
-    /// Notes a solve without friction: its result has no tractions. Those of the last step stay, for one that continues.
+    /// Notes a solve without friction: its result has no tractions. The tractions of the last step stay, for a step that continues from them.
     pub fn pass_over(&mut self) {
         self.is_last = false;
     }

@@ -1,7 +1,7 @@
 //! Nested iteration: the coarsest grid first. Each grid starts from the solution on the previous one.
 //!
-//! Several methods solve a grid. Each starts from the state at which the one before stalled. Gradients come first. Newton's method follows if they
-//! stall, in steady rolling, and with given forces.
+//! Several methods solve a grid, each from the state at which the one before stalled. Gradients come first, then Newton's method. Newton's method
+//! comes first in steady rolling, with given forces, and if most of C slipped in the step before.
 
 use super::balance::balanced;
 use super::best::Best;

@@ -27,12 +27,13 @@ use crate::error::Result;
 use crate::methods::fields::Fields;
 use crate::progress::Outcome;
 
-/// Relative tolerance of the linear solve of a step, and in rolling.
+/// Relative tolerances of the linear solve of a step, without and with rolling.
 const INNER: f64 = 0.15;
 const INNER_ROLLING: f64 = 0.35;
 /// Below this times the tolerance `polish` takes the certificate.
 const POLISH_BELOW: f64 = 1.5;
-/// Residuals below this are round-off, of which displacements that are not fresh hide more: the certificate is taken, whatever the tolerance.
+/// Residuals below this are round-off, and displacements that are not fresh have a larger error. Then the certificate is taken, whatever the
+/// tolerance.
 const ROUND_OFF: f64 = 1e-15;
 /// Factor on the relative tolerance and on rho when steps make no progress, and the least relative tolerance.
 const CUT: f64 = 0.3;
@@ -63,8 +64,8 @@ const RUNAWAY: f64 = 1e4;
 pub enum Manner {
     /// By the natural map whose rho makes the rms slip move tractions by the rms bound.
     Plain,
-    /// By the natural map whose rho is the inverse compliance: elements of large slip are predicted to slip, whatever their bounds. With the creepages
-    /// at which it carries given forces.
+    /// By the natural map whose rho is the inverse compliance: elements of large slip are predicted to slip, whatever their bounds. The creepages are
+    /// those at which the map carries the given forces.
     Balanced,
     /// `Balanced` in turns: the creepages that carry the forces at fixed displacements, then a step with these creepages given.
     InTurns,

@@ -115,7 +115,7 @@ impl Places {
         runs.clear();
         blocks.clear();
         let rows = bound.len() / *mx;
-        // A full grid has BLOCKS blocks, but no block has less than a quarter of BLOCK elements, or more than BLOCK.
+        // A block ends with the row that gives it `least` elements: the part 1/BLOCKS of a full grid, but between a quarter of BLOCK and BLOCK.
         let least = (bound.len() / BLOCKS).clamp(BLOCK / 4, BLOCK);
         let mut begun = Block { runs: (0, 0), rows: (0, 0), elements: 0 };
         *count = 0;

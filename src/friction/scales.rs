@@ -33,7 +33,7 @@ impl Scales {
         self.traction = unit_of(displacement / self.compliance);
     }
 
-    /// A grid.
+    /// A grid in the units of the iterations.
     pub fn grid(&self, grid: &Grid) -> Grid {
         Grid { dx: self.length(grid.dx), dy: self.length(grid.dy), ..*grid }
     }
@@ -43,27 +43,27 @@ impl Scales {
         Grid { dx: self.length * grid.dx, dy: self.length * grid.dy, ..*grid }
     }
 
-    /// A length of the grid.
+    /// A length of the grid in the units of the iterations.
     pub fn length(&self, length: f64) -> f64 {
         length / self.length
     }
 
-    /// A displacement by a traction of 1.
+    /// A displacement by a traction of 1 in the units of the iterations.
     pub fn compliance(&self, compliance: f64) -> f64 {
         compliance / self.compliance
     }
 
-    /// A traction.
+    /// A traction in the units of the iterations.
     pub fn traction(&self, traction: f64) -> f64 {
         traction / self.traction
     }
 
-    /// A displacement or a slip.
+    /// A displacement or a slip in the units of the iterations.
     pub fn displacement(&self, displacement: Vector) -> Vector {
         displacement.map(|u| u / self.compliance / self.traction)
     }
 
-    /// A change of displacement per change of tractions, these in the caller's units.
+    /// A change of displacement per change of tractions in the units of the iterations, for tractions that stay in the caller's units.
     pub fn change(&self, displacement: Vector) -> Vector {
         displacement.map(|u| u / self.compliance)
     }

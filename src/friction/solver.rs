@@ -32,7 +32,7 @@ pub struct Solver {
     pub(super) scaled: Tangential,
     single: bool,
     pub(super) threads: Threads,
-    /// The finest first; empty before the first solve.
+    /// The grids of the box, the finest first. Empty before the first solve.
     pub(super) levels: Vec<Level>,
     /// The product at places between the centres, for steps of rolling.
     pub(super) displaced: Option<Displaced>,
@@ -146,7 +146,7 @@ impl Solver {
             _ => Forces::of(friction, &self.grid, bound)?,
         };
         if !request.start.is_again() {
-            // Those of a step that was refused.
+            // Products of a step that was refused do not count.
             self.take_products();
             if keeps {
                 self.keep_tractions()?;

@@ -63,7 +63,8 @@ pub fn enough(inner: f64, tolerance: f64, residual: f64) -> f64 {
     inner.max((ENOUGH * tolerance / residual).min(LEAST_GAIN))
 }
 
-/// The displacement by tractions on all of C; in steady rolling, where near and far tractions cancel in a step, by those on one element.
+/// An estimate of the displacement by unit tractions on all of C; in steady rolling, where near and far tractions cancel in a step, by one on a
+/// single element.
 pub fn compliance(problem: &Problem) -> f64 {
     let own = problem.operators.self_influence;
     match problem.operators.rolling {

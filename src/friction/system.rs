@@ -37,7 +37,7 @@ pub struct Border {
 }
 
 impl Border {
-    /// The border before its columns.
+    /// A border without its columns.
     pub fn new(forces: Forces) -> Border {
         Border { forces, columns: [Vec::new(), Vec::new()], sums: [[0.0; 2]; 2], inverse: [[0.0; 2]; 2] }
     }

@@ -1,4 +1,4 @@
-//! The largest coefficient of a table, its symmetry and finiteness, found while its rows are in cache.
+//! The largest absolute coefficient of a table, its symmetry and finiteness, found while its rows are in cache.
 
 use crate::blocks::LANES;
 
@@ -7,7 +7,7 @@ pub(super) use toeplitz::coefficients::SYMMETRY;
 /// The extremes of a table or a part of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extremes {
-    /// The largest coefficient, whatever its sign.
+    /// The largest absolute value of a coefficient.
     pub largest: f64,
     /// Whether the coefficients are symmetric, to within round-off of the one at offset (0, 0).
     pub symmetric: bool,
@@ -79,7 +79,7 @@ pub(super) fn are_finite(values: &[f64], scale: f64) -> bool {
     values.iter().fold(true, |all, value| all & (scale * value).is_finite())
 }
 
-/// The largest of some values, whatever their sign.
+/// The largest absolute value.
 #[inline(always)]
 pub(super) fn largest(values: &[f64]) -> f64 {
     let larger = |a: f64, b: f64| if a > b { a } else { b };

@@ -40,7 +40,7 @@ pub(crate) fn gauss(centre: f64, d: f64, f: impl Fn(f64) -> f64) -> f64 {
     integral
 }
 
-/// The same of several functions at once, by nine points in pairs about the centre.
+/// The integrals of several functions at once, by nine points in pairs about the centre.
 pub(crate) fn gauss_each<const N: usize>(centre: f64, d: f64, f: impl Fn(f64) -> [f64; N]) -> [f64; N] {
     let (rule, mut pairs) = (rule(9), [0.0; N]);
     for &(node, weight) in &rule[..4] {

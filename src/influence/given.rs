@@ -25,17 +25,17 @@ pub(super) struct Given<'a> {
 }
 
 impl Given<'_> {
-    /// Offsets `0..mx` of row ky.
+    /// The coefficients of row ky at offsets `0..mx`.
     fn after(&self, ky: i64, mx: usize) -> &[f64] {
         &self.values[(ky + self.cy as i64) as usize * 2 * self.cx + self.cx..][..mx]
     }
 
-    /// Offsets `1 - mx..=0` of row ky.
+    /// The coefficients of row ky at offsets `1 - mx..=0`.
     fn before(&self, ky: i64, mx: usize) -> &[f64] {
         &self.values[(ky + self.cy as i64) as usize * 2 * self.cx + self.cx + 1 - mx..][..mx]
     }
 
-    /// Whether the offsets of the grid are even, to the last bit.
+    /// Whether the coefficients are even on the offsets of the grid, to the last bit.
     pub fn is_even(&self, grid: &Grid) -> bool {
         let mx = grid.mx;
         (0..grid.my as i64).all(|ky| {
@@ -45,7 +45,7 @@ impl Given<'_> {
         })
     }
 
-    /// Offsets `0.., 0..` of the grid, scaled.
+    /// The coefficients at offsets `0.., 0..` of the grid, scaled.
     pub fn quarter(&self, grid: &Grid, scale: f64) -> Result<(Vec<f64>, Extremes)> {
         let (mut kept, mut extremes) = (Vec::new(), Extremes::NONE);
         reserve(&mut kept, grid.len(), TABLE)?;
@@ -59,7 +59,7 @@ impl Given<'_> {
         }
     }
 
-    /// All offsets of the grid, scaled. Opposite rows are filled together and compared while they are in the cache.
+    /// The coefficients at all offsets of the grid, scaled. Opposite rows are filled together and compared while they are in the cache.
     pub fn whole(&self, grid: &Grid, scale: f64) -> Result<(Vec<f64>, Extremes)> {
         let Grid { mx, my, .. } = *grid;
         let (columns, mut extremes) = (width(mx, false), Extremes::NONE);

@@ -30,7 +30,7 @@ use crate::error::{invalid, Error, Number, Result};
 use crate::grid::Grid;
 use crate::memory::{blank, reserve, Held};
 
-/// Names its memory in messages.
+/// The name of this memory in messages.
 const TABLES: &str = "the tables of coefficients";
 
 /// The tables. If all are even, they hold only offsets >= 0 in x.

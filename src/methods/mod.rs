@@ -31,7 +31,7 @@ pub trait Step<S: AdmissibleSet> {
     /// The name in messages.
     fn name(&self) -> &'static str;
 
-    /// Prepares for `state`: makes memory and forgets the solve before.
+    /// Prepares for `state`: allocates memory and discards the last solve.
     fn begin(&mut self, _state: &State) -> Result<()> {
         Ok(())
     }

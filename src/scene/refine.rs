@@ -10,13 +10,14 @@ const ROUGH: f64 = 0.25;
 
 /// The values `h` of `grid` at the centres of a grid with `parts` elements for each one in x and in y.
 ///
-/// By cubics between the centres in each direction (with fewer than five elements, the polynomial through all): exact for cubics, and without additional
-/// roughness. Slopes jump beside holes and rough ends only: where they jump, largest pressures are infinite. In a direction that repeats itself the nearest
-/// centres may lie across its end. Beyond the outermost centres a rough surface keeps the last height: a cubic would leave the range of heights.
+/// The heights are interpolated by cubics between the centres in each direction (with fewer than five elements, by the polynomial through all): this
+/// is exact for cubics and adds no roughness. Slopes jump only beside holes and rough ends. Where they jump, largest pressures are infinite. In a
+/// periodic direction the nearest centres may lie across its end. Beyond the outermost centres a rough surface keeps the last height, because a cubic
+/// would leave the range of heights.
 ///
-/// Parts of an element without surface (+infinity) have none. If one of the four has none, the line through the element and its neighbour
-/// on the side of the part is used. Without surface there, the line goes on from the other side if the three or four heights there are smooth;
-/// others keep the height of the element.
+/// Parts of an element without surface (+infinity) have none. If one of the four centres has none, the line through the element and its neighbour on
+/// the side of the part is used. If that neighbour has none, the line through the element and its other neighbour is used, if the three or four
+/// heights on that side are smooth. Otherwise the part has the height of the element.
 pub fn refine(h: &[f64], grid: &Grid, parts: (usize, usize), repeats: (bool, bool)) -> Result<Vec<f64>> {
     let (mx, my) = (grid.mx, grid.my);
     let (fine_mx, fine_my) = (mx * parts.0, my * parts.1);
@@ -39,7 +40,8 @@ pub fn refine(h: &[f64], grid: &Grid, parts: (usize, usize), repeats: (bool, boo
     Ok(fine)
 }
 
-/// Whether a surface with these heights at its end is smooth there, by their third difference, or the second of three. Two tell nothing.
+/// Whether a surface with these heights at its end is smooth there, by their third difference, or the second difference of three. Two heights do not
+/// suffice.
 fn is_smooth(heights: &[f64]) -> bool {
     let steps = |k: usize| heights[k + 1] - heights[k];
     let (difference, count) = match heights.len() {

@@ -132,8 +132,8 @@ pub struct Regridded {
 
 impl Regridded {
     /// A scene on the grid `to`. `surface`: the undeformed distance on it; none: that of the scene, [refined](refine) by a whole ratio or
-    /// [sampled](sample). Compliances, limits, works of adhesion, coefficients of friction, weights and tractions are means over the elements.
-    /// A rigid slip scales with the length of the step. A step of transient rolling keeps its length, and one of steady rolling its number of elements.
+    /// [sampled](sample). Compliances, limits, works of adhesion, coefficients of friction, weights and tractions are means over the elements. A
+    /// rigid slip scales with the length of the step. A step of transient rolling keeps its length, and one of steady rolling its number of elements.
     ///
     /// # Errors
     /// `Unsupported`: effects that stand for one grid only, as own coefficients, or previous tractions kept by a solver.

@@ -166,7 +166,8 @@ pub fn range(asked: Asked<'_>, problem: &Problem, largest: f64) -> Result<()> {
     areas(scene, pressure, loaded)
 }
 
-/// Rejects units in which areas of elements and forces leave the range of double precision: coefficients that are given do not bound the sizes of elements.
+/// Rejects units in which areas of elements and forces leave the range of double precision. The caller's coefficients do not bound the sizes of
+/// elements.
 fn areas(scene: &Scene<'_>, pressure: f64, loaded: bool) -> Result<()> {
     let area = scene.grid.element_area();
     let force = match scene.load {

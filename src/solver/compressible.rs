@@ -7,7 +7,7 @@ use crate::scene::Load;
 #[derive(Clone)]
 pub struct Compressible {
     pub coefficients: Coefficients,
-    /// None: neither, as an attempt to change failed.
+    /// Whether the solver is set up without the constant. None after a change that failed.
     pub is_without: Option<bool>,
 }
 

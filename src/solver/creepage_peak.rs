@@ -38,7 +38,7 @@ impl Peak {
         self.looked.iter().map(|looked| looked.1).reduce(f64::max)
     }
 
-    /// The next creepage. None: the largest force is that of full slip, or the wanted force is out of reach.
+    /// The next creepage. None: the largest force is that of full slip, the wanted force is out of reach, or [`MOST_CREEPAGES`] were tried.
     pub fn next(&mut self) -> Option<f64> {
         let (largest, (_, last)) = (self.largest().filter(|largest| largest.is_finite())?, *self.looked.last()?);
         let (best, (least, first)) =

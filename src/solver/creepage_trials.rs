@@ -36,7 +36,7 @@ pub struct Trials {
     /// The change of creepages per excess of force.
     slope: [Vector; 2],
     last: Option<Place>,
-    /// With one force: the greatest creepage that carries more, the least that carries less.
+    /// With one force: the last creepage that carried more, and the last that carried less.
     between: [Option<f64>; 2],
     best: Place,
     bad: u32,

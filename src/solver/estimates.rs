@@ -12,9 +12,9 @@
 //! with s = 1/2, measured. On 32 elements across s varies by a third, because the boundary lies anywhere in its elements. Along a straight outline
 //! errors do not average out and are up to a few times larger. ([`Curvature`] computes b; docs/accuracy.md has the measurements.)
 //!
-//! At ends of the surface pressures are infinite, and the end lies anywhere between two centres ([`pressures_at_ends`]). A jump of the surface also lies
-//! anywhere between two centres ([`Curvature::jumps`]). Both errors are of first order in the size of the elements.
-//! Pressures are also infinite where coefficients jump, between patches or in a layer. Such a jump counts as a part of an end.
+//! At ends of the surface pressures are infinite, and the end lies anywhere between two centres ([`pressures_at_ends`]). A jump of the surface also
+//! lies anywhere between two centres ([`Curvature::jumps`]). Both errors are of first order in the size of the elements. Pressures are also infinite
+//! where coefficients jump, between patches or in a layer. Such a jump counts as a part of an end.
 //!
 //! *Pressures.* Their errors are fractions of the second differences within the contact area and across its boundary:
 //! [`PEAK_ERROR`] for the largest pressure, [`PRESSURES_ERROR`] in the rms. A peak with a large relative second
@@ -102,8 +102,8 @@ impl Parts {
             return None;
         }
         let force = state.force();
-        // The mean displacement of full contact with two periods is 0. What is computed is round-off, and dF/d(approach) would be arbitrary. With a given
-        // force no error depends on it.
+        // The mean displacement of full contact with two periods is 0. The computed one is round-off, and dF/d(approach) would be arbitrary. With a
+        // given force no error depends on it.
         let is_full = repeats == (true, true) && count == state.grid.len();
         let stiffness = match state.load {
             Load::Force(_) if is_full => 0.0,
@@ -176,8 +176,8 @@ fn stiffness(problem: &Problem, force: f64, displaced: f64, area: f64) -> f64 {
     found.max(1.0 / (1.0 / of_circle + compressed).max(0.0))
 }
 
-/// Relative discretisation error of the force (or the approach), from a state near the solution; 0 if unknown, as beside limits that are reached and for
-/// row tables.
+/// Relative discretisation error of the force (or the approach), from a state near the solution. 0 if it is unknown, as with limits that are reached
+/// and for row tables.
 pub fn predict(problem: &Problem, state: &State) -> f64 {
     if !problem.symmetric || state.has_limited() {
         return 0.0;

@@ -94,7 +94,7 @@ impl<'a> Table<'a> {
         entries: &'a [Entry],
         options: &'a Options,
     ) -> Table<'a> {
-        // Of fresh particles, which is enough for a distance.
+        // The yield limit is that of fresh particles, which suffices for a distance.
         let layer =
             friction.layer.filter(|_| friction.has_ideal_layer()).map_or(f64::INFINITY, |layer| layer.yield_limit);
         let bounds = pressure.iter().enumerate().map(|(i, p)| (friction.coefficient.at(i) * p.max(0.0)).min(layer));

@@ -69,7 +69,7 @@ impl Solver {
         Effect::check(&table, &self.problem.grid)?;
         let coefficients = self.problem.coefficients.clone().with_kernel(Arc::new(table.clone()));
         self.set_up.largest_influence = coefficients.largest(&self.problem.grid);
-        // Everything made of the last table is dropped first, so that the operator is not shared.
+        // All that depends on the last table is dropped first, so that the operator is not shared.
         self.set_up.lacks_table = true;
         self.methods.forget_operator();
         self.adhesion = None;

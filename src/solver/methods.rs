@@ -152,8 +152,8 @@ impl Methods {
         Ok(Beginning::GoOn)
     }
 
-    /// Prepares the next method: from the best iterate, or from p = 0 if that is useless. A direct solve that did nothing leaves the state as it
-    /// is.
+    /// Prepares the next method, which starts from the best iterate. NORM starts from p = 0 if that iterate is useless. PROJECTED_CG follows a direct
+    /// solve and starts from its state.
     fn hand_over<S: AdmissibleSet>(&mut self, stage: Stage, task: &mut Task<'_, '_, S>) -> Result<()> {
         if stage != Stage::ProjectedCg {
             log::info!("no further progress on this scene: {stage:?} takes over");
@@ -203,7 +203,7 @@ impl Methods {
                 task.state.start(self_influence);
             }
         }
-        // The other methods start from p = 0, which tells nothing of the error.
+        // The other methods start from p = 0, which gives no information about the error.
         let is_near = matches!(stage, Stage::Direct | Stage::ProjectedCg | Stage::FullMultigrid);
         if error_ratio > 0.0 && is_near && !S::FIXED {
             let predicted = estimates::predict(task.problem, task.state);
@@ -226,7 +226,7 @@ impl Methods {
         Ok(())
     }
 
-    /// Frees the memory of another admissible set.
+    /// Discards the best iterate, which may belong to another admissible set.
     pub fn forget_iterates(&mut self) {
         self.best = Best::default();
     }

@@ -1,8 +1,8 @@
 //! The solve of a scene: the options, the loop (`iterate`), the methods and their order, the report.
 //!
-//! A [`Solver`] is set up once for a grid and a pair of bodies (operators, transforms, grids) and then solves any number of
-//! undeformed distances and loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call. The methods of a solver
-//! stand in the files of this folder, one subject in each.
+//! A [`Solver`] is set up once for a grid and a pair of bodies (operators, transforms, grids) and then solves any number of undeformed distances and
+//! loads on it, one by one or as a [batch](Solver::solve_batch). [`solve`] does both in one call. The functions of a solver stand in the files of
+//! this folder, one subject in each.
 
 mod adhesion;
 mod adhesive_friction;
@@ -89,9 +89,10 @@ use tangential::Tangent;
 /// previous result. After any other failed solve it holds none.
 ///
 /// The bits of a solve that starts from nothing or from a given guess do not depend on earlier solves. With one thread, repeated solves by the same
-/// method and from the same kind of start allocate no memory, with three exceptions. PROJECTED_CG (and AUTO) work on a window around the
-/// contact area, whose operator is set up anew when its size changes. From 128 x 128 elements on, products with pressures on a part of the
-/// grid have an operator of a shorter period, which is set up anew when the extent of the pressures changes. From 2^23 elements (2896 x 2896) on, the operators of the start of a solve are set up for each solve.
+/// method and from the same kind of start allocate no memory, with three exceptions. PROJECTED_CG (and AUTO) work on a window around the contact
+/// area, whose operator is set up anew when its size changes. From 128 x 128 elements on, products with pressures on a part of the grid have an
+/// operator of a shorter period, which is set up anew when the extent of the pressures changes. From 2^23 elements (2896 x 2896) on, the operators of
+/// the start of a solve are set up for each solve.
 pub struct Solver {
     problem: contact::Problem,
     set_up: SetUp,

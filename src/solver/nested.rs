@@ -11,7 +11,8 @@ use crate::progress::{Goal, Monitor, Outcome};
 use crate::scene::Load;
 use crate::threads::Threads;
 
-/// Most cycles on the coarser grids, which only prepare the next finer one, and most iterations of NORM on the coarsest.
+/// Most cycles on the coarser grids, which only prepare the next finer one. Most iterations of NORM on the coarsest grid, unless the solve allows
+/// more.
 const COARSE_CYCLES: u64 = 30;
 const COARSEST_ITERATIONS: u64 = 1000;
 

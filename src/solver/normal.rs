@@ -53,7 +53,7 @@ impl Solver {
         };
         let converged = matches!(solved, Ok((Outcome::Converged, _)));
         if on_the_way && converged && options.initial_guess != InitialGuess::Previous {
-            // Only iterates reached a limit: the result has the bits of the scene without limits, if there is still time for it.
+            // Only iterates reached a limit. If the solve without limits converges and stays within them, its bits are the result.
             let window = self.methods.projected_cg.current_window();
             let found = (self.state.copy(&self.problem.threads)?, std::mem::take(&mut monitor.ledger), monitor.count);
             monitor.ledger.estimates = found.1.estimates;

@@ -31,8 +31,8 @@ pub type SurfaceCallback<'a> = &'a mut dyn FnMut(&Grid, &mut [f64]) -> bool;
 
 /// The end of a search for an accuracy.
 pub struct Refinement {
-    /// Converged: the target is met. IterationLimit: a limit forbids the next grid. Cancelled: by the surface or the progress
-    /// callback. Stagnated: the target is below round-off, or there is no estimate.
+    /// Converged: the target is met, or there is no contact on three grids. IterationLimit: a limit forbids the next grid, or ended its solve.
+    /// Cancelled: by the surface or the progress callback. Stagnated: the target is below round-off, there is no estimate, or a solve stagnated.
     pub stop: Outcome,
     /// The reason, and the best error reached, in words.
     pub reason: String,

@@ -4,7 +4,7 @@ use super::options::Method;
 use crate::contact::AdmissibleSet;
 use crate::progress::METHOD_SHARE;
 
-/// A method gets at least so many cycles, or half of those that remain if that is less.
+/// The least cycles of a method; half of those that remain if that is less.
 const LEAST_SHARE: u64 = 60;
 /// Most cycles of PROJECTED_CG with limits. Most scenes with limits take fewer. After more, the method usually cycles, and the projected Newton
 /// method continues from its best iterate.
@@ -24,7 +24,7 @@ pub enum Stage {
 /// The cycle count at which a method ends, from the cycles done: a fraction of the rest, so that cycles remain for every method of the list.
 pub fn share<S: AdmissibleSet>(stage: Stage, done: u64, most: u64) -> u64 {
     let left = most.saturating_sub(done);
-    // The first method has the only cycle: it starts best.
+    // The only remaining cycle goes to the first method, whose start is the best.
     let share = LEAST_SHARE.min(left.div_ceil(2)).max((METHOD_SHARE * left as f64) as u64);
     done + if S::LIMITED && stage == Stage::ProjectedCg { share.min(LIMITED_SHARE) } else { share }
 }

@@ -33,7 +33,7 @@ impl Solver {
         Ok(())
     }
 
-    /// Solves the further problems of a scene, after the normal problem ended with `outcome`. The report includes friction.
+    /// Solves the further problems of a scene, after the normal problem ended with `outcome`. Returns the report of friction with the outcome.
     pub(super) fn solve_beside(
         &mut self,
         scene: &Scene<'_>,

@@ -145,8 +145,8 @@ fn clean<S: AdmissibleSet>(state: &mut State, set: S) {
     state.project(set);
 }
 
-/// Moves elements of C at their limit out of C, if others remain there, which the residual needs. As free elements they would have their e as the residual, and
-/// the first step would move them all. Those with e > 0 enter C again by step (4.2).
+/// Moves elements of C at their limit out of C, if others remain there, which the residual needs. Otherwise they would be free elements with their e
+/// as the residual, and the first step would move them all. Those with e > 0 enter C again by step (4.2).
 fn stay_at_limits<S: AdmissibleSet>(state: &mut State, set: S) {
     let stays = |state: &State, i: usize| state.contact[i] && state.p[i] > 0.0 && state.p[i] >= set.limit(i);
     if (0..state.p.len()).any(|i| state.contact[i] && !stays(state, i)) {

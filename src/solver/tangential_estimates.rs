@@ -51,8 +51,8 @@ const COATED_FACTOR: f64 = 2.0;
 /// With a given normal force, the factor on errors at ends is this times `(1 - F/(mu N))^(1/3)`, at most 1.
 const BEFORE_SLIP: f64 = 2.0;
 
-/// Errors are parts of mu N. Tractions of glued elements do not reach their bounds, and are linear in the motion. Their errors are parts of the tractions
-/// times this factor.
+/// Errors are parts of mu N, or of this factor times the sum of the tractions if that is less: tractions of glued elements do not reach their bounds,
+/// and are linear in the motion.
 const WITHIN_REACH: f64 = 50.0;
 /// Factor on second differences of directions in a shift with spin; 1/24 is that of a smooth integrand. Errors were up to .7 times this.
 const TURN_FACTOR: f64 = 0.0625;
@@ -127,8 +127,8 @@ pub fn estimate(solved: &Solved<'_>, found: &Report) -> [Option<f64>; 2] {
     })
 }
 
-/// Whether the law of friction, if there is one, allows an estimate: of a shift by creepages. Near the largest force of a falling coefficient errors of
-/// the creepage were up to 1.5 times the estimate. In steady rolling no coarser grid is solved with the law.
+/// Whether the law of friction, if there is one, allows an estimate: of a shift by creepages. Near the largest force of a falling coefficient errors
+/// of the creepage were up to 1.5 times the estimate. In steady rolling no coarser grid is solved with the law.
 fn is_known_with_law(friction: &Friction<'_>) -> bool {
     let by_creepages = friction.has_forces() == [false; 2];
     !friction.has_law() || friction.motion == Motion::Shift && by_creepages

@@ -36,7 +36,7 @@ impl Body {
         require(nu > -1.0 && nu <= 0.5, "poisson_ratio", nu, "it must lie in (-1, 0.5]")
     }
 
-    /// A periodic line with square elements: its loads are uniform along them, however long they are (plane strain).
+    /// This body. A periodic line gets square elements, because its loads are uniform along them, however long they are (plane strain).
     pub fn of_square_elements(mut self) -> Body {
         let Grid { mx, my, .. } = self.grid;
         if self.periodic && (mx == 1 || my == 1) {

@@ -102,7 +102,7 @@ fn potentials(x: Edges, y: Edges, z: f64) -> Potentials {
         let over = sign / (r + z);
         f.wxxy -= x * over;
         f.wxyy -= y * over;
-        // The stresses contain all others times z.
+        // All other derivatives have the factor z in the stresses.
         if z > 0.0 {
             let over_r = sign / r;
             let (to_y, to_x) = (over_r * inverse_of_sum(r, y, x2 + z2), over_r * inverse_of_sum(r, x, y2 + z2));

@@ -28,7 +28,7 @@ pub fn add(body: &Body, loaded: Loaded, place: (&Lanes, f64, f64), force: f64, s
     pulp::Arch::new().dispatch(Add { nu: body.poisson_ratio, loaded, place, force, sum });
 }
 
-/// The same, compiled for the vectors of this machine.
+/// The forces of [`add`], compiled for the vectors of this machine.
 struct Add<'a> {
     nu: f64,
     loaded: Loaded,

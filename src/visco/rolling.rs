@@ -89,7 +89,7 @@ impl<const N: usize> Row<'_, N> {
         sum.map(|sum| d / length * sum)
     }
 
-    /// The same for an interval, in panels that are short compared with L.
+    /// [`panel`](Self::panel) for an interval, in panels that are short compared with L.
     fn interval(&self, kx: f64, (from, to): (f64, f64), length: f64) -> [f64; N] {
         let to = to.min(FADED * length);
         if !(to > from) {

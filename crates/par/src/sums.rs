@@ -10,7 +10,7 @@ const LANES: usize = 4;
 /// Lanes of single sums and of comparisons.
 const WIDE: usize = 8;
 
-/// Relative round-off of a sum of up to 2^31 terms in any order, relative to the sum of their absolute values.
+/// Round-off of a sum of up to 2^31 terms in any order, relative to the sum of their absolute values.
 pub const ROUND_OFF: f64 = 1e-12;
 
 /// Terms of a block.
@@ -85,7 +85,7 @@ impl<const K: usize> Sums<K> {
     }
 }
 
-/// The sum of `a - from + b` over places with `counts`, and their number, in lanes that the compiler vectorises.
+/// The sum of `a - from + b` over the elements that count, and their number, in lanes that the compiler vectorises.
 #[inline(always)]
 pub fn sum_where((a, from): (&[f64], f64), b: &[f64], counts: &[bool]) -> (f64, u64) {
     let term = |a: f64, b: f64, counts: bool| if counts { a - from + b } else { 0.0 };
@@ -101,7 +101,7 @@ pub fn sum_where((a, from): (&[f64], f64), b: &[f64], counts: &[bool]) -> (f64, 
     (sums.iter().sum::<f64>() + of_rest.sum::<f64>(), count)
 }
 
-/// The sum of the values of an iterator, in blocks whose sums are added. One sum of 262144 equal terms has an error of 4e-12.
+/// The sum of the values of an iterator, in blocks whose sums are added. A single running sum of 262144 equal terms would have an error of 4e-12.
 pub fn in_blocks(mut values: impl Iterator<Item = f64>) -> f64 {
     let (mut all, mut next) = (0.0, values.next());
     while let Some(first) = next {

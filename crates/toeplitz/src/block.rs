@@ -7,7 +7,7 @@ use std::ops::Range;
 use crate::real::{Complex, Scalar};
 use par::threads::Threads;
 
-/// Columns in a block: of complex numbers four cache lines in double precision, two in single.
+/// Columns in a block. A row of a block of complex numbers has four cache lines in double precision, two in single.
 pub const BLOCK: usize = 16;
 /// Rows that are gathered at a time.
 const TILE: usize = 8;

@@ -9,7 +9,7 @@ pub trait Coefficients: Sync {
     /// Fills `out` with the coefficients at offsets `(kx, ky)`, `(kx + 1, ky)`, ...
     fn fill_row(&self, kx: i64, ky: i64, out: &mut [f64]);
 
-    /// Fills `out` with the symmetric parts `(c(k) + c(-k))/2`, likewise.
+    /// Fills `out` with the symmetric parts `(c(k) + c(-k))/2` at the same offsets.
     fn fill_symmetric_row(&self, kx: i64, ky: i64, out: &mut [f64]);
 
     /// Whether `c(k) = c(-k)` to within [`SYMMETRY`].

@@ -1,6 +1,6 @@
 //! Lengths of fast transforms.
 
-/// The longest stage of this crate.
+/// The largest radix of a stage.
 pub(crate) const LONGEST: usize = 5;
 
 /// Work of a transform of length `2^a 3^b 5^c` by rustfft relative to one of `2^a 3^b` with many twos: measured in single precision, where it
@@ -53,7 +53,7 @@ pub fn have_stages((px, py): (usize, usize)) -> bool {
     px % 2 == 0 && has_stages(px / 2) && has_stages(py)
 }
 
-/// Whether there are stages for a length: not up to the longest radix, where one stage suffices.
+/// Whether there are stages for a length. There are none up to the largest radix, where one stage suffices.
 fn has_stages(length: usize) -> bool {
     let without = |mut rest: usize, prime: usize| {
         while rest > 0 && rest % prime == 0 {

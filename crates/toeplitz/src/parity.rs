@@ -99,7 +99,8 @@ impl ParityProduct {
         Ok(spectrum)
     }
 
-    /// S, `[bin in x][bin in y]`, both >= 0, of the kernel tabulated at offsets `[ky][kx] >= 0`, `mx` in a row: those of a whole period.
+    /// Computes S, `[bin in x][bin in y]`, both >= 0, from a kernel tabulated at offsets `[ky][kx] >= 0`, `mx` in a row. Offsets beyond the table are
+    /// 0.
     pub fn of_kernel(
         &self,
         table: &[f64],
@@ -156,7 +157,7 @@ impl ParityProduct {
         }
     }
 
-    /// The sum over loads, back in y: `[iy][bin in x]`, of the first bins in x and in y, which alone are not 0.
+    /// The sum over loads, transformed back in y: `[iy][bin in x]`. Only the first `in_x` bins in x and `in_y` bins in y are not 0.
     pub fn in_x<'a>(
         &self,
         terms: impl Iterator<Item = Term<'a>> + Clone,
@@ -188,7 +189,8 @@ impl ParityProduct {
         }
     }
 
-    /// Back in x: rows of `out`, `mx` values each, times a factor, of their bins `[row][bin in x >= 0]`, of which `left` are not 0.
+    /// Transforms back in x, with a factor: from bins `[row][bin in x >= 0]`, the first `left` of which are not 0, to rows of `out` with `mx` values
+    /// each.
     pub fn back(
         &self,
         bins: &[Complex<f64>],

@@ -50,7 +50,7 @@ pub(crate) fn shared<P: Plan>(length: usize, make: impl FnOnce() -> Result<P>) -
     Ok(plan)
 }
 
-/// Forgets the least recently used plans beyond the bound.
+/// Drops the least recently used plans beyond the bound.
 fn shrink(known: &mut Vec<Known>) {
     let (mut all, most) = (known.iter().map(|known| known.bytes).sum::<usize>(), ALLOWED.load(Ordering::Relaxed));
     let mut old = 0;

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! Each of the `px/2 + 1` bins kx has a matrix of my by my: real if the coefficients are even in x, else a real and an imaginary one. These are
-//! some `my^2 mx` numbers, twice as many if not even. A product multiplies each of those of the loaded rows by a complex number. To read them takes
-//! longer than the transforms.
+//! some `my^2 mx` numbers, twice as many if not even. A product multiplies each number in the loaded rows by a complex number. Reading the matrices
+//! takes longer than the transforms.
 
 use std::ops::Range;
 

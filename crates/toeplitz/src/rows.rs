@@ -1,4 +1,4 @@
-//! The transforms in x: of the rows with pressures only, and back.
+//! The transforms in x: of the rows with pressures, and back to all rows.
 
 use std::ops::Range;
 

@@ -169,7 +169,7 @@ impl<'a> Transforms<'a> {
         self.threads.for_each_row(symbol, PAIRS * 2 * py, pieces, |block, out, piece| {
             let first = PAIRS * 2 * block;
             let block = &mut piece.column[..out.len() / 2];
-            // a + i b, and what its rows -ky hold.
+            // The values of a + i b in the rows ky and -ky.
             fill_pairs((in_x, nb), my, first, (block, py), |a: Complex<f64>, b: Complex<f64>| {
                 [Complex::new(a.re - b.im, a.im + b.re), Complex::new(a.re + b.im, b.re - a.im)]
             });

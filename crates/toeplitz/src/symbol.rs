@@ -22,7 +22,7 @@ use par::memory::{keep, unwritten};
 use par::threads::Threads;
 use par::Result;
 
-/// Names its memory in messages.
+/// The name of this memory in messages.
 pub(crate) const SYMBOL: &str = "the operator's spectrum";
 
 /// Values that are converted at a time.

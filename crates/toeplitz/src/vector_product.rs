@@ -26,7 +26,7 @@ use crate::workspace::{Memory, Piece, Room};
 use par::threads::Threads;
 use par::Result;
 
-/// The shortest periods with stages: px/2 and py exceed the longest radix, 5.
+/// The shortest periods with stages: px/2 and py exceed the largest radix, 5.
 const SHORTEST: (usize, usize) = (12, 6);
 
 /// Products of two components on a grid of `mx * my` elements.

@@ -99,9 +99,9 @@ impl<T: Real> Memory<T> {
 }
 
 impl<T: Real> Piece<T> {
-    /// Guesses the address of the next block after block b, whose address is `b_at`. Blocks have `length` values. A thread goes on by as many blocks
-    /// as it came by. If it did not move, or if that is beyond the ends, the guess is the neighbour of b away from the nearer end. Used to prefetch
-    /// only.
+    /// Guesses the address of the next block after block b, whose address is `b_at`. Blocks have `length` values. A thread that has advanced by some
+    /// blocks advances by as many again. If it did not move, or if that is beyond the ends, the guess is the neighbour of b away from the nearer end.
+    /// Used to prefetch only.
     pub(crate) fn next_block(
         &self,
         b_at: *const Complex<T>,

@@ -223,7 +223,7 @@ fn the_inverse_of_a_circulant_undoes_its_product() {
     let q = [values(grid, 1), values(grid, 2)];
     let u = apply(&there, [&q[0], &q[1]]);
     let again = apply(&back, [&u[0], &u[1]]);
-    // Its eigenvalues lie between 0.75 and 47. So errors of the first product, relative to sums of 50, grow by 1/0.75, and those of the second add to them.
+    // Its eigenvalues lie between 0.75 and 47. So errors of the first product, relative to sums of 50, grow by 1/0.75; those of the second are added.
     for (q, again) in q.iter().flatten().zip(again.iter().flatten()) {
         assert!((q - again).abs() <= 200.0 * allowed::<f64>(grid), "{q} {again}");
     }

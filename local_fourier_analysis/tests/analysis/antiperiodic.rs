@@ -27,7 +27,7 @@ pub struct Antiperiodic {
 }
 
 impl Antiperiodic {
-    /// n x n elements of level `l` of a hierarchy.
+    /// The equations on n x n elements of level `l` of a hierarchy.
     pub fn new(dx: f64, dy: f64, l: usize, n: usize) -> Antiperiodic {
         const REACH: i64 = 400;
         let size = (1 << l) as f64;
@@ -55,7 +55,7 @@ impl Antiperiodic {
         Antiperiodic { grid, whole: matrix(0), before: matrix(1), diagonal: half_space.at(0, 0) }
     }
 
-    /// The error that one sweep leaves.
+    /// The matrix that maps an error to the error after one sweep.
     fn sweep(&self, kind: SmootherKind, omega: f64) -> Mat<f64> {
         let n = self.grid.len();
         let one = Mat::<f64>::identity(n, n);
@@ -82,7 +82,7 @@ impl Antiperiodic {
     }
 }
 
-/// The error that a cycle leaves.
+/// The matrix that maps an error to the error after a cycle.
 fn cycle(levels: &[Antiperiodic], shape: &CycleShape) -> Mat<f64> {
     let (level, coarser) = (&levels[0], &levels[1..]);
     let n = level.grid.len();

@@ -1,5 +1,4 @@
-//! Local Fourier analysis: the symbols against sums of coefficients, the cycles against matrices, the factors against what
-//! actual sweeps and cycles do.
+//! Local Fourier analysis: symbols compared with sums of coefficients, cycles with matrices, and factors with actual sweeps and cycles.
 
 mod antiperiodic;
 
@@ -23,12 +22,12 @@ fn shape(smoother: SmootherKind, relaxation: f64, (pre_sweeps, post_sweeps): (us
     CycleShape { smoother, relaxation, pre_sweeps, post_sweeps, coarsest: 4 }
 }
 
-/// The factor that the analysis of two grids gives for square elements.
+/// The two-grid factor of the analysis for square elements.
 fn two_grid(across: [usize; 2], shape: &CycleShape) -> f64 {
     Analysis::new(1.0, 1.0, across, 2).unwrap().convergence_factor(shape)
 }
 
-/// A(t) and L(t) by adding up coefficients, which a smooth window ends.
+/// A(t) and L(t) as sums of coefficients with a smooth window.
 fn windowed_sums(half_space: &HalfSpace, reach: i64, (tx, ty): (f64, f64)) -> (Complex<f64>, Complex<f64>) {
     let (mut whole, mut before) = (Complex::default(), Complex::default());
     for ky in -reach..=reach {
@@ -51,8 +50,8 @@ fn the_symbols_are_the_sums_of_the_coefficients() {
             let value = symbol.at(t.0, t.1);
             let (coarse, fine) = (windowed_sums(&half_space, 120, t), windowed_sums(&half_space, 240, t));
             for (exact, coarse, fine) in [(value.whole.into(), coarse.0, fine.0), (value.before, coarse.1, fine.1)] {
-                // The error of a smooth window falls off faster than any power of its reach: twice the reach more than halves
-                // it, so that the difference of the two sums bounds it. 1e-12: rounding of 2e5 terms.
+                // The error of a smooth window falls off faster than any power of its reach. So twice the reach more than halves it, and the
+                // difference of the two sums bounds it. 1e-12 is the rounding of 2e5 terms.
                 let tolerance = (coarse - fine).norm() + 1e-12;
                 assert!(tolerance < 1e-4, "{t:?}: the sums are known to {tolerance}");
                 assert!((exact - fine).norm() <= tolerance, "{t:?}: {exact} for {fine}, known to {tolerance}");
@@ -61,9 +60,9 @@ fn the_symbols_are_the_sums_of_the_coefficients() {
     }
 }
 
-/// The FFT smoother's symbol 1 - omega takes M A to be 1 away from the boundary. Its circulant ends the coefficients at half a
-/// period n, where they are 2/n of c dx dy, with a kink of their slope: relative to A(t) that is less than 4/n for the waves
-/// it is to smooth, and less on a larger grid.
+/// The FFT smoother's symbol 1 - omega assumes that M A is 1 away from the boundary. Its circulant ends the coefficients at half a period n, where
+/// they are 2/n of c dx dy, with a kink of their slope. Relative to A(t) this is less than 4/n for the waves that it smooths, and less on a larger
+/// grid.
 #[test]
 fn the_eigenvalues_of_the_circulant_are_near_the_symbol() {
     let deviation = |n: usize| {
@@ -77,7 +76,7 @@ fn the_eigenvalues_of_the_circulant_are_near_the_symbol() {
             let t = |j: usize| 2.0 * std::f64::consts::PI * j as f64 / n as f64;
             let mut p: Vec<f64> = (0..n * n).map(|i| ((i % n) as f64 * t(jx) + (i / n) as f64 * t(jy)).cos()).collect();
             inverse.apply_in_place(&mut p, &mut workspace);
-            // the wave is 1 at element 0
+            // The wave is 1 at element 0.
             worst = worst.max((p[0] * symbol.at(t(jx), t(jy)).whole - 1.0).abs());
         }
         worst
@@ -86,8 +85,8 @@ fn the_eigenvalues_of_the_circulant_are_near_the_symbol() {
     assert!(coarse <= 4.0 / 32.0 && fine <= 4.0 / 64.0 && fine < coarse, "{coarse} and {fine}");
 }
 
-/// Waves that change sign after eight elements, two and three grids: 64 unknowns, whose matrices are made of the coefficients'
-/// direct sums and of the library's transfers, against the same factors by symbols.
+/// Waves that change sign after eight elements, on two and three grids: matrices of 64 unknowns, from direct sums of the coefficients and the
+/// transfers of the library, have the factors of the symbols.
 #[test]
 fn the_factors_are_the_spectral_radii_of_matrices() {
     for (dx, dy) in [(1.0, 1.0), (1.0, 0.6)] {
@@ -99,7 +98,7 @@ fn the_factors_are_the_spectral_radii_of_matrices() {
                     let shape = shape(kind, omega, sweeps);
                     let expected = antiperiodic::spectral_radius(&levels[..depth], &shape);
                     let factor = analysis.convergence_factor(&shape);
-                    // The windowed sums are good to 1e-6; Gelfand's formula to 1e-5; 1e-5 of a nilpotent matrix' rounding.
+                    // The windowed sums have an error of 1e-6, Gelfand's formula of 1e-5. Another 1e-5 is the rounding of a nilpotent matrix.
                     let tolerance = 3e-5 * expected + 1e-5;
                     let what = format!("{kind:?} {omega} {sweeps:?}, {depth} grids");
                     assert!((factor - expected).abs() <= tolerance, "{what}: {factor} for {expected}");
@@ -109,9 +108,9 @@ fn the_factors_are_the_spectral_radii_of_matrices() {
     }
 }
 
-/// The packet `e^(i k t) exp(-|k|^2/(2 sigma^2))` in the middle of a full grid holds frequencies of variance 1/sigma^2 about t: one
-/// sweep multiplies its centre by S(t) + (S_xx + S_yy)/(2 sigma^2) + .. The grid ends after 4 sigma, where it is e^-8. Neither t nor
-/// t + (pi, pi) is within 4/sigma of 0, where the symbols have a singularity.
+/// The packet `e^(i k t) exp(-|k|^2/(2 sigma^2))` in the middle of a full grid contains frequencies of variance 1/sigma^2 about t. One sweep
+/// multiplies its centre by S(t) + (S_xx + S_yy)/(2 sigma^2) + .. The grid ends after 4 sigma, where the packet is e^-8. Neither t nor t + (pi, pi)
+/// is within 4/sigma of 0, where the symbols have a singularity.
 #[test]
 fn a_sweep_of_the_library_does_to_a_wave_what_the_analysis_says() {
     const M: usize = 128;
@@ -130,7 +129,7 @@ fn a_sweep_of_the_library_does_to_a_wave_what_the_analysis_says() {
         for omega in [1.0, 0.7] {
             let symbol = analysis.amplification(kind, omega);
             for (jx, jy) in [(13, 18), (8, 3), (8, 28), (24, 9), (5, 12)] {
-                // Even and odd elements next to the centre, real and imaginary part of the wave.
+                // Even and odd elements next to the centre have the real and the imaginary part of the wave.
                 let (mut left, centre) = ([Complex::<f64>::default(); 2], M / 2 * M + M / 2);
                 for part in 0..2 {
                     let wave = |i: usize| {
@@ -153,7 +152,7 @@ fn a_sweep_of_the_library_does_to_a_wave_what_the_analysis_says() {
                 let s = |dx: i64, dy: i64| symbol[at(jy as i64 + dy) * n + at(jx as i64 + dx)];
                 let (expected, spacing) = (s(0, 0), tx[1] - tx[0]);
                 let curvature = [(1, 0), (0, 1)].map(|(x, y)| (s(x, y) - 2.0 * expected + s(-x, -y)).abs());
-                // The modulus bends otherwise than the complex symbol, by S_x^2/|S|: slopes count as well.
+                // The second differences of the modulus differ from those of the complex symbol by S_x^2/|S|, so slopes count as well.
                 let slope = [(1, 0), (0, 1)].map(|(x, y)| (0.5 * (s(x, y) - s(-x, -y))).powi(2) / expected);
                 let bend = curvature.iter().chain(&slope).sum::<f64>() / (spacing * spacing);
                 let tolerance = bend / (2.0 * SIGMA * SIGMA) + (-8f64).exp();
@@ -164,10 +163,10 @@ fn a_sweep_of_the_library_does_to_a_wave_what_the_analysis_says() {
     }
 }
 
-/// Gauss-Seidel's sums along a row are cut off where the contact area ends, in the mean a quarter of a row away, and never
-/// farther than a row: so the factors lie between those for a quarter of the elements across and for all of them. 2%: of the
-/// shortest waves the area holds those up to pi (1 - 1/n), which changes what is even about pi by about (pi/n)^2/2. Red-black order leaves
-/// 1 - const/A of the longest wave, which on a square may be 1.25 of what the analysis has (see the test of Jacobi).
+/// Gauss-Seidel's sums along a row end where the contact area ends: a quarter of a row away in the mean, and never farther than a row. So the factors
+/// lie between those for a quarter of the elements across and for all of them. 2%: the area contains waves up to pi (1 - 1/n) only, which changes an
+/// even function about pi by about (pi/n)^2/2. Red-black order leaves 1 - const/A of the longest wave, which on a square may be 1.25 times as large
+/// as in the analysis (see the test of Jacobi).
 #[test]
 fn cycles_converge_by_the_factors_of_the_analysis() {
     let grid = Grid::new(32, 32, 1.0, 1.0).unwrap();
@@ -196,20 +195,20 @@ fn gauss_seidel_is_slower_along_longer_rows_only() {
         let grid = Grid::new(mx, my, 1.0, 1.0).unwrap();
         measured::factor(&grid, &half_space(&grid), &vec![true; mx * my], shape, (60, 20))
     };
-    // measured 0.46 and 0.38 for 128 x 32: as far apart as the analysis has it, to half of that
+    // Measured 0.46 and 0.38 for 128 x 32. The difference is that of the analysis, to half of it.
     let predicted = two_grid([128, 32], &shape) - two_grid([32, 128], &shape);
     let found = along(128, 32) - along(32, 128);
     assert!(predicted > 0.05 && (found / predicted - 1.0).abs() <= 0.5, "{found} for {predicted}");
 
-    // the smoothing factor grows with log n: by as much from 64 to 256 as from 16 to 64, to within a half
+    // The smoothing factor grows with log n: from 64 to 256 by as much as from 16 to 64, to within a half.
     let smoothing = |across| Analysis::new(1.0, 1.0, [across, 16], 2).unwrap().smoothing_factor(GaussSeidel, 0.8, 1);
     let (small, middle, large) = (smoothing(16), smoothing(64), smoothing(256));
     let growth = (large - middle) / (middle - small);
     assert!(0.5 < growth && growth < 1.0 && large < 1.0, "{small}, {middle}, {large}");
 }
 
-/// On a square of side l the largest eigenvalue of A is between the mean of 1/r over pairs of points, 2.973 c l, and its
-/// largest mean over one, 4 asinh(1) c l = 3.525 c l; the analysis has 2 pi/(pi/sqrt 2) c l = 2.828 c l: 1.05 to 1.25 of it.
+/// On a square of side l the largest eigenvalue of A lies between the mean of 1/r over pairs of points, 2.973 c l, and the largest mean over one of
+/// them, 4 asinh(1) c l = 3.525 c l. The analysis has 2 pi/(pi/sqrt 2) c l = 2.828 c l, so that the ratio is 1.05 to 1.25.
 #[test]
 fn jacobi_diverges_by_the_factor_of_the_analysis() {
     let n = 32;
@@ -231,11 +230,11 @@ fn jacobi_diverges_by_the_factor_of_the_analysis() {
             p.iter_mut().for_each(|p| *p /= growth);
         }
         let ratio = (growth + 1.0) / (predicted + 1.0);
-        // 1%: elements instead of points
+        // 1%: there are elements instead of points.
         assert!((1.04..=1.26).contains(&ratio), "omega {omega}: {growth} for {predicted}");
 
-        // Two grids hold it; with three, V(1,1) has four sweeps over long waves on two grids, each of them off by the ratio
-        // (and a little more, as 1 is subtracted): 1 to 1.3^4.
+        // Two grids converge. With three, V(1,1) has four sweeps over long waves on two grids. Each of them differs by the ratio (and a little more,
+        // because 1 is subtracted): 1 to 1.3^4.
         let shape = shape(Jacobi, omega, (1, 1));
         assert!(two.convergence_factor(&shape) < 0.7);
         let predicted = Analysis::new(1.0, 1.0, [n, n], 3).unwrap().convergence_factor(&shape);
@@ -243,7 +242,7 @@ fn jacobi_diverges_by_the_factor_of_the_analysis() {
         let found = measured::factor(&grid, &influence, &[true; 1024], three, (60, 20));
         assert!(predicted > 2.0 && found > predicted && found < 1.3f64.powi(4) * predicted, "{found} for {predicted}");
     }
-    // A better smoother than Gauss-Seidel all the same, for what it is called so.
+    // It is nevertheless a better smoother than Gauss-Seidel, as its smoothing factor shows.
     let smoothing = |kind| Analysis::new(1.0, 1.0, [n, n], 2).unwrap().smoothing_factor(kind, 0.8, 1);
     assert!(smoothing(Jacobi) < smoothing(GaussSeidel));
 }

@@ -10,7 +10,7 @@ use super::image::Image;
 /// Dumps of this process so far.
 static COUNT: AtomicU64 = AtomicU64::new(0);
 
-/// Writes a file under another name, then gives it its own: nobody sees a part of one. Returns its path, or why there is none.
+/// Writes a file under a temporary name, then renames it, so that no reader finds an unfinished file. Returns its path, or the reason of the failure.
 pub(super) fn write(path: &[u8], head: &str, image: &Image) -> Result<String, String> {
     let number = COUNT.fetch_add(1, Ordering::Relaxed) + 1;
     let path = expanded(path, number);
@@ -27,7 +27,7 @@ pub(super) fn write(path: &[u8], head: &str, image: &Image) -> Result<String, St
     })
 }
 
-/// Where a link leads, else the path itself. Refuses what is there and is no file: a device or a pipe would be replaced.
+/// The target of a link, otherwise the path itself. Refuses a place that is not a file: a device or a pipe would be replaced.
 fn place(path: PathBuf) -> Result<PathBuf, String> {
     if path.file_name().is_none() {
         return Err(format!("{} names no file", path.display()));
@@ -43,7 +43,7 @@ fn place(path: PathBuf) -> Result<PathBuf, String> {
     }
 }
 
-/// Where a link leads; its file need not exist yet.
+/// The target of a link. Its file need not exist yet.
 fn target(link: &Path) -> std::io::Result<PathBuf> {
     link.canonicalize().or_else(|why| match why.kind() {
         std::io::ErrorKind::NotFound => {

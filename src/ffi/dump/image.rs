@@ -8,7 +8,7 @@ use crate::ffi::member::{Kind, Place};
 use crate::ffi::members::structure;
 use crate::ffi::structs::LARGEST;
 
-/// The text for a pointer to something that is not in the file.
+/// The text for a pointer whose target is not in the file.
 pub(super) const UNREAD: &str = "unread";
 
 /// The text that lists structs and arrays, and the bytes of the arrays, in order.
@@ -16,11 +16,11 @@ pub(super) const UNREAD: &str = "unread";
 pub(super) struct Image {
     pub text: String,
     pub data: Vec<u8>,
-    /// Each struct or array that has a number: where it stands, and its kind.
+    /// The structs and arrays that have a number: address and kind of each.
     items: Vec<(usize, Option<&'static str>)>,
-    /// So many of these are written.
+    /// The number of items that are written.
     written: usize,
-    /// Whether memory for a copy could not be had.
+    /// Whether there was no memory for a copy.
     pub lacks_memory: bool,
 }
 
@@ -52,7 +52,7 @@ impl Image {
             self.written += 1;
             let number = self.written;
             match kind {
-                // SAFETY: by the caller; it was looked at by `struct_at`.
+                // SAFETY: by the caller; `struct_at` has checked it.
                 Some(kind) => unsafe { self.write_struct(number, at, kind, regions) },
                 // SAFETY: by the caller: the call reads or writes what its regions say.
                 None => unsafe { self.write_array(number, at, regions) },
@@ -67,7 +67,7 @@ impl Image {
         self.add_bytes(values.len() * 8, values.iter().flat_map(|value| value.to_le_bytes()));
     }
 
-    /// The same of integers.
+    /// Adds an array of integers of the library's own.
     pub fn add_integers(&mut self, name: &str, values: &mut dyn ExactSizeIterator<Item = i32>) {
         let number = self.own_item(name);
         self.line(&format!("array {number} int32 {}", values.len()));
@@ -119,7 +119,7 @@ impl Image {
         UNREAD.into()
     }
 
-    /// The number of an array; "unread" where the call has not told how long it is.
+    /// The number of an array; "unread" if the call has not registered its length.
     fn array_at(&mut self, at: usize, regions: &Regions) -> String {
         match (at, regions.at(at)) {
             (0, _) => "NULL".into(),

@@ -49,7 +49,7 @@ const TANGENTIAL_TABLES: [&str; 5] = [
     "handle.tangential_yz",
 ];
 
-/// And those of tables per loaded row.
+/// The names of the tangential coefficients per loaded row of a handle.
 const TANGENTIAL_ROW_TABLES: [&str; 3] =
     ["handle.tangential_rows_xx", "handle.tangential_rows_yy", "handle.tangential_rows_xy"];
 
@@ -98,7 +98,7 @@ impl<'a> Recording<'a> {
         }
     }
 
-    /// The same, and what matters of the handle that solves: its last result where the call `goes_on` from that.
+    /// Keeps the arguments as [`keep`](Self::keep), with the set-up of the handle that solves, and its last result if the call `goes_on` from that.
     pub fn keep_with(&mut self, regions: &Regions, solver: &Solver, goes_on: bool) {
         if !self.is_wanted() || self.image.is_some() {
             return;
@@ -128,7 +128,7 @@ impl<'a> Recording<'a> {
         }
     }
 
-    /// Writes the file of a call that failed. Its message tells where it is.
+    /// Writes the file of a call that failed, and adds its path to the message.
     fn end(&mut self, ended: Result<contact_normal_status, Refusal>) -> Result<contact_normal_status, Refusal> {
         match ended {
             Ok(status) if self.is_wanted() && status != CONTACT_NORMAL_OK => {

@@ -9,7 +9,7 @@ use crate::ffi::members::structure;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Target {
     Null,
-    /// Something that is not in the file.
+    /// A target that is not in the file.
     Unread,
     /// The item of this index.
     Item(usize),
@@ -22,7 +22,7 @@ pub(super) enum Value {
     Int64(i64),
     Double(f64),
     Pointer(Target),
-    /// Whether the host had given something.
+    /// Whether the host had set the member.
     OfTheHost(bool),
 }
 
@@ -34,7 +34,7 @@ pub(super) enum Item {
         room: usize,
         members: Vec<(Place, Value)>,
     },
-    /// So many values of so many bytes, which begin at this byte of the data.
+    /// `count` values of `size` bytes each, from byte `at` of the data on.
     Array {
         size: usize,
         count: usize,
@@ -56,7 +56,7 @@ pub(super) struct Parsed {
     pub arguments: Vec<(String, Target)>,
     pub integers: Vec<(String, i64)>,
     pub items: Vec<Item>,
-    /// Bytes of the arrays that were told so far.
+    /// Bytes of the arrays so far.
     data: usize,
 }
 
@@ -88,7 +88,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<(Parsed, &[u8]), String> {
     }
 }
 
-/// The `number`-th word of a line, as the type that is asked for.
+/// The `number`-th word of a line, converted to `T`.
 fn word<T: std::str::FromStr>(said: &str, number: usize) -> Result<T, String> {
     let word = said.split(' ').nth(number).ok_or("a word is missing")?;
     word.parse().map_err(|_| format!("what is \"{word}\"?"))
@@ -173,7 +173,7 @@ impl Parsed {
     }
 }
 
-/// A message of several lines stands in one.
+/// The message from its line in the file, which has the characters `\` and `n` for the end of a line, and `\\` for a backslash.
 fn unescaped(said: &str) -> String {
     let (mut text, mut characters) = (String::new(), said.chars());
     while let Some(character) = characters.next() {

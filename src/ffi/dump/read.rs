@@ -70,27 +70,27 @@ impl Dump {
         self.structure("scene")
     }
 
-    /// The options of the call, likewise. What belonged to the host is NULL: callbacks and their data.
+    /// The options of the call, likewise. Callbacks and their data, which belonged to the host, are NULL.
     pub fn options(&self) -> Option<&contact_normal_options> {
         self.structure("options")
     }
 
-    /// The arrays of the call, likewise.
+    /// The struct of the arrays of the call, likewise.
     pub fn fields(&self) -> Option<&contact_normal_fields> {
         self.structure("fields")
     }
 
-    /// So many values that a member of a struct points to; none where the file does not hold as many.
+    /// The `count` values that a member of a struct points to. None if the file holds fewer.
     #[allow(clippy::not_unsafe_ptr_arg_deref)] // nothing but the memory of the file is read
     pub fn doubles_at(&self, at: *const f64, count: usize) -> Option<Vec<f64>> {
-        // SAFETY: the memory of so many values.
+        // SAFETY: the memory holds `count` values.
         self.holds(at, count).then(|| unsafe { std::slice::from_raw_parts(at, count) }.to_vec())
     }
 
-    /// The same of integers.
+    /// The `count` integers that a member of a struct points to. None if the file holds fewer.
     #[allow(clippy::not_unsafe_ptr_arg_deref)] // nothing but the memory of the file is read
     pub fn integers_at(&self, at: *const i32, count: usize) -> Option<Vec<i32>> {
-        // SAFETY: the memory of so many values.
+        // SAFETY: the memory holds `count` values.
         self.holds(at, count).then(|| unsafe { std::slice::from_raw_parts(at, count) }.to_vec())
     }
 
@@ -107,7 +107,7 @@ impl Dump {
         unsafe { self.pointer::<T>(name).ok()?.as_ref() }
     }
 
-    /// Where the struct of an argument stands.
+    /// A pointer to the struct of an argument.
     pub(super) fn pointer<T: Versioned>(&self, name: &str) -> Result<*mut T, String> {
         match self.target(name) {
             Target::Null => Ok(std::ptr::null_mut()),
@@ -117,7 +117,7 @@ impl Dump {
         }
     }
 
-    /// Where the array of an argument stands.
+    /// A pointer to the array of an argument.
     pub(super) fn array<T>(&self, name: &str) -> Result<*mut T, String> {
         match self.target(name) {
             Target::Null => Ok(std::ptr::null_mut()),
@@ -129,7 +129,7 @@ impl Dump {
         }
     }
 
-    /// A value that was an argument.
+    /// The integer argument of this name.
     pub(super) fn integer(&self, name: &str) -> Result<i32, String> {
         let found = self.parsed.integers.iter().find(|(known, _)| known == name);
         let value = found.ok_or_else(|| format!("{name} is not in the file"))?.1;
@@ -140,7 +140,7 @@ impl Dump {
     pub fn doubles(&self, name: &str) -> Option<Vec<f64>> {
         let Target::Item(item) = self.target(name) else { return None };
         let Some(Item::Array { size: 8, count, .. }) = self.parsed.items.get(item) else { return None };
-        // SAFETY: the memory of so many values.
+        // SAFETY: the memory holds `count` values.
         Some(unsafe { std::slice::from_raw_parts(self.starts[item].cast::<f64>(), *count) }.to_vec())
     }
 
@@ -206,7 +206,7 @@ impl Dump {
         Ok(())
     }
 
-    /// Where an item stands that a member of this kind may point to.
+    /// The address of an item to which a member of this kind may point.
     fn place(&self, kind: Kind, item: usize) -> Result<usize, String> {
         let fits = match (kind, self.parsed.items.get(item)) {
             (Kind::Structs(name), Some(Item::Struct { .. })) => is_struct(&self.parsed.items, item, name),
@@ -221,7 +221,7 @@ fn is_struct(items: &[Item], item: usize, name: &str) -> bool {
     matches!(items.get(item), Some(Item::Struct { kind, .. }) if kind.name == name)
 }
 
-/// Bytes of memory for an item. A struct has room for whatever size it declares.
+/// Bytes of memory for an item. A struct has room for the largest size that a struct may declare.
 fn room(item: &Item) -> usize {
     match item {
         Item::Struct { room, .. } => LARGEST.max(*room),

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! with `g = min(mu p, yield limit + hardening |s|)`, mu by a [`FrictionLaw`](crate::effects::FrictionLaw). mu and the yield limit are transported
-//! with the particles of the interface: in steady rolling along each row from the leading edge, otherwise from the step before. Creepages or forces
-//! are prescribed. Coulomb's friction does not use this module.
+//! with the particles of the interface: in steady rolling along the direction of rolling from the leading edge, otherwise from the step before.
+//! Creepages or forces are prescribed. Coulomb's friction does not use this module.
 //!
 //! If bounds fall with the slip, there may be several solutions. This module finds one. A single element has one solution if the largest slope of g
 //! times its coefficient on itself (`law_slope` of a report) is below 1. From 0.5 on the iteration may end without its certificate.
@@ -22,8 +22,8 @@
 
 /// From this `law_slope` on there may be several solutions, and the iteration may end without its certificate.
 pub const STEEP: f64 = 0.5;
-/// With this slope, times an element's influence on itself, or more, bounds rise too steeply to lag behind the slips: both would alternate. On 40 x 40
-/// elements, which move together, they do from 0.1 on.
+/// From this slope times an element's influence on itself on, bounds rise too steeply to lag behind the slips: both would alternate. On 40 x 40
+/// elements, which move together, they alternate from 0.1 on.
 const RISING: f64 = 0.05;
 
 mod bounds;

@@ -7,7 +7,7 @@
 //! With given forces both steps are bordered by the creepages. The iteration then begins with the solution of Coulomb's law, the least
 //! creepage that carries the forces.
 //!
-//! If bounds rise steeply with the slip, by hardening of a layer or by a memory of lower bounds, they must not lag. Then all steps are Newton's.
+//! If a layer hardens or softens, or bounds rise steeply by a memory of lower bounds, bounds must not lag. Then all steps are Newton's.
 //!
 //! The result lies on its circles (unless bounds rise steeply), with a fresh product. It has two certificates: that of the conditions with
 //! fixed bounds `g = |q|`, and `R_g = rms(|q| - g(slip))/rms g(0)` over the slip area, by a march with the slips of that product.
@@ -96,7 +96,7 @@ fn iterate(
 ) -> Result<Outcome> {
     let Goal { tolerance, limit, watch, .. } = goal;
     let (made, cap) = (problem.operators.products, 1.0 / compliance(problem));
-    // A bound that hardens, or rises steeply by its memory, must not lag behind the slip.
+    // The bound of a layer that hardens or softens, or that rises steeply by its memory, must not lag behind the slip.
     let hardens = march.law.layer.is_some_and(|layer| layer.hardening != 0.0) || march.rises > RISING;
     let mut course = Course { least: f64::INFINITY, since: 0, held: 0, was_newton: false, hardens };
     let mut is_fresh = false;

@@ -20,9 +20,9 @@ const S_MAX: f64 = 22.0;
 pub struct Hankel {
     /// The width of a panel.
     width: f64,
-    /// Those of `F_1 sqrt(1 + rho^2/4)`, on the panels of small rho.
+    /// The coefficients of `F_1 sqrt(1 + rho^2/4)`, on the panels of small rho.
     layer: Vec<[f64; N]>,
-    /// Those of `F_B0 rho`, on all panels.
+    /// The coefficients of `F_B0 rho`, on all panels.
     substrate: Vec<[f64; N]>,
 }
 

@@ -14,8 +14,9 @@ pub(super) fn first_of_half(grid: &Grid, ky: usize) -> usize {
     }
 }
 
-/// The first offset in x of row ky whose base is the substrate of a layer of thickness t: at distances from t on. On elements longer than t all have
-/// it, the loaded one, too: of a layer on a rigid body there only t times its compression is left, which is no difference of larger numbers.
+/// The first offset in x of row ky whose base is the substrate of a layer of thickness t: at distances from t on. On elements longer than t all
+/// offsets have this base, also that of the loaded element. For a layer on a rigid body only its compression times t remains, without a difference of
+/// large numbers.
 pub(super) fn first_of_substrate(t: f64, grid: &Grid, ky: usize) -> usize {
     if t <= grid.dx.max(grid.dy) {
         0

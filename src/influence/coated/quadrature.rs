@@ -33,7 +33,7 @@ fn rule_at(zero: f64, mesh: f64) -> (f64, f64) {
     let t = mesh * zero / PI;
     let u = FRAC_PI_2 * t.sinh();
     let slope = u.tanh() + t * FRAC_PI_2 * t.cosh() / u.cosh().powi(2);
-    // x = zero + d: near the zero J0 by its Taylor series there, as J0(x) itself would be round-off.
+    // x = zero + d. Near the zero J0(x) follows from its Taylor series there, because J0(x) itself would be round-off.
     let fade = (-2.0 * u).exp();
     let d = -zero * 2.0 * fade / (1.0 + fade);
     let j1 = libm::j1(zero);

@@ -53,7 +53,7 @@ impl Base {
         }
     }
 
-    /// How often the difference of the half-spaces is added on the way to another base.
+    /// The factor on the difference of the half-spaces in a change of the base.
     pub(super) fn to(self, other: Base) -> f64 {
         match (self, other) {
             (Base::Layer, Base::Substrate) => 1.0,

@@ -94,7 +94,7 @@ impl Level {
     }
 }
 
-/// Zero outside the contact area.
+/// Sets values outside the contact area to 0.
 pub(super) fn clear_exterior(values: &mut [f64], contact: &[bool]) {
     values.iter_mut().zip(contact).filter(|(_, &inside)| !inside).for_each(|(value, _)| *value = 0.0);
 }

@@ -1,5 +1,5 @@
-//! Restarted GMRES (Saad & Schultz 1986) for the equations on a fixed contact area with an A that is not symmetric, as the caller's table may be:
-//! conjugate gradients would converge to something else or not at all.
+//! Restarted GMRES (Saad & Schultz 1986) for the equations on a fixed contact area with an A that is not symmetric, as the caller's table may be.
+//! Conjugate gradients would converge to a wrong solution or not at all.
 
 use super::conjugate_gradients::noise;
 use super::{InnerStop, Workspace};
@@ -64,8 +64,7 @@ impl Krylov {
         let (basis, w) = self.basis.split_at_mut((k + 1) * m);
         self.columns.resize((k + 1) * RESTART, 0.0);
         let column = &mut self.columns[k * RESTART..];
-        // The direction is orthogonalised twice, and its mean removed each time. No residual would show a mean that
-        // round-off leaves.
+        // The direction is orthogonalised twice, and its mean is removed each time. A mean left by round-off would not appear in the residual.
         for _ in 0..2 {
             project(w);
             for (h, v) in column.iter_mut().zip(basis.chunks_exact(m)) {

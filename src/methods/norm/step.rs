@@ -22,7 +22,8 @@ pub struct Norm {
     /// Restarts of this inner solve, and the true residual before the last.
     restarts: u32,
     last_residual: f64,
-    /// The inner tolerance as a fraction of the tolerance. It shrinks if a result leaves the complementarity above the tolerance.
+    /// The inner tolerance as a fraction of the tolerance. It shrinks if the residual is within the tolerance, but another measure of the result is
+    /// not.
     aim: f64,
     /// rms over C of the last change of p.
     update: f64,
@@ -149,8 +150,8 @@ fn start_from_zero<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<()> {
     Ok(())
 }
 
-/// Scales p on C to carry the force that the elements at their limit leave, and computes u = A p. No element is exchanged: the next exchange
-/// handles a p beyond its limit.
+/// Makes p on C carry the force that elements at their limit leave, by an added uniform pressure. If none is at its limit, a factor on p makes it
+/// carry the force. Then computes u = A p. No element is exchanged: the next exchange handles a p beyond its limit.
 fn refresh<S: AdmissibleSet>(task: &mut Task<'_, '_, S>) -> Result<()> {
     let Task { problem, state, set, .. } = task;
     let beside_limits = S::LIMITED && state.has_limited();

@@ -72,7 +72,7 @@ pub(super) struct FindForce {
     before: Known,
     /// The residual to which the next force is solved.
     tolerance: Option<f64>,
-    /// Whether steps along the change of p met the goal, and whether they failed.
+    /// Whether steps along the change of p met the goal or reduced the residual by much, and whether they failed.
     is_near: bool,
     has_failed: bool,
 }
@@ -206,7 +206,7 @@ impl FindForce {
 
     /// Iterates by approach, along the change of p in each step. Restores p on failure.
     fn run_along<S: AdmissibleSet>(&mut self, task: &mut LevelTask<'_, '_, S>, goal: &Goal) -> Result<End> {
-        // A fresh u is in double precision, otherwise in single precision.
+        // The pressures to restore on failure.
         let start = computed(task.state.p.iter().copied(), "pressures by approach")?;
         let last = Last { p: &self.before.p, u: None };
         let end = task.run(task.state.u_is, Some(last), goal)?;

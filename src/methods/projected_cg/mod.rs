@@ -1,5 +1,5 @@
-//! Projected, preconditioned conjugate gradients: the fastest way known to solve the whole problem on one grid, under nested
-//! iteration over the grids.
+//! Projected, preconditioned conjugate gradients. They solve the whole problem on one grid, and are the fastest method known for it. Nested iteration
+//! calls them on each grid.
 
 mod along;
 mod coarse_grids;

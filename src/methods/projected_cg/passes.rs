@@ -24,7 +24,8 @@ impl<T: Real> Iteration<T> {
         self.segments.find(&state.contact);
     }
 
-    /// With a prescribed force and no deflation direction: sets the approach to the mean over C of h + u, u being that after `update`.
+    /// With a prescribed force, for which there is no deflation direction: sets the approach to the mean over C of h + u, plus the shift with limits;
+    /// u is that after `update`.
     pub(super) fn fit_approach(&mut self, state: &mut State, update: &Update) {
         if matches!(state.load, Load::Approach(_)) {
             return;

@@ -68,7 +68,7 @@ impl Truncation {
         });
     }
 
-    /// Keeps the entries for later iterations.
+    /// Keeps the memory for later solves.
     pub(super) fn keep(&mut self) {
         keep([&mut self.gains]);
     }

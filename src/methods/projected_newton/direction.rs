@@ -45,7 +45,7 @@ impl ProjectedNewton {
             }
             let norm = dot(&self.r, &self.r).sqrt();
             if k == 0 {
-                // A few violating elements may be below the residual allowed in C: they are solved for all the same.
+                // A few violating elements may have a residual below the one allowed in C. Their equations are solved nevertheless.
                 let needed = WANTED_RESIDUAL_SHARE * task.goal.tolerance * scale;
                 target = if norm > needed { needed.max(RESIDUAL_RATIO * norm) } else { RESIDUAL_RATIO * norm };
             }

@@ -13,7 +13,7 @@ const COATING: f64 = 4e5;
 /// Per element and product: of the normal and of the tangential problem.
 const NORMAL: f64 = 10.0;
 const TANGENTIAL: f64 = 4.0;
-/// Per element: the coefficients that couple both problems of unlike bodies, in rolling; in a shift they take half.
+/// Per element: the coefficients that couple both problems of unlike bodies, in rolling. In a shift they take half, but count in full.
 const UNLIKE: f64 = 7200.0;
 /// Per element: the largest stress over all depths, with factors for tractions and for periodic scenes; the stiffness.
 const STRESS: f64 = 1000.0;

@@ -27,7 +27,8 @@ impl Neglected {
     /// friction, adhesion, a step in time, and a layer in place of a coating. Nor is a pressure limit: small grids do not resolve the peaks that
     /// reach it, and a limit that no element reaches changes nothing.
     ///
-    /// `progress` is told of the cycles on small grids; if it cancels, nothing is left out.
+    /// `progress` is called after the cycles on small grids. If it cancels the bill of the single omissions, nothing is left out. If it cancels a
+    /// later one, the omissions solved together count as not negligible.
     pub fn of(
         scene: &Scene<'_>,
         options: &Options,
@@ -87,7 +88,7 @@ impl Neglected {
     }
 }
 
-/// The quantities of [`KEPT`] that a scene has.
+/// The quantities that must not change: [`KEPT`], and the tangential force and the creepage if the scene has them.
 fn kept(scene: &Scene<'_>) -> Vec<Quantity> {
     let tangential = [Quantity::TangentialForce, Quantity::Creepage];
     KEPT.into_iter().chain(tangential.into_iter().filter(|quantity| quantity.check(scene).is_ok())).collect()

@@ -33,7 +33,7 @@ numbered! {
         Adhesion: "adhesion",
         /// The law of friction: the coefficient is that at rest everywhere.
         FrictionLaw: "friction_law",
-        /// The yield of a third body, which then carries all that friction does.
+        /// The yield of a third body. Without it friction alone bounds the tractions.
         FrictionLayer: "friction_layer",
         /// The relaxation of the bodies, which keep their instantaneous compliance.
         Visco: "visco",

@@ -197,7 +197,7 @@ impl<'s, 'a> SmallGrids<'s, 'a> {
             variant.costs.push(Cost { elements: grid.len() as f64, seconds, setup, products: found.work_units });
             (variant.effort, variant.bytes) = (effort, found.bytes as f64 * self.ratio);
             variant.has_peak = found.has_peak(&self.wanted);
-            // Where only finer grids touch, the 0 of a coarser one tells nothing.
+            // If contact occurs only on finer grids, the 0 of a coarser one is no information.
             let is_missed = |value: f64| value == 0.0 && found.is_apart && doublings < 0;
             for (q, quantity) in self.wanted.iter().enumerate() {
                 let value = found.values[q].map(|found| found.value);

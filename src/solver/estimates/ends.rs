@@ -34,7 +34,8 @@ use crate::sums::in_blocks;
 const STRAIGHT_EDGE: f64 = 0.55;
 const STEPPED_EDGE: f64 = 0.12;
 const EXACT_EDGE: f64 = 0.2;
-/// c' of a jump, in compliances of an element and its layer. Measured with balls on two halves, of compliances from 0 | 0.01 to 0 | 10: estimates are 2 to 5 times the error.
+/// c' of a jump, in compliances of an element and its layer. Measured with balls on two halves, of compliances from 0 | 0.01 to 0 | 10: estimates are
+/// 2 to 5 times the error.
 const BESIDE_JUMP: f64 = 4.0;
 /// The least part of an end at which the largest pressure grows with each finer grid: of a layer, and between patches.
 const SINGULAR_LAYER: f64 = 0.1;
@@ -150,7 +151,7 @@ struct Side {
 }
 
 impl Side {
-    /// The element so many steps beyond this side, or, if negative, away from it.
+    /// The element `steps` steps beyond this side, or, if negative, away from it.
     fn beyond(&self, steps: isize) -> Option<usize> {
         let at = self.across.at(self.place as isize + self.way * steps);
         at.map(|at| self.i + at - self.place * self.across.step)

@@ -6,18 +6,18 @@ use super::jumps::Line;
 use crate::contact::{Problem, State};
 use crate::direction::Direction;
 
-/// The surface has a kink where the second differences of two elements side by side exceed those beside them by this factor times the changes of those,
-/// and by this share of their mean: profiles that are measured or refined have ripples of some hundredths.
+/// The surface has a kink between two elements if their second differences exceed those beside them by more than KINK_RATIO times the changes of the
+/// latter, and by more than KINK_SHARE times the mean of the latter. Measured and refined profiles have ripples of some hundredths.
 const KINK_RATIO: f64 = 4.0;
 const KINK_SHARE: f64 = 0.5;
 
 /// The doublings of the elements in which a kink must add less than the error of the peak.
 const DOUBLINGS: f64 = 4.0;
 
-/// A kink of the surface adds this much to the pressure of an element on finer grids, or more; 0 without one.
+/// A lower bound on the additional pressure of an element on finer grids by a kink of the surface; 0 without a kink.
 ///
-/// Where the slope of the undeformed distance jumps by s, pressures are `E* s/(2 pi) ln(1/distance)` (a wedge: Johnson 1985, section 5.2). On a layer c
-/// that is softer than an element they are finite, but the kink lies anywhere in the element: `s d/(2 c)`.
+/// Where the slope of the undeformed distance jumps by s, pressures are `E* s/(2 pi) ln(1/distance)` (a wedge: Johnson 1985, section 5.2). On a layer
+/// c that is softer than an element they are finite, but the kink lies anywhere in the element: `s d/(2 c)`.
 pub fn missed(problem: &Problem, state: &State, at: usize) -> f64 {
     let (grid, layer) = (&state.grid, problem.layer(at));
     let is_soft = layer * problem.modulus() > grid.dx.min(grid.dy);
@@ -36,7 +36,7 @@ pub fn missed(problem: &Problem, state: &State, at: usize) -> f64 {
     each[0].max(each[1])
 }
 
-/// The jump of the steps of h from element to element, at the element number `place` of a line; 0 without a kink.
+/// The jump of the slope, as a change of the difference in h between neighbours, at element number `place` of a line; 0 without a kink.
 fn jump(state: &State, line: Line, place: isize) -> f64 {
     // NaN beside a hole or the border of the grid.
     let bend = |place: isize| line.second(place, &|i| state.h[i]);

@@ -43,7 +43,7 @@ impl From<f64> for Value {
 #[derive(Clone, Debug)]
 pub struct Course {
     quantity: Quantity,
-    /// Whether the error is of first order and irregular: in steady rolling, by the step of the tractions, and of areas, by whole elements.
+    /// Whether the error is of first order and irregular: in steady rolling due to the step of the tractions, and of areas due to whole elements.
     is_irregular: bool,
     /// Steady rolling of unlike bodies, which converges more slowly on coarse grids.
     is_slow: bool,

@@ -125,10 +125,10 @@ fn estimate(report: &Report, quantity: Quantity) -> Option<f64> {
     }
 }
 
-/// The values of `wanted` on the grid of the scene and on `coarser` grids with half the elements each, coarsest first, one row for each grid
-/// and quantity. Each grid is solved without a guess. Errors of force, largest pressure and area are the estimates of the report, all others
-/// follow from the grids before (module `sequence`); the coarsest grid has none. Where nothing touches on the grid of the scene, values of 0 are exact.
-/// If that grid touches, those of coarser grids that do not have no error.
+/// The values of `wanted` on the grid of the scene and on `coarser` grids, each with half the elements of the next in both directions. The coarsest
+/// comes first, with one row for each grid and quantity. Each grid is solved without a guess. Errors of force, largest pressure and area are the
+/// estimates of the report. All others follow from the coarser grids (module `sequence`); the coarsest grid has none. Values of 0 are exact if
+/// nothing touches on the grid of the scene. Otherwise a value of 0 on a coarser grid where nothing touches has no known error.
 ///
 /// # Errors
 /// Those of a solve on the grid of the scene. `Unsupported`: own coefficients, kept tractions, and a fixed contact area. Rows of a coarser grid
@@ -182,7 +182,7 @@ fn row(k: usize, found: &OnGrid, doublings: i32, course: &mut Course) -> Quantit
     }
     let falling = value.and_then(|_| course.falling(found.lacks_estimates));
     let of_sequence = falling.map(|falling| falling.now());
-    // What another grid has that touches is not known here.
+    // If another grid has contact, the error of this 0 is unknown.
     let is_zero = found.is_apart && value.is_some_and(|value| value.value == 0.0);
     let error = value.and(found.estimates[k]).or(of_sequence).filter(|_| !is_zero);
     let lack = match (found.values[k], error) {

@@ -16,9 +16,8 @@ use crate::solver::{Outcome, Report, Solver};
 use crate::stress::{of_scene, MOST_SLENDER};
 use crate::sums::in_blocks;
 
-/// The least error of an area in elements, over the root of their number. The outline of a circle of n elements has
-/// `3.5 sqrt(n)` elements. Two grids may agree on them by chance. Stiffnesses that agreed on two grids by chance had
-/// errors of up to 0.25 of their value over this root.
+/// The least error of an area of n elements is this times `sqrt(n)` elements. The outline of a circle of n elements has `3.5 sqrt(n)` elements. Two
+/// grids may agree on them by chance. Stiffnesses that agreed on two grids by chance had relative errors of up to `0.25 / sqrt(n)`.
 const OUTLINE: f64 = 0.3;
 
 /// Why a quantity has no value, or its value no error; numbered as in the C ABI.
@@ -105,7 +104,8 @@ pub fn values(
     watch: ProgressCallback<'_>,
 ) -> Result<Option<Vec<std::result::Result<Value, Lack>>>> {
     let began = Instant::now();
-    // Told without work units, so that nobody takes these steps for cycles of the solve. They are counted over all quantities.
+    // The reported progress has no work units, so that callers can distinguish these steps from cycles of the solve. Steps are counted over all
+    // quantities.
     let (solved, residual, mut steps) = (report.solve_seconds, report.residual(), 0);
     let watch = &mut |_: &Progress| {
         steps += 1;
@@ -167,7 +167,7 @@ fn area(solver: &Solver, report: &Report) -> f64 {
     }
 }
 
-/// The mean of the deformed distance; 0 in full contact, where nothing but the residual is left.
+/// The mean of the deformed distance; 0 in full contact, where the deformed distance is only the residual.
 fn mean_gap(solver: &Solver) -> f64 {
     let state = solver.state();
     let finite = |i: &usize| state.h[*i].is_finite();

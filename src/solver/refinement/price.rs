@@ -20,8 +20,8 @@ pub(super) const FEWEST_ACROSS: usize = 12;
 /// The reason why an accuracy cannot be reached; numbered as in the C ABI.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Obstacle {
-    /// No sufficient grid is known: the quantity is singular, contact is on few elements, or there is none and the quantity is not 0 then; or no grid was
-    /// solved.
+    /// No sufficient grid is known: the quantity is singular, contact is on few elements, nothing touches although the quantity is not 0 then, or no
+    /// grid was solved.
     Singular = 1,
     /// The target is below round-off.
     RoundOff,
@@ -74,8 +74,8 @@ pub struct Price {
     pub time_error: f64,
 }
 
-/// Predicts the doublings from the last sample to the first sufficient grid, and the seconds of one thread to the tolerance of the samples. For an exact
-/// value the grid is that of the scene.
+/// Predicts the doublings from the last sample to the first sufficient grid, and the seconds of one thread to the tolerance of the samples. For an
+/// exact value the grid is that of the scene.
 pub(super) fn predict(
     scene: &Scene<'_>,
     samples: &[Sample],

@@ -3,7 +3,7 @@
 //! *Kept.* The system clears and maps each new page on its first use. That takes as long as several passes over it: a tenth to a fifth of a whole
 //! call. So the next solver reuses the arrays of one that was dropped. The process keeps a limited number of bytes ([`keep_at_most`]). Beyond it, the
 //! array that was kept longest returns to the system. [`release`] returns all of them. Any thread may keep and take arrays. If a process was forked
-//! while another thread held the lock, the child keeps nothing. Nobody waits for the lock.
+//! while another thread held the lock, the child keeps nothing. No thread waits for the lock.
 //!
 //! *At rest.* The arrays of one solve are not all needed at the same time. A large array that is not needed for a while [rests](rest). Its
 //! address range stays reserved, so that it [wakes](wake) without an error. Its pages return to the system.
@@ -108,7 +108,8 @@ pub fn reserve<A: Copy + Send + 'static>(v: &mut Vec<A>, n: usize, what: &str) -
     allocate(v, n, what)
 }
 
-/// The same for an array of which few values may be used. It is no kept array, so that unused pages take no memory.
+/// An array with capacity for n values, of which few may be used. It comes from the system, not from the kept arrays, so that unused pages take no
+/// memory.
 pub fn sparse<A>(n: usize, what: &str) -> Result<Vec<A>> {
     let mut v = Vec::new();
     allocate(&mut v, n, what)?;

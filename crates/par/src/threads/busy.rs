@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 /// Least loss: an interrupt by the system is shorter, a wait for a core longer.
 pub(super) const LEAST_LOSS: Duration = Duration::from_micros(500);
 
-/// Nanoseconds that the caller works alone after a loss: first, and most. A try loses one turn of the scheduler, about 3 ms.
+/// Nanoseconds that the caller works alone: after the first loss, and at most. A try loses one turn of the scheduler, about 3 ms.
 const FIRST_ALONE: u64 = 30_000_000;
 const LONGEST_ALONE: u64 = 960_000_000;
 
@@ -19,7 +19,7 @@ const LONGEST_ALONE: u64 = 960_000_000;
 #[derive(Default)]
 pub(super) struct Busy {
     began: OnceLock<Instant>,
-    /// In nanoseconds since it began.
+    /// In nanoseconds since `began`.
     until: AtomicU64,
     alone: AtomicU64,
 }
@@ -43,7 +43,7 @@ impl Busy {
             self.alone.store(alone, Ordering::Relaxed);
             self.until.store(now + alone, Ordering::Relaxed);
         } else if alone > 0 && now - until.min(now) > alone {
-            // No loss for as long as the last wait.
+            // There was no loss for longer than the last time alone.
             self.alone.store(0, Ordering::Relaxed);
         }
     }

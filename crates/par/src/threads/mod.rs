@@ -7,7 +7,7 @@
 mod busy;
 #[allow(unsafe_code)] // lifetimes of work that workers share
 mod crew;
-#[allow(unsafe_code)] // what a process has
+#[allow(unsafe_code)] // the record of the process
 mod pool;
 #[allow(unsafe_code)] // lifetimes of work that workers share
 mod region;

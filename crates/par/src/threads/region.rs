@@ -23,7 +23,7 @@ pub(super) struct Region {
     is_left: Condvar,
 }
 
-/// The end of the seats.
+/// The state of a region that the caller and the workers share when seats are left.
 #[derive(Default)]
 struct End {
     /// Whether the caller sleeps until all seats are left.

@@ -1,4 +1,4 @@
-//! When workers are asked again, by given times.
+//! The times at which work is shared again, with given times instead of a clock.
 
 use super::*;
 
@@ -20,12 +20,12 @@ fn what_goes_well_for_as_long_is_forgotten() {
     let busy = Busy::default();
     busy.note(0, true);
     busy.note(FIRST_ALONE, true);
-    // It went well for less than the last time alone.
+    // The try lasts for less than the last time alone.
     let tried = 3 * FIRST_ALONE;
     busy.note(tried + FIRST_ALONE, false);
     busy.note(tried + FIRST_ALONE, true);
     assert!(!busy.is_over(tried + 5 * FIRST_ALONE - 1) && busy.is_over(tried + 5 * FIRST_ALONE));
-    // And for longer.
+    // The try lasts for longer.
     busy.note(tried + 10 * FIRST_ALONE, false);
     busy.note(tried + 10 * FIRST_ALONE, true);
     assert!(busy.is_over(tried + 11 * FIRST_ALONE));

@@ -11,7 +11,7 @@ fn a_child_that_is_forked_while_a_pool_is_made_makes_its_own() {
     // SAFETY: the child makes a pool, works with it, and ends without any of its parent's exit handlers.
     let child = unsafe { libc::fork() };
     if child == 0 {
-        // It is ended if it waits for what nobody gives back.
+        // The alarm ends the child if it waits for a lock that nobody releases.
         // SAFETY: both end this process only.
         unsafe { libc::alarm(60) };
         let mut items = [0; 1];

@@ -1,4 +1,4 @@
-//! Sums in lanes, and the least value, against a loop over the elements: of whole numbers, which are added without rounding.
+//! Sums in lanes, and the least value, compared with a loop over the elements. The values are whole numbers, whose sums have no rounding.
 
 use super::{least, sum_where, Sums};
 
@@ -40,7 +40,7 @@ fn the_least_of_all_values() {
 fn sums_where_it_counts() {
     for n in 0..=23 {
         let counts: Vec<bool> = (0..n).map(|i| i % 3 == 1).collect();
-        // No surface where it does not count.
+        // Elements that do not count are infinite, like those without a surface.
         let a: Vec<f64> = (0..n).map(|i| if i % 3 == 1 { i as f64 } else { f64::INFINITY }).collect();
         let b: Vec<f64> = (0..n).map(|i| (7 * i % 11) as f64).collect();
         let those = || (0..n).filter(|i| i % 3 == 1);

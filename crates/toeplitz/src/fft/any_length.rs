@@ -103,7 +103,7 @@ impl<T: Real> ColumnTransform<T> {
         self.forward.process_outofplace_with_scratch(column, to, scratch);
     }
 
-    /// The inverse, likewise.
+    /// The inverse transform of one column, out of place; `column` is overwritten.
     pub fn inverse_to(&self, column: &mut [Complex<T>], to: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
         self.inverse.process_outofplace_with_scratch(column, to, scratch);
     }
@@ -113,7 +113,7 @@ impl<T: Real> ColumnTransform<T> {
         self.forward.process_with_scratch(columns, scratch);
     }
 
-    /// The inverse, likewise.
+    /// The inverse transforms of consecutive columns, in place.
     pub fn inverse(&self, columns: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
         self.inverse.process_with_scratch(columns, scratch);
     }

@@ -39,7 +39,7 @@ fn to_rows<T: Scalar, S: Simd>(simd: S, vectors: [T::Vector<S>; FOUR], mut write
 /// Groups of four real parts of a row in a block; there are as many of imaginary parts.
 const PER_BLOCK: usize = BLOCK / FOUR;
 
-/// z of rows, zero beyond them.
+/// Loads z of rows. z is zero beyond them.
 #[inline(always)]
 pub(crate) fn load<T: Scalar, S: Simd>(a: Arithmetic<T, S>, rows: &[T], width: usize, z: &mut [Row<T, S>]) {
     let count = rows.len() / width;
@@ -75,7 +75,7 @@ pub(crate) fn load<T: Scalar, S: Simd>(a: Arithmetic<T, S>, rows: &[T], width: u
     }
 }
 
-/// X of all bins, from Z in the order of the stages.
+/// Stores X of all bins, from Z in the order of the stages.
 #[inline(always)]
 pub(crate) fn store_bins<T: Scalar, S: Simd>(
     a: Arithmetic<T, S>,
@@ -124,13 +124,13 @@ pub(crate) fn store_bins<T: Scalar, S: Simd>(
     }
 }
 
-/// w*.
+/// The conjugate w*.
 #[inline(always)]
 fn conjugate<T: Scalar>(w: Complex<T>) -> Complex<T> {
     Complex::new(w.re, -w.im)
 }
 
-/// Z of all bins in the order of the stages, real and imaginary parts swapped. Bins are loaded from both ends, four at a time.
+/// Loads Z of all bins in the order of the stages, with real and imaginary parts swapped. Bins are loaded from both ends, four at a time.
 #[inline(always)]
 pub(crate) fn load_bins<T: Scalar, S: Simd>(
     a: Arithmetic<T, S>,
@@ -179,7 +179,7 @@ pub(crate) fn load_bins<T: Scalar, S: Simd>(
     }
 }
 
-/// The first values of z as rows; real and imaginary parts of z are swapped.
+/// Stores the first values of z as rows. Real and imaginary parts of z are swapped.
 #[inline(always)]
 pub(crate) fn store<T: Scalar, S: Simd>(a: Arithmetic<T, S>, z: &[Row<T, S>], rows: &mut [T], width: usize) {
     let (whole, rest) = (width / FOUR, width % FOUR);

@@ -47,7 +47,7 @@ impl<T: Scalar> RowPlan<T> {
         Ok(RowPlan { stages, row_of, twiddles })
     }
 
-    /// h = n/2.
+    /// The length h = n/2 of the complex transform.
     pub(crate) fn length(&self) -> usize {
         self.row_of.len() - 1
     }

@@ -34,7 +34,7 @@ pub(crate) struct Stage<T: Scalar> {
 }
 
 impl<T: Scalar> Stage<T> {
-    /// m.
+    /// The stride m: the rows of each of the R transforms.
     pub fn stride(&self) -> usize {
         self.twiddles.len() / (self.radix - 1)
     }
@@ -113,7 +113,7 @@ pub(crate) fn put<T: Scalar, S: Simd>(row: &mut Row<T, S>, value: C<T, S>) {
     (row[0], row[1]) = (value.re, value.im);
 }
 
-/// Rows 0 .. m, m .. 2 m, .., R times.
+/// Cuts rows into R parts of m rows.
 #[inline(always)]
 pub(crate) fn cut<A, const R: usize>(rows: &mut [A], m: usize) -> [&mut [A]; LONGEST] {
     let mut cut: [&mut [A]; LONGEST] = [&mut [], &mut [], &mut [], &mut [], &mut []];

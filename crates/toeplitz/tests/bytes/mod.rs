@@ -1,4 +1,4 @@
-//! What random bytes do to a product: they become a grid, coefficients and values, and the product is that term by term. Also the cargo-fuzz
+//! Products of random bytes: the bytes become a grid, coefficients and values, and the product equals the sum term by term. Also the cargo-fuzz
 //! target `product` in fuzz/.
 
 use par::threads::Threads;
@@ -20,12 +20,12 @@ impl Bytes<'_> {
         u64::from(*first)
     }
 
-    /// Up to `most`.
+    /// A number up to `most`.
     fn up_to(&mut self, most: u64) -> u64 {
         (self.next() | self.next() << 8) % (most + 1)
     }
 
-    /// Of both signs, over some orders of magnitude; one of eight is zero.
+    /// A value of either sign, over some orders of magnitude. One of eight is zero.
     fn value(&mut self) -> f64 {
         let (digits, sign) = (self.next(), self.next());
         if sign % 8 == 0 {
@@ -47,10 +47,10 @@ struct Table {
 }
 
 impl Table {
-    /// The kind says which symmetry it has: 0 even in both directions, 1 the same at k and -k, 2 none.
+    /// The coefficients of a symmetry `kind`: 0 even in both directions, 1 the same at k and -k, 2 none.
     fn read(bytes: &mut Bytes<'_>, grid: (usize, usize), kind: u64) -> Table {
         let (mx, my) = (grid.0 as i64, grid.1 as i64);
-        // Few bytes make many coefficients: a value for each distance along a diagonal, which differ by place where they may.
+        // Few bytes make many coefficients: offsets are hashed to 16 values.
         let drawn: Vec<f64> = (0..16).map(|_| bytes.value()).collect();
         let mixed = |a: i64, b: i64| drawn[(a * 5 + b * 3).rem_euclid(16) as usize];
         let of = |kx: i64, ky: i64| match kind {
@@ -63,7 +63,7 @@ impl Table {
         Table { grid: (mx, my), values }
     }
 
-    /// Beyond the grid there are none.
+    /// The coefficient at an offset; 0 beyond the grid.
     fn at(&self, kx: i64, ky: i64) -> f64 {
         let (mx, my) = self.grid;
         if kx.abs() >= mx || ky.abs() >= my {
@@ -106,8 +106,8 @@ pub fn product(data: &[u8]) {
     }
 }
 
-/// A transform keeps the norm of its values; each of its steps rounds. No value of the symbol exceeds the sum of the coefficients' absolute values. So the
-/// norm of the error is at most this sum, times the norm of p, times some roundings a step.
+/// A transform keeps the norm of its values, and each of its steps rounds. No value of the symbol exceeds the sum of the coefficients' absolute
+/// values. So the norm of the error is at most this sum, times the norm of p, times a few roundings per step.
 fn compare<T: Real>(table: &Table, grid: (usize, usize), kind: u64, threads: &Threads, p: &[f64]) {
     let product = match kind {
         0 => Product::<T>::even(grid, |kx, ky| table.at(kx as i64, ky as i64), threads),

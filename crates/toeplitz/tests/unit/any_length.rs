@@ -15,7 +15,7 @@ fn transformed<T: Real>(n: usize, before: &'static [usize]) -> Vec<Complex<T>> {
     std::thread::scope(|scope| scope.spawn(transform).join().unwrap())
 }
 
-/// Bits do not depend on what a thread planned before.
+/// Bits do not depend on the lengths that a thread planned before.
 #[test]
 fn a_plan_has_nothing_of_those_before() {
     const BEFORE: &[usize] =

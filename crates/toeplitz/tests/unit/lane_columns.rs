@@ -1,4 +1,4 @@
-//! Columns in lanes, by another implementation's transforms, rustfft's.
+//! Columns in lanes, compared with the transforms of another implementation, rustfft.
 
 use std::ops::Range;
 
@@ -9,8 +9,7 @@ use crate::fft::column_pass::{Blocks, EvenSymbol, Multiply};
 use crate::fft::stages::before_a_line;
 use crate::real::Complex;
 
-/// A matrix of `my` rows of which some are loaded, its columns multiplied by an even spectrum: the largest error relative to the
-/// largest value.
+/// The columns of a matrix of `my` rows, some of them loaded, multiplied by an even symbol: the largest error relative to the largest value.
 fn error<T: Real>(length: usize, width: usize, my: usize, loaded: Range<usize>) -> f64 {
     let even = LaneColumns::<T>::new(length).unwrap().expect("a plan");
     let value = |i: usize| T::of(((i * 7919 + length) % 1013) as f64 / 506.0 - 1.0);
@@ -30,7 +29,7 @@ fn error<T: Real>(length: usize, width: usize, my: usize, loaded: Range<usize>) 
         expected.push(column);
     }
 
-    // As [block][row][part][column]; columns beyond the last have none of the result.
+    // As [block][row][part][column]. Columns beyond the last one do not belong to the result.
     let (wide, kept) = (width.next_multiple_of(BLOCK), BLOCK * even.kept_rows());
     let mut spectrum = vec![T::nan(); wide / BLOCK * kept];
     for (b, block) in spectrum.chunks_exact_mut(kept).enumerate() {
@@ -92,7 +91,7 @@ fn some_lengths_have_no_plan() {
     }
 }
 
-/// A block of columns, multiplied.
+/// A block of columns, multiplied with an instruction set.
 #[cfg(target_arch = "x86_64")]
 fn by<T: Real>(arch: pulp::Arch, length: usize) -> Vec<Complex<T>> {
     let even = LaneColumns::<T>::on(arch, length).unwrap().expect("a plan");
@@ -110,7 +109,7 @@ fn by<T: Real>(arch: pulp::Arch, length: usize) -> Vec<Complex<T>> {
 #[cfg(target_arch = "x86_64")]
 #[test]
 fn no_bit_depends_on_the_length_of_vectors() {
-    // A machine without AVX-512 has nothing to compare; valgrind's tests of examples are one without on each machine.
+    // Without AVX-512 there is nothing to compare. Valgrind's tests of examples run without it on each machine.
     let Some(avx2) = pulp::x86::V3::try_new() else { return };
     for length in LENGTHS {
         assert!(by::<f64>(pulp::Arch::V3(avx2), length) == by(pulp::Arch::new(), length), "{length}");

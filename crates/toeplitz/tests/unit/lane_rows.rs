@@ -1,11 +1,11 @@
-//! Rows in lanes, by another implementation's transforms, realfft's.
+//! Rows in lanes, compared with the transforms of another implementation, realfft.
 
 use super::*;
 use crate::block::parts;
 use crate::fft::row_pass::{Forward, Inverse};
 use realfft::RealFftPlanner;
 
-/// The largest error of all bins of some rows, and of the rows that come back, relative to the largest value.
+/// The largest errors of all bins of some rows and of the rows transformed back, relative to the largest value.
 fn errors<T: Real>(n: usize, width: usize, missing: usize) -> [f64; 2] {
     let lanes = LaneRows::<T>::new(n).unwrap().expect("a plan");
     let together = lanes.at_a_time();
@@ -43,7 +43,7 @@ fn errors<T: Real>(n: usize, width: usize, missing: usize) -> [f64; 2] {
 #[test]
 fn rows_in_lanes_have_the_bins_of_each() {
     if LaneRows::<f64>::new(32).unwrap().is_none() {
-        // Without vectors rows go by themselves, as tests/unit/row_transform.rs checks.
+        // Without vectors rows are transformed one by one, which tests/unit/row_transform.rs checks.
         return assert!(LaneRows::<f32>::new(32).unwrap().is_none());
     }
     for n in [12usize, 16, 18, 20, 30, 32, 50, 54, 64, 100, 240, 432, 864, 900, 1024, 2160, 4096] {
@@ -65,7 +65,7 @@ fn rows_in_lanes_have_the_bins_of_each() {
     }
 }
 
-/// Bins of 16 rows, and the rows that come back.
+/// The bins of 16 rows, and the rows transformed back, with an instruction set.
 #[cfg(target_arch = "x86_64")]
 fn by<T: Real>(arch: pulp::Arch, n: usize, width: usize) -> (Vec<Complex<T>>, Vec<T>) {
     let lanes = LaneRows::<T>::on(arch, n).unwrap().expect("a plan");
@@ -93,7 +93,7 @@ fn by<T: Real>(arch: pulp::Arch, n: usize, width: usize) -> (Vec<Complex<T>>, Ve
 #[cfg(target_arch = "x86_64")]
 #[test]
 fn no_bit_depends_on_the_length_of_vectors() {
-    // A machine without AVX-512 has nothing to compare; valgrind's tests of examples are one without on each machine.
+    // Without AVX-512 there is nothing to compare. Valgrind's tests of examples run without it on each machine.
     let Some(avx2) = pulp::x86::V3::try_new() else { return };
     for (n, width) in [(12, 7), (54, 54), (432, 216), (1024, 512), (2160, 1000)] {
         let here = by::<f64>(pulp::Arch::new(), n, width);

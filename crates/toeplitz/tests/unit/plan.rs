@@ -1,4 +1,4 @@
-//! Plans are shared, and the least recently used go. The tests share one list: each uses a type of its own, and one runs at a time.
+//! Plans are shared, and the least recently used are dropped. The tests share one list, so each uses a separate type, and one runs at a time.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -9,7 +9,7 @@ fn alone() -> MutexGuard<'static, ()> {
     ONE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A plan of so many bytes.
+/// A plan of this number of bytes.
 struct Own<const KIND: usize>(usize);
 
 impl<const KIND: usize> Plan for Own<KIND> {
@@ -40,7 +40,7 @@ fn plans_beyond_the_bound_are_forgotten() {
         assert!(Arc::ptr_eq(&kept, &made(0)), "what is used stays");
         assert!(super::kept() <= most);
     }
-    // A plan that is larger by itself is not kept, and serves its caller.
+    // A plan larger than the limit is not kept, but its caller gets it.
     assert_eq!(shared(99, || Ok(Own::<1>(most + 1))).unwrap().0, most + 1);
     assert!(find::<Own<1>>(99).is_none());
 }

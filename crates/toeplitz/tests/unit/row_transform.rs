@@ -1,4 +1,4 @@
-//! The same bits as another implementation, realfft, of every length up to 70 and of those that products take.
+//! Transforms of real rows have the same bits as those of realfft, at every length up to 70 and at lengths of products.
 
 use super::*;
 use realfft::{FftNum, RealFftPlanner};

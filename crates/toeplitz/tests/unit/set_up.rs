@@ -1,4 +1,4 @@
-//! The spectrum of even coefficients by rows and columns in lanes, by that of rows and columns one by one.
+//! The symbol of even coefficients, computed with rows and columns in lanes, compared with that computed one by one.
 
 use super::*;
 use crate::fft::lane_columns::LaneColumns;
@@ -13,7 +13,7 @@ fn even((x, y): (usize, usize)) -> Even<impl Fn(i64, &mut [f64]) + Sync + Send, 
         let value = |kx: usize| 1.0 / (1.0 + (kx * kx) as f64 + 0.7 * (ky * ky) as f64).sqrt();
         row.iter_mut().enumerate().for_each(|(kx, c)| *c = value(kx));
     };
-    // A preconditioner looks at each value that it is given: columns that are not there have none.
+    // A preconditioner tests each value of the symbol. So no value of columns beyond the last one may reach it.
     let finish = |value: f64| {
         assert!(value.abs() > 1e-9, "a value of no column: {value}");
         1.0 + value
@@ -25,7 +25,7 @@ fn reaches((px, py): (usize, usize)) -> [(usize, usize); 3] {
     [(px / 2, py / 2), (px / 3, py / 4), (0, 0)]
 }
 
-/// By the vectors of these instructions; None where there are none.
+/// The symbol computed in lanes with an instruction set; None without vectors.
 fn by_lanes<T: Real>(
     arch: pulp::Arch,
     period: (usize, usize),

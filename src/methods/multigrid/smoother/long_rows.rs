@@ -55,7 +55,7 @@ impl LongRows {
         Ok(Some(LongRows { within_row: within_row[..STRIP].to_vec(), halves, row, bins, scratch }))
     }
 
-    /// Sweeps the elements of a row: `residual` is overwritten, `changes` are added to p.
+    /// Sweeps the elements of a row: overwrites `residual` and writes the changes of p to `changes`. Those of other elements are unchanged.
     pub fn sweep(
         &mut self,
         residual: &mut [f64],
