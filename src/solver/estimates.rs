@@ -35,6 +35,7 @@ pub use jumps::at_jumps;
 
 use super::falling::Falling;
 use super::report::{Halving, Limit};
+use super::seconds::GROWTH;
 use crate::contact::{Outline, Problem, State};
 use crate::grid::doubling;
 use crate::progress::{DiscretisationError, LedgerRow};
@@ -68,8 +69,6 @@ const SHARP_PEAK: f64 = 0.08;
 const CORRECTION_OFF: f64 = 0.3;
 const STRAIGHT_OFF: f64 = 0.4;
 const EDGE_OFF: f64 = 0.5;
-/// Seconds grow with this power of the number of elements (docs/performance.md).
-pub const SECONDS_EXPONENT: f64 = 1.13;
 
 /// Errors of the force (or the approach) on a grid, positive.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -252,7 +251,7 @@ pub fn estimate(
     let hidden = residual * found.abs();
     let falling = Falling { by_sixteen: parts.short, by_four: parts.smooth, by_two: parts.of_first_order(), hidden };
     let more = doubling(finest.grid.refines(problem.coefficients.repeats(&finest.grid)));
-    let halving = Halving { seconds: Some(more.powf(SECONDS_EXPONENT) * seconds), error: Some(falling) };
+    let halving = Halving { seconds: Some(more.powf(GROWTH) * seconds), error: Some(falling) };
     let limit = if parts.error() >= hidden { Limit::Grid } else { Limit::Tolerance };
     (limit, halving)
 }

@@ -23,7 +23,7 @@ pub enum Limit {
 /// Cost and error with elements of half the size, where they are known.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Halving {
-    /// Seconds of a solve, with the measured growth n^1.13 in the number of elements (docs/performance.md).
+    /// Seconds of a solve, with the measured growth n^1.1 in the number of elements (docs/performance.md).
     pub seconds: Option<f64>,
     /// The error of the force (or the approach) on this and finer grids.
     pub error: Option<Falling>,

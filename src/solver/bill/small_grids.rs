@@ -10,9 +10,9 @@ use crate::effects;
 use crate::error::{require, Error, Result};
 use crate::grid::Grid;
 use crate::scene::{scaled, Regridded, Scene};
-use crate::solver::machine::{seconds_on, Cost, NEXT_GRID_RATIO};
 use crate::solver::quantities::{Lack, OnGrid, Quantity, Sequence};
 use crate::solver::refinement::LEAST_TOLERANCE;
+use crate::solver::seconds::{seconds_on, Cost, GROWTH, NEXT_GRID_RATIO};
 use crate::solver::{Options, Outcome, ProgressCallback};
 use crate::threads::Threads;
 
@@ -20,8 +20,6 @@ use crate::threads::Threads;
 const LEAST_EFFORT: f64 = 7e7;
 /// The effort that a bill may take, relative to the scene's.
 const EFFORT_SHARE: f64 = 0.05;
-/// The power of the elements with which the effort of a scene grows.
-const GROWTH: f64 = 1.1;
 /// Least elements of the first grid in its longer direction, if the scene's grid has twice as many.
 const FIRST_GRID: usize = 16;
 /// Elements that change sides at once: four with two planes of symmetry. Areas do not resolve smaller changes.

@@ -8,8 +8,8 @@ use super::solved::Solved;
 use crate::grid::Grid;
 use crate::progress::Outcome;
 use crate::scene::{refines, Scene};
-use crate::solver::estimates::SECONDS_EXPONENT;
 use crate::solver::falling::Falling;
+use crate::solver::seconds::GROWTH;
 
 /// The results of the last grid.
 #[derive(Clone, Debug)]
@@ -71,7 +71,7 @@ impl Past {
             (seconds / before.seconds).ln() / ratio.ln()
         });
         let repeats = problem.coefficients.repeats(&problem.grid);
-        let exponent = seen.filter(|seen| seen.is_finite()).unwrap_or(SECONDS_EXPONENT);
+        let exponent = seen.filter(|seen| seen.is_finite()).unwrap_or(GROWTH);
         Past {
             grid: problem.grid,
             refines: refines(scene),

@@ -6,8 +6,8 @@ use super::Accuracy;
 use crate::grid::{doubling, Grid};
 use crate::scene::{refines, scaled, Scene};
 use crate::solver::falling::Falling;
-use crate::solver::machine::{seconds_on, Cost, MOST_PRODUCTS_RATIO};
 use crate::solver::quantities::Quantity;
+use crate::solver::seconds::{seconds_on, Cost, MOST_PRODUCTS_RATIO};
 
 /// The initial residual of a grid over that of the next coarser grid. A grid starts from the result of the coarser grid. The initial residual comes
 /// from the error of this result at the boundary of contact.

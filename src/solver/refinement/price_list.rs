@@ -14,8 +14,8 @@ use super::sample::{Callbacks, Sample, Taken};
 use super::{check, Accuracy, SurfaceCallback};
 use crate::error::Result;
 use crate::scene::{scaled, Scene};
-use crate::solver::machine::{self, NEXT_GRID_RATIO};
 use crate::solver::quantities::Quantity;
+use crate::solver::seconds::NEXT_GRID_RATIO;
 use crate::solver::{Options, Outcome, ProgressCallback};
 
 /// Most seconds of all samples, including those predicted for the next one: SAMPLES_SECONDS, or this share of the
@@ -56,8 +56,6 @@ pub fn cost_of_accuracy(
     let (tolerance, loosest) = tolerances(quantity, targets, options);
     let options = Options { tolerance, estimates: true, ..*options };
     let one = Options { threads: 1, ..options };
-    // The first call in a process times the machine, before the list's own time begins.
-    machine::growth(1.0, 1.0);
     let began = Instant::now();
     let (mut samples, mut doublings): (Vec<Sample>, i32) = (Vec::new(), first(scene));
     let list_with = |samples: &[Sample], counted: &[Counted], speed_up: f64| -> Vec<Price> {

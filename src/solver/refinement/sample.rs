@@ -8,8 +8,8 @@ use super::{on_grid, SurfaceCallback};
 use crate::error::Result;
 use crate::scene::{scaled, Scene};
 use crate::solver::falling::Falling;
-use crate::solver::machine::Cost;
 use crate::solver::quantities::Quantity;
+use crate::solver::seconds::Cost;
 use crate::solver::{Options, Outcome, Progress, ProgressCallback};
 
 /// Most repeated timings of a sample: the first solve of a size is slow, and machines are busy.
