@@ -37,7 +37,8 @@ pub struct contact_normal_layer {
 versioned! { contact_normal_layer, contact_normal_layer_init, 24 }
 
 /// Effect: pressures do not exceed a limit, the hardness of the softer surface. Elements at the limit have `contact` 2 and a
-/// `deformed_distance` <= 0: the plastic penetration, with its sign turned.
+/// `deformed_distance` <= 0: the plastic penetration, with its sign turned. The limit has no
+/// memory: unloading goes back the way that loading came.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct contact_normal_pressure_limit {
@@ -61,7 +62,7 @@ pub struct contact_normal_patches {
     pub count: i32,
     /// Always 0.
     pub reserved: i32,
-    /// The patch of each element, `[my][mx]`: 0 to count - 1, or -1: none, nothing touches there. Default NULL: to be set.
+    /// The patch of each element, `[my][mx]`: 0 to count - 1, or -1: none, nothing touches there, and displacements are those of patch 0. Default NULL: to be set.
     pub patch: *const i32,
     /// `[count][count]`, symmetric: 1 on the diagonal, elsewhere in [0, 1]. 0: independent, 1: as if there were no patches.
     /// Default NULL: to be set.

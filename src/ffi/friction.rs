@@ -69,7 +69,8 @@ pub struct contact_normal_friction {
     pub coefficients: *const f64,
     /// CONTACT_NORMAL_MOTION_...; default SHIFT.
     pub motion: i32,
-    /// 1: from the tractions that this handle found last, solves without friction aside (not in a batch); 0 (default): `previous_traction`.
+    /// 1: from the tractions that this handle found last, solves without friction aside (not in a batch); those of a
+    /// solve that stopped early, or was cancelled, count. 0 (default): `previous_traction`.
     pub continues: i32,
     /// Of x and y: CONTACT_NORMAL_PRESCRIBED_CREEPAGE or _TANGENTIAL_FORCE; default CREEPAGE.
     pub prescribed: [i32; 2],

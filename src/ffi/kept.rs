@@ -9,7 +9,7 @@ use toeplitz::plan;
 const OF_PLANS: usize = 8;
 
 /// Returns to the system all that the library keeps for later calls: the memory of solves that are over, and the threads that no solver holds.
-/// Later calls make them anew. Since 0.2.
+/// The threads end soon after the call returns. Later calls make them anew. Since 0.2.
 #[no_mangle]
 pub extern "C" fn contact_normal_release() -> contact_normal_status {
     guard(|| {

@@ -193,6 +193,13 @@ impl Methods {
                     None => self.projected_cg.start(task)?,
                 }
             }
+            // By force, NORM finds no way from p = 0 to the elements that end at their limit.
+            Stage::Norm if S::LIMITED && !S::FIXED && !task.problem.symmetric => {
+                task.state.unload();
+                if task.state.start_on_bearing_area(task.set, self_influence, threads).is_none() {
+                    task.state.start(self_influence);
+                }
+            }
             Stage::FullMultigrid if !S::FIXED => {
                 task.state.unload();
                 let multigrid = set_up_multigrid(&mut self.multigrid, task.problem, self.shape)?;

@@ -895,7 +895,8 @@ typedef struct contact_normal_layer {
 
 /*
  Effect: pressures do not exceed a limit, the hardness of the softer surface. Elements at the limit have `contact` 2 and a
- `deformed_distance` <= 0: the plastic penetration, with its sign turned.
+ `deformed_distance` <= 0: the plastic penetration, with its sign turned. The limit has no
+ memory: unloading goes back the way that loading came.
  */
 typedef struct contact_normal_pressure_limit {
   /*
@@ -948,7 +949,7 @@ typedef struct contact_normal_patches {
    */
   int32_t reserved;
   /*
-   The patch of each element, `[my][mx]`: 0 to count - 1, or -1: none, nothing touches there. Default NULL: to be set.
+   The patch of each element, `[my][mx]`: 0 to count - 1, or -1: none, nothing touches there, and displacements are those of patch 0. Default NULL: to be set.
    */
   const int32_t *patch;
   /*
@@ -1013,7 +1014,8 @@ typedef struct contact_normal_friction {
    */
   int32_t motion;
   /*
-   1: from the tractions that this handle found last, solves without friction aside (not in a batch); 0 (default): `previous_traction`.
+   1: from the tractions that this handle found last, solves without friction aside (not in a batch); those of a
+   solve that stopped early, or was cancelled, count. 0 (default): `previous_traction`.
    */
   int32_t continues;
   /*
@@ -3142,7 +3144,7 @@ contact_normal_status contact_normal_set_log(contact_normal_log_callback callbac
 
 /*
  Returns to the system all that the library keeps for later calls: the memory of solves that are over, and the threads that no solver holds.
- Later calls make them anew. Since 0.2.
+ The threads end soon after the call returns. Later calls make them anew. Since 0.2.
  */
 contact_normal_status contact_normal_release(void);
 
