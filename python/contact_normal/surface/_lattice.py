@@ -53,13 +53,13 @@ def lattice_of(values: Any) -> Lattice | None:
     if len(others) != 1 and not (others and others[0] == b + 1):
         return None
     if len(others) > 1:
-        warnings.warn(f"of {columns} columns, numbers {a + 1} and {b + 1} are read as x and y, and number {others[0] + 1} as the heights", stacklevel=4)
+        warnings.warn(f"of {columns} columns, numbers {a + 1} and {b + 1} are read as x and y, and number {others[0] + 1} as the heights", stacklevel=5)
     (x, ix), (y, iy) = places[a], places[b]
     z = np.full((len(y), len(x)), np.nan)
     z[iy, ix] = values[:, others[0]]
     if parts[a, b] < 1.0:
         warnings.warn(f"{z.size - lines} of {z.size} places of the grid of {len(y)} x {len(x)} have no point: they are holes, where no surface is",
-                      stacklevel=4)
+                      stacklevel=5)
     return Lattice(z, x, y)
 
 
