@@ -15,7 +15,7 @@ from .._units import same_length
 from ._given import SIZES, steps_of, with_header, with_unit
 from ._headers import header_of, refuse_esri_grid
 from ._heights import Heights, heights
-from ._instruments import chosen, of_instrument
+from ._instruments import NO_SIZE, chosen, of_instrument, size_of
 from ._lists import of_list, of_text_list
 from ._not_a_map import doubt
 from ._not_a_map import why as why_no_map
@@ -76,13 +76,13 @@ def from_topography(topography: Any, **given: Any) -> Heights:
     if getattr(topography, "dim", 2) != 2 or not getattr(topography, "is_uniform", True):
         raise ValueError("the topography is a line scan or not uniform; it must be a map")
     unit = getattr(topography, "unit", None)
-    said: dict[str, Any] = {"size": tuple(float(length) for length in topography.physical_sizes), "axes": "xy"}
+    said: dict[str, Any] = {"axes": "xy"}
     if topography.is_periodic:
         said["period"] = "xy"
-    if given.get("axes") == "yx":
-        said["size"] = said["size"][::-1]
-    if SIZES & set(given):
-        del said["size"]
+    if not SIZES & set(given):
+        if (sizes := size_of(topography)) is None:
+            raise TypeError(f"the topography {NO_SIZE}")
+        said["size"] = sizes[::-1] if given.get("axes") == "yx" else sizes
     return heights(topography.heights(), **{**said, **with_unit(unit, given)})
 
 
