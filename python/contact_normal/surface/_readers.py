@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import warnings
-import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -184,14 +184,17 @@ _TEXTS = ".asc", ".xyz", ".tsv"
 def _of_numpy(path: str | os.PathLike[str], variable: str | None) -> Any:
     """The array of a file of numpy."""
     try:
-        found = np.load(path)
-        if isinstance(found, np.ndarray):
-            if variable is not None:
+        with open(path, "rb") as file:
+            found = np.load(file)
+            if not isinstance(found, np.ndarray):
+                found = found[chosen(variable, list(found), path)]
+            elif variable is not None:
                 raise ValueError(f"{path} holds one array; give variable for files of several")
-            return found
-        with found as file:
-            return file[chosen(variable, list(file), path)]
-    except (ValueError, EOFError, zipfile.BadZipFile) as error:
-        if "give variable" in str(error):
+        if not isinstance(found, np.ndarray):
+            raise ValueError("it holds bytes")
+        return found
+    except Exception as error:  # Wrong bytes end in errors of zlib, zipfile, tokenize and others.
+        is_of_system = isinstance(error, OSError) and error.errno not in (None, errno.EINVAL)
+        if is_of_system or isinstance(error, MemoryError) or "give variable" in str(error):
             raise
-        raise ValueError(f"{path} is no file of numbers that numpy.save or numpy.savez wrote") from error
+        raise ValueError(f"{path} is no file of numbers that numpy.save or numpy.savez wrote, or it is damaged") from error
