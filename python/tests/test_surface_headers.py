@@ -38,6 +38,18 @@ class Headers(unittest.TestCase):
         self.addCleanup(caught.__exit__, None, None, None)
         warnings.simplefilter("error")
 
+    def test_a_width_without_a_unit_is_quoted_whole(self):
+        path = self.folder / "map.txt"
+        for width, told in (("30.00", "30.00, which has no unit of length"), ("30", "30, which has no unit of length"), ("3.0e1  ", "3.0e1, which has no unit of length"),
+                            ("30.00 px", "30.00 px, which is no unit of length"), ("30.00px", "30.00 px, which is no unit of length")):
+            path.write_text(f"# Width: {width}\n# Height: {width}\n# Value units: m\n1e-9 2e-9 4e-9\n3e-9 1e-9 5e-9\n")
+            with self.subTest(width), self.assertRaisesRegex(ValueError, rf"says Width: {told}; or give size="):
+                surface.read(path)
+            self.assertEqual(surface.read(path, dx=1e-5, dy=1e-5).units, ("m", "N"))
+        path.write_text("# Width: 30.00um\n# Height: 2e1 um\n# Value units: m\n1e-9 2e-9 4e-9\n3e-9 1e-9 5e-9\n")
+        found = surface.read(path)
+        np.testing.assert_allclose((found.dx, found.dy), (1e-5, 1e-5))
+
     def test_all_ends_obey_the_header(self):
         self.silent()
         for end in ENDS:

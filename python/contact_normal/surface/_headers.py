@@ -13,7 +13,7 @@ from .._units import in_metres
 # A header is within so many bytes.
 _WITHIN = 4096
 
-_LENGTH = re.compile(r"^#\s*(Width|Height)\s*:\s*([-+.,\deE]+)\s*(\S+)\s*$", re.MULTILINE)
+_LENGTH = re.compile(r"^#\s*(Width|Height)\s*:[ \t]*([-+.,\deE]+)(?![-+.,\d])[ \t]*(\S*)[ \t]*$", re.MULTILINE)
 _UNIT = re.compile(r"^#\s*Value units?\s*:[ \t]*(\S*)[ \t]*$", re.MULTILINE)
 
 
@@ -51,7 +51,8 @@ def header_of(path: str | os.PathLike[str], is_given: bool = False) -> dict[str,
         if not 0.0 < size < float("inf"):
             if is_given:
                 return {"size": None, "unit": value[1]}
-            why = ", which is no unit of length" if length is None else "; it must be a positive number without signs between thousands"
-            raise ValueError(f"{path} says {name}: {number} {of_length}{why}; or give size=(...)")
+            why = (", which has no unit of length" if not of_length else ", which is no unit of length" if length is None
+                   else "; it must be a positive number without signs between thousands")
+            raise ValueError(f"{path} says {name}: {f'{number} {of_length}'.rstrip()}{why}; or give size=(...)")
         sizes.append(size)
     return {"size": tuple(sizes), "unit": value[1]}
