@@ -29,6 +29,9 @@ def from_xarray(array: Any, **given: Any) -> Heights:
     the heights have it; units that differ are refused. With dx, size, span, or x and y the coordinates are not read. The attributes "unit" and "periodic"
     are those of SurfaceTopography's files: the unit, and a direction in which the surface repeats itself.
     """
+    if hasattr(array, "data_vars") or not hasattr(array, "dims"):
+        choose = f": choose one of {', '.join(map(str, array.data_vars))}" if hasattr(array, "data_vars") else ""
+        raise TypeError(f"array is a {type(array).__name__}; it must be a DataArray{choose}")
     if len(array.dims) != 2:
         kept = [name for name in array.dims if array.sizes[name] > 1]
         if len(kept) != 2:
@@ -73,6 +76,8 @@ def _unit(attributes: Any) -> Any:
 def from_topography(topography: Any, **given: Any) -> Heights:
     """Heights of a uniform topography of the package SurfaceTopography, whose arrays have x as the first index. With axes="yx" it is y, and the first
     of its lengths is that in y."""
+    if not hasattr(topography, "heights"):
+        raise TypeError(f"topography is a {type(topography).__name__}; it must be a topography of SurfaceTopography")
     if getattr(topography, "dim", 2) != 2 or not getattr(topography, "is_uniform", True):
         raise ValueError("the topography is a line scan or not uniform; it must be a map")
     unit = getattr(topography, "unit", None)
