@@ -56,7 +56,8 @@ class Bar:
         self._written(self._tqdm.close if self._tqdm is not None else partial(print, file=self._file))
 
     def _written(self, write: Callable[[], Any]) -> None:
-        """Calls `write`. A file that takes no more, as a closed pipe, a full disk or the stream of a host that is gone, ends the bar and not the solve."""
+        """Calls `write`. A file that takes no more, as a closed pipe, a full disk or the stream of a host that is gone,
+        ends the bar and not the solve."""
         if self._file is not None:
             try:
                 write()

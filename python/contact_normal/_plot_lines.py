@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from ._result import Result
     from ._solved import Solved
 
-# Pressures that differ by this part are equal, as a solve has them to its tolerance. A histogram of equal ones shows this part around them.
+# Pressures that differ by the first part are equal, as a solve has them to its tolerance. A histogram of equal ones
+# shows the second part around them.
 _EQUAL, _SHOWN = 1e-6, 0.1
 
 
@@ -43,7 +44,8 @@ def _mark_borders(axes: Axes, places: Any) -> None:
 
 
 def _least_range(values: Any, bins: Any) -> tuple[float, float] | None:
-    """A range with all values in the middle of one bin, where they differ by the error of a solve or less; None where they differ by more."""
+    """A range with all values in the middle of one bin, where they differ by the error of a solve or less; None where
+    they differ by more."""
     middle = 0.5 * (values.min() + values.max()) if values.size else 0.0
     if not np.isfinite(middle) or middle == 0.0 or np.ptp(values) > _EQUAL * abs(middle):
         return None

@@ -95,7 +95,8 @@ class Quantities(list[Quantity]):
         """The row of a quantity on the finest grid."""
         found = [row for row in self if row.name == name]
         if not found:
-            raise ValueError(f"name is {name!r}; it must be one of those asked for: {', '.join(dict.fromkeys(row.name for row in self))}")
+            names = ", ".join(dict.fromkeys(row.name for row in self))
+            raise ValueError(f"name is {name!r}; it must be one of those asked for: {names}")
         return found[-1]
 
     def __str__(self) -> str:

@@ -24,16 +24,16 @@ _LABEL = (rf"(?<![^\W_])(?P<name>{_NAMES})(?:[ _-]?(?:axis|position|pos|coordina
 _WORD = re.compile(rf"{_LABEL}|[^\s,;|\[\](){{}}<>]+(?:\s*[\[({{<][^\])}}>]*[\])}}>])?", re.IGNORECASE)
 
 # A unit that stands for itself. After a number it is that of a length, before one it is a word.
-_UNIT = re.compile(rf"(?<![^\W_])(?<!\d\s)(?:{_SYMBOLS}|{_WORDS})(?![^\W_/])(?!\s*\d)|\[[^\[\]]*(?<![^\W_])(?:{_SYMBOLS}|(?-i:m)|{_WORDS})\s*\]|units?\s*[:=]\s*m\b",
-                   re.IGNORECASE)
+_UNIT = re.compile(rf"(?<![^\W_])(?<!\d\s)(?:{_SYMBOLS}|{_WORDS})(?![^\W_/])(?!\s*\d)"
+                   rf"|\[[^\[\]]*(?<![^\W_])(?:{_SYMBOLS}|(?-i:m)|{_WORDS})\s*\]|units?\s*[:=]\s*m\b", re.IGNORECASE)
 
 # So much of a line is quoted.
 _QUOTED = 60
 
 
 class Columns(NamedTuple):
-    """What is said of the columns of a list: their unit; where x, y and z stand, if each column has a name, and else whether y stands before x; and
-    the line that names a unit and is not understood."""
+    """What is said of the columns of a list: their unit; where x, y and z stand, if each column has a name, and else
+    whether y stands before x; and the line that names a unit and is not understood."""
 
     unit: str | None = None
     order: tuple[int, int, int] | None = None
@@ -53,14 +53,16 @@ def columns_of(path: str | os.PathLike[str], count: int) -> Columns:
     lines = [line[1:].strip() for line in head_of(path).split("\n") if line.startswith("#")]
     words = [_words_of(line) for line in lines]
     # A line for each column.
-    alone = [one for each in words if len(named := [one for one in each if one.kind and one.unit]) == 1 for one in named]
+    named = [[one for one in each if one.kind and one.unit] for each in words]
+    alone = [each[0] for each in named if len(each) == 1]
     for each in (*words, alone):
         units = {one.kind: one.unit for one in each if one.kind and one.unit}
         if len(units) == 3:
             if not all(same_length(units["x"], other) for other in units.values()):
-                raise ValueError(f"{path} has {', '.join(f'{name} in {unit}' for name, unit in units.items())}: convert them to one unit")
-            kinds = list(units)
-            return Columns(units["x"] if in_metres(units["x"]) else None, _order_of(each, count), kinds.index("y") < kinds.index("x"))
+                told = ", ".join(f"{name} in {unit}" for name, unit in units.items())
+                raise ValueError(f"{path} has {told}: convert them to one unit")
+            kinds, unit = list(units), units["x"] if in_metres(units["x"]) else None
+            return Columns(unit, _order_of(each, count), kinds.index("y") < kinds.index("x"))
     doubt = next((line for line in lines if _UNIT.search(line)), None)
     order = next((found for each in words if (found := _order_of(each, count))), None)
     return Columns(None, order, False, doubt and (doubt if len(doubt) <= _QUOTED else doubt[:_QUOTED] + "..."))

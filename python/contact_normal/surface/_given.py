@@ -31,8 +31,8 @@ def with_header(told: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
 
 
 def steps_of(shape: tuple[int, int], given: dict[str, Any]) -> tuple[float | None, float | None]:
-    """The distances of the columns and of the lines of a text with these lines and columns, as they are given. None where they are not, or are no lengths:
-    `heights` says so."""
+    """The distances of the columns and of the lines of a text with these lines and columns, as they are given. None where
+    they are not, or are no lengths: `heights` says so."""
     is_xy, (lines, columns) = given.get("axes") == "xy", shape
     counts = (lines, columns) if is_xy else (columns, lines)
     try:

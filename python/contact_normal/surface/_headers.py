@@ -51,8 +51,9 @@ def header_of(path: str | os.PathLike[str], is_given: bool = False) -> dict[str,
         if not 0.0 < size < float("inf"):
             if is_given:
                 return {"size": None, "unit": value[1]}
-            why = (", which has no unit of length" if not of_length else ", which is no unit of length" if length is None
-                   else "; it must be a positive number without signs between thousands")
+            why = "; it must be a positive number without signs between thousands"
+            if length is None:
+                why = f", which {'is' if of_length else 'has'} no unit of length"
             raise ValueError(f"{path} says {name}: {f'{number} {of_length}'.rstrip()}{why}; or give size=(...)")
         sizes.append(size)
     return {"size": tuple(sizes), "unit": value[1]}

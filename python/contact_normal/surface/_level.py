@@ -71,7 +71,8 @@ def form(heights: Heights, kind: str = "plane") -> Form:
     heights : Heights
         Without spikes and fill values: each counts with its square.
     kind : {"mean", "plane", "quadric"}
-        A mean height; a plane; a plane and curvatures. Of a line scan a straight line, and a parabola: across the line nothing is tilted.
+        A mean height; a plane; a plane and curvatures. Of a line scan a straight line, and a parabola: across the line
+        nothing is tilted.
     """
     refuse_others(heights=heights)
     if kind not in FORMS:
@@ -91,12 +92,14 @@ def form(heights: Heights, kind: str = "plane") -> Form:
         line = " along a line" if min(heights.z.shape) == 1 else ""
         raise ValueError(f"a {kind} has {len(powers)} unknowns{line}; {count} heights of the {heights.z.shape} elements do not determine them")
     scaled = dict(zip(powers, np.linalg.solve(matrix, right)))
-    found = Form(kind, tuple(float(scaled.get((i, j), 0.0) / (scales[0] ** i * scales[1] ** j)) for i, j in FORMS[kind]), 0.0)
+    coefficients = [scaled.get((i, j), 0.0) / (scales[0] ** i * scales[1] ** j) for i, j in FORMS[kind]]
+    found = Form(kind, tuple(map(float, coefficients)), 0.0)
     return dataclasses.replace(found, rms=float(np.sqrt(np.nanmean((heights.z - found.values(heights)) ** 2))))
 
 
 def _powers(kind: str, shape: tuple[int, ...]) -> tuple[tuple[int, int], ...]:
-    """Powers of x and y of a form. In a direction of one element, as across a line scan, nothing is tilted, as by `balance`."""
+    """Powers of x and y of a form. In a direction of one element, as across a line scan, nothing is tilted, as by
+    `balance`."""
     return tuple((i, j) for i, j in FORMS[kind] if (i == 0 or shape[1] > 1) and (j == 0 or shape[0] > 1))
 
 

@@ -23,7 +23,8 @@ def of_list(path: str | os.PathLike[str], values: Any, given: dict[str, Any]) ->
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             if why(values, steps_of(values.shape, given)) and lattice_of(values) is not None:
-                raise ValueError(f"{path} has x, y and z of {len(values)} points of a grid, which say the size of an element: leave out {' and '.join(sizes)}")
+                raise ValueError(f"{path} has x, y and z of {len(values)} points of a grid, which say the size of an element: "
+                                 f"leave out {' and '.join(sizes)}")
         return None
     said = Columns() if Path(path).suffix.lower() in (".npy", ".npz") else columns_of(path, values.shape[1])
     lattice, is_y_first = lattice_of(values[:, said.order]) if said.order else None, False
@@ -32,11 +33,11 @@ def of_list(path: str | os.PathLike[str], values: Any, given: dict[str, Any]) ->
     if lattice is None:
         return None
     if given.get("axes", "yx") != "yx":
-        raise ValueError(f"{path} has x, y and z of points, and no indices: leave out axes; where the first column is y, exchange the columns, "
-                         "or name them in a header, # y x z")
+        raise ValueError(f"{path} has x, y and z of points, and no indices: leave out axes; where the first column is y, "
+                         "exchange the columns, or name them in a header, # y x z")
     if said.doubt:
-        warnings.warn(f"{path}: the unit in the line '# {said.doubt}' is not read: x, y and z are taken to be in one unit; a line # x [mm] y [mm] z [mm] names it",
-                      stacklevel=4)
+        warnings.warn(f"{path}: the unit in the line '# {said.doubt}' is not read: x, y and z are taken to be in one unit; "
+                      "a line # x [mm] y [mm] z [mm] names it", stacklevel=4)
     if is_y_first:
         lattice = Lattice(np.ascontiguousarray(lattice.z.T), lattice.y, lattice.x)
     return heights(lattice.z, x=lattice.x, y=lattice.y, **with_unit(said.unit, given))

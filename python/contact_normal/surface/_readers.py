@@ -97,7 +97,8 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     Parameters
     ----------
     path : str or path
-        `.npy`; `.npz`; `.txt`, `.dat` and `.csv` as numbers, a row of the grid a line, or x, y and z of places of a grid, in any order; a header as
+        `.npy`; `.npz`; `.txt`, `.dat` and `.csv` as numbers, a row of the grid a line, or x, y and z of places of a grid, in any order, as in `.xyz`,
+        `.asc` and `.tsv`, too; a line `# x [mm] y [mm] z [mm]` names their columns, and a header as
         Gwyddion writes it says the size of the field and the unit. `.nc` as NetCDF, by the package xarray; all others, as `.x3p`, `.sur`, `.opd`, `.gwy`
         and `.mat`, by the package SurfaceTopography. The rows of a matrix of `.mat` are those of y. Heights and coordinates must be in one unit of length.
     variable : str, optional
@@ -132,15 +133,7 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         _warn_of_size(path, told, made)
         return made
     if end == ".nc":
-        from .._netcdf import read as netcdf
-
-        dataset = netcdf(path)
-        # Others, as that of a map projection, are no heights.
-        maps = [name for name, array in dataset.data_vars.items() if array.ndim == 2 or sum(size > 1 for size in array.shape) == 2]
-        # SurfaceTopography's mask says where the heights are NaN.
-        maps = [name for name in maps if not (name == "mask" and "maskandscale" in dataset[name].attrs)]
-        names = maps if maps and variable is None else list(dataset.data_vars)
-        return from_xarray(dataset[chosen(variable, names, path)], **given)
+        return _of_netcdf(path, variable, given)
     if end in _TEXTS and Path(path).exists() and is_text(path) and (found := of_text_list(path, given)) is not None:
         return found
     topography = of_instrument(path, end, variable, bool(SIZES & set(given)))
@@ -158,6 +151,19 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         if "axes" in given:
             given = {**given, "axes": {"yx": "xy", "xy": "yx"}.get(given["axes"], given["axes"])}
     return from_topography(topography, **given)
+
+
+def _of_netcdf(path: str | os.PathLike[str], variable: str | None, given: dict[str, Any]) -> Heights:
+    """Heights of a NetCDF file."""
+    from .._netcdf import read as netcdf
+
+    dataset = netcdf(path)
+    # Others, as that of a map projection, are no heights.
+    maps = [name for name, array in dataset.data_vars.items() if array.ndim == 2 or sum(size > 1 for size in array.shape) == 2]
+    # SurfaceTopography's mask says where the heights are NaN.
+    maps = [name for name in maps if not (name == "mask" and "maskandscale" in dataset[name].attrs)]
+    names = maps if maps and variable is None else list(dataset.data_vars)
+    return from_xarray(dataset[chosen(variable, names, path)], **given)
 
 
 def _warn_of_size(path: str | os.PathLike[str], told: dict[str, Any], made: Heights) -> None:
