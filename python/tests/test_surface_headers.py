@@ -96,6 +96,12 @@ class Headers(unittest.TestCase):
             with self.subTest(head):
                 self.assert_grid(self.read(head, (X, Y, Z)))
 
+    def test_a_map_has_no_columns_of_points(self):
+        path = self.folder / "map.txt"
+        np.savetxt(path, np.random.default_rng(1).normal(size=(20, 30)), header="x [um] y [um] z [nm]")
+        with self.assertRaisesRegex(TypeError, "give the size of an element"):
+            surface.read(path)
+
     def test_units_that_are_not_understood_are_told(self):
         for head, line in (("# units: um um mm", "units: um um mm"), ("# Lateral unit: um\n# Height unit: mm", "Lateral unit: um"), ("# xunit=um\n# zunit=mm", "xunit=um"),
                            ("# x [1e-6 m] y [1e-6 m] z [1e-3 m]", "x .1e-6 m. y"), ("# x y z [mm]", "x y z .mm."), ("# Breite [um] L\u00e4nge [um] Wert [mm]", "Breite .um."),

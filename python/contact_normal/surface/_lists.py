@@ -12,7 +12,7 @@ import numpy as np
 from ._columns import Columns, columns_of
 from ._given import SIZES, steps_of, with_unit
 from ._heights import Heights, heights
-from ._lattice import Lattice, lattice_of
+from ._lattice import Lattice, lattice_of, may_be_list
 from ._not_a_map import why
 from ._texts import of_text
 
@@ -25,6 +25,8 @@ def of_list(path: str | os.PathLike[str], values: Any, given: dict[str, Any]) ->
             if why(values, steps_of(values.shape, given)) and lattice_of(values) is not None:
                 raise ValueError(f"{path} has x, y and z of {len(values)} points of a grid, which say the size of an element: "
                                  f"leave out {' and '.join(sizes)}")
+        return None
+    if not may_be_list(values.shape):
         return None
     said = Columns() if Path(path).suffix.lower() in (".npy", ".npz") else columns_of(path, values.shape[1])
     lattice, is_y_first = lattice_of(values[:, said.order]) if said.order else None, False
