@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._arguments import number
 from ._units import Units, label
 
 if TYPE_CHECKING:
@@ -59,10 +60,10 @@ def name_axes(axes: Axes, units: Units) -> None:
 
 def nearest(place: float, centres: Any, d: float, name: str) -> int:
     """The element at a place."""
-    k = int(np.floor((place - centres[0]) / d + 0.5))
+    k = np.floor((number(name, place) - centres[0]) / d + 0.5)
     if not 0 <= k < len(centres):
         raise ValueError(f"{name} is {place}; it must lie within the grid, from {centres[0] - 0.5 * d} to {centres[-1] + 0.5 * d}")
-    return k
+    return int(k)
 
 
 def middle(centres: Any) -> float:

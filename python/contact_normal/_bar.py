@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 
 def has_terminal() -> bool:
     """Whether stderr is a terminal. Windowed programs and services have no stderr."""
-    return sys.stderr is not None and sys.stderr.isatty()
+    try:
+        return sys.stderr is not None and sys.stderr.isatty()
+    except Exception:  # of a host that has closed the stream in its place
+        return False
 
 
 class Bar:
@@ -53,11 +56,12 @@ class Bar:
         self._written(self._tqdm.close if self._tqdm is not None else partial(print, file=self._file))
 
     def _written(self, write: Callable[[], Any]) -> None:
-        """Calls `write`. A file that takes no more, as a closed pipe or a full disk, ends the bar and not the solve."""
+        """Calls `write`. A file that takes no more, as a closed pipe, a full disk or the stream of a host that is gone,
+        ends the bar and not the solve."""
         if self._file is not None:
             try:
                 write()
-            except (OSError, ValueError, AttributeError):
+            except Exception:  # Streams of hosts have errors of their own.
                 self._file = None
 
 

@@ -25,14 +25,14 @@ def add(commands: Any) -> None:
     out = command.add_argument_group("output")
     out.add_argument("-o", "--output", action="append", default=[], metavar="FILE", help=f"fields as {', '.join(FIELDS)}; may be repeated")
     out.add_argument("--plot", nargs="?", const="", metavar="FILE",
-                     help=f"a picture as {', '.join(PICTURES)}; by default the name of the surface with .png")
+                     help=f"a picture as {', '.join(PICTURES)}; by default the name of the surface with .contact.png")
     out.add_argument("--progress", action=argparse.BooleanOptionalAction, default=None, help="a bar on stderr; by default on a terminal")
     command.set_defaults(run=run)
 
 
 def run(given: argparse.Namespace) -> int:
     """Solves, prints and writes; 1 if the solve stopped early."""
-    plot = str(Path(given.file).with_suffix(".png")) if given.plot == "" else given.plot
+    plot = str(Path(given.file).with_suffix(".contact.png")) if given.plot == "" else given.plot
     for name, endings in (*((output, FIELDS) for output in given.output), *([(plot, PICTURES)] if plot else [])):
         if Path(name).suffix not in endings:
             raise ValueError(f"{name} must end in one of {', '.join(endings)}")

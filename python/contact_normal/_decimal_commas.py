@@ -14,3 +14,38 @@ def has_decimal_commas(lines: list[str]) -> bool:
 def _commas(word: str) -> int:
     """The number of commas of a word; 2 if one is not between digits, because it then separates columns."""
     return word.count(",") if re.fullmatch(r"[-+]?\d*(,\d+)?([eEdD][-+]?\d+)?", word) else 2
+
+
+# Among so many numbers whose digits alternate chance is no reason: of columns of one kind each has both of them.
+_MANY = 8
+
+
+def cut_decimals(lines: list[str]) -> str | None:
+    """Why the commas of these lines are decimal points, though they seem to part columns; None if they are not."""
+    if any(re.search(r"(^|,)\s*0\d+\s*(,|$)", line) for line in lines):
+        return "numbers that begin with zeros between its commas: decimal commas need semicolons between the numbers"
+    if any("." in line for line in lines) or not (_are_halves(lines) or _are_pairs(lines)):
+        return None
+    return ("digits behind decimal commas, it seems: decimal commas need semicolons between the numbers. If these are "
+            "integers, write one of them with a point, as 12.0")
+
+
+def _are_halves(lines: list[str]) -> bool:
+    """Whether every second cell has equally many digits and no sign, and many of the others have a sign or other
+    lengths."""
+    most = max((line.count(",") for line in lines), default=0)
+    rows = [[cell.strip() for cell in line.split(",")] for line in lines if line.count(",") == most]
+    first, second = ([cell for row in rows for cell in row[k::2]] for k in (0, 1))
+    are_digits = all(re.fullmatch(r"\d+", cell) for cell in second)
+    if most % 2 == 0 or not are_digits or not all(re.fullmatch(r"[-+]?\d+", cell) for cell in first):
+        return False
+    lengths = {len(cell) for cell in second}
+    return len(lengths) == 1 and sum(not cell.isdigit() or len(cell) not in lengths for cell in first) >= _MANY
+
+
+def _are_pairs(lines: list[str]) -> bool:
+    """Whether commas with blanks behind them part all numbers, each of which has a comma within."""
+    cells = [cell for line in lines for cell in re.split(r",\s+", line.strip(" ,"))]
+    numbers = [cell for cell in cells if re.search(r"\d", cell)]
+    are_parted = any(re.search(r",\s", line.strip()) for line in lines)
+    return are_parted and all(re.fullmatch(r"\s*[-+]?\d*,\d+\s*", cell) for cell in numbers)

@@ -101,9 +101,9 @@ def flash_temperature(
     for name, value in (("conductivity", conductivity), ("diffusivity", diffusivity), ("speed", speed)):
         setattr(heat, name, _both(name, value))
     if share is not None:
-        if not share >= 0.0:
-            raise ValueError(f"share is {share}; a part must lie in [0, 1]")
         heat.share = number("share", share)
+        if not heat.share >= 0.0:
+            raise ValueError(f"share is {share}; a part must lie in [0, 1]")
     heat.threads = integer("threads", threads)
     rise = np.empty((2, *shape))
     check(*called(library.contact_normal_flash_temperature, ctypes.byref(heat), pointer(rise), ctypes.byref(flash), keep=(flux, rise)))

@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from ._result import Result
     from ._solved import Solved
 
+# Pressures that differ by the first part are equal, as a solve has them to its tolerance. A histogram of equal ones
+# shows the second part around them.
+_EQUAL, _SHOWN = 1e-6, 0.1
+
 
 def plot_section(result: Result, x: float | None, y: float | None, axes: Axes | None) -> Axes:
     """See `Result.plot_section`."""
@@ -39,12 +43,23 @@ def _mark_borders(axes: Axes, places: Any) -> None:
         axes.axvline(place, color=EDGE, linestyle=":", linewidth=1.2 if len(places) <= 12 else 0.4, zorder=0)
 
 
+def _least_range(values: Any, bins: Any) -> tuple[float, float] | None:
+    """A range with all values in the middle of one bin, where they differ by the error of a solve or less; None where
+    they differ by more."""
+    middle = 0.5 * (values.min() + values.max()) if values.size else 0.0
+    if not np.isfinite(middle) or middle == 0.0 or np.ptp(values) > _EQUAL * abs(middle):
+        return None
+    count = max(1, int(bins)) if isinstance(bins, (int, np.integer)) else 1
+    width, below = _SHOWN * abs(middle) / count, count // 2 + 0.5
+    return float(middle - below * width), float(middle + (count - below) * width)
+
+
 def plot_histogram(result: Solved, bins: int, axes: Axes | None) -> Axes:
     """See `Result.plot_histogram`."""
     axes = axes or new_axes(SIZE)
     inside = result.pressure[result.contact]
     share = np.full(inside.shape, 100.0 / max(1, inside.size))
-    axes.hist(inside, bins=bins, weights=share)
+    axes.hist(inside, bins=bins, weights=share, range=_least_range(inside, bins))
     axes.set(xlabel=label("pressure", "pressure", result.units), ylabel="share of the contact area [%]")
     area = title(f"{result.contact_area:.4g}", "area", result.units)
     axes.set_title(f"contact area {area}, largest pressure {title(f'{result.max_pressure:.4g}', 'pressure', result.units)}", fontsize=10)

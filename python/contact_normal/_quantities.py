@@ -93,7 +93,11 @@ class Quantities(list[Quantity]):
 
     def last(self, name: str) -> Quantity:
         """The row of a quantity on the finest grid."""
-        return [row for row in self if row.name == name][-1]
+        found = [row for row in self if row.name == name]
+        if not found:
+            names = ", ".join(dict.fromkeys(row.name for row in self))
+            raise ValueError(f"name is {name!r}; it must be one of those asked for: {names}")
+        return found[-1]
 
     def __str__(self) -> str:
         lines = [f"{'quantity':18}{'grid':>13}{'value':>16}{'error':>12}{'seconds':>12}"]

@@ -30,6 +30,8 @@ def on_any_grid(
     x, y = (-half[0], -half[1]) if corner is None else two("corner", corner)
     # The distances of this grid are not read.
     scene = Scene(np.zeros((max(my, 0), max(mx, 0))), dx, dy, effects=effects, **loaded)
+    # The library says which count is no count.
+    scene.struct.my, scene.struct.mx = my, mx
     return scene, Surface(h, (x, y)), (0.0, 0.0) if corner is None else (x + half[0], y + half[1])
 
 
@@ -47,6 +49,8 @@ def limits(max_seconds: Any, max_bytes: Any, max_elements: Any, surface: Surface
 
 def set_targets(accuracy: Any, targets: Mapping[str, float] | None) -> None:
     """Writes relative errors of quantities into a `contact_normal_accuracy`."""
+    if targets is not None and not isinstance(targets, Mapping):
+        raise TypeError(f"targets is {targets!r}; it must be a mapping, as {{'force': 0.01}}")
     for name, target in (targets or {}).items():
         member = "target" if name == "force" else f"{name}_target"
         if name not in QUANTITIES:

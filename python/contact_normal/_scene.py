@@ -185,12 +185,14 @@ _OF_STRESSES = ("period", "patches", "coating")
 
 
 def owned(value: Any) -> Any:
-    """A copy, for callers may change their lists and arrays."""
+    """A copy, for callers may change their lists and arrays. Strings of numpy, which are arrays too, become plain ones."""
+    if isinstance(value, str):
+        return str(value)
     if isinstance(value, memoryview) or hasattr(value, "__array__"):
         return np.array(value)
     if type(value) in (list, tuple):
         return type(value)(owned(one) for one in value)
-    return value if value is None or isinstance(value, (int, float, str)) else copy.deepcopy(value)
+    return value if value is None or isinstance(value, (int, float)) else copy.deepcopy(value)
 
 
 def _without_load(

@@ -106,6 +106,7 @@ class Solver:
         # library, whose message says so.
         scene = Scene(np.zeros([max(m, 0) for m in self._shape]), dx, dy, None, 0.0, **self._bodies,
                       effects={"influence": influence, "row_tables": row_tables, "friction": friction, "visco": visco, **self._effects})
+        scene.struct.my, scene.struct.mx = self._shape
         struct, self._handle = options(given), Handle()
         create = partial(library.contact_normal_solver_new, ctypes.byref(scene.struct), ctypes.byref(struct))
         check(*called(partial(self._handle.set_up, create), keep=scene, short=is_short(scene.effort, 1000)))

@@ -246,9 +246,13 @@ class Commands(unittest.TestCase):
         np.testing.assert_allclose(h - h.min(), 2 * (HEIGHTS.max() - HEIGHTS), atol=1e-12)
 
     def test_pictures_and_progress(self):
+        # Instruments write such a picture beside their heights.
+        photo = self.npy.with_suffix(".png")
+        photo.write_bytes(b"a photo")
         code, _, told = called("solve", self.npy, *BALL, "--plot", "--progress")
         self.assertEqual((code, "56 x 40, cycle" in told), (0, True))
-        self.assertEqual(self.npy.with_suffix(".png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual(photo.read_bytes(), b"a photo")
+        self.assertEqual(self.npy.with_suffix(".contact.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
         code, _, _ = called("solve", self.npy, *BALL, "--plot", self.folder / "p.svg")
         self.assertIn("<svg", (self.folder / "p.svg").read_text())
 

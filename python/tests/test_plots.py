@@ -154,6 +154,25 @@ class Plots(unittest.TestCase):
         with cn.Solver(MY, MX, D, D, **STEEL) as solver:
             self.assertEqual(len(solver.solve(H + 1.0, approach=0.5).plot_histogram().patches), 40)  # no contact
 
+    def test_a_histogram_of_equal_pressures_has_one_bar(self):
+        flat = cn.solve(np.zeros((MY, MX)), D, D, force=1000.0, period="xy", **STEEL)
+        ball = cn.solve(H, D, D, force=1e-3, **STEEL)
+        limited = cn.solve(H, D, D, force=900.0, pressure_limit=100.0, **STEEL)
+        for found in (flat, ball):
+            self.assertLess(np.ptp(found.pressure[found.contact]), 1e-6 * found.max_pressure)
+        for found, share in ((flat, 100.0), (ball, 100.0), (limited, None)):
+            for bins in (40, 7, 1, np.int64(8)):
+                axes = found.plot_histogram(bins=bins)
+                bars = [(bar.get_x(), bar.get_width(), bar.get_height()) for bar in axes.patches if bar.get_height() > 0.0]
+                self.assertAlmostEqual(sum(height for *_, height in bars), 100.0, places=9)
+                axes.figure.canvas.draw()
+                low, high = axes.get_xlim()
+                self.assertTrue(all(width > 1e-3 * (high - low) for _, width, _ in bars))
+                if share:
+                    ((left, width, height),) = bars
+                    self.assertAlmostEqual(height, share, places=9)
+                    self.assertTrue(left < found.max_pressure < left + width, (bins, left, width))
+
     def test_areas_over_forces(self):
         found = [cn.solve(H, D, D, force=force, units=("mm", "N"), **STEEL) for force in (400.0, 100.0, 900.0)]
         axes = cn.plot_contact_area(found)

@@ -7,7 +7,7 @@ import re
 
 import numpy as np
 
-from .._decimal_commas import has_decimal_commas
+from .._decimal_commas import cut_decimals, has_decimal_commas
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?"
 
@@ -37,6 +37,9 @@ def columns_of(text: str, columns: tuple[int, int], path: str | os.PathLike[str]
     rows: list[list[float]] = []
     commas, width, others, among = has_decimal_commas(lines), 0, list[str](), ""
     behind = ""
+    # A point has two numbers at least, each of two halves.
+    if not commas and (reason := cut_decimals([line for line in lines if line.count(",") > 2 and ";" not in line])):
+        raise ValueError(f"{path} has {reason}")
     for line in lines:
         words = _words(line, commas)
         if len(words) > max(columns) and all(re.fullmatch(NUMBER, words[column]) for column in (0, *columns)):

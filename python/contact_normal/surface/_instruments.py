@@ -8,6 +8,18 @@ import warnings
 from collections.abc import Callable
 from typing import Any
 
+# What is said of files and topographies without sizes; the command line looks for it.
+NO_SIZE = "does not say the size of an element: give size, the lengths of the field, or dx and dy"
+
+
+def size_of(topography: Any) -> tuple[float, ...] | None:
+    """The lengths of the field of a topography; None if it does not say them."""
+    try:
+        sizes = tuple(float(length) for length in topography.physical_sizes)
+    except TypeError:  # They are None, or products with None.
+        return None
+    return sizes if all(0.0 < length < float("inf") for length in sizes) else None
+
 
 def of_instrument(path: str | os.PathLike[str], end: str, variable: str | None, is_sized: bool) -> Any:
     """The topography of an instrument's file; `is_sized`: the caller says how large it is."""
@@ -18,12 +30,16 @@ def of_instrument(path: str | os.PathLike[str], end: str, variable: str | None, 
     with _tried(lambda: open_topography(os.fspath(path)), path) as reader:
         which = _channel(reader, variable, end, path)
         try:
-            return reader.topography(channel_index=which)
+            found = reader.topography(channel_index=which)
+            if is_sized or getattr(found, "dim", 2) != 2 or size_of(found) is not None:
+                return found
         except Exception as error:  # of that package: it has its own for each format
             if "physical_sizes" not in str(error):
                 return _tried(lambda: reader.topography(channel_index=which), path)
             if not is_sized:
-                raise TypeError(f"{path} does not say the size of an element: give size, the lengths of the field, or dx and dy") from error
+                raise TypeError(f"{path} {NO_SIZE}") from error
+        else:
+            raise TypeError(f"{path} {NO_SIZE}")
         # What the caller gives takes the place of these sizes.
         return _tried(lambda: reader.topography(channel_index=which, physical_sizes=(1.0, 1.0)), path)
 

@@ -31,15 +31,20 @@ class Lattice(NamedTuple):
     y: Doubles
 
 
+def may_be_list(shape: tuple[int, int]) -> bool:
+    """Whether an array of this shape may be a list of points."""
+    return 3 <= shape[1] <= _COLUMNS and shape[0] >= _LINES
+
+
 def lattice_of(values: Any) -> Lattice | None:
     """The grid of a list of points in any order, no place of the grid twice; None if it is none, or if several columns may be coordinates.
 
     Of two columns that name places the first one is x. Heights are in the column behind them, or in the only other one; columns that count are
     left out, others with a warning. Places that are missing, up to half of them, are NaN, with a warning.
     """
-    lines, columns = values.shape
-    if not (3 <= columns <= _COLUMNS and lines >= _LINES):
+    if not may_be_list(values.shape):
         return None
+    lines, columns = values.shape
     places = {k: rungs(values[:, k]) for k in range(columns)}
     parts = {(a, b): _part(places[a], places[b]) for a, b in combinations(range(columns), 2)}
     pairs = [pair for pair, part in parts.items() if part == 1.0] or [pair for pair, part in parts.items() if part >= _LEAST]
@@ -53,13 +58,13 @@ def lattice_of(values: Any) -> Lattice | None:
     if len(others) != 1 and not (others and others[0] == b + 1):
         return None
     if len(others) > 1:
-        warnings.warn(f"of {columns} columns, numbers {a + 1} and {b + 1} are read as x and y, and number {others[0] + 1} as the heights", stacklevel=4)
+        warnings.warn(f"of {columns} columns, numbers {a + 1} and {b + 1} are read as x and y, and number {others[0] + 1} as the heights", stacklevel=5)
     (x, ix), (y, iy) = places[a], places[b]
     z = np.full((len(y), len(x)), np.nan)
     z[iy, ix] = values[:, others[0]]
     if parts[a, b] < 1.0:
         warnings.warn(f"{z.size - lines} of {z.size} places of the grid of {len(y)} x {len(x)} have no point: they are holes, where no surface is",
-                      stacklevel=4)
+                      stacklevel=5)
     return Lattice(z, x, y)
 
 

@@ -71,12 +71,13 @@ def form(heights: Heights, kind: str = "plane") -> Form:
     heights : Heights
         Without spikes and fill values: each counts with its square.
     kind : {"mean", "plane", "quadric"}
-        A mean height; a plane; a plane and curvatures.
+        A mean height; a plane; a plane and curvatures. Of a line scan a straight line, and a parabola: across the line
+        nothing is tilted.
     """
     refuse_others(heights=heights)
     if kind not in FORMS:
         raise ValueError(f"kind is {kind!r}; it must be one of {', '.join(FORMS)}")
-    powers = FORMS[kind]
+    powers = _powers(kind, heights.z.shape)
     # Scaled to [-1, 1]: there the normal equations of these monomials are well conditioned.
     scales = 0.5 * heights.dx * heights.z.shape[1], 0.5 * heights.dy * heights.z.shape[0]
     count, matrix, right = 0, np.zeros((len(powers), len(powers))), np.zeros(len(powers))
@@ -88,10 +89,18 @@ def form(heights: Heights, kind: str = "plane") -> Form:
         count, matrix, right = count + x.size, matrix + columns @ columns.T, right + columns @ z[known]
     sizes = np.linalg.eigvalsh(matrix)
     if not sizes[0] > _SINGULAR * sizes[-1]:
-        raise ValueError(f"a {kind} has {len(powers)} unknowns; {count} heights of the {heights.z.shape} elements do not determine them")
-    scaled = np.linalg.solve(matrix, right)
-    found = Form(kind, tuple(float(c / (scales[0] ** i * scales[1] ** j)) for c, (i, j) in zip(scaled, powers)), 0.0)
+        line = " along a line" if min(heights.z.shape) == 1 else ""
+        raise ValueError(f"a {kind} has {len(powers)} unknowns{line}; {count} heights of the {heights.z.shape} elements do not determine them")
+    scaled = dict(zip(powers, np.linalg.solve(matrix, right)))
+    coefficients = [scaled.get((i, j), 0.0) / (scales[0] ** i * scales[1] ** j) for i, j in FORMS[kind]]
+    found = Form(kind, tuple(map(float, coefficients)), 0.0)
     return dataclasses.replace(found, rms=float(np.sqrt(np.nanmean((heights.z - found.values(heights)) ** 2))))
+
+
+def _powers(kind: str, shape: tuple[int, ...]) -> tuple[tuple[int, int], ...]:
+    """Powers of x and y of a form. In a direction of one element, as across a line scan, nothing is tilted, as by
+    `balance`."""
+    return tuple((i, j) for i, j in FORMS[kind] if (i == 0 or shape[1] > 1) and (j == 0 or shape[0] > 1))
 
 
 def level(heights: Heights, kind: str = "plane") -> Heights:
@@ -108,7 +117,8 @@ def level(heights: Heights, kind: str = "plane") -> Heights:
         See `form`. "quadric" also removes the curvature; add the ideal form by a gap of its own where it belongs to the contact.
     """
     refuse_others(heights=heights)
-    if heights.period and kind != "mean":
+    is_tilted = {"x": heights.z.shape[1] > 1, "y": heights.z.shape[0] > 1}
+    if kind != "mean" and any(is_tilted[axis] for axis in heights.period or ""):
         raise ValueError(f"the surface repeats itself in {heights.period}: a {kind} would break the period; level it with period None, or by its mean")
     warn_of_fill_values(heights, stacklevel=2)
     return dataclasses.replace(heights, z=heights.z - form(heights, kind).values(heights))

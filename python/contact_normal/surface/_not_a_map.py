@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 import numpy as np
@@ -93,11 +92,6 @@ def _is_strip(values: Any) -> bool:
         return False
     low, middle, high = np.nanquantile(np.where(np.isfinite(values), values, np.nan), [0.05, 0.5, 0.95], axis=0)
     return bool((high - low).max() <= _ALIKE * (high - low).min() and middle.max() <= high.min() and middle.min() >= low.max())
-
-
-def has_cut_decimals(lines: list[str]) -> bool:
-    """Whether numbers between commas begin with zeros, as 0321: the commas are decimal points."""
-    return any(re.search(r"(^|,)\s*0\d+\s*(,|$)", line) for line in lines)
 
 
 def rises_evenly(values: Any) -> bool:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import warnings
-import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +12,11 @@ import numpy as np
 
 from .._texts import is_text
 from .._units import same_length
-from ._headers import columns_of, header_of, refuse_esri_grid
+from ._given import SIZES, steps_of, with_header, with_unit
+from ._headers import header_of, refuse_esri_grid
 from ._heights import Heights, heights
-from ._lattice import Lattice, lattice_of
-from ._instruments import chosen, of_instrument
+from ._instruments import NO_SIZE, chosen, of_instrument, size_of
+from ._lists import of_list, of_text_list
 from ._not_a_map import doubt
 from ._not_a_map import why as why_no_map
 from ._texts import has_empty_cells, of_text
@@ -28,6 +29,9 @@ def from_xarray(array: Any, **given: Any) -> Heights:
     the heights have it; units that differ are refused. With dx, size, span, or x and y the coordinates are not read. The attributes "unit" and "periodic"
     are those of SurfaceTopography's files: the unit, and a direction in which the surface repeats itself.
     """
+    if hasattr(array, "data_vars") or not hasattr(array, "dims"):
+        choose = f": choose one of {', '.join(map(str, array.data_vars))}" if hasattr(array, "data_vars") else ""
+        raise TypeError(f"array is a {type(array).__name__}; it must be a DataArray{choose}")
     if len(array.dims) != 2:
         kept = [name for name in array.dims if array.sizes[name] > 1]
         if len(kept) != 2:
@@ -46,8 +50,8 @@ def from_xarray(array: Any, **given: Any) -> Heights:
     of_axes = [array[name].attrs if name in array.coords else {} for name in (x, y)]
     if period := "".join(axis for axis, one in zip("xy", of_axes) if one.get("periodic")):
         given = {"period": period, **given}
-    if _SIZES & set(given):
-        return heights(ordered.values, **_with_unit(_unit(array.attrs), given))
+    if SIZES & set(given):
+        return heights(ordered.values, **with_unit(_unit(array.attrs), given))
     for name in (x, y):
         if name not in array.coords:
             raise ValueError(f"the dimension {name} has no coordinates: give dx and dy")
@@ -61,7 +65,7 @@ def from_xarray(array: Any, **given: Any) -> Heights:
         names = ", ".join(f"{name} in {unit}" if unit else f"{name} in no unit" for name, unit in zip(("heights", x, y), said))
         warnings.warn(f"the file has {names}: all of them are taken to be in one unit", stacklevel=2)
     unit = said[0] if all(said) else None
-    return heights(ordered.values, x=ordered[x].values, y=ordered[y].values, **_with_unit(unit, given))
+    return heights(ordered.values, x=ordered[x].values, y=ordered[y].values, **with_unit(unit, given))
 
 
 def _unit(attributes: Any) -> Any:
@@ -69,30 +73,22 @@ def _unit(attributes: Any) -> Any:
     return attributes.get("units") or attributes.get("unit")
 
 
-def _with_unit(unit: Any, given: dict[str, Any]) -> dict[str, Any]:
-    """What is given, in the unit that the file says, if it does."""
-    if not unit:
-        return given
-    units = given.get("units") or (str(unit), "N")
-    if not same_length(str(unit), units[0]):
-        raise ValueError(f"units are {units!r}, but lengths are in {unit} in the file: name that unit, or convert the heights")
-    return {**given, "units": units}
-
-
 def from_topography(topography: Any, **given: Any) -> Heights:
     """Heights of a uniform topography of the package SurfaceTopography, whose arrays have x as the first index. With axes="yx" it is y, and the first
     of its lengths is that in y."""
+    if not hasattr(topography, "heights"):
+        raise TypeError(f"topography is a {type(topography).__name__}; it must be a topography of SurfaceTopography")
     if getattr(topography, "dim", 2) != 2 or not getattr(topography, "is_uniform", True):
         raise ValueError("the topography is a line scan or not uniform; it must be a map")
     unit = getattr(topography, "unit", None)
-    said: dict[str, Any] = {"size": tuple(float(length) for length in topography.physical_sizes), "axes": "xy"}
+    said: dict[str, Any] = {"axes": "xy"}
     if topography.is_periodic:
         said["period"] = "xy"
-    if given.get("axes") == "yx":
-        said["size"] = said["size"][::-1]
-    if _SIZES & set(given):
-        del said["size"]
-    return heights(topography.heights(), **{**said, **_with_unit(unit, given)})
+    if not SIZES & set(given):
+        if (sizes := size_of(topography)) is None:
+            raise TypeError(f"the topography {NO_SIZE}")
+        said["size"] = sizes[::-1] if given.get("axes") == "yx" else sizes
+    return heights(topography.heights(), **{**said, **with_unit(unit, given)})
 
 
 def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any) -> Heights:
@@ -101,7 +97,8 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     Parameters
     ----------
     path : str or path
-        `.npy`; `.npz`; `.txt`, `.dat` and `.csv` as numbers, a row of the grid a line, or x, y and z of places of a grid, in any order; a header as
+        `.npy`; `.npz`; `.txt`, `.dat` and `.csv` as numbers, a row of the grid a line, or x, y and z of places of a grid, in any order, as in `.xyz`,
+        `.asc` and `.tsv`, too; a line `# x [mm] y [mm] z [mm]` names their columns, and a header as
         Gwyddion writes it says the size of the field and the unit. `.nc` as NetCDF, by the package xarray; all others, as `.x3p`, `.sur`, `.opd`, `.gwy`
         and `.mat`, by the package SurfaceTopography. The rows of a matrix of `.mat` are those of y. Heights and coordinates must be in one unit of length.
     variable : str, optional
@@ -128,34 +125,24 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     of_numbers = end in (".txt", ".dat", ".csv") and is_text(path)
     # SurfaceTopography would move the columns behind an empty cell.
     if of_numbers or end in (".tsv", ".asc") and Path(path).exists() and is_text(path) and has_empty_cells(path):
-        told = header_of(path, bool(_SIZES & set(given)))
+        told = header_of(path, bool(SIZES & set(given)))
         if given.get("axes") == "xy" and told.get("size"):
             # Width is that of the columns of the file, which are y then.
             told = {**told, "size": told["size"][::-1]}
-        made = _of_numbers(path, of_text(path, end), _with_header(told, given))
+        made = _of_numbers(path, of_text(path, end), with_header(told, given))
         _warn_of_size(path, told, made)
         return made
     if end == ".nc":
-        from .._netcdf import read as netcdf
-
-        dataset = netcdf(path)
-        # Others, as that of a map projection, are no heights.
-        maps = [name for name, array in dataset.data_vars.items() if array.ndim == 2 or sum(size > 1 for size in array.shape) == 2]
-        # SurfaceTopography's mask says where the heights are NaN.
-        maps = [name for name in maps if not (name == "mask" and "maskandscale" in dataset[name].attrs)]
-        names = maps if maps and variable is None else list(dataset.data_vars)
-        return from_xarray(dataset[chosen(variable, names, path)], **given)
-    if end == ".xyz" and not _SIZES & set(given):
-        lattice = _of_points(path)
-        if lattice is not None:
-            return _of_lattice(path, lattice, columns_of(path), given)
-    topography = of_instrument(path, end, variable, bool(_SIZES & set(given)))
+        return _of_netcdf(path, variable, given)
+    if end in _TEXTS and Path(path).exists() and is_text(path) and (found := of_text_list(path, given)) is not None:
+        return found
+    topography = of_instrument(path, end, variable, bool(SIZES & set(given)))
     if end == ".mat":
         given = {"axes": "yx", **given}
     if end in _TEXTS and getattr(topography, "dim", 2) == 2:
         # Its arrays have x as the first index.
         values = np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan)
-        steps = _steps(values.T.shape, given)
+        steps = steps_of(values.T.shape, given)
         if reason := why_no_map(values.T, steps) or why_no_map(values, steps[::-1]):
             raise ValueError(f"{path} {reason}")
         if reason := doubt(values.T):
@@ -166,12 +153,17 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     return from_topography(topography, **given)
 
 
-def _with_header(told: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
-    """What is given, with the size and the unit that the header of a text says."""
-    if not told:
-        return given
-    sizes = {} if _SIZES & set(given) else {"size": told["size"]}
-    return {**sizes, **_with_unit(told["unit"], given)}
+def _of_netcdf(path: str | os.PathLike[str], variable: str | None, given: dict[str, Any]) -> Heights:
+    """Heights of a NetCDF file."""
+    from .._netcdf import read as netcdf
+
+    dataset = netcdf(path)
+    # Others, as that of a map projection, are no heights.
+    maps = [name for name, array in dataset.data_vars.items() if array.ndim == 2 or sum(size > 1 for size in array.shape) == 2]
+    # SurfaceTopography's mask says where the heights are NaN.
+    maps = [name for name in maps if not (name == "mask" and "maskandscale" in dataset[name].attrs)]
+    names = maps if maps and variable is None else list(dataset.data_vars)
+    return from_xarray(dataset[chosen(variable, names, path)], **given)
 
 
 def _warn_of_size(path: str | os.PathLike[str], told: dict[str, Any], made: Heights) -> None:
@@ -185,78 +177,35 @@ def _warn_of_size(path: str | os.PathLike[str], told: dict[str, Any], made: Heig
             return
 
 
-def _steps(shape: tuple[int, int], given: dict[str, Any]) -> tuple[float | None, float | None]:
-    """The distances of the columns and of the lines of a text with these lines and columns, as they are given. None where they are not, or are no lengths:
-    `heights` says so."""
-    is_xy, (lines, columns) = given.get("axes") == "xy", shape
-    counts = (lines, columns) if is_xy else (columns, lines)
-    try:
-        if "dx" in given:
-            found = float(given["dx"]), float(given.get("dy", given["dx"]))
-        else:
-            name, fewer = ("size", 0) if "size" in given else ("span", 1)
-            found = float(given[name][0]) / max(counts[0] - fewer, 1), float(given[name][1]) / max(counts[1] - fewer, 1)
-    except (TypeError, ValueError, LookupError):
-        return None, None
-    if not all(0.0 < step < np.inf for step in found):
-        return None, None
-    return found[::-1] if is_xy else found
-
-
 def _of_numbers(path: str | os.PathLike[str], values: Any, given: dict[str, Any]) -> Heights:
     """Heights from numbers that may be a list of points."""
-    sizes = sorted(_SIZES & set(given))
-    if not sizes and (lattice := lattice_of(values)) is not None:
-        said = (None, False) if Path(path).suffix.lower() in (".npy", ".npz") else columns_of(path)
-        return _of_lattice(path, lattice, said, given)
-    if reason := why_no_map(values, _steps(values.shape, given)):
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            if sizes and lattice_of(values) is not None:
-                raise ValueError(f"{path} has x, y and z of {len(values)} points of a grid, which say the size of an element: leave out {' and '.join(sizes)}")
+    if (found := of_list(path, values, given)) is not None:
+        return found
+    if reason := why_no_map(values, steps_of(values.shape, given)):
         raise ValueError(f"{path} {reason}")
     if reason := doubt(values):
         warnings.warn(f"{path} {reason}", stacklevel=3)
     return heights(values, **given)
 
 
-def _of_lattice(path: str | os.PathLike[str], lattice: Lattice, said: tuple[str | None, bool], given: dict[str, Any]) -> Heights:
-    """Heights of a list of points, whose columns say what x and y are. A header may say the unit, and that y stands before x."""
-    unit, is_y_first = said
-    if is_y_first:
-        lattice = Lattice(np.ascontiguousarray(lattice.z.T), lattice.y, lattice.x)
-    if given.get("axes", "yx") != "yx":
-        raise ValueError(f"{path} has x, y and z of points, and no indices: leave out axes; where the first column is y, exchange the columns, "
-                         "or name them in a header, # y x z")
-    return heights(lattice.z, x=lattice.x, y=lattice.y, **_with_unit(unit, given))
-
-
-# How the size of an element is given.
-_SIZES = {"dx", "dy", "size", "span", "x", "y"}
-
 # Texts that SurfaceTopography reads as maps, whatever they hold.
 _TEXTS = ".asc", ".xyz", ".tsv"
-
-
-def _of_points(path: str | os.PathLike[str]) -> Lattice | None:
-    """The grid of a list of points that has no header, if it is one."""
-    try:
-        return lattice_of(of_text(path, ".txt"))
-    except ValueError:
-        return None
 
 
 def _of_numpy(path: str | os.PathLike[str], variable: str | None) -> Any:
     """The array of a file of numpy."""
     try:
-        found = np.load(path)
-        if isinstance(found, np.ndarray):
-            if variable is not None:
+        with open(path, "rb") as file:
+            found = np.load(file)
+            if not isinstance(found, np.ndarray):
+                found = found[chosen(variable, list(found), path)]
+            elif variable is not None:
                 raise ValueError(f"{path} holds one array; give variable for files of several")
-            return found
-        with found as file:
-            return file[chosen(variable, list(file), path)]
-    except (ValueError, EOFError, zipfile.BadZipFile) as error:
-        if "give variable" in str(error):
+        if not isinstance(found, np.ndarray):
+            raise ValueError("it holds bytes")
+        return found
+    except Exception as error:  # Wrong bytes end in errors of zlib, zipfile, tokenize and others.
+        is_of_system = isinstance(error, OSError) and error.errno not in (None, errno.EINVAL)
+        if is_of_system or isinstance(error, MemoryError) or "give variable" in str(error):
             raise
-        raise ValueError(f"{path} is no file of numbers that numpy.save or numpy.savez wrote") from error
+        raise ValueError(f"{path} is no file of numbers that numpy.save or numpy.savez wrote, or it is damaged") from error

@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from .._decimal_commas import has_decimal_commas
+from .._decimal_commas import cut_decimals, has_decimal_commas
 from .._texts import text_of
-from ._not_a_map import has_cut_decimals
 
 # The names of the separators of numbers, for messages.
 _BETWEEN = {None: "spaces", ",": "commas", ";": "semicolons", "\t": "tabs"}
@@ -35,11 +34,12 @@ def of_text(path: str | os.PathLike[str], end: str) -> Any:
     try:
         values = np.loadtxt([_FORTRAN.sub("e", line) for line in cells], delimiter=delimiter, ndmin=2)
     except ValueError as error:
-        commas = "decimal commas need semicolons between the numbers; " if has_decimal_commas(lines) else ""
+        are_decimal = has_decimal_commas(lines) or delimiter == "," and cut_decimals(cells)
+        commas = "decimal commas need semicolons between the numbers; " if are_decimal else ""
         raise ValueError(f"{path}: {error}, lines with # and empty ones not counted; it must hold numbers alone, a row of the grid a line, separated by "
                          f"{_BETWEEN[delimiter]}; {commas}put # before other lines, and nan where nothing was measured") from error
-    if delimiter == "," and has_cut_decimals(cells):
-        raise ValueError(f"{path} has numbers that begin with zeros between its commas: decimal commas need semicolons between the numbers")
+    if delimiter == "," and (reason := cut_decimals(cells)):
+        raise ValueError(f"{path} has {reason}")
     return values
 
 

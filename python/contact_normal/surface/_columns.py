@@ -1,0 +1,86 @@
+"""Lines above lists of points: what they say of the columns, as `# x [mm] y [mm] z [mm]` or `# y x height`."""
+
+from __future__ import annotations
+
+import os
+import re
+from typing import NamedTuple
+
+from .._units import in_metres, same_length
+from ._headers import head_of
+
+# Names of columns, and what they are. The first index of an array is that of y.
+_KINDS = {"x": "x", "column": "x", "col": "x", "ix": "x", "y": "y", "row": "y", "iy": "y"}
+_NAMES = "|".join((*_KINDS, "z", "heights?", "h", "h\u00f6he", "depth", "topography"))
+
+# Units of length: symbols, but for that of metres, and words.
+_SYMBOLS = "(?-i:pm|nm|[u\u00b5\u03bc]m|mm|cm|\u00c5|\u212b)"
+_WORDS = "(?:nano|micro|milli|centi)?met(?:er|re)s?|microns?"
+
+# x [mm], x (mm), x {mm}, x <mm>, x/mm, x in mm, x, mm or x_mm; and any other word.
+_LABEL = (rf"(?<![^\W_])(?P<name>{_NAMES})(?:[ _-]?(?:axis|position|pos|coordinate))?(?![^\W_])"
+          r"(?:\s*[\[({<]\s*(?P<within>[^\])}>\s]+)\s*[\])}>]|\s*/\s*(?P<per>[^\W\d_]+)"
+          rf"|(?:\s+in\s+|\s*,\s*|[\s_]+)(?P<bare>(?:{_SYMBOLS}|(?-i:m)|{_WORDS})(?![^\W_])))?")
+_WORD = re.compile(rf"{_LABEL}|[^\s,;|\[\](){{}}<>]+(?:\s*[\[({{<][^\])}}>]*[\])}}>])?", re.IGNORECASE)
+
+# A unit that stands for itself. After a number it is that of a length, before one it is a word.
+_UNIT = re.compile(rf"(?<![^\W_])(?<!\d\s)(?:{_SYMBOLS}|{_WORDS})(?![^\W_/])(?!\s*\d)"
+                   rf"|\[[^\[\]]*(?<![^\W_])(?:{_SYMBOLS}|(?-i:m)|{_WORDS})\s*\]|units?\s*[:=]\s*m\b", re.IGNORECASE)
+
+# So much of a line is quoted.
+_QUOTED = 60
+
+
+class Columns(NamedTuple):
+    """What is said of the columns of a list: their unit; where x, y and z stand, if each column has a name, and else
+    whether y stands before x; and the line that names a unit and is not understood."""
+
+    unit: str | None = None
+    order: tuple[int, int, int] | None = None
+    is_y_first: bool = False
+    doubt: str | None = None
+
+
+class _Label(NamedTuple):
+    """A word of a line: "x", "y", "z", or "" for another one, and its unit."""
+
+    kind: str
+    unit: str
+
+
+def columns_of(path: str | os.PathLike[str], count: int) -> Columns:
+    """What the lines above a list of so many columns say of them. Units that differ are refused."""
+    lines = [line[1:].strip() for line in head_of(path).split("\n") if line.startswith("#")]
+    words = [_words_of(line) for line in lines]
+    # A line for each column.
+    named = [[one for one in each if one.kind and one.unit] for each in words]
+    alone = [each[0] for each in named if len(each) == 1]
+    for each in (*words, alone):
+        units = {one.kind: one.unit for one in each if one.kind and one.unit}
+        if len(units) == 3:
+            if not all(same_length(units["x"], other) for other in units.values()):
+                told = ", ".join(f"{name} in {unit}" for name, unit in units.items())
+                raise ValueError(f"{path} has {told}: convert them to one unit")
+            kinds, unit = list(units), units["x"] if in_metres(units["x"]) else None
+            return Columns(unit, _order_of(each, count), kinds.index("y") < kinds.index("x"))
+    doubt = next((line for line in lines if _UNIT.search(line)), None)
+    order = next((found for each in words if (found := _order_of(each, count))), None)
+    return Columns(None, order, False, doubt and (doubt if len(doubt) <= _QUOTED else doubt[:_QUOTED] + "..."))
+
+
+def _words_of(line: str) -> list[_Label]:
+    """The words of a line. Names of columns are followed by their units."""
+    found = []
+    for word in _WORD.finditer(line):
+        name = word["name"]
+        unit = word["within"] or word["per"] or word["bare"] or ""
+        found.append(_Label(_KINDS.get(name.lower(), "z") if name else "", unit))
+    return found
+
+
+def _order_of(words: list[_Label], count: int) -> tuple[int, int, int] | None:
+    """The columns of x, y and z, where a line has a word for each column and names each of these once."""
+    kinds = [one.kind for one in words]
+    if len(kinds) != count or any(kinds.count(kind) != 1 for kind in "xyz"):
+        return None
+    return kinds.index("x"), kinds.index("y"), kinds.index("z")
