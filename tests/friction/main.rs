@@ -1,4 +1,4 @@
-//! The tangential problem: every number is compared with a closed form, a quadrature, a direct sum, or another program's result.
+//! The tangential problem: every number is compared with a closed form, a quadrature, a direct sum, or the result of another program.
 
 mod batch;
 mod bounds_of_laws;
