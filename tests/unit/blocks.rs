@@ -1,4 +1,4 @@
-//! Blocks of rows against the whole grid.
+//! Blocks of rows compared with the whole grid.
 
 use super::fold;
 use crate::error::Error;
