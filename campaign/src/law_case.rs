@@ -22,7 +22,7 @@ pub struct Law {
     pub kinetic: f64,
     pub falling: [f64; 2],
     pub half_speed: [f64; 2],
-    /// The rolling speed; for a shift its duration.
+    /// The rolling speed; a shift has a duration instead.
     pub speed: f64,
     pub duration: f64,
     pub memory_distance: f64,

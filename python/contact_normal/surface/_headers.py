@@ -1,4 +1,4 @@
-"""Lines above the numbers of a text: the size of the field and the unit of the heights, as Gwyddion writes them, and units of columns x y z."""
+"""Lines above the numbers of a text: the size of the field and the unit of the heights, as in files of Gwyddion, and the units of columns x y z."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 from .._texts import decoded
 from .._units import in_metres, same_length
 
-# A header is within so many bytes.
+# A header is within this number of bytes.
 _WITHIN = 4096
 
 _LENGTH = re.compile(r"^#\s*(Width|Height)\s*:\s*([-+.,\deE]+)\s*(\S+)\s*$", re.MULTILINE)
@@ -22,14 +22,14 @@ _COLUMN = re.compile(r"(?<![^\W_])([xyz])\s*(?:\[\s*([^\]\s]+)\s*\]|\(\s*([^)\s]
 
 
 def _head(path: str | os.PathLike[str]) -> str:
-    """The first lines of a text."""
+    """The beginning of a text."""
     with Path(path).open("rb") as file:
         return decoded(file.read(_WITHIN), cut=True).replace("\r", "")
 
 
 def columns_of(path: str | os.PathLike[str]) -> tuple[str | None, bool]:
-    """What a line as `# x [mm] y [mm] z [mm]` or `# x y z` says of a list of points: the unit, None without one, and whether y stands before x. Units
-    that differ are refused."""
+    """The unit in a line as `# x [mm] y [mm] z [mm]` or `# x y z` above a list of points, or None, and whether y stands before x. Different units are
+    refused."""
     for line in (line for line in _head(path).split("\n") if line.startswith("#")):
         names = re.split(r"[\s,;]+", line[1:].strip().lower())
         if sorted(names) == ["x", "y", "z"]:
@@ -45,15 +45,15 @@ def columns_of(path: str | os.PathLike[str]) -> tuple[str | None, bool]:
 
 
 def refuse_esri_grid(path: str | os.PathLike[str]) -> None:
-    """Refuses a grid of a geographic information system, whose header says the size of an element and which number stands for "not measured"."""
+    """Refuses a grid of a geographic information system, whose header has the size of an element and the fill value."""
     if re.match(r"\s*ncols\s+\d", _head(path), re.IGNORECASE):
         raise ValueError(f"{path} is an ESRI grid: read its numbers by numpy.loadtxt(path, skiprows=n), n being the lines of its header, 5 or 6 with NODATA_value. "
                          "Give them to surface.heights with its cellsize as dx and dy, its NODATA_value as fill, and top_first=True")
 
 
 def header_of(path: str | os.PathLike[str], is_given: bool = False) -> dict[str, Any]:
-    """`size` and `unit` of a text whose header says `# Width: 10.00 um`, `# Height: 5.00 um` and `# Value units: m`: the size is in the unit of the
-    heights. Empty without such a header. A size that is no positive length is refused; where the caller gives sizes, it is None."""
+    """`size` and `unit` of a text with the header lines `# Width: 10.00 um`, `# Height: 5.00 um` and `# Value units: m`; the size is in the unit of the
+    heights. Empty without such a header. An invalid size is refused, or, if the caller gives sizes, it is None."""
     text = _head(path)
     lengths, value = {name: (number, unit) for name, number, unit in _LENGTH.findall(text)}, _UNIT.search(text)
     if len(lengths) < 2 or value is None:

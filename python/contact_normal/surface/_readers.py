@@ -1,4 +1,4 @@
-"""Heights from files: numpy's own and text; instruments' by SurfaceTopography; NetCDF by xarray."""
+"""Heights from files: those of numpy and texts; files of instruments by SurfaceTopography; NetCDF by xarray."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ from ._texts import has_empty_cells, of_text
 def from_xarray(array: Any, **given: Any) -> Heights:
     """Heights of an `xarray.DataArray` with two dimensions that have coordinates, in any order.
 
-    The dimension of x is the one whose name begins with "x", or else the second one, or with axes="xy" the first one. Units of lengths are those of the attribute "units", if x, y and
-    the heights have it; units that differ are refused. With dx, size, span, or x and y the coordinates are not read. The attributes "unit" and "periodic"
-    are those of SurfaceTopography's files: the unit, and a direction in which the surface repeats itself.
+    The dimension of x is the one whose name begins with "x", otherwise the second one, or with axes="xy" the first one. Units of lengths are those of the
+    attribute "units", if x, y and the heights have it; different units are refused. With dx, size, span, or x and y the coordinates are not read. The
+    attributes "unit" and "periodic" are those of SurfaceTopography's files: the unit, and a direction in which the surface is periodic.
     """
     if len(array.dims) != 2:
         kept = [name for name in array.dims if array.sizes[name] > 1]
@@ -65,12 +65,12 @@ def from_xarray(array: Any, **given: Any) -> Heights:
 
 
 def _unit(attributes: Any) -> Any:
-    """What the attributes say is the unit, by the conventions of NetCDF or by SurfaceTopography."""
+    """The unit in the attributes, by the conventions of NetCDF or by SurfaceTopography."""
     return attributes.get("units") or attributes.get("unit")
 
 
 def _with_unit(unit: Any, given: dict[str, Any]) -> dict[str, Any]:
-    """What is given, in the unit that the file says, if it does."""
+    """The arguments, with the unit of the file if it has one."""
     if not unit:
         return given
     units = given.get("units") or (str(unit), "N")
@@ -80,8 +80,8 @@ def _with_unit(unit: Any, given: dict[str, Any]) -> dict[str, Any]:
 
 
 def from_topography(topography: Any, **given: Any) -> Heights:
-    """Heights of a uniform topography of the package SurfaceTopography, whose arrays have x as the first index. With axes="yx" it is y, and the first
-    of its lengths is that in y."""
+    """Heights of a uniform topography of the package SurfaceTopography, whose arrays have x as the first index. With axes="yx" it is y, and the first of its
+    lengths is that in y."""
     if getattr(topography, "dim", 2) != 2 or not getattr(topography, "is_uniform", True):
         raise ValueError("the topography is a line scan or not uniform; it must be a map")
     unit = getattr(topography, "unit", None)
@@ -101,13 +101,13 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
     Parameters
     ----------
     path : str or path
-        `.npy`; `.npz`; `.txt`, `.dat` and `.csv` as numbers, a row of the grid a line, or x, y and z of places of a grid, in any order; a header as
-        Gwyddion writes it says the size of the field and the unit. `.nc` as NetCDF, by the package xarray; all others, as `.x3p`, `.sur`, `.opd`, `.gwy`
-        and `.mat`, by the package SurfaceTopography. The rows of a matrix of `.mat` are those of y. Heights and coordinates must be in one unit of length.
+        `.npy`; `.npz`; `.txt`, `.dat` and `.csv` as numbers, with a row of the grid per line, or as x, y and z of places of a grid, in any order. A header like
+        that of Gwyddion has the size of the field and the unit. `.nc` as NetCDF, by the package xarray; all others, as `.x3p`, `.sur`, `.opd`, `.gwy` and
+        `.mat`, by the package SurfaceTopography. The rows of a matrix of `.mat` are those of y. Heights and coordinates must be in one unit of length.
     variable : str, optional
-        Which array of a file that has several.
+        The name of the array, if the file has several.
     **given
-        What the file does not tell, or tells wrong: see `heights`. `units` may name no other unit of length than the file does.
+        Arguments that are missing in the file, or wrong: see `heights`. `units` must name the unit of length of the file.
 
     Raises
     ------
@@ -119,18 +119,18 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         raise IsADirectoryError(f"{path} is a folder; it must be a file")
     if end in (".npy", ".npz"):
         values = _of_numpy(path, variable)
-        # Of masked arrays and others heights says what is wrong.
+        # For masked arrays and others `heights` has the error messages.
         is_plain = values.ndim == 2 and values.dtype.kind in "iuf"
         return _of_numbers(path, values, given) if is_plain else heights(values, **given)
     if end in (".asc", ".txt", ".dat") and Path(path).exists():
         refuse_esri_grid(path)
-    # Some instruments write binary files of these ends.
+    # Some instruments write binary files with these endings.
     of_numbers = end in (".txt", ".dat", ".csv") and is_text(path)
-    # SurfaceTopography would move the columns behind an empty cell.
+    # SurfaceTopography would shift the columns after an empty cell.
     if of_numbers or end in (".tsv", ".asc") and Path(path).exists() and is_text(path) and has_empty_cells(path):
         told = header_of(path, bool(_SIZES & set(given)))
         if given.get("axes") == "xy" and told.get("size"):
-            # Width is that of the columns of the file, which are y then.
+            # The width is that of the columns of the file, which are y then.
             told = {**told, "size": told["size"][::-1]}
         made = _of_numbers(path, of_text(path, end), _with_header(told, given))
         _warn_of_size(path, told, made)
@@ -139,9 +139,9 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
         from .._netcdf import read as netcdf
 
         dataset = netcdf(path)
-        # Others, as that of a map projection, are no heights.
+        # Other arrays, as that of a map projection, are no heights.
         maps = [name for name, array in dataset.data_vars.items() if array.ndim == 2 or sum(size > 1 for size in array.shape) == 2]
-        # SurfaceTopography's mask says where the heights are NaN.
+        # SurfaceTopography's mask marks the heights that are NaN.
         maps = [name for name in maps if not (name == "mask" and "maskandscale" in dataset[name].attrs)]
         names = maps if maps and variable is None else list(dataset.data_vars)
         return from_xarray(dataset[chosen(variable, names, path)], **given)
@@ -167,7 +167,7 @@ def read(path: str | os.PathLike[str], variable: str | None = None, **given: Any
 
 
 def _with_header(told: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
-    """What is given, with the size and the unit that the header of a text says."""
+    """The arguments, with the size and the unit in the header of a text."""
     if not told:
         return given
     sizes = {} if _SIZES & set(given) else {"size": told["size"]}
@@ -175,7 +175,7 @@ def _with_header(told: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
 
 
 def _warn_of_size(path: str | os.PathLike[str], told: dict[str, Any], made: Heights) -> None:
-    """Warns of a size that is not that of the header, by more than a caller's n - 1 for n."""
+    """Warns if the size differs from that of the header, by more than that of n - 1 elements instead of n."""
     if not told.get("size"):
         return
     for name, n, d, length in zip("xy", made.z.shape[::-1], (made.dx, made.dy), told["size"]):
@@ -186,8 +186,7 @@ def _warn_of_size(path: str | os.PathLike[str], told: dict[str, Any], made: Heig
 
 
 def _steps(shape: tuple[int, int], given: dict[str, Any]) -> tuple[float | None, float | None]:
-    """The distances of the columns and of the lines of a text with these lines and columns, as they are given. None where they are not, or are no lengths:
-    `heights` says so."""
+    """The distances of the columns and of the lines of a text, from the arguments. None if they are not given, or are no lengths, which `heights` refuses."""
     is_xy, (lines, columns) = given.get("axes") == "xy", shape
     counts = (lines, columns) if is_xy else (columns, lines)
     try:
@@ -221,7 +220,7 @@ def _of_numbers(path: str | os.PathLike[str], values: Any, given: dict[str, Any]
 
 
 def _of_lattice(path: str | os.PathLike[str], lattice: Lattice, said: tuple[str | None, bool], given: dict[str, Any]) -> Heights:
-    """Heights of a list of points, whose columns say what x and y are. A header may say the unit, and that y stands before x."""
+    """Heights of a list of points, whose columns determine x and y. A header may have the unit, and the order of x and y."""
     unit, is_y_first = said
     if is_y_first:
         lattice = Lattice(np.ascontiguousarray(lattice.z.T), lattice.y, lattice.x)
@@ -231,15 +230,15 @@ def _of_lattice(path: str | os.PathLike[str], lattice: Lattice, said: tuple[str 
     return heights(lattice.z, x=lattice.x, y=lattice.y, **_with_unit(unit, given))
 
 
-# How the size of an element is given.
+# The arguments for the size of an element.
 _SIZES = {"dx", "dy", "size", "span", "x", "y"}
 
-# Texts that SurfaceTopography reads as maps, whatever they hold.
+# Texts that SurfaceTopography reads as maps, whatever their contents.
 _TEXTS = ".asc", ".xyz", ".tsv"
 
 
 def _of_points(path: str | os.PathLike[str]) -> Lattice | None:
-    """The grid of a list of points that has no header, if it is one."""
+    """The grid of a list of points without a header, if it is one."""
     try:
         return lattice_of(of_text(path, ".txt"))
     except ValueError:
