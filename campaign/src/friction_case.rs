@@ -50,7 +50,7 @@ fn part_of_friction(random: &mut Random) -> f64 {
     }
 }
 
-/// A step in elements: the last tenth of 0.3 to 3 stands for 3 to 1e5, in the longer direction.
+/// A step in units of the longer side of an element: values from 2.9 to 3 become whole numbers from 3 to 1e5.
 fn step(length: f64) -> f64 {
     let beyond = (length - 2.9) / 0.1;
     if beyond > 0.0 {

@@ -1,4 +1,4 @@
-//! The rules for every result with friction, of like and unlike bodies, and the excuses.
+//! The rules for every result with friction, of like and unlike bodies, and the accepted reasons of refusals and early stops.
 
 use contact_normal::ffi::*;
 
@@ -67,8 +67,7 @@ fn reason(case: &Case, status: i32) -> Option<&'static str> {
     None
 }
 
-/// The violated conditions of a result with status >= 0, without those along the normal. `certified`: this module has the coefficients and the slip
-/// of the call.
+/// The violated conditions of the tangential problem, for a status >= 0. `certified`: this module has the coefficients and the slip of the call.
 pub fn answer(case: &Case, found: &Found, certified: bool) -> Verdict {
     let mut broken = Broken { case, verdict: Verdict::default() };
     let carried = check_bounds(case, found, &mut broken);
@@ -216,7 +215,7 @@ fn nearly_slips(case: &Case, found: &Found) -> bool {
     case.slide.force() >= (1.0 - 1e-3) * carried * case.place.grid.element_area()
 }
 
-/// The tables xx, yy and xy over the offsets `-mx..mx` by `-my..my` of a place.
+/// The tables xx, yy and xy of the half-space of a place, over the offsets `-mx..mx` by `-my..my`.
 pub fn tables(place: &Place) -> Vec<Vec<f64>> {
     let Grid { mx, my, .. } = place.grid;
     let wider = Grid { mx: mx + 1, my: my + 1, ..place.grid };

@@ -127,8 +127,8 @@ PROTOTYPES: dict[str, tuple[Any, list[Any]]] = {
 def candidates() -> list[str]:
     """The libraries that are tried; the first one that exists is loaded.
 
-    If the environment variable CONTACT_NORMAL_LIBRARY is set, only the one that it names. Otherwise the one inside this package (a wheel), the one built in
-    this clone, those in `lib` (Windows: `bin`) of this Python's prefix and of the package's own prefix, and the system's.
+    If the environment variable CONTACT_NORMAL_LIBRARY is set, this is the only one. Otherwise they are the one inside this package (a wheel), the one built
+    in this clone, those in `lib` (Windows: `bin`) of this Python's prefix and of the package's own prefix, and the system's.
     """
     named = os.environ.get("CONTACT_NORMAL_LIBRARY")
     if named:

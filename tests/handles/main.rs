@@ -1,7 +1,7 @@
 //! After any failure a handle holds its last complete result, or none, and its next call works.
 
 #[path = "../abi/call.rs"]
-#[allow(dead_code)] // of the bad input, the call
+#[allow(dead_code)] // only the call is used
 mod call;
 mod lack_of_memory;
 mod lack_of_memory_adhesion;
@@ -11,7 +11,7 @@ mod limited_memory;
 mod panics;
 mod panics_with_effects;
 #[path = "../adhesion/support.rs"]
-#[allow(dead_code)] // of all, the sphere
+#[allow(dead_code)] // only the sphere is used
 mod spheres;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -218,7 +218,7 @@ fn nothing_that_a_scene_names_is_ignored() {
                 c.set_compliance(3, 2e-5);
             },
         ),
-        // A layer of another kind: one per element.
+        // A layer of another kind, with one compliance per element.
         (
             "layer",
             |c| c.use_layer().compliance = 1e-6,

@@ -1,7 +1,7 @@
 //! Properties of every scene, on random ones: the contact conditions, monotonicity, least energy, symmetry, translation, superposition. The scenes
 //! are the same in each run.
 
-#[allow(dead_code)] // of the hard cases, the certificate
+#[allow(dead_code)] // only the certificate is used
 use crate::families::{case, certificate};
 #[allow(dead_code)]
 use case::{centre, distance, Case};

@@ -1,5 +1,5 @@
 //! Structs of other versions: older programs on this library, and newer ones.
-#![allow(dead_code)] // what the macro makes beside
+#![allow(dead_code)] // some functions of the macro are not used
 
 use super::*;
 
