@@ -37,7 +37,7 @@ fn seconds() -> f64 {
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
-/// Runs the case of a seed: one in twenty-five is like a measured one.
+/// Runs the case of a seed: one in 25 has a scene like those of measured surfaces.
 pub fn ordinary(seed: u64) -> Run {
     if Random::new(seed ^ 0x0b12_76ed).chance(0.04) {
         return measured(seed);
@@ -45,7 +45,7 @@ pub fn ordinary(seed: u64) -> Run {
     run(Case::new(seed))
 }
 
-/// Runs the case like a measured one.
+/// Runs the case of a seed with a scene like those of measured surfaces.
 pub fn measured(seed: u64) -> Run {
     run(measured::case(seed))
 }

@@ -73,7 +73,7 @@ fn a_tolerance_below_round_off_is_named() {
     assert!(message.contains("round-off of double precision") && !message.contains("nearer"), "{message}");
 }
 
-/// A fixed contact area may be pulled, by a call and by a handle that was set up for pressing.
+/// A fixed contact area may carry a tensile force, by a call and by a handle whose set-up had a compressive one.
 #[test]
 fn a_fixed_contact_area_may_be_pulled() {
     let handle = Call::new().new_handle();

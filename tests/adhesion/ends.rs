@@ -1,4 +1,4 @@
-//! Ends of searches: bodies apart beyond the range of a law, pulls that nothing holds, and the last part of a path.
+//! Ends of searches: bodies apart beyond the range of a law, pulls that no state holds, and the last part of a path.
 
 use contact_normal::adhesion::Law;
 use contact_normal::error::Error;

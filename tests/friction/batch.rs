@@ -1,5 +1,5 @@
-//! Tables of tangential forces: each entry equals a single solve, for any number of workers. An entry that fails does not affect the others. Progress
-//! and cancelling.
+//! Tables of tangential forces: each entry equals a single solve, for any number of workers. An entry that fails does not affect the others. Calls
+//! have progress and may be cancelled.
 
 use std::sync::Mutex;
 
@@ -181,7 +181,7 @@ fn an_entry_that_is_refused_harms_no_other() {
     let (p, h) = (pressure(), vec![0.0; M * M]);
     let friction = frictions()[1];
     let mut entries = table(&friction);
-    // One force exceeds the friction bound, and one is not a number.
+    // One force exceeds the friction bound, and one spin is NaN.
     entries[3].amount[0] = 1e6;
     entries[RUN].spin = f64::NAN;
     let (_, found) = batch(&scene(&h, friction), Some(&p), &entries, &options(2), None);

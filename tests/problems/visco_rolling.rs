@@ -176,7 +176,7 @@ fn what_creeps_for_ever_or_stands_still_is_refused() {
 }
 
 /// Two equal cylinders that relax to half their modulus, 99 x 1 elements, rolling at 1000 mm/s: approach, largest pressure and elements in contact
-/// are as printed. The offset of the force from the middle is by NumPy with dense matrices.
+/// equal those of CONTACT. The offset of the force from the middle is from NumPy with dense matrices.
 #[test]
 fn cylinders_that_roll_are_those_of_contact() {
     let (mx, dx, dy, nu, g) = (99, 0.16, 1000.0, 0.4, 1143.0);

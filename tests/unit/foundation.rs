@@ -1,7 +1,7 @@
 //! A test effect: a Winkler foundation with memory, in series with the bodies. It is one file and one line in the list, and in no release.
 //!
 //! ```text
-//! e = h - approach + A p + c p + v        c: at once;   v: later, T dv/dt + v = d p
+//! e = h - approach + A p + c p + v        c: instantaneous;   v: later, T dv/dt + v = d p
 //! v = (v of the step before + r d p)/(1 + r),   r = dt/T      implicit Euler; v = 0 in the beginning
 //! ```
 
