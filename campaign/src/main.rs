@@ -57,7 +57,7 @@ fn main() -> ExitCode {
     let mut account = Account::default();
     for seed in seeds {
         let run = run(seed);
-        // Failures are printed at once, in case a long campaign is stopped.
+        // Failures are printed immediately, because a long campaign may be stopped.
         run.verdict.failures.iter().for_each(|failure| eprintln!("seed {seed}: {}", failure.promise));
         account.add(&run);
     }

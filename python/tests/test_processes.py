@@ -43,7 +43,7 @@ def forked(work):
 
 @unittest.skipUnless(hasattr(os, "fork"), "there is no fork")
 class Forks(unittest.TestCase):
-    # With so many elements threads share the work.
+    # With this number of elements threads share the work.
     M = 281
     H = ball(M, 0.001 * (64 / M) ** 2)
     SIZE = 12.8 / M

@@ -168,7 +168,7 @@ contains
     call begin()
     call contact_normal_set_coating(scene, -7, coating, 0.1_dp, 8200.0_dp, 0.3_dp)
     call refused("set_coating: body is -7; it must be 1 or 2")
-    ! The first fault is told.
+    ! The message has the first fault.
     call contact_normal_set_coating(scene, 3, coating, 0.1_dp, 8200.0_dp, 0.3_dp)
     call contact_normal_set_layer(scene, no_layer, 1e-5_dp)
     call refused("set_coating: body is 3; it must be 1 or 2")

@@ -31,7 +31,7 @@ pub fn plain(h: &[f64]) -> Scene<'_> {
 }
 
 pub fn bill(scene: &Scene<'_>, target: f64, wanted: &[Quantity]) -> Vec<BillRow> {
-    // With so many seconds the grids do not depend on the machine.
+    // With this time the grids do not depend on the machine.
     let asked = BillOptions { max_seconds: 1e3, ..BillOptions::new(target) };
     let (stop, rows) = effects_bill(scene, &Options::default(), &asked, wanted, None).expect("a bill");
     assert_eq!(stop, Outcome::Converged);

@@ -58,19 +58,19 @@ fn same_for_any_number_of_threads(case: &Case) {
     }
 }
 
-/// With so many elements passes are shared, also on the window around C.
+/// With this number of elements passes are shared, also on the window around C.
 #[test]
 fn the_ellipse() {
     same_for_any_number_of_threads(&ellipse(280));
 }
 
-/// With so many elements passes are shared on the whole grid, and there is no window.
+/// With this number of elements passes are shared on the whole grid, and there is no window.
 #[test]
 fn the_rough_surface() {
     same_for_any_number_of_threads(&rough(160));
 }
 
-/// With so many elements passes are shared on the whole grid only.
+/// With this number of elements passes are shared on the whole grid only.
 #[test]
 fn wheel_and_rail() {
     same_for_any_number_of_threads(&wheel_rail("y0_10kN", 2));

@@ -152,7 +152,7 @@ fn so_do_the_surface_and_the_log() {
     solved(&mut undisturbed);
     let mut watch = Watch { modes: Vec::new(), leaves: UPWARD, inner: None };
     WATCHED.set(true);
-    // SAFETY: the callback and what it is told live until it is taken away.
+    // SAFETY: the callback and its data live until it is removed.
     unsafe {
         assert_eq!(contact_normal_set_log(Some(log), CONTACT_NORMAL_LOG_INFO, (&raw mut watch).cast()), 0);
     }
