@@ -8,7 +8,7 @@
 //!
 //! ```text
 //! j > 0     2 c sum over m of sinc_m * integral of K0(w_m |y|) over the element,  w_m = |t + 2 pi m|/dx
-//! j = 0     2 c   integral of log(W/|y|) over the element; W is the grid's width: what the library says its approach is relative to
+//! j = 0     2 c   integral of log(W/|y|) over the element; W: the grid's width, at which displacements are zero
 //! ```
 //!
 //! With a second period, in y, there are sums over its images: geometric for j > 0, `-log |2 sin(pi y/Ly)|` (Clausen's function) for j = 0.

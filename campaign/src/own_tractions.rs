@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! even:    f A
-//! uneven:  A + c sum over n >= 0 of (1 - e) e^n A(x + n)        in steady rolling towards +x: material behind has given way; or seen in a mirror
+//! uneven:  A + c sum over n >= 0 of (1 - e) e^n A(x + n)        in steady rolling towards +x: softer behind the contact; or mirrored in x
 //! rows:    d_i A d_j, of the rows i and j; pressures alike
 //! ```
 

@@ -255,7 +255,7 @@ fn a_file_that_says_more_than_it_holds_is_refused() {
     let bytes = std::fs::read(&path).expect("a dump");
     let find = |what: &[u8]| bytes.windows(what.len()).position(|bytes| bytes == what).expect("a line");
     let mut larger = bytes.clone();
-    // A dump of 6 elements in x that says 9.
+    // The header of a dump of 6 elements in x, changed to 9.
     larger[find(b"int32 mx 6") + 9] = b'9';
     let dump = Dump::read(&larger).expect("a dump that can be read");
     assert_eq!(dump.replay().expect("a call").status, CONTACT_NORMAL_INVALID_ARGUMENT);

@@ -191,8 +191,8 @@ fn creepages_that_lead_to_each_other_are_left() {
     }
 }
 
-/// The residual of one element of 1735 can hide the residual of its tractions. A trial with such a residual must not decide whether forces are too
-/// small or too large.
+/// An rms over 1735 elements can be small although one of them has a large residual. A trial with such a residual must not decide whether forces are
+/// too small or too large.
 #[test]
 fn forces_are_met_where_the_residual_hides_one_element() {
     let grid = Grid::new(2000, 1, 1.1e-3, 268.0051990031252).unwrap();
